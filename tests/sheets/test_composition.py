@@ -10,11 +10,11 @@ from tests import project_files as files
 from tmm_sheets import catalogue
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY, handy
-from tmm_sheets.drawing.marks import Arc
+from tmm_sheets.drawing.marks import Arc, Text
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import friction, kinematic_frames
+from tmm_sheets.sheets import friction, kinematic_frames, linkage
 from tmm_sheets.sheets.arrangement import arrangement
-from tmm_sheets.sheets.composition import TITLE_BLOCK, arranged
+from tmm_sheets.sheets.composition import SHOWN, TITLE_BLOCK, _reaching, arranged
 from tmm_sheets.sheets.sheet import INSIDE, composed
 from tmm_sheets.sheets.solver import Need, Node, cut, joined, rounded_up, solve
 
@@ -248,3 +248,35 @@ def test_a_crank_that_swings_has_the_arc_it_goes_through():
     assert np.degrees(way[0].end - way[0].start) == pytest.approx(60 + 2 * np.degrees(5 / radius))
     assert found.scales["positions"].mu == pytest.approx(0.0008)
     assert np.degrees(way[0].start + way[0].end) / 2 == pytest.approx(80)
+
+
+def test_a_traced_point_is_drawn_as_a_point_of_its_link():
+    """A coupler point that nothing hangs on: lines of its link lead to it, its mark is no hinge."""
+    point = {"point": [{"name": "E", "link": "2", "from": "A", "towards": "B", "distance": "0.15 m", "angle": "40 deg"}]}
+    project = files.project(files.FOUR_BAR, point, files.EVEN)
+    positions = project.study.positions
+    shape = next(s for s in linkage.shapes(positions) if s.link == "2")
+    assert set(shape.bar) == {"A", "B", "E"}
+    assert linkage.traced(project.mechanism, "2") == ["E"]
+    marks = composed(project, 1).drawing.marks
+    circles = {m.by.step for m in marks if isinstance(m, Arc) and m.style == "main" and m.by and m.by.role == "symbol"}
+    assert "positions/B" in circles
+    assert "positions/E" not in circles
+
+
+def test_a_fixed_point_that_carries_nothing_is_no_part_of_the_mechanism():
+    """It has no letter and takes no room: the plans are as large as without it."""
+    far = {"points": {"O": ["0 m", "0 m"], "C": ["0.42 m", "0.05 m"], "P": ["3 m", "-2 m"]}}
+    one, other = (composed(files.project(files.FOUR_BAR, *more, files.EVEN), 1) for more in ([], [far]))
+    assert one.scales["positions"].mu == other.scales["positions"].mu
+    assert "P" not in {m.text for m in other.drawing.marks if isinstance(m, Text)}
+
+
+def test_letters_that_take_the_place_ask_for_more_of_it():
+    """A link of 0.3 m with 54 mm of arrows and letters about it in 56 mm: 2 mm of it would be drawn."""
+    ends, offsets = np.array([0j, 0.3j]), np.array([-27j, 27j])
+    tight, roomy = (_reaching(Box(0.0, 0.0, 200.0, high), ends, offsets, (0.0, 20.0, 0.0, 20.0), (60.0, 40.0))
+                    for high in (96.0, 200.0))
+    assert tight.least[1] == pytest.approx(40.0 + 54.0 + SHOWN)
+    assert roomy.least[1] == pytest.approx(tight.least[1])
+    assert tight.least[0] == roomy.least[0] == 60.0

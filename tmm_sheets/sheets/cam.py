@@ -18,6 +18,7 @@ from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.tables import widened
 from tmm_sheets.numbers import fixed, number
+from tmm_sheets.sheets.frame import OVER
 from tmm_sheets.sheets.player import Stage, placed, play
 from tmm_sheets.words import tr
 
@@ -68,6 +69,15 @@ def lines_of_text(canvas: Canvas, box: Box, lines: Sequence[str]) -> None:
     top = box.y0 + 3.0 + 7.0 * (len(lines) - 1)
     for i, line in enumerate(lines):
         canvas.put(fitted(line, box.width - 8.0, 3.5), complex(box.x0 + 6.0, top - 7.0 * i), 0.0, line)
+
+
+def raised(box: Box, room: Box, height: float) -> tuple[Box, Box]:
+    """The place of a view and the room of its figure, so high in mm, without what they leave free under both.
+
+    Title, figure and the lines that follow from it stand together; what is left of a high place is in one piece for others.
+    """
+    spare = max(room.height - height - 2 * OVER, 0.0)
+    return box.inset(0, spare, 0, 0), room.inset(0, spare, 0, 0)
 
 
 def centred(canvas: Canvas, box: Box, above: float, text: str) -> None:

@@ -16,8 +16,8 @@ from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import pivot
 from tmm_sheets.drawing.tables import LEAST, needs, size_in, widened
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cam import ANGLE, for_cams, in_degrees, in_mm, lines_of_text
-from tmm_sheets.sheets.frame import OVER, ratio, standard
+from tmm_sheets.sheets.cam import ANGLE, for_cams, in_degrees, in_mm, lines_of_text, raised
+from tmm_sheets.sheets.frame import ratio, standard
 from tmm_sheets.sheets.player import Stage, placed, play
 from tmm_sheets.words import tr
 
@@ -482,9 +482,7 @@ def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     left, below, right, above = ROLLER
     room = box.inset(left, below, right, above)
     scale = standard((float(np.ptp(every.real)), room.width), (float(np.ptp(every.imag)), room.height))
-    # Title, figure and what follows from it stand together; what is left of a high place is in one piece for others.
-    spare = max(room.height - scale.mm(float(np.ptp(every.imag))) - 2 * OVER, 0.0)
-    box, room = box.inset(0, spare, 0, 0), room.inset(0, spare, 0, 0)
+    box, room = raised(box, room, scale.mm(float(np.ptp(every.imag))))
     canvas.title(box, tr("Choice of the radius of the roller"), ratio(scale))
     middle = complex((every.real.max() + every.real.min()) / 2, (every.imag.max() + every.imag.min()) / 2)
     origin = room.centre - scale.mm(middle)

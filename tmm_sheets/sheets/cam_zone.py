@@ -14,7 +14,7 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.symbols import bar, hinge
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cam import ANGLE, OverAngle, centred, distinct, for_cams, lines_of_text
+from tmm_sheets.sheets.cam import ANGLE, OverAngle, centred, distinct, for_cams, lines_of_text, raised
 from tmm_sheets.sheets.frame import ratio, standard
 from tmm_sheets.sheets.player import Stage, placed, play
 from tmm_sheets.words import tr
@@ -53,6 +53,7 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     depth = -lowest
     low = apex - 1j * depth
     scale = Scale("μ_S", mu, tr("m/mm"))
+    box, room = raised(box, room, scale.mm(stroke - low.imag))
     canvas.scales[z.plan.name] = scale
     canvas.title(box, tr("Main dimensions of the cam"), tr("μ_S = μ_S' = {factor} m/mm").format(factor=number(scale.mu)))
     origin = room.centre - scale.mm(complex((max(xs) + min(xs)) / 2, (stroke + low.imag) / 2))

@@ -32,6 +32,8 @@ TITLE_BLOCK = Box(648.0, 8.0, 832.0, 61.0)
 """Place of the title block among the views."""
 MAIN = 4
 """How much more than others the position plans count: the mechanism is what a sheet is about."""
+SHOWN = 20.0
+"""Size below which a figure tells nothing, mm."""
 DESIGNATION = Box(20.0, 573.0, 92.0, 589.0)
 """Place of the turned designation, over the views in the upper left corner (GOST 2.104)."""
 
@@ -171,16 +173,21 @@ def _parts(project: Project, view: View) -> list[tuple[View, Node]]:
 
 def _reaching(box: Box, z: Any, d: Any, inset: tuple[float, float, float, float],
               least: tuple[float, float]) -> Need:
-    """Need of points with what sticks out of each of them on paper, as it is in about the box of the arrangement."""
+    """Need of points with what sticks out of each of them on paper, as it is in about the box of the arrangement.
+
+    Where that alone takes nearly all of the box, so much more that ``SHOWN`` is left for what is drawn to scale.
+    """
     z, d = np.ravel(np.asarray(z, dtype=complex)), np.ravel(np.asarray(d, dtype=complex))
     inside = box.inset(*inset)
-    size, around = [], []
+    size, around, finest = [], [], []
     for x, offset, room, edge in ((z.real, d.real, inside.width, inset[0] + inset[2]),
                                   (z.imag, d.imag, inside.height, inset[1] + inset[3])):
         mu, span = needed(x, offset, max(room, 40.0)), float(np.ptp(x[~np.isnan(x)]))
         size.append(span if mu > 0 else 0.0)
         around.append(edge + (max(room, 40.0) - span / mu if mu > 0 else float(np.ptp(offset))))
-    return Need((size[0], size[1]), (around[0], around[1]), least)
+        finest.append(mu)
+    short = [beside + SHOWN if mu == max(finest) > 0 else 0.0 for beside, mu in zip(around, finest, strict=True)]
+    return Need((size[0], size[1]), (around[0], around[1]), (max(least[0], short[0]), max(least[1], short[1])))
 
 
 def _leaf(box: Box, need: Need, share: float = 1.0) -> Node:

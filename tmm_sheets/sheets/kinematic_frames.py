@@ -103,7 +103,7 @@ def positions_reach(project: Project) -> tuple[Any, Any]:
         behind = -np.exp(1j * project.cycle.phi[project.force_index])
         ways, beside = np.append(ways, 0), np.append(beside, behind * (SWING_ARROW + 8.0))
     z, d = [centre + c.length * ways], [beside]
-    for name, step in pos.points.items():
+    for name, step in linkage.drawn_points(pos).items():
         at = np.ravel(step.value)
         # What sticks out of a point whatever the scale: a pivot's base, a ram's body, numbers and letters.
         wide = 32.0 if any(g.kind.ram(g) and g.inner == name for g in m.groups) else 14.0

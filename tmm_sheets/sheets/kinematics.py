@@ -227,7 +227,7 @@ def _point_letters(project: Project, s: Stage) -> None:
     m = project.mechanism
     masses = {link.centre for link in m.links.values() if link.mass}
     own = {p.name for p in m.points if not any(p.name in g.outer for g in m.groups)}
-    for name, step in project.study.positions.points.items():
+    for name, step in linkage.drawn_points(project.study.positions).items():
         moving, letters = name not in m.fixed, linkage.indexed(name)
         if name in masses and name in own:
             symbols.centre_of_mass(s.pen(step, "symbol"), s.at(step))

@@ -62,11 +62,11 @@ def _shape(pos: Positions, o: Outline) -> Shape:
 
 
 def _bar(m: Mechanism, link: str, base: tuple[str, ...], aim: str | None = None) -> Shape:
-    """A link through its hinges and the points its guides start from; ``aim`` is a point its line passes besides."""
+    """A link through its hinges, the points its guides start from and those that are traced; ``aim``: its line passes there too."""
     guides = [g for g in m.guides.values() if g.link == link]
     hinges = [p.name for p in m.points if p.link == link and any(p.name in g.outer for g in m.groups)]
     starts = [p.name for p in m.points if p.link == link and any(p.name == g.through for g in guides)]
-    bar = tuple(dict.fromkeys((*base, *hinges, *starts)))
+    bar = tuple(dict.fromkeys((*base, *hinges, *starts, *traced(m, link))))
     over, arms = [], []
     for guide in guides:
         along = not guide.direction and guide.through in base and guide.towards in (*base, aim)
@@ -74,6 +74,20 @@ def _bar(m: Mechanism, link: str, base: tuple[str, ...], aim: str | None = None)
             over += [point] * along
             arms += [(str(guide.through), point)] * (not along)
     return Shape(link, bar, over=tuple(over), arms=tuple(arms))
+
+
+def drawn_points(pos: Positions) -> dict[str, Step]:
+    """Points of the mechanism: a fixed one of the file that carries nothing is none."""
+    m = pos.mechanism
+    used = {m.crank.pivot} | {name for g in m.groups for name in g.outer} | {guide.through for guide in m.guides.values()}
+    return {name: step for name, step in pos.points.items() if name in used or name not in m.fixed}
+
+
+def traced(m: Mechanism, link: str) -> list[str]:
+    """Points of a link that nothing hangs on and that are nobody's centre of mass: they are there for their paths."""
+    used = {link.centre for link in m.links.values()} | {name for g in m.groups for name in g.outer} | \
+        {guide.through for guide in m.guides.values()}
+    return [p.name for p in m.points if p.link == link and p.name not in used]
 
 
 def _carried(pos: Positions, link: str) -> tuple[str, Step] | None:
@@ -211,7 +225,8 @@ def draw(s: Stage, pos: Positions, style: str, only: Collection[str] | None = No
     drawn = [shape for shape in shapes(pos) if only is None or shape.link in only]
     # A dict, not a set: the order of the marks must be the same in every run.
     at = {name: s.at(pos.points[name]) for shape in drawn for name in (*shape.bar, shape.block or "") if name}
-    gaps = at if style == "main" else [name for name in at if name in pos.mechanism.fixed]
+    free = [name for shape in drawn for name in traced(pos.mechanism, shape.link)]
+    gaps = [name for name in at if name not in free] if style == "main" else [name for name in at if name in pos.mechanism.fixed]
     for shape in drawn:
         if shape.bar:
             _draw_bar(s, pos, shape, [at[name] for name in gaps], style, ends.get(shape.link, (None, None)))
@@ -253,16 +268,19 @@ def _draw_block(s: Stage, pos: Positions, shape: Shape, style: str) -> None:
 
 
 def _draw_pairs(s: Stage, pos: Positions, at: Mapping[str, complex], *, whole: bool) -> None:
-    """Hinges and fixed pivots; of single groups only those pivots that are pairs of the mechanism.
+    """Hinges, small circles at traced points, and fixed pivots; of single groups only those that are pairs of the mechanism.
 
     The point of a ram where guide and slot meet is a hinge only where a group hangs on it.
     """
     m = pos.mechanism
+    free = [name for link in m.links for name in traced(m, link)]
     for name, z in at.items():
         pen = s.pen(pos.points[name], "symbol")
         if name in m.fixed:
             if whole or name == m.crank.pivot or any(name in g.outer for g in m.groups):
                 symbols.pivot(pen, z, _base_direction(pos, name))
+        elif name in free:
+            symbols.hinge(pen, z, "thin", 0.7)
         elif not any(g.kind.ram(g) and g.inner == name for g in m.groups) or any(name in g.outer for g in m.groups):
             symbols.hinge(pen, z)
 

@@ -515,8 +515,9 @@ def _rows_of_links(of: Any, canvas: Canvas, part: str) -> list[list[str]]:
     mu = canvas.scales[plan.name]
     rows = [[tr("Link"), tr("Segment of the plan, mm"), tr("n, rpm")]]
     for end in _ends_of_rays(plan):
-        measured = f"|0–{_link(end.name)}| = {fixed(abs(mu.mm(complex(end.value).real)), 1)}"
-        rows.append([_link(end.name), measured, number(float(plan[f"n{end.name}"].value))])
+        name = _link(end.name)
+        measured = f"|0–{f'({name})' if '–' in name else name}| = {fixed(abs(mu.mm(complex(end.value).real)), 1)}"
+        rows.append([name, measured, number(float(plan[f"n{end.name}"].value))])
     return rows
 
 

@@ -44,7 +44,8 @@ def _lines(r: Any) -> Iterator[str]:
         """A quotient of two of them, or of the products of all where the satellites are of two kinds."""
         return f"{together}{over[3]}/{over[0]}" if stage.single else f"{together}{over[a]}·{over[3]}/({over[0]}·{over[b]})"
 
-    i = number(chosen["i14"], 5)
+    # Where the carrier drives, the ratio is the reciprocal of a small difference.
+    i = number(chosen["i14"], 7 if stage.driver == "carrier" else 5)
     yield f"{inner} = {of(1, 2, z)} = {of(1, 2, teeth)} = {i}"
     within = f"({i})" if chosen["i14"] < 0 else i
     enters, leaves = {"sun": (one, "H"), "ring": (four, "H"), "carrier": ("H", one)}[stage.driver]
