@@ -33,6 +33,8 @@ WRONG = 2.0
 """A fit is wrong when it is off by more than this somewhere, mm."""
 CLEARLY = 0.06
 """By how much a farther place must fit better than one near the true one to be believed: lines of a table look alike."""
+SLIDES = 0.03
+"""A piece that lies better than a millimetre off by no more than this is held by nothing."""
 GRAIN = 0.3
 """Paper is paler than this, lines are darker."""
 FOUND = ("red", "amber", "ink")
@@ -152,7 +154,7 @@ def offsets(believed: NDArray[np.uint8], true: NDArray[np.uint8]) -> tuple[Float
             field_ = theirs[row - half - reach : row + half + reach, column - half - reach : column + half + reach]
             score = np.asarray(cv2.matchTemplate(field_, piece, cv2.TM_CCOEFF_NORMED), np.float32)
             best, at = _best(score, reach)
-            if best > 0.6:
+            if best > 0.6 and _held(score, at):
                 places.append((x, y))
                 found = field_[at[1] : at[1] + 2 * half, at[0] : at[0] + 2 * half]
                 dx, dy = np.array(at) - reach + _rest(found, piece)
@@ -168,6 +170,16 @@ def _best(score: NDArray[np.float32], reach: int) -> tuple[float, tuple[int, int
     if near > best - CLEARLY:
         return near, (there[0] + first, there[1] + first)
     return best, (at[0], at[1])
+
+
+def _held(score: NDArray[np.float32], at: tuple[int, int]) -> bool:
+    """Whether a piece lies worse a millimetre off on all sides.
+
+    One line that ends at the edge of what lies on the sheet may slide along itself: the edge is no line and is not found again.
+    """
+    row, column = np.ogrid[: score.shape[0], : score.shape[1]]
+    off = np.hypot(row - at[1], column - at[0])
+    return bool(score[(off > 0.8 * DENSITY) & (off < 1.2 * DENSITY)].max() < score[at[1], at[0]] - SLIDES)
 
 
 def _tells(piece: NDArray[np.float32]) -> bool:

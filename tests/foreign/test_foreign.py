@@ -24,3 +24,12 @@ def test_a_picture_is_taken_and_judged(tmp_path: Path) -> None:
     outcome = judge.judge(file, tmp_path)
     assert outcome.state in ("judged", "refused")
     assert outcome.state == "refused" or (outcome.worst is not None and outcome.worst < judge.WRONG)
+
+
+def test_a_line_that_ends_at_the_edge_of_a_cover_tells_nothing_along_itself() -> None:
+    cv2 = pytest.importorskip("cv2")
+    score = np.zeros((43, 43), np.float32)
+    score[:, 21] = np.linspace(0.74, 0.64, 43)
+    assert not judge._held(cv2.GaussianBlur(score, (0, 0), 1.0), (21, 15))
+    score[15, 21] = 5.0
+    assert judge._held(cv2.GaussianBlur(score, (0, 0), 1.0), (21, 15))

@@ -3,6 +3,7 @@
 The frame is found (``frame_search``), its sides give a first map of the sheet (``frame_fit``), and the lines of the drawing and of
 the title block correct it (``map_fit``): homography, lens and the height of the paper, a polynomial of degree
 :data:`~tmm_sheets.compare.photo.sheet_map.RELIEF`, are fitted together; finally a few waves take up some tenths of a millimetre.
+Paper that is not smooth has a ``surface`` instead.
 None of these can follow a single view, least of all a single line: among several hundred lines that determine some seventy
 parameters a wrong one moves them by hundredths of a millimetre (Geman-McClure weights all but ignore it).
 """
@@ -57,7 +58,7 @@ LEAST_PATCHES, OFF, PATCH = 6, 1.5, 1.0
 """Least number of patches; mm one of them must be off for the map to follow them; mm that count as far off while it does."""
 PART, PLENTY = 120.0, 8
 """Side of a part of the sheet, mm, and points of a line in it beyond which it counts no more."""
-ROUGHLY = ((90.0, 3.0), (90.0, 2.0), (60.0, 1.5))
+ROUGHLY = ((90.0, 3.0), (90.0, 3.0), (60.0, 2.0), (60.0, 1.5))
 """Sides of the patches that a surface follows, one after the other; distance that counts as far off, mm."""
 FINER = ((2.0, 1.0), (1.5, 0.6), (1.2, 0.4), (0.8, 0.2))
 """Reach to either side of the lines that it follows then; distance that counts as far off, mm."""
@@ -235,17 +236,27 @@ class _Attempts:
         best = self.best
         if best is None or (self.sound and best.check.together < TOGETHER):
             return
-        # A fit that is right in most of the sheet may be bent to suit what was taken for a side; the frame that was followed is not.
-        starts = [(a, a is best) for a in ((best, self.framed) if best.check.acceptable else (self.framed, best)) if a is not None]
+        # A fit that is right in most of the sheet may be bent to suit what was taken for a side; the frame followed first is not.
+        starts = [(a, a is best) for a in ((best, self.framed) if best.check.moored else (self.framed, best)) if a is not None]
         for start, right in starts:
             if right and start.check.match < MATCH:
                 continue
             with suppress(CannotBuild, np.linalg.LinAlgError):
                 finer = self._surface(start, right)
-                if finer.check.together < BETTER * best.check.together and finer.check.match > max(best.check.match - 0.01, CURVED):
+                if self._better(finer, best):
                     self.best = finer
             if self.best is not best and self.sound:
                 break
+
+    @staticmethod
+    def _better(finer: _Attempt, best: _Attempt) -> bool:
+        """Whether a surface is to be believed: what so supple a map leaves astray may be its own doing, and it needs all sides."""
+        if not best.check.moored and float(finer.check.sides.min()) < fit_check.SIDE:
+            return False
+        least = max(best.check.match - 0.01, CURVED)
+        astray = len(best.check.astray) if best.check.moored else 0
+        return (finer.check.together < BETTER * best.check.together and finer.check.match > least
+                and len(finer.check.astray) <= astray)
 
     def elsewhere(self, lines: ProfileLines) -> None:
         """Try other frames, the likeliest by the drawing's ``lines`` first."""

@@ -23,8 +23,8 @@ FRAME = Box(20.0, 5.0, 836.0, 589.0)
 CORNERS = np.array([20 + 5j, 836 + 5j, 836 + 589j, 20 + 589j])
 """Corners of the frame, counter-clockwise from the lower left one."""
 SIDE_TERMS = 7  # coefficients of the polynomial a side is bent by
-RELIEF, CREASED = 6, 10  # degree of the polynomial for the height of the paper, and of paper with short waves and creases
-TERMS = tuple((i, n - i) for n in range(2, CREASED + 1) for i in range(n, -1, -1))
+RELIEF = 6  # degree of the polynomial for the height of the paper
+TERMS = tuple((i, n - i) for n in range(2, RELIEF + 1) for i in range(n, -1, -1))
 DEGREE = np.array([i + j for i, j in TERMS])
 WAVES = 4  # half waves over the sheet, in each direction, for the residual
 AWAY = 1000.0  # mm from the paper to the camera, nominal: an error in it only rescales the heights
@@ -106,8 +106,7 @@ class Map:
 
     def risen(self, p: Points) -> Points:
         """Contribution of the relief: a point at height h appears farther from the foot by h / :data:`AWAY` of its distance."""
-        degree = RELIEF if not self.relief[DEGREE > RELIEF].any() else CREASED
-        return np.asarray(np.einsum("...k,k->...", heights(p, degree), self.relief[degree >= DEGREE]) * (p - self.foot) / AWAY)
+        return np.asarray(np.einsum("...k,k->...", heights(p), self.relief) * (p - self.foot) / AWAY)
 
 
 def heights(p: Points, degree: int = RELIEF) -> Floats:
