@@ -331,8 +331,8 @@ def dot(number, at, radius=0.6):
     [
         ([0j], ""),
         ([0.3 + 0.2j], ""),  # a hand's reach
-        ([3j], "a dot like it stands beside, and none here: 3.0 mm too far up"),
-        ([2.5 - 2.5j], "a dot like it stands beside, and none here: 3.5 mm too far down and right"),
+        ([3j], "a dot like it stands beside, and none is seen here: 3.0 mm too far up"),
+        ([2.5 - 2.5j], "a dot like it stands beside, and none is seen here: 3.5 mm too far down and right"),
         ([0j, 3j], ""),  # a spot, but the dot is there, too
         ([], ""),  # none at all: lines may have rubbed it out
         ([9j], ""),  # too far to be this one
@@ -348,6 +348,35 @@ def test_a_dot_that_stands_beside_its_place(places, says):
     found, _ = trace(known, ink)
     f = judge(found[1], 0.25, 0.15)
     assert (f.verdict, f.what if f.verdict != "green" else "") == ("amber" if says else "green", says)
+
+
+@pytest.mark.parametrize(
+    ("places", "verdicts"),
+    [
+        ([2.6 + 2.6j], ["amber", "green"]),  # one spot is one dot's, the nearer one's
+        ([], ["green", "green"]),  # where lines cross it is dark with a dot or without
+        ([9 + 9j], ["green", "green"]),
+    ],
+)
+def test_a_small_dot_where_lines_cross_is_taken_for_a_spot_beside(places, verdicts):
+    lines = [line(1, 270 + 300j, 330 + 300j, "thin"), *(line(k, x + 270j, x + 330j, "thin") for k, x in ((2, 300), (3, 306)))]
+    ink = paper()
+    for e in lines:
+        draw(ink, *e.points, "thin")
+    draw(ink, CORNER - 0.2, CORNER + 0.2, "main", 230)  # strokes that cross are darker
+    for by in places:
+        draw(ink, CORNER + by - 0.1, CORNER + by + 0.1, "thin", 230)
+    found, _ = trace([*lines, dot(4, CORNER, 0.35), dot(5, CORNER + 6, 0.35)], ink)
+    assert [judge(t, 0.25, 0.15).verdict for t in found[3:]] == verdicts
+
+
+@pytest.mark.parametrize(("by", "verdict"), [(1.84, "amber"), (4.0, "amber"), (0.5, "green"), (0.0, "green")])
+def test_a_line_that_parts_from_its_stroke_only_near_its_end_is_seen(by, verdict):
+    """Of a helper line under a vector that was turned about the pole, as little as a third lies on bare paper."""
+    a, b = 250 + 300j, 301 + 300j
+    known = [line(1, a, b, "construction"), line(2, a, b - 4)]
+    found, _ = traced(known, [(a, b + 1j * by, "construction"), (a, b - 4, "main")])
+    assert [judge(t, 0.25, 0.15).verdict for t in found] == [verdict, "green"]
 
 
 @pytest.mark.parametrize(("gap", "rest", "short"), [(2.0, 2.5, False), (2.0, 0.6, True), (4.5, 1.5, True)])
