@@ -191,11 +191,11 @@ def _overlays(found: Rectified, judged: _Judged, title: str) -> dict[str, bytes]
 
 def _row(f: PhotoFinding) -> dict[str, Any]:
     """A finding for JSON, null where nothing was measured."""
-    t = f.trace
+    t, middle = f.trace, f.element.middle
     ends = [round(float(x), 2) if np.isfinite(x) else None for x in t.ends]
     measured = t.status in ("measured", "shared", "beside")
     return origin(f.element) | {
-        "status": t.status, "verdict": f.verdict, "said": f.what,
+        "middle": [round(middle.real, 1), round(middle.imag, 1)], "status": t.status, "verdict": f.verdict, "said": f.what,
         "shift": [round(t.shift.real, 2), round(t.shift.imag, 2)] if measured else None,
         "turn_deg": round(degrees(t.turn), 3) if measured else None, "growth": round(t.growth, 2) if measured else None,
         "ends": ends, "deviation": round(t.deviation, 2) if measured else None, "tolerance": round(f.tolerance, 2),
