@@ -370,7 +370,7 @@ def test_a_small_dot_where_lines_cross_is_taken_for_a_spot_beside(places, verdic
     assert [judge(t, 0.25, 0.15).verdict for t in found[3:]] == verdicts
 
 
-@pytest.mark.parametrize(("by", "verdict"), [(1.84, "amber"), (4.0, "amber"), (0.5, "green"), (0.0, "green")])
+@pytest.mark.parametrize(("by", "verdict"), [(1.2, "amber"), (1.84, "amber"), (4.0, "amber"), (0.5, "green"), (0.0, "green")])
 def test_a_line_that_parts_from_its_stroke_only_near_its_end_is_seen(by, verdict):
     """Of a helper line under a vector that was turned about the pole, as little as a third lies on bare paper."""
     a, b = 250 + 300j, 301 + 300j
