@@ -197,6 +197,22 @@ def test_the_head_of_an_arrow_is_looked_for_at_both_ends(head, verdict, said):
     assert said in f.what
 
 
+@pytest.mark.parametrize(("head", "wide"), [("there", 1.0), ("there", 0.8), ("absent", 1.0), ("absent", 0.5)])
+def test_heads_are_known_in_black_and_white_too(head, wide):
+    """There lines are wider than they were drawn, and heads are no more than half as wide again."""
+    a, b = 300 + 300j, 330 + 320j
+    u = (b - a) / abs(b - a)
+    ink = np.zeros((ROWS, COLUMNS), np.uint8)
+    lines = [(a + wide / 2 * 1j * u, a - wide / 2 * 1j * u, b - wide / 2 * 1j * u, b + wide / 2 * 1j * u)]
+    if head == "there":
+        side = 0.35 + wide / 2
+        lines.append((b + 0.3 * u, b - 4.5 * u + side * 1j * u, b - 4.5 * u - side * 1j * u))
+    for corners in lines:
+        z = np.array(corners)
+        cv2.fillPoly(ink, [np.rint(np.stack((z.real * SCALE - 0.5, (594 - z.imag) * SCALE - 0.5), 1)).astype(np.int32)], 200)
+    assert trace([arrow(1, a, b)], ink)[0][0].head == head
+
+
 @pytest.mark.parametrize("theirs", [False, True])
 def test_a_head_at_the_other_end_tells_though_the_tip_is_hidden(theirs):
     """Lines beside the tip hide it; where another arrow has its head at the other end, nothing is told."""

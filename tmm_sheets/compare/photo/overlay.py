@@ -54,9 +54,9 @@ def png(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag]) 
         cv2.circle(picture, (int(x), int(y)), round(CIRCLE * PNG_SCALE * 16), colour, 2, cv2.LINE_AA, 4)
         if number.leader is not None:
             cv2.polylines(picture, [fixed(np.array(number.leader), PNG_SCALE)], False, colour, 1, cv2.LINE_AA, 4)
-        left, foot = fixed(np.array([number.at]), PNG_SCALE)[0] // 16
-        size = DIGITS / 1.5 * PNG_SCALE / HERSHEY
-        cv2.putText(picture, number.text, (int(left), int(foot)), cv2.FONT_HERSHEY_SIMPLEX, size, colour, 2, cv2.LINE_AA)
+        left, foot = (int(c) // 16 for c in fixed(np.array([number.at]), PNG_SCALE)[0])
+        high = DIGITS / 1.5 * PNG_SCALE / HERSHEY
+        cv2.putText(picture, number.text, (left, foot), cv2.FONT_HERSHEY_SIMPLEX, high, colour, 2, cv2.LINE_AA)
     done, data = cv2.imencode(".png", picture)
     assert done
     return bytes(data.tobytes())
