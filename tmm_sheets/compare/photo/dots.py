@@ -36,7 +36,7 @@ FAINT, DARK, SMALL_DARK, SMALL = 0.3, 0.6, 0.35, 0.45
 lines'; the same of dots of less than the radius, mm, which blur makes pale."""
 TOUCHED = 9
 """Pixels about the middle of a small spot that nothing else may take."""
-COVERED = 0.5
+COVERED = 0.3
 """Share of a small dot under lines from which on its place, where they cross, is dark with it or without."""
 TELLS = 0.15
 """Least share of a dot that lines do not show as well for anything to be told of its place."""
