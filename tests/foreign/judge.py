@@ -41,6 +41,8 @@ FOUND = ("red", "amber", "ink")
 """What counts as found."""
 VISIBLE = 1.5
 """Mistakes from this size on should be found, mm."""
+SAME = 4.0
+"""Elements of one name whose middles lie this near to each other are told together: a vector and its helper line, mm."""
 HIDES, SHOWS = 0.6, 2.0
 """A line hides another that is no farther off, mm; a mistake shows when so many mm of line are gone or new."""
 
@@ -220,6 +222,19 @@ def _is(element: dict[str, Any], mark: Mark) -> bool:
     return (element["view"] == mark.view or "." in mark.view) and element["name"] in names and element["kind"] in kinds
 
 
+def _those(elements: list[dict[str, Any]], mark: Mark) -> list[dict[str, Any]]:
+    """The elements of the report that are a mark: of several of one name (both lines of a guide, a rod in many positions) those in
+    its place.
+    """
+    alike = [element for element in elements if _is(element, mark)]
+    if not mark.paths() or not alike:
+        return alike
+    corners = np.vstack(mark.paths())
+    middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
+    away = [float(np.hypot(*(np.array(element["middle"]) - middle))) for element in alike]
+    return [element for element, by in zip(alike, away, strict=True) if by < min(away) + SAME]
+
+
 def _near(marks: list[Mark], lines: list[list[list[float]]]) -> list[Mark]:
     """Marks of which a third or more lies within 2 mm of wrong lines: what is said of them does not count."""
     if not lines:
@@ -296,7 +311,7 @@ def _said(outcome: Outcome, report: dict[str, Any], truth: dict[str, Any], marks
     touched: list[Mark] = []
     for mistake, shows in zip(truth["mistakes"], changed(truth, marks), strict=True):
         wrong = [named[mark["id"]] for mark in mistake["wrong"]]
-        said = {_verdict(element) for element in elements if any(_is(element, mark) for mark in wrong)}
+        said = {_verdict(element) for mark in wrong for element in _those(elements, mark)}
         found = next((verdict for verdict in ("red", "amber", "green", "unjudged") if verdict in said), "silent")
         if found != "red" and _pointed_at(mistake, report["extra"]):
             found = "ink"
