@@ -151,3 +151,15 @@ def test_ink_that_crosses_a_line_is_none_along_it():
     assert built_photo.inked(ink, line, 20.0) < 0.3
     ink[round((PAPER.y1 - 300.2) * SCALE):round((PAPER.y1 - 299.8) * SCALE), round(300 * SCALE):round(340 * SCALE)] = 60
     assert built_photo.inked(ink, line, 20.0) == pytest.approx(2 / 3, abs=0.1)
+
+
+@pytest.mark.parametrize(("by", "told"), [
+    (500j, "up to 500.0 mm off, as follows from the mistake; there it runs off the paper, so it cannot be looked for"),
+    (20j, "up to 20.0 mm off, as follows from the mistake; missing"),
+])
+def test_a_line_that_would_run_off_the_paper_is_not_called_missing(by, told):
+    was = next(e for e in KNOWN.elements if e.kind == "line" and e.role == "vector")
+    f = judge(tracing.Trace(replace(was, points=was.points + by), "missing"), 0.25, 0.15)
+    judged = built_photo._judged(f, was, SimpleNamespace(uncertainty=0.15), 0.25)
+    assert (judged.verdict, judged.what) == ("red", told)
+    assert PAPER.contains(judged.at)  # or its number would stand off the overlay

@@ -17,7 +17,8 @@ from tmm_sheets.compare.photo.frame_fit import FrameFit, initial_map
 from tmm_sheets.compare.photo.frame_search import FoundFrame
 from tmm_sheets.compare.photo.frame_sides import FrameGuess, follow_sides, inked, side_moved_to_ink
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
-from tmm_sheets.compare.photo.sheet_map import CORNERS, CREASED, FRAME, RELIEF, Map, heights, homography
+from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, RELIEF, Map, heights, homography
+from tmm_sheets.compare.photo.surface import FOCUS, camera_foot, fit_surface
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 
@@ -75,12 +76,62 @@ def test_creases_are_followed_by_the_finer_relief_only():
 
     frame, seen = sides(place), lines(place, np.random.default_rng(3), 300)
     m = initial_map(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
-    errors = {}
-    for degree in (2, 4, RELIEF, 8, CREASED):
+    for degree in (2, 4, RELIEF):
         m, _ = fit_map(m, frame, seen, degree, 0.5)
-        errors[degree] = np.percentile(np.abs(m.to_sheet(place(GRID)) - GRID), 95)
-    assert errors[CREASED] < 0.6 * errors[RELIEF]
-    assert errors[CREASED] < 0.3
+    smooth = np.percentile(np.abs(m.to_sheet(place(GRID)) - GRID), 95)
+    for far in (1.0, 0.5, 0.2):
+        m = fit_surface(m, frame, 0.5, seen, far)
+    creased = np.percentile(np.abs(m.to_sheet(place(GRID)) - GRID), 95)
+    assert creased < 0.5 * smooth
+    assert creased < 0.2
+    assert np.abs(m.to_picture(m.to_sheet(place(GRID))) - place(GRID)).max() < 0.01
+
+
+@pytest.mark.parametrize("tall", [0.0, 3.0, 7.0])
+def test_waves_are_followed_from_a_frame_alone_and_by_no_single_line(tall):
+    flat, (columns, rows) = projection(Camera(curl=0.0, tilt=0.1), 841.0, 594.0)
+
+    def place(p):
+        height = tall * np.sin(np.real(p) / 45) + 0.7 * tall * np.sin((np.real(p) + 2 * np.imag(p)) / 110)
+        return flat(p + height * (p - 400 - 150j) / 1000)
+
+    frame, seen = sides(place), lines(place, np.random.default_rng(3), 300)
+    m = initial_map(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
+
+    def fitted(seen):
+        surface = m
+        for far in (5.0, 2.0, 0.6, 0.4, 0.2):
+            surface = fit_surface(surface, frame, 3.0, seen, far)
+        return surface
+
+    true = fitted(seen)
+    assert np.percentile(np.abs(true.to_sheet(place(GRID)) - GRID), 95) < 0.25
+    off = seen.sheet.copy()
+    off[:20] += 3 * seen.normals[:20]
+    wrong = fitted(seen._replace(sheet=off))
+    assert np.abs(true.to_sheet(place(GRID)) - wrong.to_sheet(place(GRID))).max() < 0.3
+
+
+def test_the_foot_of_the_camera_is_told_by_the_perspective():
+    # Seen through a lens of the usual focal length from (500, 200), 1000 mm above the sheet, towards its middle.
+    eye, middle = np.array([500.0, 200.0, 1000.0]), np.array([FRAME.centre.real, FRAME.centre.imag, 0.0])
+    away = (middle - eye) / np.linalg.norm(middle - eye)
+    right = np.cross(away, [0.0, 1.0, 0.0])
+    right /= np.linalg.norm(right)
+    down = np.cross(away, right)
+    x, y, z = np.stack((right, down, away)) @ (np.stack((CORNERS.real, CORNERS.imag, 0 * CORNERS.real)) - eye[:, None])
+    m = Map(0j, 1.0, homography(FOCUS * (x + 1j * y) / z, CORNERS))
+    assert abs(camera_foot(m) - (500 + 200j)) < 1e-6
+
+
+@pytest.mark.parametrize(("off", "points", "found"), [(0.0, 30, 0), (2.5, 30, 1), (2.5, 4, 0)])
+def test_a_line_beside_an_unseen_side_tells_of_a_map_adrift(off, points, found):
+    p = 30 + 575j + np.linspace(0, 60, points)
+    line = profiles.ProfileLines(p, np.full(points, 1j), np.zeros(points, np.int64))
+    good, some = np.full(points, off < 0.5), np.ones(points, bool)
+    assert len(fit_check._adrift(line, good, some, np.array([1.0, 1.0, 0.2, 1.0]))) == found
+    assert not len(fit_check._adrift(line, good, some, np.ones(4)))
+    assert not len(fit_check._adrift(line, good, ~some, np.array([1.0, 1.0, 0.2, 1.0])))
 
 
 def test_one_wrong_line_does_not_draw_the_map():

@@ -197,6 +197,22 @@ def test_the_head_of_an_arrow_is_looked_for_at_both_ends(head, verdict, said):
     assert said in f.what
 
 
+@pytest.mark.parametrize(("head", "wide"), [("there", 1.0), ("there", 0.8), ("absent", 1.0), ("absent", 0.5)])
+def test_heads_are_known_in_black_and_white_too(head, wide):
+    """There lines are wider than they were drawn, and heads are no more than half as wide again."""
+    a, b = 300 + 300j, 330 + 320j
+    u = (b - a) / abs(b - a)
+    ink = np.zeros((ROWS, COLUMNS), np.uint8)
+    lines = [(a + wide / 2 * 1j * u, a - wide / 2 * 1j * u, b - wide / 2 * 1j * u, b + wide / 2 * 1j * u)]
+    if head == "there":
+        side = 0.35 + wide / 2
+        lines.append((b + 0.3 * u, b - 4.5 * u + side * 1j * u, b - 4.5 * u - side * 1j * u))
+    for corners in lines:
+        z = np.array(corners)
+        cv2.fillPoly(ink, [np.rint(np.stack((z.real * SCALE - 0.5, (594 - z.imag) * SCALE - 0.5), 1)).astype(np.int32)], 200)
+    assert trace([arrow(1, a, b)], ink)[0][0].head == head
+
+
 @pytest.mark.parametrize("theirs", [False, True])
 def test_a_head_at_the_other_end_tells_though_the_tip_is_hidden(theirs):
     """Lines beside the tip hide it; where another arrow has its head at the other end, nothing is told."""
@@ -276,7 +292,7 @@ def test_a_straight_stroke_beside_lettering_is_extra_and_a_letter_is_not():
 
 def test_a_crease_is_not_extra():
     ink = paper()
-    for x in (100, 220, 340, 460, 580):
+    for x in (100, 340, 580):
         draw(ink, x + 297j, x + 297.2j + 40, "thin")
     draw(ink, 300 + 400j, 330 + 400j, "thin")
     _, extra = trace([line(1, 300 + 100j, 330 + 100j)], ink)
@@ -331,8 +347,8 @@ def dot(number, at, radius=0.6):
     [
         ([0j], ""),
         ([0.3 + 0.2j], ""),  # a hand's reach
-        ([3j], "a dot like it stands beside, and none here: 3.0 mm too far up"),
-        ([2.5 - 2.5j], "a dot like it stands beside, and none here: 3.5 mm too far down and right"),
+        ([3j], "a dot like it stands beside, and none is seen here: 3.0 mm too far up"),
+        ([2.5 - 2.5j], "a dot like it stands beside, and none is seen here: 3.5 mm too far down and right"),
         ([0j, 3j], ""),  # a spot, but the dot is there, too
         ([], ""),  # none at all: lines may have rubbed it out
         ([9j], ""),  # too far to be this one
@@ -348,6 +364,35 @@ def test_a_dot_that_stands_beside_its_place(places, says):
     found, _ = trace(known, ink)
     f = judge(found[1], 0.25, 0.15)
     assert (f.verdict, f.what if f.verdict != "green" else "") == ("amber" if says else "green", says)
+
+
+@pytest.mark.parametrize(
+    ("places", "verdicts"),
+    [
+        ([2.6 + 2.6j], ["amber", "green"]),  # one spot is one dot's, the nearer one's
+        ([], ["green", "green"]),  # where lines cross it is dark with a dot or without
+        ([9 + 9j], ["green", "green"]),
+    ],
+)
+def test_a_small_dot_where_lines_cross_is_taken_for_a_spot_beside(places, verdicts):
+    lines = [line(1, 270 + 300j, 330 + 300j, "thin"), *(line(k, x + 270j, x + 330j, "thin") for k, x in ((2, 300), (3, 306)))]
+    ink = paper()
+    for e in lines:
+        draw(ink, *e.points, "thin")
+    draw(ink, CORNER - 0.2, CORNER + 0.2, "main", 230)  # strokes that cross are darker
+    for by in places:
+        draw(ink, CORNER + by - 0.1, CORNER + by + 0.1, "thin", 230)
+    found, _ = trace([*lines, dot(4, CORNER, 0.35), dot(5, CORNER + 6, 0.35)], ink)
+    assert [judge(t, 0.25, 0.15).verdict for t in found[3:]] == verdicts
+
+
+@pytest.mark.parametrize(("by", "verdict"), [(1.2, "amber"), (1.84, "amber"), (4.0, "amber"), (0.5, "green"), (0.0, "green")])
+def test_a_line_that_parts_from_its_stroke_only_near_its_end_is_seen(by, verdict):
+    """Of a helper line under a vector that was turned about the pole, as little as a third lies on bare paper."""
+    a, b = 250 + 300j, 301 + 300j
+    known = [line(1, a, b, "construction"), line(2, a, b - 4)]
+    found, _ = traced(known, [(a, b + 1j * by, "construction"), (a, b - 4, "main")])
+    assert [judge(t, 0.25, 0.15).verdict for t in found] == [verdict, "green"]
 
 
 @pytest.mark.parametrize(("gap", "rest", "short"), [(2.0, 2.5, False), (2.0, 0.6, True), (4.5, 1.5, True)])

@@ -33,12 +33,16 @@ WRONG = 2.0
 """A fit is wrong when it is off by more than this somewhere, mm."""
 CLEARLY = 0.06
 """By how much a farther place must fit better than one near the true one to be believed: lines of a table look alike."""
+SLIDES = 0.03
+"""A piece that lies better than a millimetre off by no more than this is held by nothing."""
 GRAIN = 0.3
 """Paper is paler than this, lines are darker."""
 FOUND = ("red", "amber", "ink")
 """What counts as found."""
 VISIBLE = 1.5
 """Mistakes from this size on should be found, mm."""
+SAME = 4.0
+"""Elements of one name whose middles lie this near to each other are told together: a vector and its helper line, mm."""
 HIDES, SHOWS = 0.6, 2.0
 """A line hides another that is no farther off, mm; a mistake shows when so many mm of line are gone or new."""
 
@@ -152,7 +156,7 @@ def offsets(believed: NDArray[np.uint8], true: NDArray[np.uint8]) -> tuple[Float
             field_ = theirs[row - half - reach : row + half + reach, column - half - reach : column + half + reach]
             score = np.asarray(cv2.matchTemplate(field_, piece, cv2.TM_CCOEFF_NORMED), np.float32)
             best, at = _best(score, reach)
-            if best > 0.6:
+            if best > 0.6 and _held(score, at):
                 places.append((x, y))
                 found = field_[at[1] : at[1] + 2 * half, at[0] : at[0] + 2 * half]
                 dx, dy = np.array(at) - reach + _rest(found, piece)
@@ -168,6 +172,16 @@ def _best(score: NDArray[np.float32], reach: int) -> tuple[float, tuple[int, int
     if near > best - CLEARLY:
         return near, (there[0] + first, there[1] + first)
     return best, (at[0], at[1])
+
+
+def _held(score: NDArray[np.float32], at: tuple[int, int]) -> bool:
+    """Whether a piece lies worse a millimetre off on all sides.
+
+    One line that ends at the edge of what lies on the sheet may slide along itself: the edge is no line and is not found again.
+    """
+    row, column = np.ogrid[: score.shape[0], : score.shape[1]]
+    off = np.hypot(row - at[1], column - at[0])
+    return bool(score[(off > 0.8 * DENSITY) & (off < 1.2 * DENSITY)].max() < score[at[1], at[0]] - SLIDES)
 
 
 def _tells(piece: NDArray[np.float32]) -> bool:
@@ -206,6 +220,19 @@ def _is(element: dict[str, Any], mark: Mark) -> bool:
     kinds = {"fill": ("line", "circle"), "circle": ("circle", "arc"), "polyline": ("curve", "line")}.get(mark.kind, (mark.kind,))
     # a view without a title is called by its module in the record, by a name in the report
     return (element["view"] == mark.view or "." in mark.view) and element["name"] in names and element["kind"] in kinds
+
+
+def _those(elements: list[dict[str, Any]], mark: Mark) -> list[dict[str, Any]]:
+    """The elements of the report that are a mark: of several of one name (both lines of a guide, a rod in many positions) those in
+    its place.
+    """
+    alike = [element for element in elements if _is(element, mark)]
+    if not mark.paths() or not alike:
+        return alike
+    corners = np.vstack(mark.paths())
+    middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
+    away = [float(np.hypot(*(np.array(element["middle"]) - middle))) for element in alike]
+    return [element for element, by in zip(alike, away, strict=True) if by < min(away) + SAME]
 
 
 def _near(marks: list[Mark], lines: list[list[list[float]]]) -> list[Mark]:
@@ -284,7 +311,7 @@ def _said(outcome: Outcome, report: dict[str, Any], truth: dict[str, Any], marks
     touched: list[Mark] = []
     for mistake, shows in zip(truth["mistakes"], changed(truth, marks), strict=True):
         wrong = [named[mark["id"]] for mark in mistake["wrong"]]
-        said = {_verdict(element) for element in elements if any(_is(element, mark) for mark in wrong)}
+        said = {_verdict(element) for mark in wrong for element in _those(elements, mark)}
         found = next((verdict for verdict in ("red", "amber", "green", "unjudged") if verdict in said), "silent")
         if found != "red" and _pointed_at(mistake, report["extra"]):
             found = "ink"

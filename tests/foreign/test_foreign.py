@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.foreign import judge, scene
+from tests.foreign import drawing, judge, scene
 
 
 def test_a_picture_is_taken_and_judged(tmp_path: Path) -> None:
@@ -24,3 +24,21 @@ def test_a_picture_is_taken_and_judged(tmp_path: Path) -> None:
     outcome = judge.judge(file, tmp_path)
     assert outcome.state in ("judged", "refused")
     assert outcome.state == "refused" or (outcome.worst is not None and outcome.worst < judge.WRONG)
+
+
+def test_a_line_that_ends_at_the_edge_of_a_cover_tells_nothing_along_itself() -> None:
+    cv2 = pytest.importorskip("cv2")
+    score = np.zeros((43, 43), np.float32)
+    score[:, 21] = np.linspace(0.74, 0.64, 43)
+    assert not judge._held(cv2.GaussianBlur(score, (0, 0), 1.0), (21, 15))
+    score[15, 21] = 5.0
+    assert judge._held(cv2.GaussianBlur(score, (0, 0), 1.0), (21, 15))
+
+
+def test_of_elements_of_one_name_those_in_place_are_asked() -> None:
+    """Both lines of a guide have one name; a vector and the helper line under it have one, too, and are told together."""
+    guide = drawing.Mark(1, "line", "plan", "symbol", "main", np.array([[0.0, 7.0], [20.0, 7.0]]), "positions/x", "4", "x")
+    element = {"step": "positions/x", "position": "4", "kind": "line", "name": "x(4)", "view": "plan"}
+    alike = [element | {"middle": middle} for middle in ([10.0, 0.0], [10.0, 7.0], [11.5, 7.0])]
+    assert judge._those(alike, guide) == alike[1:]
+    assert judge._those([], guide) == []

@@ -46,11 +46,14 @@ def worst(findings: Iterable[Found]) -> list[Found]:
 
 
 def counted(bad: Sequence[Finding]) -> str:
-    """How many lines and how many texts are wrong."""
-    lines = sum(f.element.kind != "text" for f in bad)
+    """How many lines and how many texts are wrong, and how many may be."""
+    wrong = [f for f in bad if f.verdict == "red"]
+    lines = sum(f.element.kind != "text" for f in wrong)
     said = [tell_n("{n} line is wrong", "{n} lines are wrong", lines).format(n=lines)] if lines else []
-    texts = len(bad) - lines
+    texts = len(wrong) - lines
     said += [tell_n("{n} text is wrong", "{n} texts are wrong", texts).format(n=texts)] if texts else []
+    doubtful = len(bad) - len(wrong)
+    said += [tell_n("{n} place to look at", "{n} places to look at", doubtful).format(n=doubtful)] if doubtful else []
     return ", ".join(said)
 
 
@@ -60,10 +63,14 @@ _KINDS = {
 }
 
 
+NAME = 16
+"""Letters of a text by which it is called."""
+
+
 def called(e: Element) -> str:
     """An element in a table: what it is and what it is called."""
     if e.kind == "text":
-        return tell("text")
+        return f"{tell('text')} {e.name if len(e.name) <= NAME else e.name[: NAME - 1] + '…'}".strip()
     dot, arrow = e.kind == "circle" and e.fills, e.kind == "line" and e.arrow
     return f"{tell(_KINDS['dot' if dot else 'arrow' if arrow else e.kind])} {e.name}".strip()
 

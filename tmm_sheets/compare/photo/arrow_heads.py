@@ -31,6 +31,8 @@ SHORTEST = 4.0
 ASIDE = np.arange(0.0, 1.4, 0.15)
 """mm to either side at which it is sampled; ink counts up to :data:`WIDEST`."""
 WIDEST = 1.1
+FULL = 0.9
+"""Share of the darkness of a line's middle up to which it is full; of a blurred one hardly anything is."""
 BESIDE = 0.22
 """mm from the edge of the line beyond which nothing of others may be: what runs along under it, a helper line, is no matter."""
 BARE, INKED = 0.18, 0.4
@@ -52,27 +54,29 @@ class _Paper:
     hidden: Mask
     tips: Sequence[complex]
 
-    def beside(self, e: Element, start: complex, along: Floats, way: complex, side: int) -> Floats:
-        """Ink across one side of a line at places ``along`` mm from ``start``, nan where it cannot be told."""
+    def beside(self, e: Element, start: complex, along: Floats, way: complex, side: int) -> tuple[Floats, Floats]:
+        """Ink across one side of a line at places ``along`` mm from ``start``, and how far it is full, mm; nan where others are."""
         places = start + way * (along[:, None] + side * 1j * ASIDE)
         outside = line_type(e.style).width / 2 + BESIDE < ASIDE
         taken = self.owners.others(e.number, places[:, outside]) | (sample(self.words, pixels(places[:, outside])) > 100)
-        dark = sample(self.ink, pixels(places))[:, ASIDE < WIDEST].astype(np.float64).sum(1)
-        return np.where(taken.any(1) | at(places[:, 0], self.hidden), np.nan, dark)
+        dark = sample(self.ink, pixels(places))[:, ASIDE < WIDEST].astype(np.float64)
+        full = np.logical_and.accumulate(dark > FULL * dark[:, :1], 1).sum(1) * ASIDE[1] - 0.5 * ASIDE[1]
+        unknown = taken.any(1) | at(places[:, 0], self.hidden)
+        return np.where(unknown, np.nan, dark.sum(1)), np.where(unknown, np.nan, full)
 
-    def widening(self, e: Element, tip: complex, other: complex) -> Floats:
-        """Ink about a line at :data:`BACK` mm from its tip as a multiple of the line's own, nan where it cannot be told."""
+    def widening(self, e: Element, tip: complex, other: complex) -> tuple[Floats, float]:
+        """Ink about a line at :data:`BACK` mm from its tip as a multiple of the line's own, nan where others are; its width, mm."""
         length = abs(other - tip)
         way, behind = (other - tip) / length, _length(e) + SHAFT
         shaft = np.linspace(behind, max(length - behind, behind + 0.5 * SHORTEST), 40)
-        out = []
+        out, width = [], line_type(e.style).width
         for side in (1, -1):
-            own = self.beside(e, tip, shaft, way, side)
-            seen = own[~np.isnan(own)]
-            usual = float(np.median(seen)) if len(seen) >= SOME else 0.0
-            out.append(self.beside(e, tip, BACK, way, side) / usual if usual > 0 else np.full(len(BACK), np.nan))
+            own, full = (values[~np.isnan(values)] for values in self.beside(e, tip, shaft, way, side))
+            usual = float(np.median(own)) if len(own) >= SOME else 0.0
+            out.append(self.beside(e, tip, BACK, way, side)[0] / usual if usual > 0 else np.full(len(BACK), np.nan))
+            width = max(width, 2 * float(np.median(full)) if usual > 0 else 0.0)
         one, two = out
-        return np.where(np.isnan(one), two, np.where(np.isnan(two), one, (one + two) / 2))
+        return np.where(np.isnan(one), two, np.where(np.isnan(two), one, (one + two) / 2)), width
 
 
 def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hidden: Mask) -> list[Trace]:
@@ -133,21 +137,24 @@ def _head(t: Trace, paper: _Paper) -> Head:
     return "absent" if bare else "unknown"
 
 
-def _is_head(e: Element, widening: Floats) -> bool:
+def _is_head(e: Element, seen: tuple[Floats, float]) -> bool:
     """Whether a line widens as by a head, or by a smaller one."""
-    return _share(e, widening) >= INKED or _share(e, widening, SMALLER) >= SURE
+    return _share(e, seen) >= INKED or _share(e, seen, SMALLER) >= SURE
 
 
-def _share(e: Element, widening: Floats, size: float = 1.0) -> float:
+def _share(e: Element, seen: tuple[Floats, float], size: float = 1.0) -> float:
     """The widening of a line as a share of that by its head, by least squares; nan where too little of it is seen.
 
-    Of a head of another ``size`` there is the same near its tip, and nothing beyond.
+    Of a head of another ``size`` there is the same near its tip, and nothing beyond. A picture in black and white has lines wider
+    than they were drawn, and heads that are hardly wider than those: ``seen`` is the widening, and the width of the line.
     """
+    widening, line = seen
     corners = (e.fills[0] - e.fills[0][0]) / (e.points[0] - e.fills[0][0])
     width = 2 * float(np.abs(corners.imag).max()) * abs(e.points[0] - e.fills[0][0]) * BACK / _length(e)
-    wanted = np.clip(np.where(size * _length(e) >= BACK, width / line_type(e.style).width, 0) - 1, 0, None)
-    seen = ~np.isnan(widening)
-    weight = float((wanted[seen] ** 2).sum())
+    grown = line - line_type(e.style).width
+    wanted = np.clip(np.where(size * _length(e) >= BACK, (width + grown) / line, 0) - 1, 0, None)
+    told = ~np.isnan(widening)
+    weight = float((wanted[told] ** 2).sum())
     if weight < ENOUGH * float((wanted**2).sum()) or not weight:
         return float("nan")
-    return float(((widening[seen] - 1) * wanted[seen]).sum() / weight)
+    return float(((widening[told] - 1) * wanted[told]).sum() / weight)

@@ -21,6 +21,7 @@ from tmm_sheets.compare.photo.ink_levels import line_level
 from tmm_sheets.compare.photo.judging import PhotoFinding, judge
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.rectification import Rectified
+from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.traces import ExtraInk, Trace
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Points
@@ -96,9 +97,11 @@ def _judged(f: PhotoFinding | None, was: Element, found: Rectified, pencil: floa
     if off <= f.tolerance or was.kind == "text" or f.trace.status not in ("measured", "shared", "missing", "beside") or f.unknown:
         return f
     said = tell("up to {by} mm off, as follows from the mistake").format(by=millimetres(off))
-    what = said if f.verdict == "green" else f"{said}; {f.what}"
+    beyond = f.trace.status == "missing" and not all(map(PAPER.contains, now.points.tolist()))
+    rest = tell("there it runs off the paper, so it cannot be looked for") if beyond else f.what
+    what = said if f.verdict == "green" else f"{said}; {rest}"
     deviation = max(off, f.deviation)
-    return replace(f, verdict=verdict(deviation, f.tolerance), deviation=deviation, what=what)
+    return replace(f, verdict=verdict(deviation, f.tolerance), deviation=deviation, what=what, at=was.middle if beyond else f.at)
 
 
 def inked(ink: Any, line: Points, level: float, hidden: Mask | None = None) -> float:

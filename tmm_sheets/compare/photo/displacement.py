@@ -17,12 +17,16 @@ from tmm_sheets.compare.photo.traces import Trace
 FAR = 6.0  # mm from its place within which a displaced element is sought
 THERE = 0.8  # share of its ink in its own place from which on an element is not sought elsewhere
 TRIES = 500  # guesses from stations picked at random
+KNOWN, PARTED = 0.4, 0.12
+"""Least share of a line that must be seen for it to be known elsewhere; of one that parts from a stroke only its end is seen."""
+SEEN = 0.1  # weight of how much of an element is seen, beside the share of it that has ink
 PLENTY = 40.0  # mm of a line by which it is known, however much of it is hidden
 WHOLE, DARKER, FULLER = 0.85, 1.25, 0.12
 """Least share of an element's ink elsewhere, and how much darker or more complete it must be there, for it not to be believed in
 its own place."""
 BETWEEN = 0.6
 """Darkness between a stroke and a line beside it, as a share of the line's, below which paper separates them."""
+RIDGE = 1.0  # mm beyond such a line within which there is paper again
 BROAD, STROKE = 1.6, 0.7
 """mm to either side of a line within which what belongs to its stroke is told by the ink, and within which others are of it."""
 BLUR = 11
@@ -106,18 +110,20 @@ def beside(t: Trace, s: Stations, ink: Any, lines: Any, taken: Any, owners: Owne
     drawn = owners.others(t.element.number, s.points[:, None] + s.normals[:, None] * offsets)
     profile = smoothed(sample(ink, at), drawn)
     apart = _apart(profile, sample(lines, at, nearest=True) > 0, drawn, offsets, level)
-    unknown = np.where(np.abs(offsets) <= BROAD, ~apart, sample(taken, at) > 100)
-    found = _elsewhere(t.element, s, np.where(unknown, 0, profile), unknown, offsets, level)
+    unknown = np.where(np.abs(offsets) <= BROAD, ~apart & (profile > level), sample(taken, at) > 100)
+    found = _elsewhere(t.element, s, np.where(unknown, 0, profile), unknown, offsets, level, PARTED)
     if found is None or found.at is None or found.covered < WHOLE or found.deviation < LEFT:
         return None
     begin, end = found.at - t.element.points
     share = np.abs(s.points - t.element.points[0]) / t.element.length
     way = ((begin + share * (end - begin)) * np.conj(s.normals)).real
     row, column = np.arange(len(way)), np.clip(np.round((way - offsets[0]) / STEP).astype(int), 0, len(offsets) - 1)
-    # Paler between it and the stroke all along, or it may be the edge of either.
-    inside = (np.abs(offsets) < np.abs(way)[:, None]) & (offsets * way[:, None] > 0)
+    # Paler between it and the stroke all along, and beyond it, or it may be the edge of something.
+    from_it = np.abs(offsets) - np.abs(way)[:, None]
+    side = offsets * way[:, None] > 0
     dark = profile[row, column]
-    apart = (dark > level) & ~unknown[row, column] & (np.where(inside, profile, 255).min(1) < BETWEEN * dark)
+    inside, beyond = (np.where(side & there, profile, 255).min(1) for there in (from_it < 0, (from_it > 0) & (from_it < RIDGE)))
+    apart = (dark > level) & ~unknown[row, column] & (np.maximum(inside, beyond) < BETWEEN * dark)
     # Lines that cross may hide as much of it again.
     length = apart.sum() * t.element.length / len(way)
     return replace(found, status="beside") if length >= LEAST / 2 and np.ptp(share[apart]) * t.element.length >= LEAST else None
@@ -152,12 +158,11 @@ def _about(e: Element, s: Stations) -> tuple[Floats, Any]:
     return offsets, pixels(s.points[:, None] + s.normals[:, None] * offsets)
 
 
-def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Floats, level: float) -> Trace | None:
-    """The element where the ink that is left fits it best, None when nothing fits."""
-    import cv2
-
+def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Floats, level: float,
+               least: float = KNOWN) -> Trace | None:
+    """The element where the ink that is left fits it best, None when nothing fits; ``least`` of it, a share, must be seen."""
     expected, reach = expected_ink(e), float(offsets[-1])
-    hit = cv2.dilate((profile > level).astype(np.uint8), np.ones((1, 7), np.uint8)) > 0  # within 0.3 mm
+    hit = _hit(profile, level)
     base = s.base()
     n, k = base.shape
     x = _guesses(e, s, base, profile * (profile > level), offsets)
@@ -171,8 +176,8 @@ def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Flo
     hits = (hit[row, column] & seen).sum(1)
     share = hits / np.maximum(seen.sum(1), 1)
     step = max(e.length / n, 0.1)
-    able = seen.sum(1) >= max(min(0.4 * n, PLENTY / step), min(4.0 / step, n))
-    score = np.where(able, share - 0.01 * worst, -1.0)
+    able = seen.sum(1) >= max(min(least * n, PLENTY / step), min(4.0 / step, n))
+    score = np.where(able, share + SEEN * hits / n - 0.01 * worst, -1.0)
     best = int(score.argmax())
     if score[best] <= 0 or share[best] <= ENOUGH * expected:
         return None
@@ -190,8 +195,15 @@ def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Flo
     return replace(found, darkness=float(np.median(strength[use])) if use.any() else 0.0)
 
 
+def _hit(profile: Any, level: float) -> Any:
+    """Where there is ink within 0.3 mm."""
+    import cv2
+
+    return cv2.dilate((profile > level).astype(np.uint8), np.ones((1, 7), np.uint8)) > 0
+
+
 def _guesses(e: Element, s: Stations, base: Floats, dark: Any, offsets: Floats) -> Floats:
-    """Displacements to try, (n, k): none, parallel shifts, and such as bring some random stations onto dark places."""
+    """Displacements to try, (n, k): none, parallel shifts, turns about an end, and such as bring some random stations onto ink."""
     n, k = base.shape
     guesses: list[Floats] = [np.zeros((1, k))]
     if not k:
@@ -199,7 +211,9 @@ def _guesses(e: Element, s: Stations, base: Floats, dark: Any, offsets: Floats) 
     reach = float(offsets[-1])
     grid = np.arange(-reach, reach + 0.01, 0.4)
     if e.kind == "line":
-        guesses.append(np.linalg.lstsq(base, np.repeat(grid[None, :], n, 0), rcond=None)[0].T)
+        share = np.linspace(0, 1, n)[:, None]
+        ways = np.hstack((np.repeat(grid[None, :], n, 0), share * grid, (1 - share) * grid))
+        guesses.append(np.linalg.lstsq(base, ways, rcond=None)[0].T)
     else:
         gx, gy = np.meshgrid(grid, grid)
         shifts = np.stack((gx.ravel(), gy.ravel()))

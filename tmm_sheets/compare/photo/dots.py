@@ -1,7 +1,8 @@
 """Dots that stand beside their places.
 
 A dot is too small to be measured among lines, but one in a wrong place is a round spot that belongs to nothing, and its own place
-has none: about it the picture is taken for lines and a dot, each as dark as fits best. A spot alone is no displaced dot.
+has none: about it the picture is taken for lines and a dot, each as dark as fits best. A spot alone is no displaced dot where the
+dot is seen in its place; where lines cross, a small one shows no more than they do, and the spot is taken for it.
 """
 
 from __future__ import annotations
@@ -35,6 +36,8 @@ FAINT, DARK, SMALL_DARK, SMALL = 0.3, 0.6, 0.35, 0.45
 lines'; the same of dots of less than the radius, mm, which blur makes pale."""
 TOUCHED = 9
 """Pixels about the middle of a small spot that nothing else may take."""
+COVERED = 0.3
+"""Share of a small dot under lines from which on its place, where they cross, is dark with it or without."""
 TELLS = 0.15
 """Least share of a dot that lines do not show as well for anything to be told of its place."""
 
@@ -61,15 +64,19 @@ def displaced_dots(
     usual
         How dark lines usually are.
     """
-    out = []
+    found: list[tuple[Element, complex, bool | None]] = []
     for e in some:
         least = usual * (SMALL_DARK if e.radius < SMALL else DARK)
         spots = _spots(e, taken, ink, words, FAINT * usual, least)
         spots = spots[~at(spots, hidden)]
-        if len(spots) and not _in_place(e, lines, ink, words, least):
-            by = complex(spots[np.abs(spots - e.centre).argmin()]) - e.centre
-            out.append(Trace(e, "beside", by, deviation=abs(by), at=np.asarray(e.points + by)))
-    return out
+        if len(spots) and not (there := _in_place(e, lines, ink, words, least)):
+            found.append((e, complex(spots[np.abs(spots - e.centre).argmin()]), there))
+    out: dict[complex, Trace] = {}
+    # A spot is one dot's: first of those that are surely not in their places, then of the nearest.
+    for e, spot, _ in sorted(found, key=lambda f: (f[2] is None, abs(f[1] - f[0].centre))):
+        by = spot - e.centre
+        out.setdefault(spot, Trace(e, "beside", by, deviation=abs(by), at=np.asarray(e.points + by)))
+    return list(out.values())
 
 
 def _spots(e: Element, taken: Any, ink: Any, words: Any, faint: float, least: float) -> Points:
@@ -103,14 +110,17 @@ def _alone(seen: Any, box: Any) -> bool:
     return int(seen[max(y - by, 0) : y + h + by, max(x - by, 0) : x + w + by].sum()) <= 1.1 * area
 
 
-def _in_place(e: Element, lines: Any, ink: Any, words: Any, least: float) -> bool:
-    """Whether a dot is clearly seen in its place, or a little beside; a small one also where lines would show as much."""
+def _in_place(e: Element, lines: Any, ink: Any, words: Any, least: float) -> bool | None:
+    """Whether a dot is clearly seen in its place, or a little beside; None of a small one where lines would show as much."""
     grid = np.arange(-REACH, REACH + 0.5 / SCALE, 1 / SCALE)
     places = e.centre + grid - 1j * grid[:, None]
     p = pixels(places)
     drawn, y, seen = _soft(sample(lines, p)), sample(ink, p).astype(np.float64), sample(words, p) == 0
     plain = np.stack((drawn[seen], np.ones(seen.sum())), -1)
-    line, told = sample(lines, p) > 127, e.radius >= SMALL
+    line = sample(lines, p) > 127
+    if e.radius < SMALL and line[np.abs(places - e.centre) <= e.radius].mean() > COVERED:
+        return None
+    told = e.radius >= SMALL
     for by in (grid + 1j * grid[:, None])[np.hypot(grid, grid[:, None]) <= ASIDE]:
         disc = 255.0 * (np.abs(places - e.centre - by) <= e.radius)
         dot = _soft(np.where(line, 0.0, disc))[seen]
@@ -119,7 +129,7 @@ def _in_place(e: Element, lines: Any, ink: Any, words: Any, least: float) -> boo
             told = True
             if float(rest @ y[seen] / (rest @ rest)) > least:
                 return True
-    return not told
+    return False if told else None
 
 
 def _soft(picture: Any) -> Floats:

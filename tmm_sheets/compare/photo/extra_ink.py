@@ -21,7 +21,7 @@ COARSE = 3  # pixels to one of the coarse picture
 JOIN = 3  # coarse pixels; smaller gaps within a region are closed
 
 
-CREASE, PIECES, SPAN = 2.0, 4, 200.0
+CREASE, PIECES, SPAN = 2.0, 3, 200.0
 """mm that a piece of a crease is wide, and off the others, at most; least number of pieces and least distance of the outermost."""
 STRAIGHT = 0.4
 """mm; standard deviation across a stroke that is straight: no hand writes a letter as long as what is reported and as straight."""

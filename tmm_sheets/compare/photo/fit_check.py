@@ -8,7 +8,7 @@ elsewhere, beside others that lie elsewhere alike, are not put down to the drawi
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -31,6 +31,9 @@ BARE = 0.3
 """Share of a cell's points with any ink near below which it is hidden."""
 LOCAL = 0.07
 """Largest share of cells astray that may be the student's doing: a view in a wrong place."""
+STRIP, AT_SIDE, FEW = (100.0, 50.0), 2.0, 6
+"""Length and depth, mm, of the strips along a side that is not seen; how near to the side a line is the side itself; least number
+of points by which a strip can be judged."""
 HALVES = 1.5
 """Largest distance, mm, between where maps fitted to either half of the sheet have the line between them."""
 MATCH = 0.5
@@ -78,10 +81,16 @@ class FitCheck:
     sides: Floats
     shifted: Points
     shift: float
+    adrift: Points = field(default_factory=lambda: np.zeros(0, complex))
 
     @property
     def acceptable(self) -> bool:
         """Whether the drawing may be judged by the map, if there is no better one."""
+        return self.moored and not len(self.adrift)
+
+    @property
+    def moored(self) -> bool:
+        """Whether all is right but what lies beside a side that is not seen."""
         return (self.match >= MATCH and len(self.astray) <= LOCAL * self.judged and not len(self.lost)
                 and not len(self.shifted)
                 and int((self.sides >= SIDE).sum()) >= SIDES)
@@ -96,7 +105,7 @@ class FitCheck:
         """Whether no better map need be sought."""
         close = self.match >= CLOSE
         framed = float(np.sort(self.sides)[4 - SIDES if close else 0]) >= WHOLE  # no other frame brings a hidden side to light
-        return self.acceptable and not len(self.astray) and framed and (self.halves <= HALVES or close)
+        return self.moored and not len(self.astray) and framed and (self.halves <= HALVES or close)
 
 
 def check(m: Map, straight: Map, sides: Seen, ink: Any, lines: ProfileLines, level: float, scale: float) -> FitCheck:
@@ -122,11 +131,11 @@ def check(m: Map, straight: Map, sides: Seen, ink: Any, lines: ProfileLines, lev
     seen = Seen(straight.to_picture(at + lines.normals * o), lines.points, lines.normals, good.astype(float))
     met = _on_sides(m, straight, sides, ink, level, scale)
     astray, judged = _astray(lines, good, across.max(1) > level)
-    lost = np.array([z for z in astray if not _side_seen(z, sides.sheet, met)], complex)
     shares = np.array([part.mean() for part in np.split(met, 4)])
+    lost = np.array([z for z in astray if not _side_seen(z, sides.sheet, met)], complex)
     found = FitCheck(float(good.mean()), astray, lost, judged, _between_halves(m, sides, seen), _together(lines, o, good), shares,
-                     np.zeros(0, complex), 0.0)
-    if not found.acceptable:  # refused without that
+                     np.zeros(0, complex), 0.0, _adrift(lines, good, across.max(1) > level, shares))
+    if not found.moored:  # refused without that
         return found
     shifted, by = _shifted(patches(m, straight, ink, lines, scale), m)
     return replace(found, shifted=shifted, shift=by)
@@ -185,6 +194,27 @@ def _astray(lines: ProfileLines, good: Any, some: Any) -> tuple[Points, int]:
     k_ = np.array(sorted(out), np.int64)
     x, y = (k_ % columns + 0.5) * FRAME.width / columns, (k_ // columns + 0.5) * FRAME.height / rows
     return np.asarray(complex(FRAME.x0, FRAME.y0) + x + 1j * y), judged
+
+
+def _adrift(lines: ProfileLines, good: Any, some: Any, shares: Floats) -> Points:
+    """Middles of the strips along unseen sides in which what shows is elsewhere.
+
+    Nothing holds a map there: it may be right in the rest of a cell, and all the more wrong the nearer to the side. Lines along the
+    side tell, be it a single one.
+    """
+    out: list[complex] = []
+    p, n = lines.points, lines.normals
+    for k in np.flatnonzero(shares < SIDE).tolist():
+        across, along = (p.imag, p.real) if k % 2 == 0 else (p.real, p.imag)
+        depth = np.abs(across - (FRAME.y0, FRAME.x1, FRAME.y1, FRAME.x0)[k])
+        near = (np.abs(n.imag if k % 2 == 0 else n.real) > np.sqrt(0.5)) & (depth > AT_SIDE) & (depth < STRIP[1])
+        place = along // STRIP[0]
+        for one in np.unique(place[near]):
+            here = near & (place == one)
+            shown = here & some
+            if shown.sum() >= FEW and some[here].mean() >= BARE and good[shown].mean() < ASTRAY:
+                out.append(complex(p[shown].mean()))
+    return np.array(out, complex)
 
 
 def _side_seen(z: complex, p: Points, met: Any) -> bool:

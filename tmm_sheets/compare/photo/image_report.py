@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -31,6 +32,8 @@ NOT_READ = marked(
     "Not read, so not judged: what lettering says (numbers in tables, letters, the title block), heads of arrows among other "
     "lines, dots, and whatever has less than 6 mm of line."
 )
+VIEWS = 5
+"""Most views that are named where something could not be judged."""
 NUMBERS_READ = marked(
     "Read otherwise is only a hint: look there. Not told: a lost comma or sign, and what is off by less than a twentieth. Not "
     "read, so not judged: words and letters, heads of arrows, dots, and whatever has less than 6 mm of line."
@@ -55,14 +58,14 @@ class _Judged:
         return {v: sum(f.verdict == v for f in judged) for v in ("green", "amber", "red")}
 
     @cached_property
-    def dense(self) -> int:
-        """How many elements cannot be told from others."""
-        return sum(f.unknown for f in self.findings)
+    def dense(self) -> list[PhotoFinding]:
+        """What cannot be told from others."""
+        return [f for f in self.findings if f.unknown]
 
     @cached_property
-    def hidden(self) -> int:
-        """How many elements do not show in the picture."""
-        return sum(f.trace.status == "hidden" for f in self.findings)
+    def hidden(self) -> list[PhotoFinding]:
+        """What does not show in the picture."""
+        return [f for f in self.findings if f.trace.status == "hidden"]
 
     @cached_property
     def hidden_ends(self) -> int:
@@ -95,8 +98,9 @@ def image_report(
     tolerance, head, rows = _tolerance(pencil, found.uncertainty, soft), tuple(map(tell, HEAD)), _rows(judged)
     unread = [_read(readings), tell(NUMBERS_READ)] if readings else [tell(NOT_READ)]
     mistakes = image_story.mistakes(found, judged.findings, judged.bad, built)
-    lines = [summary, "; ".join(_hidden(judged)), tolerance, "", *listed(mistakes), *([*table(head, rows), ""] if rows else []),
-             *unread]
+    hidden, extra_places = _hidden(judged), _extra(judged)
+    lines = [summary, *filter(None, ["; ".join((*hidden, *extra_places))]), tolerance, "", *listed(mistakes),
+             *([*table(head, rows), ""] if rows else []), *unread]
     tree = {
         "project": name, "sheet": n, "image": path.name, "pixels_per_mm": round(found.scale, 2), "matched": round(found.match, 3),
         "tolerance": round(pencil + found.uncertainty + soft, 3), **_tree(judged),
@@ -105,10 +109,9 @@ def image_report(
     }  # fmt: skip
     title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=n, file=path.name)
     files = {f"compare_sheet_{n}.{suffix}": data for suffix, data in _overlays(found, judged, title).items()}
-    *hidden, extra_places = _hidden(judged)
     verdicts = [str(f.verdict) for f in judged.bad] + ["amber"] * len(judged.extra)
     tables = (Table(tell("Everything that is off"), head, tuple(rows), tuple(verdicts)),) if rows else ()
-    story = Story(title, (summary, extra_places, tolerance, *notes), mistakes,
+    story = Story(title, (summary, *extra_places, tolerance, *notes), mistakes,
                   tables, (*hidden, *unread))
     return Report("\n".join(lines), tree, files, notes, story)
 
@@ -130,19 +133,31 @@ def _read(readings: Readings) -> str:
 
 
 def _hidden(judged: _Judged) -> list[str]:
-    """What could not be measured; at last what is too much."""
-    hidden = tell_n("{n} element is hidden in the picture or lies outside it",
-                    "{n} elements are hidden in the picture or lie outside it", judged.hidden)
-    return [
-        *([hidden.format(n=judged.hidden)] if judged.hidden else []),
-        tell_n("{n} element is too near to others to be measured", "{n} elements are too near to others to be measured",
-               judged.dense).format(n=judged.dense),
-        tell_n("{n} end of main lines and vectors lies under others and is judged only as far as it shows",
-               "{n} ends of main lines and vectors lie under others and are judged only as far as they show",
-               judged.hidden_ends).format(n=judged.hidden_ends),
-        tell_n("{n} place with ink that is not on the sheet", "{n} places with ink that is not on the sheet",
-               len(judged.extra)).format(n=len(judged.extra)),
-    ]
+    """What could not be measured."""
+    hidden, dense, ends = len(judged.hidden), len(judged.dense), judged.hidden_ends
+    said = (
+        (hidden, tell_n("{n} element is hidden in the picture or lies outside it",
+                        "{n} elements are hidden in the picture or lie outside it", hidden) + _views(judged.hidden)),
+        (dense, tell_n("{n} element is too near to others to be measured", "{n} elements are too near to others to be measured",
+                       dense) + _views(judged.dense)),
+        (ends, tell_n("{n} end of main lines and vectors lies under others and is judged only as far as it shows",
+                      "{n} ends of main lines and vectors lie under others and are judged only as far as they show", ends)),
+    )  # fmt: skip
+    return [words.replace("{n}", str(n)) for n, words in said if n]
+
+
+def _views(findings: Sequence[PhotoFinding]) -> str:
+    """The views in which they are, those with the most first, the rest left to JSON."""
+    counts = Counter(f.element.view.name for f in findings).most_common()
+    named = [f"{name}: {n}" for name, n in counts[:VIEWS]] + ["…"] * (len(counts) > VIEWS)
+    return f" ({', '.join(named)})" if counts else ""
+
+
+def _extra(judged: _Judged) -> list[str]:
+    """What is too much, if anything."""
+    n = len(judged.extra)
+    said = tell_n("{n} place with ink that is not on the sheet", "{n} places with ink that is not on the sheet", n)
+    return [said.format(n=n)] if n else []
 
 
 def _tolerance(pencil: float, uncertainty: float, soft: float) -> str:
@@ -170,7 +185,7 @@ def _tree(judged: _Judged) -> dict[str, Any]:
     told = ("measured", "shared", "beside", "missing", "dense", "part of lettering", "absent lettering", "hidden")
     measured = sum(f.trace.status == "measured" for f in judged.findings)
     return {
-        "count": {**judged.count, "dense": judged.dense, "hidden": judged.hidden, "hidden_ends": judged.hidden_ends,
+        "count": {**judged.count, "dense": len(judged.dense), "hidden": len(judged.hidden), "hidden_ends": judged.hidden_ends,
                   "measured": measured},
         "elements": [_row(f) for f in judged.findings if f.trace.status in told or f.verdict != "green"],
         "extra": [{"x": round(x.middle.real, 1), "y": round(x.middle.imag, 1), "width": round(float(x.width), 1),
@@ -191,11 +206,11 @@ def _overlays(found: Rectified, judged: _Judged, title: str) -> dict[str, bytes]
 
 def _row(f: PhotoFinding) -> dict[str, Any]:
     """A finding for JSON, null where nothing was measured."""
-    t = f.trace
+    t, middle = f.trace, f.element.middle
     ends = [round(float(x), 2) if np.isfinite(x) else None for x in t.ends]
     measured = t.status in ("measured", "shared", "beside")
     return origin(f.element) | {
-        "status": t.status, "verdict": f.verdict, "said": f.what,
+        "middle": [round(middle.real, 1), round(middle.imag, 1)], "status": t.status, "verdict": f.verdict, "said": f.what,
         "shift": [round(t.shift.real, 2), round(t.shift.imag, 2)] if measured else None,
         "turn_deg": round(degrees(t.turn), 3) if measured else None, "growth": round(t.growth, 2) if measured else None,
         "ends": ends, "deviation": round(t.deviation, 2) if measured else None, "tolerance": round(f.tolerance, 2),

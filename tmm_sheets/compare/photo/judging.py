@@ -98,7 +98,7 @@ def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFindi
         said = "; ".join(d.said for d in deviations if d.said)
         return PhotoFinding(e, verdict(worst.off, worst.allowed), worst.off, said or tell(IN_REACH), worst.place, t, worst.allowed)
     if t.status == "beside":
-        said = (tell("a dot like it stands beside, and none here: {how}") if e.kind == "circle" else
+        said = (tell("a dot like it stands beside, and none is seen here: {how}") if e.kind == "circle" else
                 tell("in one stroke with others, but a line like it lies beside: {how}"))
         return PhotoFinding(e, "amber", t.deviation, said.format(how=_similarity_in_words(t, tolerance)), middle, t, tolerance)
     if t.status == "missing":

@@ -14,7 +14,7 @@ USUAL = 0.005
 """Weight of the priors below: as many mm off at every point cost as much as one parameter off by its usual size."""
 LENS = np.array([0.05, 0.03])
 """Usual distortion coefficients."""
-HEIGHT = {2: 4.0, 3: 2.0, 4: 1.0, 5: 0.6, 6: 0.4, 7: 0.4, 8: 0.4, 9: 0.3, 10: 0.3}
+HEIGHT = {2: 4.0, 3: 2.0, 4: 1.0, 5: 0.6, 6: 0.4}
 """Usual height of the paper in a term of each degree, mm."""
 FOOT = 400.0
 """Usual distance from the middle of the sheet to the camera's foot, mm."""

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.box import Box
+from tmm_sheets.compare.numbering import Numbered, numbered
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.wiping import fixed
 from tmm_sheets.drawing.marks import Points
@@ -23,6 +24,8 @@ BAD = {"red": (220, 0, 0), "amber": (190, 0, 190)}
 """Colours (red, green, blue): of ink, of the exact lines, of what is off by verdict."""
 PNG_SCALE = 4.0  # pixels per mm
 CIRCLE = 7.0  # mm, radius around what is off
+DIGITS = 6.0  # mm, height of the box of a number; its digits are as high as two thirds of it
+HERSHEY = 21.0  # pixels, height of OpenCV's digits
 
 
 class Flag(NamedTuple):
@@ -43,14 +46,17 @@ def png(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag]) 
     picture: Any = cv2.LUT(cv2.merge([grey, grey, grey]), _palette()[None, :, ::-1].copy())
     for points in exact:
         cv2.polylines(picture, [fixed(points, PNG_SCALE)], False, EXACT[::-1], 1, cv2.LINE_AA, 4)
-    for f in flags:
+    for f, number in zip(flags, _numbers(flags), strict=True):
         colour = BAD[f.verdict][::-1]
         if len(f.line) > 1:
             cv2.polylines(picture, [fixed(f.line, PNG_SCALE)], False, colour, 2, cv2.LINE_AA, 4)
         x, y = fixed(np.array([f.at]), PNG_SCALE)[0]
         cv2.circle(picture, (int(x), int(y)), round(CIRCLE * PNG_SCALE * 16), colour, 2, cv2.LINE_AA, 4)
-        place = (int(x / 16 + 0.75 * CIRCLE * PNG_SCALE), int(y / 16 - 0.75 * CIRCLE * PNG_SCALE))
-        cv2.putText(picture, str(f.number), place, cv2.FONT_HERSHEY_SIMPLEX, 0.9, colour, 2, cv2.LINE_AA)
+        if number.leader is not None:
+            cv2.polylines(picture, [fixed(np.array(number.leader), PNG_SCALE)], False, colour, 1, cv2.LINE_AA, 4)
+        left, foot = (int(c) // 16 for c in fixed(np.array([number.at]), PNG_SCALE)[0])
+        high = DIGITS / 1.5 * PNG_SCALE / HERSHEY
+        cv2.putText(picture, number.text, (left, foot), cv2.FONT_HERSHEY_SIMPLEX, high, colour, 2, cv2.LINE_AA)
     done, data = cv2.imencode(".png", picture)
     assert done
     return bytes(data.tobytes())
@@ -68,6 +74,11 @@ def piece(ink: Any, level: float, box: Box, scale: float) -> bytes:
     done, data = cv2.imencode(".png", 255 - np.minimum(1.6 * part, 255).astype(np.uint8))
     assert done
     return bytes(data.tobytes())
+
+
+def _numbers(flags: Sequence[Flag]) -> list[Numbered]:
+    """Where the numbers of flags stand, none upon another."""
+    return numbered([(f.at, CIRCLE, str(f.number)) for f in flags], DIGITS, PAPER)
 
 
 def _palette() -> Any:
@@ -91,15 +102,17 @@ def pdf(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag], 
     out = [f"{PAPER.width * mm:.4f} 0 0 {PAPER.height * mm:.4f} 0 0 cm /Ink Do Q q {mm:.6f} 0 0 {mm:.6f} 0 0 cm", "1 J 1 j 0.12 w",
            _colour(EXACT)]  # fmt: skip
     out += [_path(points) for points in exact]
-    for f in flags:
+    for f, number in zip(flags, _numbers(flags), strict=True):
         out += [_colour(BAD[f.verdict]), "0.35 w"]
         if len(f.line) > 1:
             out.append(_path(f.line))
         t = np.linspace(0, 2 * np.pi, 49)
         out.append(_path(f.at + CIRCLE * (np.cos(t) + 1j * np.sin(t))))
-        x, y = f.at.real + 0.75 * CIRCLE, f.at.imag + 0.75 * CIRCLE
+        if number.leader is not None:
+            out += ["0.15 w", _path(np.array(number.leader))]
         r, g, b = (c / 255 for c in BAD[f.verdict])
-        out.append(f"BT {r:.3f} {g:.3f} {b:.3f} rg /F 6 Tf {x:.2f} {y:.2f} Td ({f.number}) Tj ET")
+        x, y = number.at.real, number.at.imag
+        out.append(f"BT {r:.3f} {g:.3f} {b:.3f} rg /F {DIGITS:g} Tf {x:.2f} {y:.2f} Td ({number.text}) Tj ET")
     content = zlib.compress(("q " + "\n".join(out) + " Q").encode("ascii"), 6)
     image = zlib.compress(_clean(ink, level).tobytes(), 1)
     name = "".join(f"{b:02X}" for b in b"\xfe\xff" + title.encode("utf-16-be"))

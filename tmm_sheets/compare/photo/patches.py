@@ -30,7 +30,7 @@ LEAST = 60.0
 """mm of lines in a patch that tells where it is."""
 
 
-def patches(m: Map, straight: Map, ink: Any, lines: ProfileLines, scale: float) -> Seen:
+def patches(m: Map, straight: Map, ink: Any, lines: ProfileLines, scale: float, size: float = SIZE) -> Seen:
     """Where patches are seen, as points with normals in x and in y.
 
     Parameters
@@ -41,6 +41,8 @@ def patches(m: Map, straight: Map, ink: Any, lines: ProfileLines, scale: float) 
         The picture of ``scale`` pixels per mm that another map straightened, and that map.
     lines
         Where lines are on the sheet.
+    size
+        Side of a patch, mm; they overlap by half of it.
     """
     import cv2
 
@@ -52,12 +54,12 @@ def patches(m: Map, straight: Map, ink: Any, lines: ProfileLines, scale: float) 
     for one in np.split(where, np.flatnonzero(np.diff(lines.line)) + 1):
         cv2.polylines(drawn, [one], False, 255, 1, cv2.LINE_AA)
     wanted = _soft(drawn)
-    reach, half = round(REACH * SCALE), round(SIZE / 2 * SCALE)
+    reach, half = round(REACH * SCALE), round(size / 2 * SCALE)
     seen = cv2.copyMakeBorder(seen, reach, reach, reach, reach, cv2.BORDER_CONSTANT, value=0.0)
     places: list[complex] = []
     shifts: list[complex] = []
-    for x in np.arange(FRAME.x0 + SIZE / 2, FRAME.x1 - SIZE / 2 + APART, APART):
-        for y in np.arange(FRAME.y0 + SIZE / 2, FRAME.y1 - SIZE / 2 + APART, APART):
+    for x in np.arange(FRAME.x0 + size / 2, FRAME.x1 - size / 2 + size / 2, size / 2):
+        for y in np.arange(FRAME.y0 + size / 2, FRAME.y1 - size / 2 + size / 2, size / 2):
             column, row = round(x * SCALE), round((PAPER.y1 - y) * SCALE)
             left, top = max(column - half, 0), max(row - half, 0)
             if drawn[top : row + half, left : column + half].sum(dtype=np.int64) < 255 * LEAST * SCALE:

@@ -3,6 +3,7 @@
 The frame is found (``frame_search``), its sides give a first map of the sheet (``frame_fit``), and the lines of the drawing and of
 the title block correct it (``map_fit``): homography, lens and the height of the paper, a polynomial of degree
 :data:`~tmm_sheets.compare.photo.sheet_map.RELIEF`, are fitted together; finally a few waves take up some tenths of a millimetre.
+Paper that is not smooth has a ``surface`` instead.
 None of these can follow a single view, least of all a single line: among several hundred lines that determine some seventy
 parameters a wrong one moves them by hundredths of a millimetre (Geman-McClure weights all but ignore it).
 """
@@ -24,11 +25,12 @@ from tmm_sheets.compare.photo.fit_check import MATCH, FitCheck
 from tmm_sheets.compare.photo.frame_search import FoundFrame
 from tmm_sheets.compare.photo.hidden import Mask, hidden_places
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
-from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
+from tmm_sheets.compare.photo.map_fit import SIDE, Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.photograph import Picture
 from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, inked
-from tmm_sheets.compare.photo.sheet_map import CREASED, FRAME, PAPER, RELIEF, Floats, Map
+from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, RELIEF, Floats, Map
 from tmm_sheets.compare.photo.stations import as_lines
+from tmm_sheets.compare.photo.surface import fit_surface
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell
@@ -56,8 +58,10 @@ LEAST_PATCHES, OFF, PATCH = 6, 1.5, 1.0
 """Least number of patches; mm one of them must be off for the map to follow them; mm that count as far off while it does."""
 PART, PLENTY = 120.0, 8
 """Side of a part of the sheet, mm, and points of a line in it beyond which it counts no more."""
-FINER = ((2.0, RELIEF, 1.0), (1.5, 8, 0.6), (1.2, CREASED, 0.4), (0.8, CREASED, 0.2), (0.7, CREASED + 1, 0.2))
-"""The same for paper with short waves or creases, from a map that is right in most of the sheet."""
+ROUGHLY = ((90.0, 3.0), (90.0, 3.0), (60.0, 2.0), (60.0, 1.5))
+"""Sides of the patches that a surface follows, one after the other; distance that counts as far off, mm."""
+FINER = ((2.0, 1.0), (1.5, 0.6), (1.2, 0.4), (0.8, 0.2))
+"""Reach to either side of the lines that it follows then; distance that counts as far off, mm."""
 TOGETHER, BETTER = 0.07, 0.75
 """mm by which lines near each other are off together in paper that is not smooth, and the share of it that may be left."""
 BY_LINES = ((3.5, 0, 1.5), (3.5, 0, 1.5), (3.5, 0, 1.5), (3.5, 2, 1.0), (2.5, 2, 1.0))
@@ -67,6 +71,8 @@ WHOLE = 0.98
 ABOUT = 1.5
 """How near that is, mm."""
 NO_SIDES = Seen(np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, complex), np.zeros(0))
+CURVED = 0.8
+"""Least share of lines in place from which on a surface is believed that only a frame led to."""
 HOPELESS = 0.3
 """Share of lines in place below which a fit is right nowhere."""
 TRIED, UNLIKELY = 3, 0.4
@@ -191,6 +197,8 @@ class _Attempts:
     def __init__(self, grey: Any, lines: ProfileLines, by_lines: bool) -> None:
         self.grey, self.lines, self.by_lines = grey, lines, by_lines
         self.best: _Attempt | None = None
+        self.framed: _Attempt | None = None
+        """The likeliest of those whose frame was followed."""
 
     @property
     def sound(self) -> bool:
@@ -208,8 +216,11 @@ class _Attempts:
         if not found.whole:
             self._keep(self._fit(found, frame_fit.frame_about(self.grey, self._without_frame(start), ABOUT)))
             return
-        attempt = self._fit(found, frame_fit.fit_frame(self.grey, start))
+        frame = frame_fit.fit_frame(self.grey, start)
+        attempt = self._fit(found, frame)
         self._keep(attempt)
+        if self.framed is None or attempt.check.sides.mean() > self.framed.check.sides.mean():
+            self.framed = attempt._replace(frame=frame)
         # Where a side is hidden in part, what was followed there is something else, and draws the map to it.
         framed = attempt.check.sound and float(attempt.check.sides.min()) >= fit_check.WHOLE
         if self.by_lines and not framed and attempt.check.match > HOPELESS:
@@ -217,17 +228,35 @@ class _Attempts:
                 self._keep(self._fit(found, frame_fit.frame_about(self.grey, self._without_frame(attempt.map), ABOUT)))
 
     def finer(self) -> None:
-        """Fit paper with short waves or creases when lines near each other are off together; kept if they no longer are.
+        """Fit paper with waves or creases when lines near each other are off together; kept if they no longer are.
 
-        Flat paper gains nothing by it: so fine a relief follows what few lines there are.
+        Flat paper gains nothing by it: so fine a surface follows what few lines there are. Where the lines are not in place, the
+        frame alone tells where to begin.
         """
         best = self.best
-        if best is None or best.check.match < MATCH or (self.sound and best.check.together < TOGETHER):
+        if best is None or (self.sound and best.check.together < TOGETHER):
             return
-        with suppress(CannotBuild, np.linalg.LinAlgError):
-            finer = self._finer(best)
-            if finer.check.together < BETTER * best.check.together and finer.check.match > best.check.match - 0.01:
-                self.best = finer
+        # A fit that is right in most of the sheet may be bent to suit what was taken for a side; the frame followed first is not.
+        starts = [(a, a is best) for a in ((best, self.framed) if best.check.moored else (self.framed, best)) if a is not None]
+        for start, right in starts:
+            if right and start.check.match < MATCH:
+                continue
+            with suppress(CannotBuild, np.linalg.LinAlgError):
+                finer = self._surface(start, right)
+                if self._better(finer, best):
+                    self.best = finer
+            if self.best is not best and self.sound:
+                break
+
+    @staticmethod
+    def _better(finer: _Attempt, best: _Attempt) -> bool:
+        """Whether a surface is to be believed: what so supple a map leaves astray may be its own doing, and it needs all sides."""
+        if not best.check.moored and float(finer.check.sides.min()) < fit_check.SIDE:
+            return False
+        least = max(best.check.match - 0.01, CURVED)
+        astray = len(best.check.astray) if best.check.moored else 0
+        return (finer.check.together < BETTER * best.check.together and finer.check.match > least
+                and len(finer.check.astray) <= astray)
 
     def elsewhere(self, lines: ProfileLines) -> None:
         """Try other frames, the likeliest by the drawing's ``lines`` first."""
@@ -263,14 +292,28 @@ class _Attempts:
             sides = frame_fit.sides_near(self.grey, m, ABOUT)
         return _Attempt(found, frame._replace(sides=sides), m, check)
 
-    def _finer(self, attempt: _Attempt) -> _Attempt:
-        """The fit of an attempt to paper with short waves or creases."""
-        ink = straighten(self.grey, attempt.map, COARSE)
-        level, m, sides = line_level(ink), attempt.map, attempt.frame.sides
-        for _ in range(2):
+    def _surface(self, attempt: _Attempt, right: bool) -> _Attempt:
+        """The fit of paper with waves or creases, from an attempt that is right in most of the sheet, or has but a frame."""
+        straight, sides = (attempt.map, attempt.frame.sides) if right else (attempt.frame.map, attempt.frame.sides)
+        ink = straighten(self.grey, straight, COARSE)
+        level, m = line_level(ink), straight
+        if right:
             sides = frame_fit.sides_near(self.grey, m, ABOUT)
-            m, _, _ = refine(attempt.map, sides, ink, self.lines, level, COARSE, CREASED, FINER, m)
-        check = fit_check.check(m, attempt.map, sides, ink, self.lines, level, COARSE)
+        for size, far in ROUGHLY:
+            seen = patches.patches(m, straight, ink, self.lines, COARSE, size)
+            count = len(seen.weight) // 2
+            # As much as a fifth of the frame's points, as in _by_patches; each patch as much as some points of lines.
+            own = sides._replace(weight=sides.weight * np.sqrt(0.4 * count / max(float(sides.weight.sum()), 1.0)))
+            m = fit_surface(m, own, SIDE, seen._replace(weight=2 * seen.weight), far)
+        weight = weights(self.lines)
+        for reach, far in FINER:
+            sides = frame_fit.sides_near(self.grey, m, ABOUT)
+            own = sides._replace(weight=0.5 * sides.weight)
+            at = straight.to_sheet(m.to_picture(self.lines.points))
+            o, use, _ = inked(ink, self.lines, reach, level, at - self.lines.points, COARSE)
+            seen = Seen(straight.to_picture(at + self.lines.normals * o), self.lines.points, self.lines.normals, weight * use)
+            m = fit_surface(m, own, max(2 * far, 0.5), seen, far)
+        check = fit_check.check(m, straight, sides, ink, self.lines, level, COARSE)
         return attempt._replace(frame=attempt.frame._replace(sides=sides), map=m, check=check)
 
     def _by_patches(self, straight: Map, sides: Seen, ink: Any) -> Map:

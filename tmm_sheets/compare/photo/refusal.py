@@ -51,7 +51,7 @@ def attempt(found: Rectified, known: Sequence[Element]) -> bytes:
     exact = [p for e in known if e.kind != "text" for p in dashed(e)]
     none = np.zeros(0, complex)
     flags = [overlay.Flag(k, "red", complex(z), none)
-             for k, z in enumerate(np.concatenate((found.check.astray, found.check.shifted)), 1)]
+             for k, z in enumerate(np.concatenate((found.check.astray, found.check.adrift, found.check.shifted)), 1)]
     return overlay.png(found.ink, found.level, exact, flags)
 
 
@@ -70,7 +70,7 @@ def _reasons(grey: Any, found: Rectified) -> Iterator[tuple[str, str]]:
         if share < SIDE:
             if _outside(found.map, grey.shape, k) > OUT:
                 yield tell(_OUTSIDE[k]), tell("photograph the whole frame, with some of the ground around the paper")
-            elif int((check.sides >= SIDE).sum()) < SIDES or len(check.lost):
+            elif int((check.sides >= SIDE).sum()) < SIDES or len(check.lost) or len(check.adrift):
                 yield tell(_HIDDEN[k]), tell("take away what covers the frame, or fold it back, and photograph again")
     if float(np.median(grey)) < DARK:
         yield tell("there is too little light"), tell("more light, from a window or two lamps, without the flash")
@@ -80,6 +80,10 @@ def _reasons(grey: Any, found: Rectified) -> Iterator[tuple[str, str]]:
     if len(check.shifted):
         parts = tell("parts of the sheet lie {by} mm elsewhere, neighbours alike: {n}, circled in the overlay of the attempt")
         yield parts.format(by=millimetres(check.shift), n=len(check.shifted)), tell(FLAT_OR_PLACED)
+    elif len(check.adrift):
+        loose = tell("nothing shows where the sheet ends there, and what is drawn nearby lies elsewhere, circled in the overlay "
+                     "of the attempt")
+        yield loose, tell("photograph the whole frame, with some of the ground around the paper")
     elif len(check.astray):
         places = tell("parts of the sheet whose lines are elsewhere: {n} of {all}, circled in the overlay of the attempt")
         flat = tell("lay the sheet flat, weights on its corners, and photograph from straight above")

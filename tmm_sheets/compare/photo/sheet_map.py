@@ -23,8 +23,8 @@ FRAME = Box(20.0, 5.0, 836.0, 589.0)
 CORNERS = np.array([20 + 5j, 836 + 5j, 836 + 589j, 20 + 589j])
 """Corners of the frame, counter-clockwise from the lower left one."""
 SIDE_TERMS = 7  # coefficients of the polynomial a side is bent by
-RELIEF, CREASED = 6, 10  # degree of the polynomial for the height of the paper, and of paper with short waves and creases
-TERMS = tuple((i, n - i) for n in range(2, CREASED + 1) for i in range(n, -1, -1))
+RELIEF = 6  # degree of the polynomial for the height of the paper
+TERMS = tuple((i, n - i) for n in range(2, RELIEF + 1) for i in range(n, -1, -1))
 DEGREE = np.array([i + j for i, j in TERMS])
 WAVES = 4  # half waves over the sheet, in each direction, for the residual
 AWAY = 1000.0  # mm from the paper to the camera, nominal: an error in it only rescales the heights
@@ -44,6 +44,8 @@ class Map:
     relief : coefficients of the height of the paper, mm (see :func:`heights`)
     foot : the point of the sheet below the camera
     waves : coefficients of the residual inside the frame, mm (see :func:`waves`)
+    surface : B-spline of the height of paper that is not smooth, mm, instead of relief, sides and waves (see ``surface``)
+    stretch : B-splines of what such paper is displaced by in x and in y, mm
     """
 
     middle: complex
@@ -54,6 +56,8 @@ class Map:
     relief: Floats = field(default_factory=lambda: np.zeros(len(DEGREE)))
     foot: complex = FRAME.centre
     waves: Floats = field(default_factory=lambda: np.zeros(2 * WAVES**2))
+    surface: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    stretch: Floats = field(default_factory=lambda: np.zeros((2, 0, 0)))
 
     def to_base(self, q: Points) -> Points:
         """Picture to sheet by lens and homography alone."""
@@ -80,7 +84,10 @@ class Map:
         return p
 
     def correction(self, p: Points) -> Points:
-        """Offset of points of the sheet from where :meth:`to_base` has them, mm: bent sides, relief and waves."""
+        """Offset of points of the sheet from where :meth:`to_base` has them, mm: bent sides, relief and waves, or surface."""
+        if self.surface.size:
+            along, up = (spline(p, part) for part in self.stretch)
+            return np.asarray(along + 1j * up + spline(p, self.surface) * (p - self.foot) / AWAY)
         u, v = (p.real - FRAME.x0) / FRAME.width, (p.imag - FRAME.y0) / FRAME.height
         bottom, right, top, left = (
             np.polynomial.chebyshev.chebval(2 * np.clip(t, 0, 1) - 1, c)
@@ -99,8 +106,7 @@ class Map:
 
     def risen(self, p: Points) -> Points:
         """Contribution of the relief: a point at height h appears farther from the foot by h / :data:`AWAY` of its distance."""
-        degree = RELIEF if not self.relief[DEGREE > RELIEF].any() else CREASED
-        return np.asarray(np.einsum("...k,k->...", heights(p, degree), self.relief[degree >= DEGREE]) * (p - self.foot) / AWAY)
+        return np.asarray(np.einsum("...k,k->...", heights(p), self.relief) * (p - self.foot) / AWAY)
 
 
 def heights(p: Points, degree: int = RELIEF) -> Floats:
@@ -120,6 +126,38 @@ def waves(p: Points) -> tuple[Floats, Floats]:
     sines, cosines = ([np.stack([f((i + one) * t) for i in k], -1) for t in (u, v)] for f, one in ((np.sin, 1), (np.cos, 0)))
     x, y = sines[0][..., :, None] * cosines[1][..., None, :], cosines[0][..., :, None] * sines[1][..., None, :]
     return x.reshape(*np.shape(p), -1), y.reshape(*np.shape(p), -1)
+
+
+def _cubic(t: Floats, cells: int) -> tuple[Any, Floats]:
+    """The first of four coefficients of a uniform cubic B-spline at places from 0 to 1, and their weights, (..., 4)."""
+    t = np.clip(t, 0, 1) * cells
+    first = np.minimum(t.astype(np.int64), cells - 1)
+    t = t - first
+    return first, np.stack(((1 - t) ** 3, (3 * t - 6) * t**2 + 4, ((3 - 3 * t) * t + 3) * t + 1, t**3), -1) / 6
+
+
+def _nodes(p: Points, shape: tuple[int, int]) -> tuple[Any, Floats]:
+    """The sixteen coefficients of a spline that count at points of the sheet, and their weights, (..., 16)."""
+    p = np.asarray(p)
+    j, b = _cubic((p.imag - FRAME.y0) / FRAME.height, shape[0] - 3)
+    i, a = _cubic((p.real - FRAME.x0) / FRAME.width, shape[1] - 3)
+    four = np.arange(4)
+    which = (j[..., None] + four)[..., :, None] * shape[1] + (i[..., None] + four)[..., None, :]
+    return which.reshape(*p.shape, 16), (b[..., :, None] * a[..., None, :]).reshape(*p.shape, 16)
+
+
+def spline(p: Points, coefficients: Floats) -> Floats:
+    """A cubic B-spline over the frame at points of the sheet."""
+    which, weight = _nodes(p, (coefficients.shape[0], coefficients.shape[1]))
+    return np.asarray((coefficients.ravel()[which] * weight).sum(-1))
+
+
+def spline_base(p: Points, shape: tuple[int, int]) -> Floats:
+    """What each coefficient of such a spline brings at points of the sheet, (n, coefficients)."""
+    which, weight = _nodes(p, shape)
+    base = np.zeros((len(p), shape[0] * shape[1]))
+    np.put_along_axis(base, which, weight, 1)
+    return base
 
 
 def projected(matrix: Floats, p: Points) -> Points:

@@ -1,0 +1,53 @@
+"""The words of a report on a photograph, and the numbers on its overlay."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from tmm_sheets.box import Box
+from tmm_sheets.compare.elements import Element, ElementView
+from tmm_sheets.compare.findings import called, counted
+from tmm_sheets.compare.photo import image_report, overlay
+from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.traces import Trace
+
+PLAN, TABLE = (ElementView(n, name, Box(0, 0, 841, 594)) for n, name in enumerate(("plan", "table"), 1))
+
+
+def finding(status, view=PLAN, deviation=0.0, kind="line", name=""):
+    e = Element(1, view, name, kind, np.array([0, 20 + 0j]), "main")
+    return judge(Trace(e, status, shift=1j * deviation, deviation=deviation, at=e.points + 1j * deviation), 0.25, 0.15)
+
+
+@pytest.mark.parametrize(("off", "said"), [
+    ([], ""), ([0.6], "1 place to look at"), ([3.0], "1 line is wrong"),
+    ([3.0, 2.0, 0.5, 0.6], "2 lines are wrong, 2 places to look at"),
+])
+def test_what_may_be_right_is_not_called_wrong(off, said):
+    assert counted([finding("measured", deviation=by) for by in off]) == said
+
+
+@pytest.mark.parametrize(("name", "said"), [("", "text"), ("aB", "text aB"), ("M, N m of all forces", "text M, N m of all f…")])
+def test_a_text_is_called_by_its_letters(name, said):
+    assert called(finding("absent lettering", kind="text", name=name).element) == said
+
+
+@pytest.mark.parametrize(("statuses", "said"), [
+    ([], []),
+    ([("dense", PLAN)], ["1 element is too near to others to be measured (plan: 1)"]),
+    ([("hidden", TABLE), ("dense", PLAN), ("hidden", PLAN), ("hidden", PLAN)],
+     ["3 elements are hidden in the picture or lie outside it (plan: 2, table: 1)",
+      "1 element is too near to others to be measured (plan: 1)"]),
+])
+def test_what_could_not_be_judged_is_told_by_views_and_nothing_of_none(statuses, said):
+    judged = image_report._Judged([finding(status, view) for status, view in statuses], [])
+    assert image_report._hidden(judged) == said
+    assert image_report._extra(judged) == []
+
+
+def test_numbers_on_the_overlay_stand_apart():
+    flags = [overlay.Flag(k, "red", 400 + 300j + 2 * (k % 3), np.zeros(0, complex)) for k in range(1, 13)]
+    boxes = [(n.at, n.at + complex(overlay.DIGITS * 0.62 * len(n.text), overlay.DIGITS)) for n in overlay._numbers(flags)]
+    assert all(b.real <= c.real or d.real <= a.real or b.imag <= c.imag or d.imag <= a.imag
+               for (a, b), (c, d) in combinations(boxes, 2))

@@ -1,0 +1,115 @@
+"""Paper that is not smooth: waves, creases, what lies beneath it.
+
+Its height is a cubic B-spline over the sheet, with a prior against bending, so that single lines do not lift it; where it is
+steep, it also is shorter, which a second, coarser spline takes up in the plane. Everything is fitted together with the homography,
+the lens and the camera's foot.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.compare.photo.map_fit import LENS, Seen
+from tmm_sheets.compare.photo.sheet_map import AWAY, FRAME, Floats, Map, spline_base
+
+CELLS, STRETCHED = (20, 14), (8, 6)
+"""Cells along the frame's width and height, of the height and of what is taken up in the plane."""
+POINT, SHARPLY = 0.5, 0.6
+"""Share of the distance that counts as far off, at most the second number, mm, which at one point costs as much as a prior's usual
+size: the nearer by lines are sought, the less the paper's stiffness tells."""
+CURVED = 2.0e-3
+"""Usual curvature of the height, 1/mm."""
+TALL, LONG = 20.0, 1.0
+"""Usual height and usual displacement in the plane, mm."""
+FOCUS, FOOT = 1.2, 80.0
+"""Usual focal length of a telephone, half diagonals of its picture, and error of the camera's foot found by it, mm."""
+STEPS, SETTLED = 8, 0.05
+"""Most steps, and mm of change at every point below which no further one is done."""
+
+
+def fit_surface(m: Map, sides: Seen, loose: float, seen: Seen, far: float) -> Map:
+    """A map with a curved surface instead of a relief, fitted to points of the frame and of lines inside.
+
+    Parameters
+    ----------
+    m
+        Where to start.
+    sides, loose
+        Points of the frame, and the distance from which on they count little, mm.
+    seen, far
+        The same of lines inside.
+    """
+    loosely = np.repeat((loose, far), (len(sides.weight), len(seen.weight)))
+    seen = Seen(*(np.concatenate(pair) for pair in zip(sides, seen, strict=True)))
+    shape, flat = (CELLS[1] + 3, CELLS[0] + 3), (STRETCHED[1] + 3, STRETCHED[0] + 3)
+    if not m.surface.any():
+        m = replace(m, surface=np.zeros(shape), stretch=np.zeros((2, *flat)), foot=camera_foot(m))
+    m = replace(m, sides=np.zeros_like(m.sides), relief=np.zeros_like(m.relief), waves=np.zeros_like(m.waves))
+    p, n = seen.sheet, np.conj(seen.normals)
+    height, plane = spline_base(p, shape), spline_base(p, flat)
+    count, few = height.shape[1], plane.shape[1]
+    spacing = FRAME.width / CELLS[0]
+    rough, uneven = _bending(shape) / (CURVED * spacing**2), _bending(flat) / LONG
+    usual = np.concatenate((np.full(8, np.inf), LENS, (FOOT, FOOT), np.full(count, TALL), np.full(2 * few, LONG)))
+    middle = np.zeros(len(usual))
+    foot = camera_foot(m)
+    middle[10:12] = foot.real, foot.imag
+    prior = np.diag(usual**-2.0)
+    prior[12 : 12 + count, 12 : 12 + count] += rough.T @ rough
+    for k in range(2):
+        mine = slice(12 + count + k * few, 12 + count + (k + 1) * few)
+        prior[mine, mine] += uneven.T @ uneven
+
+    def packed(m: Map) -> Floats:
+        return np.concatenate(((m.matrix / m.matrix[2, 2]).ravel()[:8], m.bend, (m.foot.real, m.foot.imag), m.surface.ravel(),
+                               m.stretch.ravel()))
+
+    def unpacked(x: Floats) -> Map:
+        return replace(m, matrix=np.append(x[:8], 1.0).reshape(3, 3), bend=(float(x[8]), float(x[9])), foot=complex(x[10], x[11]),
+                       surface=x[12 : 12 + count].reshape(shape), stretch=x[12 + count :].reshape(2, *flat))
+
+    def base(x: Floats) -> Floats:
+        at = replace(m, matrix=np.append(x[:8], 1.0).reshape(3, 3), bend=(x[8], x[9])).to_base(seen.picture)
+        return np.asarray(np.real(n * at))
+
+    x = packed(m)
+    lever_less = np.hstack((-n.real[:, None] * plane, n.imag[:, None] * plane))
+    for _ in range(STEPS):
+        size = np.append(np.maximum(np.abs(x[:8]), 1e-2), (0.05, 0.05)) * 1e-4
+        here, lift = base(x), height @ x[12 : 12 + count]
+        lever = np.real(n * (p - complex(x[10], x[11]))) / AWAY
+        r = here - np.real(n * p) - lift * lever + lever_less @ x[12 + count :]
+        jacobian = np.hstack((
+            np.stack([(base(x[:10] + e) - here) / s for e, s in zip(np.diag(size), size, strict=True)], -1),
+            np.stack((n.real * lift, -n.imag * lift), -1) / AWAY,
+            -lever[:, None] * height,
+            lever_less,
+        ))  # fmt: skip
+        w = seen.weight / (1 + (r / loosely) ** 2) / (POINT * np.minimum(loosely, SHARPLY))
+        weighted = jacobian * w[:, None]
+        square = weighted.T @ weighted + prior
+        scale = 1 / np.sqrt(np.maximum(np.diag(square), 1e-12))
+        square = square * scale * scale[:, None]
+        change = scale * np.linalg.solve(square + 1e-9 * np.eye(len(x)), scale * (-(weighted.T @ (r * w)) - prior @ (x - middle)))
+        x = x + change
+        if float(np.abs(jacobian @ change).max()) < SETTLED:
+            break
+    return unpacked(x)
+
+
+def camera_foot(m: Map) -> complex:
+    """The point of the sheet below the camera, by the perspective of a map."""
+    g = np.linalg.inv(m.matrix) / np.array([[FOCUS], [FOCUS], [1.0]])
+    first, second, away = (g / np.linalg.norm(g[:, 0])).T
+    return complex(-first @ away, -second @ away)
+
+
+def _bending(shape: tuple[int, int]) -> Any:
+    """Second differences of the coefficients of a spline, along, up and across."""
+    one = np.eye(shape[0] * shape[1]).reshape(*shape, -1)
+    return np.concatenate([d.reshape(-1, one.shape[-1]) for d in (
+        np.diff(one, 2, axis=0), np.diff(one, 2, axis=1), np.sqrt(2) * np.diff(np.diff(one, axis=0), axis=1),
+    )])  # fmt: skip
