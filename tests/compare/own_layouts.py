@@ -14,6 +14,7 @@ from __future__ import annotations
 import argparse
 import random
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import cos, pi, sin
 from pathlib import Path
@@ -185,10 +186,10 @@ SLIPS = ("coriolis", "normal", "parallel", "sense", "inertia", "force", "scale",
 """Kinds of what is done otherwise and shows in how plans of vectors lie."""
 
 
-def slipped(name: str, project: Project, known: KnownSheet, drawn: Drawn, number: int) -> Slip | None:
+def slipped(name: str, known: KnownSheet, drawn: Drawn, seed: Sequence[int]) -> Slip | None:
     """Draw everything on the sheet with something done otherwise; None where that shows in no plan of vectors."""
     found = opened(name)
-    rng = np.random.default_rng([number, 15])
+    rng = np.random.default_rng(seed)
     for _ in range(12):
         slip = KINDS[SLIPS[rng.integers(len(SLIPS))]](found, rng)
         if slip is not None and slip.ways and follows(found, known, drawn, slip):
@@ -298,8 +299,8 @@ def _rebuilt(drawn: Drawn, view: ElementView, new: Moves) -> None:
 
 
 def student(project: Project, known: KnownSheet, rng: random.Random, plans: bool, spoiled: bool, slips: str = "",
-            number: int = 0, ours: bool = False) -> tuple[Drawn, bytes]:
-    """One drawing; with ``slips``, a project's name, something is done otherwise."""
+            seed: Sequence[int] = (), ours: bool = False) -> tuple[Drawn, bytes]:
+    """One drawing; with ``slips``, a project's name, something is done otherwise, what is up to ``seed``."""
     views = [v for v in shaped_views(known) if rng.random() < 0.9]
     drawn = Drawn(places=shelved(known, views, rng, ours))
     letters = rng.random() < 0.8
@@ -307,7 +308,7 @@ def student(project: Project, known: KnownSheet, rng: random.Random, plans: bool
     if plans:
         misbuilt(project, known, drawn, rng)
     if slips:
-        drawn.slip = slipped(slips, project, known, drawn, number)
+        drawn.slip = slipped(slips, known, drawn, seed)
         spoiled = False
     placed = Drawn([moved(e, drawn.places[e.view]) for e in drawn.elements], drawn.places, drawn.wrong, drawn.built,
                    slipped_to=drawn.slipped_to)
@@ -374,7 +375,7 @@ def main() -> None:
             name, n, project = sheets[run % len(sheets)]
             rng = random.Random(options.seed * 100_003 + run)
             drawn, data = student(project, known[name, n], rng, options.plans, run % 2 == 1,
-                                  name if options.slips else "", run, options.ours)
+                                  name if options.slips else "", (options.seed, run), options.ours)
             path = Path(folder) / "drawing.dxf"
             path.write_bytes(data)
             before = perf_counter()

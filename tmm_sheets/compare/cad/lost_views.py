@@ -7,6 +7,7 @@ together with it explains most of what is left. All plans that follow from it ar
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -154,10 +155,12 @@ class _Lost:
         changed = {view: self._rebuilt(view, new) for view, drawn in self.shown.items() if (new := drawn.moved(value))}
         search = self._search(changed)
         out: dict[ElementView, FoundView] = {}
-        # A plan of one line is found in what the others leave.
-        for view in sorted(changed, key=lambda v: (v not in self.doubtful, distinct(changed[v]) < FEW_LINES, -self._weight(v))):
-            one = search.changed(view, changed[view], 1, left_over=True)
-            if one is not None and search.worth(view, one) >= self.usual.get(view, 0.0) - EQUAL:
+        # A plan of one line is found in what the others leave, one under the title of another in what that one leaves.
+        order = sorted(changed, key=lambda v: (v not in self.doubtful, distinct(changed[v]) < FEW_LINES, -self._weight(v)))
+        for strange, view in product((False, True), order):
+            one = search.changed(view, changed[view], 1, left_over=True) if view not in out else None
+            if one is not None and (strange or not search.strange(view, one.placing)) \
+                    and search.worth(view, one) >= self.usual.get(view, 0.0) - EQUAL:
                 out[view] = one
                 self.moves[view] = one.placing
                 search.without(view, one.placing)
