@@ -102,14 +102,28 @@ def test_lines_that_go_on_from_one_another_are_one(vectors, count):
     assert distinct(view(1, vectors or TWO)[1] if vectors else []) == count
 
 
-@pytest.mark.parametrize(("own", "at", "strange"), [
-    ("План ускорений", 228j, False), ("План ускорений", 205j, False), ("План ускорений (положение 3)", 228j, True), ("", 0j, True)])
-def test_the_title_with_more_of_its_words_is_that_of_a_view(own, at, strange):
-    """Just over the view stands the title of what is above it."""
+@pytest.mark.parametrize(("own", "at", "said"), [
+    ("План ускорений", 228j, ""), ("План ускорений", 200j, ""), ("План ускорений (положение 3)", 228j, "strange"),
+    ("", 0j, "strange"), ("План ускорений пол. 1", 228j, "named"), ("Положение 1", 205j, "named"), ("Положение 1", 90j, "named"),
+    ("Положение 1, 9", 90j, "named"), ("Положение 9", 90j, "strange"), ("План сил звена 1", 205j, "strange"),
+    ("План сил группы 2–3", 205j, "strange")])
+def test_the_title_with_more_of_its_words_is_that_of_a_view(own, at, said):
+    """Over the view stands the title of what is above it."""
     of, elements = view(1, OPPOSITE, "План ускорений")
     titles = [title("Положение 5′", 215j), *([title(own, at)] if own else [])]
     made = search([(of, elements, drawn(elements, Placing(), "whole"))], titles)
-    assert made.strange(of, Placing()) == strange
+    assert (made.strange(of, Placing()), made.named(of, Placing())) == (said == "strange", said == "named")
+
+
+def test_a_larger_figure_under_the_title_of_another_plan_is_not_taken():
+    """Plans of positions in which all accelerations grow alike have one shape; each has its title."""
+    of, elements = view(1, STAR, "План ускорений", mu=0.5)
+    other, same = view(2, STAR, "План ускорений", mu=0.8)
+    large, small = Placing(4 + 0j, 0j), Placing(1 + 0j, 600 + 0j)
+    titles = [title(of.name, large(150j + 60j)), title(other.name, small(300j + 60j))]
+    found = search([(of, elements, drawn(elements, large, "whole")), (other, same, drawn(same, small, "whole"))], titles).found()
+    assert is_at(found[of], large)
+    assert is_at(found[other], small)
 
 
 @pytest.mark.parametrize("times", [1.0, 2.0, 0.5])

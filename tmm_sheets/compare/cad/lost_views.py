@@ -14,7 +14,7 @@ import numpy as np
 
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.line_fit import lines
-from tmm_sheets.compare.cad.view_search import AS_DRAWN, CALLED, FEW_LINES, NEAR, SURE, FoundView, Search, distinct, handy, unused
+from tmm_sheets.compare.cad.view_search import AS_DRAWN, FEW_LINES, NEAR, SURE, FoundView, Search, distinct, handy, unused
 from tmm_sheets.compare.diagnosis.built_plan import AS_GOOD, EQUAL, KINDS, errors_of, explains, possible
 from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint, drawn_plan, rebuilt
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
@@ -61,7 +61,7 @@ class _Lost:
                                  and (v.mu is None or handy(self.moves[v]))}
         self.doubtful = [v for v in self.shown if self.usual.get(v, 0.0) < SURE]
         self.sure = [v for v in self.usual if v not in self.doubtful and distinct(self.main[v]) >= FEW_LINES]
-        self.titled = [v for v in self.sure if search.titled(v, self.moves[v]) > CALLED]
+        self.titled = [v for v in self.sure if search.named(v, self.moves[v])]
 
     def _search(self, views: Collection[ElementView]) -> Search:
         """A search for some views in the ink that no other view has; where one was hardly found it has none."""
@@ -119,14 +119,16 @@ class _Lost:
         return min(good, key=lambda x: x[:3])[3] if good else None
 
     def _contradicted(self, h: Hypothesis, made: Sequence[Hypothesis]) -> bool:
-        """Whether a view that stands as it should is nowhere as it would be with a mistake.
+        """Whether a view that stands as it should is nowhere as it would be with a mistake, or only under another's title.
 
         What is made at every position makes plans change places, of which only a title tells which is which.
         """
         value = replay(self.errors, [c for m in (*made, h) for c in m.changes])
         for view in self.titled if h.at is None else self.sure:
             new = self.shown[view].moved(value)
-            if new and self._search([view]).changed(view, self._rebuilt(view, new), 1) is None:
+            search = self._search([view])
+            one = search.changed(view, self._rebuilt(view, new), 1) if new else None
+            if new and (one is None or search.worth(view, one) < self.usual[view] - EQUAL):
                 return True
         return False
 

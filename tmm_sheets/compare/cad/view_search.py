@@ -171,14 +171,22 @@ class Search:
         return found.share - ODD_SCALE * odd - ODD_TITLE * self.strange(v, found.placing)
 
     def strange(self, v: ElementView, placing: Placing) -> bool:
-        """Whether the title over a place is that of another such view, with another number."""
+        """Whether the title over or under a place is that of another such view, with another number."""
+        said = self._title(v, placing)
+        return said is not None and _namesakes(_tokens(v.name), said)
+
+    def named(self, v: ElementView, placing: Placing) -> bool:
+        """Whether the title over or under a place is the view's own, with its number."""
+        own, said = _tokens(v.name), self._title(v, placing)
+        return said is not None and (bool(_numbers(own) & _numbers(said)) if _numbers(own) else _common(own, said) > CALLED)
+
+    def _title(self, v: ElementView, placing: Placing) -> frozenset[str] | None:
+        """The nearest title that may be that of a view; one that has more words of the view's own may be farther off."""
         own = _tokens(v.name)
         box, titles = self._titles(v, placing)
-        over = complex(box.centre.real, box.y1)
-        # One that has more words of the view's own name may be farther off.
-        near = [(abs(at - over) / max(len(_words(own) & _words(said)), 1), said) for said, at in titles
-                if _common(own, said) > 0.3 or _namesakes(own, said)]
-        return bool(near) and _namesakes(own, min(near, key=lambda x: x[0])[1])
+        near = [(abs(at - complex(box.centre.real, box.nearest(at).imag)) / len(shared), said) for said, at in titles
+                for shared in [_words(own) & _words(said)] if len(shared) > 0.5 * len(_words(said))]
+        return min(near, key=lambda x: x[0], default=(0.0, None))[1]
 
     def without(self, v: ElementView, placing: Placing) -> None:
         """Keep the ink of a view from the others."""
@@ -254,6 +262,7 @@ class Search:
         if not enough or share < 0.35 or share + witness < 0.75:
             return None
         size = max(float(np.abs(points - points[0]).max()), 1.0)
+        witness -= ODD_TITLE * self.strange(v, placing)
         sure = (share + witness) * (1 + 0.15 * np.log1p(lines_met) + 0.1 * np.log10(size))
         return _Try(-float(sure), taken, k, placing, share)
 
@@ -320,7 +329,7 @@ def _tokens(text: str) -> frozenset[str]:
 
 def _common(own: frozenset[str], said: frozenset[str]) -> float:
     """Likeness of two titles: words in common; other numbers make them unlike."""
-    numbers, theirs = ({w for w in words if w.isdigit()} for words in (own, said))
+    numbers, theirs = _numbers(own), _numbers(said)
     if not own or (numbers and theirs and not numbers & theirs):
         return 0.0
     return len(own & said) / len(own | said)
@@ -328,14 +337,18 @@ def _common(own: frozenset[str], said: frozenset[str]) -> float:
 
 def _namesakes(own: frozenset[str], said: frozenset[str]) -> bool:
     """Whether two titles differ in their numbers only."""
-    a, b = _words(own), _words(said)
-    n, m = ({w for w in words if w.isdigit()} for words in (own, said))
+    a, b, n, m = _words(own), _words(said), _numbers(own), _numbers(said)
     return bool(n and m and not n & m and len(a & b) > 0.6 * min(len(a), len(b)))
 
 
 def _words(title: frozenset[str]) -> set[str]:
     """The words of a title, without numbers, by their beginnings."""
     return {w[:3] for w in title if not w.isdigit()}
+
+
+def _numbers(title: frozenset[str]) -> set[str]:
+    """The numbers of a title."""
+    return {w for w in title if w.isdigit()}
 
 
 def _of_sheet(elements: Iterable[Element]) -> _Shapes:
