@@ -139,9 +139,12 @@ def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementV
         found = _explained(drawn, errors, drawings[view], share[view], before, gain) if view in wrong else None
         if found is not None:
             numbers = {e.number for e in wrong[view]}
-            told = sum(drawings[view].inked(between(e, found.points)) >= WHOLE
-                       for e in drawn.vectors if e.number in numbers)
-            out[view] = BuiltPlan(found.mistake.said, told, len(numbers)), found.points
+            there = {e.number: line for e in drawn.vectors for line in [between(e, found.points)]
+                     if drawings[view].inked(line) >= WHOLE}
+            # A line that goes elsewhere is wrong, though the ink of another one made it look right.
+            numbers |= {e.number for e in drawn.vectors
+                        if e.number in there and np.abs(there[e.number] - e.points[[0, -1]]).max() >= SHOWS}
+            out[view] = BuiltPlan(found.mistake.said, len(numbers & there.keys()), len(numbers)), found.points
             share[view] = found.share
             if found.mistake not in before:
                 before.append(found.mistake)
