@@ -136,3 +136,13 @@ def test_a_number_may_be_one_of_several_that_are_not_equally_high(times):
     space = DrawingSpace("", (), (), written, ())
     laid = Laid(SimpleNamespace(elements=texts), space, Placing(), 1.0, {of: FoundView(Placing(), 1.0)})
     assert _to_size(laid).placing.scale == 1 / times
+
+
+def test_a_title_is_worth_more_over_a_view_than_beside_it():
+    """Two plans of one figure stand beside one another, one of them under the title."""
+    of, elements = view(1, STAR)
+    places = Placing(1 + 0j, 0j), Placing(1 + 0j, 95 + 0j)
+    strokes = [s for place in places for s in drawn(elements, place, "whole")]
+    made = search([(of, elements, strokes)], [title(of.name, places[1](210j))])
+    assert [made.titled(of, place, 0.5) for place in places] == [0.5, 1]
+    assert is_at(made.found()[of], places[1])

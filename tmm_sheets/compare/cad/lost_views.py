@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from tmm_sheets.compare.cad.layout import Layout
     from tmm_sheets.project import Project
 
+HALF = 0.5
+"""Share of its ink without which a view is no longer where it was found."""
 MISTAKES = 2
 """So many mistakes are looked for in views that are not found."""
 
@@ -162,12 +164,17 @@ class _Lost:
         for strange, view in product((False, True), order):
             one = search.changed(view, changed[view], 1, left_over=True) if view not in out else None
             if one is not None and (strange or not search.strange(view, one.placing)) \
-                    and search.worth(view, one) >= self.usual.get(view, 0.0) - EQUAL:
+                    and search.worth(view, one) >= self._still_usual(search, view) - EQUAL:
                 out[view] = one
                 self.moves[view] = one.placing
                 search.without(view, one.placing)
         self.doubtful = [v for v in self.doubtful if v not in out]
         return out
+
+    def _still_usual(self, search: Search, view: ElementView) -> float:
+        """How well a view is where it was found as it should be, if no other one has the ink there now."""
+        there = view in self.usual and search.free.share(self.moves[view](self.points[view]), NEAR) > HALF
+        return self.usual[view] if there else 0.0
 
     def left_over(self) -> dict[ElementView, FoundView]:
         """The views of a line or two, without title or letters, that are found in the ink no other view has."""

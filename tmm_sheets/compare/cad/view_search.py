@@ -45,6 +45,8 @@ ODD_SCALE, ODD_TITLE = 0.15, 0.25
 """By how much less a view is worth at a place with a scale factor that nobody takes, or under the title of another one."""
 TITLE = 45.0
 """How far from a view a title may be, mm."""
+OVER_VIEW, BESIDE = 10.0, 0.5
+"""How far beyond the sides of a view the middle of its title may be, mm, and what one farther aside is worth."""
 AGREE = 0.7
 """Least share of the lines of a changed view, by length, that must tell the same place, and of its points that must be near ink."""
 CALLED = 0.5
@@ -252,7 +254,7 @@ class Search:
         same = known_scale is not None and abs(placing.scale / known_scale - 1) < 0.01
         if known_scale is not None and not same and not handy(placing):
             return None  # plans of one scale factor are drawn alike, or at one that somebody takes
-        witness = 0.35 * read + 0.25 * titled + 0.15 * same + 0.05 * handy(placing)
+        witness = 0.35 * read + 0.25 * self.titled(v, placing, BESIDE) + 0.15 * same + 0.05 * handy(placing)
         if least > 1 and not bends and lines_met < least:
             return None
         called = read + titled > (0.3 if same else CALLED)
@@ -281,9 +283,12 @@ class Search:
                    for word, z in texts)
         return near / len(texts) if texts else 0.0
 
-    def titled(self, v: ElementView, placing: Placing) -> float:
-        """How much the most similar title near a place has in common with the view's own, 0 .. 1."""
-        return max((_common(_tokens(v.name), said) for said, _ in self._titles(v, placing)[1]), default=0.0)
+    def titled(self, v: ElementView, placing: Placing, beside: float = 1.0) -> float:
+        """How much the most similar title near a place has in common with the view's own, 0 .. 1; ``beside`` it times as much."""
+        box, titles = self._titles(v, placing)
+        reach = box.width / 2 + OVER_VIEW
+        return max((_common(_tokens(v.name), said) * (1.0 if abs(at.real - box.centre.real) < reach else beside)
+                    for said, at in titles), default=0.0)
 
     def _titles(self, v: ElementView, placing: Placing) -> tuple[Box, list[tuple[frozenset[str], complex]]]:
         """The rectangle round a view, and the titles that may be its own; in a larger view they may be farther off."""
