@@ -69,10 +69,11 @@ def test_a_plan_along_one_line_has_the_scale_of_the_others(vectors, way):
     assert is_at(found[second], PLACES[1])
 
 
-def test_a_scale_that_nobody_takes_beside_a_known_one_is_none():
-    """A line of the drawing that is 1.052 times as long as the plan, under its title."""
+@pytest.mark.parametrize("times", [1.052, 1.25, 1.875])
+def test_another_scale_beside_a_known_one_is_none(times):
+    """A line of the drawing that is so many times as long as the plan, under its title."""
     (first, star), (second, line) = view(1, STAR), view(2, ALONG)
-    odd = drawn(line, Placing(1.052 + 0j, 400 + 300j), "whole")
+    odd = drawn(line, Placing(times + 0j, 400 + 300j), "whole")
     made = search([(first, star, drawn(star, PLACES[0], "whole")), (second, line, odd)], [title("Положение 2", PLACES[1](320j))])
     found = made.found()
     assert is_at(found[first], PLACES[0])

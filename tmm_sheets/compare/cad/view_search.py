@@ -191,8 +191,10 @@ class Search:
         return min(near, key=lambda x: x[0], default=(0.0, None))[1]
 
     def without(self, v: ElementView, placing: Placing) -> None:
-        """Keep the ink of a view from the others."""
+        """Keep the ink of a view from the others; those of its scale factor have its scale, mostly."""
         self.free = unused(self.free, placing(self.points[v]))
+        if v.mu is not None:
+            self.scales.setdefault(v.mu, placing.scale)
 
     def found(self) -> dict[ElementView, FoundView]:
         """The views that are sure; those of few lines wait until others of their scale factor tell its scale."""
@@ -218,8 +220,6 @@ class Search:
                     heappush(heap, again)
                 continue
             out[v] = FoundView(best.placing, best.share)
-            if v.mu is not None:
-                self.scales.setdefault(v.mu, best.placing.scale)
             self.without(v, best.placing)
 
     def tries(self, k: int, v: ElementView, scale: float | None, least: int, taken: int, agree: float = 0.0,
@@ -259,7 +259,8 @@ class Search:
             return None
         called = read + titled > (0.3 if same else CALLED)
         # Along one line another scale has as much ink, of which only the ends tell more.
-        one = lines_met == 1 and ((called and same) or ((called or same or left_over) and self._ends(v, placing)))
+        one = lines_met == 1 and (known_scale is None or same) and (
+            (called and same) or ((called or same or left_over) and self._ends(v, placing)))
         enough = lines_met >= 2 or bends or one
         if not enough or share < 0.35 or share + witness < 0.75:
             return None
