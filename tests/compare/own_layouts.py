@@ -14,6 +14,7 @@ from __future__ import annotations
 import argparse
 import random
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import cos, pi, sin
 from pathlib import Path
@@ -92,22 +93,24 @@ def taken(known: KnownSheet, view: ElementView, rng: random.Random, letters: boo
     return out
 
 
-def shelved(known: KnownSheet, views: list[ElementView], rng: random.Random, ours: bool = False) -> dict[ElementView, Placing]:
-    """Places of views: row by row, each as large as the student likes, plans of one scale factor alike."""
-    like = {}
-    if ours:
-        return {v: Placing() for v in views}
+def enlarged(views: list[ElementView], rng: random.Random) -> dict[ElementView, float]:
+    """Views in another order, each as large as the student likes, plans of one scale factor alike."""
+    like: dict[float | str, float] = {}
     rng.shuffle(views)
+    return {v: like.setdefault(v.mu, rng.choice(TIMES)) if v.mu is not None else 1.0 for v in views}
+
+
+def shelved(elements: list[Element], times: dict[ElementView, float], rng: random.Random) -> dict[ElementView, Placing]:
+    """Places of views, row by row, by what is drawn of them."""
     x = y = row = 0.0
     out = {}
-    for v in views:
-        times = like.setdefault(v.mu if v.mu is not None else v.name, rng.choice(TIMES) if v.mu is not None else 1.0)
-        points = np.concatenate([e.points for e in known.elements if e.view == v and e.role in MAIN])
+    for v, by in times.items():
+        points = np.concatenate([e.points for e in elements if e.view == v and e.role in MAIN])
         low = complex(points.real.min(), points.imag.min())
-        size = complex(np.ptp(points.real), np.ptp(points.imag)) * times
+        size = complex(np.ptp(points.real), np.ptp(points.imag)) * by
         if x + size.real > 900:
             x, y, row = 0.0, y + row + rng.uniform(12, 40), 0.0
-        out[v] = Placing(complex(times), complex(40 + x, 40 + y) - times * low)
+        out[v] = Placing(complex(by), complex(40 + x, 40 + y) - by * low)
         x, row = x + size.real + rng.uniform(12, 40), max(row, size.imag)
     return out
 
@@ -185,10 +188,10 @@ SLIPS = ("coriolis", "normal", "parallel", "sense", "inertia", "force", "scale",
 """Kinds of what is done otherwise and shows in how plans of vectors lie."""
 
 
-def slipped(name: str, project: Project, known: KnownSheet, drawn: Drawn, number: int) -> Slip | None:
+def slipped(name: str, known: KnownSheet, drawn: Drawn, seed: Sequence[int]) -> Slip | None:
     """Draw everything on the sheet with something done otherwise; None where that shows in no plan of vectors."""
     found = opened(name)
-    rng = np.random.default_rng([number, 15])
+    rng = np.random.default_rng(seed)
     for _ in range(12):
         slip = KINDS[SLIPS[rng.integers(len(SLIPS))]](found, rng)
         if slip is not None and slip.ways and follows(found, known, drawn, slip):
@@ -298,17 +301,20 @@ def _rebuilt(drawn: Drawn, view: ElementView, new: Moves) -> None:
 
 
 def student(project: Project, known: KnownSheet, rng: random.Random, plans: bool, spoiled: bool, slips: str = "",
-            number: int = 0, ours: bool = False) -> tuple[Drawn, bytes]:
-    """One drawing; with ``slips``, a project's name, something is done otherwise."""
+            seed: Sequence[int] = (), ours: bool = False) -> tuple[Drawn, bytes]:
+    """One drawing; with ``slips``, a project's name, something is done otherwise, what is up to ``seed``."""
     views = [v for v in shaped_views(known) if rng.random() < 0.9]
-    drawn = Drawn(places=shelved(known, views, rng, ours))
+    times = enlarged(views, rng)
     letters = rng.random() < 0.8
-    drawn.elements = [e for v in drawn.places for e in taken(known, v, rng, letters)]
+    drawn = Drawn([e for v in times for e in taken(known, v, rng, letters)])
+    drawn.places = dict.fromkeys(views, Placing()) if ours else shelved(drawn.elements, times, rng)
     if plans:
         misbuilt(project, known, drawn, rng)
     if slips:
-        drawn.slip = slipped(slips, project, known, drawn, number)
+        drawn.slip = slipped(slips, known, drawn, seed)
         spoiled = False
+    if not ours and drawn.built:  # a plan that goes another way needs room elsewhere
+        drawn.places = shelved(drawn.elements, times, rng)
     placed = Drawn([moved(e, drawn.places[e.view]) for e in drawn.elements], drawn.places, drawn.wrong, drawn.built,
                    slipped_to=drawn.slipped_to)
     if spoiled and not plans:  # in mm of the student's paper
@@ -374,7 +380,7 @@ def main() -> None:
             name, n, project = sheets[run % len(sheets)]
             rng = random.Random(options.seed * 100_003 + run)
             drawn, data = student(project, known[name, n], rng, options.plans, run % 2 == 1,
-                                  name if options.slips else "", run, options.ours)
+                                  name if options.slips else "", (options.seed, run), options.ours)
             path = Path(folder) / "drawing.dxf"
             path.write_bytes(data)
             before = perf_counter()

@@ -105,7 +105,7 @@ def shot(number: int, seed: int, sound: bool, folder: Path) -> tuple[Path, Proje
     known = known_sheet(project, n)
     drawn = Drawn(elements=list(known.elements), places={v: Placing() for v in shaped_views(known)})
     if not sound:
-        drawn.slip = slipped(name, project, known, drawn, 1000 * seed + number)
+        drawn.slip = slipped(name, known, drawn, (1000 * seed + number, 15))
         if drawn.slip is None or not drawn.built:
             return folder, project, known, None, name
     what = scene.Scene(number, DIFFICULTIES[(number + number // len(SHEETS)) % len(DIFFICULTIES)], seed)

@@ -54,6 +54,14 @@ def starts(of):
     return [j for j in of if j.starts]
 
 
+def test_per_cents_are_told_of_sizes_only(shaper, some):
+    """Those of an angle depend on the axis it is counted from."""
+    of = judged(shaper, drawn(shaper, some))
+    told = {j.percent is None for j in of if j.entry.kind in ("angle", "sense")}
+    assert told == {True}
+    assert all(j.percent == 100 * j.deviation / abs(j.exact) for j in of if j.entry.kind == "length" and j.exact > 1e-9)
+
+
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_good_drawing(shaper, some, seed):
     of = judged(shaper, drawn(shaper, some, seed=seed, sigma=0.5))

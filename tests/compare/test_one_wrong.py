@@ -37,3 +37,12 @@ def test_an_arc_goes_with_its_head():
     assert wrong.element is e
     assert "arrow head" not in wrong.what
     assert outcome.extras == ()
+
+
+def test_a_hatching_is_missing_though_other_lines_slant_in_its_place():
+    """Its neighbour, hatched the other way, and lines that were drawn for something else are no hatching of its own."""
+    sheet = composed(Project(read("lugansk/engine")), 4)
+    exact = list(elements(sheet))
+    e = max((e for e in exact if e.kind == "hatch" and not e.name), key=lambda e: e.length)
+    outcome = compared(draw([other for other in exact if other is not e], Way(), random.Random(2)), sheet, exact)
+    assert [f.element.number for f in outcome.findings if f.verdict in ("red", "amber")] == [e.number]

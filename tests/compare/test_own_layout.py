@@ -1,6 +1,7 @@
 """A plain drawing with a layout of its own: its views are found, what it lacks is a remark, a plan built wrongly is named."""
 
 import random
+from collections import Counter
 from types import SimpleNamespace
 
 import numpy as np
@@ -56,6 +57,15 @@ def test_the_views_are_found_at_their_scales(compared):
         assert is_there(place, found.places.moves[view], points, 1.0), view.name
 
 
+def test_the_note_counts_the_views_that_a_mistake_had_hidden(compared):
+    """And tells of none of them where it was taken to be before."""
+    _, found, _ = compared
+    count = sum(v in found.places.moves for v in found.places.share if v.n)
+    assert [note for note in found.notes if f" {count} found by shape" in note]
+    assert count >= len(PLACES)
+    assert not [note for note in found.notes if "compared there" in note]
+
+
 def test_what_is_right_is_not_accused(compared):
     """Lines that are not drawn are a remark on their view; the exact plan tells what is right."""
     _, found, drawn = compared
@@ -72,7 +82,8 @@ def test_the_plan_is_compared_as_it_was_built(compared):
     _, found, drawn = compared
     assert found.built.keys() == {ACCELERATIONS, *FORCES}
     assert {built.mistake.kind for built in found.built.values()} == {"coriolis"}
-    assert all(built.explains == built.of for built in found.built.values())
+    red = Counter(f.element.view for f in found.outcome.findings if f.verdict == "red" and f.element.kind == "line")
+    assert all(built.explains == built.of == red[view] for view, built in found.built.items())
     wrong = [f for f in found.outcome.findings if f.element.number in drawn.wrong]
     assert {f.verdict for f in wrong} == {"red"}
     assert not any(f.missing for f in wrong)

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 NEAR = 0.4
 """Distance from ink within which a point of a plan counts as drawn, mm."""
+OVER = 1.0, 2.5, 4
+"""Beyond the end of a line: from where to where ink goes on, mm, and at how many places it is looked for."""
 
 
 def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, moves: Mapping[ElementView, Placing],
@@ -46,7 +48,7 @@ def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, mo
     def seen(view: ElementView) -> Drawing:
         move = moves.get(view, Placing())
         return Drawing(lambda line: _inked(space.lines, move, line), lambda z: space.lines.nearest(np.asarray(move(z)), NEAR)[2],
-                       move.back(tips).tolist(), move.scale)
+                       move.back(tips).tolist(), move.scale, lambda line: _goes_on(space.lines, move, line))
 
     return built_plan.built_otherwise(project, known, wrong, seen, made)
 
@@ -67,6 +69,14 @@ def as_built(finding: CadFinding | None, was: Element, now: Element, move: Placi
     what = said if finding.verdict == "green" else f"{said}; {finding.what}"
     deviation = max(off, finding.deviation)
     return replace(finding, verdict=verdict(deviation, tolerance), deviation=deviation, what=what)
+
+
+def _goes_on(theirs: KnownLines, move: Placing, line: Points) -> bool:
+    """Whether ink goes on in the direction of a line of a plan beyond its end: then the line that is drawn is a longer one."""
+    z = np.asarray(move(line))
+    along = (z[1] - z[0]) / abs(z[1] - z[0])
+    _, unit, found = theirs.nearest(z[1] + along * np.linspace(*OVER), NEAR)
+    return bool((found & (np.abs((unit * np.conj(along)).imag) < 0.1)).all())
 
 
 def _inked(theirs: KnownLines, move: Placing, line: Points) -> float:

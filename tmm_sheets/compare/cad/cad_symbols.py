@@ -88,7 +88,7 @@ def hatching(state: Comparison) -> None:
             continue
         box = Box.around(state.elements[n].points, ASIDE).corners
         strokes = np.flatnonzero(slanting & left_over & _inside(state.theirs.a, box) & _inside(state.theirs.b, box))
-        here = slanting & _inside(middles, Box.around(state.elements[n].points, 1.5).corners)
+        here = slanting & left_over & _inside(middles, Box.around(state.elements[n].points, 1.5).corners)
         if _inside(patterns, box).any() or float(state.theirs.length[here].sum()) > 0.4 * state.whole(n) or \
                 float(state.theirs.length[strokes].sum()) > 0.8 * state.whole(n):
             state.found[n] = state.finding(n, 0.0, "")

@@ -150,14 +150,17 @@ def _explained(sheet: KnownSheet, space: DrawingSpace, found: Mapping[ElementVie
 
 def _to_size(laid: Laid) -> Laid:
     """The same at the size at which its letters are as high as ours: symbols are as large in every scale of a view."""
-    high: dict[str, float] = {}
+    high: dict[str, set[float]] = {}
     for e in laid.known.elements:
         if e.kind == "text" and e.view in laid.views:
-            high.setdefault(meant(e.text), e.height)
-    ratios = [w.height * laid.placing.scale / high[meant(w.text)] for w in laid.space.writings if meant(w.text) in high]
-    if not ratios:
+            high.setdefault(meant(e.text), set()).add(e.height)
+    votes: Counter[float] = Counter()
+    for w in laid.space.writings:  # a number may be one of several that are not equally high
+        ratios = [w.height * laid.placing.scale / h for h in high.get(meant(w.text), ())]
+        votes.update({min(RATIOS, key=lambda r: abs(np.log(one / r))) for one in ratios if one > 0})
+    if not votes:
         return laid
-    times = min(RATIOS, key=lambda r: abs(np.log(float(np.median(ratios)) / r)))
+    times = max(votes, key=lambda r: (votes[r], -RATIOS.index(r)))
     views = {v: replace(one, placing=Placing(one.placing.turn / times, one.placing.shift / times))
              for v, one in laid.views.items()}
     return replace(laid, placing=Placing(laid.placing.turn / times), views=views)

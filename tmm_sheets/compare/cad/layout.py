@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -36,17 +36,29 @@ class Layout:
     ----------
     moves : for views that are elsewhere, how to take them from our sheet to their places in the drawing laid over it
     share : share of the lines of each view that was found, 0 .. 1
-    notes : the same in words
+    said : what is told of the places that a file gives
+    elsewhere : views that were found where they were not expected
+    own : whether the layout is the student's own
     """
 
     moves: Mapping[ElementView, Placing]
     share: Mapping[ElementView, float]
-    notes: tuple[str, ...]
+    said: tuple[str, ...]
+    elsewhere: tuple[ElementView, ...]
+    own: bool
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Where the views are, in words."""
+        if self.own:
+            return (*self.said, _own_layout(list(self.share), self.moves))
+        there = tell('"{view}" stands {place}; compared there')
+        return (*self.said, *(there.format(view=v.name, place=_where(v, self.moves[v])) for v in self.elsewhere))
 
     def with_more(self, found: Mapping[ElementView, FoundView]) -> Layout:
         """The same with more views."""
-        return Layout({**self.moves, **{v: one.placing for v, one in found.items()}},
-                      {**self.share, **{v: one.share for v, one in found.items()}}, self.notes)
+        return replace(self, moves={**self.moves, **{v: one.placing for v, one in found.items()}},
+                       share={**self.share, **{v: one.share for v, one in found.items()}})
 
 
 def ink(elements: Sequence[Element]) -> Points:
@@ -92,6 +104,7 @@ class _ViewFinder:
         self.moves: dict[ElementView, Placing] = {}
         self.share: dict[ElementView, float] = {}
         self.notes: list[str] = []
+        self.elsewhere: list[ElementView] = []
 
     def layout(self, given: Sequence[tuple[ViewPlace, Placing]], found: Mapping[ElementView, FoundView]) -> Layout:
         """Place the views from the file, then the others near their places or their texts, last those that are nowhere near."""
@@ -101,9 +114,7 @@ class _ViewFinder:
             if v not in self.moves:
                 self.moves[v], self.share[v] = one.placing, one.share
         self._search([v for v in self.views if v not in self.moves and not self._place_near(v)])
-        if found:
-            self.notes.append(_own_layout(self.views, self.moves))
-        return Layout(self.moves, self.share, tuple(self.notes))
+        return Layout(self.moves, self.share, tuple(self.notes), tuple(self.elsewhere), bool(found))
 
     def _place_given(self, place: ViewPlace, whole: Placing) -> None:
         v = place.view
@@ -144,7 +155,7 @@ class _ViewFinder:
     def _take(self, v: ElementView, best: Placing, inked: float) -> None:
         """Take a place that is not the view's own."""
         self.moves[v], self.share[v] = best, inked
-        self.notes.append(tell('"{view}" stands {place}; compared there').format(view=v.name, place=_where(v, best)))
+        self.elsewhere.append(v)
 
     def _inked(self, v: ElementView, move: Placing) -> float:
         """Share of a view's points that have ink."""

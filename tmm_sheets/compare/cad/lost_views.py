@@ -7,13 +7,14 @@ together with it explains most of what is left. All plans that follow from it ar
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.line_fit import lines
-from tmm_sheets.compare.cad.view_search import AS_DRAWN, CALLED, FEW_LINES, NEAR, SURE, FoundView, Search, distinct, handy, unused
+from tmm_sheets.compare.cad.view_search import AS_DRAWN, FEW_LINES, NEAR, SURE, FoundView, Search, distinct, handy, unused
 from tmm_sheets.compare.diagnosis.built_plan import AS_GOOD, EQUAL, KINDS, errors_of, explains, possible
 from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint, drawn_plan, rebuilt
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from tmm_sheets.compare.cad.layout import Layout
     from tmm_sheets.project import Project
 
+HALF = 0.5
+"""Share of its ink without which a view is no longer where it was found."""
 MISTAKES = 2
 """So many mistakes are looked for in views that are not found."""
 
@@ -60,7 +63,7 @@ class _Lost:
                                  and (v.mu is None or handy(self.moves[v]))}
         self.doubtful = [v for v in self.shown if self.usual.get(v, 0.0) < SURE]
         self.sure = [v for v in self.usual if v not in self.doubtful and distinct(self.main[v]) >= FEW_LINES]
-        self.titled = [v for v in self.sure if search.titled(v, self.moves[v]) > CALLED]
+        self.titled = [v for v in self.sure if search.named(v, self.moves[v])]
 
     def _search(self, views: Collection[ElementView]) -> Search:
         """A search for some views in the ink that no other view has; where one was hardly found it has none."""
@@ -118,14 +121,16 @@ class _Lost:
         return min(good, key=lambda x: x[:3])[3] if good else None
 
     def _contradicted(self, h: Hypothesis, made: Sequence[Hypothesis]) -> bool:
-        """Whether a view that stands as it should is nowhere as it would be with a mistake.
+        """Whether a view that stands as it should is nowhere as it would be with a mistake, or only under another's title.
 
         What is made at every position makes plans change places, of which only a title tells which is which.
         """
         value = replay(self.errors, [c for m in (*made, h) for c in m.changes])
         for view in self.titled if h.at is None else self.sure:
             new = self.shown[view].moved(value)
-            if new and self._search([view]).changed(view, self._rebuilt(view, new), 1) is None:
+            search = self._search([view])
+            one = search.changed(view, self._rebuilt(view, new), 1) if new else None
+            if new and (one is None or search.worth(view, one) < self.usual[view] - EQUAL):
                 return True
         return False
 
@@ -154,15 +159,22 @@ class _Lost:
         changed = {view: self._rebuilt(view, new) for view, drawn in self.shown.items() if (new := drawn.moved(value))}
         search = self._search(changed)
         out: dict[ElementView, FoundView] = {}
-        # A plan of one line is found in what the others leave.
-        for view in sorted(changed, key=lambda v: (v not in self.doubtful, distinct(changed[v]) < FEW_LINES, -self._weight(v))):
-            one = search.changed(view, changed[view], 1, left_over=True)
-            if one is not None and search.worth(view, one) >= self.usual.get(view, 0.0) - EQUAL:
+        # A plan of one line is found in what the others leave, one under the title of another in what that one leaves.
+        order = sorted(changed, key=lambda v: (v not in self.doubtful, distinct(changed[v]) < FEW_LINES, -self._weight(v)))
+        for strange, view in product((False, True), order):
+            one = search.changed(view, changed[view], 1, left_over=True) if view not in out else None
+            if one is not None and (strange or not search.strange(view, one.placing)) \
+                    and search.worth(view, one) >= self._still_usual(search, view) - EQUAL:
                 out[view] = one
                 self.moves[view] = one.placing
                 search.without(view, one.placing)
         self.doubtful = [v for v in self.doubtful if v not in out]
         return out
+
+    def _still_usual(self, search: Search, view: ElementView) -> float:
+        """How well a view is where it was found as it should be, if no other one has the ink there now."""
+        there = view in self.usual and search.free.share(self.moves[view](self.points[view]), NEAR) > HALF
+        return self.usual[view] if there else 0.0
 
     def left_over(self) -> dict[ElementView, FoundView]:
         """The views of a line or two, without title or letters, that are found in the ink no other view has."""

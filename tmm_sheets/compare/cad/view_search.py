@@ -45,6 +45,8 @@ ODD_SCALE, ODD_TITLE = 0.15, 0.25
 """By how much less a view is worth at a place with a scale factor that nobody takes, or under the title of another one."""
 TITLE = 45.0
 """How far from a view a title may be, mm."""
+OVER_VIEW, BESIDE = 10.0, 0.5
+"""How far beyond the sides of a view the middle of its title may be, mm, and what one farther aside is worth."""
 AGREE = 0.7
 """Least share of the lines of a changed view, by length, that must tell the same place, and of its points that must be near ink."""
 CALLED = 0.5
@@ -82,12 +84,17 @@ class FoundView:
 
 @dataclass(frozen=True)
 class _Shapes:
-    """Lines and curves by what tells a scale and a shift: middle, extent (complex, its direction that of a line) and weight."""
+    """Lines and curves by what tells a scale and a shift: middle, extent (complex, its direction that of a line) and weight.
+
+    Collinear lines that touch are one more line together, for they may be drawn as one, or each in pieces; ``parts`` are the
+    numbers of the lines, those of one are its own.
+    """
 
     middle: Points
     extent: Points
     straight: npt.NDArray[np.bool_]
     weight: npt.NDArray[np.float64]
+    parts: Sequence[tuple[int, ...]]
 
 
 @dataclass(order=True)
@@ -166,16 +173,28 @@ class Search:
         return found.share - ODD_SCALE * odd - ODD_TITLE * self.strange(v, found.placing)
 
     def strange(self, v: ElementView, placing: Placing) -> bool:
-        """Whether the title over a place is that of another such view, with another number."""
-        box = Box.around(placing(self.points[v]))
-        own, over = _tokens(v.name), complex(box.centre.real, box.y1)
-        near = [(abs(at - over), said) for said, at in self.titles
-                if box.contains(at, TITLE) and (_common(own, said) > 0.3 or _namesakes(own, said))]
-        return bool(near) and _namesakes(own, min(near, key=lambda x: x[0])[1])
+        """Whether the title over or under a place is that of another such view, with another number."""
+        said = self._title(v, placing)
+        return said is not None and _namesakes(_tokens(v.name), said)
+
+    def named(self, v: ElementView, placing: Placing) -> bool:
+        """Whether the title over or under a place is the view's own, with its number."""
+        own, said = _tokens(v.name), self._title(v, placing)
+        return said is not None and (bool(_numbers(own) & _numbers(said)) if _numbers(own) else _common(own, said) > CALLED)
+
+    def _title(self, v: ElementView, placing: Placing) -> frozenset[str] | None:
+        """The nearest title that may be that of a view; one that has more words of the view's own may be farther off."""
+        own = _tokens(v.name)
+        box, titles = self._titles(v, placing)
+        near = [(abs(at - complex(box.centre.real, box.nearest(at).imag)) / len(shared), said) for said, at in titles
+                for shared in [_words(own) & _words(said)] if len(shared) > 0.5 * len(_words(said))]
+        return min(near, key=lambda x: x[0], default=(0.0, None))[1]
 
     def without(self, v: ElementView, placing: Placing) -> None:
-        """Keep the ink of a view from the others."""
+        """Keep the ink of a view from the others; those of its scale factor have its scale, mostly."""
         self.free = unused(self.free, placing(self.points[v]))
+        if v.mu is not None:
+            self.scales.setdefault(v.mu, placing.scale)
 
     def found(self) -> dict[ElementView, FoundView]:
         """The views that are sure; those of few lines wait until others of their scale factor tell its scale."""
@@ -201,8 +220,6 @@ class Search:
                     heappush(heap, again)
                 continue
             out[v] = FoundView(best.placing, best.share)
-            if v.mu is not None:
-                self.scales.setdefault(v.mu, best.placing.scale)
             self.without(v, best.placing)
 
     def tries(self, k: int, v: ElementView, scale: float | None, least: int, taken: int, agree: float = 0.0,
@@ -235,20 +252,27 @@ class Search:
         read, titled = self._read(v, placing), self.titled(v, placing)
         known_scale = self.scales.get(v.mu)
         same = known_scale is not None and abs(placing.scale / known_scale - 1) < 0.01
-        witness = 0.35 * read + 0.25 * titled + 0.15 * same + 0.05 * handy(placing)
+        if known_scale is not None and not same and not handy(placing):
+            return None  # plans of one scale factor are drawn alike, or at one that somebody takes
+        witness = 0.35 * read + 0.25 * self.titled(v, placing, BESIDE) + 0.15 * same + 0.05 * handy(placing)
         if least > 1 and not bends and lines_met < least:
             return None
         called = read + titled > (0.3 if same else CALLED)
-        enough = lines_met >= 2 or bends or (lines_met == 1 and (called or ((same or left_over) and self._ends(v, placing))))
+        # Along one line another scale has as much ink, of which only the ends tell more.
+        one = lines_met == 1 and (known_scale is None or same) and (
+            (called and same) or ((called or same or left_over) and self._ends(v, placing)))
+        enough = lines_met >= 2 or bends or one
         if not enough or share < 0.35 or share + witness < 0.75:
             return None
         size = max(float(np.abs(points - points[0]).max()), 1.0)
+        witness -= ODD_TITLE * self.strange(v, placing)
         sure = (share + witness) * (1 + 0.15 * np.log1p(lines_met) + 0.1 * np.log10(size))
         return _Try(-float(sure), taken, k, placing, share)
 
     def _ends(self, v: ElementView, placing: Placing) -> bool:
         """Whether the longest line of a view, at a scale one may choose, is in the drawing and no longer there."""
-        a, b = placing(max(self.main[v], key=lambda e: e.length).points[[0, -1]])
+        whole = max((z for z, _ in _together([e.points for e in self.main[v]])), key=lambda z: float(abs(z[1] - z[0])))
+        a, b = placing(whole)
         u = (b - a) / max(abs(b - a), 1e-9)
         inside, beyond = np.linspace(a, b, MOST // 10), np.array([a - OVER * u, b + OVER * u])
         return handy(placing) and self.free.share(inside, NEAR) >= SURE and not self.free.share(beyond, NEAR)
@@ -260,19 +284,26 @@ class Search:
                    for word, z in texts)
         return near / len(texts) if texts else 0.0
 
-    def titled(self, v: ElementView, placing: Placing) -> float:
-        """How much the most similar title near a place has in common with the view's own, 0 .. 1."""
+    def titled(self, v: ElementView, placing: Placing, beside: float = 1.0) -> float:
+        """How much the most similar title near a place has in common with the view's own, 0 .. 1; ``beside`` it times as much."""
+        box, titles = self._titles(v, placing)
+        reach = box.width / 2 + OVER_VIEW
+        return max((_common(_tokens(v.name), said) * (1.0 if abs(at.real - box.centre.real) < reach else beside)
+                    for said, at in titles), default=0.0)
+
+    def _titles(self, v: ElementView, placing: Placing) -> tuple[Box, list[tuple[frozenset[str], complex]]]:
+        """The rectangle round a view, and the titles that may be its own; in a larger view they may be farther off."""
         box = Box.around(placing(self.points[v]))
-        own = _tokens(v.name)
-        return max((_common(own, said) for said, at in self.titles if box.contains(at, TITLE)), default=0.0)
+        return box, [(said, at) for said, at in self.titles if box.contains(at, TITLE * max(placing.scale, 1.0))]
 
 
 def distinct(elements: Iterable[Element]) -> int:
-    """The number of lines that do not lie upon one another, nearly."""
+    """The number of lines that do not lie upon one another, nearly; those that go on from one another are one."""
+    every = [e.points for e in elements]
     some: list[Points] = []
-    for e in elements:
-        ends = e.points[[0, -1]]
-        if not any(min(np.abs(ends - other).max(), np.abs(ends[::-1] - other).max()) < UPON * e.length + NEAR for other in some):
+    for ends in [*(z for z, _ in _together(every)), *(z[[0, -1]] for z in every if len(z) > 2)]:
+        upon = UPON * abs(ends[1] - ends[0]) + NEAR
+        if not any(min(np.abs(ends - other).max(), np.abs(ends[::-1] - other).max()) < upon for other in some):
             some.append(ends)
     return len(some)
 
@@ -304,7 +335,7 @@ def _tokens(text: str) -> frozenset[str]:
 
 def _common(own: frozenset[str], said: frozenset[str]) -> float:
     """Likeness of two titles: words in common; other numbers make them unlike."""
-    numbers, theirs = ({w for w in words if w.isdigit()} for words in (own, said))
+    numbers, theirs = _numbers(own), _numbers(said)
     if not own or (numbers and theirs and not numbers & theirs):
         return 0.0
     return len(own & said) / len(own | said)
@@ -312,28 +343,41 @@ def _common(own: frozenset[str], said: frozenset[str]) -> float:
 
 def _namesakes(own: frozenset[str], said: frozenset[str]) -> bool:
     """Whether two titles differ in their numbers only."""
-    (a, n), (b, m) = (({w[:3] for w in words if not w.isdigit()}, {w for w in words if w.isdigit()}) for words in (own, said))
+    a, b, n, m = _words(own), _words(said), _numbers(own), _numbers(said)
     return bool(n and m and not n & m and len(a & b) > 0.6 * min(len(a), len(b)))
 
 
-def _of_sheet(elements: Sequence[Element]) -> _Shapes:
+def _words(title: frozenset[str]) -> set[str]:
+    """The words of a title, without numbers, by their beginnings."""
+    return {w[:3] for w in title if not w.isdigit()}
+
+
+def _numbers(title: frozenset[str]) -> set[str]:
+    """The numbers of a title."""
+    return {w for w in title if w.isdigit()}
+
+
+def _of_sheet(elements: Iterable[Element]) -> _Shapes:
     return _shapes([e.points for e in elements if e.length > SHORTEST])
 
 
-def _of_drawing(strokes: Sequence[DrawnStroke]) -> _Shapes:
-    """Shapes of their lines, and of what collinear pieces make together."""
-    every = [s.points for s in strokes if len(s.points) > 1]
-    straight = lines([z for z in every if len(z) == 2])
-    whole = [np.array([r.a, r.b]) for r in runs(straight, 0.1) if len(r.parts) > 1] if len(straight.a) else []
-    return _shapes([*every, *whole])
+def _of_drawing(strokes: Iterable[DrawnStroke]) -> _Shapes:
+    return _shapes([s.points for s in strokes if len(s.points) > 1])
 
 
-def _shapes(found: Sequence[Points]) -> _Shapes:
-    middle, extent, straight, weight = [], [], [], []
-    for z in found:
+def _together(every: Sequence[Points]) -> list[tuple[Points, tuple[int, ...]]]:
+    """Straight lines that touch and are collinear, by their outer ends, each with the numbers of its parts."""
+    straight = [k for k, z in enumerate(every) if len(z) == 2 and z[0] != z[1]]
+    found = runs(lines([every[k] for k in straight]), 0.1)
+    return [(np.array([r.a, r.b]), tuple(straight[n] for n in r.parts)) for r in found]
+
+
+def _shapes(every: Sequence[Points]) -> _Shapes:
+    """The shapes of lines, and of what collinear ones make together."""
+    middle, extent, straight, weight, parts = [], [], [], [], []
+    every = [z for z in every if np.ptp(z.real) or np.ptp(z.imag)]
+    for z, of in [*((z, (k,)) for k, z in enumerate(every)), *((z, of) for z, of in _together(every) if len(of) > 1)]:
         u = z[np.abs(z - z[0]).argmax()] - z[0]
-        if not u:
-            continue
         level = (z - z[0]) / (u / abs(u))
         line = float(np.ptp(level.imag)) < 0.02 * abs(u)
         box = Box.around(z)
@@ -341,8 +385,9 @@ def _shapes(found: Sequence[Points]) -> _Shapes:
         extent.append(u if line else complex(box.width, box.height))
         straight.append(line)
         weight.append(min(abs(u), 60.0))
+        parts.append(of)
     return _Shapes(np.array(middle, dtype=complex), np.array(extent, dtype=complex), np.array(straight, dtype=bool),
-                   np.array(weight))
+                   np.array(weight), parts)
 
 
 def _voted(ours: _Shapes, theirs: _Shapes, about: complex, known: float | None, agree: float, most: int) -> Iterator[Placing]:
@@ -370,10 +415,10 @@ def _voted(ours: _Shapes, theirs: _Shapes, about: complex, known: float | None, 
         keys = np.floor(np.column_stack((np.log(scale) / 0.03, at.real / 4, at.imag / 4)) + half).astype(np.int64)
         for n, key in enumerate(map(tuple, keys.tolist())):
             cell = (int(half > 0), *key)
-            votes.setdefault(cell, set()).add(int(i[n]))
+            votes.setdefault(cell, set()).update(ours.parts[i[n]])
             best.setdefault(cell, []).append(n)
     weights = {cell: float(ours.weight[list(of)].sum()) for cell, of in votes.items()}
-    least = agree * float(ours.weight.sum())
+    least = agree * sum(float(w) for w, of in zip(ours.weight, ours.parts, strict=True) if len(of) == 1)
     for cell in sorted((cell for cell, weight in weights.items() if weight >= least), key=lambda cell: -weights[cell])[:most]:
         rows = np.array(best[cell])
         # The longest line tells the scale best.

@@ -48,6 +48,8 @@ EQUAL = 0.02
 """Difference of shares of ink that tells nothing."""
 WEIGHT = 25.0
 """A longer vector tells no more than one of this length, mm of our sheet."""
+BEYOND, ASIDE = 1.0, 0.3
+"""How far beyond the end of a line it is looked whether it goes on, and how near another one has the same ink, mm of our sheet."""
 FARTHEST = 250.0
 """A point is sought among the tips of lines no farther than this from its place, mm."""
 
@@ -88,12 +90,16 @@ class _Found:
 
 @dataclass(frozen=True)
 class Drawing:
-    """A view of a drawing, by mm of our sheet: what share of a line has ink, which places, the ends of its lines; and its scale."""
+    """A view of a drawing, by mm of our sheet: what share of a line has ink, which places, the ends of its lines; and its scale.
+
+    ``goes_on`` tells whether ink goes on beyond the end of a line, the second of two points; in pencil lines that tells nothing.
+    """
 
     inked: Inked
     ink: Callable[[Points], NDArray[np.bool_]]
     tips: Sequence[complex]
     scale: float = 1.0
+    goes_on: Callable[[Points], bool] = lambda line: False
 
 
 def errors_of(project: Project, known: KnownSheet) -> tuple[dict[str, Plan], Errors]:
@@ -116,7 +122,7 @@ def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementV
     shown = {view: drawn for view in dict.fromkeys(e.view for e in known.elements)
              if (drawn := drawn_plan(known, plans, view)) is not None}
     drawings = {view: seen(view) for view in shown}
-    share = {view: _share(drawn, drawings[view].inked, drawn.points) for view, drawn in shown.items()}
+    share = {view: _share(drawn, drawings[view], drawn.points) for view, drawn in shown.items()}
     before = [_Mistake(h, h.changes) for h in made]
 
     weight = {view: sum(e.length for e in drawn.vectors) for view, drawn in shown.items()}
@@ -124,7 +130,7 @@ def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementV
     def gain(mistake: _Mistake) -> float:
         """By how much more ink the whole sheet has with a mistake; infinitely less where a plan has it where it should be."""
         value = replay(errors, [c for m in (*before, mistake) for c in m.changes])
-        more = {view: _share(drawn, drawings[view].inked, points) - share[view]
+        more = {view: _share(drawn, drawings[view], points) - share[view]
                 for view, drawn in shown.items() if (points := drawn.moved(value))}
         return sum(weight[view] * m for view, m in more.items()) if min(more.values(), default=0.0) > -GAIN else -np.inf
 
@@ -133,9 +139,12 @@ def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementV
         found = _explained(drawn, errors, drawings[view], share[view], before, gain) if view in wrong else None
         if found is not None:
             numbers = {e.number for e in wrong[view]}
-            told = sum(drawings[view].inked(between(e, found.points)) >= WHOLE
-                       for e in drawn.vectors if e.number in numbers)
-            out[view] = BuiltPlan(found.mistake.said, told, len(numbers)), found.points
+            there = {e.number: line for e in drawn.vectors for line in [between(e, found.points)]
+                     if drawings[view].inked(line) >= WHOLE}
+            # A line that goes elsewhere is wrong, though the ink of another one made it look right.
+            numbers |= {e.number for e in drawn.vectors
+                        if e.number in there and np.abs(there[e.number] - e.points[[0, -1]]).max() >= SHOWS}
+            out[view] = BuiltPlan(found.mistake.said, len(numbers & there.keys()), len(numbers)), found.points
             share[view] = found.share
             if found.mistake not in before:
                 before.append(found.mistake)
@@ -169,7 +178,7 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float,
         out = []
         for m in mistakes:
             points = drawn.moved(replay(errors, [c for one in (*made, m) for c in one.changes]))
-            share = _share(drawn, drawing.inked, points) if points else 0.0
+            share = _share(drawn, drawing, points) if points else 0.0
             if share >= MOST and explains(usual, share):
                 out.append(_Found(share, points, m))
         return out
@@ -211,17 +220,23 @@ def _points_off(drawn: DrawnPlan, drawing: Drawing) -> Iterator[_Mistake]:
                                (Change(p.step, displaced(by), drawn.k),))
 
 
-def _share(drawn: DrawnPlan, inked: Inked, points: Sequence[PlanPoint]) -> float:
-    """Share of a plan's vectors, by length, that have ink where its points come to lie; what becomes too short is not drawn."""
+def _share(drawn: DrawnPlan, drawing: Drawing, points: Sequence[PlanPoint]) -> float:
+    """Share of a plan's vectors, by length, that are drawn where its points come to lie; what becomes too short is not drawn."""
     there = whole = 0.0
-    for e in drawn.vectors:
-        line = between(e, points)
-        length = abs(line[1] - line[0])
-        if length > DRAWN:
-            weight = min(max(length, e.length), WEIGHT)
-            whole += weight
-            there += weight * (inked(line) >= WHOLE)
+    lines = [(max(length, e.length), line) for e in drawn.vectors for line in [between(e, points)]
+             for length in [abs(line[1] - line[0])] if length > DRAWN]
+    for length, line in lines:
+        weight = min(length, WEIGHT)
+        whole += weight
+        there += weight * (drawing.inked(line) >= WHOLE and not any(
+            drawing.goes_on(way) and not any(_covers(other, way) for _, other in lines) for way in (line, line[::-1])))
     return there / whole if whole else 0.0
+
+
+def _covers(other: Points, line: Points) -> bool:
+    """Whether another line has the ink that goes on beyond the end of a line."""
+    beyond = (line[1] + BEYOND * (line[1] - line[0]) / abs(line[1] - line[0]) - other[0]) / (other[1] - other[0])
+    return bool(0 <= beyond.real <= 1 and abs(beyond.imag) * abs(other[1] - other[0]) < ASIDE)
 
 
 def _ink(drawn: DrawnPlan, drawing: Drawing, points: Sequence[PlanPoint]) -> int:

@@ -72,8 +72,9 @@ class Judged:
 
     @property
     def percent(self) -> float | None:
-        """Deviation in per cent of the exact value; None where that is zero."""
-        return 100 * self.deviation / abs(self.exact) if abs(self.exact) > 1e-9 else None
+        """Deviation in per cent of the exact value; None where that is zero, and of angles, which begin at any axis."""
+        of_size = self.entry.kind not in ("angle", "sense") and abs(self.exact) > 1e-9
+        return 100 * self.deviation / abs(self.exact) if of_size else None
 
     def apart(self, x: float) -> float:
         """A difference of two of such numbers: of angles the short way round."""
