@@ -75,19 +75,35 @@ def test_labels_that_stand_elsewhere_are_missed_in_their_places():
     assert [t.element.number for t in traces if t.status == "absent lettering"] == [label.number]
 
 
-def test_lines_washed_out_by_a_flash_are_hidden():
+@pytest.mark.parametrize("bright", [255, 232])
+def test_lines_washed_out_by_a_flash_or_a_lamp_are_hidden(bright):
     found = rectified()
     lines = rectification.as_lines([e for e in known() if e.length < rectification.LONGEST])
     place = max(lines.points, key=lambda z: int((abs(lines.points - z) < 15).sum()))
     dim = (0.8 * grey()).astype(np.uint8)
     spot = found.map.to_picture(np.array([place, place + 25]))
-    cv2.circle(dim, (int(spot[0].real), int(spot[0].imag)), int(abs(spot[1] - spot[0])), 255, -1)
+    cv2.circle(dim, (int(spot[0].real), int(spot[0].imag)), int(abs(spot[1] - spot[0])), bright, -1)
     ink = rectification.straighten(dim, found.map)
     sides = rectification.ProfileLines(found.sides.sheet, found.sides.normals, lines.line[:0])
     hidden = rectification.hidden_places(dim, found.map, ink, lines, sides, rectification.line_level(ink))
     assert hidden_at(place, hidden)
     far = lines.points[abs(lines.points - place) > 40]
     assert hidden_at(far, hidden).mean() < hidden_at(far, found.hidden).mean() + 0.01
+
+
+def test_a_light_place_whose_lines_are_seen_hides_nothing():
+    found = rectified()
+    lines = rectification.as_lines([e for e in known() if e.length < rectification.LONGEST])
+    place = max(lines.points, key=lambda z: int((abs(lines.points - z) < 15).sum()))
+    dim = 0.8 * grey()
+    spot = found.map.to_picture(np.array([place, place + 25]))
+    cv2.circle(lit := np.ones(dim.shape, np.float32), (int(spot[0].real), int(spot[0].imag)), int(abs(spot[1] - spot[0])), 1.15, -1)
+    dim = np.minimum(dim * lit, 255).astype(np.uint8)
+    ink = rectification.straighten(dim, found.map)
+    sides = rectification.ProfileLines(found.sides.sheet, found.sides.normals, lines.line[:0])
+    hidden = rectification.hidden_places(dim, found.map, ink, lines, sides, rectification.line_level(ink))
+    near = lines.points[abs(lines.points - place) < 20]
+    assert hidden_at(near, hidden).mean() < hidden_at(near, found.hidden).mean() + 0.1
 
 
 def test_only_in_a_flat_frame_seen_whole_lines_elsewhere_are_another_drawing():
