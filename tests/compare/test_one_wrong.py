@@ -1,13 +1,17 @@
 """Single elements of a CAD drawing done wrongly: each is told once, by its own name."""
 
 import random
+from dataclasses import replace
+from itertools import pairwise
 
+import numpy as np
 import pytest
 
 from tests.compare.cad_plants import Way, compared, draw
 from tests.compare.one_wrong import done, shows, sort_of
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.elements import elements
+from tmm_sheets.drawing.ink import letters
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 
@@ -46,3 +50,16 @@ def test_a_hatching_is_missing_though_other_lines_slant_in_its_place():
     e = max((e for e in exact if e.kind == "hatch" and not e.name), key=lambda e: e.length)
     outcome = compared(draw([other for other in exact if other is not e], Way(), random.Random(2)), sheet, exact)
     assert [f.element.number for f in outcome.findings if f.verdict in ("red", "amber")] == [e.number]
+
+
+def test_lines_through_the_place_of_a_text_are_no_other_letters():
+    """Half of the strokes of the digits lie on them."""
+    e = next(e for e in EXACT if e.kind == "text" and e.text == "14")
+    strokes = sorted((np.array(ends) for mark in e.marks for stroke in letters(mark) for ends in pairwise(stroke)),
+                     key=lambda z: -abs(z[1] - z[0]))[:3]
+    line = next(e for e in EXACT if e.kind == "line" and not e.fills)
+    through = [replace(line, points=z.mean() + 10 * (z - z.mean())) for z in strokes]
+    outcome = compared(draw([*(other for other in EXACT if other is not e), *through], Way(), random.Random(2)), SHEET, EXACT)
+    wrong = next(f for f in outcome.findings if f.element is e)
+    assert wrong.missing
+    assert f'text "{e.text}" missing' == wrong.what

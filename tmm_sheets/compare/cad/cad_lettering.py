@@ -18,6 +18,9 @@ from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.marks import Points, Text
 from tmm_sheets.words import tell
 
+LETTER = 4
+"""A stroke that is more than so many times as long as a letter is high is none of a letter."""
+
 
 def lettering(state: Comparison) -> None:
     """Check what texts say; lettering that no text is found for is sought as drawn letters."""
@@ -54,6 +57,10 @@ def _strokes_of_letters(state: Comparison, rest: Sequence[int]) -> None:
     ours = lines(strokes)
     near = overlaps(ours, state.theirs, max(state.tolerance, 0.25))
     covered = _covered(near, ours, len(strokes))
+    # A long line that runs through is no part of a letter.
+    height = np.array([state.elements[n].height for n in owner])
+    whole_of = np.bincount(state.theirs.owner, state.theirs.length)[state.theirs.owner]
+    by_letters = _covered(near.only(whole_of[near.theirs] < LETTER * height[ours.owner[near.ours]]), ours, len(strokes))
     size = np.array([float(np.abs(np.diff(s)).sum()) for s in strokes])
     of = np.array(owner, dtype=np.int64)
     for n in rest:
@@ -66,7 +73,7 @@ def _strokes_of_letters(state: Comparison, rest: Sequence[int]) -> None:
             _bars(state, n)
             state.drawn_letters.append(n)
             state.found[n] = state.finding(n, 0.0, "")
-        elif share > 0.4 * whole > 0:
+        elif by_letters[mine].sum() > 0.4 * whole > 0:
             state.found[n] = _other_letters(state, n)
             state.lettered.append(grown(want.points, 0.8))
         else:
@@ -93,7 +100,7 @@ def strange_ink(state: Comparison, rest: Sequence[Left]) -> None:
         want = state.elements[n]
         box = shapely.Polygon(np.column_stack((want.points.real, want.points.imag))).buffer(-0.1)
         inside = state.theirs.tree.query(box, predicate="contains")
-        inside = inside[whole[state.theirs.owner[inside]] < 4 * want.height]
+        inside = inside[whole[state.theirs.owner[inside]] < LETTER * want.height]
         if free[inside].sum() > 0.45 * want.height:
             state.found[n] = _other_letters(state, n)
 
