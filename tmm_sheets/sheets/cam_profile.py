@@ -74,6 +74,8 @@ def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     canvas.table(corner, _widths(cam), _given(cam, options.get("angle", ANGLE)), _ROW, 3.5)
 
 
+HOLE = 30.0
+"""So much farther from the figure the foot of its place must be for the table of its sizes to stand there, mm."""
 GUIDE = 22.0
 """What the guide of a translating follower and the end of its rod take above the roller, mm of paper."""
 
@@ -169,13 +171,20 @@ class _ProfilePicture:
         return np.array(found)
 
     def corner(self, size: tuple[float, float]) -> complex | None:
-        """Upper left corner of a rectangle in a corner of the room that the figure leaves free; None when there is none."""
+        """Upper left corner of a rectangle in a corner of the room that the figure leaves free; None when there is none.
+
+        At the right rather than at the left, at the top unless the figure leaves a much larger hole at the foot.
+        """
         ink, room, (width, height) = self.ink(), self.room, size
         for x in (room.x1 - width, room.x0):
+            away = []
             for y in (room.y1, room.y0 + height):
-                inside = (ink.real > x - 4) & (ink.real < x + width + 4) & (ink.imag < y + 4) & (ink.imag > y - height - 4)
-                if not inside.any():
-                    return complex(x, y)
+                across = np.maximum(np.maximum(x - ink.real, ink.real - x - width), 0.0)
+                along = np.maximum(np.maximum(y - height - ink.imag, ink.imag - y), 0.0)
+                away.append(float(np.hypot(across, along).min()))
+            top, foot = away
+            if max(away) > 4.0:
+                return complex(x, room.y0 + height if foot > top + HOLE or top <= 4.0 else room.y1)
         return None
 
 
