@@ -134,6 +134,15 @@ def test_a_line_beside_an_unseen_side_tells_of_a_map_adrift(off, points, found):
     assert not len(fit_check._adrift(line, good, ~some, np.array([1.0, 1.0, 0.2, 1.0])))
 
 
+def test_a_map_is_adrift_that_is_right_but_beside_the_unseen_side():
+    """The nearer to a side that nothing holds, the more wrong: half a strip of lines in place farther off excuses none."""
+    p = np.concatenate([30 + y * 1j + np.linspace(0, 60, 10) for y in (550, 555, 580)])
+    line = profiles.ProfileLines(p, np.full(30, 1j), np.zeros(30, np.int64))
+    good = p.imag < 570
+    assert len(fit_check._adrift(line, good, np.ones(30, bool), np.array([1.0, 1.0, 0.2, 1.0]))) == 1
+    assert not len(fit_check._adrift(line, p.imag > 552, np.ones(30, bool), np.array([1.0, 1.0, 0.2, 1.0])))
+
+
 def test_one_wrong_line_does_not_draw_the_map():
     place, (columns, rows) = projection(Camera(curl=3.0), 841.0, 594.0)
     frame, seen = sides(place), lines(place, np.random.default_rng(2))

@@ -94,8 +94,8 @@ def _run(picture: Path, truth: dict[str, Any], folder: Path) -> tuple[int, str, 
     return done.returncode, " ".join(done.stderr.split())[-600:], time.monotonic() - start
 
 
-def _rectified(picture: Path, truth: dict[str, Any]) -> NDArray[np.uint8]:
-    """The picture as the truth rectifies it, grey, DENSITY pixels a millimetre."""
+def _rectified(picture: Path, truth: dict[str, Any]) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+    """The picture as the truth rectifies it, grey, DENSITY pixels a millimetre, and what of the sheet is in it."""
     image = cv2.imread(str(picture), cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION)
     places = np.array(truth["map"]["pixels"], np.float32)
     step = truth["map"]["step"]
@@ -108,7 +108,9 @@ def _rectified(picture: Path, truth: dict[str, Any]) -> NDArray[np.uint8]:
     if image is None:
         raise FileNotFoundError(picture)
     flat = cv2.remap(image, where[..., 0], where[..., 1], cv2.INTER_AREA, borderMode=cv2.BORDER_CONSTANT, borderValue=255)
-    return np.asarray(flat, np.uint8)
+    high, wide = image.shape
+    inside = (where[..., 0] >= 0) & (where[..., 0] <= wide - 1) & (where[..., 1] >= 0) & (where[..., 1] <= high - 1)
+    return np.asarray(flat, np.uint8), inside
 
 
 def _believed(folder: Path, sheet: int) -> NDArray[np.uint8] | None:
@@ -138,8 +140,8 @@ def _ink(grey: NDArray[np.uint8]) -> NDArray[np.float32]:
     return np.asarray(np.clip((around - values) / 60, 0, 1), np.float32)
 
 
-def offsets(believed: NDArray[np.uint8], true: NDArray[np.uint8]) -> tuple[Floats, Floats, float]:
-    """Where the program looks for pieces of the sheet.
+def offsets(believed: NDArray[np.uint8], true: NDArray[np.uint8], inside: NDArray[np.bool_]) -> tuple[Floats, Floats, float]:
+    """Where the program looks for pieces of the sheet that are all in the picture: its edge is no line.
 
     Returns places (n, 2) mm, how far from there the program has what belongs there (n, 2) mm, and the share of pieces found again.
     """
@@ -150,7 +152,7 @@ def offsets(believed: NDArray[np.uint8], true: NDArray[np.uint8]) -> tuple[Float
         for x in np.arange(WINDOW / 2 + REACH, SIZE[0] - WINDOW / 2 - REACH, GRID):
             column, row = int(x * DENSITY), int((SIZE[1] - y) * DENSITY)
             piece = ours[row - half : row + half, column - half : column + half]
-            if not _tells(piece):
+            if not inside[row - half : row + half, column - half : column + half].all() or not _tells(piece):
                 continue
             tried += 1
             field_ = theirs[row - half - reach : row + half + reach, column - half - reach : column + half + reach]
@@ -354,7 +356,7 @@ def _measure(outcome: Outcome, picture: Path, truth: dict[str, Any], folder: Pat
     if believed is None:
         outcome.state, outcome.reason = "broken", "there is no overlay with the photograph"
         return
-    places, apart, share = offsets(believed, _rectified(picture, truth))
+    places, apart, share = offsets(believed, *_rectified(picture, truth))
     if len(places) < 10 or share < 0.5:
         outcome.state, outcome.reason = "wrong fit", f"only {share:.0%} of the pieces within {REACH:g} mm of their places"
         return

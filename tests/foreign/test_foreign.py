@@ -12,18 +12,29 @@ def test_a_picture_is_taken_and_judged(tmp_path: Path) -> None:
     cv2 = pytest.importorskip("cv2")
     picture, truth = scene.take(scene.scene(0, 1, ("tiles",)), tmp_path, most=3.0)
     file = scene.save(picture, truth, tmp_path / "pictures")
-    true = judge._rectified(file, truth)
-    places, apart, share = judge.offsets(true, true)
+    true, inside = judge._rectified(file, truth)
+    assert inside.all()
+    places, apart, share = judge.offsets(true, true, inside)
     assert len(places) > 60
     assert share == 1
     assert np.abs(apart).max() < 0.05
     shifted = cv2.warpAffine(true, np.array([[1, 0, 1.5 * judge.DENSITY], [0, 1, 0]]), true.shape[::-1], borderValue=255)
-    _, apart, share = judge.offsets(shifted, true)
+    _, apart, share = judge.offsets(shifted, true, inside)
     assert share > 0.9
     assert np.abs(np.median(apart, axis=0) - (1.5, 0)).max() < 0.05
     outcome = judge.judge(file, tmp_path)
     assert outcome.state in ("judged", "refused")
     assert outcome.state == "refused" or (outcome.worst is not None and outcome.worst < judge.WRONG)
+
+
+def test_a_piece_that_is_not_all_in_the_picture_is_not_asked() -> None:
+    true = np.full((round(judge.SIZE[1] * judge.DENSITY), round(judge.SIZE[0] * judge.DENSITY)), 200, np.uint8)
+    true[::40] = true[:, ::40] = 0
+    inside = np.ones(true.shape, bool)
+    inside[:, : true.shape[1] // 2] = False
+    places, _, share = judge.offsets(true, true, inside)
+    assert share == 1.0
+    assert places[:, 0].min() > judge.SIZE[0] / 2
 
 
 def test_a_line_that_ends_at_the_edge_of_a_cover_tells_nothing_along_itself() -> None:

@@ -31,8 +31,8 @@ BARE = 0.3
 """Share of a cell's points with any ink near below which it is hidden."""
 LOCAL = 0.07
 """Largest share of cells astray that may be the student's doing: a view in a wrong place."""
-STRIP, AT_SIDE, FEW = (100.0, 50.0), 2.0, 6
-"""Length and depth, mm, of the strips along a side that is not seen; how near to the side a line is the side itself; least number
+STRIP, AT_SIDE, FEW = (100.0, 50.0, 25.0), 2.0, 6
+"""Length and depths, mm, of the strips along a side that is not seen; how near to the side a line is the side itself; least number
 of points by which a strip can be judged."""
 HALVES = 1.5
 """Largest distance, mm, between where maps fitted to either half of the sheet have the line between them."""
@@ -207,13 +207,15 @@ def _adrift(lines: ProfileLines, good: Any, some: Any, shares: Floats) -> Points
     for k in np.flatnonzero(shares < SIDE).tolist():
         across, along = (p.imag, p.real) if k % 2 == 0 else (p.real, p.imag)
         depth = np.abs(across - (FRAME.y0, FRAME.x1, FRAME.y1, FRAME.x0)[k])
-        near = (np.abs(n.imag if k % 2 == 0 else n.real) > np.sqrt(0.5)) & (depth > AT_SIDE) & (depth < STRIP[1])
+        beside = (np.abs(n.imag if k % 2 == 0 else n.real) > np.sqrt(0.5)) & (depth > AT_SIDE)
         place = along // STRIP[0]
-        for one in np.unique(place[near]):
-            here = near & (place == one)
-            shown = here & some
-            if shown.sum() >= FEW and some[here].mean() >= BARE and good[shown].mean() < ASTRAY:
-                out.append(complex(p[shown].mean()))
+        for one in np.unique(place[beside & (depth < STRIP[1])]):
+            for deep in STRIP[1:]:
+                here = beside & (depth < deep) & (place == one)
+                shown = here & some
+                if shown.sum() >= FEW and some[here].mean() >= BARE and good[shown].mean() < ASTRAY:
+                    out.append(complex(p[shown].mean()))
+                    break
     return np.array(out, complex)
 
 
