@@ -2,7 +2,7 @@
 
 A place is hidden when its ground is not the paper's or the lines that belong there are not there, and that goes on to the frame:
 what hides a sheet reaches into it from outside. A shadow is no such thing (the lines are there), nor is a line that was left out.
-Where a flash has washed out the paper, lines that are not seen are hidden too.
+Where a flash or a lamp's reflection has washed out the paper, lines that are not seen are hidden too.
 """
 
 from __future__ import annotations
@@ -30,6 +30,10 @@ SEEN = 0.5
 """Share of points of lines in place from which on a darker or lighter ground hides nothing."""
 GLARE, PAPER_GREY = 252, 240
 """Grey from which on the ground is washed out by a flash, where the paper as a whole is darker than the second number."""
+GLOW = 0.08
+"""Share by which a reflection makes the paper brighter than it is about there, from which on it may wash out lines."""
+LOST = 0.12
+"""Share of the points of lines under a reflection that must not be seen for it to hide all of them; of others 0.04 are not seen."""
 MARGIN = 5
 """mm by which hidden places are widened: edges cast shadows."""
 OFFSETS = np.arange(-1.5, 1.55, 0.1)
@@ -57,7 +61,8 @@ def hidden_places(grey: Any, m: Map, ink: Any, lines: ProfileLines, sides: Profi
     row = np.clip((PAPER.y1 - all_lines.points.imag).astype(int), 0, shape[0] - 1)
     column = np.clip(all_lines.points.real.astype(int), 0, shape[1] - 1)
     ground, outside = _ground(grey, m, shape)
-    foreign = _foreign(ground, ~outside)
+    share = _brightness(ground, ~outside)
+    foreign = (np.abs(share - 1) > FOREIGN) & ~outside
     absent = _absent(row, column, there, shape)
     out = outside.copy()
     both = (foreign | absent) & ~outside
@@ -75,9 +80,15 @@ def hidden_places(grey: Any, m: Map, ink: Any, lines: ProfileLines, sides: Profi
         # The margin outside the frame is often in the shade of its own edge: only what reaches inside matters.
         if total[k] >= LEAST and seen[k] < SEEN * total[k]:
             out |= labels == k
+    # What still shows of a reflection that took many lines is too uneven to be judged.
+    count, labels = cv2.connectedComponents((share > 1 + GLOW).astype(np.uint8), connectivity=8)
+    label = labels[row, column]
+    total, lost = np.bincount(label, minlength=count), np.bincount(label, ~there, minlength=count)
+    gone = (lost >= LEAST) & (lost > LOST * total)
+    out |= (gone & (np.arange(count) > 0))[labels]
     if np.median(ground) < PAPER_GREY:
-        lost = ~there & (ground[row, column] >= GLARE)
-        out[row[lost], column[lost]] = True
+        single = ~there & (ground[row, column] >= GLARE)
+        out[row[single], column[single]] = True
     return cv2.dilate(out.astype(np.uint8), np.ones((2 * MARGIN + 1, 2 * MARGIN + 1), np.uint8)) > 0 if out.any() else out
 
 
@@ -113,8 +124,8 @@ def _ground(grey: Any, m: Map, shape: tuple[int, int]) -> tuple[Any, Mask]:
     return cv2.morphologyEx(cv2.medianBlur(seen, 3), cv2.MORPH_CLOSE, np.ones((WIDEST, WIDEST), np.uint8)), outside
 
 
-def _foreign(ground: Any, valid: Mask) -> Mask:
-    """Where the ground is not as bright as the paper, a polynomial fitted robustly at a sixth of the resolution."""
+def _brightness(ground: Any, valid: Mask) -> Floats:
+    """Brightness of the ground as a share of the paper's about there, a polynomial fitted robustly at a sixth of the resolution."""
     import cv2
 
     small = cv2.resize(ground, None, fx=1 / 6, fy=1 / 6, interpolation=cv2.INTER_AREA)
@@ -129,8 +140,7 @@ def _foreign(ground: Any, valid: Mask) -> Mask:
         c = np.linalg.solve(square + 1e-9 * np.eye(len(c)), down)
         w = use / (1 + ((log - np.einsum("ni,i->n", base, c)) / 0.08) ** 2) ** 2
     paper = np.exp(np.einsum("ni,i->n", base, c)).reshape(small.shape).astype(np.float32)
-    share = ground / cv2.resize(paper, ground.shape[::-1], interpolation=cv2.INTER_LINEAR)
-    return np.asarray(((share < 1 - FOREIGN) | (share > 1 + FOREIGN)) & valid)
+    return np.asarray(ground / cv2.resize(paper, ground.shape[::-1], interpolation=cv2.INTER_LINEAR))
 
 
 def _absent(row: Any, column: Any, there: Any, shape: tuple[int, int]) -> Mask:
