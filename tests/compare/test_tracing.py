@@ -229,7 +229,7 @@ def test_a_head_at_the_other_end_tells_though_the_tip_is_hidden(theirs):
     assert (found[0].head == "reversed") == (not theirs)
 
 
-@pytest.mark.parametrize(("turn", "beside"), [(0.08, True), (-0.15, True), (0.9, False), (np.pi / 2, False), (np.pi, False)])
+@pytest.mark.parametrize(("turn", "beside"), [(0.08, True), (-0.15, True), (1.2, False), (np.pi / 2, False), (np.pi, False)])
 def test_a_line_from_the_same_pole_is_told_beside_a_vector(turn, beside):
     """At a small angle it looks like the edge of a head, from the other end of a vector whose tip is hidden."""
     a, b = 300 + 300j, 330 + 320j
