@@ -8,6 +8,7 @@ import pytest
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
+from tmm_sheets.compare.photo import arrow_heads
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.profiles import SCALE
@@ -226,6 +227,18 @@ def test_a_head_at_the_other_end_tells_though_the_tip_is_hidden(theirs):
     fill_head(ink, a, np.pi)
     found, _ = trace(known, ink)
     assert (found[0].head == "reversed") == (not theirs)
+
+
+@pytest.mark.parametrize(("turn", "beside"), [(0.08, True), (-0.15, True), (1.2, False), (np.pi / 2, False), (np.pi, False)])
+def test_a_line_from_the_same_pole_is_told_beside_a_vector(turn, beside):
+    """At a small angle it looks like the edge of a head, from the other end of a vector whose tip is hidden."""
+    a, b = 300 + 300j, 330 + 320j
+    known = [arrow(1, a, b), line(2, a, a + 20 * np.exp(1j * turn) * (b - a) / abs(b - a))]
+    owners = Owners(ROWS, COLUMNS)
+    for e in known:
+        owners.add(e, e.points)
+    sheet = arrow_heads._Paper(paper(), owners, paper(), np.zeros((594, 841), bool), [])
+    assert sheet.accompanied(known[0], a, (b - a) / abs(b - a)) is beside
 
 
 def test_a_vector_left_out_over_a_helper_has_no_head_though_there_is_a_dot():

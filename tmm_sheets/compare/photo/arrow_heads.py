@@ -64,6 +64,12 @@ class _Paper:
         unknown = taken.any(1) | at(places[:, 0], self.hidden)
         return np.where(unknown, np.nan, dark.sum(1)), np.where(unknown, np.nan, full)
 
+    def accompanied(self, e: Element, start: complex, way: complex) -> bool:
+        """Whether another line leaves the same point beside this one, and would be taken for the edge of a head."""
+        aside = ASIDE[(line_type(e.style).width / 2 < ASIDE) & (ASIDE < WIDEST)]
+        across = 1j * np.concatenate((-aside, aside))
+        return bool(self.owners.others(e.number, start + way * (BACK[:, None] + across)).any())
+
     def widening(self, e: Element, tip: complex, other: complex) -> tuple[Floats, float]:
         """Ink about a line at :data:`BACK` mm from its tip as a multiple of the line's own, nan where others are; its width, mm."""
         length = abs(other - tip)
@@ -129,7 +135,7 @@ def _head(t: Trace, paper: _Paper) -> Head:
     bare = _share(t.element, here) <= BARE and _share(t.element, here, SMALLER) <= INKED
     there = paper.widening(t.element, begin, tip)
     # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
-    alone = not any(abs(z - begin) < _length(t.element) for z in paper.tips)
+    alone = not (any(abs(z - begin) < _length(t.element) for z in paper.tips) or paper.accompanied(t.element, begin, way))
     # Two lines that part at a small angle widen as a head does, up to where they are told apart: a whole head must be seen.
     whole = not np.isnan(_share(t.element, there))
     if whole and _is_head(t.element, there) and (bare or alone):
