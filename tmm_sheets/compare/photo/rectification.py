@@ -153,6 +153,9 @@ def rectify(
         attempts.begin(found)
     except CannotBuild as e:
         refused = e
+    first = attempts.framed
+    if first is not None and float(first.check.sides.min()) >= WHOLE:
+        _remarks(path, first.scale, first.frame.smear, first.found.turned)  # refused before more is tried in vain
     if by_lines:
         attempts.finer()
     if by_lines and not attempts.sound:
@@ -165,7 +168,7 @@ def rectify(
     if best is None:
         assert refused is not None
         raise CannotBuild(f"{path}: {refused.args[0]}", hint=refused.hint) from None
-    scale = float(np.abs(np.diff(best.found.corners)).min() / FRAME.height)
+    scale = best.scale
     notes = _remarks(path, scale, best.frame.smear, best.found.turned)
     ink = straighten(picture.grey, best.map)
     scatter = best.frame.scatter
@@ -184,6 +187,11 @@ class _Attempt(NamedTuple):
     frame: frame_fit.FrameFit
     map: Map
     check: FitCheck
+
+    @property
+    def scale(self) -> float:
+        """Pixels of the picture for each mm."""
+        return float(np.abs(np.diff(self.found.corners)).min() / FRAME.height)
 
     @property
     def worth(self) -> float:
