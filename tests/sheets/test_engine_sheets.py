@@ -71,6 +71,15 @@ def test_a_scale_of_pressures_that_is_asked_for_is_drawn_or_refused(mu, refused)
     assert min(z.real for z in ends) > box.x0
 
 
+def test_no_pressure_at_all_is_drawn_at_the_scale_asked_for():
+    text = re.sub(r'"[\d.]+ MPa"', '"0 MPa"', (variants() / "lugansk/engine.toml").read_text(encoding="utf-8"))
+    p = Project(variant.parse(f"{text}\n[scales]\nindicator = 0.1\n", "a.toml"))
+    canvas = Canvas()
+    kinematics.position_plans(p, canvas, Box(25, 228, 343, 573), {})
+    assert canvas.scales["indicator"].mu == 0.1
+    assert indicator.height(p, indicator.indicators(p)) == 0.0
+
+
 def quick_return():
     text = (variants() / "lugansk/shaper.toml").read_text(encoding="utf-8")
     return Project(variant.parse(re.sub(r"(?m)^#(?=[\[a-z])", "", text), "a.toml"))

@@ -81,7 +81,8 @@ def height(project: Project, shown: list[Indicator]) -> float:
     mu = project.variant.scales.get("indicator")
     if mu is None:
         return HEIGHT
-    return min(max(float(np.max(one.ordinate(_angles(project)))) for one in shown) / mu, MOST)
+    top = max(float(np.max(one.ordinate(_angles(project)))) for one in shown)
+    return min(top / mu, MOST)
 
 
 def reach(project: Project) -> tuple[list[complex], list[complex]]:
@@ -116,7 +117,8 @@ def draw(project: Project, s: Stage) -> None:
     top = max(float(np.max(one.ordinate(turned))) for one in shown)
     pressure = shown[0].area != 1
     symbol, unit = ("μ_p", tr("MPa/mm")) if pressure else ("μ_F", tr("N/mm"))
-    scale = pick(project, canvas, "indicator", symbol, unit, top / height(project, shown))
+    tallest = MOST if "indicator" in project.variant.scales else HEIGHT
+    scale = pick(project, canvas, "indicator", symbol, unit, top / tallest)
     pos = project.study_at(turned, tuple("" for _ in turned)).positions
     for one in shown:
         name, load = str(one.force.point), f"loads/{one.force.name}"
