@@ -157,7 +157,7 @@ class Grid:
         self.written = np.vstack((np.array(written).reshape(-1, 4), np.full((labels, 4), np.nan)))
         self.boxes = self.written[len(written):]
         self._led: dict[int, tuple[complex, complex]] = {}
-        self.leaders: Points = np.empty(0, complex)
+        self._lead(None)
 
     def put(self, ink: owners.Ink, k: int, label: Label, box: Box) -> None:
         """Label ``k`` is set."""
@@ -173,29 +173,37 @@ class Grid:
         self._led.pop(k, None)
         self._lead(ink)
 
-    def _lead(self, ink: owners.Ink) -> None:
-        ends = np.array(list(self._led.values())).reshape(-1, 2)
-        self.leaders = _sampled(list(ends)) if len(ends) else np.empty(0, complex)
-        ink.lead(*ends.T)
+    def _lead(self, ink: owners.Ink | None) -> None:
+        self._whose = np.array(list(self._led), int)
+        self._ends = np.array(list(self._led.values()), complex).reshape(-1, 2)
+        self.leaders = _sampled(list(self._ends)) if len(self._ends) else np.empty(0, complex)
+        if ink is not None:
+            ink.lead(*self._ends.T)
 
     def ill(self, k: int) -> int:
         """How many other leaders and how much other lettering the leader of label ``k`` meets; how many leaders its lettering."""
-        over = sum(_over(self.boxes[k:k + 1], *way) for n, way in self._led.items() if n != k)
+        others, a, b = self._others(k)
+        over = int(owners.enters(a, b - a, *self.boxes[k]).sum())
         if k not in self._led:
             return over
-        a, b = np.array([way for n, way in self._led.items() if n != k]).reshape(-1, 2).T
         written = np.delete(self.written, len(self.written) - len(self.boxes) + k, axis=0)
         return int(owners.crossing(a, b, *self._led[k]).sum()) + _over(written, *self._led[k]) + over
 
     def met(self, k: int) -> list[int]:
         """Labels whose leader or lettering the leader of label ``k`` meets, and those whose leader meets its lettering."""
-        found = [n for n, way in self._led.items() if n != k and _over(self.boxes[k:k + 1], *way)]
+        others, a, b = self._others(k)
+        found = others[owners.enters(a, b - a, *self.boxes[k])].tolist()
         if k in self._led:
-            others = [n for n in self._led if n != k]
-            a, b = np.array([self._led[n] for n in others]).reshape(-1, 2).T
-            found += np.array(others, int)[owners.crossing(a, b, *self._led[k])].tolist()
-            found += [n for n in range(len(self.boxes)) if n != k and _over(self.boxes[n:n + 1], *self._led[k])]
+            start, end = self._led[k]
+            found += others[owners.crossing(a, b, start, end)].tolist()
+            found += [n for n in np.flatnonzero(owners.enters(start, end - start, *self.boxes.T)).tolist() if n != k]
         return list(dict.fromkeys(found))
+
+    def _others(self, k: int) -> tuple[npt.NDArray[np.int_], Points, Points]:
+        """Labels with leaders but for label ``k``, and where their leaders begin and end."""
+        other = self._whose != k
+        a, b = self._ends[other].T
+        return self._whose[other], a, b
 
     def _ink(self, target: npt.NDArray[np.uint8], p: Points) -> None:
         i, j = ((p.imag - self.area.y0) / CELL).astype(int), ((p.real - self.area.x0) / CELL).astype(int)

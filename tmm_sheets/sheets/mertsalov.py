@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.mertsalov import Mertsalov
 
 Options = dict[str, Any]
-ENERGIES = ("ΔT", "T_{II}", "T_I")
-INERTIA = "I_{II}"
-OF_SIXBAR = (marked("E_links"), marked("E_f"), marked("I_links"))
+ENERGIES = ("ΔE", "E_{II}", "E_I")
+INERTIA = "J_{II}"
+OF_SIXBAR = (marked("E_links"), marked("E_f"), marked("J_links"))
 """Signs that templates/sheets/sixbar_2.toml takes instead."""
 NAMED = 3
 """So many terms of the inertia are lettered at their curves; more are numbered, with a legend under the heading."""
@@ -45,14 +45,7 @@ def _procedure(project: Any) -> Mertsalov:
 
 def _signs(options: Options) -> tuple[str, str, str, str]:
     change, second, first = map(tr, options.get("energies", ENERGIES))
-    return change, second, first, _spelled(tr(options.get("inertia", INERTIA)), options)
-
-
-def _spelled(said: str, options: Options) -> str:
-    """A text with one letter for every moment of inertia and one for every energy: I and T as manual 002 has them, or J and E."""
-    if "energies" in options:
-        return said.replace("I_", "J_").replace("μ_T", "μ_E")
-    return said.replace("J_", "I_").replace("μ_J", "μ_I")
+    return change, second, first, tr(options.get("inertia", INERTIA))
 
 
 def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -70,9 +63,9 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     fw = _procedure(project)
     s = fw.scales
     _, second, _, sign = _signs(options)
-    mu_t = Scale("μ_T", float(fw.energy_plan.asides["μ_T"].value), tr("J/mm"))
+    mu_e = Scale("μ_{EII}", float(fw.energy_plan.asides["μ_T"].value), tr("J/mm"))
     graphs.heading(canvas, box, options, tr("Graphs of {inertia}(φ_1) and {energy}(φ_1)").format(inertia=sign, energy=second),
-                   _spelled(f"{s.inertia}, {mu_t}", options))
+                   f"{s.inertia}, {mu_e}")
     canvas.of = fw.inertia_plan.name
     g = graphs.Graph(complex(options["axis"], box.y0 + 8.0))
     x = s.angle.mm(fw.samples)
@@ -82,7 +75,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     doubled = s.inertia.mu * fw.reduced.omega1**2  # the terms are doubled energies
     terms = stage(canvas, fw.reduced.numbered.plan, None, g.place(s.angle.mu, doubled))
     of.curve("points", g(x + 1j * curve))
-    parts = [(_spelled(name, options), step, part) for name, step, part in _terms(fw)]
+    parts = _terms(fw)
     for n, (name, step, part) in enumerate(parts, 1):
         terms.curve(step, g(x + 1j * part), "main")
         # A narrow peak is named at its left flank, where there is room.
@@ -140,7 +133,7 @@ def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     ratio = s.work.mu / s.energy.mu
     against = "" if abs(ratio - 1) < 1e-9 else f" (μ_A/{number(ratio)})" if ratio > 1 else f" ({number(1 / ratio)}μ_A)"
     graphs.heading(canvas, box, options, tr("Graphs of {change}(φ_1), {first}(φ_1), ω_1(φ_1)").format(change=change, first=first),
-                   _spelled(f"{Scale('μ_T', s.energy.mu, s.energy.unit)}", options) + f"{against}, {omega}")
+                   f"{s.energy}{against}, {omega}")
     x = s.angle.mm(fw.samples)
     total, own = fw.energy_curve(fw.samples), np.imag(fw.first_curve(fw.samples))
     low, high = min(0.0, float(own.min())), max(0.0, float(total.max()), float(own.max()))
@@ -217,7 +210,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     held = _held(fw)
     rows = [
         _givens(fw), *(_delta(fw) if fw.given else _inertia(fw)),
-        tr("μ_ω = μ_T/({held}·ω_{{1m}}) = {mu} {unit}").format(held=held, mu=number(mu.mu), unit=mu.unit),
+        tr("μ_ω = μ_E/({held}·ω_{{1m}}) = {mu} {unit}").format(held=held, mu=number(mu.mu), unit=mu.unit),
         *_extremes(fw),
         tr("Position {label}:  ψ = {psi}°;  d{sign}/dφ = tan ψ·μ_J/μ_φ = {slope} kg·m^2").format(
             label=fw.labels[k], psi=fixed(degrees(psi), 2), sign=sign,
@@ -229,14 +222,14 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         *_motor(fw), *flywheel.power(fw), *flywheel.disagreement(fw), *_size(fw)]
     left = canvas.title(box, tr("Flywheel design by Mertsalov's method"))
     step = min(left.height / len(rows), 11.0)
-    for i, line in enumerate(_spelled(row, options) for row in rows):
+    for i, line in enumerate(rows):
         canvas.text(complex(box.x0, left.y1 - (i + 0.65) * step), line, size_for([line], box.width, 3.5))
 
 
 def _givens(fw: Mertsalov) -> str:
     """Mean angular velocity, δ or the flywheel that is given, constant moment."""
     d = fw.data
-    said = tr("ω_{{1m}} = {omega} rad/s;  I_f = {flywheel} kg·m^2 (given);  M_{index} = {moment} N·m") if fw.given else \
+    said = tr("ω_{{1m}} = {omega} rad/s;  J_f = {flywheel} kg·m^2 (given);  M_{index} = {moment} N·m") if fw.given else \
         tr("ω_{{1m}} = {omega} rad/s;  δ = {delta} (taken);  M_{index} = {moment} N·m") if d.accepted else \
         tr("ω_{{1m}} = {omega} rad/s;  δ = {delta};  M_{index} = {moment} N·m")
     return said.format(omega=fixed(fw.reduced.omega1, 4), delta=number(fw.unevenness), flywheel=number(fw.J_flywheel),
@@ -246,10 +239,10 @@ def _givens(fw: Mertsalov) -> str:
 def _inertia(fw: Mertsalov) -> list[str]:
     """All that turns with the crank from the segment ab, and what of it is the flywheel."""
     first = number(fw.J_first, 5)
-    return [tr("I_I = |ab|·μ_T/(δ·ω_1^2) = {length}·{mu}/({delta}·{omega}^2) = {first} kg·m^2").format(
+    return [tr("J_I = |ab|·μ_E/(δ·ω_1^2) = {length}·{mu}/({delta}·{omega}^2) = {first} kg·m^2").format(
                 length=fixed(fw.ab_mm, 2), mu=number(fw.scales.energy.mu), delta=number(fw.unevenness),
                 omega=fixed(fw.reduced.omega1, 3), first=first),
-            tr("I_f = I_I − (I_{{cr}} + I_r·u^2) = {first} − {bare} = {flywheel} kg·m^2").format(
+            tr("J_f = J_I − (J_{{cr}} + J_r·u^2) = {first} − {bare} = {flywheel} kg·m^2").format(
                 first=first, bare=number(fw.turning, 4, fw.J_first), flywheel=number(fw.J_flywheel, 5))]
 
 
@@ -257,9 +250,9 @@ def _delta(fw: Mertsalov) -> list[str]:
     """The way back from a given flywheel to δ, and what it is for vanishing intervals."""
     first = number(fw.J_first, 5)
     found, limit = graphs.column([fw.unevenness, float(fw.limit_plan["δ∞"].value)], 4)
-    return [tr("I_I = I_f + (I_{{cr}} + I_r·u^2) = {flywheel} + {bare} = {first} kg·m^2").format(
+    return [tr("J_I = J_f + (J_{{cr}} + J_r·u^2) = {flywheel} + {bare} = {first} kg·m^2").format(
                 flywheel=number(fw.J_flywheel, 5), bare=number(fw.turning, 4, fw.J_first), first=first),
-            tr("δ = |ab|·μ_T/(I_I·ω_1^2) = {length}·{mu}/({first}·{omega}^2) = {delta}").format(
+            tr("δ = |ab|·μ_E/(J_I·ω_1^2) = {length}·{mu}/({first}·{omega}^2) = {delta}").format(
                 length=fixed(fw.ab_mm, 2), mu=number(fw.scales.energy.mu), first=first, omega=fixed(fw.reduced.omega1, 3),
                 delta=found),
             tr("For n → ∞ positions: δ = {delta} (difference {difference} %)").format(
@@ -269,8 +262,8 @@ def _delta(fw: Mertsalov) -> list[str]:
 def _held(fw: Mertsalov) -> str:
     """What carries the running: all of the first group, or without a flywheel the crank and the rotor alone."""
     if fw.needed:
-        return "I_I"
-    return tr("(I_cr + I_r·u^2)") if fw.J_rotor else tr("I_cr")
+        return "J_I"
+    return tr("(J_cr + J_r·u^2)") if fw.J_rotor else tr("J_cr")
 
 
 def _extremes(fw: Mertsalov) -> tuple[str, str]:
@@ -307,16 +300,16 @@ def _size(fw: Mertsalov) -> list[str]:
     """Ratios, sizes and mass of the wheel, or that none is needed."""
     w, d = fw.wheel, fw.data
     if w is None or d.density is None or d.width_ratio is None or d.thickness_ratio is None:
-        return [] if fw.given else [tr("I_f ≤ 0: no flywheel is needed; ω_{max}, ω_{min}, ε_1 are without it")]
+        return [] if fw.given else [tr("J_f ≤ 0: no flywheel is needed; ω_{max}, ω_{min}, ε_1 are without it")]
     if w.form != "rim":
         said = (tr("Disc:  κ = B/D = {width_ratio};  ρ = {density} kg/m^3"),
-                tr("D = (32I_f/(πρκ))^{{1/5}} = {diameter} m;  B = {width} m;  m = {mass} kg"))
+                tr("D = (32J_f/(πρκ))^{{1/5}} = {diameter} m;  B = {width} m;  m = {mass} kg"))
     elif d.rim_share < 1:
-        said = (tr("Rim, it has {share}·I_f:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio};  ρ = {density} kg/m^3"),
-                tr("D = (4·{share}·I_f/(πρκc))^{{1/5}} = {diameter} m;  B = {width} m;  H = {thickness} m;  m = {mass} kg"))
+        said = (tr("Rim, it has {share}·J_f:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio};  ρ = {density} kg/m^3"),
+                tr("D = (4·{share}·J_f/(πρκc))^{{1/5}} = {diameter} m;  B = {width} m;  H = {thickness} m;  m = {mass} kg"))
     else:
         said = (tr("Rim:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio};  ρ = {density} kg/m^3"),
-                tr("D = (4·I_f/(πρκc))^{{1/5}} = {diameter} m;  B = {width} m;  H = {thickness} m;  m = {mass} kg"))
+                tr("D = (4·J_f/(πρκc))^{{1/5}} = {diameter} m;  B = {width} m;  H = {thickness} m;  m = {mass} kg"))
     numbers = {"share": number(d.rim_share), "density": number(d.density), "width_ratio": number(d.width_ratio),
                "thickness_ratio": number(d.thickness_ratio), "diameter": number(w.diameter, 5), "width": number(w.width),
                "thickness": number(w.thickness) if w.form == "rim" else "", "mass": number(w.mass)}
@@ -326,7 +319,7 @@ def _size(fw: Mertsalov) -> list[str]:
 def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Mertsalov's flywheel beside Wittenbauer's, drawn and exact, each with the exact running of the machine that has it."""
     fw = _procedure(project)
-    rows = [[tr("Flywheel"), _spelled(tr("I_I, kg·m^2"), options), tr("ω_{max}, rad/s"), tr("ω_{min}, rad/s"), "δ"]]
+    rows = [[tr("Flywheel"), tr("J_I, kg·m^2"), tr("ω_{max}, rad/s"), tr("ω_{min}, rad/s"), "δ"]]
     if fw.given:
         rows += [[name, fixed(fw.J_first, 2), *(fixed(fw.reduced.omega1 * (1 + side * delta / 2), 4) for side in (1, -1)),
                   fixed(delta, 5)] for name, delta in ((tr("Mertsalov, construction"), fw.unevenness),
