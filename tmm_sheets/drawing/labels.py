@@ -182,7 +182,7 @@ class Grid:
 
     def ill(self, k: int) -> int:
         """How many other leaders and how much other lettering the leader of label ``k`` meets; how many leaders its lettering."""
-        others, a, b = self._others(k)
+        _, a, b = self._others(k)
         over = int(owners.enters(a, b - a, *self.boxes[k]).sum())
         if k not in self._led:
             return over

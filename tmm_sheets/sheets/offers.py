@@ -150,8 +150,14 @@ def _about(label: Label) -> Points:
 
 def _between(cells: NDArray[np.bool_], axis: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Cells between two inked ones of a line along an axis: those that are less than ``OPEN`` apart, and any."""
-    n = np.arange(cells.shape[axis]).reshape((-1, 1) if axis == 0 else (1, -1))
-    before = np.maximum.accumulate(np.where(cells, n, -1), axis=axis)
-    behind = np.flip(np.minimum.accumulate(np.flip(np.where(cells, n, FAR), axis), axis=axis), axis)
-    inside = (before >= 0) & (behind < FAR)
-    return np.asarray(inside & ((behind - before) * CELL < OPEN)), np.asarray(inside)
+    close, between = np.zeros((2, *cells.shape), bool)
+    if cells.any():
+        # A part is small on the sheet: nothing lies between its ink beyond it.
+        reach = np.ix_(*(np.arange(n[0], n[-1] + 1) for n in (np.flatnonzero(cells.any(axis=1 - k)) for k in (0, 1))))
+        own = cells[reach]
+        n = np.arange(own.shape[axis]).reshape((-1, 1) if axis == 0 else (1, -1))
+        before = np.maximum.accumulate(np.where(own, n, -1), axis=axis)
+        behind = np.flip(np.minimum.accumulate(np.flip(np.where(own, n, FAR), axis), axis=axis), axis)
+        between[reach] = inside = (before >= 0) & (behind < FAR)
+        close[reach] = inside & ((behind - before) * CELL < OPEN)
+    return close, between
