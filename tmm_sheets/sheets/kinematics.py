@@ -11,7 +11,7 @@ import numpy as np
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.scale import Scale, handy, times
 from tmm_sheets.drawing import symbols
-from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.canvas import Align, Canvas
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
@@ -312,20 +312,22 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
     scale = pick(project, canvas, "force-graph", "μ_F", tr("N/mm"), top / (box.height - 18.0))
     high = y0 + top / scale.mu
     a, b = s.frame(strokes.origin), s.frame(strokes.origin + strokes.path * strokes.length)
-    left, right = sorted((a.real, b.real))
     way = linkage.indexed(strokes.output) if strokes.output[0] == "S" else f"S_{{{strokes.output}}}"
     ways = tr("{quantity}, m").format(quantity=way)
-    tip = min(right + 14.0, box.x1 - 1.5 - letter(ways, 3.5).width)
     load, back = f"loads/{force.name}", a.real > b.real  # the way is counted from where the stroke begins
+    u = -1 if back else 1
+    inward, outward = _SIDES[::u]
+    edge = box.x0 if back else box.x1
+    tip = _nearer(a.real, b.real + 14.0 * u, edge - u * (1.5 + letter(ways, 3.5).width))
     graph = canvas.placed("loads", "", complex(a.real, y0), (s.frame.mu[0], scale.mu), pi * back, back)
     pen = canvas.tracing("axis", load, "", graph)
-    pen.arrow(complex(left, y0), complex(left, high + 9.0), "axis", 3.5)
-    pen.arrow(complex(left, y0), complex(tip, y0), "axis", 3.5)
-    pen.text(complex(left - 2.0, high + 5.0), tr("{quantity}, N").format(quantity=linkage.indexed(force.name)), 3.5, "right")
-    pen.text(complex(tip + 1.5, y0 - 1.2), ways, 3.5)
+    pen.arrow(complex(a.real, y0), complex(a.real, high + 9.0), "axis", 3.5)
+    pen.arrow(complex(a.real, y0), complex(tip, y0), "axis", 3.5)
+    pen.text(complex(a.real - 2.0 * u, high + 5.0), tr("{quantity}, N").format(quantity=linkage.indexed(force.name)), 3.5, inward)
+    pen.text(complex(tip + 1.5 * u, y0 - 1.2), ways, 3.5, outward)
     # Beside the end of the graph, or above it where there is no room.
-    room = box.x1 - letter(str(scale), 3.5).width
-    canvas.text(complex(min(right + 3.0, room), high + (0.0 if right + 3.0 <= room else 2.5)), str(scale), 3.5)
+    beside, room = b.real + 3.0 * u, edge - u * letter(str(scale), 3.5).width
+    canvas.text(complex(_nearer(a.real, beside, room), high + (0.0 if (room - beside) * u >= 0 else 2.5)), str(scale), 3.5, outward)
     acting = np.flatnonzero(magnitude > 0)
     path = project.study_at(turned, tuple("" for _ in turned)).positions.points[strokes.output]
     xs = np.real(s.frame(path.value))
@@ -347,6 +349,15 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
         if all(abs(z.real - x) > 4.5 for x in lettered):
             lettered.append(z.real)
             canvas.text(complex(z.real + 0.8, y0 + 1.0), label, 2.5)
+
+
+_SIDES: tuple[Align, Align] = ("right", "left")
+"""How lettering is aligned on the near side of the axis of forces, and beyond the end of the stroke."""
+
+
+def _nearer(to: float, x: float, y: float) -> float:
+    """The one of two numbers that is nearer."""
+    return min(x, y, key=lambda z: abs(z - to))
 
 
 def _graph_angles(strokes: Strokes, force: Applied) -> Any:
