@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests import project_files
 from tests.project_files import from_file, project
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
@@ -173,3 +174,17 @@ def test_numbers_of_positions_keep_off_the_curves_and_each_other(curves):
     if len(curves) and np.ptp(curves[0].imag) != 18:  # a flat one that runs through all places is in the way of some
         points = np.concatenate([graphs.dense(curve) for curve in curves])
         assert not any((box.x0 < p.real < box.x1) and (box.y0 < p.imag < box.y1) for box in inner for p in points)
+
+
+@pytest.mark.parametrize("sense", ["-x", "+x"])
+def test_the_way_of_the_output_grows_with_its_axis(sense):
+    """Both axes of the force over the path begin where the stroke begins, whichever way it goes."""
+    own = project(project_files.SLIDER, project_files.WORKING, project_files.MASS, project_files.MOMENT, project_files.FORCE,
+                  {"project.sheets": ["kinematics_forces"], "cycle.working_sense": sense, "force[1].sense": sense})
+    drawing = composed(own, 1).drawing
+    up, along = (m for m in drawing.marks if isinstance(m, Line) and m.by and (m.by.role, m.by.step) == ("axis", "loads/F3"))
+    (curve,) = (m for m in drawing.marks if isinstance(m, Polyline) and m.by and (m.by.role, m.by.step) == ("curve", "loads/F3"))
+    begin, *_, end = np.real(curve.points)
+    assert along.a == up.a
+    assert up.a.real == pytest.approx(begin, abs=0.01)
+    assert (along.b - along.a).real * (end - begin) > 0

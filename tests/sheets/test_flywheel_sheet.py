@@ -12,6 +12,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests import project_files
 from tests.methods.linkage.shaper_truth import Shaper
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
@@ -219,3 +220,14 @@ def test_the_first_view_says_that_the_sheet_is_of_another_method():
 def test_moments_beside_the_graph_of_forces_are_told(name, said):
     words = " ".join(m.text for m in composed(Project(read(name)), 2).drawing.marks if isinstance(m, Text))
     assert ("учтено также" in words) is said
+
+
+@pytest.mark.parametrize("table", [[[0, "4000 N"], [0.1, "0 N"], [1, "0 N"]], [[0, "0 N"], [0.95, "0 N"], [1, "4000 N"]]])
+@pytest.mark.parametrize(("method", "sheet"), [("wittenbauer", "flywheel"), ("mertsalov", "sixbar_2")])
+def test_works_by_ordinates_far_from_the_area_have_room(method, sheet, table):
+    """A peak in the middle of an interval counts for all of it: the works are drawn much higher than they are."""
+    own = project_files.read(
+        project_files.SLIDER, project_files.WORKING, project_files.MASS, project_files.MOMENT, project_files.FORCE,
+        project_files.FLYWHEEL, {"project.sheets": [sheet], "force[1].value": None, "force[1].table": table,
+                                 "flywheel.method": method, "flywheel.form": "rim"})
+    assert not composed(Project(own), 1).crowded

@@ -410,6 +410,11 @@ class Flywheel(ABC):
         return self.reduced.at("samples", self.samples)
 
     @cached_property
+    def at_middles(self) -> AtAngles:
+        """Reduced quantities in the middles of the intervals."""
+        return self.reduced.at("middles", (self.edges[:-1] + self.edges[1:]) / 2, self.intervals)
+
+    @cached_property
     def samples(self) -> Floats:
         """Angles for drawing curves and for finding contacts: close together, the edges among them, rad."""
         return np.unique(np.concatenate((np.linspace(0, self.reduced.period, 721), self.edges)))
@@ -442,7 +447,7 @@ class Flywheel(ABC):
             raise CannotBuild(tell("a flywheel needs links with masses"),
                               tell("add mass, centre and inertia to [[link]] of the project file"))
         spans = (float(np.ptp(moment)), float(np.ptp(done)), float(np.ptp(energies)), heaviest)
-        mu_m, mu_a, mu_e, mu_j = _scaled(spans, mu_phi, space)
+        mu_m, mu_a, mu_e, mu_j = _scaled(spans, self._drawn_spans(spans, mass), mu_phi, space)
         return FlywheelScales(
             angle=Scale("μ_φ", mu_phi, tr("rad/mm")),
             force=fit(*(("μ_M′", tr("N·m/mm")) if reduced.forces_are_moments else ("μ_F", tr("N/mm"))), largest, space.force),
@@ -453,6 +458,17 @@ class Flywheel(ABC):
             pole=mu_a / (mu_m * mu_phi),
             excess=self._own_scale(float(np.ptp(np.append(excess, 0.0))), mu_e),
         )
+
+    def _drawn_spans(self, exact: Four, mass: Floats) -> Four:
+        """Extents as they are drawn: the works by the ordinates in the middles of the intervals; ``mass`` is J at the samples."""
+        behind, before = self.at_borders.moment(1).value, self.at_borders.moment(-1).value
+        ends = np.append(0.0, np.cumsum(self.at_middles.moment().value * np.diff(self.edges)))
+        work = Curve(self.edges, ends, behind[:-1], before[1:])(self.samples)
+        constant = -work[-1] / self.reduced.period
+        excess = work + constant * self.samples
+        moment, _, _, heaviest = exact
+        energies = [*excess, *self._energies(excess, mass), 0.0]
+        return max(moment, abs(constant)), float(np.ptp(np.append(work, -work[-1]))), float(np.ptp(energies)), heaviest
 
     def _own_scale(self, excess: float, mu_energy: float) -> Scale | None:
         """Scale factor of the graph of dE, whose values span ``excess`` J, where that of energy is none for it."""
@@ -575,8 +591,7 @@ class Flywheel(ABC):
         """Ordinates of the moment in the middles of the intervals, mm: ``y``."""
         plan = Plan(f"ordinates@middles{self.where}", tr("Ordinates of the moment in the middles of the intervals"), "mm",
                     self.intervals)
-        at = self.reduced.at("middles", (self.edges[:-1] + self.edges[1:]) / 2, self.intervals)
-        plan.add("y", TO_PAPER, at.moment(), self.mu("moment"))
+        plan.add("y", TO_PAPER, self.at_middles.moment(), self.mu("moment"))
         return plan
 
     @cached_property
@@ -1156,22 +1171,25 @@ def _next_handy(mu: float) -> float:
 Four = tuple[float, float, float, float]
 
 
-def _scaled(spans: Four, mu_phi: float, space: DiagramSpace) -> Four:
+def _scaled(spans: Four, drawn: Four, mu_phi: float, space: DiagramSpace) -> Four:
     """Scale factors of moment, work, energy and inertia; those of moment and work suit the pole.
 
     Of all with which the graphs one under another fit together those with the greatest product of their heights. The moments are
     what everything else comes from: where they can, they get ``READABLE`` first, or one of the ``SHARES`` of it. What stands alone
-    fills its own room.
+    fills its own room. What is ``drawn`` by few ordinates may be much higher than the extents: it has to fit, too.
     """
     series = []
-    for span, room in zip(spans, (space.moment, space.work, space.energy, space.inertia), strict=True):
-        series.append([handy(span / room)])
-        for _ in range(STEPS if len(series) <= space.stacked else 0):
+    for k, room in enumerate((space.moment, space.work, space.energy, space.inertia)):
+        alone = k >= space.stacked
+        series.append([handy(max(spans[k], drawn[k] if alone else 0.0) / room)])
+        for _ in range(0 if alone else STEPS):
             series[-1].append(_next_handy(series[-1][-1]))
     mu = np.meshgrid(*series, indexing="ij", sparse=True)
     heights = [span / m for span, m in zip(spans, mu, strict=True)]
     pole = mu[1] / (mu[0] * mu_phi)
-    fitting = (sum(heights[:space.stacked]) <= space.stack) & (pole >= space.pole[0]) & (pole <= space.pole[1])
+    on_paper = sum(span / m for span, m in zip(drawn[:space.stacked], mu, strict=False))
+    fitting = (sum(heights[:space.stacked]) <= space.stack) & (on_paper <= space.stack + TO_SPARE)
+    fitting = fitting & (pole >= space.pole[0]) & (pole <= space.pole[1])
     # Then a pole distance that a ruler lays off, in half millimetres, where there is one.
     for wanted in (*(heights[0] >= share * READABLE for share in SHARES), np.abs(2 * pole - np.round(2 * pole)) < 1e-6):
         fitting = fitting & wanted if (fitting & wanted).any() else fitting
@@ -1185,6 +1203,8 @@ READABLE = 80.0
 """Height of the graphs of the moments together from which on they read well, mm."""
 SHARES = 1.0, 0.75, 0.65
 """Shares of it that are asked for in turn."""
+TO_SPARE = 4.0
+"""What the sheets have left beyond the room of the graphs together, mm."""
 STEPS = 17
 """So many steps of the series of scale factors are nearly two decades."""
 
