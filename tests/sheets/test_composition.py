@@ -280,3 +280,10 @@ def test_letters_that_take_the_place_ask_for_more_of_it():
     assert tight.least[1] == pytest.approx(40.0 + 54.0 + SHOWN)
     assert roomy.least[1] == pytest.approx(tight.least[1])
     assert tight.least[0] == roomy.least[0] == 60.0
+
+
+@pytest.mark.parametrize(("name", "count"), [("pump", 1), ("feeder", 2), ("planer", 3)])
+@pytest.mark.parametrize("sheet", ["press_2", "sixbar_1", "engine_1", "transport_1"])  # made for one group, the others for two
+def test_every_group_is_drawn_whatever_number_the_sheet_is_made_for(sheet, name, count):
+    shown = arranged(files.project(files.from_file(f"tests/projects/{name}.toml"), {"project.sheets": [sheet]}), 1).views
+    assert sorted(view.options["group"] for view in shown if view.draw == "kinetics.group") == [*range(1, count + 1)]

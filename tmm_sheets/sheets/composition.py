@@ -45,7 +45,7 @@ def arranged(project: Project, n: int) -> Arrangement:
     Of several ways to arrange the same views that in which they fill most of what they are meant to have.
     Raises :class:`CannotBuild` where the project has nothing for any of its views.
     """
-    plan = arrangement(project.sheets[n - 1]).fitted(project.parts)
+    plan = _with_all_groups(project, arrangement(project.sheets[n - 1]).fitted(project.parts))
     # Whoever sets scale factors by hand has the boxes as they are written.
     if project.variant.scales or any("axis" in view.options for view in plan.views):
         return plan
@@ -58,6 +58,16 @@ def arranged(project: Project, n: int) -> Arrangement:
         way.means(ways[0])
     found = [solved for way in ways if (solved := way.solved()) is not None]
     return min(found, key=lambda solved: round(solved[0], 3))[1] if found else plan
+
+
+def _with_all_groups(project: Project, plan: Arrangement) -> Arrangement:
+    """With every group of the mechanism, however many the arrangement is made for: they share the place of those it has."""
+    some = [view for view in plan.views if view.draw == "kinetics.group"]
+    if not some or len(some) == len(project.mechanism.groups):
+        return plan
+    every = replace(some[0], draw="kinetics.groups", box=_around([view.box for view in some]), options={}, others={})
+    views = [every if view is some[0] else view for view in plan.views if view not in some[1:]]
+    return replace(plan, views=tuple(views))
 
 
 @dataclass(frozen=True)
