@@ -91,6 +91,12 @@ def fixed(x: float, decimals: int = 2) -> str:
     return written(decimal(x, decimals))
 
 
+def decimals_for(values: Iterable[Any], least: int) -> int:
+    """How many decimals numbers of a kind are written with: ``least``, or as many as give the greatest three digits."""
+    greatest = max((abs(x) for x in values if isfinite(x)), default=0.0)
+    return max(least, 2 - floor(log10(greatest))) if greatest else least
+
+
 def decimal(x: float, decimals: int = 2, sign: bool = False) -> str:
     """A number with a decimal point and a fixed number of decimals; never "-0". With ``sign`` positive ones have a plus."""
     text = _half_up(x, decimals)

@@ -18,6 +18,8 @@ from tmm_sheets.words import tell, tell_n, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.methods.linkage.cycle import Strokes
+    from tmm_sheets.methods.linkage.loads import Applied
     from tmm_sheets.project import Project
 
 GRAPH = 48.0
@@ -54,11 +56,19 @@ def check_number(project: Project) -> None:
 
 
 def graph_force(project: Project) -> Any:
-    """The force whose diagram can stand over the path: on the output, along a horizontal path."""
+    """The force whose diagram can stand over the path: on the output, along a horizontal path, not zero all the way."""
     strokes = project.cycle.strokes
     if strokes is None or abs(strokes.path.imag) > 1e-9:
         return None
-    return next((f for f in project.applied if f.point == strokes.output and f.motion is not None), None)
+    return next((f for f in project.applied if f.point == strokes.output and f.motion is not None
+                 and np.any(f.magnitude(stroke_angles(strokes, f), 0))), None)
+
+
+def stroke_angles(strokes: Strokes, force: Applied) -> Any:
+    """Angles of the working stroke at which the force is drawn, both sides of its jumps among them."""
+    inner = [j for j in force.jumps if strokes.begin < j < strokes.end]
+    nodes = [*np.linspace(strokes.begin, strokes.end, 241), *(j + s * 1e-9 for j in inner for s in (-1, 1))]
+    return np.sort(np.asarray(nodes))[1:-1]
 
 
 def graph_height(project: Project, options: dict[str, Any]) -> float:

@@ -18,7 +18,7 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.mechanism.structure import decompose
-from tmm_sheets.numbers import fixed, is_zero, number
+from tmm_sheets.numbers import decimals_for, fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, graphs, indicator, kinematic_frames, linkage
 from tmm_sheets.sheets.frame import SHORTEST, Frame, joined, pick, together
 from tmm_sheets.sheets.player import Stage, play, stage
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Segment
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.model import Mechanism
-    from tmm_sheets.methods.linkage.cycle import Strokes
-    from tmm_sheets.methods.linkage.loads import Applied
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
 
@@ -305,7 +303,7 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
     cycle, canvas = project.cycle, s.canvas
     strokes, force = cycle.strokes, kinematic_frames.graph_force(project)
     assert strokes is not None
-    turned = _graph_angles(strokes, force)
+    turned = kinematic_frames.stroke_angles(strokes, force)
     magnitude = np.asarray(force.magnitude(turned, 0))
     top = float(magnitude.max())
     y0 = box.y0 + 5.0
@@ -358,13 +356,6 @@ _SIDES: tuple[Align, Align] = ("right", "left")
 def _nearer(to: float, x: float, y: float) -> float:
     """The one of two numbers that is nearer."""
     return min(x, y, key=lambda z: abs(z - to))
-
-
-def _graph_angles(strokes: Strokes, force: Applied) -> Any:
-    """Angles of the working stroke at which the force is drawn, both sides of its jumps among them."""
-    inner = [j for j in force.jumps if strokes.begin < j < strokes.end]
-    nodes = [*np.linspace(strokes.begin, strokes.end, 241), *(j + s * 1e-9 for j in inner for s in (-1, 1))]
-    return np.sort(np.asarray(nodes))[1:-1]
 
 
 def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -599,14 +590,24 @@ def _table_places(box: Box, columns: int, speeds: int, *, stacked: bool) -> tupl
     return left, Box(left.x1 + 10.0, box.y0, box.x1, box.y1)
 
 
+NOTHING = 1e-4
+"""Share of the greatest number of a table below which a column shows that it is nothing."""
+
+
 def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: str, columns: list[tuple[str, Any]],
                           decimals: int) -> None:
-    """A column for each quantity, a row for each position that is drawn; a dash where there is no number."""
+    """A column for each quantity, a row for each position that is drawn; a dash where there is no number.
+
+    ``decimals`` unless a column's numbers are too small for them, but for those that are nothing beside the others.
+    """
     cycle = project.cycle
+    greatest = {name: float(np.nanmax(np.abs(v), initial=0.0)) for name, v in columns}
+    places = {name: decimals_for([size], decimals) if size > NOTHING * max(greatest.values()) else decimals
+              for name, size in greatest.items()}
     row = min((place.height - 15.0) / (len(cycle.drawn) + 2), 7.5)
     canvas.text(complex(place.centre.real, place.y1 - 5.0), title, size_for([title], place.width, 3.5), "centre")
     cells = [[tr("No."), *(name for name, _ in columns)]]
-    cells += [[label, *("–" if np.isnan(v[i]) else fixed(float(v[i]), decimals) for _, v in columns)]
+    cells += [[label, *("–" if np.isnan(v[i]) else fixed(float(v[i]), places[name]) for name, v in columns)]
               for i, label in cycle.drawn]
     height = size_in(row)
     widths = widened([10.0] + [(place.width - 10.0) / len(columns)] * len(columns), cells, height)

@@ -18,7 +18,7 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.drawing.tables import widened
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.numbers import clean, fixed, is_zero, number
+from tmm_sheets.numbers import clean, decimals_for, fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, linkage
 from tmm_sheets.sheets.frame import SHORTEST, fit_frame, joined, together
 from tmm_sheets.sheets.kinetic_frames import (
@@ -445,9 +445,10 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     unit = tr("N") if force else tr("N·m")
     difference = float(study.balance["Δ"].at(k)) if kinetic else 0.0
     heading = tr("Balancing force") if force else tr("Balancing moment (“+”: in the sense of ω_1)")
+    decimals = decimals_for((kinetic, hung), 2)
     rows = [[heading, tr("Value")],
-            [tr("Force analysis: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(kinetic, 2)],
-            [tr("Zhukovsky lever: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(hung, 2)],
+            [tr("Force analysis: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(kinetic, decimals)],
+            [tr("Zhukovsky lever: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(hung, decimals)],
             [tr("Difference, %"), number(difference, 2, 100.0)]]
     row, width = min(box.height / len(rows), 9.0), min(box.width, 210.0)
     canvas.table(complex(box.x0, box.y1), widened([width * 0.66, width * 0.34], rows, 3.5), rows, row, 3.5)
