@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.gears.gear_pair import GearPair
     from tmm_sheets.methods.gears.reducer import Reducer
     from tmm_sheets.methods.gears.train import Train
-    from tmm_sheets.methods.linkage.checks import SwingLimits
+    from tmm_sheets.methods.linkage.checks import DeadPosition, SwingLimits
     from tmm_sheets.methods.linkage.cycle import Cycle
     from tmm_sheets.methods.linkage.forces import GearForce
     from tmm_sheets.methods.linkage.friction import Coefficients
@@ -195,7 +195,7 @@ class Project:
     @cached_property
     def study(self) -> Study:
         """Kinematics and forces at the numbered positions; raises :class:`CannotBuild` when they do not all assemble."""
-        self.check_assembly()
+        _ = self.dead_positions
         return self.study_at(self.cycle.turned, self.cycle.labels, "")
 
     def study_at(self, turned: Any, labels: tuple[str, ...], purpose: str = marked("curves between the positions")) -> Study:
@@ -350,11 +350,12 @@ class Project:
 
         return swing_limits(self.mechanism, self.cycle) if self.cycle.swings else None
 
-    def check_assembly(self) -> None:
-        """Assemble the mechanism all round the turn."""
+    @cached_property
+    def dead_positions(self) -> tuple[DeadPosition, ...]:
+        """Assemble the mechanism all round the turn; the groups that pass a dead position on the way."""
         from tmm_sheets.methods.linkage.checks import check_assembly
 
-        check_assembly(self.mechanism, self.cycle)
+        return check_assembly(self.mechanism, self.cycle)
 
 
 def _plans_of(made: Any) -> dict[str, Plan]:

@@ -242,9 +242,10 @@ def _warnings(opened: Project, drawn: Mapping[int, Composed]) -> tuple[str, ...]
         for what in (*composed.leaving, *composed.crowded)
     ]
     if drawn and opened.variant.crank is not None:
+        from tmm_sheets import summary
         from tmm_sheets.sheets import composition
 
-        told += composition.left_out(opened, drawn)
+        told += (*summary.dead_positions(opened), *composition.left_out(opened, drawn))
     return tuple(told)
 
 

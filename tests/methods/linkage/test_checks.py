@@ -54,6 +54,24 @@ def test_mechanisms_that_turn(m):
     assert said(m) == ("", "")
 
 
+@pytest.mark.parametrize(("m", "angles"), [
+    (rrr(0.3, 0.1), (0.0, 180.0)),  # a parallelogram: stretched, then folded
+    (rrr(0.29999, 0.100012), (180.0,)),  # stretched but for 2 um, folded but for 22
+    (rrr(0.3, 0.1001), ()),
+    (rrr(0.35, 0.25), ()),
+    (rrp(0.1, e=0.0), (90.0, 270.0)),  # crank and rod of one length
+    (rrp(0.1001, e=0.0), ()),
+    (rrp(0.150002, e=0.05), (270.0,)),
+    (rpr(-0.14j), ()),
+    (mechanism(), ()),
+])  # fmt: skip
+def test_a_group_that_passes_a_dead_position_is_told(m, angles):
+    passed = check_assembly(m, even_cycle(m, 10.0, 12))
+    assert [dead.group for dead in passed] == ["2-3"] * bool(angles)
+    found = sorted(angle % 360 for dead in passed for angle in np.round(dead.angles, 3))
+    assert found == pytest.approx(sorted(angles), abs=0.2)
+
+
 def test_a_crank_alone_turns():
     assert said(mechanism()) == ("", "")
 

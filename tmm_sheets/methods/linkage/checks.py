@@ -23,13 +23,25 @@ CLOSE = 0.02
 """Share of the crank length (sine) below which a minimum between the angles of the sweep is looked at more closely."""
 
 
+NEAR_DEAD = 1e-4
+"""Share of the crank length within which a group that turns round comes to its dead position: no machine is made better."""
+
+
+@dataclass(frozen=True)
+class DeadPosition:
+    """A group that is stretched or folded at some crank angles, degrees: from there it can go on in two ways."""
+
+    group: str
+    angles: tuple[float, ...]
+
+
 def check_turn(mechanism: Mechanism) -> None:
     """Assemble the mechanism all round the turn, before its positions are numbered; see :func:`check_assembly`."""
     check_assembly(mechanism, Cycle((), np.empty(0), 0.0, mechanism.crank.sense, 2 * np.pi, None, None))
 
 
-def check_assembly(mechanism: Mechanism, cycle: Cycle) -> None:
-    """Assemble the mechanism at its numbered positions and all round the turn.
+def check_assembly(mechanism: Mechanism, cycle: Cycle) -> tuple[DeadPosition, ...]:
+    """Assemble the mechanism at its numbered positions and all round the turn; the groups that pass a dead position on the way.
 
     Raises
     ------
@@ -49,6 +61,11 @@ def check_assembly(mechanism: Mechanism, cycle: Cycle) -> None:
     if missing:
         name, labels = missing
         raise CannotBuild(tell("{point} cannot be constructed at positions {labels}").format(point=name, labels=", ".join(labels)))
+    passed: dict[str, list[float]] = {}
+    for i, (g, limit) in enumerate(limits):
+        if limit.measured and (angles := search.dead(i)):
+            passed.setdefault("-".join(g.links), []).extend(angles)
+    return tuple(DeadPosition(group, tuple(sorted(angles))) for group, angles in passed.items())
 
 
 @dataclass(frozen=True)
@@ -167,6 +184,19 @@ class _Search:
             angle = float(np.degrees(self.cycle.world(way)))
             found.append(End(angle, ends, float(-past[ends]) if ends >= 0 else np.nan))
         return found[0], found[1]
+
+    def dead(self, i: int) -> tuple[float, ...]:
+        """Crank angles at which limit ``i`` is reached and holds again behind, degrees; not the ends of a swing."""
+        margin, near = self.margins[i], NEAR_DEAD * self.limits[i].unit
+        reached = np.flatnonzero((margin < near) & self.asked)
+        if not len(reached) or not np.nanmax(margin) > near:
+            return ()
+        turned = self.turned[reached]
+        apart = np.split(reached, np.flatnonzero(np.diff(turned) > np.radians(1.0)) + 1)
+        if len(apart) > 1 and turned[0] + 2 * np.pi - turned[-1] < np.radians(1.0):
+            apart = [np.concatenate((apart.pop(), apart[0])), *apart[1:]]
+        ends = set(np.flatnonzero(self.asked)[[0, -1]].tolist()) if self.cycle.swings else set()
+        return tuple(self._degrees(self.turned[of[np.argmin(margin[of])]]) for of in apart if not ends & set(of.tolist()))
 
     @staticmethod
     def _assembles(margins: Floats, i: int) -> Any:
