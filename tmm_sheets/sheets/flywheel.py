@@ -110,7 +110,7 @@ def force_graph(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
             of.curve(steps[name], g(_down_to_axis(line)))
             highest = line[int(np.argmax(line.imag))]
             top = max(top, float(highest.imag))
-            if len(names) > 1 and highest.imag > 4.0:
+            if len(names) > 1 and (highest.imag > 4.0 or line is max(acting[name], key=lambda some: float(some.imag.max()))):
                 canvas.label(g(highest), name, 1 + 0.3j, 3.5)
     graphs.check_room(box, g.origin.imag + top, "flywheel.force_graph")
     ordinate = f"{names[0] if len(names) == 1 else letter_of}, {unit}"
