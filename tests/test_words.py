@@ -1,5 +1,6 @@
 """Words in three languages: nothing missing, nothing idle; the locale and ``--lang`` choose them, in every process."""
 
+import ast
 import json
 import os
 import re
@@ -55,6 +56,17 @@ def test_no_text_is_missing_or_idle(language):
     there = catalogues.read(language)
     assert set(texts(there)) == set(texts(TEMPLATE))
     assert catalogues.missing(there) == []
+
+
+def test_no_text_hides_from_the_catalogues():
+    """What collects the texts does not look into f-strings."""
+    known = {text[0] if isinstance(text, tuple) else text for _, text in texts(TEMPLATE)}
+    asked = catalogues.KEYWORDS.keys() - {"tr_in"}  # it begins with the context
+    for path in (ROOT / "tmm_sheets").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in asked:
+                said = node.args[0]
+                assert not isinstance(said, ast.Constant) or said.value in known, (path, said.lineno, said.value)
 
 
 @pytest.mark.parametrize("language", ["ru", "uk"])

@@ -57,6 +57,7 @@ def counted(bad: Sequence[Finding]) -> str:
     return ", ".join(said)
 
 
+_LETTERING = marked("lettering")
 _KINDS = {
     "line": marked("line"), "arc": marked("arc"), "circle": marked("circle"), "curve": marked("curve"), "hatch": marked("hatching"),
     "fill": marked("filled area"), "dot": marked("dot"), "arrow": marked("arrow"),
@@ -70,7 +71,7 @@ NAME = 16
 def called(e: Element) -> str:
     """An element in a table: what it is and what it is called."""
     if e.kind == "text":
-        return f"{tell('text')} {e.name if len(e.name) <= NAME else e.name[: NAME - 1] + '…'}".strip()
+        return f"{tell(_LETTERING)} {e.name if len(e.name) <= NAME else e.name[: NAME - 1] + '…'}".strip()
     dot, arrow = e.kind == "circle" and e.fills, e.kind == "line" and e.arrow
     return f"{tell(_KINDS['dot' if dot else 'arrow' if arrow else e.kind])} {e.name}".strip()
 
