@@ -198,8 +198,8 @@ class GroupTable(Table):
     """kind 5: direction of the second sliding pair against the guide"""
     side: Side = 1
     """which of the two ways the group is put together; 1: left of the line from the first outer point to the second, or further
-    along the guide
-    """
+    along the guide; it is kept all round, so a group that comes to be stretched or folded (a parallelogram) jumps there, as
+    `check` tells"""
     leg: tuple[LegTable, ...] = ()
     """kind 6: the three legs, tables `[[group.leg]]`"""
     sides: tuple[Length, Length] | None = None
