@@ -28,7 +28,8 @@ def test_what_may_be_right_is_not_called_wrong(off, said):
     assert counted([finding("measured", deviation=by) for by in off]) == said
 
 
-@pytest.mark.parametrize(("name", "said"), [("", "lettering"), ("aB", "lettering aB"), ("M, N m of all forces", "lettering M, N m of all f…")])
+@pytest.mark.parametrize(("name", "said"), [
+    ("", "lettering"), ("aB", "lettering aB"), ("M, N m of all forces", "lettering M, N m of all f…")])
 def test_a_text_is_called_by_its_letters(name, said):
     assert called(finding("absent lettering", kind="text", name=name).element) == said
 
