@@ -341,7 +341,10 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     dense, inv, letter_of = cam.dense, cam.inversion, options.get("angle", ANGLE)
     found = dense.angles.value
     low, high = min(float(found.min()), -cam.alpha), max(float(found.max()), cam.alpha)
-    d = OverAngle.fitted(box.inset(*PRESSURE), 2 * pi, (low, high), (f"μ_{letter_of}", tr("deg/mm")), 8.0,
+    room = box.inset(*PRESSURE)
+    # Higher than wide it shows no more: what is left is in one piece under it.
+    box, room = (place.inset(0, max(room.height - room.width, 0.0), 0, 0) for place in (box, room))
+    d = OverAngle.fitted(room, 2 * pi, (low, high), (f"μ_{letter_of}", tr("deg/mm")), 8.0,
                         radians(1.0))
     canvas.title(box, tr("Pressure angle"), f"{d.tall},  {d.across}")
     course, marked = d.placed(canvas, dense.plan), d.placed(canvas, inv.plan)
