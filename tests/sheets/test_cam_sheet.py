@@ -125,7 +125,10 @@ def test_view_stays_in_its_place_and_fills_it(name, view_name):
         assert heights[-1] >= box.y1 - 8.0
         assert np.diff(heights).max() <= 30.0
     else:
-        assert np.ptp(points.imag) >= 0.6 * box.height
+        # A graph of the pressure angle is no higher than wide, what it leaves of a high place is in one piece under it.
+        high = min(box.height, box.width) if view_name == "cam.pressure" else box.height
+        assert points.imag.max() >= box.y1 - 8.0 or view_name != "cam.pressure"
+        assert np.ptp(points.imag) >= 0.6 * high
 
 
 @pytest.mark.parametrize("data", PROJECTS.values(), ids=PROJECTS.keys())

@@ -39,6 +39,7 @@ NEEDS = {
     "diagrams.balancing": "forces", "diagrams.balancing_table": "forces",
     "flywheel": "flywheel", "crank_speed": "flywheel", "mertsalov": "flywheel", "gear": "gear", "rack": "gear",
     "reducer": "reducer", "reducer_equations": "reducer", "train": "train", "cam": "cam", "cam_zone": "cam", "cam_profile": "cam",
+    "cam_law": "cam",
 }
 """Parts of the results that views need, by module or by view."""
 

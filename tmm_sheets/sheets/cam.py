@@ -14,7 +14,7 @@ import numpy as np
 
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
-from tmm_sheets.drawing.lettering import fitted, letter
+from tmm_sheets.drawing.lettering import fitted, letter, size_for
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.tables import widened
 from tmm_sheets.numbers import fixed, number
@@ -67,8 +67,7 @@ def distinct(labels: tuple[str, ...], x: Points) -> list[int]:
 def lines_of_text(canvas: Canvas, box: Box, lines: Sequence[str]) -> None:
     """Lines of results at the foot of a view's place."""
     top = box.y0 + 3.0 + 7.0 * (len(lines) - 1)
-    for i, line in enumerate(lines):
-        canvas.put(fitted(line, box.width - 8.0, 3.5), complex(box.x0 + 6.0, top - 7.0 * i), 0.0, line)
+    canvas.lines(complex(box.x0 + 6.0, top), lines, 7.0, size_for(lines, box.width - 8.0, 3.5))
 
 
 def raised(box: Box, room: Box, height: float) -> tuple[Box, Box]:
@@ -118,7 +117,10 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     if m.circle:
         centre = complex(m.plan["M"].value)
         left = max(left, max(abs(complex(s.value) - centre) for s in m.circle.values()) + 3.0 - centre.real)
-    x0 = box.x0 + left + max(box.width - left - end - 14.0, 0.0) / 2
+    said = _relations(m)
+    spare, wide = max(box.width - left - end - 14.0, 0.0), max(letter(line, 3.5).width for line in said)
+    at_right = spare >= wide + 8.0  # what is left over is in one piece for what follows from the diagrams
+    x0 = box.x0 + left + (0.0 if at_right else spare / 2)
     foot = 22.0  # numbers and dimensions of the phases under the lowest diagram
     gap = (area.height - foot - sum(ups) - sum(downs)) / 3
     origins, y = [], area.y1
@@ -148,7 +150,15 @@ def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     _integration(stages[0], stages[1], m, m.names[1], m.ds, "P_1", "H_1", downs[0])
     _integration(stages[1], stages[2], m, m.names[2], m.s, "P_2", "H_2", downs[1])
     _phase_angles(canvas, m, origins[2] - 7j)
-    _relations(canvas, m, complex(box.x0 + 2.0, origins[2].imag + ups[2]), x0)
+    levels = [o.imag + up for o, up in zip(origins, ups, strict=True)]
+    at = x0 + end + 20.0 if at_right else box.x0 + 2.0
+    if not at_right and at + wide + 2.0 > x0:
+        said = said[0].split("  ") + said[1:]
+    # Each beside the head of the diagram that it belongs to; all beside the third where pole or circle take the room.
+    counts = (2, 1, 1) if at_right else (0, 3, 1) if at + wide + 6.0 <= x0 - m.scales.h2 else (0, 0, len(said))
+    for top, count in zip(levels, counts, strict=True):
+        canvas.lines(complex(at, top), said[:count], 8.0)
+        said = said[count:]
 
 
 def _phase_borders(canvas: Canvas, m: FollowerMotion, origins: list[complex], ups: list[float]) -> None:
@@ -177,25 +187,17 @@ def _phase_angles(canvas: Canvas, m: FollowerMotion, base: complex) -> None:
                 canvas.label((a + b) / 2 - 8j, full, -1j, 3.5, 1.5, leader=False)
 
 
-def _relations(canvas: Canvas, m: FollowerMotion, at: complex, axis: float) -> None:
-    """Scale factor of the angle, and how the other scale factors and the heights of S'' follow from one another.
-
-    In two lines where it would reach the ordinate axis at the abscissa ``axis``.
-    """
+def _relations(m: FollowerMotion) -> list[str]:
+    """Scale factor of the angle, and how the other scale factors and the heights of S'' follow from one another."""
     law = m.law
-    said = tr("{scale}  ({degrees} deg/mm)").format(scale=m.scales.phi, degrees=number(degrees(m.scales.phi.mu)))
-    whole = at.real + letter(said, 3.5).width + 2.0 <= axis
-    for line in (said,) if whole else said.split("  "):
-        canvas.text(at, line, 3.5)
-        at -= 8.0j
     second, first, zero = (f"μ_{name}" for name in m.names)
     equal = f"{law.fall.letters}^2/{law.rise.letters}^2 = " if law.rise.law.peak == law.fall.law.peak else ""
-    lines = (
+    return [
+        tr("{scale}  ({degrees} deg/mm)").format(scale=m.scales.phi, degrees=number(degrees(m.scales.phi.mu))),
         f"a_1/a_2 = {equal}{number(abs(m.plan['a_1'].value))}/{number(abs(m.plan['a_2'].value))}",
         f"{first} = {second}·μ_φ·H_1",
         f"{zero} = {first}·μ_φ·H_2",
-    )
-    canvas.lines(at, lines, 8.0)
+    ]
 
 
 def _diagram(s: Stage, step: Step, up: float, down: float, end: float, symbol: str, head: str) -> None:
@@ -321,6 +323,17 @@ class OverAngle:
 # --- pressure angle -------------------------------------------------------------------------------------------------
 
 
+PRESSURE = 10.0, 8.0, 18.0, 30.0
+"""Room about the graph of the pressure angle at the left, below, at the right and above, mm."""
+
+
+def ordinates_apart(cam: Cam, width: float) -> float:
+    """How far the nearest two ordinates of the pressure angle stand apart in a place so wide, mm."""
+    steps = np.diff(cam.law.positions)
+    across = handy(360.0 / max(width - PRESSURE[0] - PRESSURE[2], 1.0))
+    return degrees(float(steps[steps > 1e-9].min())) / across
+
+
 @for_cams
 def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Pressure angle over a turn of the cam, measured at the finished profile, with the permitted value."""
@@ -328,7 +341,10 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     dense, inv, letter_of = cam.dense, cam.inversion, options.get("angle", ANGLE)
     found = dense.angles.value
     low, high = min(float(found.min()), -cam.alpha), max(float(found.max()), cam.alpha)
-    d = OverAngle.fitted(box.inset(10, 8, 18, 30), 2 * pi, (low, high), (f"μ_{letter_of}", tr("deg/mm")), 8.0,
+    room = box.inset(*PRESSURE)
+    # Higher than wide it shows no more: what is left is in one piece under it.
+    box, room = (place.inset(0, max(room.height - room.width, 0.0), 0, 0) for place in (box, room))
+    d = OverAngle.fitted(room, 2 * pi, (low, high), (f"μ_{letter_of}", tr("deg/mm")), 8.0,
                         radians(1.0))
     canvas.title(box, tr("Pressure angle"), f"{d.tall},  {d.across}")
     course, marked = d.placed(canvas, dense.plan), d.placed(canvas, inv.plan)

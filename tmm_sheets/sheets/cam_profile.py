@@ -516,11 +516,16 @@ def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
         canvas.label(at(p), name, outwards + 0.6 * (p - d) / max(abs(p - d), 1e-12), 3.5, 1.5)
     canvas.label(at(centre), "M", -outwards, 3.5, 1.0)
     canvas.label(at((d + centre) / 2), "ρ_{min}", 1j * outwards, 3.5, 2.0)
-    drawn_rho, rules = float(plan["ρ_min"].value), cam.roller_rules
+    lines_of_text(canvas, box, _roller_lines(cam, scale.mu))
+
+
+def _roller_lines(cam: RollerCam, mu: float) -> list[str]:
+    """The least radius of curvature as it is measured, and the radius of the roller by both rules."""
+    drawn_rho, rules = float(cam.inversion.plan["ρ_min"].value), cam.roller_rules
     found = tr("|MD| = {length} mm;  ρ_{{min}} = |MD|·μ_l = {drawn} mm (exactly {exact} mm)")
     if cam.rho_min < cam.sharpest.rho * (1 - 1e-6):
         found = tr("|MD| = {length} mm;  ρ_{{min}} = |MD|·μ_l = {drawn} mm (exactly {exact} mm); of the second disc {second} mm")
-    lines = [found.format(length=fixed(scale.mm(drawn_rho), 1), drawn=_mm(drawn_rho), exact=_mm(cam.sharpest.rho),
+    lines = [found.format(length=fixed(drawn_rho / mu, 1), drawn=_mm(drawn_rho), exact=_mm(cam.sharpest.rho),
                           second=_mm(cam.rho_min))]
     for rule in rules:
         low, high = rule.limits
@@ -534,7 +539,7 @@ def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     met = all(cam.roller <= rule.limits[1] * (1 + 1e-9) for rule in rules)
     taken = tr("Taken: r_p = {radius} mm") if met else tr("Taken: r_p = {radius} mm (more than recommended)")
     lines.append(taken.format(radius=number(cam.roller * 1e3)))
-    lines_of_text(canvas, box, lines)
+    return lines
 
 
 def _sharpest(cam: RollerCam) -> tuple[Inversion, Points]:
@@ -543,6 +548,11 @@ def _sharpest(cam: RollerCam) -> tuple[Inversion, Points]:
     beside = cam.at(float(cam.sharpest.three[1]) + np.linspace(-0.6, 0.6, 121))
     course = beside.centres.value
     return beside, course[np.abs(course - d) < 0.75 * abs(centre - d)]
+
+
+def roller_width(cam: RollerCam) -> float:
+    """Width that its lines take, mm."""
+    return 8.0 + max(letter(line, 3.5).width for line in _roller_lines(cam, 2e-4))
 
 
 def roller_extent(cam: RollerCam) -> tuple[float, float]:

@@ -286,6 +286,8 @@ def _force_plan(project: Project, fp: Any, k: int) -> Need:
     return Need((real.width, real.height), (left + right, below + above), (wide, 56.0), finest=kinetic_frames.finest(fp, k))
 
 
+ORDINATES = 4.0
+"""Distance of two ordinates that can be read, mm."""
 OF_VALUE = 24.0
 """Room of one force with its value in the line under a force plan, mm, about."""
 
@@ -402,9 +404,13 @@ def _cam(least: tuple[float, float], share: float) -> Callable[[Project, View], 
 
 
 def _pressure(project: Project, view: View) -> Node | None:
-    """A graph over the whole turn, whose ordinates stand apart in a wide place: beyond its width more height is of no use."""
-    need = Need(least=(0.88 * view.box.width, 0.7 * view.box.height), drawn=lambda w, h: 0.6 * w * min(h, w))
-    return _leaf(view.box, need)
+    """A graph over the whole turn: beyond its width more height is of no use, and its ordinates are to stand apart."""
+    from tmm_sheets.sheets import cam
+
+    def drawn(width: float, height: float) -> float:
+        return 0.6 * width * min(height, width) * min(cam.ordinates_apart(project.cam, width) / ORDINATES, 1.0)
+
+    return _leaf(view.box, Need(least=(120.0, 80.0), drawn=drawn))
 
 
 def _of_cam(project: Project, view: View) -> bool:
@@ -448,7 +454,7 @@ def _roller(project: Project, view: View) -> Node | None:
             return 1.0
         return (w / mu + left + right) * (h / mu + below + above)
 
-    return _leaf(view.box, Need(least=(116.0, 120.0), drawn=lambda w, h: in_place(int(w), int(h))), 0.5)
+    return _leaf(view.box, Need(least=(cam_profile.roller_width(cam), 120.0), drawn=lambda w, h: in_place(int(w), int(h))), 0.5)
 
 
 def _of_gears(name: str) -> Callable[[Project, View], Node | None]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import symbol
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import letter, size_for
+from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import is_zero, number
 from tmm_sheets.sheets.kinetic_frames import balancing_sign, flat, on_lever
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
 BAR = "\u0305"
-STEP = 7.0
-"""Distance of the lines, mm."""
+WAYS = ((3.5, 7.0, inf), (3.5, 6.0, inf), *((3.5, 6.0, width) for width in (150.0, 120.0, 95.0, 80.0)), (2.5, 5.0, inf))
+"""Heights of the letters, distances of the lines and widths at which equations are broken that are tried, mm."""
 
 
 class Term(NamedTuple):
@@ -36,21 +37,26 @@ class Term(NamedTuple):
 
 
 def equations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the equations can do with, mm."""
-    lines = list(_lines(project))
-    if not lines:
+    """Places that the equations can do with, mm: each in one line, then broken, then in small letters."""
+    texts = list(_lines(project))
+    if not texts:
         return []
-    return [(max(letter(line, height).width for line in lines) + 6.0, 12.0 + step * len(lines))
-            for height, step in ((3.5, STEP), (3.5, 6.0), (2.5, 5.0))]
+    sizes = []
+    for height, step, width in WAYS:
+        lines = [line for text in texts for line in _broken(text, width, height)]
+        sizes.append((max(letter(line, height).width for line in lines) + 6.0, 12.0 + step * len(lines)))
+    return sizes
 
 
 def equations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Every equation of moments that gives a part of a reaction or the balancing moment: letters, then numbers."""
-    lines = list(_lines(project))
+    texts = list(_lines(project))
     canvas.of = "moments"
     left = canvas.title(box, tr("Equations of moments"))
-    height = size_for(lines, box.width, 3.5)
-    step = min(STEP, (left.y1 - box.y0) / len(lines))
+    for height, step, _ in WAYS:
+        lines = [line for text in texts for line in _broken(text, box.width - 6.0 + 1e-6, height)]
+        if 12.0 + step * len(lines) <= box.height + 1e-6:
+            break
     canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
 
 
@@ -91,8 +97,8 @@ def lever_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> li
     if "lever" not in canvas.scales:
         return []
     sizes = []
-    for width in (250.0, 190.0, 140.0, 110.0, 90.0):
-        for height, step in ((3.5, 6.0), (2.5, 5.0)):
+    for height, step in ((3.5, 6.0), (2.5, 5.0)):
+        for width in (250.0, 190.0, 140.0, 110.0, 90.0):
             if not (lines := _lever_lines(project, canvas, width - 6.0, height, options)):
                 return []  # no force has a moment about the pole
             sizes.append((max(letter(line, height).width for line in lines) + 6.0, 10.0 + step * len(lines)))
@@ -154,7 +160,7 @@ def _lever_lines(project: Project, canvas: Canvas, width: float, height: float, 
 def _broken(text: str, width: float, height: float) -> list[str]:
     """A formula in lines no wider than ``width``, mm, where its signs let it be broken."""
     lines = [""]
-    for piece in re.split(r"(?= [+−=] )", text):
+    for piece in re.split(r"(?= [+−] | = (?!0$))", text):  # a last "= 0" stands alone nowhere
         if lines[-1] and letter(lines[-1] + piece, height).width > width:
             lines.append(piece.lstrip())
         else:

@@ -18,7 +18,7 @@ from tmm_sheets.words import tr
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
-ROWS = (7.0, 5.6, 4.6)
+ROWS = (7.0, 6.4, 5.6, 4.6)
 """Heights of the rows that are tried, mm."""
 HEAD = 8.0
 """Height of the title over a table, mm."""
@@ -80,7 +80,7 @@ def _sizes(project: Project, title: str, columns: Columns) -> list[tuple[float, 
         return []
     rows = _cells(project, columns, 4)
     return [(max(sum(needs(rows, size_in(row))) + extra * len(columns), letter(title, 3.5).width + 4.0), HEAD + row * len(rows))
-            for row, extra in zip(ROWS, (2.0, 0.0, 0.0), strict=True)]
+            for row, extra in zip(ROWS, (2.0, 0.0, 0.0, 0.0), strict=True)]
 
 
 def _table(project: Project, canvas: Canvas, box: Box, title: str, columns: Columns) -> None:

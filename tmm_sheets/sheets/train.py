@@ -7,7 +7,7 @@ from math import pi
 from typing import Any
 
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import fitted, size_for
+from tmm_sheets.drawing.lettering import fitted, letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import number
 from tmm_sheets.sheets.gear_marks import ruled_table
@@ -99,6 +99,39 @@ def dimensions(project: Any) -> list[str]:
         of_module = f"m·z_{{{c}}} = {number(m)}·{z[c]} = " if abs(rolled - m * z[c]) < 1e-9 * rolled else ""
         lines.append(f"d_{{{c}}} = {of_module}{number(rolled)}")
     return lines
+
+
+def mobility_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the degree of freedom and the ratios can do with, mm."""
+    lines = mobility_lines(project.train)
+    return [(max(letter(line, height).width for line in lines) + 6.0, 14.0 + step * len(lines))
+            for height, step in ((5.0, 12.0), (3.5, 10.0), (3.5, 7.0))]
+
+
+def mobility(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Degree of freedom by Chebyshev's formula, ratios to the driving link, angular velocities."""
+    lines = mobility_lines(project.train)
+    left = canvas.title(box, tr("Mobility and speeds of the links"))
+    height = size_for(lines, box.width - 3.0, 5.0)
+    step = min((left.y1 - box.y0) / len(lines), 12.0 if height > 3.5 else 10.0)
+    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
+
+
+def mobility_lines(train: Any) -> list[str]:
+    """What stands is frame. Passive meshes are none of the formula's: with them it is left out. Planets have no ratio of use."""
+    n = {name: float(step.value) for name, step in train.links.items() if not train.stands(name)}
+    driving = [train.link(name) for name in train.given if not train.stands(name)]
+    planets = {train.link(m.planet) for m in train.meshes if m.carrier}
+    links, meshes, lines = len(n), len(train.meshes), list[str]()
+    if links - meshes == len(driving):
+        lines.append(f"W = 3n − 2p_5 − p_4 = 3·{links} − 2·{links} − {meshes} = {links - meshes}")
+    if len(driving) == 1:
+        one = driving[0]
+        for name in (name for name in n if name != one and name not in planets and n[name]):
+            both = f"{one},{name}" if len(one + name) > 2 else one + name
+            lines.append(f"i_{{{both}}} = n_{{{one}}}/n_{{{name}}} = {number(n[one])}/{_signed(n[name])} = "
+                         f"{number(n[one] / n[name])}")
+    return lines + [f"ω_{{{name}}} = π·n_{{{name}}}/30 = {number(value * pi / 30, 5)} {tr('rad/s')}" for name, value in n.items()]
 
 
 def willis(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

@@ -8,6 +8,7 @@ from tests.project_files import project, read
 from tmm_sheets.drawing.marks import Text
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.sheets.train import mobility_lines
 
 
 def mesh(sun=None, planet="", carrier=None, ring=None):
@@ -149,3 +150,26 @@ def test_equations_in_numbers(case):
     for text in numbers:
         left, right = (eval(side.replace("·", "*").replace("−", "-").replace(",", ".")) for side in text.split("="))
         assert left == pytest.approx(right, rel=2e-3, abs=1e-9)
+
+
+@pytest.mark.parametrize(("case", "mobility", "ratios"), [
+    ("ring drives", "W = 3n − 2p_5 − p_4 = 3·3 − 2·3 − 2 = 1", {"i_{3H}": 108 / 84}), ("two inputs", "= 3·4 − 2·4 − 2 = 2", {}),
+    ("Ferguson", "= 3·4 − 2·4 − 3 = 1", {"i_{H3}": 101, "i_{H4}": -99}), ("Ferguson between its wheels", "= 2", {}),
+    ("back shaft", "= 1", {"i_{41}": 1 / 3, "i_{42}": -2 / 3}), ("two stages and a pair", "= 1", None),
+    ("block of planets", "= 3·3 − 2·3 − 2 = 1", {"i_{H4}": 1 / (1 - 30 * 20 / (24 * 34))}),
+])
+def test_mobility_and_ratios(case, mobility, ratios):
+    """What stands is frame, and what turns together one link."""
+    lines = mobility_lines(project(train(*CASES[case])).train)
+    assert lines[0].endswith(mobility)
+    parts = [line.replace(",", ".").replace("−", "-").split(" = ") for line in lines if line[0] == "i"]
+    found = {name: float(value) for name, *_, value in parts}
+    assert ratios is None or found == pytest.approx(ratios, rel=1e-3)
+
+
+def test_passive_meshes_are_no_matter_of_the_formula():
+    """A second planet of the same stage takes no freedom from it: the formula would say that nothing can turn."""
+    teeth, meshes = EPICYCLIC
+    second = mesh("1", "4", "H"), mesh(ring="3", planet="4", carrier="H")
+    twice = project(train({**teeth, "4": 30}, (*meshes, *second), {"1": 300, "3": 0}))
+    assert mobility_lines(twice.train)[0].startswith("i_{1H} = ")

@@ -1,0 +1,44 @@
+"""The formulas of the law on a cam's sheet are those that it is drawn by, on the rise and on the way back."""
+
+import re
+from math import pi
+
+import numpy as np
+import pytest
+
+from tmm_sheets.methods.cams.cam_laws import LAWS, PositionFunction
+from tmm_sheets.sheets.cam_law import FORMS, _phases
+
+TOKEN = re.compile(r"S_\{max\}|φ_\w+|φ|sin|cos|π|x|\d+|[-+*/()]|\^")
+
+
+def value(text, **letters):
+    """What a formula gives, as it is written: what stands side by side is multiplied."""
+    known = {"S_{max}": "S", "φ_у": "rise", "φ_дс": "dwell", "φ_с": "fall", "φ": "phi", "π": "pi", "^": "**"}
+    found = ""
+    for token in TOKEN.findall(text.replace("−", "-").replace("·", "*").replace("[", "(").replace("]", ")")):
+        side_by_side = found and (found[-1].isalnum() or found[-1] == ")") and (token[0].isalnum() or token[0] == "(")
+        found += ("*" if side_by_side and not found.endswith(("sin", "cos")) else "") + known.get(token, token)
+    return eval(found, {"pi": pi, "sin": np.sin, "cos": np.cos, "S": 0.03, "rise": 1.2, "fall": 1.7, **letters})
+
+
+@pytest.mark.parametrize("dwell", [0.0, 0.5])
+@pytest.mark.parametrize("name", FORMS)
+def test_formulas_are_those_of_the_law(name, dwell):
+    law = PositionFunction.of(1.2, dwell, 1.7, 0.03, LAWS[name])
+    for phase, lines in zip((law.rise, law.fall), _phases(law), strict=True):
+        for x in (0.2, 0.8):
+            head = lines[0].partition("x = ")[2]
+            assert value(head, dwell=dwell, phi=float(phase.phi(x))) == pytest.approx(x)
+            assert ("φ_дс" in head) == (dwell > 0 and phase is law.fall)
+            first = lines.index("x > 1/2:" if x > 0.5 else "x < 1/2:") + 1 if "x > 1/2:" in lines else 1
+            for line, exact in zip(lines[first:first + 3], (phase.s, phase.ds, phase.dds), strict=True):
+                assert value(line.partition(" = ")[2], x=x) == pytest.approx(float(exact(x)), abs=1e-12), line
+        assert lines[-1].endswith(" м")
+
+
+def test_a_law_that_is_a_diagram_tells_its_greatest_value_only():
+    for lines in _phases(PositionFunction.of(1.2, 0.5, 1.7, 0.3, LAWS["trapezoid"], symbol="ψ")):
+        assert len(lines) == 1
+        assert lines[0].startswith("|ψ")
+        assert lines[0][-1].isdigit()  # no unit
