@@ -78,7 +78,7 @@ def test_files_of_all_kinds(folder, tmp_path):
     (folder / "Empty").mkdir()
 
     def numbers(project, sheet, path):
-        starts = [{"id": "a/2/b", "why": "5 instead of 4", "kind": None}, {"id": "c", "why": "the other way", "kind": "sense"}]
+        starts = [{"said": "(2) b: 5 instead of 4"}, {"said": "the other way"}]
         return Report("", {"numbers": [], "starts": starts})
 
     opened = type("P", (), {"variant": type("V", (), {"sheets": [1, 2]})()})()
@@ -88,7 +88,7 @@ def test_files_of_all_kinds(folder, tmp_path):
     assert found.keys() == {"Empty", "Five", "Four", "One", "Three", "Two", "Шесть и семь"}
     assert [f["file"] for f in found["One"]["files"]] == ["again/sheet 1.dxf", "sheet 1.csv", "sheet 1.dxf"]
     assert {f"One/{f['file']}.html" for f in found["One"]["files"]} < report.files.keys()
-    assert found["One"]["mistakes"][1:3] == ["a/2/b: 5 instead of 4", "the other way"]
+    assert found["One"]["mistakes"][1:3] == ["(2) b: 5 instead of 4", "the other way"]
     assert (found["Empty"]["mark"], found["Empty"]["files"]) == (None, [])
     assert "Empty: no file" in report.text
     assert "Шесть и семь, план.cdw: such a file is not compared" in report.text

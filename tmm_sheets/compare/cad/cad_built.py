@@ -61,14 +61,16 @@ def as_built(finding: CadFinding | None, was: Element, now: Element, move: Placi
     if finding is None:
         there = moved(was, move)
         said = tell("without length, as follows from the mistake")
-        return CadFinding(there, verdict(there.length, tolerance), there.length, said, complex(move(now.points[0])), 3.0)
+        at = complex(move(now.points[0]))
+        return CadFinding(there, verdict(there.length, tolerance), there.length, said, at, 3.0, follows=True)
     off = float(np.abs(move(now.points) - move(was.points)).max()) if len(now.points) == len(was.points) else 0.0
     if finding.verdict is None or off <= tolerance or was.kind == "text":
         return finding
     said = tell("up to {by} mm off, as follows from the mistake").format(by=millimetres(off))
     what = said if finding.verdict == "green" else f"{said}; {finding.what}"
     deviation = max(off, finding.deviation)
-    return replace(finding, verdict=verdict(deviation, tolerance), deviation=deviation, what=what)
+    return replace(finding, verdict=verdict(deviation, tolerance), deviation=deviation, what=what,
+                   follows=finding.verdict == "green")
 
 
 def _goes_on(theirs: KnownLines, move: Placing, line: Points) -> bool:

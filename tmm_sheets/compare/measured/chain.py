@@ -24,7 +24,6 @@ from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, fact
 from tmm_sheets.compare.measured.own_numbers import OwnNumbers
 from tmm_sheets.compare.measured.own_steps import OwnValue
 from tmm_sheets.compare.measured.plan_scales import wrong_scales
-from tmm_sheets.compare.measured.wrong_rows import place_of_row
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.numbers import rounded, told
@@ -274,7 +273,7 @@ def _wrong_row(start: Judged, judged: Sequence[Judged]) -> None:
         near = max(start.line.half_digit + j.line.half_digit, start.reading / 2)
         if j.entry.unit == e.unit and abs(start.line.value - j.exact) <= j.tolerance and (
                 j.verdict == "red" or abs(start.line.value - j.line.value) <= near):
-            start.wrong = (Hypothesis("neighbour", "row", e.terms[-1][0], (), other=place_of_row(j)),)
+            start.wrong = (Hypothesis("neighbour", "row", e.terms[-1][0], (), other=j.row),)
             return
 
 

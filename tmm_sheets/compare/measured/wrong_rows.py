@@ -10,7 +10,6 @@ import numpy as np
 
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.measured.evidence import LEFT, Evidence, Explanation, loss
-from tmm_sheets.compare.measured.judged import Judged
 
 T = TypeVar("T")
 LEAST = 3
@@ -28,7 +27,7 @@ def wrong_rows(evidence: Evidence, i: int) -> Iterator[tuple[Hypothesis, Explana
     beside = [n for n in alike if judged[n].entry.label == e.label]
     along = [n for n in alike if judged[n].entry.quantity == e.quantity]
     for n in (*_next(beside, i), *_next(along, i)):
-        yield from _written(evidence, i, {i: n, n: i}, "row", place_of_row(judged[n]))
+        yield from _written(evidence, i, {i: n, n: i}, "row", judged[n].row)
     labels = list(dict.fromkeys(judged[n].entry.label for n in alike))
     by_place = {(j.entry.label, j.entry.quantity): n for n, j in enumerate(judged)
                 if (j.entry.plan, j.entry.title) == (e.plan, e.title)}
@@ -41,11 +40,6 @@ def wrong_rows(evidence: Evidence, i: int) -> Iterator[tuple[Hypothesis, Explana
     for rows, words in ((along, "position"), (lengths, "row"), (down, "row")):
         for by, which in ((-1, "before"), (1, "after")):
             yield from _shifted(evidence, i, rows, by, f"{words} {which}")
-
-
-def place_of_row(j: Judged) -> str:
-    """A row as it is told: its position and its quantity."""
-    return f"({j.entry.label}) {j.entry.quantity}" if j.entry.label else j.entry.quantity
 
 
 def _next(some: Sequence[T], one: T) -> list[T]:
@@ -72,7 +66,7 @@ def _shifted(evidence: Evidence, i: int, rows: Sequence[int], by: int, words: st
         run.pop()
     if i in run and sum(_off(evidence, n) for n in run) >= LEAST:
         judged = evidence.judged
-        said = f"{place_of_row(judged[run[0]])} … {place_of_row(judged[run[-1]])}"
+        said = f"{judged[run[0]].row} … {judged[run[-1]].row}"
         for h, found in _written(evidence, i, {n: of[n] for n in run}, words, said):
             # Where the column was cut the number of a row that is not there came in.
             k = rows.index(run[0 if by < 0 else -1]) + by
