@@ -60,14 +60,14 @@ def _mistake(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFin
     if len(others) > SHOWN:
         details.append(tell("and {n} more, in the table").format(n=len(others) - SHOWN))
     if built is not None:
-        after = [f for f in bad if f.follows and f.element.kind == "line"]
+        after = [f for f in bad if f.follows and f.element.kind == "line" and f.element.role in ("vector", "link")]
         said = [built.explained()]
         if first is not None and first != view:
             said = [tell('the same as in view "{view}": it follows from there').format(view=first.name), *said]
         if after:
             told_all = tell("up to {by} mm off, as follows from the mistake: {lines}")
             said.append(told_all.format(by=millimetres(max(f.deviation for f in after)),
-                                        lines=", ".join(f.element.name for f in after)))
+                                        lines=", ".join(dict.fromkeys(f.element.name for f in after))))
         details = [*said, *details]
     return Mistake(view.name, what, "red" if red else "amber", tuple(details), _picture(found, view, bad),
                    named=built is not None)

@@ -159,8 +159,9 @@ def _meant(e: Element, some: Sequence[PlanPoint]) -> PlanPoint:
 def rebuilt(e: Element, points: Sequence[PlanPoint]) -> Element:
     """An element of a plan whose points come to lie elsewhere; what hangs over a point, and heads, keep their size."""
     points = _of(e, points)
-    if e.role in ("symbol", "point") and e.kind != "circle":
-        return _with_its_point(e, points)
+    at_one = [p for p in points if p.label]
+    if at_one and e.role in ("symbol", "point") and e.kind != "circle":
+        return _with_its_point(e, at_one)
     if e.kind == "line":
         new = between(e, points)
         if np.array_equal(new, e.points):
@@ -183,10 +184,9 @@ def rebuilt(e: Element, points: Sequence[PlanPoint]) -> Element:
 
 def _with_its_point(e: Element, points: Sequence[PlanPoint]) -> Element:
     """A symbol goes with the point it is drawn at."""
-    some = [p for p in points if p.label]  # of what is drawn at one position other marks are no symbols of its points
-    near = min(some, key=lambda p: abs(p.was - e.middle), default=None)
-    stays = near is None or abs(near.was - e.middle) > MARK or abs(near.now - near.was) < AT_POINT
-    return e if near is None or stays else _shifted(e, near.now - near.was)
+    near = min(points, key=lambda p: abs(p.was - e.middle))
+    stays = abs(near.was - e.middle) > MARK or abs(near.now - near.was) < AT_POINT
+    return e if stays else _shifted(e, near.now - near.was)
 
 
 def _shifted(e: Element, by: complex) -> Element:
