@@ -646,7 +646,8 @@ def compare(
     if pages:
         from tmm_sheets.compare.report_pages import page
 
-        made |= {path: page(report, path.suffix.lower(), opened.variant.project.name) for path in pages}
+        name = opened.variant.project.name
+        made |= {path: page(report, path.suffix.lower(), name, files.seen_from(path, folder)) for path in pages}
     files.write_all(made)
     for note in report.notes:
         click.echo(f"{opened.variant.project.name}: {note}", err=True)

@@ -135,6 +135,13 @@ def _unwritable(path: Path, e: OSError) -> Problem:
     )
 
 
+def seen_from(path: Path, folder: Path) -> str:
+    """Where a folder is for who reads a file: relative to it, with slashes; on another drive, whole."""
+    with suppress(ValueError):
+        return Path(os.path.relpath(folder, path.parent)).as_posix()
+    return folder.absolute().as_posix()
+
+
 def source_date() -> int | None:
     """The date that files shall tell, seconds since 1970, from SOURCE_DATE_EPOCH; None where that is not set.
 

@@ -10,8 +10,8 @@ drawn before, and everything after that by the rules, with a pencil's scatter. E
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
 from zlib import crc32
@@ -39,7 +39,7 @@ Way = Callable[[list[Any], Any, int], complex]
 class Slip:
     """Something done otherwise: ``ways`` by the step they are done in, at position ``k`` or at all of them.
 
-    ``drawn`` are plans whose lengths are so many times as long, ``rows`` numbers that were written into each other's rows,
+    ``drawn`` are plans whose lengths are so many times as long, ``rows`` those that have the number of another row,
     ``mirrored`` is a plan that lies as in a mirror.
     """
 
@@ -48,8 +48,13 @@ class Slip:
     k: int | None = None
     ways: Mapping[Step, Way] = field(default_factory=dict)
     drawn: Mapping[str, float] = field(default_factory=dict)
-    rows: tuple[str, ...] = ()
+    rows: Mapping[str, str] = field(default_factory=dict)
     mirrored: str = ""
+
+    @property
+    def told_as(self) -> str:
+        """The kind it is told as."""
+        return "neighbour" if self.rows else self.kind
 
     def __str__(self) -> str:
         return f"{self.kind} {self.what}"
@@ -101,13 +106,11 @@ class Slipping(Hand):
     def filled(self, chosen: Mapping[str, Measurable] | None = None) -> Filled:
         filled = super().filled(chosen)
         for slip in self.slips:
-            if slip.rows:
-                by_id = {line.entry.id: line for line in filled.lines}
-                a, b = (by_id[name] for name in slip.rows)
-                swapped = {a.entry.id: b.value, b.entry.id: a.value}
-                for i, line in enumerate(filled.lines):
-                    if line.entry.id in swapped:
-                        filled.lines[i] = type(line)(line.entry, swapped[line.entry.id], line.half_digit, line.line)
+            by_id = {line.entry.id: line for line in filled.lines}
+            for i, line in enumerate(filled.lines):
+                if line.entry.id in slip.rows:
+                    other = by_id[slip.rows[line.entry.id]]
+                    filled.lines[i] = replace(line, value=other.value, half_digit=other.half_digit)
         return filled
 
 
@@ -237,7 +240,44 @@ def neighbour(found: Measurables, rng: np.random.Generator) -> Slip | None:
     rows = [e for e in found.entries.values() if e.label == label and e.kind == "length"]
     pairs = [(a, b) for a, b in pairwise(rows) if a.plan == b.plan in ("velocities", "accelerations")]
     pair = _pick(pairs, rng)
-    return Slip("neighbour", " <-> ".join(e.id for e in pair), rows=(pair[0].id, pair[1].id)) if pair else None
+    return Slip("neighbour", " <-> ".join(e.id for e in pair), rows=_each_others([pair])) if pair else None
+
+
+def _each_others(pairs: Iterable[tuple[Measurable, Measurable]]) -> dict[str, str]:
+    return {x.id: y.id for a, b in pairs for x, y in ((a, b), (b, a))}
+
+
+def rows(found: Measurables, rng: np.random.Generator) -> Slip | None:
+    """Numbers in wrong rows: of two neighbouring positions exchanged, one or all of a plan; a column shifted by one,
+    down the file or along the positions.
+    """
+    plan = _pick(["velocities", "accelerations"], rng)
+    asked = [e for e in found.entries.values() if e.main]
+    lengths = [e for e in asked if e.plan == plan and e.kind == "length"]
+    labels = list(dict.fromkeys(e.label for e in lengths))
+    by_place = {(e.label, e.quantity): e for e in lengths}
+    if len(labels) < 2:
+        return None
+    at = int(rng.integers(len(labels) - 1))
+    here = [e for e in lengths if e.label == labels[at] and (labels[at + 1], e.quantity) in by_place]
+    pairs = [(e, by_place[labels[at + 1], e.quantity]) for e in here]
+    form = rng.integers(4)
+    if form == 0:
+        pairs = [p for p in pairs if abs(p[0].value - p[1].value) > 5]
+        pair = _pick(pairs, rng)
+        return None if pair is None else Slip("rows", " <-> ".join(e.id for e in pair), rows=_each_others([pair]))
+    if form == 1:
+        return Slip("rows", f"{plan} {labels[at]} <-> {labels[at + 1]}", rows=_each_others(pairs))
+    every = [e for e in asked if e.plan == plan] if rng.integers(2) else lengths
+    quantity = _pick(here, rng)
+    column = every if form == 2 else [e for e in lengths if quantity and e.quantity == quantity.quantity]
+    first = int(rng.integers(max(len(column) // 2, 1)))
+    by = int(rng.choice([-1, 1]))
+    run = [(e, f) for e, f in pairwise(column[first:])][:int(rng.integers(5, 12))]
+    if len(run) < 3:
+        return None
+    shifted = {f.id: e.id for e, f in run} if by > 0 else {e.id: f.id for e, f in run}
+    return Slip("rows", f"{run[0][0].id} ... {run[-1][1].id} shifted by {by}", rows=shifted)
 
 
 def mirror(found: Measurables, rng: np.random.Generator) -> Slip | None:
@@ -269,7 +309,7 @@ def scale(found: Measurables, rng: np.random.Generator) -> Slip | None:
 
 
 KINDS = {f.__name__: f for f in (coriolis, normal, parallel, intersection, sense, inertia, force, moment, neighbour, mirror, crank,
-                                 scale)}
+                                 scale, rows)}
 
 
 # --- verdicts ---------------------------------------------------------------------------------------------------------------
@@ -289,7 +329,7 @@ class Student:
     def told(self, slip: Slip, first: bool = True) -> bool:
         """Whether a start tells this kind of mistake, in this step where it has one; ``first`` as the likeliest."""
         said = [h for j in self.judged if j.starts for h in (j.wrong[:1] if first else j.wrong)]
-        return any(h.kind == slip.kind and (not slip.ways or h.step in slip.ways) for h in said)
+        return any(h.kind == slip.told_as and (not slip.ways or h.step in slip.ways) for h in said)
 
     @property
     def seen(self) -> bool:

@@ -34,3 +34,17 @@ def test_a_wrong_index_beside_another_label_is_still_told():
     found = {[ABOVE, BELOW][n].text: f for n, f in read([ABOVE, BELOW], wrong).items()}
     assert found["k′"].says is None
     assert found["w4, n6"].says == "w5, n6"
+
+
+def test_a_foreign_title_or_label_in_the_box_is_not_ours():
+    """Nor is the label of another, unless the two were exchanged; what is none of ours is ours, misread."""
+    b, d = label(1, "b", 0, 0, 3, 4), label(2, "d", 50, 0, 53, 4)
+    def says(*texts):
+        writings = [Writing(text, at, 3.5, 2.0, 0.0, k) for k, (text, at) in enumerate(texts)]
+        return {[b, d][n].text: f.says for n, f in read([b, d], writings).items()}
+
+    assert says(("План сил", 2 + 2j)) == {}
+    assert says(("d", 2 + 2j)) == {}
+    assert says(("c", 2 + 2j)) == {"b": "c"}
+    assert says(("d", 2 + 2j), ("b", 52 + 2j)) == {"b": "d", "d": "b"}
+    assert says(("d", 2 + 2j), ("d", 52 + 2j)) == {"b": "d", "d": None}

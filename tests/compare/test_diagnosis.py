@@ -71,3 +71,14 @@ def test_students_are_told_what_they_did(number, kinds):
     assert one is not None
     assert all(one.told(slip) for slip in one.slips), str(one)
     assert sum(j.starts for j in one.judged) == len(kinds), str(one)
+
+
+@pytest.mark.parametrize(("number", "words"), [(1, "row"), (0, "positions"), (10, "row after"), (2, "position after")])
+def test_numbers_in_wrong_rows_are_one_mistake(number, words):
+    """Of two positions, one or all of them exchanged; a column shifted by a row or by a position."""
+    one = student("lugansk/shaper", number, 7, ("rows",))
+    (start,) = (j for j in one.judged if j.starts)
+    assert start.wrong[0].words == words, str(one)
+    wrong = {j.entry.id for j in one.judged if j.verdict == "red"}
+    assert wrong <= one.slips[0].rows.keys()
+    assert all(j.follows is start for j in one.judged if j.verdict == "red" and j is not start)

@@ -1,10 +1,16 @@
 """A group's folder: who made which mistakes, what could not be judged, and marks that follow from the teacher's scheme."""
 
+import re
+from pathlib import Path
+from urllib.parse import unquote
+
 import pytest
 
 from tmm_sheets.compare import group, marking
 from tmm_sheets.compare.report import Report
+from tmm_sheets.compare.report_pages import page
 from tmm_sheets.errors import BadInput
+from tmm_sheets.files import seen_from
 
 SCHEME = """full = 100
 [costs]
@@ -67,6 +73,8 @@ def test_table_and_marks(folder, tmp_path):
     assert report.tree["most_made"] == [{"mistake": "point b3 lies … mm off", "students": 3}]
     assert "Four, picture.jpg" in report.text
     assert set(report.files) == {"Five/sound.dxf.html", "One/sheet 1.dxf.html", "Three/Three.dxf.html", "Two/two.dxf.html"}
+    led = re.findall(r'href="([^"]*)"', page(report, ".html", "", seen_from(Path("a/group.html"), Path("out/g"))).decode())
+    assert [unquote(to) for to in led] == [f"../out/g/{name}" for name in sorted(report.files)]
 
 
 def test_files_of_all_kinds(folder, tmp_path):
@@ -78,7 +86,7 @@ def test_files_of_all_kinds(folder, tmp_path):
     (folder / "Empty").mkdir()
 
     def numbers(project, sheet, path):
-        starts = [{"id": "a/2/b", "why": "5 instead of 4", "kind": None}, {"id": "c", "why": "the other way", "kind": "sense"}]
+        starts = [{"said": "(2) b: 5 instead of 4"}, {"said": "the other way"}]
         return Report("", {"numbers": [], "starts": starts})
 
     opened = type("P", (), {"variant": type("V", (), {"sheets": [1, 2]})()})()
@@ -88,7 +96,7 @@ def test_files_of_all_kinds(folder, tmp_path):
     assert found.keys() == {"Empty", "Five", "Four", "One", "Three", "Two", "Шесть и семь"}
     assert [f["file"] for f in found["One"]["files"]] == ["again/sheet 1.dxf", "sheet 1.csv", "sheet 1.dxf"]
     assert {f"One/{f['file']}.html" for f in found["One"]["files"]} < report.files.keys()
-    assert found["One"]["mistakes"][1:3] == ["a/2/b: 5 instead of 4", "the other way"]
+    assert found["One"]["mistakes"][1:3] == ["(2) b: 5 instead of 4", "the other way"]
     assert (found["Empty"]["mark"], found["Empty"]["files"]) == (None, [])
     assert "Empty: no file" in report.text
     assert "Шесть и семь, план.cdw: such a file is not compared" in report.text

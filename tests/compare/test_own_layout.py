@@ -11,8 +11,11 @@ from tests.compare.cad_plants import Way, draw
 from tests.compare.hypotheses import Slip
 from tests.compare.own_layouts import Drawn, follows, is_there, taken
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare.cad import cad_drawing, cad_report, cad_story, view_search
-from tmm_sheets.compare.diagnosis.drawn_plan import drawn_plan
+from tmm_sheets.compare.cad import cad_built, cad_drawing, cad_report, cad_story, view_search
+from tmm_sheets.compare.cad.line_fit import lines
+from tmm_sheets.compare.diagnosis.built_plan import Drawing, built_otherwise, errors_of, possible
+from tmm_sheets.compare.diagnosis.drawn_plan import between, drawn_plan, drawn_positions, rebuilt
+from tmm_sheets.compare.diagnosis.replay import replay
 from tmm_sheets.compare.known_sheet import known_sheet
 from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.compare.report import Report
@@ -24,6 +27,7 @@ from tmm_sheets.project import Project
 
 SHAPER = Project(read("lugansk/shaper"))
 KNOWN = known_sheet(SHAPER, 1)
+PRESS = Project(read("press"))
 VIEWS = {e.view.name: e.view for e in KNOWN.elements}
 ACCELERATIONS, POSITIONS = VIEWS["План ускорений (положение 2)"], VIEWS["Планы положений механизма"]
 FORCES = [VIEWS[f"План сил звена {n}"] for n in (1, 3)]
@@ -99,6 +103,32 @@ def test_a_plan_that_no_paper_holds_is_none(far):
     last = drawn.points[-1].step
     assert not drawn.moved(lambda step: far if step is last else step.value)
     assert drawn.moved(lambda step: step.value + 1 if step is last else step.value)
+
+
+@pytest.mark.parametrize(("project", "known", "words", "at"), [
+    (SHAPER, KNOWN, "crank", None), (PRESS, known_sheet(PRESS, 1), "intersection", 3)], ids=["crank", "intersection"])
+def test_positions_built_otherwise_are_named(project, known, words, at):
+    """Links end at the circles of their hinges; one position that is wrong is little of all, and is told with its number."""
+    plans, errors = errors_of(project, known)
+    (view,) = (v for v in dict.fromkeys(e.view for e in known.elements) if drawn_positions(known, plans, v))
+    drawn = drawn_positions(known, plans, view)
+    made = next(h for h in possible([drawn], errors) if h.words == words and h.at == at)
+    now = [between(e, drawn.moved(replay(errors, made.changes))) for e in drawn.vectors]
+    theirs = lines(now)
+    wrong = {view: [e for e, z in zip(drawn.vectors, now, strict=True) if abs(z - e.points).max() > 1]}
+
+    def seen(view):
+        return Drawing(lambda line: cad_built._inked(theirs, Placing(), line), lambda z: z, [])
+
+    (found, points), = built_otherwise(project, known, wrong, seen, positions=True).values()
+    assert (found.mistake.words, found.mistake.step) == (words, made.step)
+    label = drawn.plan.labels[at] if at is not None else ""
+    assert found.position == label
+    assert found.said() == found.mistake.said() + (f" (position {label})" if label else "")
+    symbols = {e.position for e in known.elements if e.view == view and e.role == "symbol"
+               and np.abs(rebuilt(e, points).points - e.points).max() > 0.1}
+    assert symbols
+    assert symbols <= {p.label for p in points if abs(p.now - p.was) > 0.1}
 
 
 @pytest.mark.parametrize("times", [0.5, 2.0])

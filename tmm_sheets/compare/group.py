@@ -196,8 +196,7 @@ def _faults(tree: Mapping[str, Any]) -> tuple[dict[str, int], tuple[str, ...]]:
         starts = tree["starts"]
         left = [n for n in tree["numbers"] if n["follows"] is None and not n["starts"]]
         count = Counter(n["verdict"] for n in left)
-        return {"mistake": len(starts), "red": count["red"], "amber": count["amber"]}, tuple(
-            s["why"] if s["kind"] else f"{s['id']}: {s['why']}" for s in starts)
+        return {"mistake": len(starts), "red": count["red"], "amber": count["amber"]}, tuple(s["said"] for s in starts)
     built = {b["view"]: b["what"] for b in tree.get("built", ())}
     missing = set(tree.get("summary", {}).get("missing_views", ()))
     count = Counter(e["verdict"] for e in tree["elements"] if e["view"] not in built and e["view"] not in missing)
@@ -223,8 +222,7 @@ def _report(folder: Path, students: Sequence[Student], scheme: Scheme | None) ->
 
 
 def _tables(students: Sequence[Student], scheme: Scheme | None) -> Iterator[Table]:
-    head = [tell("student"), tell("project"), tell("files"), tell("mistakes named"), tell("other red"), tell("amber"),
-            tell("views missing"), tell("not judged")]
+    head = [tell("student"), tell("project"), tell("files"), *_kinds()]
     if scheme is not None:
         head += [tell("mark"), *([tell("grade")] if scheme.grades else [])]
     rows = []
@@ -238,10 +236,19 @@ def _tables(students: Sequence[Student], scheme: Scheme | None) -> Iterator[Tabl
         rows.append(tuple(row))
     yield Table(tell("Students"), tuple(head), tuple(rows))
     made = [(s.name, m) for s in students for m in s.mistakes]
+    files = [(s, f) for s in students for f in s.files]
+    yield Table(tell("Reports"), (tell("student"), tell("file"), *_kinds()),
+                tuple((s.name, f.file, *(str(f.faults.get(kind, 0)) for kind in KINDS)) for s, f in files),
+                pages=tuple("" if f.report is None else f"{s.name}/{f.file}.html" for s, f in files))
     if made:
         yield Table(tell("Mistakes of each"), (tell("student"), tell("mistake")), tuple(made))
         most = _most_made(students)[:MOST]
         yield Table(tell("Mistakes most made"), (tell("students"), tell("mistake")), tuple((str(n), m) for m, n in most))
+
+
+def _kinds() -> tuple[str, ...]:
+    """What the kinds of faults are called."""
+    return tell("mistakes named"), tell("other red"), tell("other amber"), tell("views missing"), tell("not judged")
 
 
 def _most_made(students: Sequence[Student]) -> list[tuple[str, int]]:

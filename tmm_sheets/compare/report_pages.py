@@ -8,8 +8,11 @@ from tmm_sheets.compare.story import Story
 SUFFIXES = (".html", ".pdf")
 
 
-def page(report: Report, suffix: str, title: str) -> bytes:
-    """The report as a file of one of :data:`SUFFIXES`; ``title`` stands over one that has only a text."""
+def page(report: Report, suffix: str, title: str, folder: str = ".") -> bytes:
+    """The report as a file of one of :data:`SUFFIXES`; ``title`` stands over one that has only a text.
+
+    ``folder`` is where, seen from the file, the report's other files are.
+    """
     told = report.story or Story(title, tuple(report.text.splitlines()))
     if suffix == ".pdf":
         from tmm_sheets.compare import story_pdf
@@ -17,4 +20,4 @@ def page(report: Report, suffix: str, title: str) -> bytes:
         return story_pdf.pdf(told)
     from tmm_sheets.compare import story_html
 
-    return story_html.html(told)
+    return story_html.html(told, folder)

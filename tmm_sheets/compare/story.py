@@ -58,12 +58,16 @@ class Mistake:
 
 @dataclass(frozen=True)
 class Table:
-    """A table with a heading; columns are as wide as their texts need. ``verdicts`` of its rows, if they have any, colour them."""
+    """A table with a heading; columns are as wide as their texts need. ``verdicts`` of its rows, if they have any, colour them.
+
+    ``pages`` are those that the second cells of its rows lead to, from the folder of the reports; "" for none.
+    """
 
     title: str
     head: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     verdicts: tuple[str, ...] = ()
+    pages: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from base64 import b64encode
 from collections.abc import Iterator
 from html import escape
 from itertools import zip_longest
+from urllib.parse import quote
 
 import numpy as np
 
@@ -35,15 +36,15 @@ LONGEST = 430.0
 """Longer side of a picture, CSS pixels."""
 
 
-def html(story: Story) -> bytes:
-    """The page, UTF-8."""
-    body = "\n".join(_parts(story))
+def html(story: Story, folder: str = ".") -> bytes:
+    """The page, UTF-8; ``folder`` is where from it the pages are that its tables lead to."""
+    body = "\n".join(_parts(story, folder))
     return (f'<!DOCTYPE html>\n<html lang="{reader()}">\n<head>\n<meta charset="utf-8">\n'
             '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
             f"<title>{escape(story.title)}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{body}\n</body>\n</html>\n").encode()
 
 
-def _parts(story: Story) -> Iterator[str]:
+def _parts(story: Story, folder: str) -> Iterator[str]:
     yield f"<h1>{escape(story.title)}</h1>"
     yield from (f'<p class="about">{escape(line)}</p>' for line in story.about)
     if story.mistakes:
@@ -52,7 +53,7 @@ def _parts(story: Story) -> Iterator[str]:
             key = ((OURS, tell("exact")), (THEIRS, tell("drawn")), (WRONG, tell("wrong")))
             yield '<p class="key">' + "".join(f'<span style="border-color:{c}"></span>{escape(said)}' for c, said in key) + "</p>"
         yield from map(_mistake, story.mistakes)
-    yield from map(_table, story.tables)
+    yield from (_table(table, folder) for table in story.tables)
     if story.unjudged:
         yield f"<h2>{escape(tell('What could not be judged, and why'))}</h2>\n<ul>"
         yield from (f"<li>{escape(line)}</li>" for line in story.unjudged)
@@ -66,10 +67,11 @@ def _mistake(m: Mistake) -> str:
     return f'<article class="{m.verdict}">{said}{_picture(m.picture) if m.picture is not None else ""}</article>'
 
 
-def _table(table: Table) -> str:
+def _table(table: Table, folder: str) -> str:
     head = "".join(f"<th>{escape(c)}</th>" for c in table.head)
-    rows = "\n".join((f'<tr class="{verdict}">' if verdict else "<tr>") + "".join(f"<td>{escape(c)}</td>" for c in row) + "</tr>"
-                     for row, verdict in zip_longest(table.rows, table.verdicts))
+    rows = "\n".join((f'<tr class="{verdict}">' if verdict else "<tr>") + "".join(
+        f'<td><a href="{escape(quote(f"{folder}/{page}"))}">{escape(c)}</a></td>' if page and k == 1 else f"<td>{escape(c)}</td>"
+        for k, c in enumerate(row)) + "</tr>" for row, verdict, page in zip_longest(table.rows, table.verdicts, table.pages))
     return (f"<h2>{escape(table.title)}</h2>\n<div class=\"scroll\"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n"
             "</tbody></table></div>")
 

@@ -41,7 +41,7 @@ def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, mo
     """
     wrong: dict[ElementView, list[Element]] = {}
     for f in outcome.findings:
-        if f.element.role == "vector" and f.element.kind == "line" and f.verdict == "red":
+        if f.element.role in ("vector", "link") and f.element.kind == "line" and f.verdict == "red":
             wrong.setdefault(f.element.view, []).append(f.element)
     tips = np.unique(np.round(np.concatenate([s.points[[0, -1]] for s in space.strokes]), 2)) if space.strokes else np.zeros(0)
 
@@ -50,7 +50,7 @@ def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, mo
         return Drawing(lambda line: _inked(space.lines, move, line), lambda z: space.lines.nearest(np.asarray(move(z)), NEAR)[2],
                        move.back(tips).tolist(), move.scale, lambda line: _goes_on(space.lines, move, line))
 
-    return built_plan.built_otherwise(project, known, wrong, seen, made)
+    return built_plan.built_otherwise(project, known, wrong, seen, made, positions=True)
 
 
 def as_built(finding: CadFinding | None, was: Element, now: Element, move: Placing, tolerance: float) -> CadFinding:
@@ -61,14 +61,19 @@ def as_built(finding: CadFinding | None, was: Element, now: Element, move: Placi
     if finding is None:
         there = moved(was, move)
         said = tell("without length, as follows from the mistake")
-        return CadFinding(there, verdict(there.length, tolerance), there.length, said, complex(move(now.points[0])), 3.0)
+        at = complex(move(now.points[0]))
+        return CadFinding(there, verdict(there.length, tolerance), there.length, said, at, 3.0, follows=True)
     off = float(np.abs(move(now.points) - move(was.points)).max()) if len(now.points) == len(was.points) else 0.0
     if finding.verdict is None or off <= tolerance or was.kind == "text":
         return finding
+    if was.role == "symbol" and finding.verdict != "green":
+        said = tell("a symbol at a point that lies elsewhere")
+        return replace(finding, verdict=None, deviation=0.0, what=said, missing=False)
     said = tell("up to {by} mm off, as follows from the mistake").format(by=millimetres(off))
     what = said if finding.verdict == "green" else f"{said}; {finding.what}"
     deviation = max(off, finding.deviation)
-    return replace(finding, verdict=verdict(deviation, tolerance), deviation=deviation, what=what)
+    return replace(finding, verdict=verdict(deviation, tolerance), deviation=deviation, what=what,
+                   follows=finding.verdict == "green")
 
 
 def _goes_on(theirs: KnownLines, move: Placing, line: Points) -> bool:

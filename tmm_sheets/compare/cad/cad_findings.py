@@ -33,6 +33,7 @@ class CadFinding(Finding):
     absent : whether all of its kind are left out of the view, which is told of the view
     entities : numbers of the entities of the drawing it is made of
     says : what a text says instead of what it should
+    follows : whether it is as it follows from the mistake its plan was built on
     """
 
     reach: float
@@ -43,6 +44,7 @@ class CadFinding(Finding):
     entities: tuple[int, ...] = ()
     absent: bool = False
     says: str | None = None
+    follows: bool = False
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 from tmm_sheets.compare.cad import cad_absent, cad_report
 from tmm_sheets.compare.cad.cad_findings import CadFinding
 from tmm_sheets.compare.elements import ElementView, drawn
-from tmm_sheets.compare.findings import called, counted, worst
+from tmm_sheets.compare.findings import called, counted, millimetres, worst
 from tmm_sheets.compare.story import Mistake, Picture, Story, Table, clipped
 from tmm_sheets.numbers import told
 from tmm_sheets.words import tell, tell_n
@@ -36,21 +36,39 @@ def mistakes(found: cad_report.Examined, lost: set[ElementView]) -> list[Mistake
     for f in worst(found.outcome.findings):
         if f.element.view not in lost:
             of_view.setdefault(f.element.view, []).append(f)
-    order = sorted(of_view, key=lambda v: (v not in found.built, -sum(f.verdict == "red" for f in of_view[v]), v.n))
-    return [_mistake(found, v, of_view[v]) for v in order]
+    first: dict[str, ElementView] = {}
+    for v, built in found.built.items():  # in the order of drawing
+        first.setdefault(built.said(), v)
+
+    def place(v: ElementView) -> tuple[bool, int, int]:
+        if v in found.built:
+            return False, list(found.built).index(v), 0
+        return True, -sum(f.verdict == "red" for f in of_view[v]), v.n
+
+    return [_mistake(found, v, of_view[v], first.get(found.built[v].said()) if v in found.built else None)
+            for v in sorted(of_view, key=place)]
 
 
-def _mistake(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFinding]) -> Mistake:
-    """What is wrong in a view, its picture beside it."""
+def _mistake(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFinding], first: ElementView | None) -> Mistake:
+    """What is wrong in a view, its picture beside it; ``first`` is the view in which the same was done, of one that is built so."""
     red = sum(f.verdict == "red" for f in bad)
     built = found.built.get(view)
     what = built.said() if built is not None else counted(bad)
+    others = [f for f in bad if not f.follows]
     details = [tell("no. {number}, {element}: {what}").format(number=f.element.number, element=called(f.element), what=f.what)
-               for f in bad[:SHOWN]]
-    if len(bad) > SHOWN:
-        details.append(tell("and {n} more, in the table").format(n=len(bad) - SHOWN))
+               for f in others[:SHOWN]]
+    if len(others) > SHOWN:
+        details.append(tell("and {n} more, in the table").format(n=len(others) - SHOWN))
     if built is not None:
-        details = [built.explained(), *details]
+        after = [f for f in bad if f.follows and f.element.kind == "line" and f.element.role in ("vector", "link")]
+        said = [built.explained()]
+        if first is not None and first != view:
+            said = [tell('the same as in view "{view}": it follows from there').format(view=first.name), *said]
+        if after:
+            told_all = tell("up to {by} mm off, as follows from the mistake: {lines}")
+            said.append(told_all.format(by=millimetres(max(f.deviation for f in after)),
+                                        lines=", ".join(dict.fromkeys(f.element.name for f in after))))
+        details = [*said, *details]
     return Mistake(view.name, what, "red" if red else "amber", tuple(details), _picture(found, view, bad),
                    named=built is not None)
 
@@ -66,11 +84,15 @@ def _picture(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFin
     if not lines:
         return None
     size = max(float(np.ptp(z.real) + np.ptp(z.imag)) for z in ours) if ours else 100.0
-    places = tuple((f.at, min(f.reach, max(0.04 * size, 1.5)), str(f.element.number)) for f in lines)
-    picture = Picture(ours, (), tuple(wrong), places)
+    places = [(f.at, min(f.reach, max(0.04 * size, 1.5)), str(f.element.number)) for f in lines if not f.follows]
+    # What follows from a mistake is called as on the plan: the points where it has dots, else the lines.
+    after = [f for f in lines if f.follows and f.element.name]
+    dots = [f for f in after if f.element.kind == "circle"]
+    places += [(f.at, 0.0, f.element.name) for f in dots or after]
+    picture = Picture(ours, (), tuple(wrong), tuple(places))
     box = picture.box
     theirs = clipped([s.points for s in found.space.strokes], box)
-    return Picture(ours, theirs, clipped(wrong, box), places)
+    return Picture(ours, theirs, clipped(wrong, box), tuple(places))
 
 
 def _unjudged(found: cad_report.Examined, lost: set[ElementView]) -> list[str]:

@@ -21,6 +21,8 @@ ARROWS = str.maketrans("", "", "→←↑↓")
 """Signs that may be drawn among the texts."""
 MOST = 8
 """So many texts are tried in all ways in which one or two of them belong to another label."""
+WORDS = re.compile(r"[^\W\d_]{4}")
+"""What a title has and a label has not."""
 FAR = 12.0
 """How far from its place a text may be, mm: where a letter goes is the draughtsman's choice."""
 
@@ -118,11 +120,23 @@ class _Reading:
         pairs = [(_beyond(want, self.writings[k]), n, k) for n, want in self._missing() for k in self._about(want)
                  if k in self.free and _inside(want, self.writings[k].at, 3.0)]
         for _, n, k in sorted(pairs):
-            if n not in self.found and k in self.free:
+            if n not in self.found and k in self.free and self._meant_for(n, k):
                 want = self.wanted[n]
                 parts = {k, *(j for j in self._about(want) if j in self.free and _inside(want, self.writings[j].at, CLOSE))}
                 order = self._along(list(parts), want)
                 self._take(n, *order, says="".join(self.writings[j].text for j in order).strip())
+
+    def _meant_for(self, n: int, k: int) -> bool:
+        """Whether a text may be meant for a wanted one: none is a title where a label should be, or the label of another one.
+
+        That stands there by chance, unless the two were exchanged.
+        """
+        text = self.writings[k].text
+        if bool(WORDS.search(text)) != bool(WORDS.search(self.wanted[n].text)):
+            return False
+        owners = [m for m, want in self._missing() if m != n and meant(want.text) == meant(text)]
+        return not owners or any(j != k and j in self.free and _inside(self.wanted[m], self.writings[j].at, 3.0)
+                                 for m in owners for j in self._about(self.wanted[m]))
 
     def _missing(self) -> Iterator[tuple[int, Element]]:
         return ((n, want) for n, want in enumerate(self.wanted) if n not in self.found)

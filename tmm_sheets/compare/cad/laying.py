@@ -123,13 +123,15 @@ def _own_layout(known: Sequence[KnownSheet], ink: CadInk) -> Laid | None:
     best: Laid | None = None
     for space in ink.spaces:
         turn = Placing((ink.unit or 1.0) * 1j ** -_quarter(space))
-        laid = space.placed(turn)
         for sheet in known:
+            # By all letters of the sheet first: lines that lie close together are told apart at their own size.
+            placing = _to_size(Laid(sheet, space, turn, 0.0)).placing
+            laid = space.placed(placing)
             views = list(dict.fromkeys(e.view for e in sheet.elements if e.view.n))
             found = view_search.find(sheet.elements, views, laid.strokes, laid.lines, laid.writings, {})
             share = _explained(sheet, laid, found)
             if share >= OWN and (best is None or share > best.share):
-                best = Laid(sheet, space, turn, share, found)
+                best = Laid(sheet, space, placing, share, found)
     return best if best is None else _to_size(best)
 
 
@@ -152,7 +154,7 @@ def _to_size(laid: Laid) -> Laid:
     """The same at the size at which its letters are as high as ours: symbols are as large in every scale of a view."""
     high: dict[str, set[float]] = {}
     for e in laid.known.elements:
-        if e.kind == "text" and e.view in laid.views:
+        if e.kind == "text" and (e.view in laid.views or not laid.views):
             high.setdefault(meant(e.text), set()).add(e.height)
     votes: Counter[float] = Counter()
     for w in laid.space.writings:  # a number may be one of several that are not equally high

@@ -56,7 +56,11 @@ class _Lost:
         self.moves, self.share = dict(places.moves), places.share
         views = dict.fromkeys(e.view for e in known.elements)
         self.shown = {view: drawn for view in views if (drawn := drawn_plan(known, plans, view)) is not None}
+        self.owners: dict[frozenset[str], ElementView] = {}
         search = self._search(self.shown)
+        for v in self.shown:
+            if places.share.get(v, 0.0) >= SURE and v in self.moves and search.named(v, self.moves[v]):
+                self.owners[search.title(v, self.moves[v]) or frozenset()] = v
         self.main, self.points = dict(search.main), dict(search.points)
         self.usual = {v: search.worth(v, FoundView(self.moves[v], places.share[v])) for v in self.shown if v in self.moves}
         self.titled_otherwise = {v for v in self.usual if places.share[v] >= SURE and search.strange(v, self.moves[v])
@@ -75,7 +79,9 @@ class _Lost:
                 free = unused(free, lines(ink).points(1.0), 1.2)
         left = set(np.unique(free.owner).tolist())
         strokes = [s for k, s in enumerate(self.space.strokes) if k in left]
-        return Search(self.known.elements, list(views), strokes, free, self.space.writings, others)
+        search = Search(self.known.elements, list(views), strokes, free, self.space.writings, others)
+        search.owners = self.owners
+        return search
 
     def explaining_most(self, made: Sequence[Hypothesis]) -> Hypothesis | None:
         """The mistake with which, besides those made already, most ink of the doubtful views is explained; None without."""

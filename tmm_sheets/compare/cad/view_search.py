@@ -141,6 +141,8 @@ class Search:
         self.shapes = _of_drawing(strokes)
         self.free = theirs
         self.scales: dict[float | None, float] = {v.mu: p.scale for v, p in known.items() if v.mu is not None}
+        self.owners: Mapping[frozenset[str], ElementView] = {}
+        """Views whose titles are known: they are those of no others."""
 
     def changed(self, v: ElementView, main: Iterable[Element], least: int = FEW_LINES, left_over: bool = False) -> FoundView | None:
         """A view that is drawn with other main lines than ours, at a scale of its own; None where it is not found whole.
@@ -174,15 +176,15 @@ class Search:
 
     def strange(self, v: ElementView, placing: Placing) -> bool:
         """Whether the title over or under a place is that of another such view, with another number."""
-        said = self._title(v, placing)
-        return said is not None and _namesakes(_tokens(v.name), said)
+        said = self.title(v, placing)
+        return said is not None and self.owners.get(said, v) == v and _namesakes(_tokens(v.name), said)
 
     def named(self, v: ElementView, placing: Placing) -> bool:
         """Whether the title over or under a place is the view's own, with its number."""
-        own, said = _tokens(v.name), self._title(v, placing)
+        own, said = _tokens(v.name), self.title(v, placing)
         return said is not None and (bool(_numbers(own) & _numbers(said)) if _numbers(own) else _common(own, said) > CALLED)
 
-    def _title(self, v: ElementView, placing: Placing) -> frozenset[str] | None:
+    def title(self, v: ElementView, placing: Placing) -> frozenset[str] | None:
         """The nearest title that may be that of a view; one that has more words of the view's own may be farther off."""
         own = _tokens(v.name)
         box, titles = self._titles(v, placing)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from tmm_sheets.compare.diagnosis.drawn_plan import DRAWN, SHOWS, DrawnPlan, PlanPoint, between, drawn_plan
+from tmm_sheets.compare.diagnosis.drawn_plan import DRAWN, SHOWS, DrawnPlan, PlanPoint, between, drawn_plan, drawn_positions
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, hypotheses
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
@@ -56,15 +56,20 @@ FARTHEST = 250.0
 
 @dataclass(frozen=True)
 class BuiltPlan:
-    """A plan that was built on a mistake, and how many of its wrong lines that explains; the point that is off where it is none."""
+    """A plan that was built on a mistake, and how many of its wrong lines that explains; the point that is off where it is none.
+
+    ``position`` is that at which it was made, in a plan of several.
+    """
 
     mistake: Hypothesis | str
     explains: int
     of: int
+    position: str = ""
 
     def said(self) -> str:
         """What was done wrong."""
-        return self.mistake if isinstance(self.mistake, str) else self.mistake.said()
+        said = self.mistake if isinstance(self.mistake, str) else self.mistake.said()
+        return tell("{mistake} (position {position})").format(mistake=said, position=self.position) if self.position else said
 
     def explained(self) -> str:
         """How much of the plan it explains."""
@@ -109,30 +114,40 @@ def errors_of(project: Project, known: KnownSheet) -> tuple[dict[str, Plan], Err
 
 
 def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementView, Sequence[Element]],
-                    seen: Callable[[ElementView], Drawing], made: Sequence[Hypothesis] = ()) -> dict[
+                    seen: Callable[[ElementView], Drawing], made: Sequence[Hypothesis] = (), positions: bool = False) -> dict[
                         ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]:
     """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet.
 
     ``wrong`` are the vectors of views that are not where they belong, as they should be; ``made`` are mistakes of the sheet that
-    are known already.
+    are known already. With ``positions`` the mechanism at all its positions is such a plan, too; what is wrong there need not show
+    in other plans, which were drawn from what it should be.
     """
     if not wrong:
         return {}
     plans, errors = errors_of(project, known)
     shown = {view: drawn for view in dict.fromkeys(e.view for e in known.elements)
              if (drawn := drawn_plan(known, plans, view)) is not None}
-    drawings = {view: seen(view) for view in shown}
+    if positions:
+        shown |= {view: drawn for view in wrong if (drawn := drawn_positions(known, plans, view)) is not None}
+    # Where links of many positions meet each goes on in others.
+    drawings = {view: replace(seen(view), goes_on=lambda line: False) if drawn.of_positions else seen(view)
+                for view, drawn in shown.items()}
     share = {view: _share(drawn, drawings[view], drawn.points) for view, drawn in shown.items()}
     before = [_Mistake(h, h.changes) for h in made]
 
     weight = {view: sum(e.length for e in drawn.vectors) for view, drawn in shown.items()}
 
-    def gain(mistake: _Mistake) -> float:
-        """By how much more ink the whole sheet has with a mistake; infinitely less where a plan has it where it should be."""
+    def gain(mistake: _Mistake, alone: bool) -> float:
+        """By how much more ink the whole sheet has with a mistake; infinitely less where a plan has it where it should be.
+
+        A mistake that may be one view's ``alone`` is not refuted by the others.
+        """
         value = replay(errors, [c for m in (*before, mistake) for c in m.changes])
         more = {view: _share(drawn, drawings[view], points) - share[view]
                 for view, drawn in shown.items() if (points := drawn.moved(value))}
-        return sum(weight[view] * m for view, m in more.items()) if min(more.values(), default=0.0) > -GAIN else -np.inf
+        if not alone and min(more.values(), default=0.0) <= -GAIN:
+            return -np.inf
+        return sum(weight[view] * (max(m, 0.0) if alone else m) for view, m in more.items())
 
     order, out = list(plans), {}
     for view, drawn in sorted(shown.items(), key=lambda x: order.index(x[1].plan.name)):
@@ -144,16 +159,18 @@ def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementV
             # A line that goes elsewhere is wrong, though the ink of another one made it look right.
             numbers |= {e.number for e in drawn.vectors
                         if e.number in there and np.abs(there[e.number] - e.points[[0, -1]]).max() >= SHOWS}
-            out[view] = BuiltPlan(found.mistake.said, len(numbers & there.keys()), len(numbers)), found.points
+            h = found.mistake.said
+            position = "" if isinstance(h, str) or h.at is None or not drawn.of_positions else drawn.plan.labels[h.at]
+            out[view] = BuiltPlan(h, len(numbers & there.keys()), len(numbers), position), found.points
             share[view] = found.share
-            if found.mistake not in before:
+            if found.mistake not in before and not drawn.of_positions:
                 before.append(found.mistake)
     return out
 
 
-def explains(usual: float, now: float) -> bool:
-    """Whether a mistake explains a plan of which so much has ink in its place, and so much with the mistake."""
-    return now - usual > min(GAIN, max(EQUAL, OF_REST * (1 - usual)))
+def explains(usual: float, now: float, least: float = EQUAL) -> bool:
+    """Whether a mistake explains a plan of which so much has ink in its place, and so much with the mistake: ``least`` more."""
+    return now - usual > min(GAIN, max(least, OF_REST * (1 - usual)))
 
 
 def possible(shown: Iterable[DrawnPlan], errors: Errors) -> list[Hypothesis]:
@@ -162,13 +179,14 @@ def possible(shown: Iterable[DrawnPlan], errors: Errors) -> list[Hypothesis]:
     for drawn in shown:
         steps = [p.step for p in drawn.points]
         before = list(ordered(steps, lambda step: [a for a in errors.arguments(step) if isinstance(a, Step)]))
-        for h in hypotheses(before, drawn.k, drawn.plan.labels):
-            found.setdefault((h.words, id(h.step), h.at, h.other), h)
+        for k in drawn.positions:
+            for h in hypotheses(before, k, drawn.plan.labels):
+                found.setdefault((h.words, id(h.step), h.at, h.other), h)
     return sorted(found.values(), key=lambda h: KINDS.index(h.kind))
 
 
 def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float, before: Sequence[_Mistake],
-               gain: Callable[[_Mistake], float]) -> _Found | None:
+               gain: Callable[[_Mistake, bool], float]) -> _Found | None:
     """The mistake with which most of a plan has ink, if that is much more than has ink without it, ``usual``.
 
     What was done wrong in plans ``before`` it may lead on to this one; where that does, nothing else is looked for. Of mistakes
@@ -179,7 +197,8 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float,
         for m in mistakes:
             points = drawn.moved(replay(errors, [c for one in (*made, m) for c in one.changes]))
             share = _share(drawn, drawing, points) if points else 0.0
-            if share >= MOST and explains(usual, share):
+            # One of the positions is little of them all.
+            if share >= MOST and explains(usual, share, 0.0 if drawn.of_positions else EQUAL):
                 out.append(_Found(share, points, m))
         return out
 
@@ -188,12 +207,17 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float,
         led_on += [replace(f, mistake=before[-1]) for f in tried(before[-1:], before[:-1])]
     if led_on:
         return max(led_on, key=lambda f: f.share)
-    usual_ones = _best(tried((_Mistake(h, h.changes) for h in possible([drawn], errors)), before), gain)
+    def more(mistake: _Mistake) -> float:
+        return gain(mistake, drawn.of_positions)
+
+    usual_ones = _best(tried((_Mistake(h, h.changes) for h in possible([drawn], errors)), before), more)
     if usual_ones:
-        most = max(more for more, _ in usual_ones)
-        return next(f for more, f in usual_ones if more >= AS_GOOD * most)
+        most = max(gained for gained, _ in usual_ones)
+        return next(f for gained, f in usual_ones if gained >= AS_GOOD * most)
+    if drawn.of_positions:
+        return None  # a link that lies elsewhere is told as that
     # A point may lie on another one, or on another vector: that only makes what is wrong disappear.
-    off = [f for _, f in _best(tried(_points_off(drawn, drawing), before), gain)]
+    off = [f for _, f in _best(tried(_points_off(drawn, drawing), before), more)]
     return max(off, key=lambda f: _ink(drawn, drawing, f.points), default=None)
 
 

@@ -59,6 +59,11 @@ WORDS: Mapping[str, str] = {
     "computed scale": marked("what is computed from this plan is {other} times as large: another scale factor was taken"),
     "vector scale": marked("the vector to {step} is laid off {other} times as long: another scale factor"),
     "row": marked("that is the number of {other}: written into the wrong row?"),
+    "positions": marked("the numbers of positions {other} are written into each other's rows"),
+    "row before": marked("the column is shifted by a row: in {other} stands the number of the row before each"),
+    "row after": marked("the column is shifted by a row: in {other} stands the number of the row after each"),
+    "position before": marked("in {other} stands the number of the position before each"),
+    "position after": marked("in {other} stands the number of the position after each"),
     "position": marked("for {step} the number of position {other} is taken"),
     "number": marked("for {step} the number of {other} is taken"),
 }

@@ -273,8 +273,7 @@ def _wrong_row(start: Judged, judged: Sequence[Judged]) -> None:
         near = max(start.line.half_digit + j.line.half_digit, start.reading / 2)
         if j.entry.unit == e.unit and abs(start.line.value - j.exact) <= j.tolerance and (
                 j.verdict == "red" or abs(start.line.value - j.line.value) <= near):
-            place = f"({j.entry.label}) " if j.entry.label else ""
-            start.wrong = (Hypothesis("neighbour", "row", e.terms[-1][0], (), other=f"{place}{j.entry.quantity}"),)
+            start.wrong = (Hypothesis("neighbour", "row", e.terms[-1][0], (), other=j.row),)
             return
 
 

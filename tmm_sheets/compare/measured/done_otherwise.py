@@ -9,8 +9,9 @@ from typing import get_args
 import numpy as np
 
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, computed_with, hypotheses
-from tmm_sheets.compare.measured.evidence import LEFT, Evidence, Explanation, loss
+from tmm_sheets.compare.measured.evidence import Evidence, Explanation, loss
 from tmm_sheets.compare.measured.plan_scales import drawn_to, is_scaled, times_as_long
+from tmm_sheets.compare.measured.wrong_rows import wrong_rows
 from tmm_sheets.numbers import told
 
 ALONE = 0.9
@@ -28,7 +29,7 @@ def done_otherwise(evidence: Evidence, i: int) -> Explanation | None:
     """The discrete mistake that explains a number, with those that cannot be told from it."""
     alone = float(loss(evidence.left[i] / evidence.allowed[i]))
     found = [(h, evidence.replayed(h)) for h in mistakes_before(evidence, i) if evidence.leaves_little(i, h)]
-    found += _exchanged(evidence, i)
+    found += wrong_rows(evidence, i)
     best = max((e.score for _, e in found), default=0.0)
     if best <= ALONE * alone:
         return None
@@ -49,25 +50,6 @@ def _as_often(evidence: Evidence, h: Hypothesis, once: Explanation) -> tuple[Hyp
             for e in (once, always)]
     more = float(np.sum(loss(rest[0]) - loss(rest[1])))
     return (often, always) if min(more, always.score - once.score) > (1 - EQUAL) * once.score else (h, once)
-
-
-def _exchanged(evidence: Evidence, i: int) -> Iterator[tuple[Hypothesis, Explanation]]:
-    """That a number and that in the next row were written into each other's rows."""
-    e = evidence.judged[i].entry
-    alike = [n for n, j in enumerate(evidence.judged) if (j.entry.plan, j.entry.label, j.entry.kind, j.entry.unit) == (
-        e.plan, e.label, e.kind, e.unit)]
-    at = alike.index(i)
-    for n in alike[max(at - 1, 0):at] + alike[at + 1:at + 2]:
-        between = evidence.judged[i].line.value - evidence.left[i] - evidence.judged[n].line.value + evidence.left[n]
-        shares = np.zeros(len(evidence.judged))
-        shares[[i, n]] = -between, between
-        before = evidence.left[[i, n]] / evidence.allowed[[i, n]]
-        after = [evidence.judged[m].apart(evidence.left[m] - shares[m]) for m in (i, n)] / evidence.allowed[[n, i]]
-        if e.terms and np.all(np.abs(before) > LEFT) and np.all(np.abs(after) <= LEFT):
-            other = evidence.judged[n].entry
-            place = f"({other.label}) " if other.label else ""
-            h = Hypothesis("neighbour", "row", e.terms[-1][0], (), other=f"{place}{other.quantity}")
-            yield h, Explanation((), shares, np.zeros(len(shares)), float(np.sum(loss(before) - loss(after))))
 
 
 def mistakes_before(evidence: Evidence, i: int, others: Sequence[int] = ()) -> list[Hypothesis]:

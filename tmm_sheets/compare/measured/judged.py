@@ -63,6 +63,11 @@ class Judged:
         return self.line.entry
 
     @property
+    def row(self) -> str:
+        """Its row as it is told: position and quantity."""
+        return f"({self.entry.label}) {self.entry.quantity}" if self.entry.label else self.entry.quantity
+
+    @property
     def verdict(self) -> Verdict:
         """Green, amber or red; not green where it does not follow from the student's own numbers."""
         if self.off_own:

@@ -104,12 +104,12 @@ MARKS = {"green": " ", "amber": "?", "red": "!"}
 
 def _row(j: Judged) -> tuple[str, ...]:
     e = j.entry
-    percent = "–" if j.percent is None or abs(j.percent) >= 1000 else told(decimal(j.percent, 1))
+    percent = "–" if j.percent is None or abs(j.percent) >= 1000 or abs(j.exact) < j.tolerance else told(decimal(j.percent, 1))
     tolerance = f"±{told(rounded(j.tolerance, 2))}" if EXACT < j.tolerance < float("inf") else "0" if j.tolerance <= EXACT else "–"
     colour = said_verdict(j.verdict)
     said = [colour]
     if j.follows is not None:
-        said = [tell("{verdict}, follows from {number}").format(verdict=colour, number=_name(j.follows))]
+        said = [tell("{verdict}, follows from {number}").format(verdict=colour, number=j.follows.row)]
     elif j.starts:
         said = [tell("{verdict}, START").format(verdict=colour)]
     if j.remark:
@@ -137,9 +137,8 @@ def _deviation(j: Judged) -> str:
     return text if x <= 0 else f"+{text}"
 
 
-def _name(j: Judged) -> str:
-    place = f"({j.entry.label}) " if j.entry.label else ""
-    return f"{place}{j.entry.quantity}"
+def _place(j: Judged) -> str:
+    return f"{j.entry.title}, {j.row}"
 
 
 def _story(title: str, judged: list[Judged], filled: measured_file.Filled, notes: tuple[str, ...],
@@ -184,10 +183,10 @@ def _mistakes(judged: list[Judged], pictures: PlanPictures | None = None) -> Ite
             with on_paper(reader()):
                 details.append(_sentence(j.mistake))
         if after:
-            some = ", ".join(_name(f) for f in after[:6]) + (" ..." if len(after) > 6 else "")
+            some = ", ".join(f.row for f in after[:6]) + (" ..." if len(after) > 6 else "")
             said = tell_n("{n} follows from it: {numbers}", "{n} follow from it: {numbers}", len(after))
             details.append(said.format(n=len(after), numbers=some))
-        yield story.Mistake(f"{j.entry.title}, {_name(j)}", _what(j), j.verdict, tuple(details),
+        yield story.Mistake(_place(j), _what(j), j.verdict, tuple(details),
                             pictures.picture(j) if pictures is not None else None)
 
 
@@ -251,7 +250,9 @@ def _tree(name: str, judged: list[Judged], filled: measured_file.Filled, pencil:
         "scales": dict(filled.factors),
         "summary": {**{v: sum(j.verdict == v for j in own) for v in ("green", "amber", "red")},
                     "following": len(judged) - len(own), "empty": filled.empty},
-        "starts": [{"id": j.entry.id, "why": _what(j), "step": _step(j), "kind": j.wrong[0].kind if j.wrong else None,
+        "starts": [{"id": j.entry.id, "why": _what(j), "step": _step(j),
+                    "said": j.wrong[0].said() if j.wrong else f"{_place(j)}: {_what(j)}",
+                    "kind": j.wrong[0].kind if j.wrong else None,
                     "or": [h.said() for h in j.wrong[1:]],
                     "off_mm": _off(j), "followers": [f.entry.id for f in judged if f.follows is j]}
                    for j in sorted(judged, key=lambda j: j.order) if j.starts],
