@@ -229,10 +229,16 @@ class _Attempts:
             When the frame has no sides.
         """
         start = frame_fit.initial_map(found.corners, found.sides, self.grey.shape)
-        if not found.whole:
+        frame = None
+        if found.whole:
+            try:
+                frame = frame_fit.fit_frame(self.grey, start)
+            except CannotBuild:  # what was taken for a side may be the edge of what covers it
+                if not self.by_lines:
+                    raise
+        if frame is None:
             self._keep(self._fit(found, frame_fit.frame_about(self.grey, self._without_frame(start), ABOUT)))
             return
-        frame = frame_fit.fit_frame(self.grey, start)
         attempt = self._fit(found, frame)
         self._keep(attempt)
         if self.framed is None or attempt.check.sides.mean() > self.framed.check.sides.mean():
