@@ -15,13 +15,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tmm_sheets.compare.elements import Element, sampled
+from tmm_sheets.compare.elements import Element, grown, sampled
 from tmm_sheets.compare.photo.hidden import Mask, at
 from tmm_sheets.compare.photo.ink_levels import ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.profiles import follow, peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Floats, Map, spline_base
 from tmm_sheets.compare.photo.stations import Stations, fit, measurable, similarity_base
+from tmm_sheets.compare.photo.wiping import fill
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import tell
 
@@ -37,8 +38,10 @@ BENT, BEND = 0.5, 6
 """mm off a similarity from which on a line is bent, and for how many stations."""
 INKED = 0.8
 """Least share of the stations of a bend, and of those beside it, that have ink."""
-SEVERAL, TOGETHER = 3, 30.0
+SEVERAL, TOGETHER = 3, 60.0
 """Least number of lines bent near each other by which the paper bulges, and how near that is, mm."""
+TABLES = ("frame", "table")
+"""Roles of lines too near to lettering to tell of a bulge."""
 CELL, ABOUT = 12.0, 50.0
 """Side of the cells of the spline by which a map follows a bulge, mm, and how far about its bends it may."""
 FAR = (3.0, 1.5, 0.8, 0.5, 0.5)
@@ -74,7 +77,13 @@ def followed(elements: Sequence[Element], ink: Any, level: float, hidden: Mask) 
     of = np.repeat([e.number for e, _ in chosen], [count for _, count in chosen])
     places = p[..., None] + n[..., None] * OFFSETS
     profile = sample(ink, pixels(places)).astype(np.float32)
-    others = owners.others(of[:, None, None], places) & (np.abs(OFFSETS) > 0.45)
+    # A line of lettering is as straight as one of ink, and as near to the lines of a table.
+    words = np.zeros_like(ink)
+    for e in elements:
+        if e.kind == "text":
+            fill(words, grown(e.points, 0.5))
+    others = owners.others(of[:, None, None], places) | (sample(words, pixels(places), nearest=True) > 0)
+    others &= np.abs(OFFSETS) > 0.45
     # Half way to the next line known on either side.
     below = np.where(others & (OFFSETS < 0), -OFFSETS, 2 * REACH).min(-1)
     above = np.where(others & (OFFSETS > 0), OFFSETS, 2 * REACH).min(-1)
@@ -97,7 +106,7 @@ def followed(elements: Sequence[Element], ink: Any, level: float, hidden: Mask) 
 
 def bulges(lines: Sequence[Followed]) -> Points:
     """Places at which lines are bent near others that are."""
-    bends = [(line, line.points[line.bent]) for line in lines if line.bent.any() and line.element.role != "frame"]
+    bends = [(line, line.points[line.bent]) for line in lines if line.bent.any() and line.element.role not in TABLES]
     if len(bends) < SEVERAL:
         return np.zeros(0, complex)
     # One every few mm is enough to be near to.
