@@ -187,9 +187,10 @@ def _usual(found: Sequence[Trace]) -> dict[float, float]:
 
 def _beside_strokes(found: Sequence[Trace], small: Sequence[Element], ink: Any, owners: Owners, level: float) -> list[Trace]:
     """The traces; of lines that cannot be told from others it is seen whether a line like them lies beside."""
-    lines, taken = np.zeros_like(ink), np.zeros_like(ink)
+    # No more of letters than their places: what stands between their edges and paper on both sides is no letter.
+    lines, taken = np.zeros_like(ink), _places_of_lettering(small, ink)
     for e in small:
-        wipe_small(taken, e)
+        paint(taken, e, e.points, CLOSE)
     for t in found:
         if t.at is not None:
             paint(lines, t.element, t.at, 0)
@@ -214,8 +215,9 @@ def _dots(small: Sequence[Element], found: Sequence[Trace], ink: Any, words: Any
         return []
     lines, taken = np.zeros_like(ink), np.zeros_like(ink)
     for e in small:
-        paint(taken, e, e.points, CLOSE)
-        if not (e.kind == "circle" and e.fills):
+        dot = e.kind == "circle" and e.fills
+        paint(taken, e, e.points, CLOSE / 2 if dot else CLOSE)  # paint widens lines, and grows what is filled to all sides
+        if not dot:
             paint(lines, e, e.points, 0)
     for t in found:
         where = t.element.points if t.at is None else t.at
