@@ -251,10 +251,9 @@ def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level:
             paint(others, t.element, t.at, BESIDE)
     for e in small:
         paint(others, e, e.points, BESIDE)
-    runs = [(e.number, len(m.text), text_box(m), any(map(str.isalnum, m.text))) for e in words for m in e.marks
-            if isinstance(m, Text)]
+    runs = [(e.number, len(m.text), text_box(m)) for e in words for m in e.marks if isinstance(m, Text)]
     u, v = (t.ravel() for t in np.meshgrid(np.linspace(0, 1, 60), np.linspace(0, 1, 24)))
-    corners = np.stack([grown(box, 0.3) for _, _, box, _ in runs])
+    corners = np.stack([grown(box, 0.3) for _, _, box in runs])
     a, b, _, d = corners.T[:, :, None]
     places = pixels(a + u * (b - a) + v * (d - a))
     free = sample(others, places, nearest=True) == 0
@@ -262,12 +261,10 @@ def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level:
     shares = dark.sum(1) / np.maximum(free.sum(1), 1)
     shown, inked = ((part.reshape(-1, 24, 60).sum(1) >= rows) for part, rows in ((free, 8), (dark, 2)))
     columns = (inked & shown).sum(1) / np.maximum(shown.sum(1), 1)
-    # The bar over a letter that stands elsewhere may reach into its place; letters have ink in the lower part of theirs.
-    standing = (dark.reshape(-1, 24, 60)[:, :10].sum(2) >= 2).any(1) | ~np.array([letters for *_, letters in runs])
-    there = ((shares > WRITTEN) & (standing | (free.mean(1) < CLEAR))) | (free.mean(1) < OPEN)
+    there = (shares > WRITTEN) | (free.mean(1) < OPEN)
     clear = shown.mean(1) > CLEAR
-    gone = clear & (~there | ((columns < PARTLY) & (np.array([length for _, length, *_ in runs]) > 1)))
-    of = np.array([number for number, *_ in runs])
+    gone = clear & (~there | ((columns < PARTLY) & (np.array([length for _, length, _ in runs]) > 1)))
+    of = np.array([number for number, _, _ in runs])
     for e in words:
         mine = of == e.number
         status: Status = "absent lettering" if not there[mine].any() else "part of lettering" if gone[mine].any() else "lettering"
