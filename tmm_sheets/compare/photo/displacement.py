@@ -91,9 +91,10 @@ def rather_elsewhere(t: Trace, s: Stations, left: Any, wiped: Any, ink: Any, own
     own = (np.abs(offsets) <= BAND / 2 * STEP) & ~others  # wiped out for its own sake
     profile = smoothed(np.where(own, sample(ink, at), sample(left, at)), drawn)
     unknown = ~own & (sample(wiped, at) > 100)
-    darker = _elsewhere(t.element, s, profile, unknown, offsets, DARKER * t.darkness)
-    if darker is not None and darker.covered >= WHOLE:
-        return darker
+    if t.darkness:
+        darker = _elsewhere(t.element, s, profile, unknown, offsets, DARKER * t.darkness)
+        if darker is not None and darker.covered >= WHOLE:
+            return darker
     fuller = _elsewhere(t.element, s, profile, unknown, offsets, level)
     if fuller is None or fuller.covered < max(WHOLE, t.covered + FULLER) or fuller.darkness < t.darkness / DARKER:
         return None

@@ -54,7 +54,8 @@ class _Judged:
     @cached_property
     def count(self) -> dict[str, int]:
         """How many elements got each verdict, of those that could be judged."""
-        judged = [f for f in self.findings if f.trace.status in ("measured", "missing", "shared", "beside") and not f.unknown]
+        told = ("measured", "missing", "shared", "beside", "covered")
+        judged = [f for f in self.findings if f.trace.status in told and not f.unknown]
         return {v: sum(f.verdict == v for f in judged) for v in ("green", "amber", "red")}
 
     @cached_property
@@ -182,7 +183,7 @@ def _rows(judged: _Judged) -> list[tuple[str, ...]]:
 
 def _tree(judged: _Judged) -> dict[str, Any]:
     """What JSON tells of the elements and of extra ink."""
-    told = ("measured", "shared", "beside", "missing", "dense", "part of lettering", "absent lettering", "hidden")
+    told = ("measured", "shared", "beside", "covered", "missing", "dense", "part of lettering", "absent lettering", "hidden")
     measured = sum(f.trace.status == "measured" for f in judged.findings)
     return {
         "count": {**judged.count, "dense": len(judged.dense), "hidden": len(judged.hidden), "hidden_ends": judged.hidden_ends,

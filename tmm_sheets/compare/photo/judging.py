@@ -101,6 +101,9 @@ def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFindi
         said = (tell("a dot like it stands beside, and none is seen here: {how}") if e.kind == "circle" else
                 tell("in one stroke with others, but a line like it lies beside: {how}"))
         return PhotoFinding(e, "amber", t.deviation, said.format(how=_similarity_in_words(t, tolerance)), middle, t, tolerance)
+    if t.status == "covered":
+        said = tell("not seen where no other line covers it")
+        return PhotoFinding(e, "amber", 0.0, said, middle, t, tolerance)
     if t.status == "missing":
         return PhotoFinding(e, "red", e.length, tell("missing"), middle, t, tolerance)
     if t.status in ("absent lettering", "part of lettering"):

@@ -26,6 +26,8 @@ AS_DARK = 0.6  # darkness of its own place, as a share of that where a line was 
 FREE = 0.25  # least share of a line free of others for it to be measured by itself
 LEAST_END = 3.0  # mm of a quarter of a line by which its end is judged
 SHARED = 0.4  # least share of a line free or in one stroke with others for it to be measured with them
+CLEAR, WITHIN = 0.3, 0.3
+"""mm between the edges of a line and of the next beyond which ink is nobody else's, and mm beside its place where it may be."""
 
 
 class Strip(NamedTuple):
@@ -110,6 +112,13 @@ def in_place(strip: Strip, level: float) -> Trace | None:
     if e.kind == "curve":
         t = replace(t, deviation=max(t.deviation, _local(o, use, e.length / len(o))))
     return t
+
+
+def uncovered(strip: Strip) -> Any:
+    """How dark an element's place is at those of its stations where no other line covers it or runs along it."""
+    width = line_type(strip.element.style).width
+    clear = np.where(strip.others, np.abs(OFFSETS), NEAR).min(1) > CLEAR + width / 2
+    return np.where(np.abs(OFFSETS) <= WITHIN, strip.profile, 0).max(1)[clear]
 
 
 def _at_home(profile: Any, o: Floats) -> bool:

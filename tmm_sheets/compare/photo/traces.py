@@ -11,8 +11,8 @@ from tmm_sheets.compare.elements import Element
 from tmm_sheets.drawing.marks import Points
 
 SHORTEST = 8.0  # mm of line whose ends are looked for
-Status = Literal["measured", "shared", "beside", "missing", "dense", "lettering", "part of lettering", "absent lettering", "small",
-                 "hidden"]  # fmt: skip
+Status = Literal["measured", "shared", "beside", "covered", "missing", "dense", "lettering", "part of lettering",
+                 "absent lettering", "small", "hidden"]  # fmt: skip
 
 Head = Literal["unknown", "there", "absent", "reversed"]
 
@@ -29,7 +29,7 @@ class Trace:
     Attributes
     ----------
     status : "measured" by itself; "shared": in one stroke with others; "beside": so, but a line like it
-        lies beside; "missing"; "dense": its ink cannot be told from others';
+        lies beside; "covered": there is ink only where others are drawn; "missing"; "dense": its ink cannot be told from others';
         "lettering", "part of lettering" or "absent lettering"; "small": not looked at; "hidden": it does not show in the picture
     shift : of its middle, mm
     turn : rad, counter-clockwise

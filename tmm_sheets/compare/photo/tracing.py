@@ -12,7 +12,7 @@ determined: a straight line has no shift along itself and no growth; its length 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -27,9 +27,10 @@ from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden
 from tmm_sheets.compare.photo.ink_levels import ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.line_ends import with_ends
-from tmm_sheets.compare.photo.own_place import in_place, strips
+from tmm_sheets.compare.photo.own_place import in_place, strips, uncovered
 from tmm_sheets.compare.photo.profiles import pixels, sample
-from tmm_sheets.compare.photo.stations import measurable, stations
+from tmm_sheets.compare.photo.sheet_map import Floats
+from tmm_sheets.compare.photo.stations import LEAST, expected_ink, measurable, stations
 from tmm_sheets.compare.photo.traces import ExtraInk, Status, Trace
 from tmm_sheets.compare.photo.wiping import ROOM, fill, paint, wipe_found, wipe_small
 from tmm_sheets.drawing.labels import text_box
@@ -43,6 +44,9 @@ PARTLY, CLEAR = 0.45, 0.9
 OPEN = 0.3  # least share of a place that is free of lines for it to be told whether there is lettering
 PALE, GAPS = 0.6, 0.85
 """Darkness of a line as a share of that usual for its kind, and share of it with ink, below which it may be another line."""
+COVERED, FAINT, BARE = 0.65, 0.3, 0.6
+"""Share of a line that others cover or run along from which on what was taken for it may be theirs: where it is alone, darkness as
+a share of the usual up to which it is not seen, and share of such places from which on it was theirs."""
 CLOSE = 0.9  # mm by which a line drawn by hand and photographed is wider than its own width
 BESIDE = 0.9  # mm about lines whose ink is theirs
 
@@ -74,7 +78,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     out_of_sight = {e.number: Trace(e, "hidden") for e in elements if share_hidden(e, hidden) > OUT_OF_SIGHT}
     shown = [e for e in elements if e.number not in out_of_sight]
     small = [e for e in shown if not measurable(e)]
-    found, absent = _in_their_places([e for e in shown if measurable(e)], ink, owners, pale)
+    found, absent, alone = _in_their_places([e for e in shown if measurable(e)], ink, owners, pale)
     wiped = np.zeros_like(ink)
     for e in small:
         wipe_small(wiped, e)
@@ -90,7 +94,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         left[cv2.resize(hidden.astype(np.uint8), ink.shape[::-1], interpolation=cv2.INTER_NEAREST) > 0] = 0
     left[wiped > 0] = 0
     found += _displaced(absent, ink, left, wiped, owners, pale)
-    found = _doubted(found, ink, left, wiped, owners, pale)
+    found = _doubted(found, alone, ink, left, wiped, owners, pale)
     found = _beside_strokes(found, small, ink, owners, pale)
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
     words = _places_of_lettering(elements, ink)
@@ -112,17 +116,26 @@ def _shown_ends(t: Trace, hidden: Mask) -> tuple[float, float]:
     return begin, end
 
 
-def _in_their_places(lines: Sequence[Element], ink: Any, owners: Owners, level: float) -> tuple[list[Trace], list[Element]]:
-    """Traces of the lines that are where they belong, and the lines that are not."""
+def _in_their_places(
+    lines: Sequence[Element], ink: Any, owners: Owners, level: float,
+) -> tuple[list[Trace], list[Element], dict[int, Floats]]:
+    """Traces of the lines that are where they belong, the lines that are not, and how dark the places of the former are where no
+    other line covers them, by number.
+    """
     found: list[Trace] = []
     absent: list[Element] = []
+    alone: dict[int, Floats] = {}
     for strip in strips(lines, ink, owners):
         t = in_place(strip, level)
         if t is None:
             absent.append(strip.element)
-        else:
-            found.append(t)
-    return found, absent
+            continue
+        found.append(t)
+        places = uncovered(strip)
+        share = len(places) / len(strip.profile)
+        if share * strip.element.length >= LEAST and share <= 1 - COVERED and expected_ink(strip.element) == 1.0:
+            alone[strip.element.number] = places
+    return found, absent, alone
 
 
 def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owners: Owners, level: float) -> list[Trace]:
@@ -138,14 +151,23 @@ def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owner
     return found
 
 
-def _doubted(found: Sequence[Trace], ink: Any, left: Any, wiped: Any, owners: Owners, level: float) -> list[Trace]:
-    """The traces; those of lines paler than others of their kind, or with gaps, are looked for elsewhere once more."""
+def _doubted(
+    found: Sequence[Trace], alone: Mapping[int, Floats], ink: Any, left: Any, wiped: Any, owners: Owners, level: float,
+) -> list[Trace]:
+    """The traces; those of lines paler than others of their kind, with gaps, or not seen where they are ``alone``, are looked for
+    elsewhere once more.
+    """
     usual = _usual(found)
     out = []
     for t in found:
-        if t.darkness and (t.darkness < PALE * usual[line_type(t.element.style).width] or t.covered < GAPS):
+        dark = usual.get(line_type(t.element.style).width, 0.0)
+        places = alone.get(t.element.number)
+        covered = places is not None and bool((places <= FAINT * dark).mean() >= BARE)
+        if covered:
+            t = replace(t, status="covered", covered=0.0, darkness=0.0)
+        if covered or (t.darkness and (t.darkness < PALE * dark or t.covered < GAPS)):
             better = rather_elsewhere(t, stations(t.element, t.element.kind != "line"), left, wiped, ink, owners, level)
-            if better is not None and better.at is not None:
+            if better is not None and better.at is not None and not (covered and better.darkness < PALE * dark):
                 owners.add(t.element, better.at)
                 wipe_found(wiped, better)
                 wipe_found(left, better, 0)
@@ -165,9 +187,10 @@ def _usual(found: Sequence[Trace]) -> dict[float, float]:
 
 def _beside_strokes(found: Sequence[Trace], small: Sequence[Element], ink: Any, owners: Owners, level: float) -> list[Trace]:
     """The traces; of lines that cannot be told from others it is seen whether a line like them lies beside."""
-    lines, taken = np.zeros_like(ink), np.zeros_like(ink)
+    # No more of letters than their places: what stands between their edges and paper on both sides is no letter.
+    lines, taken = np.zeros_like(ink), _places_of_lettering(small, ink)
     for e in small:
-        wipe_small(taken, e)
+        paint(taken, e, e.points, CLOSE)
     for t in found:
         if t.at is not None:
             paint(lines, t.element, t.at, 0)
@@ -192,8 +215,9 @@ def _dots(small: Sequence[Element], found: Sequence[Trace], ink: Any, words: Any
         return []
     lines, taken = np.zeros_like(ink), np.zeros_like(ink)
     for e in small:
-        paint(taken, e, e.points, CLOSE)
-        if not (e.kind == "circle" and e.fills):
+        dot = e.kind == "circle" and e.fills
+        paint(taken, e, e.points, CLOSE / 2 if dot else CLOSE)  # paint widens lines, and grows what is filled to all sides
+        if not dot:
             paint(lines, e, e.points, 0)
     for t in found:
         where = t.element.points if t.at is None else t.at
