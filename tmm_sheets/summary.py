@@ -55,7 +55,11 @@ def swing(project: Project) -> Iterator[str]:
 
 def dead_positions(project: Project) -> Iterator[str]:
     """Groups that turn on through a dead position, where another way would be as right as the one that is drawn."""
-    for dead in project.dead_positions:
+    try:
+        passed = project.dead_positions
+    except CannotBuild:  # told by every sheet that shows a position
+        return
+    for dead in passed:
         angles = ", ".join(f"{round(angle, 1) % 360:.1f}" for angle in dead.angles)
         yield tell_n(
             "group {group} is stretched or folded at crank angle {angles} deg and can go on from there in two ways: it is drawn "
