@@ -139,7 +139,7 @@ def _flaps(hidden: Mask) -> Iterator[Mask]:
         row, column = np.mgrid[:a, :b]
         if corner[:a, :b][row / a + column / b < 1 - 2 * MARGIN / min(a, b)].mean() < GONE:
             continue
-        tip = 2 * np.array([a * a * b, a * b * b]) / (a * a + b * b)
+        tip = (2 * a * a * b / (a * a + b * b), 2 * a * b * b / (a * a + b * b))
         flap = np.zeros(hidden.shape, np.uint8)
         cv2.fillPoly(flap, [np.rint([(0, a), (b, 0), tip]).astype(np.int32)], 1)
         yield flap[::upside, ::mirrored] > 0

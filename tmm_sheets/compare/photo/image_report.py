@@ -179,7 +179,7 @@ def _tolerance(pencil: float, uncertainty: float, soft: float) -> str:
 
 def _rows(judged: _Judged) -> list[tuple[str, ...]]:
     """The rows of the table of what is off, one for each place."""
-    out = []
+    out: list[tuple[str, ...]] = []
     for p in judged.places:
         if p.findings:
             f = p.findings[0]

@@ -84,23 +84,28 @@ def places(findings: Sequence[PhotoFinding], extra: Sequence[ExtraInk]) -> list[
     """The places where something is off: those with findings first, the worst first, then ink alone, the longest first."""
     groups: list[list[PhotoFinding]] = []
     for f in worst(findings):
-        home = next((g for g in groups if one_place(g[0], f)), None)
-        if home is None:
+        place = next((g for g in groups if one_place(g[0], f)), None)
+        if place is None:
             groups.append([f])
         else:
-            home.append(f)
+            place.append(f)
     own: list[list[ExtraInk]] = [[] for _ in groups]
     beside: list[list[ExtraInk]] = [[] for _ in groups]
-    alone = []
+    alone: list[ExtraInk] = []
     for x in extra:
-        of = next((k for k, g in enumerate(groups) if any(_on(f, x) for f in g)), None)
-        near = next((k for k, g in enumerate(groups) if any(_near(f, x) for f in g)), None) if of is None else None
-        (alone if of is None and near is None else own[of] if of is not None else beside[near or 0]).append(x)
+        for some, belongs in ((own, _on), (beside, _near)):
+            home = next((k for k, g in enumerate(groups) if any(belongs(f, x) for f in g)), None)
+            if home is not None:
+                some[home].append(x)
+                break
+        else:
+            alone.append(x)
     circles = _circles(findings, alone)
     rest = [x for x in alone if not any(x is y for _, some in circles for y in some)]
     ink = sorted(_pieces(rest), key=lambda some: -sum(x.length for x in some))
-    told = [*zip(groups, own, beside, strict=True), *(([f], some, []) for f, some in circles), *(([], [], some) for some in ink)]
-    return [Place(k, *map(tuple, parts)) for k, parts in enumerate(told, 1)]
+    out = [Place(0, tuple(g), tuple(mine), tuple(near)) for g, mine, near in zip(groups, own, beside, strict=True)]
+    out += [Place(0, (f,), tuple(some)) for f, some in circles] + [Place(0, ink=tuple(some)) for some in ink]
+    return [replace(p, number=k) for k, p in enumerate(out, 1)]
 
 
 def one_place(f: PhotoFinding, g: PhotoFinding) -> bool:
