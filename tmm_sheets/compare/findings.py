@@ -61,6 +61,7 @@ def counted(bad: Sequence[Finding]) -> str:
 _KINDS = {
     "line": marked("line"), "arc": marked("arc"), "circle": marked("circle"), "curve": marked("curve"), "hatch": marked("hatching"),
     "fill": marked("filled area"), "dot": marked("dot"), "arrow": marked("arrow"),
+    "text": marked("text"),
 }
 
 
@@ -71,7 +72,7 @@ NAME = 16
 def called(e: Element) -> str:
     """An element in a table: what it is and what it is called."""
     if e.kind == "text":
-        return f"{tell('text')} {e.name if len(e.name) <= NAME else e.name[: NAME - 1] + '…'}".strip()
+        return f"{tell(_KINDS['text'])} {e.name if len(e.name) <= NAME else e.name[: NAME - 1] + '…'}".strip()
     dot, arrow = e.kind == "circle" and e.fills, e.kind == "line" and e.arrow
     return f"{tell(_KINDS['dot' if dot else 'arrow' if arrow else e.kind])} {_on_paper(e)}".strip()
 
