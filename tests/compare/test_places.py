@@ -85,6 +85,17 @@ def test_ink_of_what_is_off_is_told_with_it_and_pieces_together(extra, expected)
     assert shares(line(1, 0, 50, 3j), extra=extra) == expected
 
 
+@pytest.mark.parametrize(("by", "size", "said"), [
+    (0 + 9j, 6, "no lettering here; what stands 9.0 mm too far up may be it"), (0 + 20j, 6, "no lettering here"),
+    (0 + 9j, 30, "no lettering here")])  # fmt: skip
+def test_ink_as_large_as_lettering_that_is_not_there_is_told_with_it(by, size, said):
+    text = Element(3, PLAN, "F3", "text", np.array([47, 53, 53 + 5j, 47 + 5j]), "text")
+    off = judge(Trace(text, "absent lettering"), 0.25, 0.15)
+    first, *rest = places([off], [ExtraInk(text.middle + by, size, 5.0, 8.0, text.middle + by + np.zeros(3))])
+    assert image_story.said(first) == said
+    assert len(rest) == (said == "no lettering here")
+
+
 @pytest.mark.parametrize(("arcs", "by"), [([(0, 40), (90, 130), (200, 240)], 3.6), ([(0, 40), (90, 130), (200, 240)], -2.0),
                                           ([(0, 40), (90, 130)], None)])  # fmt: skip
 def test_ink_on_a_circle_about_the_centre_of_another_is_told_as_a_circle(arcs, by):

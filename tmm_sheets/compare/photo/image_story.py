@@ -11,7 +11,7 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
 from tmm_sheets.compare.elements import ElementView, drawn
-from tmm_sheets.compare.findings import called, counted
+from tmm_sheets.compare.findings import called, counted, shifted
 from tmm_sheets.compare.photo import overlay
 from tmm_sheets.compare.photo.judging import PhotoFinding
 from tmm_sheets.compare.photo.places import Place
@@ -78,7 +78,10 @@ def said(p: Place) -> str:
     words = [first.what]
     if others:
         words.append(tell("here also: {elements}").format(elements=", ".join([*others[:OTHERS], *["…"] * (len(others) > OTHERS)])))
-    if p.ink:
+    if p.ink and first.element.kind == "text":
+        away = min((x.middle - first.element.middle for x in p.ink), key=abs)
+        words.append(tell("what stands {how} may be it").format(how=shifted(away)))
+    elif p.ink:
         words.append(tell("ink that is not on the sheet lies beside it"))
     return "; ".join(words)
 

@@ -27,6 +27,8 @@ ON, MOSTLY = 1.5, 0.5
 """mm from a line within which ink is its own, and least share of one that lies so near the other."""
 BESIDE, ALONG = 6.0, 0.8
 """mm from the place of a line that is off within which ink may be its own, and least share of the ink that lies so near."""
+MOVED, LIKE = 15.0, (0.5, 1.5)
+"""mm from its place within which ink may be lettering that is not there, and its extent in that of the lettering."""
 NEXT = 6.0
 """mm between pieces of ink that are one thing to the eye."""
 GAP, IN_LINE = 30.0, 0.5
@@ -93,7 +95,7 @@ def places(findings: Sequence[PhotoFinding], extra: Sequence[ExtraInk]) -> list[
     beside: list[list[ExtraInk]] = [[] for _ in groups]
     alone: list[ExtraInk] = []
     for x in extra:
-        for some, belongs in ((own, _on), (beside, _near)):
+        for some, belongs in ((own, _on), (beside, _near), (beside, _letters)):
             home = next((k for k, g in enumerate(groups) if any(belongs(f, x) for f in g)), None)
             if home is not None:
                 some[home].append(x)
@@ -157,6 +159,15 @@ def _near(f: PhotoFinding, x: ExtraInk) -> bool:
         return False
     way = _way(x.points)
     return bool(abs((way * np.conj(normal[away.argmin(1)])).real).mean() < 0.5)  # within some 30 degrees of its direction
+
+
+def _letters(f: PhotoFinding, x: ExtraInk) -> bool:
+    """Whether ink may be the lettering that is not in its place."""
+    if f.trace.status not in ("absent lettering", "part of lettering"):
+        return False
+    box = Box.around(f.element.points)
+    alike = all(LIKE[0] * size <= found <= LIKE[1] * size + 1.0 for found, size in ((x.width, box.width), (x.height, box.height)))
+    return alike and abs(x.middle - f.element.middle) <= MOVED
 
 
 def _way(points: Points) -> complex:
