@@ -56,9 +56,10 @@ class Trace:
 
 
 class ExtraInk(NamedTuple):
-    """Ink where no element is known: middle, extent and diagonal of its bounding box, mm."""
+    """Ink where no element is known: middle, extent and diagonal of its bounding box, mm, and some points of it."""
 
     middle: complex
     width: float
     height: float
     length: float
+    points: Points = np.zeros(0, complex)
