@@ -55,6 +55,9 @@ SURELY, VERY_LIKE = 0.5, 0.75
 """Both for a head at the other end, where none is expected."""
 BARE, HARDLY_LIKE, OPEN = 0.3, 0.45, 0.45
 """Both up to which there is no head, and least part of it that must then be seen in its place."""
+THIN, ENOUGH = 0.65, 3
+"""Ink across a line without a head, as a share of what vectors with heads have, up to which it is a helper line and the vector was
+left out; least number of those."""
 LINED = 0.9
 """Least share of the way to the tip on which the line must be seen for its head to be missed."""
 
@@ -220,7 +223,13 @@ def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hi
     The traces in the same order, with ``head``.
     """
     paper = _Paper(ink, owners, words, hidden, [complex(f[0]) for t in traces for f in t.element.fills])
-    return [replace(t, head=_head(t, paper)) if _wanted(t) else t for t in traces]
+    found = {k: _head(t, paper) for k, t in enumerate(traces) if _wanted(t)}
+    usual = [across for head, across in found.values() if head == "there"]
+    thin = THIN * float(np.median(usual)) if len(usual) >= ENOUGH else 0.0
+    out = list(traces)
+    for k, (head, across) in found.items():
+        out[k] = replace(traces[k], head="left out" if head == "absent" and across < thin else head)
+    return out
 
 
 def _wanted(t: Trace) -> bool:
@@ -236,23 +245,27 @@ def _length(e: Element) -> float:
     return float(abs(e.fills[0][0] - e.fills[0][1:].mean()))
 
 
-def _head(t: Trace, paper: _Paper) -> Head:
-    """What there is of a head at the tip, and at the other end when there is none."""
+def _head(t: Trace, paper: _Paper) -> tuple[Head, float]:
+    """What there is of a head at the tip, and at the other end when there is none; how much ink the line has across it."""
     assert t.at is not None
     way = (t.at[1] - t.at[0]) / abs(t.at[1] - t.at[0])
     beyond = [0.0 if np.isnan(by) else by for by in t.ends]
     begin, tip = complex(t.at[0] - way * beyond[0]), complex(t.at[1] + way * beyond[1])
     here = paper.end(t.element, tip, begin)
     if here is None:
-        return "unknown"
+        return "unknown", 0.0
+    return _head_at(here, paper.end(t.element, begin, tip), begin, way, paper), float((here.own - here.own.min()).sum())
+
+
+def _head_at(here: _End, there: _End | None, begin: complex, way: complex, paper: _Paper) -> Head:
+    """Which of both ends has a head: that where one ought to be, or the one at ``begin``."""
     if here.has_head():
         return "there"
-    bare = here.bare()
-    there = paper.end(t.element, begin, tip)
-    if there is not None and bare and there.has_head(SURELY, VERY_LIKE):
+    bare, length = here.bare(), _length(here.element)
+    if bare and there is not None and there.has_head(SURELY, VERY_LIKE):
         return "reversed"
     # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
-    alone = not (any(abs(z - begin) < _length(t.element) for z in paper.tips) or paper.accompanied(t.element, begin, way))
-    if there is not None and alone and here.lined >= LINED and there.has_head(SURELY, VERY_LIKE, WHOLE):
+    alone = not (any(abs(z - begin) < length for z in paper.tips) or paper.accompanied(here.element, begin, way))
+    if alone and here.lined >= LINED and there is not None and there.has_head(SURELY, VERY_LIKE, WHOLE):
         return "reversed"
     return "absent" if bare else "unknown"
