@@ -153,6 +153,19 @@ def test_ink_that_crosses_a_line_is_none_along_it():
     assert built_photo.inked(ink, line, 20.0) == pytest.approx(2 / 3, abs=0.1)
 
 
+@pytest.mark.parametrize(("by", "found", "stays"), [
+    ((0, 0), {}, False), ((1j, 1j), {}, True), ((0, 1j), {}, True), ((0.5j, -0.5j), {}, False),  # aside
+    ((3, 3), {}, False), ((3, 0), {"ends": (0.0, np.nan)}, True), ((0, 3), {"ends": (0.0, np.nan)}, False),  # along itself
+    ((0, -3), {"head": "there"}, True), ((-3, 0), {"head": "there"}, False), ((0, -1), {"head": "there"}, False),
+    ((1j, 1j), {"deviation": 2.0}, False), ((1j, 1j), {"status": "shared"}, False), ((1j, 1j), {"status": "dense"}, False),
+])
+def test_a_line_that_is_in_its_place_speaks_against_a_mistake_that_leads_it_elsewhere(by, found, stays):
+    was = next(e for e in KNOWN.elements if e.kind == "line" and e.role == "vector" and e.length > 20)
+    f = judge(tracing.Trace(was, **{"status": "measured", **found}), 0.25, 0.15)
+    way = (was.points[1] - was.points[0]) / was.length
+    assert built_photo._stays(f, was.points + np.array(by) * way) is stays
+
+
 @pytest.mark.parametrize(("by", "told"), [
     (500j, "up to 500.0 mm off, as follows from the mistake; there it runs off the paper, so it cannot be looked for"),
     (20j, "up to 20.0 mm off, as follows from the mistake; missing"),

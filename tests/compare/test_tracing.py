@@ -254,6 +254,16 @@ def test_a_vector_left_out_over_a_helper_has_no_head_though_there_is_a_dot():
     assert (found[0].head, judge(found[0], 0.25, 0.15).what) == ("absent", "no arrow head here")
 
 
+@pytest.mark.parametrize(("by", "left_out"), [(-1.0, 1), (1.0, 2), (1.0, None)])
+def test_a_line_seen_only_where_another_covers_it_is_a_place_to_look_at(by, left_out):
+    """Two vectors that part at so small an angle that they are one stroke for most of their way; another shows what is usual."""
+    ends = (330 + 300j, 330 + (300 + by) * 1j, 330 + 350j)
+    known = [line(k, 250 + 300j, end, "vector") for k, end in enumerate(ends, 1)]
+    found, _ = traced(known, [(*e.points, "vector") for e in known if e.number != left_out])
+    assert [judge(t, 0.25, 0.15).verdict for t in found] == ["amber" if e.number == left_out else "green" for e in known]
+    assert [t.element.number for t in found if t.status == "covered"] == [left_out] * (left_out is not None)
+
+
 def word(*runs, bar=False):
     """Lettering of W, M and V, its letters 4 mm high and about as wide, in runs; with a bar over it."""
     at, text = 300 + 300j, "".join(runs)
@@ -383,6 +393,7 @@ def test_a_dot_that_stands_beside_its_place(places, says):
     ("places", "verdicts"),
     [
         ([2.6 + 2.6j], ["amber", "green"]),  # one spot is one dot's, the nearer one's
+        ([-1.4 - 1.8j], ["amber", "green"]),  # near its own place
         ([], ["green", "green"]),  # where lines cross it is dark with a dot or without
         ([9 + 9j], ["green", "green"]),
     ],

@@ -10,7 +10,7 @@ import numpy as np
 
 from tmm_sheets.compare.diagnosis import built_plan
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, Drawing
-from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint, rebuilt, vanished
+from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint, between, rebuilt, vanished
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import KnownSheet
@@ -43,6 +43,11 @@ SHOWN = 0.5
 """Share of a line that must show for it to be judged by what shows."""
 ENDS = 1.5
 """Beside the ends of a line others begin, mm."""
+STAYS = 2.0
+"""How many tolerances aside a line must be led for it to be seen that it is not there, and how many mm along itself."""
+CONTRADICTED = 3
+"""Where every so many wrong lines of a plan have one that stays in its place though it would be led elsewhere, another mistake was
+made."""
 Built = Mapping[ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]
 
 
@@ -75,7 +80,25 @@ def built_otherwise(project: Project, known: KnownSheet, findings: Sequence[Phot
     def seen(view: ElementView) -> Drawing:
         return Drawing(lambda line: inked(ink, line, level, hidden), lambda z: sample(near, pixels(z)) > level, tips.get(view, []))
 
-    return built_plan.built_otherwise(project, known, wrong, seen)
+    built = built_plan.built_otherwise(project, known, wrong, seen)
+    return {view: b for view, b in built.items() if not _contradicted(b, [f for f in findings if f.element.view == view])}
+
+
+def _contradicted(built: tuple[BuiltPlan, Sequence[PlanPoint]], findings: Sequence[PhotoFinding]) -> bool:
+    """Whether lines of a plan are seen where they should be that would not be there by the mistake."""
+    vectors = [f for f in findings if f.element.role == "vector" and f.element.kind == "line"]
+    stay = sum(_stays(f, between(f.element, built[1])) for f in vectors)
+    return stay > 0 and CONTRADICTED * stay >= sum(f.verdict == "red" for f in vectors)
+
+
+def _stays(f: PhotoFinding, now: Points) -> bool:
+    """Whether a vector that would lie elsewhere, ``now``, is in its place: it itself, an end that shows, or its head."""
+    t, was = f.trace, f.element.points[[0, -1]]
+    if f.verdict != "green" or t.status != "measured":
+        return False
+    by = (now - was) * np.conj(was[1] - was[0]) / abs(was[1] - was[0])
+    shown = np.isfinite(t.ends) | np.array([False, t.head == "there"])
+    return bool(np.abs(by.imag).max() > STAYS * f.tolerance or (np.abs(by.real)[shown] > STAYS).any())
 
 
 def as_built(elements: Sequence[Element], built: Built, found: Rectified, pencil: float) -> tuple[

@@ -54,7 +54,8 @@ class _Judged:
     @cached_property
     def count(self) -> dict[str, int]:
         """How many elements got each verdict, of those that could be judged."""
-        judged = [f for f in self.findings if f.trace.status in ("measured", "missing", "shared", "beside", "covered") and not f.unknown]
+        told = ("measured", "missing", "shared", "beside", "covered")
+        judged = [f for f in self.findings if f.trace.status in told and not f.unknown]
         return {v: sum(f.verdict == v for f in judged) for v in ("green", "amber", "red")}
 
     @cached_property

@@ -27,7 +27,7 @@ FREE = 0.25  # least share of a line free of others for it to be measured by its
 LEAST_END = 3.0  # mm of a quarter of a line by which its end is judged
 SHARED = 0.4  # least share of a line free or in one stroke with others for it to be measured with them
 CLEAR, WITHIN = 0.3, 0.3
-"""mm between the edges of a line and of the next from which on its ink is nobody else's, and mm beside its place where that may be."""
+"""mm between the edges of a line and of the next beyond which ink is nobody else's, and mm beside its place where it may be."""
 
 
 class Strip(NamedTuple):

@@ -133,7 +133,7 @@ def _in_their_places(
         found.append(t)
         places = uncovered(strip)
         share = len(places) / len(strip.profile)
-        if LEAST <= share * strip.element.length and share <= 1 - COVERED and expected_ink(strip.element) == 1.0:
+        if share * strip.element.length >= LEAST and share <= 1 - COVERED and expected_ink(strip.element) == 1.0:
             alone[strip.element.number] = places
     return found, absent, alone
 
