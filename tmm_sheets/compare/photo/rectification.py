@@ -21,6 +21,7 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo import fit_check, frame_fit, frame_search, patches
+from tmm_sheets.compare.photo.bulges import about, bulge_notes, over_bulges
 from tmm_sheets.compare.photo.fit_check import MATCH, FitCheck
 from tmm_sheets.compare.photo.frame_search import FoundFrame
 from tmm_sheets.compare.photo.hidden import Mask, hidden_places
@@ -97,7 +98,8 @@ class Rectified:
     notes : what is worth telling, a line each
     soft : whether the picture is not sharp
     check : what is to be said of the fit
-    hidden : where the sheet does not show, see ``hidden.hidden_places``
+    hidden : where the sheet does not show, see ``hidden.hidden_places``, or bulges
+    bulging : where the paper bulges and the map does not follow, see ``bulges``
     """
 
     ink: Any
@@ -112,6 +114,7 @@ class Rectified:
     soft: bool
     check: FitCheck
     hidden: Mask
+    bulging: Mask
 
 
 def frame_lines(known: Sequence[Element]) -> ProfileLines:
@@ -176,8 +179,13 @@ def rectify(
     frame = best.frame.sides
     hidden = hidden_places(picture.grey, best.map, ink, lines, ProfileLines(frame.sheet, frame.normals, lines.line[:0]),
                            line_level(ink))
-    return Rectified(ink, best.map, frame, noise_level(ink), best.check.match, scatter, uncertainty, scale, notes,
-                     best.frame.smear > SOFT, best.check, hidden)
+    m, bulging = best.map, np.zeros_like(hidden)
+    if by_lines and best.check.acceptable:
+        m, ink, left = over_bulges(m, ink, known, hidden, lambda m: straighten(picture.grey, m))
+        bulging = about(left)
+        notes += tuple(bulge_notes(path, bulging))
+    return Rectified(ink, m, frame, noise_level(ink), best.check.match, scatter, uncertainty, scale, notes,
+                     best.frame.smear > SOFT, best.check, hidden | bulging, bulging)
 
 
 class _Attempt(NamedTuple):
@@ -221,10 +229,16 @@ class _Attempts:
             When the frame has no sides.
         """
         start = frame_fit.initial_map(found.corners, found.sides, self.grey.shape)
-        if not found.whole:
+        frame = None
+        if found.whole:
+            try:
+                frame = frame_fit.fit_frame(self.grey, start)
+            except CannotBuild:  # what was taken for a side may be the edge of what covers it
+                if not self.by_lines:
+                    raise
+        if frame is None:
             self._keep(self._fit(found, frame_fit.frame_about(self.grey, self._without_frame(start), ABOUT)))
             return
-        frame = frame_fit.fit_frame(self.grey, start)
         attempt = self._fit(found, frame)
         self._keep(attempt)
         if self.framed is None or attempt.check.sides.mean() > self.framed.check.sides.mean():

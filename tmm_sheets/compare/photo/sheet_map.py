@@ -46,6 +46,7 @@ class Map:
     waves : coefficients of the residual inside the frame, mm (see :func:`waves`)
     surface : B-spline of the height of paper that is not smooth, mm, instead of relief, sides and waves (see ``surface``)
     stretch : B-splines of what such paper is displaced by in x and in y, mm
+    local : finer B-splines of what is displaced where the paper bulges (see ``bulges``), mm
     """
 
     middle: complex
@@ -58,6 +59,7 @@ class Map:
     waves: Floats = field(default_factory=lambda: np.zeros(2 * WAVES**2))
     surface: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     stretch: Floats = field(default_factory=lambda: np.zeros((2, 0, 0)))
+    local: Floats = field(default_factory=lambda: np.zeros((2, 0, 0)))
 
     def to_base(self, q: Points) -> Points:
         """Picture to sheet by lens and homography alone."""
@@ -85,6 +87,10 @@ class Map:
 
     def correction(self, p: Points) -> Points:
         """Offset of points of the sheet from where :meth:`to_base` has them, mm: bent sides, relief and waves, or surface."""
+        smooth = self._smooth(p)
+        return smooth + spline(p, self.local[0]) + 1j * spline(p, self.local[1]) if self.local.size else smooth
+
+    def _smooth(self, p: Points) -> Points:
         if self.surface.size:
             along, up = (spline(p, part) for part in self.stretch)
             return np.asarray(along + 1j * up + spline(p, self.surface) * (p - self.foot) / AWAY)
