@@ -8,8 +8,9 @@ have a head a little farther along the line or a little smaller.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,8 +36,8 @@ MIDDLE = np.abs(ASIDE) < 0.35
 """Places to its sides, and those of the line itself."""
 AHEAD, BEHIND = 2.0, 1.4
 """mm beyond the tip from which on, and behind a head up to which ink is looked at: there a head has none."""
-NEAR, FARTHER = np.arange(-6, 7) * STEP, np.arange(-8, 21, 2) * STEP
-"""mm by which a head may lie farther back than its place; more than the former is no head in its place, but a head."""
+NEAR, FARTHER = STEP * np.array(sorted(range(-6, 7), key=abs)), STEP * np.arange(-8, 21, 2)
+"""mm by which a head may lie farther back than its place, the most likely first; by more it is no head in its place, but a head."""
 SIZES = ((1.0, 1.0), (0.85, 1.0), (0.7, 1.0), (1.0, 0.7), (0.7, 0.7))
 """Length and width of heads drawn by hand by those of the drawing."""
 BESIDE = 0.22
@@ -92,10 +93,12 @@ class _End:
     grown: float
     lined: float
 
-    def likeness(self, shifts: Floats, sizes: Sequence[tuple[float, float]]) -> list[_Likeness]:
+    def likeness(self, shifts: Floats, sizes: Sequence[tuple[float, float]]) -> Iterator[_Likeness]:
         """The likeness to heads of some sizes that lie some mm farther back."""
-        heads = [(self._head(*size), size[0] * _length(self.element)) for size in sizes]
-        return [self._like(wanted, length, shift) for wanted, length in heads for shift in shifts.tolist()]
+        for long, wide in sizes:
+            wanted = self._head(long, wide)
+            for shift in shifts.tolist():
+                yield self._like(wanted, long * _length(self.element), shift)
 
     def _head(self, long: float, wide: float) -> Any:
         """How much darker it would be by a head of a length and a width, as shares of those it has by the drawing."""
@@ -132,10 +135,10 @@ class _End:
 
     def bare(self) -> bool:
         """Whether the line goes on to where its tip ought to be and has no head there, nor farther back."""
-        (here,) = self.likeness(np.zeros(1), SIZES[:1])
+        here = next(self.likeness(NEAR, SIZES))
         if self.lined < LINED or here.part < OPEN or here.share > BARE:
             return False
-        looked = self.likeness(NEAR, SIZES) + self.likeness(FARTHER, SIZES[:1])
+        looked = chain(self.likeness(NEAR, SIZES), self.likeness(FARTHER, SIZES[:1]))
         return not any(h.part >= SEEN and h.share >= BARE and h.alike >= HARDLY_LIKE for h in looked)
 
 
