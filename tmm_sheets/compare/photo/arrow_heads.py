@@ -2,8 +2,8 @@
 
 About both ends of a line there is looked for ink beside it as a head has it by the drawing: more and more backwards from the tip,
 then nothing any more. It is held against what lies beside the line farther along. Only what belongs to nobody else is looked at:
-where others are drawn, letters may stand or the sheet is hidden, nothing can be told. A picture that is not flat, or a hand, may
-have a head a little farther along the line or a little smaller.
+where others are drawn, letters may stand or the sheet is hidden, nothing can be told; among letters a whole head is known all the
+same. A picture that is not flat, or a hand, may have a head a little farther along the line or a little smaller.
 """
 
 from __future__ import annotations
@@ -52,10 +52,13 @@ SEEN, WHOLE = 0.3, 0.8
 """Least part of a head that must be seen for it to be known, and for it to be known as a whole."""
 HAS, LIKE = 0.45, 0.6
 """How much ink there must be of a head, as a share of what it has by the drawing, and how alike theirs must be, 1 when the same."""
-SURELY, VERY_LIKE = 0.5, 0.75
-"""Both for a head at the other end, where none is expected."""
-BARE, HARDLY_LIKE, OPEN = 0.3, 0.45, 0.45
-"""Both up to which there is no head, and least part of it that must then be seen in its place."""
+SURELY, VERY_LIKE, THE_SAME = 0.5, 0.75, 0.9
+"""Both for a head at the other end, where none is expected; likeness of one that tells though there may be one at the tip too."""
+WRITTEN = 0.85
+"""How alike ink must be to a whole head where letters may stand."""
+BARE, LITTLE, HARDLY_LIKE, OPEN = 0.12, 0.2, 0.45, 0.45
+"""Share up to which there is no head in its place, share and likeness from which on there may be one a little off or smaller, and
+least part of it that must be seen in its place for it to be missed."""
 THIN, ENOUGH = 0.65, 3
 """Ink across a line without a head, as a share of what vectors with heads have, up to which it is a helper line and the vector was
 left out; least number of those."""
@@ -79,7 +82,7 @@ class _End:
     ----------
     back : places, mm from the end backwards
     ink : how much darker it is there than beside the line elsewhere, (places, aside)
-    known : where that may be told
+    known, legible : where that may be told, and where it might be told if there are no letters
     own : darkness across the line elsewhere
     grown : mm by which the line is wider than it was drawn
     lined : share of the way to the tip on which the line is seen
@@ -89,6 +92,7 @@ class _End:
     back: Floats
     ink: Any
     known: Any
+    legible: Any
     own: Floats
     grown: float
     lined: float
@@ -131,15 +135,19 @@ class _End:
 
     def has_head(self, share: float = HAS, alike: float = LIKE, part: float = SEEN) -> bool:
         """Whether there is a head in its place."""
-        return any(h.part >= part and h.share >= share and h.alike >= alike for h in self.likeness(NEAR, SIZES))
+        written = replace(self, known=self.legible)
+        return any(h.part >= part and h.share >= share and h.alike >= alike for h in self.likeness(NEAR, SIZES)) or any(
+            h.part >= WHOLE and h.share >= SURELY and h.alike >= WRITTEN for h in written.likeness(NEAR, SIZES[:3]))
 
     def bare(self) -> bool:
-        """Whether the line goes on to where its tip ought to be and has no head there, nor farther back."""
+        """Whether the line goes on to where its tip ought to be and has no head in its place."""
         here = next(self.likeness(NEAR, SIZES))
-        if self.lined < LINED or here.part < OPEN or here.share > BARE:
-            return False
+        return self.lined >= LINED and here.part >= OPEN and here.share <= BARE
+
+    def headless(self) -> bool:
+        """Whether it has no head in its place, nor a little off it, nor a small one."""
         looked = chain(self.likeness(NEAR, SIZES), self.likeness(FARTHER, SIZES[:1]))
-        return not any(h.part >= SEEN and h.share >= BARE and h.alike >= HARDLY_LIKE for h in looked)
+        return self.bare() and not any(h.part >= SEEN and h.share >= LITTLE and h.alike >= HARDLY_LIKE for h in looked)
 
 
 @dataclass(frozen=True)
@@ -157,27 +165,33 @@ class _Paper:
         length, head = abs(other - tip), _length(e)
         way = (other - tip) / length
         shaft = np.linspace(head + SHAFT, max(length - head - SHAFT, head + SHAFT + 0.5 * SHORTEST), 60)
-        ink, others, unknown = self._beside(e, tip, way, shaft)
+        ink, others, letters, hidden = self._beside(e, tip, way, shaft)
         close = np.abs(ASIDE) <= line_type(e.style).width / 2 + BESIDE
         under = close & (others.mean(0) > ALONG)
-        own = _usual(ink, ~(_widened(others & ~close) | unknown))
+        free = ~_widened(others & ~close)
+        own = _usual(ink, free & ~hidden & ~letters)
+        if own is None:  # letters may stand along it, but not everywhere
+            own = _usual(ink, free & ~hidden)
         if own is None:
             return None
         back = np.arange(-AHEAD, head + BEHIND + FARTHER[-1] + STEP, STEP)
-        ink, others, unknown = self._beside(e, tip, way, back)
+        ink, others, letters, hidden = self._beside(e, tip, way, back)
         dark = own[MIDDLE].max()
         wide = ACROSS * float((own - own.min() > 0.5 * (dark - own.min())).sum())
         before = (back >= 2 * STEP) & (back <= head + 2 * SHAFT)
         lined = float((ink[before][:, MIDDLE].max(1) > 0.5 * dark).mean())
-        known = ~(_widened(others & ~under) | unknown)
-        return _End(e, back, ink - own, known, own, max(0.0, wide - line_type(e.style).width), lined)
+        legible = ~_widened(others & ~under) & ~hidden
+        return _End(e, back, ink - own, legible & ~letters, legible, own, max(0.0, wide - line_type(e.style).width), lined)
 
-    def _beside(self, e: Element, tip: complex, way: complex, back: Floats) -> tuple[Any, Any, Any]:
-        """Ink across a line at places ``back`` mm from its tip, where others are, and where nothing can be told."""
+    def _beside(self, e: Element, tip: complex, way: complex, back: Floats) -> tuple[Any, Any, Any, Any]:
+        """Ink across a line ``back`` mm from its tip, where others are, where letters may stand, and where it is hidden."""
         places = tip + way * (back[:, None] + 1j * ASIDE)
         ink = sample(self.ink, pixels(places)).astype(np.float64)
-        unknown = (sample(self.words, pixels(places)) > 100) | at(places, self.hidden)
-        return ink, self.owners.others(e.number, places), unknown
+        return ink, self.owners.others(e.number, places), sample(self.words, pixels(places)) > 100, at(places, self.hidden)
+
+    def others_begin(self, e: Element, start: complex, way: complex) -> bool:
+        """Whether the tip of another arrow, or another line beside this one, is where this one begins."""
+        return any(abs(z - start) < _length(e) for z in self.tips) or self.accompanied(e, start, way)
 
     def accompanied(self, e: Element, start: complex, way: complex) -> bool:
         """Whether another line leaves the same point beside this one, and would be taken for the edge of a head."""
@@ -257,18 +271,15 @@ def _head(t: Trace, paper: _Paper) -> tuple[Head, float]:
     here = paper.end(t.element, tip, begin)
     if here is None:
         return "unknown", 0.0
-    return _head_at(here, paper.end(t.element, begin, tip), begin, way, paper), float((here.own - here.own.min()).sum())
-
-
-def _head_at(here: _End, there: _End | None, begin: complex, way: complex, paper: _Paper) -> Head:
-    """Which of both ends has a head: that where one ought to be, or the one at ``begin``."""
+    across = float((here.own - here.own.min()).sum())
     if here.has_head():
-        return "there"
-    bare, length = here.bare(), _length(here.element)
-    if bare and there is not None and there.has_head(SURELY, VERY_LIKE):
-        return "reversed"
-    # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
-    alone = not (any(abs(z - begin) < length for z in paper.tips) or paper.accompanied(here.element, begin, way))
-    if alone and here.lined >= LINED and there is not None and there.has_head(SURELY, VERY_LIKE, WHOLE):
-        return "reversed"
-    return "absent" if bare else "unknown"
+        return "there", across
+    headless, there = here.headless(), paper.end(t.element, begin, tip)
+    if there is not None:
+        if (headless and there.has_head(SURELY, VERY_LIKE)) or (here.bare() and there.has_head(SURELY, THE_SAME)):
+            return "reversed", across
+        # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
+        alone = here.lined >= LINED and not paper.others_begin(t.element, begin, way)
+        if alone and there.has_head(SURELY, VERY_LIKE, WHOLE):
+            return "reversed", across
+    return "absent" if headless else "unknown", across
