@@ -119,3 +119,26 @@ def test_thin_lines_fade_in_the_hub_of_many_positions(positions, short):
         owners.add(e, e.points)
     t = with_ends([Trace(lines[0], "measured", at=lines[0].points)], ink, owners, np.zeros_like(ink), 40)[0]
     assert ("too short at its beginning" in judge(t, 0.25, 0.15).what) == short
+
+
+@pytest.mark.parametrize(("at", "head"), [([OTHER], "reversed"), ([], "absent")])
+@pytest.mark.parametrize("strokes", [(), ((2, 0.8, 4, 0.8),), ((2, 1.0, 4, 0.6), (4, 0.6, 2.5, 2)), ((3, 0.7, 3, 3),)])
+def test_among_letters_only_a_whole_head_is_known(strokes, at, head):
+    """Letters may stand all about the other end, and some stand close to the line."""
+    e = arrow(1, A, B)
+    drawn = [e, *(line(2, A + complex(a, b) * WAY, A + complex(c, d) * WAY, "thin") for a, b, c, d in strokes)]
+    about = [A + 8 * z * WAY for z in (1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j)]
+    found = heads([e], drawn, at, [about])[0].head
+    assert found == head or (strokes and at and found == "absent")
+
+
+@pytest.mark.parametrize(("dark", "head"), [(180, "there"), (100, "there"), (60, "unknown"), (0, "absent")])
+def test_a_faint_head_is_not_missed(dark, head):
+    e, ink = arrow(1, A, B), paper()
+    fill_head(ink, *BACK)
+    ink = (ink * (dark / 180)).astype(np.uint8)
+    draw(ink, A, B, "vector")
+    owners = Owners(ROWS, COLUMNS)
+    owners.add(e, e.points)
+    found = with_heads([Trace(e, "measured", at=e.points)], ink, owners, np.zeros_like(ink), np.zeros((594, 841), bool))
+    assert found[0].head in (head, "unknown") if dark else found[0].head == head

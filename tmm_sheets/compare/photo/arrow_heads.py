@@ -137,7 +137,7 @@ class _End:
         """Whether there is a head in its place."""
         written = replace(self, known=self.legible)
         return any(h.part >= part and h.share >= share and h.alike >= alike for h in self.likeness(NEAR, SIZES)) or any(
-            h.part >= WHOLE and h.share >= SURELY and h.alike >= WRITTEN for h in written.likeness(NEAR, SIZES[:3]))
+            h.part >= WHOLE and h.share >= SURELY and h.alike >= WRITTEN for h in written.likeness(NEAR, SIZES))
 
     def bare(self) -> bool:
         """Whether the line goes on to where its tip ought to be and has no head in its place."""
