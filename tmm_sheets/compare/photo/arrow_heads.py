@@ -59,9 +59,9 @@ WRITTEN = 0.85
 BARE, LITTLE, HARDLY_LIKE, OPEN = 0.12, 0.2, 0.45, 0.45
 """Share up to which there is no head in its place, share and likeness from which on there may be one a little off or smaller, and
 least part of it that must be seen in its place for it to be missed."""
-THIN, ENOUGH = 0.65, 3
+THIN, ENOUGH, PALE = 0.65, 3, 2.0
 """Ink across a line without a head, as a share of what vectors with heads have, up to which it is a helper line and the vector was
-left out; least number of those."""
+left out; least number of those; how much darker than such a line a head would be."""
 LINED = 0.9
 """Least share of the way to the tip on which the line must be seen for its head to be missed."""
 
@@ -96,6 +96,11 @@ class _End:
     own: Floats
     grown: float
     lined: float
+
+    @property
+    def across(self) -> float:
+        """How much ink the line has across it."""
+        return float((self.own - self.own.min()).sum())
 
     def likeness(self, shifts: Floats, sizes: Sequence[tuple[float, float]]) -> Iterator[_Likeness]:
         """The likeness to heads of some sizes that lie some mm farther back."""
@@ -139,15 +144,15 @@ class _End:
         return any(h.part >= part and h.share >= share and h.alike >= alike for h in self.likeness(NEAR, SIZES)) or any(
             h.part >= WHOLE and h.share >= SURELY and h.alike >= WRITTEN for h in written.likeness(NEAR, SIZES))
 
-    def bare(self) -> bool:
-        """Whether the line goes on to where its tip ought to be and has no head in its place."""
+    def bare(self, pale: float = 1.0) -> bool:
+        """Whether the line goes on to where its tip ought to be and has no head in its place, which is ``pale`` times as dark."""
         here = next(self.likeness(NEAR, SIZES))
-        return self.lined >= LINED and here.part >= OPEN and here.share <= BARE
+        return self.lined >= LINED and here.part >= OPEN and here.share <= BARE * pale
 
-    def headless(self) -> bool:
+    def headless(self, pale: float = 1.0) -> bool:
         """Whether it has no head in its place, nor a little off it, nor a small one."""
         looked = chain(self.likeness(NEAR, SIZES), self.likeness(FARTHER, SIZES[:1]))
-        return self.bare() and not any(h.part >= SEEN and h.share >= LITTLE and h.alike >= HARDLY_LIKE for h in looked)
+        return self.bare(pale) and not any(h.part >= SEEN and h.share >= LITTLE * pale and h.alike >= HARDLY_LIKE for h in looked)
 
 
 @dataclass(frozen=True)
@@ -241,11 +246,12 @@ def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hi
     """
     paper = _Paper(ink, owners, words, hidden, [complex(f[0]) for t in traces for f in t.element.fills])
     found = {k: _head(t, paper) for k, t in enumerate(traces) if _wanted(t)}
-    usual = [across for head, across in found.values() if head == "there"]
+    usual = [end.across for head, end in found.values() if head == "there" and end is not None]
     thin = THIN * float(np.median(usual)) if len(usual) >= ENOUGH else 0.0
     out = list(traces)
-    for k, (head, across) in found.items():
-        out[k] = replace(traces[k], head="left out" if head == "absent" and across < thin else head)
+    for k, (head, end) in found.items():
+        left_out = end is not None and end.across < thin and (head == "absent" or (head == "unknown" and end.headless(PALE)))
+        out[k] = replace(traces[k], head="left out" if left_out else head)
     return out
 
 
@@ -262,24 +268,23 @@ def _length(e: Element) -> float:
     return float(abs(e.fills[0][0] - e.fills[0][1:].mean()))
 
 
-def _head(t: Trace, paper: _Paper) -> tuple[Head, float]:
-    """What there is of a head at the tip, and at the other end when there is none; how much ink the line has across it."""
+def _head(t: Trace, paper: _Paper) -> tuple[Head, _End | None]:
+    """What there is of a head at the tip, and at the other end when there is none; and what there is about the tip."""
     assert t.at is not None
     way = (t.at[1] - t.at[0]) / abs(t.at[1] - t.at[0])
     beyond = [0.0 if np.isnan(by) else by for by in t.ends]
     begin, tip = complex(t.at[0] - way * beyond[0]), complex(t.at[1] + way * beyond[1])
     here = paper.end(t.element, tip, begin)
     if here is None:
-        return "unknown", 0.0
-    across = float((here.own - here.own.min()).sum())
+        return "unknown", None
     if here.has_head():
-        return "there", across
+        return "there", here
     headless, there = here.headless(), paper.end(t.element, begin, tip)
     if there is not None:
         if (headless and there.has_head(SURELY, VERY_LIKE)) or (here.bare() and there.has_head(SURELY, THE_SAME)):
-            return "reversed", across
+            return "reversed", here
         # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
         alone = here.lined >= LINED and not paper.others_begin(t.element, begin, way)
         if alone and there.has_head(SURELY, VERY_LIKE, WHOLE):
-            return "reversed", across
-    return "absent" if headless else "unknown", across
+            return "reversed", here
+    return "absent" if headless else "unknown", here
