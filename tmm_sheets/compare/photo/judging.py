@@ -85,8 +85,8 @@ def _with_head(f: PhotoFinding) -> PhotoFinding:
     e, head = f.element, f.trace.head
     if head == "reversed":
         return replace(f, verdict="red", deviation=e.length, what=tell("the arrow points the other way"))
-    if head == "absent":
-        no_head = tell("no arrow head here")
+    if head in ("absent", "left out"):
+        no_head = tell("no arrow head here") if head == "absent" else tell("only a thin line here, and no arrow head")
         what = no_head if f.verdict == "green" else f"{f.what}; {no_head}"
         return replace(f, verdict="amber" if f.verdict == "green" else f.verdict, what=what, at=complex(e.fills[0][0]))
     return f
