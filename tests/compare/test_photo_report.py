@@ -29,7 +29,7 @@ def test_what_may_be_right_is_not_called_wrong(off, said):
 
 
 @pytest.mark.parametrize(("name", "said"), [
-    ("", "lettering"), ("aB", "lettering aB"), ("M, N m of all forces", "lettering M, N m of all f…")])
+    ("", "text"), ("aB", "text aB"), ("M, N m of all forces", "text M, N m of all f…")])
 def test_a_text_is_called_by_its_letters(name, said):
     assert called(finding("absent lettering", kind="text", name=name).element) == said
 
@@ -48,7 +48,7 @@ def test_what_could_not_be_judged_is_told_by_views_and_nothing_of_none(statuses,
 
 
 def test_numbers_on_the_overlay_stand_apart():
-    flags = [overlay.Flag(k, "red", 400 + 300j + 2 * (k % 3), np.zeros(0, complex)) for k in range(1, 13)]
+    flags = [overlay.Flag(k, "red", 400 + 300j + 2 * (k % 3)) for k in range(1, 13)]
     boxes = [(n.at, n.at + complex(overlay.DIGITS * 0.62 * len(n.text), overlay.DIGITS)) for n in overlay._numbers(flags)]
     assert all(b.real <= c.real or d.real <= a.real or b.imag <= c.imag or d.imag <= a.imag
                for (a, b), (c, d) in combinations(boxes, 2))

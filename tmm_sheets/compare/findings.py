@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
@@ -57,10 +58,10 @@ def counted(bad: Sequence[Finding]) -> str:
     return ", ".join(said)
 
 
-_LETTERING = marked("lettering")
 _KINDS = {
     "line": marked("line"), "arc": marked("arc"), "circle": marked("circle"), "curve": marked("curve"), "hatch": marked("hatching"),
     "fill": marked("filled area"), "dot": marked("dot"), "arrow": marked("arrow"),
+    "text": marked("text"),
 }
 
 
@@ -71,9 +72,16 @@ NAME = 16
 def called(e: Element) -> str:
     """An element in a table: what it is and what it is called."""
     if e.kind == "text":
-        return f"{tell(_LETTERING)} {e.name if len(e.name) <= NAME else e.name[: NAME - 1] + '…'}".strip()
+        return f"{tell(_KINDS['text'])} {e.name if len(e.name) <= NAME else e.name[: NAME - 1] + '…'}".strip()
     dot, arrow = e.kind == "circle" and e.fills, e.kind == "line" and e.arrow
-    return f"{tell(_KINDS['dot' if dot else 'arrow' if arrow else e.kind])} {e.name}".strip()
+    return f"{tell(_KINDS['dot' if dot else 'arrow' if arrow else e.kind])} {_on_paper(e)}".strip()
+
+
+def _on_paper(e: Element) -> str:
+    """The name of an element; of one that is called by the word for its step ("points"), which no sheet has, only its position."""
+    step = e.step.rpartition("/")[2]
+    word = re.fullmatch("[a-z]{3,}", step) and e.name.startswith(step)
+    return e.name.removeprefix(step).strip("()") if word else e.name
 
 
 _WAYS = {

@@ -1,14 +1,17 @@
 """Whether an arrow has its head, or has it at its other end.
 
-A head is wider than its line: near the tip there is more ink across the line than along its middle, or as much when there is no
-head. Where others are drawn beside the line, letters may stand or the sheet is hidden, nothing can be told.
+About both ends of a line there is looked for ink beside it as a head has it by the drawing: more and more backwards from the tip,
+then nothing any more. It is held against what lies beside the line farther along. Only what belongs to nobody else is looked at:
+where others are drawn, letters may stand or the sheet is hidden, nothing can be told; among letters a whole head is known all the
+same. A picture that is not flat, or a hand, may have a head a little farther along the line or a little smaller.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from itertools import chain
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,26 +25,134 @@ from tmm_sheets.drawing.styles import line_type
 
 LEAST = 2.4
 """mm; shorter heads are not looked for."""
-BACK = np.arange(1.2, 5.0, 0.2)
-"""mm from the tip backwards at which ink is measured; nearer to it a point is drawn as a dot."""
 SHAFT = 1.0
 """mm behind a head, and from the other end, beyond which a line has no head any more."""
 SHORTEST = 4.0
 """mm of a vector behind its head by which the line's own ink is known."""
-ASIDE = np.arange(0.0, 1.4, 0.15)
-"""mm to either side at which it is sampled; ink counts up to :data:`WIDEST`."""
-WIDEST = 1.1
-FULL = 0.9
-"""Share of the darkness of a line's middle up to which it is full; of a blurred one hardly anything is."""
+STEP, ACROSS = 0.2, 0.1
+"""mm between the places along a line, and to its sides, at which ink is looked at."""
+ASIDE = np.arange(-14, 15) * ACROSS
+MIDDLE = np.abs(ASIDE) < 0.35
+"""Places to its sides, and those of the line itself."""
+AHEAD, BEHIND = 2.0, 1.4
+"""mm beyond the tip from which on, and behind a head up to which ink is looked at: there a head has none."""
+NEAR, FARTHER = STEP * np.array(sorted(range(-6, 7), key=abs)), STEP * np.arange(-8, 21, 2)
+"""mm by which a head may lie farther back than its place, the most likely first; by more it is no head in its place, but a head."""
+SIZES = ((1.0, 1.0), (0.85, 1.0), (0.7, 1.0), (1.0, 0.7), (0.7, 0.7))
+"""Length and width of heads drawn by hand by those of the drawing."""
 BESIDE = 0.22
 """mm from the edge of the line beyond which nothing of others may be: what runs along under it, a helper line, is no matter."""
-BARE, INKED = 0.18, 0.4
-"""How much a line widens towards its end, as a share of what a head has by the drawing, up to which there is no head, and from
-which on there is one for sure. Pencilled and photographed heads have 0.6 in the middle, 99 of 100 more than 0.23."""
-SMALLER, SURE = 0.7, 0.7
-"""Size of a small head by that of the drawing, and what such a one needs to be one for sure."""
-ENOUGH, SOME = 0.6, 6
-"""Least part of a head that must be seen for it to be judged; least number of stations for the line's own ink to be known."""
+ALONG = 0.3
+"""Least share of a line along which others must run under it for their ink to be part of its own."""
+SOME = 6
+"""Least number of places along a line by which its ink is known."""
+FAINT = 0.12
+"""Darkness as a share of the line's own up to which there is no ink."""
+SEEN, WHOLE = 0.3, 0.8
+"""Least part of a head that must be seen for it to be known, and for it to be known as a whole."""
+HAS, LIKE = 0.45, 0.6
+"""How much ink there must be of a head, as a share of what it has by the drawing, and how alike theirs must be, 1 when the same."""
+SURELY, VERY_LIKE, THE_SAME = 0.5, 0.75, 0.9
+"""Both for a head at the other end, where none is expected; likeness of one that tells though there may be one at the tip too."""
+WRITTEN = 0.85
+"""How alike ink must be to a whole head where letters may stand."""
+BARE, LITTLE, HARDLY_LIKE, OPEN = 0.12, 0.2, 0.45, 0.45
+"""Share up to which there is no head in its place, share and likeness from which on there may be one a little off or smaller, and
+least part of it that must be seen in its place for it to be missed."""
+THIN, ENOUGH, PALE = 0.65, 3, 2.0
+"""Ink across a line without a head, as a share of what vectors with heads have, up to which it is a helper line and the vector was
+left out; least number of those; how much darker than such a line a head would be."""
+LINED = 0.9
+"""Least share of the way to the tip on which the line must be seen for its head to be missed."""
+
+
+class _Likeness(NamedTuple):
+    """Ink compared with that of a head: part of it that is seen, its ink as a share of the drawing's, and how alike both are."""
+
+    part: float
+    share: float
+    alike: float
+
+
+@dataclass(frozen=True)
+class _End:
+    """What there is about an end of a line.
+
+    Attributes
+    ----------
+    back : places, mm from the end backwards
+    ink : how much darker it is there than beside the line elsewhere, (places, aside)
+    known, legible : where that may be told, and where it might be told if there are no letters
+    own : darkness across the line elsewhere
+    grown : mm by which the line is wider than it was drawn
+    lined : share of the way to the tip on which the line is seen
+    """
+
+    element: Element
+    back: Floats
+    ink: Any
+    known: Any
+    legible: Any
+    own: Floats
+    grown: float
+    lined: float
+
+    @property
+    def across(self) -> float:
+        """How much ink the line has across it."""
+        return float((self.own - self.own.min()).sum())
+
+    def likeness(self, shifts: Floats, sizes: Sequence[tuple[float, float]]) -> Iterator[_Likeness]:
+        """The likeness to heads of some sizes that lie some mm farther back."""
+        for long, wide in sizes:
+            wanted = self._head(long, wide)
+            for shift in shifts.tolist():
+                yield self._like(wanted, long * _length(self.element), shift)
+
+    def _head(self, long: float, wide: float) -> Any:
+        """How much darker it would be by a head of a length and a width, as shares of those it has by the drawing."""
+        import cv2
+
+        e, length = self.element, long * _length(self.element)
+        corners = (e.fills[0] - e.fills[0][0]) / (e.points[0] - e.fills[0][0])
+        most = wide * float(np.abs(corners.imag).max()) * abs(e.points[0] - e.fills[0][0])
+        half = most * self.back / length + self.grown / 2
+        inside = (np.abs(ASIDE) <= half[:, None]) & ((self.back >= 0) & (self.back <= length))[:, None]
+        # As blurred as a line is.
+        full = cv2.GaussianBlur(inside.astype(np.float32), (7, 5), sigmaX=0.2 / ACROSS, sigmaY=0.2 / STEP)
+        return np.clip(self.own[MIDDLE].max() * full - self.own, 0, None)
+
+    def _like(self, wanted: Any, length: float, shift: float) -> _Likeness:
+        by = round(shift / STEP)
+        wanted = np.roll(wanted, by, 0)
+        if by > 0:
+            wanted[:by] = 0
+        about = (self.back >= shift - 2 * STEP) & (self.back <= shift + length + BEHIND)
+        flank = about[:, None] & (np.abs(ASIDE) >= 0.25)
+        told = flank & self.known
+        weight, whole = float((wanted[told] ** 2).sum()), float((wanted[flank] ** 2).sum())
+        if not weight:
+            return _Likeness(0.0, 0.0, 0.0)
+        ink = self.ink[told]
+        dark = np.where(ink > FAINT * self.own[MIDDLE].max(), ink, 0)
+        both = float((wanted[told] * dark).sum()) / np.sqrt(weight * max(float((dark**2).sum()), 1e-9))
+        return _Likeness(weight / whole, float((wanted[told] * ink).sum()) / weight, both)
+
+    def has_head(self, share: float = HAS, alike: float = LIKE, part: float = SEEN) -> bool:
+        """Whether there is a head in its place."""
+        written = replace(self, known=self.legible)
+        return any(h.part >= part and h.share >= share and h.alike >= alike for h in self.likeness(NEAR, SIZES)) or any(
+            h.part >= WHOLE and h.share >= SURELY and h.alike >= WRITTEN for h in written.likeness(NEAR, SIZES))
+
+    def bare(self, pale: float = 1.0) -> bool:
+        """Whether the line goes on to where its tip ought to be and has no head in its place, which is ``pale`` times as dark."""
+        here = next(self.likeness(NEAR, SIZES))
+        return self.lined >= LINED and here.part >= OPEN and here.share <= BARE * pale
+
+    def headless(self, pale: float = 1.0) -> bool:
+        """Whether it has no head in its place, nor a little off it, nor a small one."""
+        looked = chain(self.likeness(NEAR, SIZES), self.likeness(FARTHER, SIZES[:1]))
+        return self.bare(pale) and not any(h.part >= SEEN and h.share >= LITTLE * pale and h.alike >= HARDLY_LIKE for h in looked)
 
 
 @dataclass(frozen=True)
@@ -54,35 +165,63 @@ class _Paper:
     hidden: Mask
     tips: Sequence[complex]
 
-    def beside(self, e: Element, start: complex, along: Floats, way: complex, side: int) -> tuple[Floats, Floats]:
-        """Ink across one side of a line at places ``along`` mm from ``start``, and how far it is full, mm; nan where others are."""
-        places = start + way * (along[:, None] + side * 1j * ASIDE)
-        outside = line_type(e.style).width / 2 + BESIDE < ASIDE
-        taken = self.owners.others(e.number, places[:, outside]) | (sample(self.words, pixels(places[:, outside])) > 100)
-        dark = sample(self.ink, pixels(places))[:, ASIDE < WIDEST].astype(np.float64)
-        full = np.logical_and.accumulate(dark > FULL * dark[:, :1], 1).sum(1) * ASIDE[1] - 0.5 * ASIDE[1]
-        unknown = taken.any(1) | at(places[:, 0], self.hidden)
-        return np.where(unknown, np.nan, dark.sum(1)), np.where(unknown, np.nan, full)
+    def end(self, e: Element, tip: complex, other: complex) -> _End | None:
+        """What there is about an end of a line; None where nothing can be told."""
+        length, head = abs(other - tip), _length(e)
+        way = (other - tip) / length
+        shaft = np.linspace(head + SHAFT, max(length - head - SHAFT, head + SHAFT + 0.5 * SHORTEST), 60)
+        ink, others, letters, hidden = self._beside(e, tip, way, shaft)
+        close = np.abs(ASIDE) <= line_type(e.style).width / 2 + BESIDE
+        under = close & (others.mean(0) > ALONG)
+        free = ~_widened(others & ~close)
+        own = _usual(ink, free & ~hidden & ~letters)
+        if own is None:  # letters may stand along it, but not everywhere
+            own = _usual(ink, free & ~hidden)
+        if own is None:
+            return None
+        back = np.arange(-AHEAD, head + BEHIND + FARTHER[-1] + STEP, STEP)
+        ink, others, letters, hidden = self._beside(e, tip, way, back)
+        dark = own[MIDDLE].max()
+        wide = ACROSS * float((own - own.min() > 0.5 * (dark - own.min())).sum())
+        before = (back >= 2 * STEP) & (back <= head + 2 * SHAFT)
+        lined = float((ink[before][:, MIDDLE].max(1) > 0.5 * dark).mean())
+        legible = ~_widened(others & ~under) & ~hidden
+        return _End(e, back, ink - own, legible & ~letters, legible, own, max(0.0, wide - line_type(e.style).width), lined)
+
+    def _beside(self, e: Element, tip: complex, way: complex, back: Floats) -> tuple[Any, Any, Any, Any]:
+        """Ink across a line ``back`` mm from its tip, where others are, where letters may stand, and where it is hidden."""
+        places = tip + way * (back[:, None] + 1j * ASIDE)
+        ink = sample(self.ink, pixels(places)).astype(np.float64)
+        return ink, self.owners.others(e.number, places), sample(self.words, pixels(places)) > 100, at(places, self.hidden)
+
+    def others_begin(self, e: Element, start: complex, way: complex) -> bool:
+        """Whether the tip of another arrow, or another line beside this one, is where this one begins."""
+        return any(abs(z - start) < _length(e) for z in self.tips) or self.accompanied(e, start, way)
 
     def accompanied(self, e: Element, start: complex, way: complex) -> bool:
         """Whether another line leaves the same point beside this one, and would be taken for the edge of a head."""
-        aside = ASIDE[(line_type(e.style).width / 2 < ASIDE) & (ASIDE < WIDEST)]
-        across = 1j * np.concatenate((-aside, aside))
-        return bool(self.owners.others(e.number, start + way * (BACK[:, None] + across)).any())
+        half = line_type(e.style).width / 2
+        aside = np.arange(half + 0.1, 1.1, 0.15)
+        places = start + way * (np.arange(1.2, 5.0, 0.2)[:, None] + 1j * np.concatenate((-aside, aside)))
+        return bool(self.owners.others(e.number, places).any())
 
-    def widening(self, e: Element, tip: complex, other: complex) -> tuple[Floats, float]:
-        """Ink about a line at :data:`BACK` mm from its tip as a multiple of the line's own, nan where others are; its width, mm."""
-        length = abs(other - tip)
-        way, behind = (other - tip) / length, _length(e) + SHAFT
-        shaft = np.linspace(behind, max(length - behind, behind + 0.5 * SHORTEST), 40)
-        out, width = [], line_type(e.style).width
-        for side in (1, -1):
-            own, full = (values[~np.isnan(values)] for values in self.beside(e, tip, shaft, way, side))
-            usual = float(np.median(own)) if len(own) >= SOME else 0.0
-            out.append(self.beside(e, tip, BACK, way, side)[0] / usual if usual > 0 else np.full(len(BACK), np.nan))
-            width = max(width, 2 * float(np.median(full)) if usual > 0 else 0.0)
-        one, two = out
-        return np.where(np.isnan(one), two, np.where(np.isnan(two), one, (one + two) / 2)), width
+
+def _widened(others: Any) -> Any:
+    """Places of others with those where their ink may reach, as blurred as it is and not quite in its place."""
+    import cv2
+
+    return cv2.dilate(others.astype(np.uint8), np.ones((5, 7), np.uint8)) > 0
+
+
+def _usual(ink: Any, known: Any) -> Floats | None:
+    """Darkness across a line along its middle; of a side that is not seen that of the other one, None where neither is."""
+    own: Floats = np.full(len(ASIDE), np.nan)
+    for k in np.flatnonzero(known.sum(0) >= SOME).tolist():
+        own[k] = np.median(ink[known[:, k], k])
+    own = np.where(np.isnan(own), own[::-1], own)
+    if np.isnan(own[MIDDLE]).any():
+        return None
+    return np.where(np.isnan(own), np.nanmin(own), own)
 
 
 def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hidden: Mask) -> list[Trace]:
@@ -106,7 +245,14 @@ def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hi
     The traces in the same order, with ``head``.
     """
     paper = _Paper(ink, owners, words, hidden, [complex(f[0]) for t in traces for f in t.element.fills])
-    return [replace(t, head=_head(t, paper)) if _wanted(t) else t for t in traces]
+    found = {k: _head(t, paper) for k, t in enumerate(traces) if _wanted(t)}
+    usual = [end.across for head, end in found.values() if head == "there" and end is not None]
+    thin = THIN * float(np.median(usual)) if len(usual) >= ENOUGH else 0.0
+    out = list(traces)
+    for k, (head, end) in found.items():
+        left_out = end is not None and end.across < thin and (head == "absent" or (head == "unknown" and end.headless(PALE)))
+        out[k] = replace(traces[k], head="left out" if left_out else head)
+    return out
 
 
 def _wanted(t: Trace) -> bool:
@@ -122,45 +268,23 @@ def _length(e: Element) -> float:
     return float(abs(e.fills[0][0] - e.fills[0][1:].mean()))
 
 
-def _head(t: Trace, paper: _Paper) -> Head:
-    """What there is of a head at the tip, and at the other end when there is none."""
+def _head(t: Trace, paper: _Paper) -> tuple[Head, _End | None]:
+    """What there is of a head at the tip, and at the other end when there is none; and what there is about the tip."""
     assert t.at is not None
     way = (t.at[1] - t.at[0]) / abs(t.at[1] - t.at[0])
     beyond = [0.0 if np.isnan(by) else by for by in t.ends]
     begin, tip = complex(t.at[0] - way * beyond[0]), complex(t.at[1] + way * beyond[1])
-    here = paper.widening(t.element, tip, begin)
-    if _is_head(t.element, here):
-        return "there"
-    # Not even a small one.
-    bare = _share(t.element, here) <= BARE and _share(t.element, here, SMALLER) <= INKED
-    there = paper.widening(t.element, begin, tip)
-    # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
-    alone = not (any(abs(z - begin) < _length(t.element) for z in paper.tips) or paper.accompanied(t.element, begin, way))
-    # Two lines that part at a small angle widen as a head does, up to where they are told apart: a whole head must be seen.
-    whole = not np.isnan(_share(t.element, there))
-    if whole and _is_head(t.element, there) and (bare or alone):
-        return "reversed"
-    return "absent" if bare else "unknown"
-
-
-def _is_head(e: Element, seen: tuple[Floats, float]) -> bool:
-    """Whether a line widens as by a head, or by a smaller one."""
-    return _share(e, seen) >= INKED or _share(e, seen, SMALLER) >= SURE
-
-
-def _share(e: Element, seen: tuple[Floats, float], size: float = 1.0) -> float:
-    """The widening of a line as a share of that by its head, by least squares; nan where too little of it is seen.
-
-    Of a head of another ``size`` there is the same near its tip, and nothing beyond. A picture in black and white has lines wider
-    than they were drawn, and heads that are hardly wider than those: ``seen`` is the widening, and the width of the line.
-    """
-    widening, line = seen
-    corners = (e.fills[0] - e.fills[0][0]) / (e.points[0] - e.fills[0][0])
-    width = 2 * float(np.abs(corners.imag).max()) * abs(e.points[0] - e.fills[0][0]) * BACK / _length(e)
-    grown = line - line_type(e.style).width
-    wanted = np.clip(np.where(size * _length(e) >= BACK, (width + grown) / line, 0) - 1, 0, None)
-    told = ~np.isnan(widening)
-    weight = float((wanted[told] ** 2).sum())
-    if weight < ENOUGH * float((wanted**2).sum()) or not weight:
-        return float("nan")
-    return float(((widening[told] - 1) * wanted[told]).sum() / weight)
+    here = paper.end(t.element, tip, begin)
+    if here is None:
+        return "unknown", None
+    if here.has_head():
+        return "there", here
+    headless, there = here.headless(), paper.end(t.element, begin, tip)
+    if there is not None:
+        if (headless and there.has_head(SURELY, VERY_LIKE)) or (here.bare() and there.has_head(SURELY, THE_SAME)):
+            return "reversed", here
+        # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
+        alone = here.lined >= LINED and not paper.others_begin(t.element, begin, way)
+        if alone and there.has_head(SURELY, VERY_LIKE, WHOLE):
+            return "reversed", here
+    return "absent" if headless else "unknown", here

@@ -19,12 +19,18 @@ LEAST_WIDTH = 0.15  # mm: a line of that extent and width is the least amount of
 INSET = 2.0  # mm inside the frame within which ink counts
 COARSE = 3  # pixels to one of the coarse picture
 JOIN = 3  # coarse pixels; smaller gaps within a region are closed
+POINTS, ALONG = 300, 12  # most points of a region, and points of each piece of a stroke, that are told
 
 
 CREASE, PIECES, SPAN = 2.0, 3, 200.0
 """mm that a piece of a crease is wide, and off the others, at most; least number of pieces and least distance of the outermost."""
 STRAIGHT = 0.4
 """mm; standard deviation across a stroke that is straight: no hand writes a letter as long as what is reported and as straight."""
+
+
+FOLD, FAINTER, EVERY = 0.25, 3.0, 8
+"""Least darkness of a crease, as a share of ink's, on three quarters of its length, how much darker than that ink on it is, and the
+distance of the pixels that are looked at."""
 
 
 SHORT, WIDE = 2.0, 0.9
@@ -64,6 +70,30 @@ def extra_ink(left: Any, level: float, words: Any, wiped: Any = None, dark: floa
         if not crease and all(_in_common(x, y) <= 0.5 * x.length for y in smooth):
             smooth.append(x)
     return sorted(smooth, key=lambda q: -q.length)
+
+
+def without_creases(left: Any, ink: Any, level: float) -> Any:
+    """What is left of a rectified sheet without creases that run upright or level from side to side of it.
+
+    They are as wide as a pencil's line and paler, and unlike any line of a drawing they show over the whole of the sheet.
+    """
+    out = left
+    corners = np.array([complex(FRAME.x0 + INSET, FRAME.y1 - INSET), complex(FRAME.x1 - INSET, FRAME.y0 + INSET)])
+    (x0, y0), (x1, y1) = ((round(z.real), round(z.imag)) for z in pixels(corners))
+    for upright in (True, False):
+        sheet = ink[y0:y1:EVERY] if upright else ink[:, x0:x1:EVERY]
+        usual = np.percentile(sheet, 25, axis=0 if upright else 1)
+        first, end = (x0, x1) if upright else (y0, y1)
+        at = first + np.flatnonzero(usual[first:end] > FOLD * level)
+        if len(at):
+            out = left.copy() if out is left else out
+            strip = out[:, at] if upright else out[at].T
+            strip = np.where(strip < FAINTER * usual[at], 0, strip)
+            if upright:
+                out[:, at] = strip
+            else:
+                out[at] = strip.T
+    return out
 
 
 def _in_common(x: ExtraInk, y: ExtraInk) -> float:
@@ -111,8 +141,12 @@ def _regions(left: Any, level: float, straight: bool) -> list[ExtraInk]:
             continue
         if straight and _across(labels, stats[i], i) > STRAIGHT * scale:
             continue
-        x, y = middles[i]
-        out.append(ExtraInk(complex((x + 0.5) / scale, PAPER.y1 - (y + 0.5) / scale), w, h, hypot(w, h)))
+        middle = complex((middles[i][0] + 0.5) / scale, PAPER.y1 - (middles[i][1] + 0.5) / scale)
+        left, top, wide, high = (int(n) for n in stats[i, :4])
+        box = slice(top, top + high), slice(left, left + wide)
+        row, column = np.nonzero((labels[box] == i) & (amount[box] > 0))
+        points = (column + left + 0.5) / scale + 1j * (PAPER.y1 - (row + top + 0.5) / scale)
+        out.append(ExtraInk(middle, w, h, hypot(w, h), points[:: len(points) // POINTS + 1]))
     return out
 
 
@@ -144,7 +178,8 @@ def _strokes(left: Any, wiped: Any, words: Any, level: float) -> list[ExtraInk]:
         free = sample(words, pixels((z[::2] + z[1::2]) / 2), nearest=True) == 0
         if hypot(width, height) >= EXTRA and np.abs(z[1::2] - z[::2]).sum() >= INK and free.any():
             middle = complex((z.real.min() + z.real.max()) / 2, (z.imag.min() + z.imag.max()) / 2)
-            out.append(ExtraInk(middle, float(width), float(height), hypot(width, height)))
+            points = np.concatenate([np.linspace(a, b, ALONG) for a, b in z.reshape(-1, 2)])
+            out.append(ExtraInk(middle, float(width), float(height), hypot(width, height), points))
     return out
 
 

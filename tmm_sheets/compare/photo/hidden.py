@@ -2,11 +2,13 @@
 
 A place is hidden when its ground is not the paper's or the lines that belong there are not there, and that goes on to the frame:
 what hides a sheet reaches into it from outside. A shadow is no such thing (the lines are there), nor is a line that was left out.
+The back of a dog-ear is white paper too: it lies where the corner that is gone would be mirrored in the crease.
 Where a flash or a lamp's reflection has washed out the paper, lines that are not seen are hidden too.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -34,8 +36,11 @@ GLOW = 0.08
 """Share by which a reflection makes the paper brighter than it is about there, from which on it may wash out lines."""
 LOST = 0.12
 """Share of the points of lines under a reflection that must not be seen for it to hide all of them; of others 0.04 are not seen."""
-MARGIN = 5
-"""mm by which hidden places are widened: edges cast shadows."""
+MARGIN, EDGE = 5, 3
+"""mm by which hidden places are widened, for edges cast shadows; and by which the back of a dog-ear is."""
+INSIDE, LEG, GONE = 2, (20, 150), 0.9
+"""mm inside an edge of the paper where it is seen how much of a corner is gone, the least and most of that, and least share of the
+corner that is gone with it."""
 OFFSETS = np.arange(-1.5, 1.55, 0.1)
 
 
@@ -89,7 +94,21 @@ def hidden_places(grey: Any, m: Map, ink: Any, lines: ProfileLines, sides: Profi
     if np.median(ground) < PAPER_GREY:
         single = ~there & (ground[row, column] >= GLARE)
         out[row[single], column[single]] = True
-    return cv2.dilate(out.astype(np.uint8), np.ones((2 * MARGIN + 1, 2 * MARGIN + 1), np.uint8)) > 0 if out.any() else out
+    if not out.any():
+        return out
+    out = widened(out)
+    for flap in _flaps(out & ~outside):
+        there_ = there[flap[row, column]]
+        if there_.sum() <= SEEN * len(there_):
+            out |= widened(flap, EDGE)
+    return out
+
+
+def widened(hidden: Mask, by: int = MARGIN) -> Mask:
+    """Hidden places with what is so near them, mm, that it may be hidden too."""
+    import cv2
+
+    return cv2.dilate(hidden.astype(np.uint8), np.ones((2 * by + 1, 2 * by + 1), np.uint8)) > 0
 
 
 def share_hidden(e: Element, hidden: Mask) -> float:
@@ -107,16 +126,37 @@ def at(p: Any, hidden: Mask) -> Any:
     return hidden[i, np.clip(np.real(p).astype(int), 0, columns - 1)]
 
 
+def _flaps(hidden: Mask) -> Iterator[Mask]:
+    """Where the backs of dog-ears may lie: a corner that is gone along a straight crease lies mirrored in it on the sheet."""
+    import cv2
+
+    for upside, mirrored in ((u, m) for u in (1, -1) for m in (1, -1)):
+        corner = hidden[::upside, ::mirrored]
+        # How far it is gone along both edges of the paper, a little inside.
+        a, b = (int(edge.argmin()) if not edge.all() else 0 for edge in (corner[:, INSIDE], corner[INSIDE, :]))
+        if not (LEG[0] <= min(a, b) and max(a, b) <= LEG[1]):
+            continue
+        row, column = np.mgrid[:a, :b]
+        if corner[:a, :b][row / a + column / b < 1 - 2 * MARGIN / min(a, b)].mean() < GONE:
+            continue
+        tip = (2 * a * a * b / (a * a + b * b), 2 * a * b * b / (a * a + b * b))
+        flap = np.zeros(hidden.shape, np.uint8)
+        cv2.fillPoly(flap, [np.rint([(0, a), (b, 0), tip]).astype(np.int32)], 1)
+        yield flap[::upside, ::mirrored] > 0
+
+
 def _ground(grey: Any, m: Map, shape: tuple[int, int]) -> tuple[Any, Mask]:
     """Brightness of what lies under the lines, and what is outside the picture."""
     import cv2
 
-    x, y = np.meshgrid(np.arange(shape[1]) + 0.5, PAPER.y1 - np.arange(shape[0]) - 0.5)
+    # Every eighth place and one more on all sides: between these the resizing has its pixels.
     step = 8
-    q = m.to_picture(x[::step, ::step] + 1j * y[::step, ::step])
+    rows, columns = (step * (np.arange(-1, -(-n // step) + 1) + 0.5) for n in shape)
+    x, y = np.meshgrid(columns, PAPER.y1 - rows)
+    q = m.to_picture(x + 1j * y)
     u, v = (cv2.resize(part.astype(np.float32), (q.shape[1] * step, q.shape[0] * step), interpolation=cv2.INTER_LINEAR)
-            [: shape[0], : shape[1]] for part in (q.real, q.imag))  # fmt: skip
-    scale = abs(complex(q[len(q) // 2, -1] - q[len(q) // 2, 0])) / (x[0, ::step][-1] - x[0, 0])
+            [step : step + shape[0], step : step + shape[1]] for part in (q.real, q.imag))  # fmt: skip
+    scale = abs(complex(q[len(q) // 2, -1] - q[len(q) // 2, 0])) / (columns[-1] - columns[0])
     f = float(min(1.0 / max(scale, 1e-6), 1.0))
     small = cv2.resize(grey, None, fx=f, fy=f, interpolation=cv2.INTER_AREA)
     seen = cv2.remap(small, u * f, v * f, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)

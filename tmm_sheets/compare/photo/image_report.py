@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -16,10 +16,11 @@ import numpy as np
 
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
 from tmm_sheets.compare.elements import ElementView, dashed
-from tmm_sheets.compare.findings import called, origin, table, worst
+from tmm_sheets.compare.findings import called, origin, table
 from tmm_sheets.compare.photo import image_story, overlay
 from tmm_sheets.compare.photo.judging import SOFT_TOLERANCE, PhotoFinding
 from tmm_sheets.compare.photo.numbers_read import Readings
+from tmm_sheets.compare.photo.places import Place, places
 from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.compare.report import Report, said_verdict
@@ -42,14 +43,24 @@ NUMBERS_READ = marked(
 
 @dataclass(frozen=True)
 class _Judged:
-    """The findings on a sheet, and those worth showing: what is off, red before amber and the worst first."""
+    """The findings on a sheet, and the places worth showing: what is off, red before amber and the worst first."""
 
     findings: Sequence[PhotoFinding]
     extra: Sequence[ExtraInk]
 
     @cached_property
-    def bad(self) -> list[PhotoFinding]:
-        return worst(self.findings)
+    def places(self) -> list[Place]:
+        return places(self.findings, self.extra)
+
+    @cached_property
+    def number(self) -> dict[int, int]:
+        """The number of its place by that of an element."""
+        return {f.element.number: p.number for p in self.places for f in p.findings}
+
+    @cached_property
+    def ink_alone(self) -> list[Place]:
+        """Places where only ink is too much."""
+        return [p for p in self.places if not p.findings]
 
     @cached_property
     def count(self) -> dict[str, int]:
@@ -71,10 +82,6 @@ class _Judged:
     @cached_property
     def hidden_ends(self) -> int:
         return sum(f.hidden_ends for f in self.findings)
-
-    def numbered_extra(self) -> Iterator[tuple[int, ExtraInk]]:
-        """Extra ink with the numbers that follow those of ``bad``."""
-        return enumerate(self.extra, len(self.bad) + 1)
 
 
 def image_report(
@@ -98,7 +105,7 @@ def image_report(
     summary = said.format(sheet=n, project=name, file=path.name, n=sum(count.values()), **count)
     tolerance, head, rows = _tolerance(pencil, found.uncertainty, soft), tuple(map(tell, HEAD)), _rows(judged)
     unread = [_read(readings), tell(NUMBERS_READ)] if readings else [tell(NOT_READ)]
-    mistakes = image_story.mistakes(found, judged.findings, judged.bad, built)
+    mistakes = image_story.mistakes(found, judged.findings, judged.places, built)
     hidden, extra_places = _hidden(judged), _extra(judged)
     lines = [summary, *filter(None, ["; ".join((*hidden, *extra_places))]), tolerance, "", *listed(mistakes),
              *([*table(head, rows), ""] if rows else []), *unread]
@@ -110,7 +117,7 @@ def image_report(
     }  # fmt: skip
     title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=n, file=path.name)
     files = {f"compare_sheet_{n}.{suffix}": data for suffix, data in _overlays(found, judged, title).items()}
-    verdicts = [str(f.verdict) for f in judged.bad] + ["amber"] * len(judged.extra)
+    verdicts = [str(p.verdict) for p in judged.places]
     tables = (Table(tell("Everything that is off"), head, tuple(rows), tuple(verdicts)),) if rows else ()
     story = Story(title, (summary, *extra_places, tolerance, *notes), mistakes,
                   tables, (*hidden, *unread))
@@ -156,7 +163,7 @@ def _views(findings: Sequence[PhotoFinding]) -> str:
 
 def _extra(judged: _Judged) -> list[str]:
     """What is too much, if anything."""
-    n = len(judged.extra)
+    n = len(judged.ink_alone)
     said = tell_n("{n} place with ink that is not on the sheet", "{n} places with ink that is not on the sheet", n)
     return [said.format(n=n)] if n else []
 
@@ -171,14 +178,16 @@ def _tolerance(pencil: float, uncertainty: float, soft: float) -> str:
 
 
 def _rows(judged: _Judged) -> list[tuple[str, ...]]:
-    """The rows of the table of what is off."""
-    where = tell("{width} x {height} mm about x = {x}, y = {y}")
-    of_elements = ((str(k), said_verdict(f.verdict), told(f"{f.deviation:.1f}") if f.deviation else "", called(f.element),
-                    f.element.view.name, f.what) for k, f in enumerate(judged.bad, 1))
-    of_ink = ((str(k), said_verdict("amber"), f"{x.length:.0f}", tell("extra ink"), "", where.format(
-        width=f"{x.width:.0f}", height=f"{x.height:.0f}", x=f"{x.middle.real:.0f}", y=f"{x.middle.imag:.0f}"))
-        for k, x in judged.numbered_extra())
-    return [*of_elements, *of_ink]
+    """The rows of the table of what is off, one for each place."""
+    out: list[tuple[str, ...]] = []
+    for p in judged.places:
+        if p.findings:
+            f = p.findings[0]
+            size, name, view = told(f"{f.deviation:.1f}") if f.deviation else "", called(f.element), f.element.view.name
+        else:
+            size, name, view = f"{max(p.box.width, p.box.height):.0f}", tell("extra ink"), ""
+        out.append((str(p.number), said_verdict(p.verdict), size, name, view, image_story.said(p)))
+    return out
 
 
 def _tree(judged: _Judged) -> dict[str, Any]:
@@ -188,16 +197,16 @@ def _tree(judged: _Judged) -> dict[str, Any]:
     return {
         "count": {**judged.count, "dense": len(judged.dense), "hidden": len(judged.hidden), "hidden_ends": judged.hidden_ends,
                   "measured": measured},
-        "elements": [_row(f) for f in judged.findings if f.trace.status in told or f.verdict != "green"],
+        "elements": [_row(f) | {"place": judged.number.get(f.element.number)} for f in judged.findings
+                     if f.trace.status in told or f.verdict != "green"],
         "extra": [{"x": round(x.middle.real, 1), "y": round(x.middle.imag, 1), "width": round(float(x.width), 1),
-                   "height": round(float(x.height), 1)} for x in judged.extra],
+                   "height": round(float(x.height), 1), "place": p.number} for p in judged.places for x in (*p.own, *p.ink)],
     }  # fmt: skip
 
 
 def _overlays(found: Rectified, judged: _Judged, title: str) -> dict[str, bytes]:
     """The overlays by the suffix of their files."""
-    flags = [overlay.Flag(k, str(f.verdict), f.at, image_story.shown(f)) for k, f in enumerate(judged.bad, 1)]
-    flags += [overlay.Flag(k, "amber", x.middle, np.zeros(0, complex)) for k, x in judged.numbered_extra()]
+    flags = [overlay.Flag(p.number, str(p.verdict), p.at, image_story.shown(p)) for p in judged.places]
     exact = [p for f in judged.findings if f.element.kind != "text" for p in dashed(f.element)]
     with ThreadPoolExecutor(1) as aside:  # half of the time goes into packing, which runs beside Python
         drawn = aside.submit(overlay.png, found.ink, found.level, exact, flags)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.findings import Finding, millimetres, of_radius, shifted, turned
 from tmm_sheets.compare.photo.traces import Trace, open_line
 from tmm_sheets.compare.report import verdict
@@ -18,6 +19,9 @@ from tmm_sheets.words import marked, tell
 LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "twodot"})
 """Lines whose ends mean nothing exact: by hand they are overdrawn."""
 LOOSE = 2.5  # mm by which those may be too long or too short
+TINY = 8.0
+"""mm; a closed outline of no more to each side is judged by where it is: its sides, each off by a pencil, give it a turn and a size
+that say nothing unless they are off by twice as much."""
 SOFT_TOLERANCE = 0.15  # mm added in a picture that is not sharp
 IN_REACH = marked("within a pencil's reach")
 
@@ -81,8 +85,8 @@ def _with_head(f: PhotoFinding) -> PhotoFinding:
     e, head = f.element, f.trace.head
     if head == "reversed":
         return replace(f, verdict="red", deviation=e.length, what=tell("the arrow points the other way"))
-    if head == "absent":
-        no_head = tell("no arrow head here")
+    if head in ("absent", "left out"):
+        no_head = tell("no arrow head here") if head == "absent" else tell("only a thin line here, and no arrow head")
         what = no_head if f.verdict == "green" else f"{f.what}; {no_head}"
         return replace(f, verdict="amber" if f.verdict == "green" else f.verdict, what=what, at=complex(e.fills[0][0]))
     return f
@@ -94,13 +98,16 @@ def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFindi
     middle = complex(e.points[len(e.points) // 2]) if e.kind != "line" else complex(e.points.mean())
     if t.status == "measured":
         deviations = [_displacement(t, tolerance, middle), *_ends(t, pencil, tolerance, soft)]
+        if _tiny(e):
+            deviations = _of_tiny(t, tolerance, deviations[0])
         worst = max(deviations, key=lambda d: d.share)
         said = "; ".join(d.said for d in deviations if d.said)
         return PhotoFinding(e, verdict(worst.off, worst.allowed), worst.off, said or tell(IN_REACH), worst.place, t, worst.allowed)
     if t.status == "beside":
         said = (tell("a dot like it stands beside, and none is seen here: {how}") if e.kind == "circle" else
                 tell("in one stroke with others, but a line like it lies beside: {how}"))
-        return PhotoFinding(e, "amber", t.deviation, said.format(how=_similarity_in_words(t, tolerance)), middle, t, tolerance)
+        at = middle if e.kind == "circle" else _displacement(t, tolerance, middle).place
+        return PhotoFinding(e, "amber", t.deviation, said.format(how=_similarity_in_words(t, tolerance)), at, t, tolerance)
     if t.status == "covered":
         said = tell("not seen where no other line covers it")
         return PhotoFinding(e, "amber", 0.0, said, middle, t, tolerance)
@@ -116,6 +123,20 @@ def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFindi
         return PhotoFinding(e, "green", 0.0, tell("hidden in the picture"), middle, t, tolerance)
     word = tell("not measurable: too near to others") if t.status in ("dense", "shared") else tell("there")
     return PhotoFinding(e, "green", 0.0, word, middle, t, tolerance)
+
+
+def _tiny(e: Element) -> bool:
+    """Whether an element is a small closed outline, a slider for instance."""
+    half = float(np.abs(e.points - e.middle).max())
+    return e.kind == "curve" and abs(e.points[0] - e.points[-1]) < 1e-6 and half <= TINY
+
+
+def _of_tiny(t: Trace, tolerance: float, whole: _Deviation) -> list[_Deviation]:
+    """How far a small closed outline is off: its middle, and all of it where that is more than two sides by a pencil each."""
+    if whole.off > 2 * tolerance:
+        return [whole._replace(allowed=2 * tolerance)]
+    by = abs(t.shift)
+    return [_Deviation(by, tolerance, whole.place, shifted(t.shift) if by > tolerance else "")]
 
 
 def _displacement(t: Trace, tolerance: float, middle: complex) -> _Deviation:

@@ -17,6 +17,7 @@ import numpy as np
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.displacement import FAR
 from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.judging import LOOSE_STYLES
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
 from tmm_sheets.compare.photo.traces import Trace, open_line
@@ -38,6 +39,8 @@ TORN = 0.4  # mm of bare paper beyond which ink that may be another's is another
 VAGUE = 1.2  # mm between the bounds from which on the end is unknown
 SEEN, SHARE = 0.6, 0.4  # least mm, and least share, of its own ink beyond the end of a line that is too long
 BLUR = 0.25  # mm beyond its end within which ink may be blur
+CROWDED = np.arange(0.4, 2.3, 0.1)
+"""mm to both sides of a thin line within which others crowd it: there, as in the hub of many positions of a crank, it fades."""
 ROUND, TIP = 0.75, 0.55  # share of the pen's half width by which a line looks longer; mm by which an arrow looks shorter
 
 
@@ -83,7 +86,9 @@ def with_ends(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, lev
     aside = np.concatenate([np.full(len(w.t), 0.5 * line_type(w.element.style).width + CLEAR) for w in ways])[:, None]
     across = sample(ink, pixels(np.hstack((p + n * ASIDE, p - n * aside, p + n * aside))))
     hidden = owners.others(numbers, p + n * BESIDE).any(1) | (sample(words, pixels(p[:, 0])) > 100)
-    ends = [_end(w, a, h, level) for w, a, h in zip(ways, np.split(across, cuts), np.split(hidden, cuts), strict=True)]
+    crowded = owners.others(numbers, p + n * CROWDED).any(1) & owners.others(numbers, p - n * CROWDED).any(1)
+    parts = (np.split(part, cuts) for part in (across, hidden, crowded))
+    ends = [_end(w, a, h, c, level) for w, a, h, c in zip(ways, *parts, strict=True)]
     for i, k in enumerate(chosen):
         out[k] = replace(traces[k], ends=(ends[2 * i], ends[2 * i + 1]))
     return out
@@ -113,7 +118,7 @@ def _way(e: Element, z: Points, reach: float, tip: float | None) -> _Way:
     return _Way(e, tip, t, p, 1j * along / np.maximum(np.abs(along), 1e-9))
 
 
-def _end(way: _Way, across: Any, hidden: Any, level: float) -> float:
+def _end(way: _Way, across: Any, hidden: Any, crowded: Any, level: float) -> float:
     """How far the line runs beyond its end, mm; negative when it stops short, nan when others hide it."""
     t, tip = way.t, way.tip
     pen = 0.5 * line_type(way.element.style).width if tip is None else tip
@@ -126,7 +131,8 @@ def _end(way: _Way, across: Any, hidden: Any, level: float) -> float:
     if most < min(shown, 0.0):
         rest = slice(extent[1] + 1, int((t < min(shown, 0.0)).sum()))
         weak = own[extent[1] + 2 : int((t < 0).sum())]
-        return float("nan") if (len(weak) and weak.mean() > 0.3) or _lifted(dark[rest]) else most - shown
+        faded = way.element.style in LOOSE_STYLES and crowded[rest].sum() > 0.5 * len(crowded[rest]) > 0
+        return float("nan") if (len(weak) and weak.mean() > 0.3) or faded or _lifted(dark[rest]) else most - shown
     beyond = least - shown
     seen = own[(t > pen + BLUR) & (t <= least)]
     if beyond > 0 and len(seen) and seen.sum() * STEP >= min(SEEN, beyond) and seen.mean() > SHARE:

@@ -29,12 +29,12 @@ HERSHEY = 21.0  # pixels, height of OpenCV's digits
 
 
 class Flag(NamedTuple):
-    """A place to be circled, its number and verdict, and the line of the element, mm."""
+    """A place to be circled, its number and verdict, and the lines that are off there, mm."""
 
     number: int
     verdict: str
     at: complex
-    line: Points
+    lines: tuple[Points, ...] = ()
 
 
 def png(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag]) -> bytes:
@@ -48,8 +48,8 @@ def png(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag]) 
         cv2.polylines(picture, [fixed(points, PNG_SCALE)], False, EXACT[::-1], 1, cv2.LINE_AA, 4)
     for f, number in zip(flags, _numbers(flags), strict=True):
         colour = BAD[f.verdict][::-1]
-        if len(f.line) > 1:
-            cv2.polylines(picture, [fixed(f.line, PNG_SCALE)], False, colour, 2, cv2.LINE_AA, 4)
+        for line in f.lines:
+            cv2.polylines(picture, [fixed(line, PNG_SCALE)], False, colour, 2, cv2.LINE_AA, 4)
         x, y = fixed(np.array([f.at]), PNG_SCALE)[0]
         cv2.circle(picture, (int(x), int(y)), round(CIRCLE * PNG_SCALE * 16), colour, 2, cv2.LINE_AA, 4)
         if number.leader is not None:
@@ -104,8 +104,7 @@ def pdf(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag], 
     out += [_path(points) for points in exact]
     for f, number in zip(flags, _numbers(flags), strict=True):
         out += [_colour(BAD[f.verdict]), "0.35 w"]
-        if len(f.line) > 1:
-            out.append(_path(f.line))
+        out += [_path(line) for line in f.lines]
         t = np.linspace(0, 2 * np.pi, 49)
         out.append(_path(f.at + CIRCLE * (np.cos(t) + 1j * np.sin(t))))
         if number.leader is not None:

@@ -49,8 +49,7 @@ _OUTSIDE = (
 def attempt(found: Rectified, known: Sequence[Element]) -> bytes:
     """The sheet laid over the picture as well as it could be, what does not fit circled, as PNG."""
     exact = [p for e in known if e.kind != "text" for p in dashed(e)]
-    none = np.zeros(0, complex)
-    flags = [overlay.Flag(k, "red", complex(z), none)
+    flags = [overlay.Flag(k, "red", complex(z))
              for k, z in enumerate(np.concatenate((found.check.astray, found.check.adrift, found.check.shifted)), 1)]
     return overlay.png(found.ink, found.level, exact, flags)
 

@@ -14,7 +14,7 @@ SHORTEST = 8.0  # mm of line whose ends are looked for
 Status = Literal["measured", "shared", "beside", "covered", "missing", "dense", "lettering", "part of lettering",
                  "absent lettering", "small", "hidden"]  # fmt: skip
 
-Head = Literal["unknown", "there", "absent", "reversed"]
+Head = Literal["unknown", "there", "absent", "left out", "reversed"]
 
 
 def open_line(e: Element) -> bool:
@@ -39,7 +39,8 @@ class Trace:
     covered : share of it that has ink
     at : its line as it was found, mm
     darkness : of its line where it was found in its place; 0 where that is not known
-    head : of an arrow: "there", "absent", "reversed": at its other end; "unknown" also when it has none or several
+    head : of an arrow: "there", "absent", "left out": absent, and its line is a thin one, "reversed": at its other end; "unknown"
+        also when it has none or several
     """
 
     element: Element
@@ -56,9 +57,10 @@ class Trace:
 
 
 class ExtraInk(NamedTuple):
-    """Ink where no element is known: middle, extent and diagonal of its bounding box, mm."""
+    """Ink where no element is known: middle, extent and diagonal of its bounding box, mm, and some points of it."""
 
     middle: complex
     width: float
     height: float
     length: float
+    points: Points = np.zeros(0, complex)

@@ -22,8 +22,8 @@ from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo.arrow_heads import with_heads
 from tmm_sheets.compare.photo.displacement import beside, displaced, rather_elsewhere
 from tmm_sheets.compare.photo.dots import displaced_dots
-from tmm_sheets.compare.photo.extra_ink import extra_ink
-from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden
+from tmm_sheets.compare.photo.extra_ink import extra_ink, without_creases
+from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden, widened
 from tmm_sheets.compare.photo.ink_levels import ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.line_ends import with_ends
@@ -38,6 +38,9 @@ from tmm_sheets.drawing.marks import Text
 from tmm_sheets.drawing.styles import line_type
 
 OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is not judged
+NEARLY, WASHED_OUT = 0.3, 12
+"""Share of what is not seen that lies in hidden places or at their edge from which on it is hidden; mm about them where letters are
+washed out with the lines."""
 WRITTEN = 0.06  # share of its place with ink from which on lettering counts as there: a dash has 0.12
 PARTLY, CLEAR = 0.45, 0.9
 """Share of the columns of its place with ink below which part of lettering is missing, and least share of columns to be seen."""
@@ -104,9 +107,14 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     headed = with_heads(list(lines.values()), ink, owners, words, hidden)
     out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
     out |= {t.element.number: t for t in _dots(small, headed, ink, words, hidden)}
+    near = {"missing": widened(hidden)} | dict.fromkeys(("absent lettering", "part of lettering"), widened(hidden, WASHED_OUT))
+    for t in [t for t in out.values() if t.status in near]:
+        if share_hidden(t.element, near[t.status]) > NEARLY:
+            out[t.element.number] = Trace(t.element, "hidden")
     for e in elements:  # a hand may have written here
         if e.kind == "text":
             fill(words, grown(e.points, 0.8 * e.height + 1.0))
+    left = without_creases(left, ink, level)
     return [out[e.number] for e in elements], extra_ink(left, level, words, wiped, PALE * min(_usual(found).values(), default=0.0))
 
 

@@ -1,0 +1,144 @@
+"""Heads of arrows in ink that was put where it is known to be: at the tip, a little off it, at the other end, among others."""
+
+import numpy as np
+import pytest
+
+from tests.compare.test_tracing import COLUMNS, ROWS, arrow, draw, fill_head, line, paper
+from tmm_sheets.compare.photo.arrow_heads import with_heads
+from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.line_ends import with_ends
+from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.compare.photo.wiping import fill
+
+A, B = 300 + 300j, 330 + 320j
+WAY = (B - A) / abs(B - A)
+BACK = 330 + 320j, float(np.angle(WAY))
+"""Where the head belongs, and which way it points."""
+OTHER = A, float(np.angle(-WAY))
+"""Where it is when the vector is drawn the other way."""
+
+
+def heads(known, drawn, at=(), letters=()):
+    """What is found of the heads of vectors that were found in their places, when lines are drawn and heads stand ``at`` places."""
+    ink, words, owners = paper(), np.zeros((ROWS, COLUMNS), np.uint8), Owners(ROWS, COLUMNS)
+    for e in known:
+        owners.add(e, e.points)
+    for e in drawn:
+        draw(ink, *e.points, e.style)
+    for place, way in at:
+        fill_head(ink, place, way)
+    for corners in letters:
+        fill(words, np.array(corners))
+    traces = [Trace(e, "measured", at=e.points) for e in known]
+    return with_heads(traces, ink, owners, words, np.zeros((594, 841), bool))
+
+
+def ray(number, angle, style="vector", length=30):
+    """A line from where the vector begins."""
+    return line(number, A, A + length * WAY * np.exp(1j * angle), style)
+
+
+@pytest.mark.parametrize(("at", "head"), [([BACK], "there"), ([OTHER], "reversed"), ([], "absent")])
+@pytest.mark.parametrize("angles", [(), (0.5,), (0.35, 0.7, -2.0), (0.4, -0.4)])
+def test_a_head_at_a_pole_is_told_by_what_shows_of_it(at, head, angles):
+    rays = [ray(k, angle) for k, angle in enumerate(angles, 2)]
+    known = [arrow(1, A, B), *rays]
+    found = heads(known, known, at)[0].head
+    # Between two lines that part nothing of it shows: then it has none at its tip, and no more is said.
+    assert found == head or (head == "reversed" and len(angles) == 2 and found == "absent")
+
+
+@pytest.mark.parametrize("by", [-1.0, -0.6, 0.6, 1.0])
+def test_a_head_a_little_off_its_place_is_there(by):
+    """A picture is not flat everywhere."""
+    e = arrow(1, A, B)
+    assert heads([e], [e], [(B - by * WAY, BACK[1])])[0].head == "there"
+
+
+@pytest.mark.parametrize("by", [2.5, 3.5])
+def test_a_head_farther_back_is_not_missed(by):
+    e = arrow(1, A, B)
+    assert heads([e], [e], [(B - by * WAY, BACK[1])])[0].head in ("there", "unknown")
+
+
+@pytest.mark.parametrize(("at", "head"), [([BACK], "there"), ([OTHER], "reversed"), ([], "absent")])
+def test_a_letter_near_both_ends_does_not_hide_a_head(at, head):
+    """Its place reaches over half of one side of a head."""
+    e = arrow(1, A, B)
+    letters = [[z, z + 6 * u, z + 6 * u + 6j * u, z + 6j * u] for z, u in ((B - 3 * WAY, WAY), (A + 3 * WAY, -WAY))]
+    assert heads([e], [e], at, letters)[0].head == head
+
+
+def test_a_line_that_stops_before_its_tip_has_lost_more_than_its_head():
+    e = arrow(1, A, B)
+    assert heads([e], [line(1, A, B - 4 * WAY, "vector")])[0].head == "unknown"
+
+
+@pytest.mark.parametrize(("theirs", "head"), [(True, "absent"), (False, "reversed")])
+def test_a_head_that_another_vector_on_the_same_line_has_there_is_not_taken_for_its_own(theirs, head):
+    e = arrow(1, A, B)
+    known = [e, arrow(2, B, A)] if theirs else [e]
+    assert heads(known, [e], [OTHER])[0].head == head
+
+
+@pytest.mark.parametrize("turn", [0.03, 0.06, 0.12])
+def test_a_line_that_parts_from_another_is_no_head(turn):
+    """It was drawn beside its place, and the tip of the vector is hidden among others."""
+    e = arrow(1, A, B)
+    known = [e, *(arrow(k, B - 20 * np.exp(1j * a), B) for k, a in enumerate((0.2, 0.9, 1.1), 2))]
+    drawn = [*known, ray(5, turn)]
+    assert heads(known, drawn, [(B, 0.2), (B, 0.9)])[0].head == "unknown"
+
+
+def test_a_short_vector_is_not_looked_at():
+    e = arrow(1, A, A + 8 * WAY)
+    assert heads([e], [e])[0].head == "unknown"
+
+
+@pytest.mark.parametrize(("others", "said"), [(3, "only a thin line here, and no arrow head"), (2, "no arrow head here")])
+def test_of_a_vector_left_out_its_helper_line_is_seen(others, said):
+    e, helper = arrow(1, A, B), line(2, A, B, "thin")
+    sound = [arrow(k, A + 20j * k, B + 20j * k) for k in range(3, 3 + others)]
+    found = heads([e, helper, *sound], [helper, *sound], [(s.points[1], BACK[1]) for s in sound])
+    f = judge(found[0], 0.25, 0.15)
+    assert (f.verdict, f.what) == ("amber", said)
+    assert [t.head for t in found[2:]] == ["there"] * others
+
+
+@pytest.mark.parametrize(("positions", "short"), [(1, True), (24, False)])
+def test_thin_lines_fade_in_the_hub_of_many_positions(positions, short):
+    """Only where others are on both sides; a single one that stops short does so."""
+    hub, lines, ink = 300 + 300j, [], paper()
+    for k in range(positions):
+        e = line(k + 1, hub, hub + 60 * np.exp(2j * np.pi * k / positions), "thin")
+        lines.append(e)
+        draw(ink, hub + (6 if k == 0 else 1) * (e.points[1] - hub) / 60, e.points[1], "thin")
+    owners = Owners(ROWS, COLUMNS)
+    for e in lines:
+        owners.add(e, e.points)
+    t = with_ends([Trace(lines[0], "measured", at=lines[0].points)], ink, owners, np.zeros_like(ink), 40)[0]
+    assert ("too short at its beginning" in judge(t, 0.25, 0.15).what) == short
+
+
+@pytest.mark.parametrize(("at", "head"), [([OTHER], "reversed"), ([], "absent")])
+@pytest.mark.parametrize("strokes", [(), ((2, 0.8, 4, 0.8),), ((2, 1.0, 4, 0.6), (4, 0.6, 2.5, 2)), ((3, 0.7, 3, 3),)])
+def test_among_letters_only_a_whole_head_is_known(strokes, at, head):
+    """Letters may stand all about the other end, and some stand close to the line."""
+    e = arrow(1, A, B)
+    drawn = [e, *(line(2, A + complex(a, b) * WAY, A + complex(c, d) * WAY, "thin") for a, b, c, d in strokes)]
+    about = [A + 8 * z * WAY for z in (1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j)]
+    found = heads([e], drawn, at, [about])[0].head
+    assert found == head or (strokes and at and found == "absent")
+
+
+@pytest.mark.parametrize(("dark", "head"), [(180, "there"), (100, "there"), (60, "unknown"), (0, "absent")])
+def test_a_faint_head_is_not_missed(dark, head):
+    e, ink = arrow(1, A, B), paper()
+    fill_head(ink, *BACK)
+    ink = (ink * (dark / 180)).astype(np.uint8)
+    draw(ink, A, B, "vector")
+    owners = Owners(ROWS, COLUMNS)
+    owners.add(e, e.points)
+    found = with_heads([Trace(e, "measured", at=e.points)], ink, owners, np.zeros_like(ink), np.zeros((594, 841), bool))
+    assert found[0].head in (head, "unknown") if dark else found[0].head == head
