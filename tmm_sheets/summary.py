@@ -7,9 +7,8 @@ from collections.abc import Iterator
 from math import degrees
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import plain
-from tmm_sheets.words import of_file, tell, tell_n
+from tmm_sheets.words import of_file, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Mechanism
@@ -51,22 +50,6 @@ def swing(project: Project) -> Iterator[str]:
             return
         yield tell("the crank can swing to {angle:.2f} deg; 1 deg beyond it group {group} does not assemble: {why}").format(
             angle=angle, group=group, why=why)
-
-
-def dead_positions(project: Project) -> Iterator[str]:
-    """Groups that turn on through a dead position, where another way would be as right as the one that is drawn."""
-    try:
-        passed = project.dead_positions
-    except CannotBuild:  # told by every sheet that shows a position
-        return
-    for dead in passed:
-        angles = ", ".join(f"{round(angle, 1) % 360:.1f}" for angle in dead.angles)
-        yield tell_n(
-            "group {group} is stretched or folded at crank angle {angles} deg and can go on from there in two ways: it is drawn "
-            "on the same side all round, where its links turn back at once; change a length, or let the crank swing",
-            "group {group} is stretched or folded at crank angles {angles} deg and can go on from there in two ways: it is drawn "
-            "on the same side all round, where its links turn back at once; change a length, or let the crank swing",
-            len(dead.angles)).format(group=dead.group, angles=angles)
 
 
 def _inputs(variant: Variant) -> Iterator[tuple[str, str, str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -242,10 +242,11 @@ def _warnings(opened: Project, drawn: Mapping[int, Composed]) -> tuple[str, ...]
         for what in (*composed.leaving, *composed.crowded)
     ]
     if drawn and opened.variant.crank is not None:
-        from tmm_sheets import summary
         from tmm_sheets.sheets import composition
 
-        told += (*summary.dead_positions(opened), *composition.left_out(opened, drawn))
+        with suppress(CannotBuild):  # what does not assemble is told by every sheet that shows a position
+            told += map(str, opened.dead_positions)
+        told += composition.left_out(opened, drawn)
     return tuple(told)
 
 

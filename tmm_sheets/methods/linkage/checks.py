@@ -34,6 +34,15 @@ class DeadPosition:
     group: str
     angles: tuple[float, ...]
 
+    def __str__(self) -> str:
+        angles = ", ".join(f"{round(angle, 1) % 360:.1f}" for angle in self.angles)
+        return tell_n(
+            "group {group} is stretched or folded at crank angle {angles} deg and can go on from there in two ways: it is drawn "
+            "on the same side all round, where its links turn back at once; change a length, or let the crank swing",
+            "group {group} is stretched or folded at crank angles {angles} deg and can go on from there in two ways: it is drawn "
+            "on the same side all round, where its links turn back at once; change a length, or let the crank swing",
+            len(self.angles)).format(group=self.group, angles=angles)
+
 
 def check_turn(mechanism: Mechanism) -> None:
     """Assemble the mechanism all round the turn, before its positions are numbered; see :func:`check_assembly`."""
