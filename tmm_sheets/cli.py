@@ -148,7 +148,7 @@ def check(project: str, corrected: bool) -> None:
 
         for line in (*composition.left_out(opened, range(1, len(opened.sheets) + 1)), *flat_crossings.lines(opened)):
             click.echo(f"{opened.variant.project.name}: {line}", err=True)
-        for line in (*opened.dead_positions, *summary.swing(opened)):
+        for line in (*map(str, opened.dead_positions), *summary.swing(opened)):
             click.echo(f"{opened.variant.project.name}: {line}", err=True)
     if opened.variant.flywheel is not None and opened.flywheel.remark:
         click.echo(f"{opened.variant.project.name}: {opened.flywheel.remark}", err=True)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from math import degrees
 from typing import TYPE_CHECKING, Any
 
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import plain
 from tmm_sheets.words import of_file, tell
 
