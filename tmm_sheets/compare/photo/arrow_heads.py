@@ -56,7 +56,7 @@ SURELY, VERY_LIKE, THE_SAME = 0.5, 0.75, 0.9
 """Both for a head at the other end, where none is expected; likeness of one that tells though there may be one at the tip too."""
 WRITTEN = 0.85
 """How alike ink must be to a whole head where letters may stand."""
-BARE, LITTLE, HARDLY_LIKE, OPEN = 0.12, 0.2, 0.45, 0.45
+BARE, LITTLE, HARDLY_LIKE, OPEN = 0.2, 0.2, 0.6, 0.45
 """Share up to which there is no head in its place, share and likeness from which on there may be one a little off or smaller, and
 least part of it that must be seen in its place for it to be missed."""
 THIN, ENOUGH, PALE = 0.65, 3, 2.0
