@@ -21,7 +21,7 @@ from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.chosen import flywheel
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.flywheel import force_graph
+from tmm_sheets.sheets.flywheel import constant_moment, force_graph
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import variant
 
@@ -231,3 +231,11 @@ def test_works_by_ordinates_far_from_the_area_have_room(method, sheet, table):
         project_files.FLYWHEEL, {"project.sheets": [sheet], "force[1].value": None, "force[1].table": table,
                                  "flywheel.method": method, "flywheel.form": "rim"})
     assert not composed(Project(own), 1).crowded
+
+
+@pytest.mark.parametrize(("constant", "varying", "said"), [
+    (774.41, 3000.0, "774,4"), (-0.0000213, 0.001, "−0,0000213"), (3e-14, 50.0, "0,0"), (-3e-14, 50.0, "0,0"), (0.0, 50.0, "0,0"),
+    (0.0, 0.0, "0,0")])
+def test_a_constant_moment_is_written_with_three_digits_unless_it_is_nothing(constant, varying, said):
+    moment = SimpleNamespace(value=np.array([0.0, -varying]))
+    assert constant_moment(SimpleNamespace(M_constant=constant, at_samples=SimpleNamespace(moment=lambda: moment))) == said

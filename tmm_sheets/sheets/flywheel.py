@@ -22,7 +22,7 @@ from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import wrapped
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.numbers import decimals_for, fixed, number
+from tmm_sheets.numbers import clean, decimals_for, fixed, number
 from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import ratio, standard, together
 from tmm_sheets.sheets.player import Stage, play, stage
@@ -562,7 +562,7 @@ def work_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None
         graphs.row(tr("ΔE, J"), fw.delta_E),
     ]
     graphs.table(canvas, box, tr("Works of the cycle, M_{index}^{{red}} = {moment} N·m").format(
-        index=constant, moment=fixed(fw.M_constant, decimals_for([fw.M_constant], 1))), rows)
+        index=constant, moment=constant_moment(fw)), rows)
 
 
 def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -686,6 +686,12 @@ def with_tangents(project: Any) -> Wittenbauer:
     """The flywheel by the energy-mass diagram; CannotBuild for one by another method."""
     hint = tell("take the views of mertsalov in the arrangement of the sheet")
     return cast("Wittenbauer", by_method(project, "wittenbauer", hint))
+
+
+def constant_moment(fw: Flywheel) -> str:
+    """The constant moment as it is written, N m: 0 where it is nothing but rounding beside the moments that vary."""
+    value = clean(fw.M_constant, float(np.abs(fw.at_samples.moment().value).max()))
+    return fixed(value, decimals_for([value], 1))
 
 
 def indices(fw: Flywheel) -> tuple[str, str]:

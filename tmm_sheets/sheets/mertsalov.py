@@ -18,7 +18,7 @@ from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import size_in, widened
-from tmm_sheets.numbers import decimals_for, fixed, number, size
+from tmm_sheets.numbers import fixed, number, size
 from tmm_sheets.sheets import flywheel, graphs
 from tmm_sheets.sheets.player import Stage, stage
 from tmm_sheets.words import marked, tell, tr
@@ -233,7 +233,7 @@ def _givens(fw: Mertsalov) -> str:
         tr("ω_{{1m}} = {omega} rad/s;  δ = {delta} (taken);  M_{index} = {moment} N·m") if d.accepted else \
         tr("ω_{{1m}} = {omega} rad/s;  δ = {delta};  M_{index} = {moment} N·m")
     return said.format(omega=fixed(fw.reduced.omega1, 4), delta=number(fw.unevenness), flywheel=number(fw.J_flywheel),
-                       index=flywheel.indices(fw)[1], moment=fixed(fw.M_constant, decimals_for([fw.M_constant], 1)))
+                       index=flywheel.indices(fw)[1], moment=flywheel.constant_moment(fw))
 
 
 def _inertia(fw: Mertsalov) -> list[str]:
