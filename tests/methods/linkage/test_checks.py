@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests import project_files
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR
@@ -70,6 +71,14 @@ def test_a_group_that_passes_a_dead_position_is_told(m, angles):
     assert [dead.group for dead in passed] == ["2-3"] * bool(angles)
     found = sorted(angle % 360 for dead in passed for angle in np.round(dead.angles, 3))
     assert found == pytest.approx(sorted(angles), abs=0.2)
+
+
+@pytest.mark.parametrize(("start", "end", "told"), [(150, 210, True), (100, 180, False), (180, 260, False), (100, 170, False)])
+def test_a_swing_that_ends_at_a_dead_position_does_not_pass_it(start, end, told):
+    swing = {"cycle": {"start": f"{start} deg", "end": f"{end} deg", "positions": 5}}
+    parallelogram = {"points.C": ["0.4 m", "0 m"], "group[1].lengths": ["0.4 m", "0.1 m"]}
+    found = project_files.project(project_files.FOUR_BAR, parallelogram, swing).dead_positions
+    assert [dead.group for dead in found] == ["2-3"] * told
 
 
 def test_a_crank_alone_turns():
