@@ -20,6 +20,7 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.numbers import fixed, number, size
 from tmm_sheets.sheets import flywheel, graphs
+from tmm_sheets.sheets.kinetic_frames import flat
 from tmm_sheets.sheets.player import Stage, stage
 from tmm_sheets.words import marked, tell, tr
 
@@ -63,7 +64,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     fw = _procedure(project)
     s = fw.scales
     _, second, _, sign = _signs(options)
-    mu_e = Scale("μ_{EII}", float(fw.energy_plan.asides["μ_T"].value), tr("J/mm"))
+    mu_e = Scale(f"μ_{{{flat(second)}}}", float(fw.energy_plan.asides["μ_T"].value), tr("J/mm"))
     graphs.heading(canvas, box, options, tr("Graphs of {inertia}(φ_1) and {energy}(φ_1)").format(inertia=sign, energy=second),
                    f"{s.inertia}, {mu_e}")
     canvas.of = fw.inertia_plan.name
