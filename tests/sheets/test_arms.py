@@ -1,10 +1,14 @@
 """Letters of arms on one line, names of points with a prime, the sign of the moment in the table with friction."""
 
+import re
+
 import pytest
 
 from tmm_sheets.catalogue import read
+from tmm_sheets.drawing import owners
+from tmm_sheets.drawing.marks import Line, Trace
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import kinetics, linkage
+from tmm_sheets.sheets import kinetic_frames, kinetics, linkage, moments
 from tmm_sheets.sheets.sheet import composed
 
 
@@ -42,3 +46,37 @@ def test_the_moment_with_friction_has_its_sign(monkeypatch):
     moments = project.study.balance["M"].value
     assert min(moments) < 0 < max(moments)
     assert [cell.startswith("−") for cell in column] == [bool(m < 0) for m in moments]
+
+
+@pytest.mark.parametrize("name", ["loom", "screen", "tests/projects/sieve.toml"])
+def test_a_class_iii_scheme_shows_the_arms_of_its_equation_about_the_special_point(name):
+    """Whatever the moments about the special point take has its arm on the scheme; arms about other points say so."""
+    project = Project(read(name))
+    k, g = project.force_index, next(g for g in project.mechanism.groups if g.kind.grade == 3)
+    about = complex(project.study.positions.place(g.kind.about(g)).at(k))
+    shown, couples = kinetic_frames.outer_forces(project, g, k)
+    assert not couples
+    armed = kinetic_frames.with_arms(project, g, shown)
+    drawn = {kinetic_frames.arm_sign(force.symbol): abs(force.foot(about) - about) for force in armed}
+    lines = list(moments._lines(project))
+    (whole,) = (n for n, line in enumerate(lines) if line.startswith("ΣM_{W"))
+    signs = re.findall(r"h_\{[^}]*\}(?:\^\w+)?", lines[whole])
+    assert len(signs) > 5
+    assert set(signs) <= set(drawn)
+    unknown = float(lines[whole + 1].partition("|/")[2].partition(" ")[0].replace(",", "."))
+    assert drawn[signs[0]] == pytest.approx(unknown, rel=1e-3)
+    corners = {leg.corner for leg in g.legs}
+    for line in lines:
+        if line[4] in corners and any(f"_{{{leg.link}" in line for leg in g.legs):
+            assert all(f"}}^{line[4]}" in term for term in line.split("h_")[1:])
+
+
+def test_an_arm_among_those_of_a_sum_is_known_by_its_name():
+    """All arms about a point come from one sum: the letter of one is no letter of the next."""
+    first, second = (Line(0j, z, "thin", by=Trace("construction", "moments/ΣM", "2", 0, name))
+                     for z, name in ((20 + 0j, "hG2"), (20j, "hG3")))
+    ink = owners.Ink([first, second])
+    assert ink.of_step(Trace("text", "moments/ΣM", "2", 0, "hG2")) == [0]
+    assert ink.of_step(Trace("text", "moments/ΣM", "2", 0, "hG4")) == [0, 1]  # no line of this name
+    assert ink.of_step(Trace("text", "moments/ΣM", "2", 0)) == [0, 1]
+    assert ink.of_step(Trace("text", "moments/ΣM", "3", 0, "hG2")) == []

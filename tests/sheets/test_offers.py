@@ -57,7 +57,7 @@ def test_the_next_smaller_size_is_taken_and_none_that_does_not_fit():
     assert offers._place(left | offers._closed(FIELD, [Box(690.0, 0.0, 836.0, 594.0)]), [(100.0, 60.0)], FIELD) is None
 
 
-@pytest.mark.parametrize("name", ["press", "lugansk/engine", "sixbar/3:2"])
+@pytest.mark.parametrize("name", ["press", "lugansk/engine", "sixbar/3:2", "loom", "screen", "tests/projects/sieve.toml"])
 def test_equations_of_moments_hold_in_the_numbers_written(name):
     """Each line with numbers is worked out as a pupil would: the sum over the arm is the force printed, to their digits."""
     assert sum(worked_out(line) is not None for line in moments._lines(Project(read(name)))) >= 2

@@ -61,10 +61,11 @@ class Ink:
         self.a, self.b = ends
         self.of = np.concatenate(numbers) if numbers else np.empty(0, int)
         self.strong: Flags = np.concatenate(strong) if strong else np.empty(0, bool)
-        self._steps: dict[tuple[str, str, int], list[int]] = {}
+        self._steps: dict[tuple[str | int, ...], list[int]] = {}
         for number, mark in enumerate(self.marks):
             if mark.by is not None and mark.by.step and mark.by.role != "text":
-                self._steps.setdefault(mark.by[1:4], []).append(number)
+                for key in (mark.by[1:4], mark.by[1:]):
+                    self._steps.setdefault(key, []).append(number)
         x, y = (np.stack((self.a.real, self.b.real)), np.stack((self.a.imag, self.b.imag)))
         self.sides = np.array([x.min(axis=0), y.min(axis=0), x.max(axis=0), y.max(axis=0)])
 
@@ -82,8 +83,8 @@ class Ink:
                 np.concatenate((self.of[here], np.full(n, self.drawn))), np.concatenate((self.strong[here], np.zeros(n, bool))))
 
     def of_step(self, by: Trace) -> list[int]:
-        """Numbers of the marks of the same step, position and frame."""
-        return self._steps.get(by[1:4], [])
+        """Numbers of the marks of the same step, position and frame; one arm among those of a sum has a name of its own."""
+        return (by.name and self._steps.get(by[1:])) or self._steps.get(by[1:4], [])
 
     def near(self, box: Box, reach: float) -> npt.NDArray[np.intp]:
         """Numbers of the segments that may be within ``reach`` of a rectangle."""

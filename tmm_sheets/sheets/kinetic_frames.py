@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +20,7 @@ from tmm_sheets.words import tr
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.groups.force_plan import ForcePlan, Load
-    from tmm_sheets.mechanism.groups.hints import OuterReaction
+    from tmm_sheets.mechanism.groups.hints import Leg, OuterReaction
     from tmm_sheets.mechanism.model import StructuralGroup
     from tmm_sheets.methods.linkage.forces import Kinetostatics
     from tmm_sheets.methods.linkage.positions import Positions
@@ -75,7 +75,7 @@ def outer_forces(project: Project, g: StructuralGroup, k: int) -> tuple[list[Sho
     couples: list[Couple] = []
     for reaction in g.kind.outer_reactions(g):
         if reaction.guide is None:
-            shown += _hinge(project, reaction, k)
+            shown += _hinge(project, about, reaction, k)
         else:
             force, beside = _guided(project, g.inner or reaction.point, reaction, k)
             shown.append(force)
@@ -89,18 +89,20 @@ def shown_load(forces: Kinetostatics, load: Load, about: Step, k: int) -> Shown:
     return Shown(load.symbol, complex(load.at.at(k)), complex(load.vector.at(k)), load.vector, arm)
 
 
-def _hinge(project: Project, reaction: OuterReaction, k: int) -> list[Shown]:
-    """Reaction in an outer turning pair, as its normal and tangential parts where the method splits it."""
+def _hinge(project: Project, about: Step, reaction: OuterReaction, k: int) -> list[Shown]:
+    """Reaction in an outer turning pair, as its normal and tangential parts where the method splits it; arms about a point."""
     study = project.study
-    name = pair_index(reaction.link, project.mechanism.owner(reaction.point))
+    source = project.mechanism.owner(reaction.point)
+    name = pair_index(reaction.link, source)
     at, step = complex(study.positions.points[reaction.point].at(k)), study.forces.reactions[f"F{name}"]
     total = complex(step.at(k))
-    part = study.forces.tangential_part(reaction.link, reaction.point)
+    part = study.forces.split_off(reaction.link, source)
     if part is None:
         return [Shown(f"F̅_{{{name}}}", at, total, step, step)]
     tangential = complex(part.at(k))
-    return [Shown(f"F̅_{{{name}}}^n", at, total - tangential, step, step),
-            Shown(f"F̅_{{{name}}}^τ", at, tangential, part, step)]
+    normal = study.forces.about_special(about) or step
+    return [Shown(f"F̅_{{{name}}}^n", at, total - tangential, step, normal),
+            Shown(f"F̅_{{{name}}}^τ", at, tangential, part, study.forces.sum_about(about, part) or step)]
 
 
 def _guided(project: Project, foot: str, reaction: OuterReaction, k: int) -> tuple[Shown, list[Couple]]:
@@ -125,6 +127,13 @@ def _guided(project: Project, foot: str, reaction: OuterReaction, k: int) -> tup
     return Shown(f"F̅_{{{name}}}", at + u * offset, f if acts else 0j, step, forces.arms[f"h{name}"]), couples
 
 
+def normal_sign(project: Project, leg: Leg) -> str:
+    """Sign of the part of an outer reaction of a class III group that the moments about the special point give."""
+    m = project.mechanism
+    pair = pair_index(leg.link, m.guides[leg.guide].link if leg.guide else m.owner(leg.outer))
+    return f"F_{{{pair}}}" if leg.guide else f"F_{{{pair}}}^n"
+
+
 def _size(pos: Positions, k: int) -> float:
     """Largest distance of two points of the mechanism, m."""
     members = [complex(step.at(k)) for step in pos.points.values()]
@@ -143,10 +152,27 @@ def scheme_points(project: Project, g: StructuralGroup, drawn: Iterable[linkage.
     return hinges, [str(c) for c in centres if c and c not in hinges]
 
 
-def loaded(points: Iterable[complex], shown: list[Shown], about: complex,
-           more: Iterable[tuple[complex, complex]] = ()) -> tuple[list[complex], list[complex]]:
-    """Points with forces and their arms about a point, and what reaches from each on paper, mm; ``more`` are further ones."""
-    rest = [*((force.foot(about), 0j) for force in shown if force.whole), *more]
+def with_arms(project: Project, g: StructuralGroup, shown: Iterable[Shown]) -> list[Shown]:
+    """Forces whose arms the equations of a group's moments take.
+
+    A reaction that is split has none about the point where its leg ends; about a special point its parts have theirs, and the
+    reaction of a guide the one that gives it, unless a couple moves it off its block.
+    """
+    forces, k, about = project.study.forces, project.force_index, project.study.positions.place(g.kind.about(g))
+    if (normal := forces.about_special(about)) is None:
+        return [force for force in shown if force.whole]
+    own = [step for step in forces.arms.values() if not is_zero(float(step.at(k)), _size(project.study.positions, k))]
+    guides = list(forces.arms.values())
+    return [replace(force, arm=normal) if force.arm in guides else force for force in shown if force.arm not in own]
+
+
+def loaded(points: Iterable[complex], shown: list[Shown], about: complex, more: Iterable[tuple[complex, complex]] = (),
+           armed: Sequence[Shown] | None = None) -> tuple[list[complex], list[complex]]:
+    """Points with forces and their arms about a point, and what reaches from each on paper, mm; ``more`` are further ones.
+
+    ``armed`` are those whose arms are drawn; all without it.
+    """
+    rest = [*((force.foot(about), 0j) for force in (shown if armed is None else armed)), *more]
     z, d = _reach(points, shown)
     return [*z, *(z for z, _ in rest)], [*d, *(d for _, d in rest)]
 
@@ -157,7 +183,8 @@ def scheme(project: Project, g: StructuralGroup, k: int) -> tuple[list[complex],
     shown, _ = outer_forces(project, g, k)
     hinges, centres = scheme_points(project, g, [shape for shape in linkage.shapes(pos) if shape.link in g.links])
     points = [complex(pos.points[name].at(k)) for name in (*hinges, *dict.fromkeys(centres))]
-    return loaded([*points, *(force.at for force in shown)], shown, complex(pos.place(g.kind.about(g)).at(k)))
+    about = complex(pos.place(g.kind.about(g)).at(k))
+    return loaded([*points, *(force.at for force in shown)], shown, about, armed=with_arms(project, g, shown))
 
 
 def on_crank(project: Project, k: int) -> list[Shown]:
@@ -196,6 +223,12 @@ def balancing_sign(project: Project) -> str:
 def flat(sign: str) -> str:
     """The letters of a sign on one line, as they stand in the index of another."""
     return re.sub("F_|[_{}]", "", sign.replace(BAR, ""))
+
+
+def arm_sign(sign: str) -> str:
+    """Sign of a force's arm: its letters as the index, what stands above them above."""
+    letters, _, above = flat(sign).partition("^")
+    return f"h_{{{letters}}}" + (f"^{above}" if above else "")
 
 
 def lever_scheme(project: Project, k: int, shown: list[Shown]) -> tuple[list[complex], list[complex]]:

@@ -29,6 +29,7 @@ from tmm_sheets.sheets.kinetic_frames import (
     Couple,
     Shown,
     acting_sides,
+    arm_sign,
     arrows,
     balancing_sign,
     clear,
@@ -39,6 +40,7 @@ from tmm_sheets.sheets.kinetic_frames import (
     flat,
     hinge_of,
     lever_scheme,
+    normal_sign,
     on_crank,
     on_lever,
     outer_forces,
@@ -46,6 +48,7 @@ from tmm_sheets.sheets.kinetic_frames import (
     scheme,
     scheme_points,
     terms,
+    with_arms,
 )
 from tmm_sheets.sheets.player import Stage, play, stage
 from tmm_sheets.words import tell, tr
@@ -162,9 +165,7 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     _link_numbers(s, pos, drawn)
     for name in centres:
         symbols.centre_of_mass(s.pen(name, "symbol"), s.at(name))
-    # About a special point the reaction of a guide has no arm: its couple is known before.
-    own = [] if g.kind.grade == 2 else list(project.study.forces.arms.values())
-    draw_arms(s, about, [force for force in shown if force.arm not in own])
+    draw_arms(s, about, with_arms(project, g, shown))
     if g.kind.about(g) in pos.special:
         point = pos.special[g.kind.about(g)].step
         s.dot(point, 0.9, "main")
@@ -211,16 +212,15 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
     for part in forces.from_moments:
         if part.link in g.links:
             value = newtons(clean(abs(complex(part.vector.at(k))), forces.force_size(k)))
-            said.append(tr("ΣM_{centre} = 0: F_{{{index}}}^τ = {value} N").format(
-                centre=part.centre, index=pair_index(part.link, part.source), value=value))
+            said.append(tr("ΣM_{centre} = 0: {force} = {value} N").format(
+                centre=part.centre, force=f"F_{{{pair_index(part.link, part.source)}}}^τ", value=value))
     about = g.kind.about(g)
     if about in project.study.positions.special:
-        third = project.study.positions.special[about].third
-        pair = pair_index(third.link, m.guides[third.guide].link if third.guide else m.owner(third.outer))
-        value = newtons(clean(abs(complex(forces.plan[f"F{pair}n"].at(k))), forces.force_size(k)))
-        equation = (tr("ΣM_{centre} = 0: F_{{{index}}} = {value} N") if third.guide else
-                    tr("ΣM_{centre} = 0: F_{{{index}}}^n = {value} N"))
-        said.append(equation.format(centre=f"{{{about}}}", index=pair, value=value))
+        special = project.study.positions.special[about]
+        if (normal := forces.about_special(special.step)) is not None:
+            value = newtons(clean(abs(complex(normal.at(k))), forces.force_size(k)))
+            said.append(tr("ΣM_{centre} = 0: {force} = {value} N").format(
+                centre=f"{{{about}}}", force=normal_sign(project, special.third), value=value))
     for pair in (pair_index(link, m.guides[guide].link) for guide in g.guides for link in g.links):
         arm = forces.arms.get(f"h{pair}")
         length = scale.mm(abs(float(arm.at(k)))) if arm is not None else np.inf
@@ -246,12 +246,11 @@ def draw_arms(s: Stage, about: complex, shown: Sequence[Shown], points: Iterable
     busy = [centre, *points, *(s.frame(force.at) for force in shown), *feet]
     for force in sorted(shown, key=lambda force: -abs(force.vector)):  # forces on one line share the arm of the largest
         tail, foot = s.frame(force.at), s.frame(force.foot(about))
-        if abs(foot - centre) < 1.5 or not force.whole or any(abs(foot - f) < 0.6 for f in seen):
+        if abs(foot - centre) < 1.5 or any(abs(foot - f) < 0.6 for f in seen):
             continue
         seen.append(foot)
-        letters = flat(force.symbol)
-        same = [flat(other.symbol) for other, f in zip(shown, feet, strict=True) if other.whole and abs(foot - f) < 0.6]
-        pen = s.pen(force.arm, "construction", f"h{letters}")
+        same = [arm_sign(other.symbol) for other, f in zip(shown, feet, strict=True) if abs(foot - f) < 0.6]
+        pen = s.pen(force.arm, "construction", f"h{flat(force.symbol)}")
         if abs(foot - tail) > 0.5:
             pen.ray_line(tail, foot, "thin", 2.0)
         pen.line(centre, foot, "thin")
@@ -260,7 +259,7 @@ def draw_arms(s: Stage, about: complex, shown: Sequence[Shown], points: Iterable
         first = centre + _covered(foot - centre, [f - centre for f in feet]) * (foot - centre)
         places = [first + t * (foot - first) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
         at = max(places, key=lambda z: min(6.0, *(abs(z - q) for q in busy)))
-        pen.label(at, " = ".join(f"h_{{{name}}}" for name in dict.fromkeys([letters, *same])), 1j * (foot - centre), 2.5, 0.8)
+        pen.label(at, " = ".join(dict.fromkeys([arm_sign(force.symbol), *same])), 1j * (foot - centre), 2.5, 0.8)
         busy.append(at)
 
 

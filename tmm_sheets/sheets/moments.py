@@ -16,7 +16,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import is_zero, number
-from tmm_sheets.sheets.kinetic_frames import balancing_sign, flat, on_lever
+from tmm_sheets.sheets.kinetic_frames import arm_sign, balancing_sign, flat, normal_sign, on_lever
 from tmm_sheets.sheets.linkage import indexed
 from tmm_sheets.words import tr
 
@@ -62,22 +62,21 @@ def equations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
 
 def _lines(project: Project) -> Iterator[str]:
     k, forces, pos = project.force_index, project.study.forces, project.study.positions
-    for part in forces.from_moments:
-        sign, arm = f"F_{{{pair_index(part.link, part.source)}}}^τ", f"{part.at}{part.centre}"
-        total, centre, at = part.vector.args
-        if not np.isfinite(total.at(k)):
-            continue
-        length = float(forces.positions.plan.length(centre, at).at(k))
-        terms = list(_terms(project, total))
-        if not terms:
-            continue
-        # The part turns counter-clockwise about the centre where the others together turn clockwise.
-        turning = -1.0 if float(total.at(k)) > 0 else 1.0
-        own = Term(f"{sign}·l_{{{arm}}}", turning, ())
-        yield tr("ΣM_{centre} = {sum} = 0").format(centre=indexed(part.centre), sum=_sum([own, *terms]))
-        value = number(abs(complex(part.vector.at(k))), 5, forces.force_size(k))
-        yield tr("{force} = |{sum}|/{length} = {value} N").format(
-            force=sign, sum=_sum(terms, numbers=True), length=number(length), value=value)
+    for g in reversed(project.mechanism.groups):  # as the reactions are found: the crank's neighbours last
+        for part in forces.from_moments:
+            if part.link in g.links:
+                total, centre, at = part.vector.args
+                sign, arm = f"F_{{{pair_index(part.link, part.source)}}}^τ", f"l_{{{part.at}{part.centre}}}"
+                length = float(forces.positions.plan.length(centre, at).at(k))
+                # The scheme of a class III group shows the arms about its special point: others say what they are about.
+                about = "" if g.kind.grade == 2 else f"^{part.centre}"
+                yield from _solved(project, indexed(part.centre), total, (sign, arm, length), part.vector, about)
+        if (about := g.kind.about(g)) in pos.special:
+            point, third = pos.special[about].step, pos.special[about].third
+            if (normal := forces.about_special(point)) is not None:
+                sign = normal_sign(project, third)
+                length = abs(float(forces.arm_about(point, normal.args[2], normal).at(k)))
+                yield from _solved(project, f"{{{about}}}", normal.args[0], (sign, arm_sign(sign), length), normal)
     if project.driver is None and forces.balancing is not None:
         total = forces.balancing.args[0]
         terms = list(_terms(project, total)) if np.isfinite(total.at(k)) else []
@@ -90,6 +89,23 @@ def _lines(project: Project) -> Iterator[str]:
             value = number(float(project.study.balance["M"].at(k)), 5, forces.moment_size(k))
             yield tr("{moment} = {sum} = {value} N·m (“+”: in the sense of ω_1)").format(
                 moment=name, sum=_sum(solved, numbers=True), value=value)
+
+
+def _solved(project: Project, centre: str, total: Step, own: tuple[str, str, float], found: Step,
+            about: str = "") -> Iterator[str]:
+    """An equation of moments in letters, and what it gives in numbers.
+
+    ``own`` are sign, arm and its length, m, of the unknown; ``about`` stands above the arms of the others.
+    """
+    k, forces, (sign, arm, length) = project.force_index, project.study.forces, own
+    if not np.isfinite(total.at(k)) or not (terms := list(_terms(project, total, about))):
+        return
+    # The unknown turns counter-clockwise about the centre where the others together turn clockwise.
+    turning = -1.0 if float(total.at(k)) > 0 else 1.0
+    yield tr("ΣM_{centre} = {sum} = 0").format(centre=centre, sum=_sum([Term(f"{sign}·{arm}", turning, ()), *terms]))
+    value = number(abs(complex(found.at(k))), 5, forces.force_size(k))
+    yield tr("{force} = |{sum}|/{length} = {value} N").format(
+        force=sign, sum=_sum(terms, numbers=True), length=number(length), value=value)
 
 
 def lever_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
@@ -168,8 +184,8 @@ def _broken(text: str, width: float, height: float) -> list[str]:
     return lines
 
 
-def _terms(project: Project, total: Step) -> Iterator[Term]:
-    """Terms of a sum of moments at the analysed position, without those that are nothing."""
+def _terms(project: Project, total: Step, about: str = "") -> Iterator[Term]:
+    """Terms of a sum of moments at the analysed position, without those that are nothing; ``about`` stands above their arms."""
     k, forces = project.force_index, project.study.forces
     letters = {id(load.vector): load.symbol for loads in forces.loads.values() for load in loads}
     least = forces.moment_size(k)
@@ -177,12 +193,16 @@ def _terms(project: Project, total: Step) -> Iterator[Term]:
         if isinstance(vector, Step):
             arm = forces.arm_about(total.args[0], at, vector)
             force, length = abs(complex(vector.at(k))), float(arm.at(k))
-            sign = letters.get(id(vector), symbol(vector.name)).replace(BAR, "")
+            sign = letters.get(id(vector), _split(vector.name)).replace(BAR, "")
             if np.isfinite(length) and not is_zero(force * length, least):  # a force of nothing has no arm
-                index = re.sub("F_|[_{}]", "", sign)
-                yield Term(f"{sign}·h_{{{index}}}", 1.0 if length > 0 else -1.0, (force, abs(length)))
+                yield Term(f"{sign}·{arm_sign(sign)}{about}", 1.0 if length > 0 else -1.0, (force, abs(length)))
         if isinstance(couple, Step) and not is_zero(value := float(couple.at(k)), least):
             yield Term(symbol(couple.symbol or couple.name).replace(BAR, ""), 1.0 if value > 0 else -1.0, (abs(value),))
+
+
+def _split(name: str) -> str:
+    """Lettering of a part of a reaction by its name: F21τ is F with the index 21 and τ above."""
+    return f"{symbol(name[:-1])}^{name[-1]}" if name[-1] in "τn" else symbol(name)
 
 
 def _sum(terms: Sequence[Term], numbers: bool = False) -> str:

@@ -104,9 +104,10 @@ class Kinetostatics:
         """Points that the couples of sliding pairs' reactions refer to: the force is taken there."""
         return {name: couple.args[0].args[0].name for name, couple in self.couples.items()}
 
-    def tangential_part(self, link: str, at: str) -> Step | None:
-        """Part of the reaction on a link in a hinge that a moment equation gave, N; None where the reaction is not split."""
-        return next((part.vector for part in self.from_moments if (part.link, part.at) == (link, at)), None)
+    def split_off(self, link: str, source: str) -> Step | None:
+        """Part of a reaction that is known before its normal part, from moments or along a slot, N; None where it is not split."""
+        name = f"F{pair_index(link, source)}τ"
+        return next((step for step in self.plan if step.name == name), None)
 
     def about_special(self, point: Step) -> Step | None:
         """The component that the moments of a whole group of class III about a special point give; None where they give none."""
