@@ -8,7 +8,7 @@ graph of dE and under the turned graph of J: its options ``energy`` and ``inerti
 from __future__ import annotations
 
 from cmath import rect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 from math import degrees, pi
 from string import ascii_lowercase
@@ -22,7 +22,7 @@ from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import wrapped
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.numbers import clean, decimals_for, fixed, number
+from tmm_sheets.numbers import decimals_for, enough, fixed, number
 from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import ratio, standard, together
 from tmm_sheets.sheets.player import Stage, play, stage
@@ -575,9 +575,10 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     slope = {name: float(fw.energy_mass_plan.asides[f"tg ψ_{name}"].value) for name in ("max", "min")}
     drawn = tr("|ab| = {length} mm") if fw.ab_mm >= 0 else tr("ab = {length} mm (a below b)")
     tangent = tr("tan ψ_{name} = μ_J/(2μ_E)·ω_1^2(1 {sign} δ/2)^2 = {slope};  ψ_{name} = {angle}°")
+    digits = decimals_for([slope["max"] - slope["min"]], 4)
     rows = [
         _givens(fw),
-        *(tangent.format(name=name, sign=sign, slope=fixed(slope[name], 4), angle=fixed(degrees(a), 2))
+        *(tangent.format(name=name, sign=sign, slope=fixed(slope[name], digits), angle=fixed(degrees(a), 2))
           for name, sign, a in zip(("max", "min"), "+−", psi, strict=True)),
         drawn.format(length=_of_segment(fw)),
         _asked(fw),
@@ -690,8 +691,12 @@ def with_tangents(project: Any) -> Wittenbauer:
 
 def constant_moment(fw: Flywheel) -> str:
     """The constant moment as it is written, N m: 0 where it is nothing but rounding beside the moments that vary."""
-    value = clean(fw.M_constant, float(np.abs(fw.at_samples.moment().value).max()))
-    return fixed(value, decimals_for([value], 1))
+    return enough(fw.M_constant, 1, float(np.abs(fw.at_samples.moment().value).max()))
+
+
+def omega_digits(omega: float, uneven: Iterable[float]) -> int:
+    """Decimals that tell the greatest angular velocity from the least, rad/s."""
+    return decimals_for((omega * delta for delta in uneven), 4)
 
 
 def indices(fw: Flywheel) -> tuple[str, str]:
