@@ -63,7 +63,8 @@ def test_strokes_are_divided_in_every_turn(shaper, turns, coefficient):
     cycle = dead_cycle(shaper.mechanism, "S5", "+x", 6, 4, coefficient, turns)
     assert cycle.labels == tuple(str(n) for n in range(10 * turns))
     assert cycle.period == pytest.approx(2 * pi * turns)
-    np.testing.assert_allclose(cycle.turned.reshape(turns, 10) - 2 * pi * np.arange(turns)[:, None], [once.turned] * turns, atol=1e-14)
+    first = cycle.turned.reshape(turns, 10) - 2 * pi * np.arange(turns)[:, None]
+    np.testing.assert_allclose(first, [once.turned] * turns, atol=1e-14)
     assert cycle.start == once.start
     assert [label for _, label in cycle.drawn] == [", ".join(str(n + 10 * t) for t in range(turns)) for n in range(10)]
 
