@@ -4,11 +4,12 @@ import re
 
 import pytest
 
+from tests import project_files
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing import owners
 from tmm_sheets.drawing.marks import Line, Trace
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import kinetic_frames, kinetics, linkage, moments
+from tmm_sheets.sheets import friction, kinetic_frames, kinetics, linkage, moments
 from tmm_sheets.sheets.sheet import composed
 
 
@@ -26,7 +27,9 @@ def test_the_part_of_an_arm_that_shorter_ones_take(arm, others, part):
     assert kinetics._covered(arm, others) == pytest.approx(part)
 
 
-@pytest.mark.parametrize(("name", "text"), [("A", "A"), ("A3", "A_{3}"), ("k′", "k′"), ("A3′", "A_{3}′"), ("S₂", "S_{2}")])
+@pytest.mark.parametrize(("name", "text"), [
+    ("A", "A"), ("A3", "A_{3}"), ("k′", "k′"), ("A3′", "A_{3}′"), ("S₂", "S_{2}"), ("D″", "D″"), ("D5″", "D_{5}″"),
+])  # fmt: skip
 def test_a_prime_is_no_index(name, text):
     assert linkage.indexed(name) == text
 
@@ -80,3 +83,13 @@ def test_an_arm_among_those_of_a_sum_is_known_by_its_name():
     assert ink.of_step(Trace("text", "moments/ΣM", "2", 0, "hG4")) == [0, 1]  # no line of this name
     assert ink.of_step(Trace("text", "moments/ΣM", "2", 0)) == [0, 1]
     assert ink.of_step(Trace("text", "moments/ΣM", "3", 0, "hG2")) == []
+
+
+def test_pairs_with_friction_have_the_names_of_the_structure():
+    """The shaper's slider has two sliding pairs at one point: D′ and D″."""
+    project = project_files.project(project_files.from_file("lugansk/shaper"), {"friction": {"sliding": 0.1}})
+    of = project.study.forces.friction
+    said = [friction._name(of, index) for index in of.pairs]
+    assert len(set(said)) == len(said) == 3
+    sliding = [p.name for p in project.mechanism.pairs if p.motion == "translation"]
+    assert [name.split(",")[0].split()[-1] for name in said] == sliding
