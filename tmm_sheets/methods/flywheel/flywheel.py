@@ -7,6 +7,7 @@ is the method's own: :mod:`~tmm_sheets.methods.flywheel.wittenbauer`, :mod:`~tmm
 
 from __future__ import annotations
 
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -1159,8 +1160,8 @@ ACCELERATION = Rule("acceleration of the crank", lambda m, slope, j, omega: (m -
 def _largest(forces: Mapping[str, Floats]) -> float:
     largest = max((float(np.max(values) - min(np.min(values), 0.0)) for values in forces.values()), default=0.0)
     if not largest > 0:
-        raise CannotBuild(tell("a flywheel needs a technological force or moment"),
-                          tell("add [[force]] or [[moment]] to the project file"))
+        raise CannotBuild(tell("a flywheel needs a technological force or moment, and {names} is 0 at every position").format(
+            names=re.sub("[_{}]", "", ", ".join(forces))), tell("give it a value, or leave the flywheel and its sheets out"))
     return largest
 
 
