@@ -2,6 +2,7 @@
 
 import re
 
+import numpy as np
 import pytest
 
 from tests import project_files as files
@@ -43,3 +44,15 @@ def test_an_even_machine_does_not_have_one_speed(monkeypatch):
     found = dict(re.match(r"ω_\{(\w+)\} = ([\d,]+)$", s).groups() for s in said if re.match(r"ω_\{m(?:ax|in)\} = ", s))
     assert set(found) == {"max", "min"}
     assert found["max"] != found["min"]
+
+
+@pytest.mark.parametrize(("peaks", "share"), [
+    ([], 0.78),                                # nothing near
+    ([0.78], 0.7),                             # the curve meets the line there
+    ([0.78, 0.7], 0.86),
+    ([0.78, 0.7, 0.86, 0.6, 0.5, 0.4, 0.3, 0.22], 0.2),  # everywhere: where it is least near
+])  # fmt: skip
+def test_the_sign_of_the_constant_moment_stands_clear_of_the_curve(peaks, share):
+    t = np.linspace(0, 300, 3001)
+    curve = -60.0 + sum((60.0 * np.exp(-(((t - 300 * p) / 4) ** 2)) for p in peaks), np.zeros(t.size))
+    assert flywheel._clear_of(t + 1j * curve, 0.0, 300.0).real == pytest.approx(300 * share)

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 
 Options = dict[str, Any]
+CLEAR = 14.0
+"""How far the sign of a straight graph stands from the other curve, mm."""
 CROWD = 4
 """So many intervals between two positions on an average are drawn, with their rays, as they are."""
 FELT = 0.02
@@ -183,7 +185,15 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     peak = int(np.argmax(size))
     falling = line[peak + int(np.argmax(size[peak:] < 0.6 * size[peak]))]
     canvas.label(g(falling), tr("M_{index}^{{red}}").format(index=varying), 1 - 1j if falling.imag < 0 else 1 + 1j, height=5)
-    canvas.label(g(0.78 * length + 1j * level), tr("M_{index}^{{red}}").format(index=constant), -1j if level > 0 else 1j, height=5)
+    beside = _clear_of(line, level, length)
+    canvas.label(g(beside), tr("M_{index}^{{red}}").format(index=constant), -1j if level > 0 else 1j, height=5)
+
+
+def _clear_of(line: Any, level: float, length: float) -> complex:
+    """Place on the line of the constant moment for its sign: the first of some that the other curve keeps clear of, mm."""
+    places = [share * length + 1j * level for share in (0.78, 0.7, 0.86, 0.6, 0.5, 0.4, 0.3, 0.2)]
+    ways = [float(np.abs(graphs.dense(line) - z).min()) for z in places]
+    return next((z for z, way in zip(places, ways, strict=True) if way > CLEAR), places[int(np.argmax(ways))])
 
 
 def axes(fw: Flywheel, of: Stage, step: Step | str, g: graphs.Graph, low: float, high: float, ordinate: str, side: Any,
