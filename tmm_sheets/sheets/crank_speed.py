@@ -31,7 +31,7 @@ def graph_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> tu
     if fw.method != "wittenbauer" or not fw.needed:
         return ()
     as_others = fw.scales.angle.mm(fw.reduced.period) + LEFT + RIGHT
-    return ((as_others, 145.0), (as_others, 120.0), *(size for size in SIZES if size[0] < as_others))
+    return (*((as_others, high) for high in (145.0, 120.0, 100.0, 85.0)), *(size for size in SIZES if size[0] < as_others))
 
 
 def graph_left(options: dict[str, Any]) -> float:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from cmath import rect
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from math import degrees, pi
 from string import ascii_lowercase
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.methods.flywheel.wheel import RimWheel
     from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
+    from tmm_sheets.sheets.arrangement import Arrangement, View
 
 Options = dict[str, Any]
 CLEAR = 14.0
@@ -42,6 +44,7 @@ CROWD = 4
 FELT = 0.02
 """Error of the work by ordinates from which on the sheet tells what it does to the flywheel beside it."""
 _BELOW = 7.0  # room of position numbers beside an axis
+_UNDER = 8.0  # room of the letter b under the energy-mass diagram
 
 
 Stacked = tuple[Callable[..., None], float, float]
@@ -50,11 +53,35 @@ Stacked = tuple[Callable[..., None], float, float]
 
 def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Forces, moments and works one under another."""
-    fw: Flywheel = project.flywheel
+    parts = _of_column(project.flywheel)
+    stacked(project, canvas, box, options, "flywheel.column", [(_view(draw), height, below) for draw, height, below in parts])
+
+
+def _of_column(fw: Flywheel) -> tuple[Stacked, ...]:
     lines = [line for name in fw.reduced.forces_at(fw.samples[:1]) for line in _acting(fw, name)]
     forces = np.concatenate([np.zeros(1), *(line.imag for line in lines)])
-    parts = (force_graph, float(np.ptp(forces)), _BELOW), *of_moments(fw)
-    stacked(project, canvas, box, options, "flywheel.column", [(_view(draw), height, below) for draw, height, below in parts])
+    return (force_graph, float(np.ptp(forces)), _BELOW), *of_moments(fw)
+
+
+def apart(project: Any, plan: Arrangement) -> Arrangement:
+    """The arrangement with the border between the column and the graph of dE under it where both have room to spare alike."""
+    fw, views = project.flywheel, {view.draw: view for view in plan.views}
+    upper, lower = views.get("flywheel.column"), views.get("flywheel.total_work")
+    if fw.method != "wittenbauer" or upper is None or lower is None:
+        return plan
+    parts = _of_column(fw)
+    needs = sum(height + below for _, height, below in parts) + len(parts) * (graphs.OVER + graphs.HEAD)
+    low, high = _energy_range(fw)
+    gap = upper.box.y0 - lower.box.y1
+    spare = upper.box.y1 - lower.box.y0 - gap - needs - (_UNDER + high - low + graphs.HEAD + graphs.OVER)
+    border = upper.box.y1 - needs - max(spare, 0.0) * (len(parts) - 1) / (len(parts) + 1)
+    places = {upper.draw: upper.box._replace(y0=border), lower.draw: lower.box._replace(y1=border - gap)}
+
+    def placed(view: View) -> View:
+        energy = {"energy": [*places[lower.draw]]} if "energy" in view.options else {}
+        return replace(view, box=places.get(view.draw, view.box), options={**view.options, **energy})
+
+    return replace(plan, views=tuple(map(placed, plan.views)))
 
 
 def _view(draw: Callable[..., None]) -> Callable[..., None]:
@@ -736,9 +763,9 @@ def _energy_range(fw: Wittenbauer) -> tuple[float, float]:
 def _energy_graph(fw: Wittenbauer, box: Box, options: Options) -> graphs.Graph:
     """Axes of the graph of dE, and the level of the energy-mass diagram: room for ``b`` below, for the tangent above."""
     low, high = _energy_range(fw)
-    spare = box.height - (8.0 + high - low + graphs.HEAD + graphs.OVER)
+    spare = box.height - (_UNDER + high - low + graphs.HEAD + graphs.OVER)
     graphs.check_room(box, box.y1 - spare, "flywheel.total_work")
-    return graphs.Graph(complex(options["axis"], box.y0 + 8.0 - low + max(spare, 0.0) / 2))
+    return graphs.Graph(complex(options["axis"], box.y0 + _UNDER - low + max(spare, 0.0) / 2))
 
 
 def _inertia_graph(fw: Flywheel, box: Box, options: Options) -> graphs.Graph:
