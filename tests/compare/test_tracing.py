@@ -396,6 +396,9 @@ def test_a_dot_that_stands_beside_its_place(places, says):
         ([-1.4 - 1.8j], ["amber", "green"]),  # near its own place
         ([], ["green", "green"]),  # where lines cross it is dark with a dot or without
         ([9 + 9j], ["green", "green"]),
+        ([-2.5 + 1j], ["amber", "green"]),  # beside a line
+        ([-2.5 - 1j], ["amber", "green"]),
+        ([-2.5 + 0.5j], ["green", "green"]),  # in its stroke
     ],
 )
 def test_a_small_dot_where_lines_cross_is_taken_for_a_spot_beside(places, verdicts):
@@ -408,6 +411,18 @@ def test_a_small_dot_where_lines_cross_is_taken_for_a_spot_beside(places, verdic
         draw(ink, CORNER + by - 0.1, CORNER + by + 0.1, "thin", 230)
     found, _ = trace([*lines, dot(4, CORNER, 0.35), dot(5, CORNER + 6, 0.35)], ink)
     assert [judge(t, 0.25, 0.15).verdict for t in found[3:]] == verdicts
+
+
+@pytest.mark.parametrize("over", [0.5, 1.2, 2.0])
+def test_the_end_of_a_line_that_was_drawn_over_is_no_dot(over):
+    """Nor where it is dark as a spot, behind a paler place, as grains of a sensor make it."""
+    upright, level = line(1, CORNER, CORNER + 40j, "thin"), line(2, CORNER - 30, CORNER + 30, "thin")
+    ink = paper()
+    draw(ink, *level.points, "thin")
+    draw(ink, CORNER - 1j * over, CORNER + 40j, "thin", 110)
+    draw(ink, CORNER - 1j * over - 0.1j, CORNER - 1j * over + 0.1j, "thin", 230)
+    found, _ = trace([upright, level, dot(3, CORNER, 0.35)], ink)
+    assert judge(found[2], 0.25, 0.15).verdict == "green"
 
 
 @pytest.mark.parametrize(("by", "verdict"), [(1.2, "amber"), (1.84, "amber"), (4.0, "amber"), (0.5, "green"), (0.0, "green")])

@@ -101,8 +101,9 @@ def _beside(number: int, place: Points, ink: Any, words: Any, owners: Owners, us
         shows[np.flatnonzero(hit).max(initial=-1) + 1 :] = False  # it may end there
         if hit[first:].sum() * STEP < SEEN or hit.sum() * STEP < MORE:
             continue
-        if dark[hit].sum() > best and min(hit[first:].sum() / shows[first:].sum(), hit.sum() / shows.sum()) >= ALL:
-            best, line = float(dark[hit].sum()), (off, column, hit, float(hit.sum() / shows.sum()))
+        there = float(dark[first:][hit[first:]].sum())
+        if there > best and min(hit[first:].sum() / shows[first:].sum(), hit.sum() / shows.sum()) >= ALL:
+            best, line = there, (off, column, hit, float(hit.sum() / shows.sum()))
     if line is None:
         return None
     off, column, hit, covered = line
@@ -112,9 +113,13 @@ def _beside(number: int, place: Points, ink: Any, words: Any, owners: Owners, us
 
 def _bare_end(bare: Any) -> int:
     """How many places at the end are bare, those that lines take that cross among them."""
-    inked = np.convolve(~bare[::-1], np.ones(CROSSED + 1), "valid") > CROSSED
-    count = int(np.argmax(inked)) if inked.any() else len(bare)
-    return count - int(np.argmax(bare[::-1][:count][::-1])) if bare[::-1][:count].any() else 0
+    count = 0
+    for k, free in enumerate(bare[::-1].tolist(), 1):
+        if free:
+            count = k
+        elif k - count > CROSSED:
+            break
+    return count
 
 
 def _ridge(across: Any, at: int) -> bool:
