@@ -91,7 +91,8 @@ def _beside(number: int, place: Points, ink: Any, words: Any, owners: Owners, us
     unknown = cv2.dilate(others.astype(np.uint8), np.ones((1, 2 * CLOSE + 1), np.uint8)) > 0
     unknown |= sample(words, pixels(places)) > 100
 
-    row, best, line = np.arange(len(run)), 0.0, None
+    row = np.arange(len(run))
+    found: list[tuple[float, Points, float, Any]] = []
     for pivot, end in product(PIVOTS, (*ENDS, *-ENDS)):
         off = end * (run - pivot) / (1 - pivot)
         column = np.round((off - AWAY[0]) / ASIDE).astype(int)
@@ -101,14 +102,14 @@ def _beside(number: int, place: Points, ink: Any, words: Any, owners: Owners, us
         shows[np.flatnonzero(hit).max(initial=-1) + 1 :] = False  # it may end there
         if hit[first:].sum() * STEP < SEEN or hit.sum() * STEP < MORE:
             continue
-        there = float(dark[first:][hit[first:]].sum())
-        if there > best and min(hit[first:].sum() / shows[first:].sum(), hit.sum() / shows.sum()) >= ALL:
-            best, line = there, (off, column, hit, float(hit.sum() / shows.sum()))
-    if line is None:
-        return None
-    off, column, hit, covered = line
-    ridge = [_ridge(profile[r], column[r]) for r in range(first, len(run)) if hit[r] and here[r] < BARE * usual]
-    return (place + 1j * way * off[[0, -1]], covered) if ridge and np.mean(ridge) >= CLEAR else None
+        covered = float(hit.sum() / shows.sum())
+        if min(hit[first:].sum() / shows[first:].sum(), covered) >= ALL:
+            alone = np.flatnonzero(hit[first:] & (here[first:] < BARE * usual)) + first
+            found.append((float(dark[first:][hit[first:]].sum()), place + 1j * way * off[[0, -1]], covered, (alone, column[alone])))
+    for _, line, covered, (rows, columns) in sorted(found, key=lambda f: -f[0]):
+        if len(rows) and np.mean([_ridge(profile[r], k) for r, k in zip(rows, columns, strict=True)]) >= CLEAR:
+            return line, covered
+    return None
 
 
 def _bare_end(bare: Any) -> int:
