@@ -4,6 +4,7 @@ Each element is first looked for in its own place, no farther than half way to t
 is found is wiped out of the picture with a pencil's width to spare, and so are lettering and arrow heads. Elements not found are
 sought in the ink that is left, some millimetres away, turned or of another size (``displacement``). Ink left after that belongs to
 nothing (``extra_ink``). Lines that coincide in one stroke are measured together: what the eye cannot tell apart is not told apart.
+One that leaves the stroke at a small angle is told by its end (``forks``).
 
 The displacement of an element is a similarity, two shifts, a turn and a growth, of which only what shows along its normals is
 determined: a straight line has no shift along itself and no growth; its length is measured at its ends (``line_ends``).
