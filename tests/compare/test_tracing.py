@@ -446,3 +446,17 @@ def test_a_gap_near_an_end_is_a_lifted_pencil_when_ink_follows(gap, rest, short)
     fill_head(ink, end - rest, -1)
     f = judge(trace(known, ink)[0][0], 0.25, 0.15)
     assert ("too short at its end" in f.what) == short
+
+
+@pytest.mark.parametrize(("dark", "to", "short"), [(45, 0.0, False), (0, 0.0, True), (45, -2.0, True)])
+def test_an_end_that_goes_on_paler_is_under_adhesive_tape(dark, to, short):
+    """Where the pale rest stops as well, the line is too short all the same."""
+    end = 300 + 300j
+    known = [line(1, end - 60, end), line(2, end - 40j, end + 40j)]
+    ink = paper()
+    draw(ink, end - 40j, end + 40j)
+    draw(ink, end - 60, end - 3.5)
+    if dark:
+        draw(ink, end - 60, end + to, dark=dark)
+    f = judge(trace(known, ink)[0][0], 0.25, 0.15)
+    assert ("too short at its end" in f.what) == short
