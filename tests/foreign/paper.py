@@ -29,7 +29,8 @@ class Paper:
     """A sheet on a table; flat, its lower left corner is at (0, 0, 0)."""
 
     def __init__(
-        self, random: np.random.Generator, *, waves: bool = False, folds: bool = False, rolled: bool = False, ridge: bool = False
+        self, random: np.random.Generator, *, waves: bool = False, folds: bool = False, rolled: bool = False, ridge: bool = False,
+        ridges: bool = False, lump: bool = False,
     ) -> None:
         self.u = np.arange(-MARGIN, SIZE[0] + MARGIN + STEP, STEP)
         self.v = np.arange(-MARGIN, SIZE[1] + MARGIN + STEP, STEP)
@@ -47,11 +48,17 @@ class Paper:
             length = float(random.uniform(40, 120))
             for depth in (across, width - across):
                 z = z + float(random.uniform(0.1, 0.5)) * length * np.exp(-np.maximum(depth, 0) / length)
-        if ridge:  # a pencil lies under it
+        for _ in range(2 if ridges else ridge):  # a pencil lies under it, or two
             middle, angle = random.uniform((150, 100), (700, 500)), random.uniform(0, np.pi)
             du, dv = u - middle[0], v - middle[1]
             along, off = du * np.cos(angle) + dv * np.sin(angle), dv * np.cos(angle) - du * np.sin(angle)
             z = z + 7.0 * np.exp(-((off / 14) ** 2) - np.maximum(np.abs(along) - 85, 0) ** 2 / 300)
+        if lump:  # an eraser lies under it
+            middle, angle = random.uniform((150, 100), (700, 500)), random.uniform(0, np.pi)
+            du, dv = u - middle[0], v - middle[1]
+            along, off = du * np.cos(angle) + dv * np.sin(angle), dv * np.cos(angle) - du * np.sin(angle)
+            beyond = np.hypot(np.maximum(np.abs(along) - 20, 0), np.maximum(np.abs(off) - 9, 0))
+            z = z + 10.0 * np.exp(-((beyond / 18) ** 2))
         z = _smooth(z)
         self.x = self._length_kept(z, 1) + self.u[0]
         self.y = self._length_kept(z, 0) + self.v[0]

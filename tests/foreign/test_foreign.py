@@ -37,6 +37,22 @@ def test_a_piece_that_is_not_all_in_the_picture_is_not_asked() -> None:
     assert places[:, 0].min() > judge.SIZE[0] / 2
 
 
+def test_what_is_not_of_the_drawing_is_no_piece_of_it() -> None:
+    true = np.full((round(judge.SIZE[1] * judge.DENSITY), round(judge.SIZE[0] * judge.DENSITY)), 200, np.uint8)
+    true[::40] = true[:, ::40] = 0
+    left = np.zeros(true.shape, bool)
+    left[:, : true.shape[1] // 2] = True
+    everywhere = np.ones(true.shape, bool)
+    places, _, _ = judge.offsets(true, true, everywhere, left)
+    assert len(places)
+    assert places[:, 0].max() < judge.SIZE[0] / 2 + judge.WINDOW
+    assert not len(judge.offsets(true, true, everywhere, ~everywhere)[0])
+    frame = drawing.Mark(1, "line", "frame", "frame", "main", np.array([[20.0, 5.0], [836.0, 5.0]]))
+    drawn = judge._drawn([frame], {"mistakes": [{"lines": [[[100.0, 100.0], [100.0, 200.0]]]}]})
+    assert [bool(drawn[round((judge.SIZE[1] - y) * judge.DENSITY), round(x * judge.DENSITY)]) for x, y in (
+        (400, 5), (400, 8), (101, 150), (104, 150))] == [True, False, True, False]
+
+
 def test_a_line_that_ends_at_the_edge_of_a_cover_tells_nothing_along_itself() -> None:
     cv2 = pytest.importorskip("cv2")
     score = np.zeros((43, 43), np.float32)

@@ -116,10 +116,12 @@ def _seek(grey: Grey, m: Map, width: float) -> tuple[Seen, Floats, Floats]:
     """Points of the frame near where a map has it, the profiles across it, and how far off it was seen, mm."""
     p, n, side = _side_points()
     offsets = _offsets(width)
-    profile = _local_ink(grey, m.to_picture(p[:, None] + n[:, None] * offsets))
+    at = m.to_picture(p[:, None] + n[:, None] * offsets)
+    inside = ((at.real >= 0) & (at.imag >= 0) & (at.real <= grey.shape[1] - 1) & (at.imag <= grey.shape[0] - 1)).all(1)
+    profile = np.where(inside[:, None], _local_ink(grey, at), 0.0)  # what is beyond the picture's edge is not dark
     centre = offsets[follow(profile.reshape(4, STATIONS, -1), 3)].ravel()
     o, strength = peaks(profile, offsets, centre, 0.5, 0.8)
-    use = strength > 0.4 * np.median(strength)
+    use = strength > 0.4 * np.median(strength[inside] if inside.any() else strength)
     hidden = np.flatnonzero(np.bincount(side[use], minlength=4) < STATIONS / 4)
     if len(hidden) > 1:
         raise CannotBuild(tell("the frame cannot be followed along three of its sides"), hint=tell(WANTED))
