@@ -11,7 +11,7 @@ from tests.compare.simulation import Camera, projection
 from tmm_sheets import catalogue
 from tmm_sheets.backends import png
 from tmm_sheets.compare.elements import elements
-from tmm_sheets.compare.photo import fit_check, frame_search, patches, profiles, rectification
+from tmm_sheets.compare.photo import fit_check, frame_search, map_fit, patches, profiles, rectification
 from tmm_sheets.compare.photo.fit_check import FitCheck
 from tmm_sheets.compare.photo.frame_fit import FrameFit, initial_map, sides_near
 from tmm_sheets.compare.photo.frame_search import FoundFrame
@@ -165,6 +165,17 @@ def test_beyond_the_edge_of_the_picture_no_side_is_seen(cut):
     assert (seen.weight[above > 1.5 * 2 + 1] > 0).all()
     assert (above < 0).any() == (cut > 0)
     assert not seen.weight[above < 0].any()
+
+
+@pytest.mark.parametrize("shown", [1.0, 0.78, 0.5, 0.3])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_side_does_not_run_away_where_it_is_hidden(shown, sign):
+    t = np.linspace(0.006, 0.994, 240)
+    use = t <= shown
+    bent = sign * (0.15 * np.sin(9 * t) + 0.3 * t**2) + np.random.default_rng(2).normal(0, 0.05, len(t))
+    fitted = np.polynomial.chebyshev.chebval(2 * t - 1, map_fit._fit_side(t, np.where(use, bent, 0.0), use, 6)[0])
+    assert np.abs(fitted - bent)[use].max() < 0.3
+    assert np.abs(fitted[~use]).max(initial=0) < np.abs(bent[use]).max()
 
 
 def test_heights_have_no_planes():

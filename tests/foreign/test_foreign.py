@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.foreign import drawing, judge, scene
+from tests.foreign.paper import Paper
 
 
 def test_a_picture_is_taken_and_judged(tmp_path: Path) -> None:
@@ -35,6 +36,14 @@ def test_a_piece_that_is_not_all_in_the_picture_is_not_asked() -> None:
     places, _, share = judge.offsets(true, true, inside)
     assert share == 1.0
     assert places[:, 0].min() > judge.SIZE[0] / 2
+
+
+def test_what_lies_beneath_draws_the_papers_points_in_by_less_than_a_millimetre() -> None:
+    plain, over = (Paper(np.random.default_rng(3), ridge=ridge) for ridge in (False, True))
+    aside = np.hypot(over.x - plain.x, over.y - plain.y)
+    assert 0.3 < aside.max() < 1.5
+    assert np.median(aside) < 0.1  # and no strip of it from there to the sheet's edge
+    assert over.z.max() > 6
 
 
 def test_what_is_not_of_the_drawing_is_no_piece_of_it() -> None:
