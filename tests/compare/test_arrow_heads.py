@@ -142,3 +142,51 @@ def test_a_faint_head_is_not_missed(dark, head):
     owners.add(e, e.points)
     found = with_heads([Trace(e, "measured", at=e.points)], ink, owners, np.zeros_like(ink), np.zeros((594, 841), bool))
     assert found[0].head in (head, "unknown") if dark else found[0].head == head
+
+
+def heads_of(known, at):
+    """What is found of the vector's head when all is drawn that is known."""
+    known = [arrow(1, A, B), *known]
+    return heads(known, known, at)[0].head
+
+
+@pytest.mark.parametrize(("at", "says"), [([OTHER], "reversed"), ([BACK], "there"), ([], "unknown")])
+def test_a_head_at_the_other_end_is_told_though_little_is_seen_of_the_tip(at, says):
+    """Another line crosses where the head would be, and others begin and end at both ends; the head there is seen as a whole."""
+    across = line(2, B - 3.5 * WAY - 10j * WAY, B - 3.5 * WAY + 10j * WAY)
+    known = [across, arrow(4, A + 30 * WAY * 1j, A), arrow(5, B, B + 20j * WAY)]
+    assert heads_of(known, [*at, (A, BACK[1] - np.pi / 2)]) == says
+
+
+@pytest.mark.parametrize(("at", "says"), [([OTHER], "reversed"), ([], "unknown")])
+def test_a_line_with_a_gap_where_its_head_would_be_has_it_at_the_other_end(at, says):
+    """Where it has none there either, the pencil may have been lifted, and nothing is told."""
+    e = arrow(1, A, B)
+    drawn = [line(1, A, B - 4.2 * WAY, "vector"), line(1, B - 2.8 * WAY, B, "vector")]
+    assert heads([e, ray(2, 1.2, "main")], [*drawn, ray(2, 1.2, "main")], at)[0].head == says
+
+
+@pytest.mark.parametrize("side", [-0.7, -1.0])
+@pytest.mark.parametrize(("at", "said"), [([OTHER], True), ([], False)])
+def test_one_side_of_a_head_is_enough_at_the_other_end(side, at, said):
+    """A line runs close beside the vector at its beginning."""
+    along = line(2, A - 8 * WAY + 1j * side * WAY, A + 12 * WAY + 1j * side * WAY, "vector")
+    assert (heads_of([along], at) == "reversed") == said
+
+
+@pytest.mark.parametrize("off", [0.0, 0.3, 0.5])
+@pytest.mark.parametrize("back", [-0.6, 0.0, 0.8])
+def test_two_arrows_on_one_line_have_a_head_at_each_end(off, back):
+    """A picture is not flat everywhere: both are a little off; of neither it is said that it points the other way."""
+    known = [arrow(1, A, B), arrow(2, B, A)]
+    by = 1j * off * WAY
+    drawn = [line(1, A + by, B + by, "vector")]
+    found = heads(known, drawn, [(B + by - back * WAY, BACK[1]), (A + by + back * WAY, OTHER[1])])
+    assert all(t.head != "reversed" for t in found)
+
+
+def test_a_head_seen_beside_its_line_is_not_missed():
+    """The line was found beside where it is: all that is seen of its head stands to one side."""
+    e = arrow(1, A, B)
+    found = heads([e], [e], [(B + 0.45j * WAY, BACK[1])])
+    assert found[0].head != "absent"

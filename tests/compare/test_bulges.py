@@ -36,9 +36,9 @@ def taken(place, some=SHEET):
     return picture
 
 
-def bulging(picture):
+def bulging(picture, sheet=SHEET):
     ink = straighten(picture, AS_IT_IS)
-    return bulges.bulges(bulges.followed(SHEET, ink, ink_levels(ink)[1], NOTHING))
+    return bulges.bulges(bulges.followed(sheet, ink, ink_levels(ink)[1], NOTHING))
 
 
 @pytest.mark.parametrize(("place", "some", "found"), [
@@ -55,6 +55,13 @@ def test_several_lines_bent_near_each_other_are_the_papers_doing(place, some, fo
     places = bulging(taken(place, some))
     assert bool(len(places)) == found
     assert (np.abs(places.real - 360) < 25).all()
+
+
+def test_lines_in_one_stroke_are_bent_once():
+    again = [line(20 + k, *SHEET[0].points, style="thin") for k in range(3)]
+    assert not len(bulging(taken(over_a_pencil, SHEET[:1]), [*SHEET, *again]))
+    assert not len(bulging(taken(over_a_pencil, SHEET[:2]), [*SHEET, *again]))
+    assert len(bulging(taken(over_a_pencil, SHEET[:3]), [*SHEET, *again]))
 
 
 def test_a_map_follows_a_bulge_and_no_single_line_in_it():

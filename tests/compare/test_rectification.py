@@ -11,9 +11,9 @@ from tests.compare.simulation import Camera, projection
 from tmm_sheets import catalogue
 from tmm_sheets.backends import png
 from tmm_sheets.compare.elements import elements
-from tmm_sheets.compare.photo import fit_check, frame_search, patches, profiles, rectification
+from tmm_sheets.compare.photo import fit_check, frame_search, map_fit, patches, profiles, rectification
 from tmm_sheets.compare.photo.fit_check import FitCheck
-from tmm_sheets.compare.photo.frame_fit import FrameFit, initial_map
+from tmm_sheets.compare.photo.frame_fit import FrameFit, initial_map, sides_near
 from tmm_sheets.compare.photo.frame_search import FoundFrame
 from tmm_sheets.compare.photo.frame_sides import FrameGuess, follow_sides, inked, side_moved_to_ink
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
@@ -152,6 +152,30 @@ def test_one_wrong_line_does_not_draw_the_map():
     off[:20] += 3 * seen.normals[:20]
     wrong = fit_map(m, frame, seen._replace(sheet=off), 6, 0.25)[0]
     assert np.abs(true.to_picture(GRID) - wrong.to_picture(GRID)).max() < 0.1  # pixels, of which a millimetre has four
+
+
+@pytest.mark.parametrize("cut", [0, 30, 300])
+def test_beyond_the_edge_of_the_picture_no_side_is_seen(cut):
+    picture = np.full((594 * 2, 841 * 2), 220, np.uint8)
+    z = profiles.pixels(CORNERS, 2.0)
+    cv2.polylines(picture, [np.stack([z.real, z.imag], -1).round().astype(np.int32)], True, 40, 2)
+    m = Map(0j, 1.0, homography(profiles.pixels(FRAME.corners, 2.0), FRAME.corners))
+    seen = sides_near(picture[: len(picture) - cut], m, 1.5)
+    above = len(picture) - cut - m.to_picture(seen.sheet).imag  # pixels
+    assert (seen.weight[above > 1.5 * 2 + 1] > 0).all()
+    assert (above < 0).any() == (cut > 0)
+    assert not seen.weight[above < 0].any()
+
+
+@pytest.mark.parametrize("shown", [1.0, 0.78, 0.5, 0.3])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_side_does_not_run_away_where_it_is_hidden(shown, sign):
+    t = np.linspace(0.006, 0.994, 240)
+    use = t <= shown
+    bent = sign * (0.15 * np.sin(9 * t) + 0.3 * t**2) + np.random.default_rng(2).normal(0, 0.05, len(t))
+    fitted = np.polynomial.chebyshev.chebval(2 * t - 1, map_fit._fit_side(t, np.where(use, bent, 0.0), use, 6)[0])
+    assert np.abs(fitted - bent)[use].max() < 0.3
+    assert np.abs(fitted[~use]).max(initial=0) < np.abs(bent[use]).max()
 
 
 def test_heights_have_no_planes():

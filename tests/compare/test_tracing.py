@@ -396,6 +396,9 @@ def test_a_dot_that_stands_beside_its_place(places, says):
         ([-1.4 - 1.8j], ["amber", "green"]),  # near its own place
         ([], ["green", "green"]),  # where lines cross it is dark with a dot or without
         ([9 + 9j], ["green", "green"]),
+        ([-2.5 + 1j], ["amber", "green"]),  # beside a line
+        ([-2.5 - 1j], ["amber", "green"]),
+        ([-2.5 + 0.5j], ["green", "green"]),  # in its stroke
     ],
 )
 def test_a_small_dot_where_lines_cross_is_taken_for_a_spot_beside(places, verdicts):
@@ -408,6 +411,18 @@ def test_a_small_dot_where_lines_cross_is_taken_for_a_spot_beside(places, verdic
         draw(ink, CORNER + by - 0.1, CORNER + by + 0.1, "thin", 230)
     found, _ = trace([*lines, dot(4, CORNER, 0.35), dot(5, CORNER + 6, 0.35)], ink)
     assert [judge(t, 0.25, 0.15).verdict for t in found[3:]] == verdicts
+
+
+@pytest.mark.parametrize("over", [0.5, 1.2, 2.0])
+def test_the_end_of_a_line_that_was_drawn_over_is_no_dot(over):
+    """Nor where it is dark as a spot, behind a paler place, as grains of a sensor make it."""
+    upright, level = line(1, CORNER, CORNER + 40j, "thin"), line(2, CORNER - 30, CORNER + 30, "thin")
+    ink = paper()
+    draw(ink, *level.points, "thin")
+    draw(ink, CORNER - 1j * over, CORNER + 40j, "thin", 110)
+    draw(ink, CORNER - 1j * over - 0.1j, CORNER - 1j * over + 0.1j, "thin", 230)
+    found, _ = trace([upright, level, dot(3, CORNER, 0.35)], ink)
+    assert judge(found[2], 0.25, 0.15).verdict == "green"
 
 
 @pytest.mark.parametrize(("by", "verdict"), [(1.2, "amber"), (1.84, "amber"), (4.0, "amber"), (0.5, "green"), (0.0, "green")])
@@ -429,5 +444,19 @@ def test_a_gap_near_an_end_is_a_lifted_pencil_when_ink_follows(gap, rest, short)
     draw(ink, end - 60, end - gap - rest)
     draw(ink, end - rest, end + 30)
     fill_head(ink, end - rest, -1)
+    f = judge(trace(known, ink)[0][0], 0.25, 0.15)
+    assert ("too short at its end" in f.what) == short
+
+
+@pytest.mark.parametrize(("dark", "to", "short"), [(45, 0.0, False), (0, 0.0, True), (45, -2.0, True)])
+def test_an_end_that_goes_on_paler_is_under_adhesive_tape(dark, to, short):
+    """Where the pale rest stops as well, the line is too short all the same."""
+    end = 300 + 300j
+    known = [line(1, end - 60, end), line(2, end - 40j, end + 40j)]
+    ink = paper()
+    draw(ink, end - 40j, end + 40j)
+    draw(ink, end - 60, end - 3.5)
+    if dark:
+        draw(ink, end - 60, end + to, dark=dark)
     f = judge(trace(known, ink)[0][0], 0.25, 0.15)
     assert ("too short at its end" in f.what) == short

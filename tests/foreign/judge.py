@@ -33,6 +33,8 @@ WRONG = 2.0
 """A fit is wrong when it is off by more than this somewhere, mm."""
 CLEARLY = 0.06
 """By how much a farther place must fit better than one near the true one to be believed: lines of a table look alike."""
+ABOUT = 1.5
+"""mm about the lines of the drawing within which their ink is."""
 SLIDES = 0.03
 """A piece that lies better than a millimetre off by no more than this is held by nothing."""
 GRAIN = 0.3
@@ -140,19 +142,24 @@ def _ink(grey: NDArray[np.uint8]) -> NDArray[np.float32]:
     return np.asarray(np.clip((around - values) / 60, 0, 1), np.float32)
 
 
-def offsets(believed: NDArray[np.uint8], true: NDArray[np.uint8], inside: NDArray[np.bool_]) -> tuple[Floats, Floats, float]:
+def offsets(believed: NDArray[np.uint8], true: NDArray[np.uint8], inside: NDArray[np.bool_],
+            drawn: NDArray[np.bool_] | None = None) -> tuple[Floats, Floats, float]:
     """Where the program looks for pieces of the sheet that are all in the picture: its edge is no line.
+
+    A piece is told by what was `drawn`, if that is known: the edge of what lies on the sheet is no line either.
 
     Returns places (n, 2) mm, how far from there the program has what belongs there (n, 2) mm, and the share of pieces found again.
     """
     ours, theirs = _ink(true), _ink(believed)
+    of_pencil = ours if drawn is None else np.where(drawn, ours, np.float32(0))
     half, reach = int(WINDOW * DENSITY / 2), int(REACH * DENSITY)
     places, apart, tried = [], [], 0
     for y in np.arange(WINDOW / 2 + REACH, SIZE[1] - WINDOW / 2 - REACH, GRID):
         for x in np.arange(WINDOW / 2 + REACH, SIZE[0] - WINDOW / 2 - REACH, GRID):
             column, row = int(x * DENSITY), int((SIZE[1] - y) * DENSITY)
             piece = ours[row - half : row + half, column - half : column + half]
-            if not inside[row - half : row + half, column - half : column + half].all() or not _tells(piece):
+            if not inside[row - half : row + half, column - half : column + half].all() or not _tells(
+                    of_pencil[row - half : row + half, column - half : column + half]):
                 continue
             tried += 1
             field_ = theirs[row - half - reach : row + half + reach, column - half - reach : column + half + reach]
@@ -343,20 +350,31 @@ def judge(picture: Path, drawings: Path, keep: Path | None = None) -> Outcome:
             picture.stem, truth["difficulty"], truth["project"], truth["sheet"], state, round(seconds, 1), words if status else ""
         )
         if status == 0:
-            _measure(outcome, picture, truth, folder)
+            marks = drawing.read(truth["project"], truth["sheet"], drawings)
+            _measure(outcome, picture, truth, marks, folder)
             report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
             outcome.matched = report.get("matched")
-            _said(outcome, report, truth, drawing.read(truth["project"], truth["sheet"], drawings))
+            _said(outcome, report, truth, marks)
     return outcome
 
 
-def _measure(outcome: Outcome, picture: Path, truth: dict[str, Any], folder: Path) -> None:
+def _drawn(marks: list[Mark], truth: dict[str, Any]) -> NDArray[np.bool_]:
+    """Where lines were drawn, right or wrong, and as far about them as wrong ones may lie, DENSITY pixels a millimetre."""
+    out = np.zeros((round(SIZE[1] * DENSITY), round(SIZE[0] * DENSITY)), np.uint8)
+    wrong = [np.array(line) for mistake in truth["mistakes"] for line in mistake["lines"]]
+    for path in [*wrong, *(path for mark in marks for path in mark.paths())]:
+        pixels = np.stack((path[:, 0], SIZE[1] - path[:, 1]), axis=1) * DENSITY
+        cv2.polylines(out, [pixels.round().astype(np.int32)], False, 1, round(2 * ABOUT * DENSITY))
+    return out > 0
+
+
+def _measure(outcome: Outcome, picture: Path, truth: dict[str, Any], marks: list[Mark], folder: Path) -> None:
     """Errors of the fit; it is wrong where a piece lies more than WRONG off, or where most pieces are not within reach at all."""
     believed = _believed(folder, truth["sheet"])
     if believed is None:
         outcome.state, outcome.reason = "broken", "there is no overlay with the photograph"
         return
-    places, apart, share = offsets(believed, *_rectified(picture, truth))
+    places, apart, share = offsets(believed, *_rectified(picture, truth), _drawn(marks, truth))
     if len(places) < 10 or share < 0.5:
         outcome.state, outcome.reason = "wrong fit", f"only {share:.0%} of the pieces within {REACH:g} mm of their places"
         return

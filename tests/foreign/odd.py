@@ -241,6 +241,16 @@ def pencil_beneath(shot: Shot) -> Taken:
     return shot.take(None, "ridge")
 
 
+def two_pencils(shot: Shot) -> Taken:
+    """Two pencils lie under the sheet."""
+    return shot.take(None, "ridges")
+
+
+def eraser_beneath(shot: Shot) -> Taken:
+    """An eraser lies under the sheet."""
+    return shot.take(None, "lump")
+
+
 def wide_angle(shot: Shot) -> Taken:
     """The telephone's other lens, its bend not taken back."""
     return shot.take(None, "wide")
@@ -292,6 +302,8 @@ KINDS: dict[str, Callable[[Shot], Taken]] = {
         wide_angle,
         panorama,
         storm,
+        two_pencils,
+        eraser_beneath,
     )
 }
 

@@ -18,6 +18,25 @@ def _smooth(values: Floats) -> Floats:
     return np.asarray((rows[:, :-2] + 2 * rows[:, 1:-1] + rows[:, 2:]) / 4)
 
 
+def _drawn_in(flat: Floats, over: Floats) -> Floats:
+    """How far points of a sheet go aside, in x and in y, when something is put beneath it.
+
+    Over it the paper would have to be longer along every line across it, and can be so along none: it is drawn in from all around,
+    stretched as little as can be (an elastic skin, solved wave by wave).
+    """
+    (yv, yu), (zv, zu) = np.gradient(flat, STEP), np.gradient(over, STEP)
+    wanted = [np.fft.rfft2(part) for part in ((yu**2 - zu**2) / 2, (yv**2 - zv**2) / 2, yu * yv - zu * zv)]
+    k = 2j * np.pi * np.fft.rfftfreq(flat.shape[1], STEP)[None, :] + np.zeros((flat.shape[0], 1))
+    m = 2j * np.pi * np.fft.fftfreq(flat.shape[0], STEP)[:, None] + np.zeros_like(k)
+    # Least squares of x_u - a, y_v - b and, half as much, x_v + y_u - c.
+    rows = np.stack([np.stack(row, -1) for row in ((k, 0 * k), (0 * k, m), (m / np.sqrt(2), k / np.sqrt(2)))], -2)
+    target = np.stack((wanted[0], wanted[1], wanted[2] / np.sqrt(2)), -1)[..., None]
+    adjoint = np.conj(np.swapaxes(rows, -1, -2))
+    square = adjoint @ rows + 1e-12 * np.eye(2)
+    aside = np.linalg.solve(square, adjoint @ target)[..., 0]
+    return np.stack([np.fft.irfft2(aside[..., i], s=flat.shape) for i in (0, 1)])
+
+
 def creases(random: np.random.Generator) -> tuple[Floats, Floats]:
     """Places (mm) of the creases of an A1 sheet folded to A4, GOST 2.501: with a margin for binding or without."""
     width = float(random.choice((210.0, 190.0)))
@@ -29,7 +48,8 @@ class Paper:
     """A sheet on a table; flat, its lower left corner is at (0, 0, 0)."""
 
     def __init__(
-        self, random: np.random.Generator, *, waves: bool = False, folds: bool = False, rolled: bool = False, ridge: bool = False
+        self, random: np.random.Generator, *, waves: bool = False, folds: bool = False, rolled: bool = False, ridge: bool = False,
+        ridges: bool = False, lump: bool = False,
     ) -> None:
         self.u = np.arange(-MARGIN, SIZE[0] + MARGIN + STEP, STEP)
         self.v = np.arange(-MARGIN, SIZE[1] + MARGIN + STEP, STEP)
@@ -47,15 +67,26 @@ class Paper:
             length = float(random.uniform(40, 120))
             for depth in (across, width - across):
                 z = z + float(random.uniform(0.1, 0.5)) * length * np.exp(-np.maximum(depth, 0) / length)
-        if ridge:  # a pencil lies under it
-            middle, angle = random.uniform((150, 100), (700, 500)), random.uniform(0, np.pi)
-            du, dv = u - middle[0], v - middle[1]
-            along, off = du * np.cos(angle) + dv * np.sin(angle), dv * np.cos(angle) - du * np.sin(angle)
-            z = z + 7.0 * np.exp(-((off / 14) ** 2) - np.maximum(np.abs(along) - 85, 0) ** 2 / 300)
-        z = _smooth(z)
-        self.x = self._length_kept(z, 1) + self.u[0]
-        self.y = self._length_kept(z, 0) + self.v[0]
-        self.z = z - z.min()
+        beneath = np.zeros(z.shape)
+        for _ in range(2 if ridges else ridge):  # a pencil lies under it, or two
+            along, off = self._about(u, v, random)
+            beneath += 7.0 * np.exp(-((off / 14) ** 2) - np.maximum(np.abs(along) - 85, 0) ** 2 / 300)
+        if lump:  # an eraser
+            along, off = self._about(u, v, random)
+            beyond = np.hypot(np.maximum(np.abs(along) - 20, 0), np.maximum(np.abs(off) - 9, 0))
+            beneath += 10.0 * np.exp(-((beyond / 18) ** 2))
+        z, over = _smooth(z), _smooth(z + beneath)
+        aside = _drawn_in(z, over) if beneath.any() else np.zeros((2, *z.shape))
+        self.x = self._length_kept(z, 1) + self.u[0] + aside[0]
+        self.y = self._length_kept(z, 0) + self.v[0] + aside[1]
+        self.z = over - over.min()
+
+    @staticmethod
+    def _about(u: Floats, v: Floats, random: np.random.Generator) -> tuple[Floats, Floats]:
+        """How far points are along and off something that lies somewhere beneath the sheet."""
+        middle, angle = random.uniform((150, 100), (700, 500)), random.uniform(0, np.pi)
+        du, dv = u - middle[0], v - middle[1]
+        return du * np.cos(angle) + dv * np.sin(angle), dv * np.cos(angle) - du * np.sin(angle)
 
     @staticmethod
     def _wave(u: Floats, v: Floats, random: np.random.Generator, height: float, length: float) -> Floats:

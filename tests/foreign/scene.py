@@ -219,7 +219,7 @@ def taken(
     project, sheet = what.sheet
     if ink is None:
         ink = pencil.draw(drawn, random)
-    paper = Paper(random, **{trait: trait in traits for trait in ("waves", "folds", "rolled", "ridge")})
+    paper = Paper(random, **{trait: trait in traits for trait in ("waves", "folds", "rolled", "ridge", "ridges", "lump")})
     tilt = float(random.uniform(20, 32)) if "oblique" in traits else float(abs(random.normal(0, 7)) + 2)
     roll = float(random.choice((-1, 1)) * random.uniform(4, 8) if "corner" in traits else random.normal(0, 2.5))
     megapixels = _megapixels(traits, random, most)

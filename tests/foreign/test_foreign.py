@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.foreign import drawing, judge, scene
+from tests.foreign.paper import Paper
 
 
 def test_a_picture_is_taken_and_judged(tmp_path: Path) -> None:
@@ -35,6 +36,30 @@ def test_a_piece_that_is_not_all_in_the_picture_is_not_asked() -> None:
     places, _, share = judge.offsets(true, true, inside)
     assert share == 1.0
     assert places[:, 0].min() > judge.SIZE[0] / 2
+
+
+def test_what_lies_beneath_draws_the_papers_points_in_by_less_than_a_millimetre() -> None:
+    plain, over = (Paper(np.random.default_rng(3), ridge=ridge) for ridge in (False, True))
+    aside = np.hypot(over.x - plain.x, over.y - plain.y)
+    assert 0.3 < aside.max() < 1.5
+    assert np.median(aside) < 0.1  # and no strip of it from there to the sheet's edge
+    assert over.z.max() > 6
+
+
+def test_what_is_not_of_the_drawing_is_no_piece_of_it() -> None:
+    true = np.full((round(judge.SIZE[1] * judge.DENSITY), round(judge.SIZE[0] * judge.DENSITY)), 200, np.uint8)
+    true[::40] = true[:, ::40] = 0
+    left = np.zeros(true.shape, bool)
+    left[:, : true.shape[1] // 2] = True
+    everywhere = np.ones(true.shape, bool)
+    places, _, _ = judge.offsets(true, true, everywhere, left)
+    assert len(places)
+    assert places[:, 0].max() < judge.SIZE[0] / 2 + judge.WINDOW
+    assert not len(judge.offsets(true, true, everywhere, ~everywhere)[0])
+    frame = drawing.Mark(1, "line", "frame", "frame", "main", np.array([[20.0, 5.0], [836.0, 5.0]]))
+    drawn = judge._drawn([frame], {"mistakes": [{"lines": [[[100.0, 100.0], [100.0, 200.0]]]}]})
+    assert [bool(drawn[round((judge.SIZE[1] - y) * judge.DENSITY), round(x * judge.DENSITY)]) for x, y in (
+        (400, 5), (400, 8), (101, 150), (104, 150))] == [True, False, True, False]
 
 
 def test_a_line_that_ends_at_the_edge_of_a_cover_tells_nothing_along_itself() -> None:

@@ -52,18 +52,24 @@ SEEN, WHOLE = 0.3, 0.8
 """Least part of a head that must be seen for it to be known, and for it to be known as a whole."""
 HAS, LIKE = 0.45, 0.6
 """How much ink there must be of a head, as a share of what it has by the drawing, and how alike theirs must be, 1 when the same."""
-SURELY, VERY_LIKE, THE_SAME = 0.5, 0.75, 0.9
-"""Both for a head at the other end, where none is expected; likeness of one that tells though there may be one at the tip too."""
+SURELY, VERY_LIKE, ALONE = 0.5, 0.85, 0.75
+"""Both for a head at the other end, where none is expected; likeness of one that is seen as a whole where no others begin."""
+SCANT, HALF = 0.1, 0.5
+"""Part of a head up to which what is seen of a side of it says nothing, and part that a whole side of it is."""
 WRITTEN = 0.85
 """How alike ink must be to a whole head where letters may stand."""
-BARE, LITTLE, HARDLY_LIKE, OPEN = 0.2, 0.2, 0.6, 0.45
+BARE, LITTLE, HARDLY_LIKE, OPEN, EACH = 0.2, 0.2, 0.6, 0.45, 0.15
 """Share up to which there is no head in its place, share and likeness from which on there may be one a little off or smaller, and
-least part of it that must be seen in its place for it to be missed."""
+least part of it that must be seen in its place for it to be missed, of all of it or of each of its sides."""
+ON_LINE = 0.998
+"""Cosine of the angle up to which another arrow lies on the same line."""
+BESIDE_LINE = 0.4
+"""Share of a side of a head from which on it is one beside the line, as a line that is not quite where it was found has it."""
 THIN, ENOUGH, PALE = 0.65, 3, 2.0
 """Ink across a line without a head, as a share of what vectors with heads have, up to which it is a helper line and the vector was
 left out; least number of those; how much darker than such a line a head would be."""
-LINED = 0.9
-"""Least share of the way to the tip on which the line must be seen for its head to be missed."""
+LINED, MOSTLY = 0.9, 0.6
+"""Least share of the way to the tip on which the line must be seen for its head to be missed, and where it is at the other end."""
 
 
 class _Likeness(NamedTuple):
@@ -144,26 +150,46 @@ class _End:
         return any(h.part >= part and h.share >= share and h.alike >= alike for h in self.likeness(NEAR, SIZES)) or any(
             h.part >= WHOLE and h.share >= SURELY and h.alike >= WRITTEN for h in written.likeness(NEAR, SIZES))
 
+    def better_seen(self) -> _End:
+        """Only the side of it that is seen where others hide nearly all of the other: what is left of that is mostly their edge."""
+        left, right = (s.part for s in self.sides())
+        if min(left, right) > SCANT or max(left, right) < SEEN:
+            return self
+        return replace(self, known=self.known & (ASIDE < 0 if left > right else ASIDE > 0))
+
+    def sides(self) -> list[_Likeness]:
+        """The likeness of either side to that of a head in its place."""
+        return [next(replace(self, known=self.known & side).likeness(NEAR, SIZES)) for side in (ASIDE < 0, ASIDE > 0)]
+
     def bare(self, pale: float = 1.0) -> bool:
-        """Whether the line goes on to where its tip ought to be and has no head in its place, which is ``pale`` times as dark."""
+        """Whether nothing of a head that is ``pale`` times as dark is in its place, as far as that is seen."""
         here = next(self.likeness(NEAR, SIZES))
-        return self.lined >= LINED and here.part >= OPEN and here.share <= BARE * pale
+        return here.part > SCANT and here.share <= BARE * pale
 
     def headless(self, pale: float = 1.0) -> bool:
-        """Whether it has no head in its place, nor a little off it, nor a small one."""
+        """Whether the line goes on to its tip and has no head in its place, nor a little off it, nor a small one."""
+        if self.lined < LINED or not self.bare(pale):
+            return False
+        sides = self.sides()
+        if sum(s.part for s in sides) < OPEN and min(s.part for s in sides) < EACH:
+            return False
+        if any(s.part >= EACH and s.share >= BESIDE_LINE * pale and s.alike >= HARDLY_LIKE for s in sides):
+            return False
         looked = chain(self.likeness(NEAR, SIZES), self.likeness(FARTHER, SIZES[:1]))
-        return self.bare(pale) and not any(h.part >= SEEN and h.share >= LITTLE * pale and h.alike >= HARDLY_LIKE for h in looked)
+        return not any(h.part >= SEEN and h.share >= LITTLE * pale and h.alike >= HARDLY_LIKE for h in looked)
 
 
 @dataclass(frozen=True)
 class _Paper:
-    """The rectified picture, who is drawn where, places of lettering (255 there), where the sheet does not show, tips of arrows."""
+    """The rectified picture, who is drawn where, places of lettering (255 there), where the sheet does not show, and heads of
+    arrows: the tip of each and the middle of its back.
+    """
 
     ink: Any
     owners: Owners
     words: Any
     hidden: Mask
-    tips: Sequence[complex]
+    heads: Sequence[tuple[complex, complex]]
 
     def end(self, e: Element, tip: complex, other: complex) -> _End | None:
         """What there is about an end of a line; None where nothing can be told."""
@@ -194,9 +220,13 @@ class _Paper:
         ink = sample(self.ink, pixels(places)).astype(np.float64)
         return ink, self.owners.others(e.number, places), sample(self.words, pixels(places)) > 100, at(places, self.hidden)
 
+    def another_points(self, e: Element, start: complex, way: complex) -> bool:
+        """Whether another arrow on the same line points to where this one begins: the head there is that one's."""
+        return any(abs(z - start) < _length(e) and ((back - z) / abs(back - z) / way).real > ON_LINE for z, back in self.heads)
+
     def others_begin(self, e: Element, start: complex, way: complex) -> bool:
         """Whether the tip of another arrow, or another line beside this one, is where this one begins."""
-        return any(abs(z - start) < _length(e) for z in self.tips) or self.accompanied(e, start, way)
+        return any(abs(z - start) < _length(e) for z, _ in self.heads) or self.accompanied(e, start, way)
 
     def accompanied(self, e: Element, start: complex, way: complex) -> bool:
         """Whether another line leaves the same point beside this one, and would be taken for the edge of a head."""
@@ -244,7 +274,7 @@ def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hi
     -------
     The traces in the same order, with ``head``.
     """
-    paper = _Paper(ink, owners, words, hidden, [complex(f[0]) for t in traces for f in t.element.fills])
+    paper = _Paper(ink, owners, words, hidden, [(complex(f[0]), complex(f[1:].mean())) for t in traces for f in t.element.fills])
     found = {k: _head(t, paper) for k, t in enumerate(traces) if _wanted(t)}
     usual = [end.across for head, end in found.values() if head == "there" and end is not None]
     thin = THIN * float(np.median(usual)) if len(usual) >= ENOUGH else 0.0
@@ -279,12 +309,15 @@ def _head(t: Trace, paper: _Paper) -> tuple[Head, _End | None]:
         return "unknown", None
     if here.has_head():
         return "there", here
-    headless, there = here.headless(), paper.end(t.element, begin, tip)
+    there = paper.end(t.element, begin, tip)
     if there is not None:
-        if (headless and there.has_head(SURELY, VERY_LIKE)) or (here.bare() and there.has_head(SURELY, THE_SAME)):
+        # The less is seen of the tip, the more must be seen of the other end.
+        part = SEEN if next(here.likeness(NEAR, SIZES)).part >= SEEN else HALF
+        bare = here.lined >= MOSTLY and here.bare() and not paper.another_points(t.element, begin, way)
+        if bare and there.better_seen().has_head(SURELY, VERY_LIKE, part):
             return "reversed", here
         # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
         alone = here.lined >= LINED and not paper.others_begin(t.element, begin, way)
-        if alone and there.has_head(SURELY, VERY_LIKE, WHOLE):
+        if alone and there.has_head(SURELY, ALONE, WHOLE):
             return "reversed", here
-    return "absent" if headless else "unknown", here
+    return "absent" if here.headless() else "unknown", here

@@ -109,9 +109,23 @@ def bulges(lines: Sequence[Followed]) -> Points:
     bends = [(line, line.points[line.bent]) for line in lines if line.bent.any() and line.element.role not in TABLES]
     if len(bends) < SEVERAL:
         return np.zeros(0, complex)
+    strokes = _strokes([z for _, z in bends])
     # One every few mm is enough to be near to.
-    near = [np.stack([np.abs(z[:, None] - other[None, ::3]).min(1) < TOGETHER for _, other in bends]).sum(0) for _, z in bends]
+    near = [sum((np.abs(z[:, None] - np.concatenate(stroke)[None, ::3]).min(1) < TOGETHER).astype(int) for stroke in strokes)
+            for _, z in bends]
     return np.concatenate([z[count >= SEVERAL] for (_, z), count in zip(bends, near, strict=True)])
+
+
+def _strokes(bends: Sequence[Points]) -> list[list[Points]]:
+    """Bends by the strokes they are in: lines that lie in one, a vector and the line it was built on, are bent once."""
+    out: list[list[Points]] = []
+    for z in bends:
+        same = next((s for s in out if (np.abs(z[:, None] - np.concatenate(s)[None]).min(1) < NEAR).mean() > 0.5), None)
+        if same is None:
+            out.append([z])
+        else:
+            same.append(z)
+    return out
 
 
 def over_bulges(

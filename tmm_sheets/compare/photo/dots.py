@@ -35,11 +35,16 @@ FAINT, DARK, SMALL_DARK, SMALL = 0.3, 0.6, 0.35, 0.45
 """Darkness from which on a place belongs to a spot, and least darkness of a spot and of a dot in its place, as shares of the
 lines'; the same of dots of less than the radius, mm, which blur makes pale."""
 TOUCHED = 9
-"""Pixels about the middle of a small spot that nothing else may take."""
+"""Pixels about the middle of a small spot that nothing else may take, unless it lies beside a line."""
+FALLS = 0.75
+"""Share of its darkness below which ink falls on all sides of a spot within :data:`ALONE` mm."""
+PAST, WIDE = 1.8, 1.2
+"""mm about a spot within which a line that runs past takes an angle, rad, as none does that ends there."""
 COVERED = 0.3
 """Share of a small dot under lines from which on its place, where they cross, is dark with it or without."""
 TELLS = 0.15
 """Least share of a dot that lines do not show as well for anything to be told of its place."""
+RAYS = np.exp(2j * np.pi * np.arange(16) / 16) * np.linspace(0, ALONE, 6)[:, None]  # places about a spot, mm
 
 
 def displaced_dots(
@@ -67,7 +72,7 @@ def displaced_dots(
     found: list[tuple[Element, complex, bool | None]] = []
     for e in some:
         least = usual * (SMALL_DARK if e.radius < SMALL else DARK)
-        spots = _spots(e, taken, ink, words, FAINT * usual, least)
+        spots = _spots(e, lines, taken, ink, words, FAINT * usual, least)
         spots = spots[~at(spots, hidden)]
         if len(spots) and not (there := _in_place(e, lines, ink, words, least)):
             found.append((e, complex(spots[np.abs(spots - e.centre).argmin()]), there))
@@ -79,7 +84,7 @@ def displaced_dots(
     return list(out.values())
 
 
-def _spots(e: Element, taken: Any, ink: Any, words: Any, faint: float, least: float) -> Points:
+def _spots(e: Element, lines: Any, taken: Any, ink: Any, words: Any, faint: float, least: float) -> Points:
     """Middles of spots about a dot's place that may be this dot: from ``faint`` on they are seen, ``least`` dark in the middle."""
     import cv2
 
@@ -98,9 +103,19 @@ def _spots(e: Element, taken: Any, ink: Any, words: Any, faint: float, least: fl
         round_ = max(w, h) <= min(ROUND * min(w, h), (2 * e.radius + WIDER) * SCALE) and area > FULL * w * h
         if (round_ and SIZES[0] * size < area < SIZES[1] * size and max(LEAST, e.radius + ASIDE) < abs(z - e.centre) < FAR
                 and int(ink[here][labels == k].max()) > least and _alone(seen, stats[k])
-                and (e.radius >= SMALL or clear[round(middles[k, 1]), round(middles[k, 0])])):  # fmt: skip
+                and (e.radius >= SMALL or clear[round(middles[k, 1]), round(middles[k, 0])] or _aside(z, lines, ink))):  # fmt: skip
             out.append(z)
     return np.array(out, complex)
+
+
+def _aside(z: complex, lines: Any, ink: Any) -> bool:
+    """Whether a spot lies beside a line, no end of one drawn over: ink is paler on all its sides, and the line runs past it."""
+    around = sample(ink, pixels(z + RAYS))
+    side = np.arange(-PAST, PAST + 0.5 / SCALE, 1 / SCALE)
+    about = (side - 1j * side[:, None])[np.hypot(side, side[:, None]) <= PAST]
+    near = about[sample(lines, pixels(z + about), nearest=True) > 127]
+    angle = np.ptp(np.angle(near / near.mean())) if len(near) else 0.0
+    return bool((around.min(0) < FALLS * around[:2].max()).all() and angle > WIDE)
 
 
 def _alone(seen: Any, box: Any) -> bool:

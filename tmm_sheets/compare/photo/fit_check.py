@@ -105,7 +105,9 @@ class FitCheck:
         """Whether no better map need be sought."""
         close = self.match >= CLOSE
         framed = float(np.sort(self.sides)[4 - SIDES if close else 0]) >= WHOLE  # no other frame brings a hidden side to light
-        return self.moored and not len(self.astray) and framed and (self.halves <= HALVES or close)
+        # Where all the frame is seen and nearly all lines are in place, no other map has those of a cell that are not.
+        placed = not len(self.astray) or (close and float(self.sides.min()) >= WHOLE)
+        return self.moored and placed and framed and (self.halves <= HALVES or close)
 
 
 def check(m: Map, straight: Map, sides: Seen, ink: Any, lines: ProfileLines, level: float, scale: float) -> FitCheck:

@@ -71,7 +71,7 @@ def fit_frame(grey: Grey, m: Map) -> FrameFit:
         When more than one side has no line.
     """
     for width in (2.5, 1.5, WIDE):
-        seen, profile, o = _seek(grey, m, width)
+        seen, profile, o = _seek(grey, m, width, 3)
         m, scatter = fit_map(m, seen)
         use = seen.weight > 0
         smear = _smear(profile[use], _offsets(width), o[use])
@@ -86,7 +86,7 @@ def frame_about(grey: Grey, m: Map, width: float) -> FrameFit:
     Raises
     ------
     CannotBuild
-        When more than one side has no line.
+        When more than two sides have no line.
     """
     seen, _, o = _seek(grey, m, width)
     use = seen.weight > 0
@@ -103,7 +103,7 @@ def sides_near(grey: Grey, m: Map, width: float) -> Seen:
     Raises
     ------
     CannotBuild
-        When more than one side has no line.
+        When more than two sides have no line.
     """
     return _seek(grey, m, width)[0]
 
@@ -112,16 +112,21 @@ def _offsets(width: float) -> Floats:
     return np.arange(-width, width + 0.05, 0.1)
 
 
-def _seek(grey: Grey, m: Map, width: float) -> tuple[Seen, Floats, Floats]:
-    """Points of the frame near where a map has it, the profiles across it, and how far off it was seen, mm."""
+def _seek(grey: Grey, m: Map, width: float, least: int = 2) -> tuple[Seen, Floats, Floats]:
+    """Points of the frame near where a map has it, the profiles across it, and how far off it was seen, mm.
+
+    At least so many sides must have a line: three where nothing but they is to tell the map.
+    """
     p, n, side = _side_points()
     offsets = _offsets(width)
-    profile = _local_ink(grey, m.to_picture(p[:, None] + n[:, None] * offsets))
+    at = m.to_picture(p[:, None] + n[:, None] * offsets)
+    inside = ((at.real >= 0) & (at.imag >= 0) & (at.real <= grey.shape[1] - 1) & (at.imag <= grey.shape[0] - 1)).all(1)
+    profile = np.where(inside[:, None], _local_ink(grey, at), 0.0)  # what is beyond the picture's edge is not dark
     centre = offsets[follow(profile.reshape(4, STATIONS, -1), 3)].ravel()
     o, strength = peaks(profile, offsets, centre, 0.5, 0.8)
-    use = strength > 0.4 * np.median(strength)
+    use = strength > 0.4 * np.median(strength[inside] if inside.any() else strength)
     hidden = np.flatnonzero(np.bincount(side[use], minlength=4) < STATIONS / 4)
-    if len(hidden) > 1:
+    if 4 - len(hidden) < least:
         raise CannotBuild(tell("the frame cannot be followed along three of its sides"), hint=tell(WANTED))
     use &= ~np.isin(side, hidden)
     return Seen(m.to_picture(p + n * o), p, n, use.astype(float)), profile, o

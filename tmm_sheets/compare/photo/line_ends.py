@@ -39,6 +39,8 @@ TORN = 0.4  # mm of bare paper beyond which ink that may be another's is another
 VAGUE = 1.2  # mm between the bounds from which on the end is unknown
 SEEN, SHARE = 0.6, 0.4  # least mm, and least share, of its own ink beyond the end of a line that is too long
 BLUR = 0.25  # mm beyond its end within which ink may be blur
+PALER, MOST = 0.8, 0.8
+"""Least mm, and least share, of pale ink that is nobody else's by which a line goes on to its end: under adhesive tape."""
 CROWDED = np.arange(0.4, 2.3, 0.1)
 """mm to both sides of a thin line within which others crowd it: there, as in the hub of many positions of a crank, it fades."""
 ROUND, TIP = 0.75, 0.55  # share of the pen's half width by which a line looks longer; mm by which an arrow looks shorter
@@ -122,7 +124,7 @@ def _end(way: _Way, across: Any, hidden: Any, crowded: Any, level: float) -> flo
     """How far the line runs beyond its end, mm; negative when it stops short, nan when others hide it."""
     t, tip = way.t, way.tip
     pen = 0.5 * line_type(way.element.style).width if tip is None else tip
-    dark, own = _ink_along(way, across, hidden, level)
+    dark, own, pale = _ink_along(way, across, hidden, level)
     if (extent := _extent(way, dark, own)) is None:
         return float("nan")
     least, most = (float(t[k]) for k in extent)
@@ -131,8 +133,9 @@ def _end(way: _Way, across: Any, hidden: Any, crowded: Any, level: float) -> flo
     if most < min(shown, 0.0):
         rest = slice(extent[1] + 1, int((t < min(shown, 0.0)).sum()))
         weak = own[extent[1] + 2 : int((t < 0).sum())]
+        paler = pale[rest].sum() >= max(PALER / STEP, MOST * (~hidden[rest]).sum())
         faded = way.element.style in LOOSE_STYLES and crowded[rest].sum() > 0.5 * len(crowded[rest]) > 0
-        return float("nan") if (len(weak) and weak.mean() > 0.3) or faded or _lifted(dark[rest]) else most - shown
+        return float("nan") if (len(weak) and weak.mean() > 0.3) or faded or paler or _lifted(dark[rest]) else most - shown
     beyond = least - shown
     seen = own[(t > pen + BLUR) & (t <= least)]
     if beyond > 0 and len(seen) and seen.sum() * STEP >= min(SEEN, beyond) and seen.mean() > SHARE:
@@ -146,8 +149,8 @@ def _lifted(rest: Any) -> bool:
     return bool(bare * STEP <= LIFTED and (len(rest) - bare) * STEP >= RESTS and rest[bare:].all())
 
 
-def _ink_along(way: _Way, across: Any, hidden: Any, level: float) -> tuple[Any, Any]:
-    """Where along the way there is ink, and where it is the line's own for sure."""
+def _ink_along(way: _Way, across: Any, hidden: Any, level: float) -> tuple[Any, Any, Any]:
+    """Where along the way there is ink, where it is the line's own for sure, and where there may be a pale trace of that."""
     import cv2
 
     across = cv2.blur(across, (1, 3))
@@ -157,7 +160,8 @@ def _ink_along(way: _Way, across: Any, hidden: Any, level: float) -> tuple[Any, 
     # Other lines make it darker, if anything.
     usual = np.median(depth[plain]) if plain.sum() > 4 else np.percentile(depth[way.t < 0], 20)
     dark = depth > max(level, 0.5 * float(usual))
-    return dark, dark & ~hidden & (beside < CLEARER * depth)
+    clear = ~hidden & (beside < CLEARER * depth)
+    return dark, dark & clear, (depth > level) & clear
 
 
 def _extent(way: _Way, dark: Any, own: Any) -> tuple[int, int] | None:

@@ -27,6 +27,8 @@ ASTRAY = 1.0
 """Distance, mm, and twice that from which on lines count little, beyond which what was taken for a side is none."""
 TAME = 0.02
 """Weight of the prior for an unbent side where its points are hidden, relative to that of all points."""
+UNSEEN = 0.3
+"""How much a hidden point counts, as one where the side is not bent beside what the lines inside tell, relative to a seen one."""
 RIDGE = 0.01
 """Damping of a wave over the whole sheet, relative to its effect on all points."""
 
@@ -84,9 +86,11 @@ def _fit_side(t: Floats, r: Floats, use: Any, degree: int) -> tuple[Floats, floa
     """Chebyshev coefficients of the residuals ``r`` along a side (t from 0 to 1), and their robust scatter, mm."""
     base = np.polynomial.chebyshev.chebvander(2 * t - 1, degree)
     w, rank = use.astype(float), np.arange(degree + 1) / degree
-    tame = TAME * np.sqrt(len(t)) * np.diag(rank)
+    # A polynomial runs away beyond the points that it is fitted to.
+    tame = np.vstack((TAME * np.sqrt(len(t)) * np.diag(rank), UNSEEN * base[~use]))
+    still = np.zeros(len(tame))
     for _ in range(8):
-        c = np.linalg.lstsq(np.vstack((base * w[:, None], tame)), np.append(r * w, 0 * rank), rcond=None)[0]
+        c = np.linalg.lstsq(np.vstack((base * w[:, None], tame)), np.append(r * w, still), rcond=None)[0]
         d = r - base @ c
         sigma = max(1.4826 * float(np.median(np.abs(d[use]))), 0.03)
         w = use / (1 + (d / (2 * sigma)) ** 2)

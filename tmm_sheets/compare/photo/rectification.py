@@ -256,7 +256,7 @@ class _Attempts:
         frame alone tells where to begin.
         """
         best = self.best
-        if best is None or (self.sound and best.check.together < TOGETHER):
+        if best is None or (best.check.moored and best.check.together < TOGETHER):
             return
         # A fit that is right in most of the sheet may be bent to suit what was taken for a side; the frame followed first is not.
         starts = [(a, a is best) for a in ((best, self.framed) if best.check.moored else (self.framed, best)) if a is not None]

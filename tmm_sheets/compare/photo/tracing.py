@@ -4,6 +4,7 @@ Each element is first looked for in its own place, no farther than half way to t
 is found is wiped out of the picture with a pencil's width to spare, and so are lettering and arrow heads. Elements not found are
 sought in the ink that is left, some millimetres away, turned or of another size (``displacement``). Ink left after that belongs to
 nothing (``extra_ink``). Lines that coincide in one stroke are measured together: what the eye cannot tell apart is not told apart.
+One that leaves the stroke at a small angle is told by its end (``forks``).
 
 The displacement of an element is a similarity, two shifts, a turn and a growth, of which only what shows along its normals is
 determined: a straight line has no shift along itself and no growth; its length is measured at its ends (``line_ends``).
@@ -23,6 +24,7 @@ from tmm_sheets.compare.photo.arrow_heads import with_heads
 from tmm_sheets.compare.photo.displacement import beside, displaced, rather_elsewhere
 from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.extra_ink import extra_ink, without_creases
+from tmm_sheets.compare.photo.forks import parted
 from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden, widened
 from tmm_sheets.compare.photo.ink_levels import ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
@@ -196,7 +198,8 @@ def _usual(found: Sequence[Trace]) -> dict[float, float]:
 def _beside_strokes(found: Sequence[Trace], small: Sequence[Element], ink: Any, owners: Owners, level: float) -> list[Trace]:
     """The traces; of lines that cannot be told from others it is seen whether a line like them lies beside."""
     # No more of letters than their places: what stands between their edges and paper on both sides is no letter.
-    lines, taken = np.zeros_like(ink), _places_of_lettering(small, ink)
+    lines, words = np.zeros_like(ink), _places_of_lettering(small, ink)
+    taken = words.copy()
     for e in small:
         paint(taken, e, e.points, CLOSE)
     for t in found:
@@ -208,9 +211,11 @@ def _beside_strokes(found: Sequence[Trace], small: Sequence[Element], ink: Any, 
     for t in found:
         if t.status in ("shared", "dense") and t.element.kind == "line":
             other = beside(t, stations(t.element, False), ink, lines, taken, owners, level)
+            dark = usual.get(line_type(t.element.style).width, 0.0)
             # Paler lines were rubbed out, or are the edges of others.
-            if other is not None and other.darkness > PALE * usual.get(line_type(t.element.style).width, 0.0):
-                t = other
+            if other is None or other.darkness <= PALE * dark:
+                other = parted(t, ink, words, owners, dark) if dark else None
+            t = other or t
         out.append(t)
     return out
 
