@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction import expression
+from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.plan import Plan, Segment
 from tmm_sheets.construction.rules import GIVEN, LINE_LINE, TURN
 from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.methods.linkage.accelerations import CORIOLIS
 from tmm_sheets.note.document import Figure, Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Said, Scope, listed, words
@@ -203,15 +205,23 @@ def _of_special(r: Reader, plan: Plan, step: Step, start: Step, path: Sequence[s
     """Vectors of one direction that lead to a point of a group of class III and are drawn as one.
 
     Of a velocity those of a leg and of the triangle towards its special point, of an acceleration the tangential ones beside the
-    normal ones of the ``path``.
+    normal ones of the ``path`` and the relative ones beside Coriolis'.
     """
     study = r.project.study
     if plan is study.accelerations.plan:
-        return [symbol.replace("^n", "^τ") for symbol in path if symbol.endswith("^n")]
-    special = next((s for s in study.positions.special.values() if study.velocities.special.get(s.name) is step), None)
-    for leg in special.pair if special is not None else ():
-        if special is not None and leg.form == "RR" and study.velocities.points[leg.outer] is start:
-            return [f"V{BAR}_{{{leg.corner}{leg.outer}}}", f"V{BAR}_{{{special.name}{leg.corner}}}"]
+        turned = {s.symbol for s in plan.segments if s.head.rule is CORIOLIS}
+        rest = {symbol: "r" if symbol in turned else "τ" for symbol in path if symbol in turned or symbol.endswith("^n")}
+        return [f"{symbol.partition('^')[0]}^{kind}" for symbol, kind in rest.items()]
+    m, v = study.mechanism, study.velocities
+    for s in study.positions.special.values():
+        if v.special.get(s.name) is not step:
+            continue
+        tri = next(g.links[0] for g in triads(r.project) if g.kind.about(g) == s.name)
+        for leg in s.pair:
+            carrier = m.guides[leg.guide].link if leg.guide else ""
+            if (v.coincident.get(on_link(leg.corner, carrier)) if leg.guide else v.points[leg.outer]) is start:
+                held = leg.corner if leg.slot is None else on_link(leg.outer, tri)
+                return [f"V{BAR}_{{{leg.index(tri, carrier)}}}", f"V{BAR}_{{{s.name}{held}}}"]
     return []
 
 
