@@ -60,6 +60,7 @@ class RPPKind(GroupKind):
             plan.vector(f"V̅_{{{pj}{on_link(p, link)}}}", at_pin, step)
             vel.points[s] = vel.rotated(s, step, link, p, s)
             plan.vector(f"V̅_{s}", vel.pole, vel.points[s])
+            plan.vector(f"V̅_{{{s}{pj}}}", step, vel.points[s])
         vel.coincident[pj] = step
         vel.coincident[on_link(s, j)] = vel.points[s]
         for k in g.links:
@@ -90,6 +91,7 @@ class RPPKind(GroupKind):
         else:
             acc.points[s] = acc.rotated(s, step, link, p, s)
             plan.vector(f"a̅_{s}", acc.pole, acc.points[s])
+            plan.vector(f"a̅_{{{s}{pj}}}", step, acc.points[s])
         acc.coincident[on_link(s, j)] = acc.points[s]
 
     def force(self, forces: Kinetostatics, g: StructuralGroup) -> None:
