@@ -97,6 +97,12 @@ def decimals_for(values: Iterable[Any], least: int) -> int:
     return max(least, 2 - floor(log10(greatest))) if greatest else least
 
 
+def enough(x: float, least: int, kind: float = 0.0) -> str:
+    """A number as it is written on paper with ``least`` decimals, or as many as give it three digits; see :func:`number`."""
+    x = clean(x, kind)
+    return fixed(x, decimals_for([x], least))
+
+
 def decimal(x: float, decimals: int = 2, sign: bool = False) -> str:
     """A number with a decimal point and a fixed number of decimals; never "-0". With ``sign`` positive ones have a plus."""
     text = _half_up(x, decimals)

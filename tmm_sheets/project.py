@@ -145,7 +145,7 @@ class Project:
             return swing_cycle(self.mechanism, c.start, c.end, c.positions, zero=c.zero, extra=c.extra)
         if c.start == "dead":
             k = c.coefficient if c.division == "nominal" else None
-            return dead_cycle(self.mechanism, c.output, c.working_sense, c.working, c.idle, k)
+            return dead_cycle(self.mechanism, c.output, c.working_sense, c.working, c.idle, k, c.turns)
         return even_cycle(self.mechanism, c.start, c.positions, zero=c.zero, turns=c.turns, extra=c.extra, output=c.output,
                           working_sense=c.working_sense)
 
@@ -223,7 +223,7 @@ class Project:
         CannotBuild
             when there is no [cycle], or no position of the label it names.
         """
-        return self.cycle.index(self._section("cycle").force_position or self.cycle.labels[0])
+        return self.cycle.index(self._section("cycle").force_position or self.cycle.labels[0], "[cycle] force_position: ")
 
     @cached_property
     def reduced(self) -> Reduced:

@@ -86,7 +86,8 @@ def test_a_letter_is_explained_once(note):
 def test_letters_of_numbered_formulas_are_explained(note):
     """Each formula of the section on the flywheel and of the gear is followed by words for what is new in it."""
     explained = {plain_text(r.meaning) for b in note.blocks() if isinstance(b, Where) for r in b.rows}
-    for meaning in ("момент инерции маховика", "коэффициент неравномерности движения", "угол зацепления", "средний диаметр обода",
+    for meaning in ("момент инерции маховика", "коэффициент неравномерности движения", "угол зацепления",
+                    "диаметр маховика, у обода средний",
                     "приведённый момент сил", "угловая скорость звена 3"):  # fmt: skip
         assert meaning in explained
 

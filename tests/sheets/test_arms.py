@@ -1,14 +1,16 @@
 """Letters of arms on one line, names of points with a prime, the sign of the moment in the table with friction."""
 
 import re
+from itertools import pairwise
 
 import pytest
 
+from tests import project_files
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing import owners
 from tmm_sheets.drawing.marks import Line, Trace
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import kinetic_frames, kinetics, linkage, moments
+from tmm_sheets.sheets import friction, kinetic_frames, kinetics, linkage, moments
 from tmm_sheets.sheets.sheet import composed
 
 
@@ -26,7 +28,9 @@ def test_the_part_of_an_arm_that_shorter_ones_take(arm, others, part):
     assert kinetics._covered(arm, others) == pytest.approx(part)
 
 
-@pytest.mark.parametrize(("name", "text"), [("A", "A"), ("A3", "A_{3}"), ("k′", "k′"), ("A3′", "A_{3}′"), ("S₂", "S_{2}")])
+@pytest.mark.parametrize(("name", "text"), [
+    ("A", "A"), ("A3", "A_{3}"), ("k′", "k′"), ("A3′", "A_{3}′"), ("S₂", "S_{2}"), ("D″", "D″"), ("D5″", "D_{5}″"),
+])  # fmt: skip
 def test_a_prime_is_no_index(name, text):
     assert linkage.indexed(name) == text
 
@@ -80,3 +84,39 @@ def test_an_arm_among_those_of_a_sum_is_known_by_its_name():
     assert ink.of_step(Trace("text", "moments/ΣM", "2", 0, "hG4")) == [0, 1]  # no line of this name
     assert ink.of_step(Trace("text", "moments/ΣM", "2", 0)) == [0, 1]
     assert ink.of_step(Trace("text", "moments/ΣM", "3", 0, "hG2")) == []
+
+
+def test_pairs_with_friction_have_the_names_of_the_structure():
+    """The shaper's slider has two sliding pairs at one point: D′ and D″."""
+    project = project_files.project(project_files.from_file("lugansk/shaper"), {"friction": {"sliding": 0.1}})
+    of = project.study.forces.friction
+    said = [friction._name(of, index) for index in of.pairs]
+    assert len(set(said)) == len(said) == 3
+    sliding = [p.name for p in project.mechanism.pairs if p.motion == "translation"]
+    assert [name.split(",")[0].split()[-1] for name in said] == sliding
+
+
+@pytest.mark.parametrize(("points", "small"), [
+    ([0, 50j, 44j], {0, 1}),         # back along the line, 6 mm
+    ([0, 50j, 44 * 1j + 3], set()),  # 27 degrees beside it
+    ([0, 50j, 38j], set()),          # 12 mm: heads have room
+    ([0, 50j, 56j], set()),          # on along the line
+    ([0, 50j, 49.5j], set()),        # told in words, not drawn
+    ([0, 6j, -40j], set()),          # the longer one is the second: its head lies elsewhere
+    ([0, 50j, 40, 6j, 0], set()),
+    ([6j, 0, 30, 50j, 0, 6j], {3, 4}),
+    ([5j, 0, 0, 5j], set()),         # no two meet but in a side of nothing
+    ([], set()),
+])  # fmt: skip
+def test_heads_of_vectors_that_fold_back_are_seen_apart(points, small):
+    sides = list(pairwise(points))
+    heads = kinetics.heads_apart(sides)
+    assert {n for n, size in enumerate(heads) if size is not None} == small
+    assert all(2 * heads[n] < min(abs(b - a) for i, (a, b) in enumerate(sides) if i in small) for n in small)
+
+
+def test_a_closed_polygon_folds_back_at_its_beginning_too():
+    heads = kinetics.heads_apart([(0, 6j), (6j, 30), (30, -50j), (-50j, 6j), (6j, 0)])
+    assert [size is not None for size in heads] == [False, False, False, True, True]
+    heads = kinetics.heads_apart([(6j, 0), (0, 30), (30, -50j), (-50j, 6j)])
+    assert [size is not None for size in heads] == [True, False, False, True]

@@ -21,7 +21,8 @@ from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.chosen import flywheel
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.flywheel import constant_moment, force_graph
+from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.flywheel import apart, constant_moment, force_graph
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import variant
 
@@ -55,13 +56,17 @@ def project(reduced, form="rim"):
 COLUMN = ("force_graph", "moments", "works")
 
 
+def views(p):
+    return apart(p, arrangement("flywheel")).views
+
+
 def draw(p, only=None):
     canvas = Canvas()
     wanted = "column" if only in COLUMN else only
-    for view in VIEWS:
-        module, name = view["draw"].split(".")
+    for view in views(p):
+        module, name = view.draw.split(".")
         if wanted in (None, name):
-            getattr(import_module(f"tmm_sheets.sheets.{module}"), name)(p, canvas, Box(*map(float, view["box"])), view)
+            getattr(import_module(f"tmm_sheets.sheets.{module}"), name)(p, canvas, view.box, view.options)
     if only in COLUMN:
         k = next(k for k, part in enumerate(canvas.parts) if part.draw == f"flywheel.{only}")
         end = canvas.parts[k + 1].first if k + 1 < len(canvas.parts) else len(canvas.marks)
@@ -70,7 +75,9 @@ def draw(p, only=None):
 
 
 def option(name, key):
-    return next(v[key] for v in VIEWS if v["draw"] == f"flywheel.{'column' if name in COLUMN else name}")
+    wanted = f"flywheel.{'column' if name in COLUMN else name}"
+    view = next(view for view in views(project(Shaper())) if view.draw == wanted)
+    return view.box if key == "box" else view.options[key]
 
 
 def reach(marks):
@@ -174,10 +181,11 @@ def dense(points):
 
 
 def test_an_axis_longer_than_its_place_is_refused():
-    view = next(v for v in VIEWS if v["draw"] == "flywheel.column")
-    x0, y0, x1, y1 = view["box"]
+    p = project(Shaper())
+    view = next(view for view in views(p) if view.draw == "flywheel.column")
+    x0, y0, x1, y1 = view.box
     with pytest.raises(CannotBuild, match=r"view flywheel\.column needs \d+ mm more width"):
-        import_module("tmm_sheets.sheets.flywheel").column(project(Shaper()), Canvas(), Box(x0, y0, x1 - 40, y1), view)
+        import_module("tmm_sheets.sheets.flywheel").column(p, Canvas(), Box(x0, y0, x1 - 40, y1), view.options)
 
 
 @pytest.mark.parametrize("name", ["column", "total_work", "inertia"])
@@ -202,7 +210,7 @@ def test_the_graph_of_excess_energy_is_never_a_line():
     assert any(isinstance(m, Text) and "0,01 Дж/мм" in m.text for m in sheet.drawing.marks)
     texts = [m for m in sheet.drawing.marks if isinstance(m, Text)]
     # What its ordinates are against those of the other graph is said right under either title.
-    for title, said in (("График суммарной работы", "Ординаты ΔE увеличены"), ("Диаграмма", "уменьшены в 50 раз")):
+    for title, said in (("График суммарной работы", "Ординаты ΔE увеличены"), ("Диаграмма", "уменьшены в 60 раз")):
         (above,), (beneath,) = ([m.at for m in texts if words in m.text] for words in (title, said))
         assert 0 < (above - beneath).imag < 30
 

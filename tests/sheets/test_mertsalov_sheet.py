@@ -152,9 +152,10 @@ def test_views_of_the_other_method_are_refused():
         draw(project, "energies", Box(324, 100, 647, 400))
 
 
-def test_the_graphs_of_the_moments_read_well(press):
+@pytest.mark.parametrize("name", ["press", "lugansk/shaper", "lugansk/engine", "loom", "screen"])
+def test_the_graphs_of_the_moments_read_well(name):
     """M_c and M_d together are at least 80 mm high, over a pole distance that a ruler lays off (H = mu_A/(mu_M mu_phi))."""
-    fw = press.flywheel
+    fw = Project(catalogue.read(name)).flywheel
     s = fw.scales
     values = np.concatenate(([0.0, fw.M_constant], *(fw.at_samples.moment(side).value for side in (1, -1))))
     assert np.ptp(values) / s.moment.mu >= 80

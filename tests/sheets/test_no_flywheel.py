@@ -146,9 +146,9 @@ def test_nothing_is_said_where_a_flywheel_is_needed(capsys):
 
 def test_the_segment_is_said_with_its_sign():
     f = project("lugansk/shaper", 600.0).flywheel
-    assert list(sentences(f.energy_mass_plan, 0, float))[-1].endswith("ab = −4,0 мм.")
+    assert list(sentences(f.energy_mass_plan, 0, float))[-1].endswith("ab = −2,7 мм.")
     f = project("lugansk/shaper", 0.0).flywheel
-    assert list(sentences(f.energy_mass_plan, 0, float))[-1].endswith("ab = 180,9 мм.")
+    assert list(sentences(f.energy_mass_plan, 0, float))[-1].endswith("ab = 150,8 мм.")
 
 
 # --- many points of a diagram ----------------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 """Views for the room that is left: where they stand, and that what they say is true."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.marks import Polyline
 from tmm_sheets.numbers import number
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import diagrams, hodograph, kinetics, linkage, moments, offers, position_tables, reducer
@@ -184,6 +186,20 @@ def test_a_hodograph_is_closed_and_balances_the_crank(name):
     others = sum(load.vector.value for load in p.study.forces.loads[crank.link] if load.vector is not step)
     assert np.abs(np.broadcast_to(step.value + others, (len(p.cycle.labels),))).max() < 1e-9 * size
     assert abs(course[0] - course[-1]) < 1e-3 * size
+
+
+@pytest.mark.parametrize("swings", [False, True])
+def test_a_load_that_jumps_where_the_cycle_begins_leaves_no_gap_in_the_hodograph(swings):
+    """The press ends its stroke under the full force and begins the next without one; a swing does not come back."""
+    p = Project(read("press"))
+    _, _, course = hodograph._reaction(p)
+    p.__dict__["cycle"] = replace(p.cycle, swings=swings)
+    canvas = canvas_with()
+    hodograph.bearing(p, canvas, Box(100.0, 100.0, 260.0, 260.0), {})
+    (curve,) = (m.points for m in canvas.marks if isinstance(m, Polyline) and m.style == "curve")
+    assert abs(course[0] - course[-1]) > 0.9 * np.abs(course).max()
+    assert (curve[0] == curve[-1]) is not swings
+    assert len(curve) == len(course) + (not swings)
 
 
 def test_nothing_stands_between_a_title_and_the_plans_of_several_positions():

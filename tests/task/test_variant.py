@@ -196,3 +196,9 @@ def test_any_toml(data):
 def test_not_a_name_of_this_folder():
     with pytest.raises(BadInput, match="no such file"):
         variant.read(Path("no/such.toml"))
+
+
+@pytest.mark.parametrize("key", [{"cycle.zero": "12"}, {"cycle.extra": {"1a": "10 deg"}}], ids=["zero", "extra"])
+def test_what_only_goes_with_a_crank_angle_is_not_left_out_in_silence(key):
+    with pytest.raises(BadInput, match="only with a crank angle as start"):
+        project_files.read(project_files.SLIDER, project_files.WORKING, key)

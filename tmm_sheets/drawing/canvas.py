@@ -225,12 +225,12 @@ class Canvas:
         self.fill(at + radius * (np.cos(t) + 1j * np.sin(t)), style)
         self._one("dot", len(self.marks) - 1)
 
-    def arrow_head(self, tip: complex, u: complex, size: float = 3.5, style: str = "thin") -> None:
-        """Arrow head at ``tip`` along the unit direction ``u``, ``size`` mm long (GOST 2.307)."""
-        across = 1j * size * ARROW[1] / ARROW[0] * u
+    def arrow_head(self, tip: complex, u: complex, size: float = 3.5, style: str = "thin", stubby: bool = False) -> None:
+        """Arrow head at ``tip`` along the unit direction ``u``, ``size`` mm long (GOST 2.307); ``stubby``: wider than its line."""
+        across = 1j * u * (min(ARROW[1], 0.4 * size) if stubby else size * ARROW[1] / ARROW[0])
         self.fill((tip, tip - size * u + across, tip - size * u - across), style)
 
-    def arrow(self, a: complex, b: complex, style: str = "main", head: float | None = None) -> None:
+    def arrow(self, a: complex, b: complex, style: str = "main", head: float | None = None, stubby: bool = False) -> None:
         """Arrow from ``a`` to ``b``; the head shrinks with short arrows and is left out below half a millimetre."""
         length = abs(b - a)
         if not length > 0.5:
@@ -239,7 +239,7 @@ class Canvas:
         size = min(ARROW[0] if head is None else head, 0.6 * length)
         first = len(self.marks)
         self.line(a, b - 0.9 * size * u, style)
-        self.arrow_head(b, u, size, style)
+        self.arrow_head(b, u, size, style, stubby)
         self._one("arrow", first)
 
     def arc_arrow(self, centre: complex, radius: float, start: float, end: float, style: str = "axis", head: float = 3.0) -> None:

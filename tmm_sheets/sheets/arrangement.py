@@ -37,7 +37,8 @@ NEEDS = {
     "load_diagram": "positions", "synthesis": "positions", "kinetics": "forces", "moments": "forces", "friction": "forces",
     "details": "forces",
     "diagrams.balancing": "forces", "diagrams.balancing_table": "forces",
-    "flywheel": "flywheel", "crank_speed": "flywheel", "mertsalov": "flywheel", "gear": "gear", "rack": "gear",
+    "flywheel": "flywheel", "crank_speed": "flywheel", "mertsalov": "flywheel", "gear": "gear",
+    "gear_equations": "gear", "rack": "gear",
     "reducer": "reducer", "reducer_equations": "reducer", "train": "train", "cam": "cam", "cam_zone": "cam", "cam_profile": "cam",
     "cam_law": "cam",
 }

@@ -18,7 +18,7 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.sheets import false_positions, kinematic_frames, kinetic_frames
+from tmm_sheets.sheets import false_positions, flywheel, kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.arrangement import Arrangement, View, arrangement
 from tmm_sheets.sheets.frame import needed, standard
 from tmm_sheets.sheets.solver import GAP, Need, Node, cut, joined, rounded_up, solve
@@ -46,8 +46,10 @@ def arranged(project: Project, n: int) -> Arrangement:
     Raises :class:`CannotBuild` where the project has nothing for any of its views.
     """
     plan = _with_all_groups(project, arrangement(project.sheets[n - 1]).fitted(project.parts))
+    if any("axis" in view.options for view in plan.views):
+        return flywheel.apart(project, plan)
     # Whoever sets scale factors by hand has the boxes as they are written.
-    if project.variant.scales or any("axis" in view.options for view in plan.views):
+    if project.variant.scales:
         return plan
     if not any(view.draw in NEEDS for view in plan.views):
         return plan

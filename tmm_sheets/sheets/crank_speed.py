@@ -5,6 +5,7 @@ The option ``axis`` is the x of the ordinate axis of the other graphs, mm: benea
 
 from __future__ import annotations
 
+from math import floor, log10
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.box import Box
@@ -30,7 +31,7 @@ def graph_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> tu
     if fw.method != "wittenbauer" or not fw.needed:
         return ()
     as_others = fw.scales.angle.mm(fw.reduced.period) + LEFT + RIGHT
-    return ((as_others, 145.0), (as_others, 120.0), *(size for size in SIZES if size[0] < as_others))
+    return (*((as_others, high) for high in (145.0, 120.0, 100.0, 85.0)), *(size for size in SIZES if size[0] < as_others))
 
 
 def graph_left(options: dict[str, Any]) -> float:
@@ -62,8 +63,9 @@ def graph(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     graphs.axes(pen, g, length, low, high, tr("{symbol}, s^{{−1}}").format(symbol="ω_1"))
     graphs.numbers(pen, g, x.mm(fw.reduced.phi), fw.labels, plan["ω1"].value - mean)
     canvas.text(g(-2.0) + 1.0j, tr("ω_{1m}"), 3.5, "right")
+    digits = max(4, 2 + floor(log10(mean / (highest - lowest))))  # the bounds differ in two digits at least
     for name, level in (("max", high), ("min", low)):
         pen = of.pen(f"ω_{name}", "axis")
         pen.line(g(1j * level), g(length + 1j * level), "thin")
-        value = number(float(plan[f"ω_{name}"].value), 4)
+        value = number(float(plan[f"ω_{name}"].value), digits)
         pen.text(g(length + 1j * level) + (1.3j if level > 0 else -5.0j), f"ω_{{{name}}} = {value}", 3.5, "right")

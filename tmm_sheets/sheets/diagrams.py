@@ -15,7 +15,7 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import LEAST, needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.numbers import fixed
+from tmm_sheets.numbers import enough
 from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import Frame, pick
 from tmm_sheets.sheets.kinetic_frames import balancing_sign
@@ -284,9 +284,10 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQ
                 canvas.line(foot, foot + 1j * y, "thin")
     with canvas.traced("axis", *axis):
         if level is not None:
+            greatest = max(float(np.abs(c.values).max()) for c in q.curves)
             y = o + 1j * scale.mm(level[1])
             canvas.line(y, y + length, "axis")
-            canvas.label(y + 0.9 * length, f"{level[0]} = {fixed(level[1], 1)} {q.unit}", 1j, 3.5, 0.8)
+            canvas.label(y + 0.9 * length, f"{level[0]} = {enough(level[1], 1, greatest)} {q.unit}", 1j, 3.5, 0.8)
         _numbers(project, canvas, o, angle.mm(project.cycle.turned), length, q, drawn)
     for c in q.curves if len(q.curves) > 1 else ():
         peak = int(np.argmax(np.abs(c.values)))

@@ -8,7 +8,8 @@ graph of dE and under the turned graph of J: its options ``energy`` and ``inerti
 from __future__ import annotations
 
 from cmath import rect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from math import degrees, pi
 from string import ascii_lowercase
@@ -22,7 +23,7 @@ from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import wrapped
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.numbers import clean, decimals_for, fixed, number
+from tmm_sheets.numbers import decimals_for, enough, fixed, number
 from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import ratio, standard, together
 from tmm_sheets.sheets.player import Stage, play, stage
@@ -33,13 +34,17 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.methods.flywheel.wheel import RimWheel
     from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
+    from tmm_sheets.sheets.arrangement import Arrangement, View
 
 Options = dict[str, Any]
+CLEAR = 14.0
+"""How far the sign of a straight graph stands from the other curve, mm."""
 CROWD = 4
 """So many intervals between two positions on an average are drawn, with their rays, as they are."""
 FELT = 0.02
 """Error of the work by ordinates from which on the sheet tells what it does to the flywheel beside it."""
 _BELOW = 7.0  # room of position numbers beside an axis
+_UNDER = 8.0  # room of the letter b under the energy-mass diagram
 
 
 Stacked = tuple[Callable[..., None], float, float]
@@ -48,11 +53,35 @@ Stacked = tuple[Callable[..., None], float, float]
 
 def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Forces, moments and works one under another."""
-    fw: Flywheel = project.flywheel
+    parts = _of_column(project.flywheel)
+    stacked(project, canvas, box, options, "flywheel.column", [(_view(draw), height, below) for draw, height, below in parts])
+
+
+def _of_column(fw: Flywheel) -> tuple[Stacked, ...]:
     lines = [line for name in fw.reduced.forces_at(fw.samples[:1]) for line in _acting(fw, name)]
     forces = np.concatenate([np.zeros(1), *(line.imag for line in lines)])
-    parts = (force_graph, float(np.ptp(forces)), _BELOW), *of_moments(fw)
-    stacked(project, canvas, box, options, "flywheel.column", [(_view(draw), height, below) for draw, height, below in parts])
+    return (force_graph, float(np.ptp(forces)), _BELOW), *of_moments(fw)
+
+
+def apart(project: Any, plan: Arrangement) -> Arrangement:
+    """The arrangement with the border between the column and the graph of dE under it where both have room to spare alike."""
+    fw, views = project.flywheel, {view.draw: view for view in plan.views}
+    upper, lower = views.get("flywheel.column"), views.get("flywheel.total_work")
+    if fw.method != "wittenbauer" or upper is None or lower is None:
+        return plan
+    parts = _of_column(fw)
+    needs = sum(height + below for _, height, below in parts) + len(parts) * (graphs.OVER + graphs.HEAD)
+    low, high = _energy_range(fw)
+    gap = upper.box.y0 - lower.box.y1
+    spare = upper.box.y1 - lower.box.y0 - gap - needs - (_UNDER + high - low + graphs.HEAD + graphs.OVER)
+    border = upper.box.y1 - needs - max(spare, 0.0) * (len(parts) - 1) / (len(parts) + 1)
+    places = {upper.draw: upper.box._replace(y0=border), lower.draw: lower.box._replace(y1=border - gap)}
+
+    def placed(view: View) -> View:
+        energy = {"energy": [*places[lower.draw]]} if "energy" in view.options else {}
+        return replace(view, box=places.get(view.draw, view.box), options={**view.options, **energy})
+
+    return replace(plan, views=tuple(map(placed, plan.views)))
 
 
 def _view(draw: Callable[..., None]) -> Callable[..., None]:
@@ -183,7 +212,15 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     peak = int(np.argmax(size))
     falling = line[peak + int(np.argmax(size[peak:] < 0.6 * size[peak]))]
     canvas.label(g(falling), tr("M_{index}^{{red}}").format(index=varying), 1 - 1j if falling.imag < 0 else 1 + 1j, height=5)
-    canvas.label(g(0.78 * length + 1j * level), tr("M_{index}^{{red}}").format(index=constant), -1j if level > 0 else 1j, height=5)
+    beside = _clear_of(line, level, length)
+    canvas.label(g(beside), tr("M_{index}^{{red}}").format(index=constant), -1j if level > 0 else 1j, height=5)
+
+
+def _clear_of(line: Any, level: float, length: float) -> complex:
+    """Place on the line of the constant moment for its sign: the first of some that the other curve keeps clear of, mm."""
+    places = [share * length + 1j * level for share in (0.78, 0.7, 0.86, 0.6, 0.5, 0.4, 0.3, 0.2)]
+    ways = [float(np.abs(graphs.dense(line) - z).min()) for z in places]
+    return next((z for z, way in zip(places, ways, strict=True) if way > CLEAR), places[int(np.argmax(ways))])
 
 
 def axes(fw: Flywheel, of: Stage, step: Step | str, g: graphs.Graph, low: float, high: float, ordinate: str, side: Any,
@@ -575,9 +612,10 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     slope = {name: float(fw.energy_mass_plan.asides[f"tg ψ_{name}"].value) for name in ("max", "min")}
     drawn = tr("|ab| = {length} mm") if fw.ab_mm >= 0 else tr("ab = {length} mm (a below b)")
     tangent = tr("tan ψ_{name} = μ_J/(2μ_E)·ω_1^2(1 {sign} δ/2)^2 = {slope};  ψ_{name} = {angle}°")
+    digits = decimals_for([slope["max"] - slope["min"]], 4)
     rows = [
         _givens(fw),
-        *(tangent.format(name=name, sign=sign, slope=fixed(slope[name], 4), angle=fixed(degrees(a), 2))
+        *(tangent.format(name=name, sign=sign, slope=fixed(slope[name], digits), angle=fixed(degrees(a), 2))
           for name, sign, a in zip(("max", "min"), "+−", psi, strict=True)),
         drawn.format(length=_of_segment(fw)),
         _asked(fw),
@@ -690,8 +728,12 @@ def with_tangents(project: Any) -> Wittenbauer:
 
 def constant_moment(fw: Flywheel) -> str:
     """The constant moment as it is written, N m: 0 where it is nothing but rounding beside the moments that vary."""
-    value = clean(fw.M_constant, float(np.abs(fw.at_samples.moment().value).max()))
-    return fixed(value, decimals_for([value], 1))
+    return enough(fw.M_constant, 1, float(np.abs(fw.at_samples.moment().value).max()))
+
+
+def omega_digits(omega: float, uneven: Iterable[float]) -> int:
+    """Decimals that tell the greatest angular velocity from the least, rad/s."""
+    return decimals_for((omega * delta for delta in uneven), 4)
 
 
 def indices(fw: Flywheel) -> tuple[str, str]:
@@ -721,9 +763,9 @@ def _energy_range(fw: Wittenbauer) -> tuple[float, float]:
 def _energy_graph(fw: Wittenbauer, box: Box, options: Options) -> graphs.Graph:
     """Axes of the graph of dE, and the level of the energy-mass diagram: room for ``b`` below, for the tangent above."""
     low, high = _energy_range(fw)
-    spare = box.height - (8.0 + high - low + graphs.HEAD + graphs.OVER)
+    spare = box.height - (_UNDER + high - low + graphs.HEAD + graphs.OVER)
     graphs.check_room(box, box.y1 - spare, "flywheel.total_work")
-    return graphs.Graph(complex(options["axis"], box.y0 + 8.0 - low + max(spare, 0.0) / 2))
+    return graphs.Graph(complex(options["axis"], box.y0 + _UNDER - low + max(spare, 0.0) / 2))
 
 
 def _inertia_graph(fw: Flywheel, box: Box, options: Options) -> graphs.Graph:

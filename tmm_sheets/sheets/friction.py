@@ -198,7 +198,7 @@ def _turning(project: Project, canvas: Canvas, box: Box, frame: Frame, index: st
     of, k, pos = _friction(project), project.force_index, project.study.positions
     hinge, turn = _hinge(of, index), of.turning[index]
     s = stage(canvas, pos.plan, k, frame)
-    canvas.text(complex(box.centre.real, box.y1 - 5.0), _name(index, hinge), 3.5, "centre")
+    canvas.text(complex(box.centre.real, box.y1 - 5.0), _name(of, index), 3.5, "centre")
     centre, journal = s.at(hinge), frame.scale.mm(float(of.radii[hinge].args[1]))
     with canvas.as_role("symbol"):
         canvas.circle(centre, journal, "main")
@@ -216,7 +216,7 @@ def _sliding(project: Project, canvas: Canvas, box: Box, frame: Frame, index: st
     of, k, pos = _friction(project), project.force_index, project.study.positions
     hinge = _hinge(of, index)
     s = stage(canvas, pos.plan, k, frame)
-    canvas.text(complex(box.centre.real, box.y1 - 5.0), _name(index, hinge, "′"), 3.5, "centre")
+    canvas.text(complex(box.centre.real, box.y1 - 5.0), _name(of, index), 3.5, "centre")
     centre, v, turn = s.at(hinge), complex(of.sliding[index].at(k)), float(of.deviations[index].at(k))
     normal = force * complex(np.exp(-1j * turn)) / abs(force) if force else 1j * v / abs(v) if v else 1j
     along, thick = -1j * normal, half / 6
@@ -240,9 +240,9 @@ def _sliding(project: Project, canvas: Canvas, box: Box, frame: Frame, index: st
         pen.label(tail + (half / 2 - 4.0) * u, f"V̅_{{{index}}}", -normal, 3.5, 1.5)
 
 
-def _name(index: str, hinge: str, mark: str = "") -> str:
-    """What a pair is called here and in the table: a sliding one by its point with a prime."""
-    return tr("Pair {hinge}, reaction F_{{{index}}}").format(hinge=f"{linkage.indexed(hinge)}{mark}", index=index)
+def _name(of: Friction, index: str) -> str:
+    """What a pair is called: as in the structure of the mechanism."""
+    return tr("Pair {hinge}, reaction F_{{{index}}}").format(hinge=linkage.indexed(of.pairs[index].name), index=index)
 
 
 def _told(project: Project, of: Friction, index: str, force: complex, k: int) -> list[str]:
@@ -275,14 +275,14 @@ def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     assert of.power_plan is not None
     rows = [[tr("Pair"), tr("F, N"), tr("ρ, mm"), tr("M_f, N·m"), tr("ω, s^{−1}"), tr("φ, °"), tr("V, m/s"), tr("N_f, W")]]
     for index in of.pairs:
-        hinge, force = _hinge(of, index), number(abs(complex(study.forces.reactions[f"F{index}"].at(k))), 5)
+        name, force = linkage.indexed(of.pairs[index].name), number(abs(complex(study.forces.reactions[f"F{index}"].at(k))), 5)
         power = number(float(of.powers[index].at(k)), 4, float(abs(of.total.at(k))) or 1.0)
         if index in of.moments:
             moment, turn = (number(float(np.real(step.at(k))), 4) for step in (of.moments[index], of.turning[index]))
-            rho = number(1e3 * float(of.radii[hinge].value))
-            rows.append([f"{linkage.indexed(hinge)} ({index})", force, rho, moment, turn, "−", "−", power])
+            rho = number(1e3 * float(of.radii[_hinge(of, index)].value))
+            rows.append([f"{name} ({index})", force, rho, moment, turn, "−", "−", power])
         else:
-            rows.append([f"{linkage.indexed(hinge)}′ ({index})", force, "−", "−", "−",
+            rows.append([f"{name} ({index})", force, "−", "−", "−",
                          fixed(degrees(float(of.deviations[index].at(k))), 2),
                          number(abs(complex(of.sliding[index].at(k))), 4), power])
     left = canvas.title(box, tr("Friction in the pairs"))

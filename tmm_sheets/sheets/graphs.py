@@ -66,7 +66,7 @@ def check_room(box: Box, top: float, view: str) -> None:
     if top > box.y1 + 0.5:
         raise CannotBuild(
             tell("view {view} needs {lack:.0f} mm more height than its place has").format(view=view, lack=top - box.y1),
-            tell("make its box in the arrangement larger; for a four-stroke engine take the arrangement engine_2"))
+            tell("make its box in the arrangement larger"))
 
 
 def check_width(box: Box, right: float, view: str) -> None:
@@ -74,7 +74,7 @@ def check_width(box: Box, right: float, view: str) -> None:
     if right > box.x1 + 0.5:
         raise CannotBuild(
             tell("view {view} needs {lack:.0f} mm more width than its place has").format(view=view, lack=right - box.x1),
-            tell("make its box in the arrangement larger; for a four-stroke engine take the arrangement engine_2"))
+            tell("make its box in the arrangement larger"))
 
 
 def heading(canvas: Canvas, box: Box, options: Options, title: str, factor: str, under: str = "") -> None:

@@ -47,7 +47,8 @@ def bearing(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     canvas.title(box, tr("Hodograph of the reaction F_{{{index}}}").format(index=name[1:]), str(scale))
     frame = Frame(scale, inside.centre - scale.mm(real.centre))
     placed = canvas.placed(step.plan, "", frame.origin, frame.mu)
-    drawn, ends = frame(course), frame(at)
+    # Round a turn it is closed: a load that jumps where the cycle begins anew is drawn like one that jumps within.
+    drawn, ends = frame(course if project.cycle.swings else np.append(course, course[:1])), frame(at)
     # In the plan itself the vectors stand elsewhere: here they begin at one point.
     with canvas.traced("curve", step.path, "", placed, name):
         canvas.polyline(drawn, "curve")

@@ -12,7 +12,7 @@ import numpy as np
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing import symbols
-from tmm_sheets.drawing.canvas import Align, Canvas
+from tmm_sheets.drawing.canvas import ARROW, Align, Canvas
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import TOGETHER
@@ -61,6 +61,8 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
 
+ALONG, SAME = 0.05, 0.01
+"""Sine of the angle at which two sides of a polygon lie along each other; distance at which they meet, mm."""
 BAR = "\u0305"
 GAP = 4.0
 """Distance of groups that share a place, mm."""
@@ -305,16 +307,29 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
         canvas.text(complex(box.centre.real, low + y), line, size, "centre")
 
 
-def _draw_sides(s: Stage, sides: Iterable[tuple[str, Step, Step, bool]], centre: complex) -> dict[tuple[str, str], str]:
+def heads_apart(sides: Sequence[tuple[complex, complex]]) -> list[float | None]:
+    """Sizes of arrow heads, mm, where a short side folds back along the one before: both heads have to be seen on its length."""
+    sizes: list[float | None] = [None] * len(sides)
+    for n, ((a, b), (c, d)) in enumerate(zip(sides, [*sides[1:], *sides[:1]], strict=True)):
+        first, second = b - a, d - c
+        turned = np.conj(first) * second
+        back = abs(b - c) < SAME and turned.real < 0 and abs(turned.imag) < ALONG * abs(turned)
+        if back and SHORTEST <= abs(second) < min(abs(first), 2 * ARROW[0]):
+            sizes[n] = sizes[(n + 1) % len(sides)] = 0.42 * abs(second)
+    return sizes
+
+
+def _draw_sides(s: Stage, sides: Sequence[tuple[str, Step, Step, bool]], centre: complex) -> dict[tuple[str, str], str]:
     """Sides of a force polygon with their signs outside it; those too short to be drawn are told by their vertices."""
     tiny = {}
-    for sign, tail, head, _ in sides:
+    heads = heads_apart([(s.at(tail), s.at(head)) for _, tail, head, _ in sides])
+    for (sign, tail, head, _), size in zip(sides, heads, strict=True):
         a, b = s.at(tail), s.at(head)
         if abs(b - a) < SHORTEST:
             value = newtons(s.value(s.plan.length(tail, head)))
             tiny[tail.name, head.name] = tr("{quantity} = {value} N").format(quantity=sign, value=value).replace(" ", TOGETHER)
             continue
-        s.vector(tail, head)
+        s.vector(tail, head, size=size)
         middle, n = (a + b) / 2, 1j * (b - a)
         s.letters(head, sign, -n if (np.conj(n) * (middle - centre)).real < 0 else n, at=middle)
     return tiny

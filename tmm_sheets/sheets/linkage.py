@@ -114,7 +114,7 @@ _PLAIN = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
 def indexed(name: str) -> str:
     """Name of a point in lettering markup: what follows its letter is the index, a prime stands behind it."""
     name = name.translate(_PLAIN)
-    plain = name.rstrip("′")
+    plain = name.rstrip("′″")
     return f"{plain[0]}_{{{plain[1:]}}}{name[len(plain):]}" if plain[1:] else name
 
 

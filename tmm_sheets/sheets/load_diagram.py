@@ -9,6 +9,7 @@ import numpy as np
 
 from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.lettering import size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import graphs
@@ -45,7 +46,7 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     canvas.title(box, title, f"{scale}, {angle}")
     at = Frame(scale, complex(start, inside.y0 - low / scale.mu), angle)
     if (said := _many_strokes(project, shown)) is not None:
-        canvas.text(complex(box.centre.real, inside.y1 + 1.0), said, 3.5, "centre")
+        canvas.text(complex(box.centre.real, inside.y1 + 1.0), said, size_for([said], box.width, 3.5), "centre")
     frame, o = canvas.placed("loads", "", at.origin, at.mu), at.origin
     with canvas.traced("axis", f"loads/{shown[0].name}", "", frame):
         canvas.arrow(o + 1j * low / scale.mu, o + 1j * (top / scale.mu + 8.0), "axis", 3.0)

@@ -18,7 +18,7 @@ from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import size_in, widened
-from tmm_sheets.numbers import fixed, number, size
+from tmm_sheets.numbers import decimals_for, enough, fixed, number, size
 from tmm_sheets.sheets import flywheel, graphs
 from tmm_sheets.sheets.kinetic_frames import flat
 from tmm_sheets.sheets.player import Stage, stage
@@ -217,9 +217,10 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
             label=fw.labels[k], psi=fixed(degrees(psi), 2), sign=sign,
             slope=number(slope, kind=size([plan["dJ/dφ"].value], k))),
         tr("M = M_{constant} + M_{varying} = {moment} N·m;  {held} + {sign} = {inertia} kg·m^2").format(
-            constant=constant, varying=varying, moment=fixed(moment, 1), held=held, sign=sign, inertia=fixed(inertia, 2)),
+            constant=constant, varying=varying, moment=enough(moment, 1, size([plan["M"].value], k)), held=held, sign=sign,
+            inertia=enough(inertia, 2)),
         tr("ε_1 = (M − ω_{{1m}}^2/2·d{sign}/dφ)/({held} + {sign}) = {epsilon} rad/s^2").format(
-            sign=sign, held=held, epsilon=fixed(epsilon, 3)),
+            sign=sign, held=held, epsilon=enough(epsilon, 3, size([plan["ε1"].value], k))),
         *_motor(fw), *flywheel.power(fw), *flywheel.disagreement(fw), *_size(fw)]
     left = canvas.title(box, tr("Flywheel design by Mertsalov's method"))
     step = min(left.height / len(rows), 11.0)
@@ -272,13 +273,14 @@ def _extremes(fw: Mertsalov) -> tuple[str, str]:
 
     A given flywheel has to keep to none.
     """
+    digits = flywheel.omega_digits(fw.reduced.omega1, [fw.unevenness])
     if fw.given:
-        highest, lowest = (fixed(found, 4) for found in fw.extremes)
+        highest, lowest = (fixed(found, digits) for found in fw.extremes)
         return tr("ω_{{max}} = {found} rad/s").format(found=highest), tr("ω_{{min}} = {found} rad/s").format(found=lowest)
     texts = (tr("ω_{{max}} = {found};  ω_m(1 + δ/2) = {permitted} rad/s"),
              tr("ω_{{min}} = {found};  ω_m(1 − δ/2) = {permitted} rad/s")) if fw.needed else \
         (tr("ω_{{max}} = {found} < ω_m(1 + δ/2) = {permitted} rad/s"), tr("ω_{{min}} = {found} > ω_m(1 − δ/2) = {permitted} rad/s"))
-    fast, slow = (said.format(found=fixed(found, 4), permitted=fixed(float(fw.speed_plan[f"[ω_{name}]"].value), 4))
+    fast, slow = (said.format(found=fixed(found, digits), permitted=fixed(float(fw.speed_plan[f"[ω_{name}]"].value), digits))
                   for said, found, name in zip(texts, fw.extremes, ("max", "min"), strict=True))
     return fast, slow
 
@@ -321,13 +323,17 @@ def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     """Mertsalov's flywheel beside Wittenbauer's, drawn and exact, each with the exact running of the machine that has it."""
     fw = _procedure(project)
     rows = [[tr("Flywheel"), tr("J_I, kg·m^2"), tr("ω_{max}, rad/s"), tr("ω_{min}, rad/s"), "δ"]]
+    omega = fw.reduced.omega1
+    made = [(c.name, c.first, c.running.fastest, c.running.slowest, c.running.delta) for c in fw.compared]
     if fw.given:
-        rows += [[name, fixed(fw.J_first, 2), *(fixed(fw.reduced.omega1 * (1 + side * delta / 2), 4) for side in (1, -1)),
-                  fixed(delta, 5)] for name, delta in ((tr("Mertsalov, construction"), fw.unevenness),
-                                                       (tr("Wittenbauer, construction"), fw.other.unevenness),
-                                                       (tr("Mertsalov, n → ∞"), float(fw.limit_plan["δ∞"].value)))]
-    rows += [[c.name, fixed(c.first, 2), fixed(c.running.fastest, 4), fixed(c.running.slowest, 4), fixed(c.running.delta, 5)]
-             for c in fw.compared]
+        drawn = ((tr("Mertsalov, construction"), fw.unevenness), (tr("Wittenbauer, construction"), fw.other.unevenness),
+                 (tr("Mertsalov, n → ∞"), float(fw.limit_plan["δ∞"].value)))
+        made = [(name, fw.J_first, omega * (1 + delta / 2), omega * (1 - delta / 2), delta) for name, delta in drawn] + made
+    uneven = [delta for *_, delta in made]
+    inertia, digits, places = (decimals_for([first for _, first, *_ in made], 2), flywheel.omega_digits(omega, uneven),
+                               decimals_for(uneven, 5))
+    rows += [[name, fixed(first, inertia), fixed(fastest, digits), fixed(slowest, digits), fixed(delta, places)]
+             for name, first, fastest, slowest, delta in made]
     left = canvas.title(box.inset(0, 0, 0, 2), tr("Comparison of the methods with the exact running"))
     high = min((left.height - 12.0) / len(rows), 8.0)
     first = max(letter(line[0], 3.5).width for line in rows) + 3.0
@@ -338,5 +344,5 @@ def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     _, _, _, sign = _signs(options)
     apart = float(fw.comparison_plan["ΔJ"].value)
     text = tr("n → ∞: difference {apart} kg·m^2; theory: ({sign}(φ_{{max}}) + {sign}(φ_{{min}}))/2 = {excess} kg·m^2").format(
-        apart=fixed(apart, 3), sign=sign, excess=fixed(fw.excess, 3))
+        apart=enough(apart, 3, fw.J_first), sign=sign, excess=enough(fw.excess, 3, fw.J_first))
     canvas.text(complex(box.x0, place.y0 - 6.5), text, size_for([text], box.width, 3.5))

@@ -43,7 +43,7 @@ def equations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -
         return []
     sizes = []
     for height, step, width in WAYS:
-        lines = [line for text in texts for line in _broken(text, width, height)]
+        lines = [line for text in texts for line in broken(text, width, height)]
         sizes.append((max(letter(line, height).width for line in lines) + 6.0, 12.0 + step * len(lines)))
     return sizes
 
@@ -54,7 +54,7 @@ def equations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     canvas.of = "moments"
     left = canvas.title(box, tr("Equations of moments"))
     for height, step, _ in WAYS:
-        lines = [line for text in texts for line in _broken(text, box.width - 6.0 + 1e-6, height)]
+        lines = [line for text in texts for line in broken(text, box.width - 6.0 + 1e-6, height)]
         if 12.0 + step * len(lines) <= box.height + 1e-6:
             break
     canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
@@ -170,13 +170,17 @@ def _lever_lines(project: Project, canvas: Canvas, width: float, height: float, 
         said.append(tr("{moment} = {force}·l_{{{crank}}} = {value} N·m (“+”: in the sense of ω_1)").format(
             moment=balancing_sign(project), force=sign, crank=f"{m.pivot}{m.pin}",
             value=number(moment, 5, study.forces.moment_size(k))))
-    return [line for text in said for line in _broken(text, width, height)]
+    return [line for text in said for line in broken(text, width, height)]
 
 
-def _broken(text: str, width: float, height: float) -> list[str]:
-    """A formula in lines no wider than ``width``, mm, where its signs let it be broken."""
+SIGNS = r"(?= [+−] | = (?!0$))"
+"""Where a long formula may be broken: a last "= 0" stands alone nowhere."""
+
+
+def broken(text: str, width: float, height: float, signs: str = SIGNS) -> list[str]:
+    """A formula in lines no wider than ``width``, mm, where its ``signs`` let it be broken."""
     lines = [""]
-    for piece in re.split(r"(?= [+−] | = (?!0$))", text):  # a last "= 0" stands alone nowhere
+    for piece in re.split(signs, text):
         if lines[-1] and letter(lines[-1] + piece, height).width > width:
             lines.append(piece.lstrip())
         else:

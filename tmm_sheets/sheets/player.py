@@ -63,10 +63,10 @@ class Stage:
         """Point of the sheet of a step."""
         return complex(self.frame(complex(self.value(step))))
 
-    def vector(self, tail: Step | str, head: Step | str, style: str = "vector") -> None:
-        """Arrow between the points of two steps; it is a mark of the second."""
+    def vector(self, tail: Step | str, head: Step | str, style: str = "vector", size: float | None = None) -> None:
+        """Arrow between the points of two steps, it is a mark of the second. A ``size``, mm, is that of a stubby head."""
         a, b = self.step(tail), self.step(head)
-        self.pen(b, "vector", f"{a.name}–{b.name}").arrow(self.at(a), self.at(b), style)
+        self.pen(b, "vector", f"{a.name}–{b.name}").arrow(self.at(a), self.at(b), style, size, size is not None)
 
     def letters(self, step: Step | str, markup: str, away: complex = 0j, height: float = 3.5, gap: float = 1.0,
                 at: complex | None = None, leader: bool = True) -> None:

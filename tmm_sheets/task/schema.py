@@ -294,6 +294,9 @@ class CycleTable(Table):
         absent = [k for k in ("output", "working_sense", "working", "idle") if getattr(self, k) is None]
         if absent:
             raise ValueError(tell('start = "dead" needs {absent} as well').format(absent=", ".join(absent)))
+        if lost := [k for k in ("zero", "extra") if k in self.model_fields_set]:
+            only = tell('{keys}: only with a crank angle as start, for example start = "90 deg"')
+            raise ValueError(only.format(keys=", ".join(lost)))
         if self.division == "nominal" and self.coefficient is None:
             raise ValueError(tell('division = "nominal" needs the coefficient K, for example coefficient = 1.5'))
         return self

@@ -56,6 +56,19 @@ def test_exact_division_starts_in_the_dead_position(shaper):
     np.testing.assert_allclose(np.diff(cycle.turned[:7]), cycle.strokes.end / 6, rtol=1e-14)
 
 
+@pytest.mark.parametrize("coefficient", [None, 1.5])
+@pytest.mark.parametrize("turns", [1, 2, 3])
+def test_strokes_are_divided_in_every_turn(shaper, turns, coefficient):
+    once = dead_cycle(shaper.mechanism, "S5", "+x", 6, 4, coefficient)
+    cycle = dead_cycle(shaper.mechanism, "S5", "+x", 6, 4, coefficient, turns)
+    assert cycle.labels == tuple(str(n) for n in range(10 * turns))
+    assert cycle.period == pytest.approx(2 * pi * turns)
+    first = cycle.turned.reshape(turns, 10) - 2 * pi * np.arange(turns)[:, None]
+    np.testing.assert_allclose(first, [once.turned] * turns, atol=1e-14)
+    assert cycle.start == once.start
+    assert [label for _, label in cycle.drawn] == [", ".join(str(n + 10 * t) for t in range(turns)) for n in range(10)]
+
+
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("working", ["+x", "-x"])
 def test_working_stroke_is_the_slow_one_only_when_the_crank_turns_that_way(shaper, sense, working):

@@ -407,6 +407,14 @@ def test_diagrams_of_two_turns_of_the_crank():
     assert m.jumps == pytest.approx((0, 2 * pi), abs=1e-12)
 
 
+def test_a_diagram_for_a_stroke_that_never_comes():
+    """One turn of a link that turns all the way round is one stroke: the second diagram would wait for a second turn."""
+    tables = [[[0, "10 N m"]], [[0, "70 N m"]], [[0, "5 N m"]]]
+    with pytest.raises(CannotBuild, match="3 tables for 2 strokes of a cycle") as e:
+        moment("1", TWO_TURNS, sense="counter-clockwise", tables=tables, direction="clockwise")
+    assert "turns = 2" in str(e.value) + e.value.hint
+
+
 def test_moment_over_the_angle():
     m = moment("1", over="angle", direction="clockwise",
                table=[["0 deg", "10 N m"], ["180 deg", "30 N m"], ["180 deg", "0 N m"], ["360 deg", "0 N m"]])

@@ -7,6 +7,7 @@ is the method's own: :mod:`~tmm_sheets.methods.flywheel.wittenbauer`, :mod:`~tmm
 
 from __future__ import annotations
 
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -154,18 +155,19 @@ class DiagramSpace:
     """Room for the diagrams on paper, mm: length of the angle axis and extents of the ordinates.
 
     ``stack`` is the room together of the first ``stacked`` of moment, work, energy and inertia, which stand one under another:
-    the extents of each are the most it may have.
+    the extents of each are the most it may have. Of the heights multiplied that of the energy counts ``reading`` times.
     """
 
     angle: float = 256.0
     force: float = 17.0
     moment: float = 130.0
-    work: float = 200.0
+    work: float = 240.0
     energy: float = 186.0
-    inertia: float = 225.0
-    pole: tuple[float, float] = (25.0, 67.0)
-    stack: float = 261.5
-    stacked: int = 2
+    inertia: float = 218.0
+    pole: tuple[float, float] = (25.0, 80.0)
+    stack: float = 456.0
+    stacked: int = 3
+    reading: int = 1
 
 
 @dataclass(frozen=True)
@@ -1159,8 +1161,8 @@ ACCELERATION = Rule("acceleration of the crank", lambda m, slope, j, omega: (m -
 def _largest(forces: Mapping[str, Floats]) -> float:
     largest = max((float(np.max(values) - min(np.min(values), 0.0)) for values in forces.values()), default=0.0)
     if not largest > 0:
-        raise CannotBuild(tell("a flywheel needs a technological force or moment"),
-                          tell("add [[force]] or [[moment]] to the project file"))
+        raise CannotBuild(tell("a flywheel needs a technological force or moment, and {names} is 0 at every position").format(
+            names=re.sub("[_{}]", "", ", ".join(forces))), tell("give it a value, or leave the flywheel and its sheets out"))
     return largest
 
 
@@ -1193,7 +1195,8 @@ def _scaled(spans: Four, drawn: Four, mu_phi: float, space: DiagramSpace) -> Fou
     # Then a pole distance that a ruler lays off, in half millimetres, where there is one.
     for wanted in (*(heights[0] >= share * READABLE for share in SHARES), np.abs(2 * pole - np.round(2 * pole)) < 1e-6):
         fitting = fitting & wanted if (fitting & wanted).any() else fitting
-    products = np.where(fitting, np.prod(np.broadcast_arrays(*heights), axis=0), 0.0)
+    product = heights[0] * heights[1] * heights[2]**space.reading * heights[3]
+    products = np.where(fitting, product, 0.0)
     best = np.unravel_index(int(np.argmax(products)), products.shape)
     mu_m, mu_a, mu_e, mu_j = (of[int(i)] for of, i in zip(series, best, strict=True))
     return mu_m, mu_a, mu_e, mu_j

@@ -47,6 +47,10 @@ SPEED = Rule(
            "rad/s."), unit="rad/s")
 
 
+SPACE = DiagramSpace(reading=2)
+"""Room of the sheet: the segment ab is read off the energies."""
+
+
 class Wittenbauer(Flywheel):
     """Flywheel by the energy-mass curve: the smooth work curve over J(phi).
 
@@ -60,8 +64,7 @@ class Wittenbauer(Flywheel):
         return "wittenbauer"
 
     def _space(self) -> DiagramSpace:
-        # The peaks of a four-stroke engine need height in the graph of moments, its works little.
-        return DiagramSpace() if self.reduced.period <= TURN else DiagramSpace(moment=105.0, work=145.0, energy=168.0)
+        return SPACE
 
     @cached_property
     def inertia_angle(self) -> Scale:

@@ -106,8 +106,8 @@ class Cycle:
         """World angles of the crank for angles turned from position 0, rad, of any shape."""
         return self.start + self.sense * np.asarray(turned)
 
-    def index(self, label: str) -> int:
-        """Number of the position with this label.
+    def index(self, label: str, asked: str = "") -> int:
+        """Number of the position with this label; ``asked`` says where it was asked for.
 
         Raises
         ------
@@ -117,5 +117,5 @@ class Cycle:
         try:
             return self.labels.index(label)
         except ValueError:
-            raise CannotBuild(tell("there is no position {label}").format(label=label),
+            raise CannotBuild(asked + tell("there is no position {label}").format(label=label),
                               tell("the positions are {labels}").format(labels=", ".join(self.labels))) from None

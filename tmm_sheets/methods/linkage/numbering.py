@@ -62,15 +62,27 @@ def _parts(stroke: float, working: float, idle: float) -> Floats:
     return np.concatenate((stroke / working * into[0], stroke + rest / idle * into[1]), dtype=np.float64)
 
 
+@primitive("parts of two strokes of several turns")
+def _parts_of_turns(stroke: float, working: float, idle: float, turns: float) -> Floats:
+    """Angles turned where both strokes are divided into equal parts, on through several turns."""
+    once = _parts(stroke, working, idle)
+    return np.concatenate([once + 2 * np.pi * n for n in range(int(turns))])
+
+
 TURNED = Rule("angle between dead positions", _turned, ("angle", "angle", "number"), "angle",
               marked("Angle of the working stroke between the dead positions {name} = {value}."), unit="rad", exact=True)
 PARTS = Rule("equal parts of both strokes", _parts, ("angle", "number", "number"), "angle",
              marked("Divide the working stroke into {1} equal parts, the idle stroke into {2}; angle turned {name} = {value}."),
              unit="rad", exact=True)
+PARTS_OF_TURNS = Rule(
+    "equal parts of both strokes of several turns", _parts_of_turns, ("angle", "number", "number", "number"), "angle",
+    marked("In each of {3} turns divide the working stroke into {1} equal parts, the idle stroke into {2}; "
+           "angle turned {name} = {value}."), unit="rad", exact=True)
 
 
-def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle: int, coefficient: float | None) -> Cycle:
-    """Cycle that begins at the dead position of the output before its working stroke.
+def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle: int, coefficient: float | None,
+               turns: int = 1) -> Cycle:
+    """Cycle that begins at the dead position of the output before its working stroke, numbered on through all ``turns``.
 
     With ``coefficient`` K the working stroke is laid off as 180 (1 + (K-1)/(K+1)) degrees, symmetric between the dead
     positions, as the manual does with rounded lengths; without it the exact dead positions are divided.
@@ -82,17 +94,19 @@ def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle
     """
     check_dead_positions(m)
     sense, dead = m.crank.sense, _dead_of(m, output, SENSES[working_sense])
-    labels = tuple(str(i) for i in range(working + idle))
+    labels = tuple(str(i) for i in range((working + idle) * turns))
     plan = Plan("cycle", tr("Numbering of the positions"), "rad", labels)
     start, stroke, begin = dead.start, dead.width, 0.0
     if coefficient is not None:
         stroke = plan.add("φ_рх", STROKE_OF_K, GivenNumber(coefficient, "cycle.coefficient", "K"), symbol=tr("φ_w"))
         start = plan.add("φ_0", BETWEEN, dead.start, sense, dead.width, stroke)
         begin = (stroke.value - working_stroke(dead.runs)[1]) / 2
-    turned = plan.add("φ_п", PARTS, stroke, GivenNumber(working, "cycle.working"), GivenNumber(idle, "cycle.idle"),
-                      symbol=tr("φ_t"))
+    parts = GivenNumber(working, "cycle.working"), GivenNumber(idle, "cycle.idle")
+    turned = (plan.add("φ_п", PARTS, stroke, *parts, symbol=tr("φ_t")) if turns == 1 else
+              plan.add("φ_п", PARTS_OF_TURNS, stroke, *parts, GivenNumber(turns, "cycle.turns"), symbol=tr("φ_t")))
     plan.add("φ", WORLD, start, sense, turned)
-    return Cycle(labels, turned.value, float(start.value), sense, 2 * np.pi, _strokes(m, output, dead, begin), dead.plan, plan)
+    strokes = _strokes(m, output, dead, begin)
+    return Cycle(labels, turned.value, float(start.value), sense, 2 * np.pi * turns, strokes, dead.plan, plan)
 
 
 def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", turns: int = 1,

@@ -1,0 +1,72 @@
+"""View of what a gear pair is counted by, in letters and in numbers: what its steps say of themselves, without the words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from tmm_sheets.construction.protocol import letter_of, sentence, sizes_of
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.sheets.moments import broken
+from tmm_sheets.words import tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Plan
+
+OF_PAIR = ("inv_alpha", "inv_alpha_w", "alpha_w", "x_sum", "y", "dy", "a", "a_w", "p", "pb", "N1N2", "g_alpha", "eps_alpha")
+OF_WHEEL = ("r", "rb", "rw", "ra", "rf", "s")
+WAYS = ((8.0, 200.0), (7.0, 170.0), (6.0, 150.0), (6.0, 120.0), (6.0, 100.0))
+"""Distances of the lines and widths at which equations are broken that are tried, mm."""
+HEIGHT = 3.5
+
+
+def of_pair_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the equations can do with, mm: those of the wheels as well, then those of the pair alone."""
+    return [_size(lines, step, width) for lines in _both(project.gear.geometry) for step, width in WAYS]
+
+
+def of_pair(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Angle of engagement, distances, pitches and contact ratio; radii and thicknesses of the wheels in numbers."""
+    canvas.of = project.gear.geometry.name
+    left = canvas.title(box, tr("The gear pair in numbers"))
+    size, chosen = (box.width, box.height), ((lines, *way) for lines in _both(project.gear.geometry) for way in WAYS)
+    lines, step, width = next(way for way in chosen if max(abs(a - b) for a, b in zip(_size(*way), size, strict=True)) < 1e-6)
+    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), _broken(lines, width), step, HEIGHT)
+
+
+def _both(plan: Plan) -> tuple[list[str], list[str]]:
+    lines = list(equations(plan, OF_PAIR, True))
+    return [*lines, *equations(plan, [f"{name}{i}" for i in (1, 2) for name in OF_WHEEL], False)], lines
+
+
+def _broken(lines: list[str], width: float) -> list[str]:
+    return [part for line in lines for part in broken(line, width, HEIGHT, "(?= = )")]
+
+
+def _size(lines: list[str], step: float, width: float) -> tuple[float, float]:
+    parts = _broken(lines, width)
+    return max(letter(part, HEIGHT).width for part in parts) + 6.0, 12.0 + step * len(parts)
+
+
+def equations(plan: Plan, names: Any, letters: bool) -> Iterator[str]:
+    """Those steps of a plan that a formula gives: sign, formula in ``letters``, in numbers, value."""
+    sizes = sizes_of(plan)
+    for step in (plan[name] for name in names if name in plan):
+        said, _, counted = sentence(step, 0, float, sizes=sizes).removesuffix(".").rpartition(": ")
+        sign, (_, *numbers) = letter_of(step), (counted or said).split(" = ")
+        of, _, formula = said.partition(" = ")
+        if len(numbers) < 2:
+            continue
+        formula = re.sub(r" \([^()]*\)$", "", formula) if letters else ""
+        before = f"cos {sign} = {formula}; {sign}" if formula and of.endswith(f"cos {sign}") else \
+            f"{sign} = {formula}" if formula else sign
+        yield _written(" = ".join((before, *numbers)))
+
+
+def _written(text: str) -> str:
+    """An equation of a sentence with the marks of lettering: indices, stars and signs of multiplication."""
+    text = text.replace("N_1N_2", "N_{1}N_{2}").replace(" × ", "·")
+    return re.sub(r"(?<=[}c])\*", "^{*}", re.sub(r"_([^\W_]+)", r"_{\1}", text))
