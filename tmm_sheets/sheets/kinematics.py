@@ -130,7 +130,7 @@ def _guide_line(pos: Positions, s: Stage, name: str, room: Box) -> None:
 def _position_numbers(project: Project, s: Stage) -> None:
     """Position numbers at the crank pin and the hinges, and as marks on the paths of the sliders."""
     pos, m = project.study.positions, project.mechanism
-    # A point on a fixed guide has its marks there; one that slides on a moving link is told by the marks of others.
+    # A point on a fixed guide has its marks there; one that slides on a moving link has a path like any hinge.
     sliding = {point: guide for g in m.groups for point, guide in g.kind.guided(g) if m.guides[guide].link == m.frame}
     for name in dict.fromkeys(_hinges(m, sliding)):
         z = np.asarray(s.frame(pos.points[name].value))
@@ -150,9 +150,7 @@ def _hinges(m: Mechanism, sliding: Container[str]) -> Iterator[str]:
     yield m.crank.pin
     yield from (p.name for p in m.points if p.link != m.crank.link and any(p.name in g.outer for g in m.groups))
     for g in m.groups:
-        carried = len(g.kind.sliders(g)) == 1 and m.guides[g.guides[0]].link != m.frame
-        if not carried and not g.kind.ram(g):
-            yield from (name for name in g.kind.carried(g) if name not in sliding)
+        yield from (name for name in g.kind.carried(g) if name not in sliding)
 
 
 def _hinge_numbers(project: Project, s: Stage, name: str, middle: complex) -> None:

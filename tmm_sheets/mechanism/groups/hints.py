@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tmm_sheets.construction.indices import against, on_link
 from tmm_sheets.construction.step import Step
 
 
@@ -75,6 +76,12 @@ class Leg:
     def at(self) -> str:
         """Point of the triangle where it is held: its normal passes there."""
         return self.corner if self.slot is None else self.outer
+
+    def index(self, triangle: str, carrier: str) -> str:
+        """Index of the motion that it leaves the triangle: against its outer hinge, its stone, or the ``carrier`` of its guide."""
+        if self.guide:
+            return against(self.corner, carrier)
+        return f"{self.corner if self.slot is None else on_link(self.outer, triangle)}{self.outer}"
 
 
 @dataclass(frozen=True)

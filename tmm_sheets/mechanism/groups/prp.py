@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.indices import on_link
+from tmm_sheets.construction.indices import against, on_link
 from tmm_sheets.mechanism.groups.hints import OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, sine
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
@@ -41,9 +41,9 @@ class PRPKind(GroupKind):
         step = plan.add(vel.name(c), rules.LINE_LINE, v1, u1, v2, u2)
         vel.points[c] = step
         plan.vector(f"V̅_{c}", vel.pole, step)
-        for v in (v1, v2):
+        for v, k in ((v1, k1), (v2, k2)):
             if v is not vel.pole:
-                plan.vector(f"V̅_{{{c}{v.name.upper()}}}", v, step)
+                plan.vector(f"V̅_{{{against(c, k)}}}", v, step)
         for link, k in zip(g.links, (k1, k2), strict=True):
             vel.turns_with(link, k)
             vel.coincident[on_link(c, link)] = step
@@ -53,11 +53,14 @@ class PRPKind(GroupKind):
         c = str(g.inner)
         (a1, v1, k1), (a2, v2, k2) = (acc.guide(name, c) for name in g.guides)
         u1, u2 = (pos.guide_directions[name] for name in g.guides)
-        e1 = acc.coriolis(a1, k1, v1, vel.points[c], on_link(c, k1))
-        e2 = acc.coriolis(a2, k2, v2, vel.points[c], on_link(c, k2))
+        e1 = acc.coriolis(a1, k1, v1, vel.points[c], against(c, k1))
+        e2 = acc.coriolis(a2, k2, v2, vel.points[c], against(c, k2))
         step = plan.add(acc.name(c), rules.LINE_LINE, e1, u1, e2, u2)
         acc.points[c] = step
         plan.vector(f"a̅_{c}", acc.pole, step)
+        for a, e, k in ((a1, e1, k1), (a2, e2, k2)):
+            if a is not acc.pole:
+                plan.vector(f"a̅_{{{against(c, k)}}}^r", e, step)
         for link, k in zip(g.links, (k1, k2), strict=True):
             acc.turns_with(link, k)
             acc.coincident[on_link(c, link)] = step

@@ -43,12 +43,12 @@ class RPPKind(GroupKind):
         pos, plan = vel.positions, vel.plan
         p, s, guide, (i, j) = g.outer[0], str(g.inner), g.guides[0], g.links
         pj = on_link(p, j)
-        carrier, link = vel.guide(guide, s)
+        link = pos.mechanism.guides[guide].link
         along, slot = pos.guide_directions[guide], pos.directions[i]
         # Link j does not turn against the guide: its point at the pin and its point on the guide move alike on a fixed
         # guide; on a turning one the point at the pin is taken first.
-        if carrier is vel.pole:
-            step = plan.add(vel.name(pj), rules.LINE_LINE, vel.points[p], slot, carrier, along)
+        if link == pos.mechanism.frame:
+            step = plan.add(vel.name(pj), rules.LINE_LINE, vel.points[p], slot, vel.pole, along)
             plan.vector(f"V̅_{{{pj}}}", vel.pole, step)
             plan.vector(f"V̅_{{{pj}{p}}}", vel.points[p], step)
             vel.points[s] = step
@@ -56,7 +56,11 @@ class RPPKind(GroupKind):
             at_pin = vel.on(link, str(pos.mechanism.guides[guide].through), p)
             step = plan.add(vel.name(pj), rules.LINE_LINE, vel.points[p], slot, at_pin, along)
             plan.vector(f"V̅_{{{pj}}}", vel.pole, step)
+            plan.vector(f"V̅_{{{pj}{p}}}", vel.points[p], step)
+            plan.vector(f"V̅_{{{pj}{on_link(p, link)}}}", at_pin, step)
             vel.points[s] = vel.rotated(s, step, link, p, s)
+            plan.vector(f"V̅_{s}", vel.pole, vel.points[s])
+            plan.vector(f"V̅_{{{s}{pj}}}", step, vel.points[s])
         vel.coincident[pj] = step
         vel.coincident[on_link(s, j)] = vel.points[s]
         for k in g.links:
@@ -66,16 +70,18 @@ class RPPKind(GroupKind):
         plan, pos, vel = acc.plan, acc.positions, acc.velocities
         p, s, guide, (i, j) = g.outer[0], str(g.inner), g.guides[0], g.links
         pj = on_link(p, j)
-        carrier, _, link = acc.guide(guide, s)
+        link = pos.mechanism.guides[guide].link
         v_pin = vel.coincident[pj]
         k1 = acc.coriolis(acc.points[p], link, vel.points[p], v_pin, f"{pj}{p}")
         if link == pos.mechanism.frame:
-            k2 = carrier
+            k2 = acc.pole
         else:
             through = str(pos.mechanism.guides[guide].through)
-            k2 = acc.coriolis(acc.on(link, through, p), link, vel.on(link, through, p), v_pin, on_link(pj, link))
+            k2 = acc.coriolis(acc.on(link, through, p), link, vel.on(link, through, p), v_pin, f"{pj}{on_link(p, link)}")
         step = plan.add(acc.name(pj), rules.LINE_LINE, k1, pos.directions[i], k2, pos.guide_directions[guide])
         plan.vector(f"a̅_{{{pj}{p}}}^r", k1, step)
+        if link != pos.mechanism.frame:
+            plan.vector(f"a̅_{{{pj}{on_link(p, link)}}}^r", k2, step)
         plan.vector(f"a̅_{{{pj}}}", acc.pole, step)
         acc.coincident[pj] = step
         for k in g.links:
@@ -84,6 +90,8 @@ class RPPKind(GroupKind):
             acc.points[s] = step
         else:
             acc.points[s] = acc.rotated(s, step, link, p, s)
+            plan.vector(f"a̅_{s}", acc.pole, acc.points[s])
+            plan.vector(f"a̅_{{{s}{pj}}}", step, acc.points[s])
         acc.coincident[on_link(s, j)] = acc.points[s]
 
     def force(self, forces: Kinetostatics, g: StructuralGroup) -> None:

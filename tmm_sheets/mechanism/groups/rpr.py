@@ -60,7 +60,9 @@ class RPRKind(GroupKind):
         n = vel.perpendicular(q, p)
         name = vel.name(pj)
         step = plan.add(name, rules.LINE_LINE, vel.points[p], pos.directions[j], vel.points[q], n, *pos.known_sine(g))
-        plan.vector(f"V̅_{{{pj}}}", vel.points[q], step)
+        plan.vector(f"V̅_{{{pj}}}", vel.pole, step)
+        if vel.points[q] is not vel.pole:
+            plan.vector(f"V̅_{{{pj}{q}}}", vel.points[q], step)
         plan.vector(f"V̅_{{{pj}{p}}}", vel.points[p], step)
         vel.coincident[pj] = step
         vel.turning(j, q, p, vel.points[q], step)
@@ -79,7 +81,7 @@ class RPRKind(GroupKind):
                         *pos.known_sine(g))
         plan.vector(f"a̅_{{{pj}{p}}}^r", k, step)
         plan.vector(f"a̅_{{{pj}{q}}}^τ", n, step)
-        plan.vector(f"a̅_{{{pj}}}", acc.points[q], step)
+        plan.vector(f"a̅_{{{pj}}}", acc.pole, step)
         acc.coincident[pj] = step
         acc.turning(j, q, p, acc.points[q], step)
         acc.turns_with(i, j)

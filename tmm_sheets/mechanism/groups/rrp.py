@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.indices import on_link
+from tmm_sheets.construction.indices import against, on_link
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.groups.dead_centres import HALF_OF_LINE, fold_and_stretch, measured, near_point, on_crank, reaches
@@ -54,7 +54,7 @@ class RRPKind(GroupKind):
         plan.vector(f"V̅_{c}", vel.pole, step)
         plan.vector(f"V̅_{c}{p}", vel.points[p], step)
         if carrier is not vel.pole:
-            plan.vector(f"V̅_{{{c}{carrier.name.upper()}}}", carrier, step)
+            plan.vector(f"V̅_{{{against(c, link)}}}", carrier, step)
         vel.turning(g.links[0], p, c, vel.points[p], step)
         vel.turns_with(g.links[1], link)
         vel.coincident[on_link(c, g.links[1])] = step
@@ -64,11 +64,13 @@ class RRPKind(GroupKind):
         p, c, guide = g.outer[0], str(g.inner), g.guides[0]
         carrier, v_carrier, link = acc.guide(guide, c)
         n = acc.normal(acc.points[p], g.links[0], p, c)
-        k = acc.coriolis(carrier, link, v_carrier, vel.points[c], on_link(c, link))
+        k = acc.coriolis(carrier, link, v_carrier, vel.points[c], against(c, link))
         step = plan.add(acc.name(c), rules.LINE_LINE, n, acc.perpendicular(p, c), k, pos.guide_directions[guide],
                         *pos.known_sine(g))
         acc.points[c] = acc.coincident[on_link(c, g.links[1])] = step
         plan.vector(f"a̅_{{{c}{p}}}^τ", n, step)
+        if carrier is not acc.pole:
+            plan.vector(f"a̅_{{{against(c, link)}}}^r", k, step)
         plan.vector(f"a̅_{c}", acc.pole, step)
         acc.turning(g.links[0], p, c, acc.points[p], step)
         acc.turns_with(g.links[1], link)

@@ -20,7 +20,7 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.indices import on_link, pair_index
+from tmm_sheets.construction.indices import against, on_link, pair_index
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Helper, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
@@ -299,6 +299,8 @@ class TriadKind(GroupKind):
         step = plan.add(self._name(vel, c, tri), rules.LINE_LINE, w, n, base_c, t_c)
         plan.vector(f"V̅_{self._letters(c, tri)}", vel.pole, step)
         plan.vector(f"V̅_{{{self._letters(c, tri)}{s.name}}}", w, step)
+        if base_c is not vel.pole:
+            plan.vector(f"V̅_{{{c.index(tri, self._carrier(pos, c))}}}", base_c, step)
         self._others(vel, _of(g), c, step, w, "V̅")
         self._turnings(vel, _of(g))
 
@@ -329,6 +331,11 @@ class TriadKind(GroupKind):
     @staticmethod
     def _name(plan: Velocities | Accelerations, leg: Leg, tri: str) -> str:
         return plan.name(leg.corner if leg.slot is None else on_link(leg.outer, tri))
+
+    @staticmethod
+    def _carrier(pos: Positions, leg: Leg) -> str:
+        """Link of a leg's guide."""
+        return pos.mechanism.guides[leg.guide].link if leg.guide else ""
 
     @staticmethod
     def _letters(leg: Leg, tri: str) -> str:
@@ -364,6 +371,8 @@ class TriadKind(GroupKind):
         step = plan.add(self._name(acc, c, tri), rules.LINE_LINE, n, acc.perpendicular(s.name, c.at), base, t)
         plan.vector(f"a̅_{self._letters(c, tri)}", acc.pole, step)
         plan.vector(f"a̅_{{{self._letters(c, tri)}{s.name}}}^τ", n, step)
+        if base is not acc.pole:
+            plan.vector(f"a̅_{{{c.index(tri, self._carrier(pos, c))}}}^{'τ' if c.form == 'RR' else 'r'}", base, step)
         self._others(acc, _of(g), c, step, w, "a̅")
         self._turnings(acc, _of(g))
 
@@ -373,7 +382,7 @@ class TriadKind(GroupKind):
         pos, vel = acc.positions, acc.velocities
         if leg.guide:
             base, v_base, link = acc.guide(leg.guide, leg.corner)
-            return (acc.coriolis(base, link, v_base, vel.points[leg.corner], on_link(leg.corner, link)),
+            return (acc.coriolis(base, link, v_base, vel.points[leg.corner], against(leg.corner, link)),
                     pos.guide_directions[leg.guide])
         if leg.slot is not None:
             here = on_link(leg.outer, tri)

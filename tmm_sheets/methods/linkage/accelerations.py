@@ -6,6 +6,7 @@ Every value is a vector from the pole, complex, m/s2. Source: manual 000, sectio
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -131,17 +132,20 @@ def acceleration_plan(vel: Velocities, epsilon1: Any = None, where: str = "") ->
         g.kind.acceleration(acc, g)
         for link in g.links:
             acc.further_points(link)
-    _number_alike(plan)
+    _number_alike(acc)
     return acc
 
 
-def _number_alike(plan: Plan) -> None:
-    """Ends of the normal and of the Coriolis segments are numbered in their order where there are several."""
+def _number_alike(acc: Accelerations) -> None:
+    """Ends of the normal and of the Coriolis segments are numbered in their order where there are several, around other names."""
+    plan, points = acc.plan, tuple(acc.points.values())
     for letter, rule in (("n", NORMAL), ("k", CORIOLIS)):
-        alike = [step for step in plan if step.rule is rule and step.name.startswith(letter)]
-        for i, step in enumerate(alike, 1):
-            if len(alike) > 1:
-                plan.lettered(step, f"{letter}{i}")
+        alike = [step for step in plan if step.rule is rule and step.name.startswith(letter) and step not in points]
+        others = {step.symbol or step.name for step in plan if step not in alike}
+        free = (name for i in count(1) if (name := f"{letter}{i}") not in others)
+        if len(alike) > 1:
+            for step, name in zip(alike, free, strict=False):
+                plan.lettered(step, name)
 
 
 def _free(plan: Plan, letter: str) -> str:

@@ -92,6 +92,7 @@ class MotionPolygon:
             if through == at:
                 return start
             self.coincident[here] = self.rotated(here, start, link, through, at)
+            self.plan.vector(f"{self.VECTOR}_{{{here}}}", self.pole, self.coincident[here])
         return self.coincident[here]
 
     def rotated(self, point: str, start: Step, link: str, q: str, b: str) -> Step:

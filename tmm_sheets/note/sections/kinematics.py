@@ -9,9 +9,12 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction import expression
+from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.plan import Plan, Segment
 from tmm_sheets.construction.rules import GIVEN, LINE_LINE, TURN
 from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.methods.linkage.accelerations import CORIOLIS
+from tmm_sheets.methods.linkage.velocities import MotionPolygon
 from tmm_sheets.note.document import Figure, Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Said, Scope, listed, words
@@ -60,8 +63,8 @@ def scope(r: Reader) -> Scope:
     found.fields["triads"] = list(_triads(r))
     found.tables["velocity_vectors"] = _vectors(r, v.plan)
     found.tables["lengths"] = _drawn_lengths(r)
-    found.tables["velocities"] = _over_positions(r, v.plan, v.omega, "velocity")
-    found.tables["accelerations"] = _over_positions(r, a.plan, a.epsilon, "acceleration")
+    found.tables["velocities"] = _over_positions(r, v, "velocity")
+    found.tables["accelerations"] = _over_positions(r, a, "acceleration")
     for name, picture in (
         ("positions", "kinematics.position_plans"),
         ("velocity", "velocity plan"),
@@ -203,15 +206,23 @@ def _of_special(r: Reader, plan: Plan, step: Step, start: Step, path: Sequence[s
     """Vectors of one direction that lead to a point of a group of class III and are drawn as one.
 
     Of a velocity those of a leg and of the triangle towards its special point, of an acceleration the tangential ones beside the
-    normal ones of the ``path``.
+    normal ones of the ``path`` and the relative ones beside Coriolis'.
     """
     study = r.project.study
     if plan is study.accelerations.plan:
-        return [symbol.replace("^n", "^τ") for symbol in path if symbol.endswith("^n")]
-    special = next((s for s in study.positions.special.values() if study.velocities.special.get(s.name) is step), None)
-    for leg in special.pair if special is not None else ():
-        if special is not None and leg.form == "RR" and study.velocities.points[leg.outer] is start:
-            return [f"V{BAR}_{{{leg.corner}{leg.outer}}}", f"V{BAR}_{{{special.name}{leg.corner}}}"]
+        turned = {s.symbol for s in plan.segments if s.head.rule is CORIOLIS}
+        rest = {symbol: "r" if symbol in turned else "τ" for symbol in path if symbol in turned or symbol.endswith("^n")}
+        return [f"{symbol.partition('^')[0]}^{kind}" for symbol, kind in rest.items()]
+    m, v = study.mechanism, study.velocities
+    for s in study.positions.special.values():
+        if v.special.get(s.name) is not step:
+            continue
+        tri = next(g.links[0] for g in triads(r.project) if g.kind.about(g) == s.name)
+        for leg in s.pair:
+            carrier = m.guides[leg.guide].link if leg.guide else ""
+            if (v.coincident.get(on_link(leg.corner, carrier)) if leg.guide else v.points[leg.outer]) is start:
+                held = leg.corner if leg.slot is None else on_link(leg.outer, tri)
+                return [f"V{BAR}_{{{leg.index(tri, carrier)}}}", f"V{BAR}_{{{s.name}{held}}}"]
     return []
 
 
@@ -385,21 +396,26 @@ def _angular(r: Reader, plan: Plan, steps: dict[str, Step]) -> Iterator[dict[str
         yield {"angular": said, "link": link, "positive": float(value) >= 0, "zero": is_zero(float(value), 1.0)}
 
 
-def _over_positions(r: Reader, plan: Plan, turning: dict[str, Step], key: str) -> tuple[tuple[Text, ...], ...]:
-    """Sizes of the vectors from the pole and angular quantities at all drawn positions."""
-    study = r.project.study
-    m = study.mechanism
+def _over_positions(r: Reader, of: MotionPolygon, key: str) -> tuple[tuple[Text, ...], ...]:
+    """Sizes of the vectors from the pole and angular quantities at all drawn positions.
+
+    Points of moving guides come last: they are the first to be left out where there is no room.
+    """
+    m, plan = r.project.study.mechanism, of.plan
     columns: list[tuple[str, Any, Step, str]] = []
+    under: list[tuple[str, Any, Step, str]] = []
     for s in plan.segments:
         if s.tail.name == plan.pole and "^" not in s.symbol:
-            columns.append((s.symbol.replace(BAR, ""), np.abs(s.head.value - s.tail.value), s.head, plan.unit))
+            on_guide = s.head in of.coincident.values() and s.head.rule is not LINE_LINE
+            size = np.abs(s.head.value - s.tail.value)
+            (under if on_guide else columns).append((s.symbol.replace(BAR, ""), size, s.head, plan.unit))
     letter, unit = ("ω", "rad/s") if key == "velocity" else ("ε", "rad/s2")
     seen: list[Step] = []
-    for link, step in turning.items():
+    for link, step in of.rates.items():
         if link != m.frame and np.ndim(step.value) and len(step.args) == 4 and step not in seen:
             seen.append(step)
             columns.append((f"{letter}_{{{link}}}", np.real(step.value), step, unit))
-    columns = [c for c in columns if np.ndim(c[1]) and np.nanmax(np.abs(c[1])) > 0][:MOST_COLUMNS]
+    columns = [c for c in (*columns, *under) if np.ndim(c[1]) and np.nanmax(np.abs(c[1])) > 0][:MOST_COLUMNS]
     if not columns:
         return ()
     head: list[Text] = [(words(r.language)["position"],)]
