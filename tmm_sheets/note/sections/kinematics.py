@@ -13,8 +13,6 @@ from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.plan import Plan, Segment
 from tmm_sheets.construction.rules import GIVEN, LINE_LINE, TURN
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.methods.linkage.accelerations import CORIOLIS
-from tmm_sheets.methods.linkage.velocities import MotionPolygon
 from tmm_sheets.note.document import Figure, Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Said, Scope, listed, words
@@ -23,6 +21,8 @@ from tmm_sheets.numbers import is_zero
 from tmm_sheets.sheets.false_positions import triads
 
 BAR = "\u0305"
+CORIOLIS = "Coriolis acceleration"
+"""Name of the rule that lays it off."""
 MOST_COLUMNS = 9
 """Columns of a table over the positions beside the number of the position."""
 
@@ -210,7 +210,7 @@ def _of_special(r: Reader, plan: Plan, step: Step, start: Step, path: Sequence[s
     """
     study = r.project.study
     if plan is study.accelerations.plan:
-        turned = {s.symbol for s in plan.segments if s.head.rule is CORIOLIS}
+        turned = {s.symbol for s in plan.segments if s.head.rule.name == CORIOLIS}
         rest = {symbol: "r" if symbol in turned else "τ" for symbol in path if symbol in turned or symbol.endswith("^n")}
         return [f"{symbol.partition('^')[0]}^{kind}" for symbol, kind in rest.items()]
     m, v = study.mechanism, study.velocities
@@ -396,7 +396,7 @@ def _angular(r: Reader, plan: Plan, steps: dict[str, Step]) -> Iterator[dict[str
         yield {"angular": said, "link": link, "positive": float(value) >= 0, "zero": is_zero(float(value), 1.0)}
 
 
-def _over_positions(r: Reader, of: MotionPolygon, key: str) -> tuple[tuple[Text, ...], ...]:
+def _over_positions(r: Reader, of: Any, key: str) -> tuple[tuple[Text, ...], ...]:
     """Sizes of the vectors from the pole and angular quantities at all drawn positions.
 
     Points of moving guides come last: they are the first to be left out where there is no room.
