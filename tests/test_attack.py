@@ -74,7 +74,7 @@ def test_a_mechanism_of_any_size(factor):
 def test_a_flywheel_too_large_for_any_scale():
     p = project(longer(from_file("lugansk/shaper"), 1e6))
     composed(p, 1)
-    with pytest.raises(CannotBuild, match=r"do not fit in 160 mm of the sheet at any scale of GOST 2\.302[^\n]*\n.*units you mean"):
+    with pytest.raises(CannotBuild, match=r"do not fit in 157 mm of the sheet at any scale of GOST 2\.302[^\n]*\n.*units you mean"):
         composed(p, 2)
 
 

@@ -11,6 +11,7 @@ next character literally. ``F̅_{21}^τ``, ``μ_l = 0,0025 м/мм``, ``z\_1``.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable
 from functools import cache, lru_cache
 from typing import Any, NamedTuple
@@ -274,3 +275,18 @@ def size_for(lines: Iterable[str], room: float, height: float, least: float = 2.
     texts = list(lines)
     sizes = [size for size in reversed(SIZES) if least <= size <= height]
     return next((size for size in sizes if all(letter(text, size).width <= room for text in texts)), least)
+
+
+SIGNS = r"(?= [+−] | = (?!0$))"
+"""Where a long formula may be broken: a last "= 0" stands alone nowhere."""
+
+
+def broken(text: str, width: float, height: float, signs: str = SIGNS) -> list[str]:
+    """A formula in lines no wider than ``width``, mm, where its ``signs`` let it be broken."""
+    lines = [""]
+    for piece in re.split(signs, text):
+        if lines[-1] and letter(lines[-1] + piece, height).width > width:
+            lines.append(piece.lstrip())
+        else:
+            lines[-1] += piece
+    return lines

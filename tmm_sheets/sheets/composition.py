@@ -18,7 +18,7 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.sheets import false_positions, flywheel, kinematic_frames, kinetic_frames
+from tmm_sheets.sheets import false_positions, kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.arrangement import Arrangement, View, arrangement
 from tmm_sheets.sheets.frame import needed, standard
 from tmm_sheets.sheets.solver import GAP, Need, Node, cut, joined, rounded_up, solve
@@ -47,6 +47,8 @@ def arranged(project: Project, n: int) -> Arrangement:
     """
     plan = _with_all_groups(project, arrangement(project.sheets[n - 1]).fitted(project.parts))
     if any("axis" in view.options for view in plan.views):
+        from tmm_sheets.sheets import flywheel
+
         return flywheel.apart(project, plan)
     # Whoever sets scale factors by hand has the boxes as they are written.
     if project.variant.scales:

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.construction.protocol import letter_of, sentence, sizes_of
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.lettering import broken, letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.sheets.moments import broken
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import symbol
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.lettering import broken, letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import is_zero, number
 from tmm_sheets.sheets.kinetic_frames import arm_sign, balancing_sign, flat, normal_sign, on_lever
@@ -171,21 +171,6 @@ def _lever_lines(project: Project, canvas: Canvas, width: float, height: float, 
             moment=balancing_sign(project), force=sign, crank=f"{m.pivot}{m.pin}",
             value=number(moment, 5, study.forces.moment_size(k))))
     return [line for text in said for line in broken(text, width, height)]
-
-
-SIGNS = r"(?= [+−] | = (?!0$))"
-"""Where a long formula may be broken: a last "= 0" stands alone nowhere."""
-
-
-def broken(text: str, width: float, height: float, signs: str = SIGNS) -> list[str]:
-    """A formula in lines no wider than ``width``, mm, where its ``signs`` let it be broken."""
-    lines = [""]
-    for piece in re.split(signs, text):
-        if lines[-1] and letter(lines[-1] + piece, height).width > width:
-            lines.append(piece.lstrip())
-        else:
-            lines[-1] += piece
-    return lines
 
 
 def _terms(project: Project, total: Step, about: str = "") -> Iterator[Term]:
