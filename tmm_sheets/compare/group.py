@@ -193,7 +193,7 @@ def _judged(path: Path, file: str, name: str, opened: Callable[[str], Project],
 def _faults(tree: Mapping[str, Any]) -> tuple[dict[str, int], tuple[str, ...]]:
     """Faults of each kind, and mistakes in words, from the tree of a report."""
     if "numbers" in tree:  # measured
-        starts = tree["starts"]
+        starts = [s for s in tree["starts"] if s.get("same_as") is None]
         left = [n for n in tree["numbers"] if n["follows"] is None and not n["starts"]]
         count = Counter(n["verdict"] for n in left)
         return {"mistake": len(starts), "red": count["red"], "amber": count["amber"]}, tuple(s["said"] for s in starts)
