@@ -50,8 +50,8 @@ def compare(project: Project, sheet: int | None, path: Path, views: Path | None,
     outcome, laid = found.outcome, found.laid
     gone = cad_report.gone(outcome)
     shown = [f for f in worst(outcome.findings) if f.element.view not in gone]
-    marked = [(f.at, f.reach, str(f.element.number)) for f in shown] + \
-        [(x.at, x.reach, f"+{k}") for k, x in enumerate(outcome.extras, 1)]
+    marked = [(f.at, f.reach, str(f.element.number), str(f.verdict)) for f in shown]
+    marked += [(x.at, x.reach, f"+{k}", str(x.verdict)) for k, x in enumerate(outcome.extras, 1)]
     looks = [(look.places, f"~{k}") for k, look in enumerate(outcome.looks, 1)]
     exact = [p for e in found.exact for p in drawn(e)]
     files = cad_overlay.files(laid.known.n, laid.known.sheet.drawing, exact, found.space, marked, looks)

@@ -18,10 +18,12 @@ from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
 from tmm_sheets.compare.elements import ElementView, dashed
 from tmm_sheets.compare.findings import called, origin, table
 from tmm_sheets.compare.photo import image_story, overlay
+from tmm_sheets.compare.photo.hidden import Mask
 from tmm_sheets.compare.photo.judging import SOFT_TOLERANCE, PhotoFinding
 from tmm_sheets.compare.photo.numbers_read import Readings
 from tmm_sheets.compare.photo.places import Place, places
 from tmm_sheets.compare.photo.rectification import Rectified
+from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.compare.report import Report, said_verdict
 from tmm_sheets.compare.story import Story, Table, listed
@@ -113,6 +115,7 @@ def image_report(
         "project": name, "sheet": n, "image": path.name, "pixels_per_mm": round(found.scale, 2), "matched": round(found.match, 3),
         "tolerance": round(pencil + found.uncertainty + soft, 3), **_tree(judged),
         "built": [{"view": v.name, "what": b.said(), "explained": b.explained()} for v, b in built.items()], "notes": list(notes),
+        "bulging": boxes(found.bulging),
         **({"numbers": readings.tree} if readings else {}),
     }  # fmt: skip
     title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=n, file=path.name)
@@ -122,6 +125,14 @@ def image_report(
     story = Story(title, (summary, *extra_places, tolerance, *notes), mistakes,
                   tables, (*hidden, *unread))
     return Report("\n".join(lines), tree, files, notes, story)
+
+
+def boxes(places: Mask) -> list[list[int]]:
+    """Left, lower, right and upper side of each place, mm."""
+    import cv2
+
+    _, _, sizes, _ = cv2.connectedComponentsWithStats(places.astype(np.uint8))
+    return [[int(x), int(PAPER.y1 - y - high), int(x + wide), int(PAPER.y1 - y)] for x, y, wide, high, _ in sizes[1:]]
 
 
 def _read_otherwise(f: PhotoFinding, readings: Readings) -> PhotoFinding:
