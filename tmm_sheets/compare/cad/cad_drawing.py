@@ -14,6 +14,7 @@ from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.laying import Laid, fitting, lay
 from tmm_sheets.compare.cad.lost_views import lost_views
 from tmm_sheets.compare.cad.matching import match
+from tmm_sheets.compare.cad.view_search import AS_DRAWN
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
 from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint, rebuilt, vanished
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
@@ -94,6 +95,7 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     say(tell("placing the views"))
     places = layout.find(laid.known.elements, space, [(p, laid.placing) for p in given], say, laid.views)
     made: list[Hypothesis] = []
+    shaped = places.share
     if laid.views:
         lost, made = lost_views(project, laid.known, space, places)
         places = places.with_more(lost)
@@ -101,11 +103,18 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     if not _of_this_sheet(outcome):
         _refuse(project, laid, outcome, ink, sheet, path)
     say(tell("looking for what was done wrong"))
-    built = cad_built.built_otherwise(project, laid.known, space, places.moves, outcome, made)
+    absent = _absent(outcome, shaped, places) if places.own else set()
+    built = cad_built.built_otherwise(project, laid.known, space, places.moves, outcome, made, absent)
     if built:
         outcome = _as_built(laid.known, space, places, built, pencil)
     notes = (*ink.notes, *_how(laid, ink.unit), *places.notes, *outcome.notes)
     return cad_report.Examined(laid, space, places, outcome, notes, {view: plan for view, (plan, _) in built.items()})
+
+
+def _absent(outcome: CadOutcome, shaped: Mapping[ElementView, float], places: layout.Layout) -> set[ElementView]:
+    """Views that a layout of its own lacks: not found, or taken for ink of their shape that has nothing else of them."""
+    lost = {f.element.view for f in outcome.findings} - places.moves.keys()
+    return lost | {v for v in cad_report.gone(outcome) if shaped.get(v, 0.0) >= AS_DRAWN}
 
 
 def _as_built(known: KnownSheet, space: DrawingSpace, places: layout.Layout,
