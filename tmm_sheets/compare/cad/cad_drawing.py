@@ -100,13 +100,13 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
         lost, made = lost_views(project, laid.known, space, places)
         places = places.with_more(lost)
     outcome = match(laid.known.elements, space, places.moves, pencil, say)
-    if not _of_this_sheet(outcome):
-        _refuse(project, laid, outcome, ink, sheet, path)
     say(tell("looking for what was done wrong"))
     absent = _absent(outcome, shaped, places) if places.own else set()
     built = cad_built.built_otherwise(project, laid.known, space, places.moves, outcome, made, absent)
     if built:
         outcome = _as_built(laid.known, space, places, built, pencil)
+    if not _of_this_sheet(outcome):  # one mistake may lead everything elsewhere
+        _refuse(project, laid, outcome, ink, sheet, path)
     notes = (*ink.notes, *_how(laid, ink.unit), *places.notes, *outcome.notes)
     return cad_report.Examined(laid, space, places, outcome, notes, {view: plan for view, (plan, _) in built.items()})
 
@@ -168,8 +168,8 @@ def _judged_lines(outcome: CadOutcome) -> list[CadFinding]:
 
 
 def _green(found: Sequence[CadFinding]) -> float:
-    """Share of the findings that are green."""
-    return sum(f.verdict == "green" for f in found) / max(len(found), 1)
+    """Share of the findings that are green, or off as follows from a mistake."""
+    return sum(f.verdict == "green" or f.follows for f in found) / max(len(found), 1)
 
 
 def _of_this_sheet(outcome: CadOutcome) -> bool:
