@@ -68,3 +68,11 @@ def test_places_where_the_paper_bulges_are_told_in_millimetres():
     assert image_report.boxes(mask) == []
     mask[94:104, 50:70] = mask[500:594, 800:841] = True
     assert image_report.boxes(mask) == [[50, 490, 70, 500], [800, 0, 841, 94]]
+
+
+def test_the_legend_of_an_attempt_says_nothing_of_the_drawing(monkeypatch):
+    said = []
+    monkeypatch.setattr(overlay, "legend", lambda entries: said.append([words for _, words in entries]) or [[] for _ in entries])
+    overlay._legend()
+    overlay._legend(fitted=False)
+    assert said == [["drawn", "exact", "wrong", "worth a look"], ["drawn", "exact", "does not fit"]]

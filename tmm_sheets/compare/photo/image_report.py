@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import degrees
@@ -220,7 +221,8 @@ def _overlays(found: Rectified, judged: _Judged, title: str) -> dict[str, bytes]
     flags = [overlay.Flag(p.number, str(p.verdict), p.at, image_story.shown(p)) for p in judged.places]
     exact = [p for f in judged.findings if f.element.kind != "text" for p in dashed(f.element)]
     with ThreadPoolExecutor(1) as aside:  # half of the time goes into packing, which runs beside Python
-        drawn = aside.submit(overlay.png, found.ink, found.level, exact, flags)
+        # In the reader's language: a thread begins with none.
+        drawn = aside.submit(copy_context().run, overlay.png, found.ink, found.level, exact, flags)
         page = overlay.pdf(found.ink, found.level, exact, flags, title)
         return {"png": drawn.result(), "pdf": page}
 

@@ -39,22 +39,23 @@ class Flag(NamedTuple):
     lines: tuple[Points, ...] = ()
 
 
-def _legend() -> list[tuple[tuple[int, int, int], list[Points]]]:
-    """What everything means: colour and strokes."""
-    entries = ((INK, "line", tell("drawn")), (EXACT, "line", tell("exact")), (BAD["red"], "red", tell("wrong")),
-               (BAD["amber"], "amber", tell("worth a look")))
+def _legend(fitted: bool = True) -> list[tuple[tuple[int, int, int], list[Points]]]:
+    """What everything means: colour and strokes; nothing is said of a drawing that was not ``fitted``."""
+    entries = [(INK, "line", tell("drawn")), (EXACT, "line", tell("exact"))]
+    entries += [(BAD["red"], "red", tell("wrong")), (BAD["amber"], "amber", tell("worth a look"))] if fitted else [
+        (BAD["red"], "red", tell("does not fit"))]
     said = legend([(form, words) for _, form, words in entries])
     return [(colour, strokes) for (colour, _, _), strokes in zip(entries, said, strict=True)]
 
 
-def png(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag]) -> bytes:
-    """The overlay as PNG, :data:`PNG_SCALE` pixels per mm."""
+def png(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag], fitted: bool = True) -> bytes:
+    """The overlay as PNG, :data:`PNG_SCALE` pixels per mm; where it was not ``fitted``, of the parts that do not fit."""
     import cv2
 
     size = (round(PAPER.width * PNG_SCALE), round(PAPER.height * PNG_SCALE))
     grey = cv2.resize(_clean(ink, level), size, interpolation=cv2.INTER_AREA)
     picture: Any = cv2.LUT(cv2.merge([grey, grey, grey]), _palette()[None, :, ::-1].copy())
-    for colour, strokes in _legend():
+    for colour, strokes in _legend(fitted):
         for points in strokes:
             cv2.polylines(picture, [fixed(points, PNG_SCALE)], False, colour[::-1], 2, cv2.LINE_AA, 4)
     for points in exact:
