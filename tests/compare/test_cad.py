@@ -14,6 +14,7 @@ from tmm_sheets.backends import dxf
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.cad import cad_drawing, cad_file, cad_report
 from tmm_sheets.compare.cad.line_fit import lines
+from tmm_sheets.compare.cad.view_search import SHAPES
 from tmm_sheets.compare.elements import elements
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.compare.report import Report
@@ -244,7 +245,9 @@ def test_a_single_view(tmp_path):
     assert {e["verdict"] for e in mine} == {"green"}
     others = {e.view.name for e in EXACT if e.view != view}
     assert set(report.tree["summary"]["missing_views"]) == others
-    assert f"{len(mine)} green (up to 0.00 mm), 0 amber, 0 red; 0 extra; {len(others)} of " in report.text
+    shaped = {e.view.name for e in EXACT if e.role in SHAPES}
+    assert set(report.tree["summary"]["missing_tables"]) == others - shaped
+    assert f"{len(mine)} green (up to 0.00 mm), 0 amber, 0 red; 0 extra; {len(others & shaped)} of {len(shaped)} " in report.text
 
 
 def test_views_given_by_a_file(tmp_path):

@@ -18,6 +18,7 @@ mistake = 10
 red = 2
 amber = 0.5
 missing_view = 8
+missing_table = 3
 [at_most]
 amber = 1
 [[grade]]
@@ -42,10 +43,11 @@ def drawing(project, sheet, path):
     """Two red elements of which one is explained, three amber ones; none in a drawing called sound."""
     if "sound" in path.name:
         return Report("", {"elements": [], "built": [], "summary": {"missing_views": []}})
-    verdicts = [("a", "red"), ("b", "red"), *[("b", "amber")] * 3, ("gone", "red")]
+    verdicts = [("a", "red"), ("b", "red"), *[("b", "amber")] * 3, ("gone", "red"), ("table", "red")]
     return Report("", {"elements": [{"view": v, "verdict": x} for v, x in verdicts],
                        "built": [{"view": "a", "what": "point b3 lies 12,5 mm off" if "two" in path.name else
-                                  "point b3 lies 3,1 mm off"}], "summary": {"missing_views": ["gone"]}})
+                                  "point b3 lies 3,1 mm off"}],
+                       "summary": {"missing_views": ["gone", "table"], "missing_tables": ["table"]}})
 
 
 @pytest.fixture
@@ -67,8 +69,12 @@ def test_table_and_marks(folder, tmp_path):
     found = {s["student"]: s for s in report.tree["students"]}
     assert list(found) == ["Five", "Four", "One", "Three", "Two"]
     assert [found[n]["project"] for n in ("One", "Two")] == ["own", "other"]
-    # 100 - 10 for the mistake, 2 for a red one besides, at most 1 for three amber ones, 8 for the view.
-    assert [(s["mark"], s["grade"]) for s in found.values()] == [(100, "5"), (None, None), (79, "3"), (79, "3"), (79, "3")]
+    # 100 - 10 for the mistake, 2 for a red one besides, at most 1 for three amber ones, 8 for the view, 3 for the table.
+    assert [(s["mark"], s["grade"]) for s in found.values()] == [(100, "5"), (None, None), (76, "3"), (76, "3"), (76, "3")]
+    assert found["One"]["costs"] == {"mistake": 10, "red": 2, "amber": 1, "missing_view": 8, "missing_table": 3, "unjudged": 0}
+    marks = next(t for t in report.story.tables if t.title == "How the marks came about")
+    assert marks.rows[1] == ("One", "100", "−10", "−2", "−1 (at most, not 3 × 0.5)", "−8", "−3", "76")
+    assert [row[0] for row in marks.rows] == ["Five", "One", "Three", "Two"]  # nothing of Four's could be judged
     assert "which sheet" in found["Four"]["files"][0]["refused"]
     assert report.tree["most_made"] == [{"mistake": "point b3 lies … mm off", "students": 3}]
     assert "Four, picture.jpg" in report.text
@@ -120,8 +126,8 @@ def test_an_empty_folder(tmp_path):
     ("red = 2", "rad = 2", r'marks.toml:4: costs.rad: is not known here\n *did you mean "red"'),
     ("full = 100", "", r"full: is missing"),
     ("full = 100", "full = true", r"marks.toml:1: full: expected a number"),
-    ("from = 90", "from = nan", r"marks.toml:13: grade\[2\].from: expected a number"),
-    ('name = "3"', "name = 3", r"marks.toml:11: grade\[1\].name: expected a text"),
+    ("from = 90", "from = nan", r"marks.toml:14: grade\[2\].from: expected a number"),
+    ('name = "3"', "name = 3", r"marks.toml:12: grade\[1\].name: expected a text"),
     ("[costs]", "[cost]", r"costs: is missing(.|\n)*"),
     ("full = 100", "full", "Expected"),
 ])  # fmt: skip

@@ -3,6 +3,7 @@
 import pytest
 
 from tests.compare.manual_tables import compared, count, is_right, tables
+from tmm_sheets.compare.measured import measured_lengths
 
 DRAWN_BADLY = {"sh.arm.F34", "en.arm.Fi4", "en.arm.Fi2", "en.F21t", "en.F30", "en.M1k"}
 """Clean cells that are red: arms and a closing side of the manual that are off by 2 to 4.5 mm, and what follows from them."""
@@ -39,3 +40,25 @@ def test_what_is_missed_is_within_reach(outcomes):
     assert len(missed) == 34
     assert all(abs(o.judged.deviation) <= o.judged.tolerance for o in missed)
     assert sum(map(is_right, missed)) == 21
+
+
+def test_no_mistake_is_named_that_other_numbers_speak_against(outcomes):
+    """A side of a polygon read half as long was a scale factor, an angular velocity a crank that turns backwards."""
+    assert {o.cell.place: o.judged.wrong[0].words for o in outcomes if o.judged.starts and o.judged.wrong} == {"9": "row"}
+    assert {o.cell.place for o in outcomes if o.judged.mistake is not None} == {"en.F30", "en.arm.h14", "10"}
+
+
+def test_a_formula_used_wrongly_at_every_position_is_one_mistake(outcomes):
+    moments = [o.judged for o in outcomes if o.cell.place.endswith("M_G2_N_m")]
+    (one,) = measured_lengths._mistakes(moments)
+    assert one.what.startswith("off at 10 positions")
+    assert one.details[0].count("instead of") == 10
+    assert len(list(measured_lengths._mistakes(moments[:3]))) == 2  # at two positions: each by itself
+
+
+def test_two_red_numbers_are_not_within_reach(outcomes):
+    reds = [o.judged for o in outcomes if o.judged.verdict == "red" and not o.judged.starts and o.judged.follows is None]
+    green = [o.judged for o in outcomes if o.judged.verdict == "green"]
+    assert measured_lengths._advice(green) == ["All within a pencil's reach."]
+    for some, said in ((reds[:1], "The red one is"), (reds[:2], "The 2 red ones are")):
+        assert measured_lengths._advice([*green, *some])[0].startswith(said)

@@ -2,6 +2,7 @@
 
 import random
 from collections import Counter
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -93,6 +94,16 @@ def test_the_plan_is_compared_as_it_was_built(compared):
     assert not any(f.missing for f in wrong)
     assert all("as follows from the mistake" in f.what for f in wrong)
     assert "laid off the other way" in listed(cad_story.mistakes(found, cad_report.gone(found.outcome)))[1]
+
+
+def test_a_view_taken_for_ink_of_its_shape_speaks_against_nothing(compared):
+    """A view that was found by its shape, of which nothing else is there, was not drawn; one built wrongly was."""
+    _, found, _ = compared
+    assert not cad_drawing._absent(found.outcome, found.places.share, found.places) & PLACES.keys()
+    elsewhere = [replace(f, verdict="red", missing=True) for f in found.outcome.findings if f.element.view == FORCES[0]]
+    nothing_else = replace(found.outcome, findings=tuple(elsewhere))
+    assert cad_drawing._absent(nothing_else, {FORCES[0]: 0.97}, found.places) == {FORCES[0]}
+    assert cad_drawing._absent(nothing_else, {FORCES[0]: 0.5}, found.places) == set()
 
 
 @pytest.mark.parametrize("far", [1e20, np.inf, np.nan])

@@ -1,6 +1,6 @@
 """The words of a report on a photograph, and the numbers on its overlay."""
 
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
@@ -8,6 +8,7 @@ import pytest
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.findings import called, counted
+from tmm_sheets.compare.legend import around, legend
 from tmm_sheets.compare.photo import image_report, overlay
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.traces import Trace
@@ -52,3 +53,26 @@ def test_numbers_on_the_overlay_stand_apart():
     boxes = [(n.at, n.at + complex(overlay.DIGITS * 0.62 * len(n.text), overlay.DIGITS)) for n in overlay._numbers(flags)]
     assert all(b.real <= c.real or d.real <= a.real or b.imag <= c.imag or d.imag <= a.imag
                for (a, b), (c, d) in combinations(boxes, 2))
+
+
+def test_what_is_wrong_and_what_is_doubtful_differ_in_form_and_the_legend_stays_in_the_margin():
+    assert [len(around(verdict, 0j, 7.0)) for verdict in ("red", "amber")] == [49, 5]
+    entries = [("line", "начерчено"), ("line", "точно"), ("red", "неверно"), ("amber", "посмотреть")]
+    strokes = [np.concatenate(some) for some in legend(entries)]
+    assert all(z.real.min() > 0 and z.real.max() < 20 for z in strokes)
+    assert all(a.imag.max() < b.imag.min() for a, b in pairwise(strokes))
+
+
+def test_places_where_the_paper_bulges_are_told_in_millimetres():
+    mask = np.zeros((594, 841), bool)
+    assert image_report.boxes(mask) == []
+    mask[94:104, 50:70] = mask[500:594, 800:841] = True
+    assert image_report.boxes(mask) == [[50, 490, 70, 500], [800, 0, 841, 94]]
+
+
+def test_the_legend_of_an_attempt_says_nothing_of_the_drawing(monkeypatch):
+    said = []
+    monkeypatch.setattr(overlay, "legend", lambda entries: said.append([words for _, words in entries]) or [[] for _ in entries])
+    overlay._legend()
+    overlay._legend(fitted=False)
+    assert said == [["drawn", "exact", "wrong", "worth a look"], ["drawn", "exact", "does not fit"]]

@@ -78,9 +78,9 @@ def called(e: Element) -> str:
 
 
 def _on_paper(e: Element) -> str:
-    """The name of an element; of one that is called by the word for its step ("points"), which no sheet has, only its position."""
+    """The name of an element; of one that is called by the word for its step ("points", "dK"), which no sheet has, its position."""
     step = e.step.rpartition("/")[2]
-    word = re.fullmatch("[a-z]{3,}", step) and e.name.startswith(step)
+    word = re.fullmatch("[a-z]{3,}|dK", step) and e.name.startswith(step)
     return e.name.removeprefix(step).strip("()") if word else e.name
 
 

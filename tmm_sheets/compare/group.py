@@ -193,15 +193,17 @@ def _judged(path: Path, file: str, name: str, opened: Callable[[str], Project],
 def _faults(tree: Mapping[str, Any]) -> tuple[dict[str, int], tuple[str, ...]]:
     """Faults of each kind, and mistakes in words, from the tree of a report."""
     if "numbers" in tree:  # measured
-        starts = tree["starts"]
+        starts = [s for s in tree["starts"] if s.get("same_as") is None]
         left = [n for n in tree["numbers"] if n["follows"] is None and not n["starts"]]
         count = Counter(n["verdict"] for n in left)
         return {"mistake": len(starts), "red": count["red"], "amber": count["amber"]}, tuple(s["said"] for s in starts)
     built = {b["view"]: b["what"] for b in tree.get("built", ())}
-    missing = set(tree.get("summary", {}).get("missing_views", ()))
+    summary = tree.get("summary", {})
+    missing, tables = (set(summary.get(key, ())) for key in ("missing_views", "missing_tables"))
     count = Counter(e["verdict"] for e in tree["elements"] if e["view"] not in built and e["view"] not in missing)
     mistakes = tuple(dict.fromkeys(built.values()))
-    return {"mistake": len(mistakes), "red": count["red"], "amber": count["amber"], "missing_view": len(missing)}, mistakes
+    return {"mistake": len(mistakes), "red": count["red"], "amber": count["amber"], "missing_view": len(missing - tables),
+            "missing_table": len(tables)}, mistakes
 
 
 # --- the report -------------------------------------------------------------------------------------------------------------
@@ -235,6 +237,8 @@ def _tables(students: Sequence[Student], scheme: Scheme | None) -> Iterator[Tabl
                                                                    if scheme.grades else [])]
         rows.append(tuple(row))
     yield Table(tell("Students"), tuple(head), tuple(rows))
+    if scheme is not None:
+        yield _marks(students, scheme)
     made = [(s.name, m) for s in students for m in s.mistakes]
     files = [(s, f) for s in students for f in s.files]
     yield Table(tell("Reports"), (tell("student"), tell("file"), *_kinds()),
@@ -246,9 +250,19 @@ def _tables(students: Sequence[Student], scheme: Scheme | None) -> Iterator[Tabl
         yield Table(tell("Mistakes most made"), (tell("students"), tell("mistake")), tuple((str(n), m) for m, n in most))
 
 
+def _marks(students: Sequence[Student], scheme: Scheme) -> Table:
+    """How the marks came about: what the faults of each kind that cost anything cost each student."""
+    kinds = [(kind, said) for kind, said in zip(KINDS, _kinds(), strict=True) if scheme.costs.get(kind)]
+    rows = [(s.name, told(f"{scheme.full:g}"), *(scheme.counted(kind, s.faults[kind]) for kind, _ in kinds), told(f"{mark:.4g}"))
+            for s in students if (mark := s.mark(scheme)) is not None]
+    head = (tell("student"), tell("without faults"), *(said for _, said in kinds), tell("mark"))
+    return Table(tell("How the marks came about"), head, tuple(rows))
+
+
 def _kinds() -> tuple[str, ...]:
     """What the kinds of faults are called."""
-    return tell("mistakes named"), tell("other red"), tell("other amber"), tell("views missing"), tell("not judged")
+    return (tell("mistakes named"), tell("other red"), tell("other amber"), tell("views missing"), tell("tables, texts missing"),
+            tell("not judged"))
 
 
 def _most_made(students: Sequence[Student]) -> list[tuple[str, int]]:
@@ -284,7 +298,8 @@ def _tree(students: Sequence[Student], scheme: Scheme | None) -> dict[str, Any]:
         if scheme is None:
             return {}
         mark = s.mark(scheme)
-        return {"mark": mark, "grade": None if mark is None else scheme.grade(mark) or None}
+        costs = {kind: scheme.lost(kind, n) for kind, n in s.faults.items()}
+        return {"mark": mark, "grade": None if mark is None else scheme.grade(mark) or None, "costs": costs}
 
     return {
         "students": [{"student": s.name, "project": s.project, "faults": s.faults, "mistakes": list(s.mistakes), **marked(s),

@@ -9,6 +9,7 @@
     red = 2                   # each line or number beyond twice the tolerance that no such mistake explains
     amber = 0.5               # each up to twice the tolerance
     missing_view = 8          # each view that is not there
+    missing_table = 1         # each table, text or detail that is not found as it is on the sheet
     unjudged = 0              # each file that could not be judged
 
     [at_most]                 # may be left out: the most that all faults of a kind cost together
@@ -31,9 +32,10 @@ from typing import Any
 
 from tmm_sheets import texts
 from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.numbers import told
 from tmm_sheets.words import tell
 
-KINDS = ("mistake", "red", "amber", "missing_view", "unjudged")
+KINDS = ("mistake", "red", "amber", "missing_view", "missing_table", "unjudged")
 """Kinds of faults a scheme gives costs for."""
 
 
@@ -48,8 +50,18 @@ class Scheme:
 
     def mark(self, faults: Mapping[str, int]) -> float:
         """The mark of a work with so many faults of each kind, none below 0."""
-        lost = (min(self.costs.get(kind, 0.0) * n, self.at_most.get(kind, float("inf"))) for kind, n in faults.items())
-        return max(self.full - sum(lost), 0.0)
+        return max(self.full - sum(self.lost(kind, n) for kind, n in faults.items()), 0.0)
+
+    def lost(self, kind: str, n: int) -> float:
+        """What so many faults of a kind cost."""
+        return min(self.costs.get(kind, 0.0) * n, self.at_most.get(kind, float("inf")))
+
+    def counted(self, kind: str, n: int) -> str:
+        """How that comes about, in words."""
+        each, lost = self.costs.get(kind, 0.0), self.lost(kind, n)
+        said = tell("−{lost}") if n == 1 else tell("−{lost} ({n} × {each})")
+        said = tell("−{lost} (at most, not {n} × {each})") if lost < each * n else said
+        return said.format(lost=told(f"{lost:g}"), n=n, each=told(f"{each:g}")) if lost else "–"
 
     def grade(self, mark: float) -> str:
         """The name of the grade of a mark; empty without grades."""

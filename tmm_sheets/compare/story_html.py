@@ -30,7 +30,7 @@ tr.red td { background: #fde4e4; } tr.amber td { background: #fff3dc; }
 .key span { display: inline-block; width: 1.6em; height: 0; border-top: 3px solid; vertical-align: middle; margin: 0 .3em 0 1em; }
 @media print { article { break-inside: avoid; } }
 """
-OURS, THEIRS, WRONG = "#009933", "#737373", "#d00000"
+OURS, THEIRS, WRONG = "#0072b2", "#737373", "#d00000"
 """Colours of the exact lines, the drawn ones, and what is wrong."""
 LONGEST = 430.0
 """Longer side of a picture, CSS pixels."""

@@ -34,7 +34,7 @@ WIDE, HIGH = A4[0] - 2 * MARGIN, 95 * mm
 """Largest size of a picture."""
 TINTS = {"red": colors.HexColor("#fde4e4"), "amber": colors.HexColor("#fff3dc")}
 """Backgrounds of rows."""
-SIDES = {"red": colors.HexColor(WRONG), "amber": colors.HexColor("#e58a00"), "green": colors.HexColor(OURS)}
+SIDES = {"red": colors.HexColor(WRONG), "amber": colors.HexColor("#e58a00"), "green": colors.HexColor("#009933")}
 
 
 def pdf(story: Story) -> bytes:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -33,15 +33,16 @@ OVER = 1.0, 2.5, 4
 
 
 def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, moves: Mapping[ElementView, Placing],
-                    outcome: CadOutcome, made: Sequence[Hypothesis] = ()) -> dict[
+                    outcome: CadOutcome, made: Sequence[Hypothesis] = (), absent: Collection[ElementView] = ()) -> dict[
                         ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]:
     """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet.
 
-    ``made`` are mistakes of the sheet that are known already.
+    ``made`` are mistakes of the sheet that are known already; ink where views would be that are ``absent`` is that of others.
     """
     wrong: dict[ElementView, list[Element]] = {}
     for f in outcome.findings:
-        if f.element.role in ("vector", "link") and f.element.kind == "line" and f.verdict == "red":
+        main = f.element.role in ("vector", "link") and f.element.kind == "line"
+        if main and f.verdict == "red" and f.element.view not in absent:
             wrong.setdefault(f.element.view, []).append(f.element)
     tips = np.unique(np.round(np.concatenate([s.points[[0, -1]] for s in space.strokes]), 2)) if space.strokes else np.zeros(0)
 
@@ -50,7 +51,7 @@ def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, mo
         return Drawing(lambda line: _inked(space.lines, move, line), lambda z: space.lines.nearest(np.asarray(move(z)), NEAR)[2],
                        move.back(tips).tolist(), move.scale, lambda line: _goes_on(space.lines, move, line))
 
-    return built_plan.built_otherwise(project, known, wrong, seen, made, positions=True)
+    return built_plan.built_otherwise(project, known, wrong, seen, made, absent, positions=True)
 
 
 def as_built(finding: CadFinding | None, was: Element, now: Element, move: Placing, tolerance: float) -> CadFinding:

@@ -14,6 +14,7 @@ from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.laying import Laid, fitting, lay
 from tmm_sheets.compare.cad.lost_views import lost_views
 from tmm_sheets.compare.cad.matching import match
+from tmm_sheets.compare.cad.view_search import AS_DRAWN
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
 from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint, rebuilt, vanished
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
@@ -50,8 +51,8 @@ def compare(project: Project, sheet: int | None, path: Path, views: Path | None,
     outcome, laid = found.outcome, found.laid
     gone = cad_report.gone(outcome)
     shown = [f for f in worst(outcome.findings) if f.element.view not in gone]
-    marked = [(f.at, f.reach, str(f.element.number)) for f in shown] + \
-        [(x.at, x.reach, f"+{k}") for k, x in enumerate(outcome.extras, 1)]
+    marked = [(f.at, f.reach, str(f.element.number), str(f.verdict)) for f in shown]
+    marked += [(x.at, x.reach, f"+{k}", str(x.verdict)) for k, x in enumerate(outcome.extras, 1)]
     looks = [(look.places, f"~{k}") for k, look in enumerate(outcome.looks, 1)]
     exact = [p for e in found.exact for p in drawn(e)]
     files = cad_overlay.files(laid.known.n, laid.known.sheet.drawing, exact, found.space, marked, looks)
@@ -94,18 +95,26 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     say(tell("placing the views"))
     places = layout.find(laid.known.elements, space, [(p, laid.placing) for p in given], say, laid.views)
     made: list[Hypothesis] = []
+    shaped = places.share
     if laid.views:
         lost, made = lost_views(project, laid.known, space, places)
         places = places.with_more(lost)
     outcome = match(laid.known.elements, space, places.moves, pencil, say)
-    if not _of_this_sheet(outcome):
-        _refuse(project, laid, outcome, ink, sheet, path)
     say(tell("looking for what was done wrong"))
-    built = cad_built.built_otherwise(project, laid.known, space, places.moves, outcome, made)
+    absent = _absent(outcome, shaped, places) if places.own else set()
+    built = cad_built.built_otherwise(project, laid.known, space, places.moves, outcome, made, absent)
     if built:
         outcome = _as_built(laid.known, space, places, built, pencil)
+    if not _of_this_sheet(outcome):  # one mistake may lead everything elsewhere
+        _refuse(project, laid, outcome, ink, sheet, path)
     notes = (*ink.notes, *_how(laid, ink.unit), *places.notes, *outcome.notes)
     return cad_report.Examined(laid, space, places, outcome, notes, {view: plan for view, (plan, _) in built.items()})
+
+
+def _absent(outcome: CadOutcome, shaped: Mapping[ElementView, float], places: layout.Layout) -> set[ElementView]:
+    """Views that a layout of its own lacks: not found, or taken for ink of their shape that has nothing else of them."""
+    lost = {f.element.view for f in outcome.findings} - places.moves.keys()
+    return lost | {v for v in cad_report.gone(outcome) if shaped.get(v, 0.0) >= AS_DRAWN}
 
 
 def _as_built(known: KnownSheet, space: DrawingSpace, places: layout.Layout,
@@ -159,8 +168,8 @@ def _judged_lines(outcome: CadOutcome) -> list[CadFinding]:
 
 
 def _green(found: Sequence[CadFinding]) -> float:
-    """Share of the findings that are green."""
-    return sum(f.verdict == "green" for f in found) / max(len(found), 1)
+    """Share of the findings that are green, or off as follows from a mistake."""
+    return sum(f.verdict == "green" or f.follows for f in found) / max(len(found), 1)
 
 
 def _of_this_sheet(outcome: CadOutcome) -> bool:

@@ -10,18 +10,20 @@ import numpy as np
 from tmm_sheets.backends import pdf
 from tmm_sheets.compare.cad import cad_file
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Writing
+from tmm_sheets.compare.legend import around, legend
 from tmm_sheets.compare.numbering import numbered
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Drawing, Mark, Points, Polyline
+from tmm_sheets.words import tell
 
 HIGH = 3.5
 """Height of the numbers, mm."""
-GREEN, GREY, RED, ORANGE = (0.0, 0.6, 0.2), (0.45, 0.45, 0.45), (0.85, 0.0, 0.0), (0.95, 0.55, 0.0)
+BLUE, GREY, RED, ORANGE = (0.0, 0.45, 0.7), (0.45, 0.45, 0.45), (0.85, 0.0, 0.0), (0.95, 0.55, 0.0)
 """Colours of the exact sheet, the drawing, findings, lines of a wrong type or width."""
 
 
 def files(n: int, sheet: Drawing, exact: Sequence[Points], space: DrawingSpace,
-          found: Sequence[tuple[complex, float, str]], looks: Sequence[tuple[Sequence[Points], str]] = ()) -> dict[str, bytes]:
+          found: Sequence[tuple[complex, float, str, str]], looks: Sequence[tuple[Sequence[Points], str]] = ()) -> dict[str, bytes]:
     """The overlays by file name.
 
     Parameters
@@ -29,16 +31,21 @@ def files(n: int, sheet: Drawing, exact: Sequence[Points], space: DrawingSpace,
     n, sheet : number of the sheet, and the sheet itself
     exact : its lines where the drawing has them, mm
     space : the drawing, mm
-    found : centre and radius, mm, and number of each finding
+    found : centre and radius, mm, number and verdict of each finding
     looks : lines of a wrong type or width, mm, with their number, which stands at the first of them
     """
     drawn = [s.points for s in space.strokes]
     ours: list[Mark] = [Polyline(z, "thin") for z in exact]
-    layers = (_theirs(space), GREY), (ours, GREEN), (_wrong_looks(looks), ORANGE), (_circled(found), RED)
+    entries = [("line", tell("drawn")), ("line", tell("exact")), ("line", tell("of another type or width")), ("red", tell("wrong")),
+               ("amber", tell("worth a look"))]
+    said: list[list[Mark]] = [[Polyline(z, "axis") for z in strokes] for strokes in legend(entries)]
+    layers = ((_theirs(space) + said[0], GREY), (ours + said[1], BLUE), (_wrong_looks(looks) + said[2], ORANGE),
+              (_marked(found) + said[3] + said[4], RED))
     pages = [(Drawing(sheet.width, sheet.height, sheet.title, tuple(marks)), colour) for marks, colour in layers]
     numbered = [(z, number if k == 0 else "") for places, number in looks for k, z in enumerate(places)]
+    circled = [(at, reach, number) for at, reach, number, _ in found]
     return {f"sheet{n}-dxf.pdf": pdf.render_coloured(pages),
-            f"sheet{n}-overlay.dxf": cad_file.overlay(exact, drawn, found, numbered)}
+            f"sheet{n}-overlay.dxf": cad_file.overlay(exact, drawn, circled, numbered)}
 
 
 def _theirs(space: DrawingSpace) -> list[Mark]:
@@ -62,11 +69,11 @@ def _wrong_looks(looks: Sequence[tuple[Sequence[Points], str]]) -> list[Mark]:
     return canvas.marks
 
 
-def _circled(found: Sequence[tuple[complex, float, str]]) -> list[Mark]:
+def _marked(found: Sequence[tuple[complex, float, str, str]]) -> list[Mark]:
     canvas = Canvas()
-    for centre, radius, _ in found:
-        canvas.circle(centre, radius, "axis")
-    for one in numbered(found, HIGH):
+    for centre, radius, _, verdict in found:
+        canvas.polyline(around(verdict, centre, radius), "axis")
+    for one in numbered([(centre, radius, number) for centre, radius, number, _ in found], HIGH):
         if one.leader is not None:
             canvas.line(*one.leader, "axis")
         canvas.text(one.at, one.text, HIGH, "left")

@@ -14,6 +14,7 @@ from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
 from tmm_sheets.compare.cad.laying import Laid
 from tmm_sheets.compare.cad.layout import Layout
+from tmm_sheets.compare.cad.view_search import SHAPES
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.findings import called, origin, place, table, worst
 from tmm_sheets.compare.placing import moved
@@ -74,6 +75,19 @@ def gone(outcome: CadOutcome) -> set[ElementView]:
             and sum(f.verdict == "green" for f in found) < VIEW_GONE * len(found)}
 
 
+def tables_and_texts(outcome: CadOutcome) -> set[ElementView]:
+    """Views that have no shape: a student may have them in another form, so that they are not found, or leave them out."""
+    views = {f.element.view for f in outcome.findings}
+    return views - {f.element.view for f in outcome.findings if f.element.role in SHAPES}
+
+
+def not_as_ours(lost: set[ElementView]) -> list[str]:
+    """What is told of tables and texts that are not found: one line for all of them."""
+    said = tell("not found as on the sheet, of tables, texts and details: {views}")
+    named = ", ".join(tell('"{view}"').format(view=v.name) for v in sorted(lost, key=lambda v: v.n))
+    return [said.format(views=named)] if lost else []
+
+
 def _found_by(entities: Sequence[Entity]) -> str:
     if not entities:
         return ""
@@ -92,7 +106,9 @@ def text(name: str, path: Path, found: Examined, pencil: float) -> str:
     first, *others = tables(found, lost)
     if first[2]:
         out += [*table(*first[1:]), ""]
-    out += [_missing(v, sum(f.element.view == v for f in outcome.findings)) for v in sorted(lost, key=lambda v: v.n)]
+    beside = tables_and_texts(outcome)
+    out += [_missing(v, sum(f.element.view == v for f in outcome.findings)) for v in sorted(lost - beside, key=lambda v: v.n)]
+    out += not_as_ours(lost & beside)
     out += _left_out(outcome, lost)
     for title, head, rows in others:
         if rows:
@@ -123,7 +139,8 @@ def _said(*head: str) -> tuple[str, ...]:
 
 
 def _missing(view: ElementView, size: int) -> str:
-    said = tell_n('missing altogether: view "{view}", {n} element', 'missing altogether: view "{view}", {n} elements', size)
+    said = tell_n('not found in the drawing: view "{view}", {n} element',
+                  'not found in the drawing: view "{view}", {n} elements', size)
     return said.format(view=view.name, n=size)
 
 
@@ -144,13 +161,17 @@ def summary(outcome: CadOutcome, lost: set[ElementView]) -> str:
     most = max((f.deviation for f in there if f.verdict == "green"), default=0.0)
     said = [tell("{green} green (up to {most} mm), {amber} amber, {red} red, {skipped} not compared") if colours[None] else
             tell("{green} green (up to {most} mm), {amber} amber, {red} red"), tell("{extra} extra")]
-    if lost:
-        said.append(tell("{lost} of {views} views missing"))
+    beside = tables_and_texts(outcome)
+    if lost - beside:
+        said.append(tell("{lost} of {views} views not found"))
+    if lost & beside:
+        said.append(tell("{lost_tables} of {tables} tables, texts and details not found"))
     if outcome.looks:
         said.append(tell("{unlike} of another type or width of line"))
     return "; ".join(said).format(
         green=colours["green"], amber=colours["amber"], red=colours["red"], skipped=colours[None], most=told(f"{most:.2f}"),
-        extra=len(outcome.extras), lost=len(lost), views=len({f.element.view for f in outcome.findings}),
+        extra=len(outcome.extras), lost=len(lost - beside), views=len({f.element.view for f in outcome.findings} - beside),
+        lost_tables=len(lost & beside), tables=len(beside),
         unlike=len({n for look in outcome.looks for n in look.elements}))
 
 
@@ -196,6 +217,8 @@ def _rounded(x: float | None) -> float | None:
 def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any]:
     """The report for JSON on a drawing of project ``name``; ``pencil`` is the tolerance, mm."""
     laid, places, outcome = found.laid, found.places, found.outcome
+    lost = sorted(gone(outcome), key=lambda v: v.n)
+    beside = tables_and_texts(outcome)
     colours = Counter(f.verdict for f in outcome.findings)
     p = laid.placing
 
@@ -227,6 +250,6 @@ def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any
         "not_drawn": [{"view": x.view.name, "kind": x.kind, "count": x.count} for x in outcome.absent],
         "summary": {"green": colours["green"], "amber": colours["amber"], "red": colours["red"], "skipped": colours[None],
                     "extra": len(outcome.extras), "looks": len(outcome.looks),
-                    "missing_views": [v.name for v in sorted(gone(outcome), key=lambda v: v.n)]},
+                    "missing_views": [v.name for v in lost], "missing_tables": [v.name for v in lost if v in beside]},
     }
 

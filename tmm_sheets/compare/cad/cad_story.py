@@ -97,14 +97,17 @@ def _picture(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFin
 
 def _unjudged(found: cad_report.Examined, lost: set[ElementView]) -> list[str]:
     """What could not be judged, and why."""
-    out = [tell('view "{view}": it was not found in the drawing').format(view=v.name) for v in sorted(lost, key=lambda v: v.n)]
+    beside = cad_report.tables_and_texts(found.outcome)
+    out = [tell('view "{view}": it was not found in the drawing').format(view=v.name)
+           for v in sorted(lost - beside, key=lambda v: v.n)]
+    out += cad_report.not_as_ours(lost & beside)
     by_view: dict[str, list[str]] = {}
     for x in found.outcome.absent:
         if x.view not in lost:
             by_view.setdefault(x.view.name, []).append(cad_absent.said(x.kind, x.count))
     out += [tell('view "{view}": not drawn: {what}').format(view=name, what=", ".join(what)) for name, what in by_view.items()]
     skipped = Counter(f.what for f in found.outcome.findings if f.verdict is None and not f.absent and f.element.view not in lost)
-    out += [tell("{n} times: {what}").format(n=n, what=what) for what, n in skipped.items()]
+    out += [tell("not compared: {what} ({n})").format(n=n, what=what) for what, n in skipped.items()]
     extra = len(found.outcome.extras)
     if extra:
         said = tell_n("{n} line or text that belongs to nothing on the sheet is in the table, but not judged as a mistake",

@@ -8,7 +8,7 @@ has ink, in a CAD file or a photograph.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, get_args
 
@@ -114,19 +114,20 @@ def errors_of(project: Project, known: KnownSheet) -> tuple[dict[str, Plan], Err
 
 
 def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementView, Sequence[Element]],
-                    seen: Callable[[ElementView], Drawing], made: Sequence[Hypothesis] = (), positions: bool = False) -> dict[
+                    seen: Callable[[ElementView], Drawing], made: Sequence[Hypothesis] = (),
+                    absent: Collection[ElementView] = (), positions: bool = False) -> dict[
                         ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]:
     """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet.
 
     ``wrong`` are the vectors of views that are not where they belong, as they should be; ``made`` are mistakes of the sheet that
-    are known already. With ``positions`` the mechanism at all its positions is such a plan, too; what is wrong there need not show
-    in other plans, which were drawn from what it should be.
+    are known already, ``absent`` views that the drawing lacks. With ``positions`` the mechanism at all its positions is such a
+    plan, too; what is wrong there need not show in other plans, which were drawn from what it should be.
     """
     if not wrong:
         return {}
     plans, errors = errors_of(project, known)
     shown = {view: drawn for view in dict.fromkeys(e.view for e in known.elements)
-             if (drawn := drawn_plan(known, plans, view)) is not None}
+             if view not in absent and (drawn := drawn_plan(known, plans, view)) is not None}
     if positions:
         shown |= {view: drawn for view in wrong if (drawn := drawn_positions(known, plans, view)) is not None}
     # Where links of many positions meet each goes on in others.

@@ -22,6 +22,8 @@ NEAR = 0.01
 """Displacement for derivatives where a mistake has led to, as a share of the usual one."""
 TRIED = 4
 """Steps that are tried by drawing again, of those that explain most by the Jacobian."""
+WITNESSED = 0.1
+"""Share of what a displacement explains of the number it is looked for that it has to explain of others."""
 NEARLY = 0.9
 """Share of the best explanation with which another is as good."""
 
@@ -129,15 +131,20 @@ def _can_be_wrong(evidence: Evidence, place: Place) -> bool:
 def _helps(evidence: Evidence, mistake: Mistake, i: int) -> bool:
     """True when a mistake explains most of the number it was looked for, and of another one that is not in order.
 
-    A little of much that other mistakes have spoilt explains nothing. Of what is off against the student's own numbers only
-    there is nothing to explain.
+    A little of much that other mistakes have spoilt explains nothing, nor does a great displacement that only one number shows.
+    Of what is off against the student's own numbers only there is nothing to explain.
     """
     if np.hypot(*mistake.moved) < 2 * evidence.errors.pencil * mistake.mu:
         return False  # that is the pencil
     shares = _shares(evidence, mistake.place, mistake.moved)
     mostly = {j for j, share in zip(evidence.by_place[mistake.place][0].tolist(), shares, strict=True)
               if evidence.judged[j].verdict != "green" and abs(evidence.left[j] - share) < 0.5 * abs(evidence.left[j])}
-    return bool(mostly - {i}) and (i in mostly or abs(evidence.left[i]) <= evidence.allowed[i])
+    if not mostly - {i} or not (i in mostly or abs(evidence.left[i]) <= evidence.allowed[i]):
+        return False
+    lines = evidence.by_place[mistake.place][0]
+    gain = loss(evidence.left[lines] / evidence.allowed[lines]) - loss((evidence.left[lines] - shares) / evidence.allowed[lines])
+    far = float(np.sum((_usual(evidence, mistake.place) @ mistake.moved) ** 2))
+    return bool(gain[lines != i].sum() > max(far, WITNESSED * gain[lines == i].sum()))
 
 
 def _shares(evidence: Evidence, place: Place, x: Floats) -> Floats:

@@ -16,6 +16,8 @@ from tmm_sheets.numbers import told
 
 ALONE = 0.9
 """Share of the number it is looked for that a mistake has to explain, besides most of another one."""
+ENOUGH = 16.0
+"""What a mistake has to explain at the least: there are some hundreds, and one of so many explains a little by chance."""
 EQUAL = 0.98
 """Share of the best discrete explanation with which another cannot be told from it."""
 APART = 0.05
@@ -31,7 +33,7 @@ def done_otherwise(evidence: Evidence, i: int) -> Explanation | None:
     found = [(h, evidence.replayed(h)) for h in mistakes_before(evidence, i) if evidence.leaves_little(i, h)]
     found += wrong_rows(evidence, i)
     best = max((e.score for _, e in found), default=0.0)
-    if best <= ALONE * alone:
+    if best <= ALONE * alone or (best < ENOUGH and evidence.judged[i].entry.kind != "sense"):
         return None
     # Of equally good ones the more usual first.
     equal = [_as_often(evidence, h, e) for h, e in found if e.score >= EQUAL * best]

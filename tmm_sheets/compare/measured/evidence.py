@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
+from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind
 from tmm_sheets.compare.diagnosis.replay import Again, Change, replay
 from tmm_sheets.compare.measured.judged import Judged, Mistake, Place
 from tmm_sheets.compare.measured.plan_scales import is_scaled
@@ -29,6 +29,8 @@ CHANCES = 8
 """Drawings by chance that tell how uncertain a number has become."""
 LOADS = ("loads", "moments")
 """Plans that are seen in the polygons of forces."""
+SENSES: frozenset[Kind] = frozenset({"mirror", "sense", "neighbour"})
+"""Kinds of mistakes that leave the lengths of their plan as they are."""
 SPOILT = 3.0
 """Tolerances by which a discrete mistake would spoil a number that it cannot have been made before when that is in order."""
 
@@ -184,8 +186,8 @@ class Evidence:
         left = self.left[known] / self.allowed[known]
         after = self.after(shares)[known] / np.hypot(self.allowed, doubt)[known]
         gain = loss(left) - loss(after)
-        # Results are computed from lengths, whatever their senses: what is not spoilt in them proves nothing.
-        proves = np.array([self.proves(j, h) for j in self.judged])[known]
+        # Results are computed from lengths, whatever their senses: what a wrong sense does not spoil in them proves nothing.
+        proves = np.array([h.kind not in SENSES or self.proves(j, h) for j in self.judged])[known]
         score = float(np.sum(np.where(proves, gain, np.maximum(gain, 0.0))))
         # However much it explains besides: what is in order was not spoilt.
         if np.any(proves & (np.abs(left) <= 1) & (np.abs(after) > SPOILT)):

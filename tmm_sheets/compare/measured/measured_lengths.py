@@ -24,6 +24,8 @@ from tmm_sheets.words import marked, on_paper, reader, tell, tell_n
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
+SEVERAL = 3
+"""From so many positions on at which a quantity is off without a reason it is told once."""
 NAME = "measured.csv"
 """File name of the template."""
 
@@ -175,8 +177,31 @@ def _starts(judged: list[Judged]) -> list[Judged]:
     return sorted((j for j in judged if j.starts), key=lambda j: j.order)
 
 
+def _grouped(judged: list[Judged]) -> list[list[Judged]]:
+    """The mistakes as they are told: what nothing explains is one where it is off at several positions alike."""
+    groups: dict[object, list[Judged]] = {}
+    for j in _starts(judged):
+        plain = not j.wrong and j.mistake is None
+        groups.setdefault((j.entry.title, j.entry.quantity) if plain else id(j), []).append(j)
+    split = [[some] if len(some) >= SEVERAL else [[j] for j in some] for some in groups.values()]
+    return sorted((some for parts in split for some in parts), key=lambda some: some[0].order)
+
+
+def _everywhere(some: list[Judged]) -> story.Mistake:
+    """One quantity that is off at several positions."""
+    first = some[0].entry
+    what = tell_n("off at {n} position, and nothing before it explains that: computed or read in another way?",
+                  "off at {n} positions, and nothing before it explains that: computed or read in another way?", len(some))
+    each = tell("({position}) {measured} instead of {exact}")
+    said = [each.format(position=j.entry.label, measured=_with_unit(j), exact=_exact(j)) for j in some]
+    return story.Mistake(f"{first.title}, {first.quantity}", what.format(n=len(some)), some[0].verdict, ("; ".join(said),))
+
+
 def _mistakes(judged: list[Judged], pictures: PlanPictures | None = None) -> Iterator[story.Mistake]:
-    for j in _starts(judged)[:MOST]:
+    for j, *more in _grouped(judged)[:MOST]:
+        if more:
+            yield _everywhere([j, *more])
+            continue
         details = []
         after = [f for f in judged if f.follows is j]
         if j.mistake is not None:
@@ -192,12 +217,16 @@ def _mistakes(judged: list[Judged], pictures: PlanPictures | None = None) -> Ite
 
 def _advice(judged: list[Judged]) -> list[str]:
     """What to do now."""
-    starts = len(_starts(judged))
+    starts, own = len(_grouped(judged)), _own(judged)
     if starts > MOST:
         return [tell("So many mistakes: was another variant drawn, or with other scale factors than stated?")]
     if starts:
         return [tell("Mend the first one first: what follows from it is right as soon as that is.")]
-    return [] if _own(judged)["amber"] else [tell("All within a pencil's reach.")]
+    if own["red"]:
+        return [tell_n("The red one is no farther off than one of so many may be by chance: measure it again.",
+                       "The {n} red ones are no farther off than one of so many may be by chance: measure them again.",
+                       own["red"]).format(n=own["red"])]
+    return [] if own["amber"] else [tell("All within a pencil's reach.")]
 
 
 def _what(j: Judged) -> str:
@@ -243,6 +272,15 @@ def _off(j: Judged) -> float | None:
 
 def _tree(name: str, judged: list[Judged], filled: measured_file.Filled, pencil: float, reading: float) -> dict[str, Any]:
     own = [j for j in judged if j.follows is None]
+    first = {id(j): some[0] for some in _grouped(judged) for j in some}
+
+    def said(j: Judged) -> str:
+        if j.wrong:
+            return j.wrong[0].said()
+        alike = [other for other in own if other.starts and first[id(other)] is j]
+        told_ = _everywhere(alike) if len(alike) > 1 else None
+        return f"{told_.where}: {told_.what}" if told_ is not None else f"{_place(j)}: {_what(j)}"
+
     return {
         "project": name,
         "pencil": pencil,
@@ -251,7 +289,7 @@ def _tree(name: str, judged: list[Judged], filled: measured_file.Filled, pencil:
         "summary": {**{v: sum(j.verdict == v for j in own) for v in ("green", "amber", "red")},
                     "following": len(judged) - len(own), "empty": filled.empty},
         "starts": [{"id": j.entry.id, "why": _what(j), "step": _step(j),
-                    "said": j.wrong[0].said() if j.wrong else f"{_place(j)}: {_what(j)}",
+                    "said": said(j), "same_as": None if first[id(j)] is j else first[id(j)].entry.id,
                     "kind": j.wrong[0].kind if j.wrong else None,
                     "or": [h.said() for h in j.wrong[1:]],
                     "off_mm": _off(j), "followers": [f.entry.id for f in judged if f.follows is j]}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import degrees
@@ -18,10 +19,12 @@ from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
 from tmm_sheets.compare.elements import ElementView, dashed
 from tmm_sheets.compare.findings import called, origin, table
 from tmm_sheets.compare.photo import image_story, overlay
+from tmm_sheets.compare.photo.hidden import Mask
 from tmm_sheets.compare.photo.judging import SOFT_TOLERANCE, PhotoFinding
 from tmm_sheets.compare.photo.numbers_read import Readings
 from tmm_sheets.compare.photo.places import Place, places
 from tmm_sheets.compare.photo.rectification import Rectified
+from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.compare.report import Report, said_verdict
 from tmm_sheets.compare.story import Story, Table, listed
@@ -113,6 +116,7 @@ def image_report(
         "project": name, "sheet": n, "image": path.name, "pixels_per_mm": round(found.scale, 2), "matched": round(found.match, 3),
         "tolerance": round(pencil + found.uncertainty + soft, 3), **_tree(judged),
         "built": [{"view": v.name, "what": b.said(), "explained": b.explained()} for v, b in built.items()], "notes": list(notes),
+        "bulging": boxes(found.bulging),
         **({"numbers": readings.tree} if readings else {}),
     }  # fmt: skip
     title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=n, file=path.name)
@@ -122,6 +126,14 @@ def image_report(
     story = Story(title, (summary, *extra_places, tolerance, *notes), mistakes,
                   tables, (*hidden, *unread))
     return Report("\n".join(lines), tree, files, notes, story)
+
+
+def boxes(places: Mask) -> list[list[int]]:
+    """Left, lower, right and upper side of each place, mm."""
+    import cv2
+
+    _, _, sizes, _ = cv2.connectedComponentsWithStats(places.astype(np.uint8))
+    return [[int(x), int(PAPER.y1 - y - high), int(x + wide), int(PAPER.y1 - y)] for x, y, wide, high, _ in sizes[1:]]
 
 
 def _read_otherwise(f: PhotoFinding, readings: Readings) -> PhotoFinding:
@@ -209,7 +221,8 @@ def _overlays(found: Rectified, judged: _Judged, title: str) -> dict[str, bytes]
     flags = [overlay.Flag(p.number, str(p.verdict), p.at, image_story.shown(p)) for p in judged.places]
     exact = [p for f in judged.findings if f.element.kind != "text" for p in dashed(f.element)]
     with ThreadPoolExecutor(1) as aside:  # half of the time goes into packing, which runs beside Python
-        drawn = aside.submit(overlay.png, found.ink, found.level, exact, flags)
+        # In the reader's language: a thread begins with none.
+        drawn = aside.submit(copy_context().run, overlay.png, found.ink, found.level, exact, flags)
         page = overlay.pdf(found.ink, found.level, exact, flags, title)
         return {"png": drawn.result(), "pdf": page}
 

@@ -1,4 +1,4 @@
-"""The exact drawing over the hand's: ink in blue, the exact lines thin and orange, what is off in red, circled and numbered.
+"""The exact drawing over the hand's: ink in blue, the exact lines thin and orange, what is off marked and numbered.
 
 As PNG, drawn by OpenCV, and as a one-page PDF of the sheet's size in which the ink is an image and all else are strokes, to be
 looked at closely. The PDF is written here: it has nothing but that image and those strokes.
@@ -13,10 +13,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.box import Box
+from tmm_sheets.compare.legend import around, legend
 from tmm_sheets.compare.numbering import Numbered, numbered
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.wiping import fixed
 from tmm_sheets.drawing.marks import Points
+from tmm_sheets.words import tell
 
 INK = (40, 70, 160)
 EXACT = (245, 140, 0)
@@ -29,7 +31,7 @@ HERSHEY = 21.0  # pixels, height of OpenCV's digits
 
 
 class Flag(NamedTuple):
-    """A place to be circled, its number and verdict, and the lines that are off there, mm."""
+    """A place to be marked, its number and verdict, and the lines that are off there, mm."""
 
     number: int
     verdict: str
@@ -37,21 +39,32 @@ class Flag(NamedTuple):
     lines: tuple[Points, ...] = ()
 
 
-def png(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag]) -> bytes:
-    """The overlay as PNG, :data:`PNG_SCALE` pixels per mm."""
+def _legend(fitted: bool = True) -> list[tuple[tuple[int, int, int], list[Points]]]:
+    """What everything means: colour and strokes; nothing is said of a drawing that was not ``fitted``."""
+    entries = [(INK, "line", tell("drawn")), (EXACT, "line", tell("exact"))]
+    entries += [(BAD["red"], "red", tell("wrong")), (BAD["amber"], "amber", tell("worth a look"))] if fitted else [
+        (BAD["red"], "red", tell("does not fit"))]
+    said = legend([(form, words) for _, form, words in entries])
+    return [(colour, strokes) for (colour, _, _), strokes in zip(entries, said, strict=True)]
+
+
+def png(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag], fitted: bool = True) -> bytes:
+    """The overlay as PNG, :data:`PNG_SCALE` pixels per mm; where it was not ``fitted``, of the parts that do not fit."""
     import cv2
 
     size = (round(PAPER.width * PNG_SCALE), round(PAPER.height * PNG_SCALE))
     grey = cv2.resize(_clean(ink, level), size, interpolation=cv2.INTER_AREA)
     picture: Any = cv2.LUT(cv2.merge([grey, grey, grey]), _palette()[None, :, ::-1].copy())
+    for colour, strokes in _legend(fitted):
+        for points in strokes:
+            cv2.polylines(picture, [fixed(points, PNG_SCALE)], False, colour[::-1], 2, cv2.LINE_AA, 4)
     for points in exact:
         cv2.polylines(picture, [fixed(points, PNG_SCALE)], False, EXACT[::-1], 1, cv2.LINE_AA, 4)
     for f, number in zip(flags, _numbers(flags), strict=True):
         colour = BAD[f.verdict][::-1]
         for line in f.lines:
             cv2.polylines(picture, [fixed(line, PNG_SCALE)], False, colour, 2, cv2.LINE_AA, 4)
-        x, y = fixed(np.array([f.at]), PNG_SCALE)[0]
-        cv2.circle(picture, (int(x), int(y)), round(CIRCLE * PNG_SCALE * 16), colour, 2, cv2.LINE_AA, 4)
+        cv2.polylines(picture, [fixed(around(f.verdict, f.at, CIRCLE), PNG_SCALE)], True, colour, 2, cv2.LINE_AA, 4)
         if number.leader is not None:
             cv2.polylines(picture, [fixed(np.array(number.leader), PNG_SCALE)], False, colour, 1, cv2.LINE_AA, 4)
         left, foot = (int(c) // 16 for c in fixed(np.array([number.at]), PNG_SCALE)[0])
@@ -102,11 +115,12 @@ def pdf(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag], 
     out = [f"{PAPER.width * mm:.4f} 0 0 {PAPER.height * mm:.4f} 0 0 cm /Ink Do Q q {mm:.6f} 0 0 {mm:.6f} 0 0 cm", "1 J 1 j 0.12 w",
            _colour(EXACT)]  # fmt: skip
     out += [_path(points) for points in exact]
+    for colour, strokes in _legend():
+        out += [_colour(colour), "0.35 w", *map(_path, strokes)]
     for f, number in zip(flags, _numbers(flags), strict=True):
         out += [_colour(BAD[f.verdict]), "0.35 w"]
         out += [_path(line) for line in f.lines]
-        t = np.linspace(0, 2 * np.pi, 49)
-        out.append(_path(f.at + CIRCLE * (np.cos(t) + 1j * np.sin(t))))
+        out.append(_path(around(f.verdict, f.at, CIRCLE)))
         if number.leader is not None:
             out += ["0.15 w", _path(np.array(number.leader))]
         r, g, b = (c / 255 for c in BAD[f.verdict])
