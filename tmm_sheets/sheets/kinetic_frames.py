@@ -12,18 +12,21 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import symbol
+from tmm_sheets.methods.linkage.velocities import RIGID
 from tmm_sheets.numbers import is_zero
 from tmm_sheets.sheets import linkage
 from tmm_sheets.sheets.frame import extent
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Segment
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.groups.force_plan import ForcePlan, Load
     from tmm_sheets.mechanism.groups.hints import Leg, OuterReaction
     from tmm_sheets.mechanism.model import StructuralGroup
     from tmm_sheets.methods.linkage.forces import Kinetostatics
     from tmm_sheets.methods.linkage.positions import Positions
+    from tmm_sheets.methods.linkage.zhukovsky import Lever
     from tmm_sheets.project import Project
 
 BAR = "\u0305"
@@ -231,12 +234,20 @@ def arm_sign(sign: str) -> str:
     return f"h_{{{letters}}}" + (f"^{above}" if above else "")
 
 
+def turned_vectors(lv: Lever) -> list[Segment]:
+    """Vectors of the velocity plan that the lever shows: none of a guide's point under a slider that no force hangs on."""
+    vel = lv.velocities
+    under = [step for step in vel.coincident.values() if step.rule is RIGID and step.name not in lv.points]
+    under = [step for step in under if not any(seg.tail is step and seg.head.name in lv.points for seg in vel.plan.segments)]
+    return [seg for seg in vel.plan.segments if seg.tail not in under and seg.head not in under]
+
+
 def lever_scheme(project: Project, k: int, shown: list[Shown]) -> tuple[list[complex], list[complex]]:
     """Points of the lever with the forces on it, and what reaches from them."""
     lv = project.study.lever
     points = [complex(step.at(k)) for step in lv.points.values()]
     # The velocity plan itself, turned: also what no force hangs on.
-    turned = [1j * complex(step.at(k)) for seg in lv.velocities.plan.segments for step in (seg.tail, seg.head)]
+    turned = [1j * complex(step.at(k)) for seg in turned_vectors(lv) for step in (seg.tail, seg.head)]
     return loaded([0j, *points], shown, 0j, [*((force.at, 0j) for force in shown), *((z, 0j) for z in turned)])
 
 

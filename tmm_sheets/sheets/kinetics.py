@@ -48,12 +48,14 @@ from tmm_sheets.sheets.kinetic_frames import (
     scheme,
     scheme_points,
     terms,
+    turned_vectors,
     with_arms,
 )
 from tmm_sheets.sheets.player import Stage, play, stage
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Segment
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.groups.force_plan import ForcePlan
     from tmm_sheets.mechanism.model import StructuralGroup
@@ -416,12 +418,13 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         text = tr("{scale} (enlarged {times})").format(scale=text, times=times(ratio))
     canvas.title(box, tr("Zhukovsky lever (position {label})").format(label=project.cycle.labels[k]), text)
     turned = stage(canvas, lv.velocities.plan, k, replace(frame, turn=pi / 2))
-    for seg in lv.velocities.plan.segments:
+    vectors = turned_vectors(lv)
+    for seg in vectors:
         turned.pen(seg.head, "vector", f"{seg.tail.name}–{seg.head.name}").line(turned.at(seg.tail), turned.at(seg.head), "axis")
     s = stage(canvas, lv.plan, k, frame)
     s.dot("p", 0.9)
     s.letters("p", "p", gap=1.2)
-    _turned_letters(s, turned, lv.points)
+    _turned_letters(s, turned, lv.points, vectors)
     if lv.contact is not None and project.driver is not None:
         play(s, [lv.contact], "axis")
         s.letters(lv.contact, "f′", gap=1.2)
@@ -429,12 +432,12 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     draw_forces(s, shown)
 
 
-def _turned_letters(s: Stage, turned: Stage, points: Mapping[str, Step]) -> None:
+def _turned_letters(s: Stage, turned: Stage, points: Mapping[str, Step], vectors: list[Segment]) -> None:
     """Dots of the turned plan's points and their letters with a prime; those of one place together.
 
     ``points`` are those that forces hang on; the other vertices are those of the velocity plan itself, which is ``turned``.
     """
-    vertices = [step for seg in turned.plan.segments for step in (seg.tail, seg.head) if step.name != turned.plan.pole]
+    vertices = [step for seg in vectors for step in (seg.tail, seg.head) if step.name != turned.plan.pole]
     every = {name: (s, step) for name, step in points.items()}
     every |= {step.name: (turned, step) for step in vertices if step.name not in points}
     names = list(every)
