@@ -62,6 +62,11 @@ def corner_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> l
     return [(62.0, 76.0), (52.0, 66.0), (44.0, 58.0)] if nth <= len(found) else []
 
 
+def corner_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> complex:
+    """What the detail shows, mm of the sheet: it stands beside that."""
+    return list(_corners(project, canvas))[int(options.get("nth", 1)) - 1].centre
+
+
 def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The ``nth`` corner of all plans enlarged, and its circle on the plan."""
     nth = int(options.get("nth", 1))
