@@ -59,12 +59,14 @@ def corner_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> l
     """Places that an enlarged detail can do with, mm; none where every corner can be read."""
     found = list(_corners(project, canvas))
     nth = int(options.get("nth", 1))
-    return [(62.0, 76.0), (52.0, 66.0), (44.0, 58.0)] if nth <= len(found) else []
+    return [(62.0, 76.0), (52.0, 66.0), (44.0, 58.0), (38.0, 52.0)] if nth <= len(found) else []
 
 
-def corner_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> complex:
-    """What the detail shows, mm of the sheet: it stands beside that."""
-    return list(_corners(project, canvas))[int(options.get("nth", 1)) - 1].centre
+def corner_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[complex, int, list[int]]:
+    """What the detail shows, mm of the sheet, the part of its plan, and those of the plans it could be taken for a detail of."""
+    it = list(_corners(project, canvas))[int(options.get("nth", 1)) - 1]
+    plans = _polygons(project)
+    return it.centre, it.frame.view, [frame.view for frame in canvas.frames if frame.plan in plans and frame.view != it.frame.view]
 
 
 def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -119,10 +121,7 @@ def _letters(plan: Plan, name: str) -> str:
 
 def _corners(project: Project, canvas: Canvas) -> Iterator[Corner]:
     """Corners that cannot be read, plan by plan as they stand on the sheet; of one plan the one with most points."""
-    k, study = project.force_index, project.study
-    polygons = {fp.plan.name: (fp.plan, [(s, a, b) for s, a, b, *_ in fp.sides]) for fp in study.forces.plans.values()}
-    acc = study.accelerations.plan
-    polygons[acc.name] = acc, [(seg.symbol, seg.tail, seg.head) for seg in acc.segments]
+    k, polygons = project.force_index, _polygons(project)
     for frame in canvas.frames:
         if frame.plan not in polygons:
             continue
@@ -137,6 +136,14 @@ def _corners(project: Project, canvas: Canvas) -> Iterator[Corner]:
             through = sum(chord(it.centre, 2 * it.reach, points[a], points[b]) is not None for _, a, b in drawn)
             if through <= MOST:
                 yield it
+
+
+def _polygons(project: Project) -> dict[str, tuple[Plan, list[tuple[str, Step, Step]]]]:
+    """Plans by their names with their vectors: sign, tail and head."""
+    study = project.study
+    polygons = {fp.plan.name: (fp.plan, [(s, a, b) for s, a, b, *_ in fp.sides]) for fp in study.forces.plans.values()}
+    acc = study.accelerations.plan
+    return polygons | {acc.name: (acc, [(seg.symbol, seg.tail, seg.head) for seg in acc.segments])}
 
 
 def _together(points: dict[str, complex], drawn: list[tuple[str, str, str]]) -> list[tuple[str, ...]]:

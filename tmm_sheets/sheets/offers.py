@@ -64,12 +64,16 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
             taken |= _of_part(canvas, k, inside, taken.shape)
         seen = len(canvas.parts)
         if near is not None:
-            box = _near(taken, wanted, inside, near(project, canvas, view.options))
+            spot, own, others = near(project, canvas, view.options)
+            pictures = [_ink_box(canvas, k, inside, taken.shape) for k in (own, *others)]
+            box = _near(taken, wanted, inside, spot, pictures)
         else:
             at = None if left is None else left(view.options)
-            # Kinematics among the forces only where it finds no place elsewhere.
-            first = _place(taken | whole | forces, wanted, inside, at) if view.needs == "positions" else None
-            box = first or _place(taken | whole, wanted, inside, at)
+            # Nothing parts a loaded scheme from its force plans but the equations that are read from it, and kinematics stand
+            # among the forces only where there is no other room.
+            room = taken if view.draw.startswith("moments.") else taken | whole
+            box = _place(room | forces, wanted, inside, at) if view.needs == "positions" else None
+            box = box or _place(room, wanted, inside, at)
         if box is not None:
             canvas.of = view.draw
             canvas.begin(box, "", view.draw)
@@ -84,7 +88,7 @@ def _functions(view: View) -> tuple[Callable[..., None], Callable[..., Any], Cal
             getattr(room, f"{function}_left", None))
 
 
-def _free(taken: NDArray[np.bool_], sizes: Sequence[tuple[float, float]]) -> Iterator[tuple[tuple[float, float], float, Cells]]:
+def _free(taken: Cells, sizes: Sequence[tuple[float, float]]) -> Iterator[tuple[tuple[float, float], float, Cells]]:
     """The sizes with distances from all else, the widest first, and the lowest left cells of all places that have them."""
     table = np.zeros((taken.shape[0] + 1, taken.shape[1] + 1), np.int64)
     table[1:, 1:] = taken.cumsum(axis=0, dtype=np.int64).cumsum(axis=1)
@@ -98,7 +102,7 @@ def _free(taken: NDArray[np.bool_], sizes: Sequence[tuple[float, float]]) -> Ite
                 yield size, apart, free
 
 
-def _place(taken: NDArray[np.bool_], sizes: Sequence[tuple[float, float]], inside: Box, left: float | None = None) -> Box | None:
+def _place(taken: Cells, sizes: Sequence[tuple[float, float]], inside: Box, left: float | None = None) -> Box | None:
     """The first of the sizes for which there is room beside the cells ``taken``, where it is farthest from all else.
 
     With the edge ``left``, mm, where there is room for that size with it.
@@ -114,16 +118,31 @@ def _place(taken: NDArray[np.bool_], sizes: Sequence[tuple[float, float]], insid
     return None
 
 
-def _near(taken: NDArray[np.bool_], sizes: Sequence[tuple[float, float]], inside: Box, spot: complex) -> Box | None:
-    """The place nearest to a spot, of the first size that has one close to it, else within reach."""
+def _near(taken: Cells, sizes: Sequence[tuple[float, float]], inside: Box, spot: complex, pictures: Sequence[Box]) -> Box | None:
+    """The place nearest to a spot of the first picture, no nearer to the others, of the first size that has one in reach."""
     for reach in CLOSE:
         for (width, height), apart, free in _free(taken, sizes):
             corners = complex(inside.x0 + apart, inside.y0 + apart) + CELL * (free[:, 0] + 1j * free[:, 1])
-            far = np.abs(corners + complex(width, height) / 2 - spot)
+            middles = corners + complex(width, height) / 2
+            off = np.array([_off(middles, picture) for picture in pictures])
+            far = np.where(off[0] <= off.min(axis=0), np.abs(middles - spot), np.inf)
             if far.min() <= reach:
                 at = complex(corners[np.argmin(far)])
                 return Box(at.real, at.imag, at.real + width, at.imag + height)
     return None
+
+
+def _off(z: Points, box: Box) -> NDArray[np.float64]:
+    """Distances of points from a box."""
+    x, y = (np.maximum(np.maximum(low - v, v - high), 0.0) for v, low, high in ((z.real, box.x0, box.x1), (z.imag, box.y0, box.y1)))
+    return np.asarray(np.hypot(x, y))
+
+
+def _ink_box(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> Box:
+    """What a part's ink takes."""
+    i, j = np.nonzero(_cells(canvas, range(k, k + 1), inside, shape))
+    return Box(*(float(edge) for edge in (inside.x0 + CELL * i.min(), inside.y0 + CELL * j.min(),
+                                          inside.x0 + CELL * (i.max() + 1), inside.y0 + CELL * (j.max() + 1))))
 
 
 def _whole(canvas: Canvas, inside: Box, shape: tuple[int, ...]) -> Cells:
