@@ -14,6 +14,7 @@ from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import chord
 from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import PlacedFrame, Text
 from tmm_sheets.sheets import linkage
 from tmm_sheets.sheets.frame import together
@@ -59,7 +60,11 @@ def corner_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> l
     """Places that an enlarged detail can do with, mm; none where every corner can be read."""
     found = list(_corners(project, canvas))
     nth = int(options.get("nth", 1))
-    return [(62.0, 76.0), (52.0, 66.0), (44.0, 58.0), (38.0, 52.0)] if nth <= len(found) else []
+    if nth > len(found):
+        return []
+    # As wide as its scale factor is in letters of the height that the others have, if there is room.
+    least = max(letter(str(_factor(canvas, found[nth - 1], half)[1]), 5.0).width + 2.1 for half in (31.0, 26.0))
+    return [(max(62.0, least), 76.0), (max(52.0, least), 66.0), (62.0, 76.0), (52.0, 66.0), (44.0, 58.0), (38.0, 52.0)]
 
 
 def corner_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[complex, int, list[int]]:
@@ -75,9 +80,7 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     it, name = list(_corners(project, canvas))[nth - 1], NAMES[nth - 1]
     window = Box(box.x0, box.y0, box.x1, box.y1 - 16.0)
     half = min(window.width, window.height) / 2
-    times = max((t for t in TIMES if t * it.reach <= FILLED * half), default=TIMES[0])
-    scale: Scale = canvas.scales[it.plan.name]
-    factor = Scale(scale.symbol, float(f"{scale.mu / times:.6g}"), scale.unit)
+    times, factor = _factor(canvas, it, half)
     canvas.title(box, f"{name} ({times}:1)", str(factor))
     with canvas.as_role("symbol"):
         canvas.window(window.centre, half)
@@ -87,6 +90,13 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
         canvas.window(it.centre, radius)
         # On a shelf: a slanting I among lines would be one of them (GOST 2.305).
         canvas.label(it.centre, name, 1 + 1j, 5.0, radius + 2.0, shelf=radius)
+
+
+def _factor(canvas: Canvas, it: Corner, half: float) -> tuple[int, Scale]:
+    """How many times corners are enlarged in a window of that half width, mm, and the scale factor that comes of it."""
+    times = max((t for t in TIMES if t * it.reach <= FILLED * half), default=TIMES[0])
+    scale: Scale = canvas.scales[it.plan.name]
+    return times, Scale(scale.symbol, float(f"{scale.mu / times:.6g}"), scale.unit)
 
 
 def _free_radius(canvas: Canvas, it: Corner) -> float:
