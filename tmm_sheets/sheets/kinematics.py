@@ -496,7 +496,7 @@ def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[
     """Acceleration plan of the chosen position with normal and Coriolis segments."""
     acc, k = project.study.accelerations, project.force_index
     frame = kinematic_frames.accelerations(project, canvas, box)
-    canvas.title(box, _title_of_accelerations(project, k), str(frame.scale))
+    canvas.title(box, kinematic_frames.title_of_accelerations(project, k), str(frame.scale))
     flat_crossings.warn(project, canvas, box, acc.plan)
     tiny = _draw_plan(stage(canvas, acc.plan, k, frame), "π", symbols_at=True)
     if tiny:
@@ -511,14 +511,10 @@ def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[s
     if not longest > 0:
         return []
     # Wide enough for a title as the other plans have it, if there is room.
-    titled = letter(_title_of_accelerations(project, kinematic_frames.other_stroke(project)), 5.0).width + 0.1
+    titled = letter(kinematic_frames.title_of_accelerations(project, kinematic_frames.other_stroke(project)), 5.0).width + 0.1
     places = [(size * real.width / longest + left + right + 12.0, size * real.height / longest + below + above + 10.0)
               for size in (120.0, 100.0, 80.0)]
     return [(max(wide, least), high) for least in (titled, 76.0) for wide, high in places]
-
-
-def _title_of_accelerations(project: Project, k: int) -> str:
-    return tr("Acceleration polygon (position {label})").format(label=project.cycle.labels[k])
 
 
 def second_accelerations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -527,7 +523,7 @@ def second_accelerations(project: Project, canvas: Canvas, box: Box, options: di
     real = kinematic_frames.plan_extent(acc.plan, k)
     inside = box.inset(*kinematic_frames.ACCELERATIONS).inset(6.0, 5.0)
     scale = Scale("μ_a", handy(max(real.width / inside.width, real.height / inside.height)), tr("(m/s²)/mm"))
-    canvas.title(box, _title_of_accelerations(project, k), str(scale))
+    canvas.title(box, kinematic_frames.title_of_accelerations(project, k), str(scale))
     tiny = _draw_plan(stage(canvas, acc.plan, k, Frame(scale, inside.centre - scale.mm(real.centre))), "π", symbols_at=True)
     if tiny:
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny)))
