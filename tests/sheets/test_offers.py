@@ -59,6 +59,35 @@ def test_the_next_smaller_size_is_taken_and_none_that_does_not_fit():
     assert offers._place(left | offers._closed(FIELD, [Box(690.0, 0.0, 836.0, 594.0)]), [(100.0, 60.0)], FIELD) is None
 
 
+def test_what_belongs_to_a_plan_stands_beside_it_and_not_beside_another():
+    taken = offers._closed(FIELD, [])
+    own, other, below = Box(100.0, 300.0, 200.0, 400.0), Box(100.0, 410.0, 200.0, 500.0), Box(100.0, 200.0, 200.0, 290.0)
+    spot, size = 150 + 395j, [(60.0, 80.0)]
+    assert abs(offers._near(taken, size, FIELD, spot, [own]).centre - spot) < 3.0
+    taken |= offers._closed(FIELD, [own])
+    assert offers._near(taken, size, FIELD, spot, [own]).y0 > own.y1  # that is nearest
+    beside = offers._near(taken, size, FIELD, spot, [own, other])
+    assert beside.x1 < own.x0 or beside.x0 > own.x1
+    assert beside.centre.imag < (own.y1 + other.y0) / 2
+    walls = taken | offers._closed(FIELD, [Box(20.0, 5.0, 99.0, 589.0), Box(201.0, 5.0, 836.0, 589.0)])
+    assert offers._near(walls, size, FIELD, spot, [own, other, below]) is None
+    assert offers._near(offers._closed(FIELD, [Box(20.0, 5.0, 600.0, 589.0)]), size, FIELD, spot, [own]) is None  # too far
+
+
+def test_nothing_parts_a_scheme_from_its_force_plans():
+    """Views drawn one after the other: what stands between the ink of one of them is its own, beyond it there is room."""
+    canvas = Canvas()
+    for draw, y in (("kinetics.group", 500j), ("kinetics.group", 300j), ("kinematics.positions", 100j)):
+        canvas.begin(FIELD, "", draw)
+        for title, x in (("scheme", 100.0), ("plan", 500.0)):
+            canvas.begin(FIELD, title)
+            canvas.line(x + y - 20j, x + y + 20j, "main")
+    whole = offers._whole(canvas, FIELD, offers._closed(FIELD, []).shape)
+    at = {z: whole[int((z.real - FIELD.x0) / offers.CELL), int((z.imag - FIELD.y0) / offers.CELL)] for z in
+          (300 + 500j, 300 + 300j, 300 + 100j, 300 + 400j, 600 + 500j)}
+    assert list(at.values()) == [True, True, False, False, False]
+
+
 @pytest.mark.parametrize("name", ["press", "lugansk/engine", "sixbar/3:2", "loom", "screen", "tests/projects/sieve.toml"])
 def test_equations_of_moments_hold_in_the_numbers_written(name):
     """Each line with numbers is worked out as a pupil would: the sum over the arm is the force printed, to their digits."""

@@ -242,7 +242,8 @@ def _accelerations(project: Project, view: View) -> Node:
     real = kinematic_frames.plan_extent(project.study.accelerations.plan, project.force_index)
     left, below, right, above = kinematic_frames.ACCELERATIONS
     around = left + right, below + above
-    return _leaf(view.box, Need((real.width, real.height), around, (88.0, 80.0)), 0.8)
+    title = letter(kinematic_frames.title_of_accelerations(project, project.force_index), 5.0).width
+    return _leaf(view.box, Need((real.width, real.height), around, (max(88.0, title + 1.0), 80.0)), 0.8)
 
 
 def _false_positions(project: Project, view: View) -> Node | None:

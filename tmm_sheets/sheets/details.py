@@ -14,6 +14,7 @@ from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import chord
 from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import PlacedFrame, Text
 from tmm_sheets.sheets import linkage
 from tmm_sheets.sheets.frame import together
@@ -59,7 +60,18 @@ def corner_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> l
     """Places that an enlarged detail can do with, mm; none where every corner can be read."""
     found = list(_corners(project, canvas))
     nth = int(options.get("nth", 1))
-    return [(62.0, 76.0), (52.0, 66.0), (44.0, 58.0)] if nth <= len(found) else []
+    if nth > len(found):
+        return []
+    # As wide as its scale factor is in letters of the height that the others have, if there is room.
+    least = max(letter(str(_factor(canvas, found[nth - 1], half)[1]), 5.0).width + 2.1 for half in (31.0, 26.0))
+    return [(max(62.0, least), 76.0), (max(52.0, least), 66.0), (62.0, 76.0), (52.0, 66.0), (44.0, 58.0), (38.0, 52.0)]
+
+
+def corner_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[complex, int, list[int]]:
+    """What the detail shows, mm of the sheet, the part of its plan, and those of the plans it could be taken for a detail of."""
+    it = list(_corners(project, canvas))[int(options.get("nth", 1)) - 1]
+    plans = _polygons(project)
+    return it.centre, it.frame.view, [frame.view for frame in canvas.frames if frame.plan in plans and frame.view != it.frame.view]
 
 
 def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -68,9 +80,7 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     it, name = list(_corners(project, canvas))[nth - 1], NAMES[nth - 1]
     window = Box(box.x0, box.y0, box.x1, box.y1 - 16.0)
     half = min(window.width, window.height) / 2
-    times = max((t for t in TIMES if t * it.reach <= FILLED * half), default=TIMES[0])
-    scale: Scale = canvas.scales[it.plan.name]
-    factor = Scale(scale.symbol, float(f"{scale.mu / times:.6g}"), scale.unit)
+    times, factor = _factor(canvas, it, half)
     canvas.title(box, f"{name} ({times}:1)", str(factor))
     with canvas.as_role("symbol"):
         canvas.window(window.centre, half)
@@ -80,6 +90,13 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
         canvas.window(it.centre, radius)
         # On a shelf: a slanting I among lines would be one of them (GOST 2.305).
         canvas.label(it.centre, name, 1 + 1j, 5.0, radius + 2.0, shelf=radius)
+
+
+def _factor(canvas: Canvas, it: Corner, half: float) -> tuple[int, Scale]:
+    """How many times corners are enlarged in a window of that half width, mm, and the scale factor that comes of it."""
+    times = max((t for t in TIMES if t * it.reach <= FILLED * half), default=TIMES[0])
+    scale: Scale = canvas.scales[it.plan.name]
+    return times, Scale(scale.symbol, float(f"{scale.mu / times:.6g}"), scale.unit)
 
 
 def _free_radius(canvas: Canvas, it: Corner) -> float:
@@ -114,10 +131,7 @@ def _letters(plan: Plan, name: str) -> str:
 
 def _corners(project: Project, canvas: Canvas) -> Iterator[Corner]:
     """Corners that cannot be read, plan by plan as they stand on the sheet; of one plan the one with most points."""
-    k, study = project.force_index, project.study
-    polygons = {fp.plan.name: (fp.plan, [(s, a, b) for s, a, b, *_ in fp.sides]) for fp in study.forces.plans.values()}
-    acc = study.accelerations.plan
-    polygons[acc.name] = acc, [(seg.symbol, seg.tail, seg.head) for seg in acc.segments]
+    k, polygons = project.force_index, _polygons(project)
     for frame in canvas.frames:
         if frame.plan not in polygons:
             continue
@@ -132,6 +146,14 @@ def _corners(project: Project, canvas: Canvas) -> Iterator[Corner]:
             through = sum(chord(it.centre, 2 * it.reach, points[a], points[b]) is not None for _, a, b in drawn)
             if through <= MOST:
                 yield it
+
+
+def _polygons(project: Project) -> dict[str, tuple[Plan, list[tuple[str, Step, Step]]]]:
+    """Plans by their names with their vectors: sign, tail and head."""
+    study = project.study
+    polygons = {fp.plan.name: (fp.plan, [(s, a, b) for s, a, b, *_ in fp.sides]) for fp in study.forces.plans.values()}
+    acc = study.accelerations.plan
+    return polygons | {acc.name: (acc, [(seg.symbol, seg.tail, seg.head) for seg in acc.segments])}
 
 
 def _together(points: dict[str, complex], drawn: list[tuple[str, str, str]]) -> list[tuple[str, ...]]:

@@ -134,6 +134,11 @@ def plan_points(plan: Plan, i: int) -> dict[str, complex]:
     return {step.name: complex(step.at(i)) for step in plan if step.rule.gives in ("point", "vector")}
 
 
+def title_of_accelerations(project: Project, k: int) -> str:
+    """Title of the acceleration plan of position ``k``."""
+    return tr("Acceleration polygon (position {label})").format(label=project.cycle.labels[k])
+
+
 def plan_extent(plan: Plan, i: int) -> Box:
     """Rectangle round the points of a plan at one position, in its unit."""
     return extent([np.array(list(plan_points(plan, i).values()))])

@@ -13,8 +13,10 @@ from tmm_sheets.construction.scale import Scale, handy, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Align, Canvas
 from tmm_sheets.drawing.clipping import segment_inside
+from tmm_sheets.drawing.evenness import dense
+from tmm_sheets.drawing.labels import HEAVY
 from tmm_sheets.drawing.lettering import letter, size_for
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.marks import Box, Text
 from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.mechanism.structure import decompose
@@ -283,17 +285,43 @@ def _named_angles(project: Project, s: Stage) -> None:
     here = stage(s.canvas, plan, 0, s.frame)
     _, far, *_ = (step.name for step in plan)
     pivot, start = here.at(c.pivot), float(cycle.world(cycle.turned[0]))
-    for k in (1, 2):
+    angles = {k: float(plan[f"φ_{k}k"].value) for k in (1, 2)}
+    longer = max(angles, key=lambda k: abs(angles[k]))
+    arcs = {}
+    for k, angle in angles.items():
         name = f"{c.pin}_{k}k"
         for end in (c.pivot, far):
             here.pen(name, "link", f"{end}–{name}").line(here.at(end), here.at(name), "hidden")
         here.dot(name, 0.8, "main")
         here.letters(name, f"{c.pin}_{{{k}k}}", here.at(name) - pivot, gap=1.5)
-        angle = float(plan[f"φ_{k}k"].value)
-        lo, hi = sorted((start, start + cycle.sense * angle))
-        radius = c.length / s.frame.mu[1] + 4.0 + 5.0 * k
-        text = f"φ_{{{k}k}} = {number(round(degrees(angle), 2), 5)}°"
-        here.pen(f"φ_{k}k", "dimension").angle_mark(pivot, lo, hi, radius, text)
+        # The shorter arc lies outside: each has a part with no other beyond it.
+        arcs[k] = (*sorted((start, start + cycle.sense * angle)), c.length / s.frame.mu[1] + (9.0 if k == longer else 14.0))
+    for k, (lo, hi, radius) in arcs.items():
+        text = f"φ_{{{k}k}} = {number(round(degrees(angles[k]), 2), 5)}°"
+        share = _free_share(s.canvas, pivot, list(arcs.values()), arcs[k], text)
+        here.pen(f"φ_{k}k", "dimension").angle_mark(pivot, lo, hi, radius, text, share=share)
+
+
+_Arc = tuple[float, float, float]
+"""Of an arc: from, to, rad, and its radius, mm."""
+
+
+def _free_share(canvas: Canvas, centre: complex, arcs: list[_Arc], own: _Arc, text: str) -> float:
+    """Where along its arc the number of an angle stands over least."""
+    marks = canvas.marks[canvas.parts[-1].first:]
+    thick = [mark for mark in marks if not isinstance(mark, Text) and mark.style in HEAVY]
+    drawn = [centre + radius * np.exp(1j * np.arange(lo, hi, 1 / radius)) for lo, hi, radius in arcs]
+    anchors = [label.anchor for label in canvas.labels] * 4
+    ink = np.concatenate([dense(marks, 1.0), *[dense(thick, 1.0)] * 4, *drawn * 8, np.array(anchors, complex)])
+    laid = letter(text, 3.5)
+    half = complex(laid.width / 2 + 1.0, (laid.ascent + laid.descent) / 2 + 1.0)
+
+    def over(share: Any) -> tuple[int, float]:
+        u = complex(np.exp(1j * (own[0] + share * (own[1] - own[0]))))
+        off = ink - centre - (own[2] + 1.0) * u - complex(half.real * u.real, half.imag * u.imag)
+        return int(((np.abs(off.real) < half.real) & (np.abs(off.imag) < half.imag)).sum()), abs(share - 0.5)
+
+    return float(min(np.linspace(0.06, 0.94, 45), key=over))
 
 
 def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
@@ -466,7 +494,7 @@ def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[
     """Acceleration plan of the chosen position with normal and Coriolis segments."""
     acc, k = project.study.accelerations, project.force_index
     frame = kinematic_frames.accelerations(project, canvas, box)
-    canvas.title(box, tr("Acceleration polygon (position {label})").format(label=project.cycle.labels[k]), str(frame.scale))
+    canvas.title(box, kinematic_frames.title_of_accelerations(project, k), str(frame.scale))
     flat_crossings.warn(project, canvas, box, acc.plan)
     tiny = _draw_plan(stage(canvas, acc.plan, k, frame), "π", symbols_at=True)
     if tiny:
@@ -480,8 +508,11 @@ def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[s
     longest = max(real.width, real.height)
     if not longest > 0:
         return []
-    return [(max(size * real.width / longest + left + right + 12.0, 76.0), size * real.height / longest + below + above + 10.0)
-            for size in (120.0, 100.0, 80.0)]
+    # Wide enough for a title as the other plans have it, if there is room.
+    titled = letter(kinematic_frames.title_of_accelerations(project, kinematic_frames.other_stroke(project)), 5.0).width + 0.1
+    places = [(size * real.width / longest + left + right + 12.0, size * real.height / longest + below + above + 10.0)
+              for size in (120.0, 100.0, 80.0)]
+    return [(max(wide, least), high) for least in (titled, 76.0) for wide, high in places]
 
 
 def second_accelerations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -490,7 +521,7 @@ def second_accelerations(project: Project, canvas: Canvas, box: Box, options: di
     real = kinematic_frames.plan_extent(acc.plan, k)
     inside = box.inset(*kinematic_frames.ACCELERATIONS).inset(6.0, 5.0)
     scale = Scale("μ_a", handy(max(real.width / inside.width, real.height / inside.height)), tr("(m/s²)/mm"))
-    canvas.title(box, tr("Acceleration polygon (position {label})").format(label=project.cycle.labels[k]), str(scale))
+    canvas.title(box, kinematic_frames.title_of_accelerations(project, k), str(scale))
     tiny = _draw_plan(stage(canvas, acc.plan, k, Frame(scale, inside.centre - scale.mm(real.centre))), "π", symbols_at=True)
     if tiny:
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny)))

@@ -415,7 +415,9 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     text = str(frame.scale)
     ratio = plain.mu / frame.scale.mu if plain is not None else 1.0
     if ratio > 1.01 and abs(100 * ratio - round(100 * ratio)) < 1e-6:  # 2,667 times tells nothing
-        text = tr("{scale} (enlarged {times})").format(scale=text, times=times(ratio))
+        said = tr("{scale} (enlarged {times})").format(scale=text, times=times(ratio))
+        # In a narrow place by its sign: all scale factors of a sheet have letters of one height.
+        text = said if letter(said, 5.0).width <= box.width - 2.0 else f"{text} (×{number(ratio)})"
     canvas.title(box, tr("Zhukovsky lever (position {label})").format(label=project.cycle.labels[k]), text)
     turned = stage(canvas, lv.velocities.plan, k, replace(frame, turn=pi / 2))
     vectors = turned_vectors(lv)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,8 @@ from tmm_sheets.sheets.arrangement import View
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
+Cells = NDArray[Any]
+
 CELL = 2.0
 """Side of the cells in which room is looked for, mm."""
 TITLE = 3.0
@@ -30,6 +33,10 @@ REACH = 2.0
 """How far a label may stand off beyond its gap, mm."""
 OPEN = 100.0
 """What is open to one side of a view and wider than this is no part of its picture, mm."""
+CLOSE = (100.0, 200.0)
+"""Distances of a view from the spot that it belongs to, mm: as near as is wanted, and as is allowed."""
+FORCES = ("kinetics.group", "kinetics.groups", "kinetics.crank")
+"""Views of a scheme with its force plans, which stand in columns of their own."""
 FAR = 10**6
 """More cells than a sheet has."""
 APART = (12.0, 9.0, 6.0)
@@ -40,14 +47,13 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
     """Draw those of the offered views that find room ``inside`` the sheet, away from boxes ``closed`` to them.
 
     A view ``module.function`` tells its sizes, from what it wants down to what it can do with, by ``module.function_sizes``; none
-    where it has nothing to show. By ``module.function_left`` it may tell the left edge that it would like best, mm.
+    where it has nothing to show. By ``module.function_left`` it may tell the left edge that it would like best, mm; by
+    ``module.function_near`` what it belongs to: it stands near that or nowhere, and those that do so choose first.
     """
     taken = _closed(inside, closed)
-    seen = 0
-    for view in offered:
-        module, _, function = view.draw.partition(".")
-        room = import_module(f"tmm_sheets.sheets.{module}")
-        sizes: Callable[..., Sequence[tuple[float, float]]] = getattr(room, f"{function}_sizes")
+    seen, whole, forces = 0, _whole(canvas, inside, taken.shape), _of_forces(canvas, inside)
+    rooms = [(view, *_functions(view)) for view in offered]
+    for view, function, sizes, near, left in sorted(rooms, key=lambda room: room[3] is None):
         try:
             wanted = sizes(project, canvas, view.options)
         except CannotBuild:
@@ -57,36 +63,106 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
         for k in range(seen, len(canvas.parts)):
             taken |= _of_part(canvas, k, inside, taken.shape)
         seen = len(canvas.parts)
-        left: Callable[..., float] | None = getattr(room, f"{function}_left", None)
-        box = _place(taken, wanted, inside, None if left is None else left(view.options))
+        if near is not None:
+            spot, own, others = near(project, canvas, view.options)
+            pictures = [_ink_box(canvas, k, inside, taken.shape) for k in (own, *others)]
+            box = _near(taken, wanted, inside, spot, pictures)
+        else:
+            at = None if left is None else left(view.options)
+            # Nothing parts a loaded scheme from its force plans but the equations that are read from it, and kinematics stand
+            # among the forces only where there is no other room.
+            room = taken if view.draw.startswith("moments.") else taken | whole
+            box = _place(room | forces, wanted, inside, at) if view.needs == "positions" else None
+            box = box or _place(room, wanted, inside, at)
         if box is not None:
             canvas.of = view.draw
             canvas.begin(box, "", view.draw)
-            getattr(room, function)(project, canvas, box, view.options)
+            function(project, canvas, box, view.options)
 
 
-def _place(taken: NDArray[np.bool_], sizes: Sequence[tuple[float, float]], inside: Box, left: float | None = None) -> Box | None:
-    """The first of the sizes for which there is room beside the cells ``taken``, where it is farthest from all else.
+def _functions(view: View) -> tuple[Callable[..., None], Callable[..., Any], Callable[..., Any] | None, Callable[..., Any] | None]:
+    """What draws a view, tells its sizes, what it is to be near, and its left edge."""
+    module, _, function = view.draw.partition(".")
+    room = import_module(f"tmm_sheets.sheets.{module}")
+    return (getattr(room, function), getattr(room, f"{function}_sizes"), getattr(room, f"{function}_near", None),
+            getattr(room, f"{function}_left", None))
 
-    With the edge ``left``, mm, where there is room for that size with it.
-    """
+
+def _free(taken: Cells, sizes: Sequence[tuple[float, float]]) -> Iterator[tuple[tuple[float, float], float, Cells]]:
+    """The sizes with distances from all else, the widest first, and the lowest left cells of all places that have them."""
     table = np.zeros((taken.shape[0] + 1, taken.shape[1] + 1), np.int64)
     table[1:, 1:] = taken.cumsum(axis=0, dtype=np.int64).cumsum(axis=1)
-    for width, height in sizes:
+    for size in sizes:
         for apart in APART:
-            nx, ny = (int(np.ceil((length + 2 * apart) / CELL)) for length in (width, height))
+            nx, ny = (int(np.ceil((length + 2 * apart) / CELL)) for length in size)
             if nx >= table.shape[0] or ny >= table.shape[1]:
                 continue
             free = np.argwhere(table[nx:, ny:] - table[:-nx, ny:] - table[nx:, :-ny] + table[:-nx, :-ny] == 0)
             if len(free):
-                if left is not None and len(aligned := free[free[:, 0] == round((left - apart - inside.x0) / CELL)]):
-                    j = int(np.median(aligned[:, 1]))
-                    return Box(left, inside.y0 + j * CELL + apart, left + width, inside.y0 + j * CELL + apart + height)
-                # In the middle of the room there is, if it is one; else at its beginning.
-                i, j = free[np.argmin(np.abs(free - np.median(free, axis=0)).sum(axis=1))]
-                corner = complex(inside.x0 + i * CELL + apart, inside.y0 + j * CELL + apart)
-                return Box(corner.real, corner.imag, corner.real + width, corner.imag + height)
+                yield size, apart, free
+
+
+def _place(taken: Cells, sizes: Sequence[tuple[float, float]], inside: Box, left: float | None = None) -> Box | None:
+    """The first of the sizes for which there is room beside the cells ``taken``, where it is farthest from all else.
+
+    With the edge ``left``, mm, where there is room for that size with it.
+    """
+    for (width, height), apart, free in _free(taken, sizes):
+        if left is not None and len(aligned := free[free[:, 0] == round((left - apart - inside.x0) / CELL)]):
+            j = int(np.median(aligned[:, 1]))
+            return Box(left, inside.y0 + j * CELL + apart, left + width, inside.y0 + j * CELL + apart + height)
+        # In the middle of the room there is, if it is one; else at its beginning.
+        i, j = free[np.argmin(np.abs(free - np.median(free, axis=0)).sum(axis=1))]
+        corner = complex(inside.x0 + i * CELL + apart, inside.y0 + j * CELL + apart)
+        return Box(corner.real, corner.imag, corner.real + width, corner.imag + height)
     return None
+
+
+def _near(taken: Cells, sizes: Sequence[tuple[float, float]], inside: Box, spot: complex, pictures: Sequence[Box]) -> Box | None:
+    """The place nearest to a spot of the first picture, no nearer to the others, of the first size that has one in reach."""
+    for reach in CLOSE:
+        for (width, height), apart, free in _free(taken, sizes):
+            corners = complex(inside.x0 + apart, inside.y0 + apart) + CELL * (free[:, 0] + 1j * free[:, 1])
+            middles = corners + complex(width, height) / 2
+            off = np.array([_off(middles, picture) for picture in pictures])
+            far = np.where(off[0] <= off.min(axis=0), np.abs(middles - spot), np.inf)
+            if far.min() <= reach:
+                at = complex(corners[np.argmin(far)])
+                return Box(at.real, at.imag, at.real + width, at.imag + height)
+    return None
+
+
+def _off(z: Points, box: Box) -> NDArray[np.float64]:
+    """Distances of points from a box."""
+    x, y = (np.maximum(np.maximum(low - v, v - high), 0.0) for v, low, high in ((z.real, box.x0, box.x1), (z.imag, box.y0, box.y1)))
+    return np.asarray(np.hypot(x, y))
+
+
+def _ink_box(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> Box:
+    """What a part's ink takes."""
+    i, j = np.nonzero(_cells(canvas, range(k, k + 1), inside, shape))
+    return Box(*(float(edge) for edge in (inside.x0 + CELL * i.min(), inside.y0 + CELL * j.min(),
+                                          inside.x0 + CELL * (i.max() + 1), inside.y0 + CELL * (j.max() + 1))))
+
+
+def _whole(canvas: Canvas, inside: Box, shape: tuple[int, ...]) -> Cells:
+    """Cells between the pictures of one view of forces: a loaded scheme and its force plans."""
+    taken = np.zeros(shape, bool)
+    begins = [k for k, part in enumerate(canvas.parts) if not part.title]
+    for begin, end in pairwise([*begins, len(canvas.parts)]):
+        if canvas.parts[begin].draw in FORCES:
+            picture = _cells(canvas, range(begin, end), inside, shape)
+            taken |= _between(picture, 0)[1] | _between(picture, 1)[1]
+    return taken
+
+
+def _of_forces(canvas: Canvas, inside: Box) -> Cells:
+    """Cells of the views of forces, and between them."""
+    boxes = [part.box for part in canvas.parts if part.draw in FORCES]
+    alone = [part.box for part in canvas.parts if part.draw == "kinetics.lever"]
+    hull = [Box(min(b.x0 for b in boxes), min(b.y0 for b in boxes), max(b.x1 for b in boxes), max(b.y1 for b in boxes))] \
+        if boxes else []
+    return _closed(inside, [*hull, *alone])
 
 
 def _closed(inside: Box, closed: Sequence[Box]) -> NDArray[np.bool_]:
