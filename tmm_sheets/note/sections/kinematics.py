@@ -13,8 +13,6 @@ from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.plan import Plan, Segment
 from tmm_sheets.construction.rules import GIVEN, LINE_LINE, TURN
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.methods.linkage.accelerations import CORIOLIS
-from tmm_sheets.methods.linkage.velocities import MotionPolygon
 from tmm_sheets.note.document import Figure, Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Said, Scope, listed, words
@@ -210,7 +208,7 @@ def _of_special(r: Reader, plan: Plan, step: Step, start: Step, path: Sequence[s
     """
     study = r.project.study
     if plan is study.accelerations.plan:
-        turned = {s.symbol for s in plan.segments if s.head.rule is CORIOLIS}
+        turned = study.accelerations.of_coriolis
         rest = {symbol: "r" if symbol in turned else "τ" for symbol in path if symbol in turned or symbol.endswith("^n")}
         return [f"{symbol.partition('^')[0]}^{kind}" for symbol, kind in rest.items()]
     m, v = study.mechanism, study.velocities
@@ -396,7 +394,7 @@ def _angular(r: Reader, plan: Plan, steps: dict[str, Step]) -> Iterator[dict[str
         yield {"angular": said, "link": link, "positive": float(value) >= 0, "zero": is_zero(float(value), 1.0)}
 
 
-def _over_positions(r: Reader, of: MotionPolygon, key: str) -> tuple[tuple[Text, ...], ...]:
+def _over_positions(r: Reader, of: Any, key: str) -> tuple[tuple[Text, ...], ...]:
     """Sizes of the vectors from the pole and angular quantities at all drawn positions.
 
     Points of moving guides come last: they are the first to be left out where there is no room.
@@ -406,9 +404,8 @@ def _over_positions(r: Reader, of: MotionPolygon, key: str) -> tuple[tuple[Text,
     under: list[tuple[str, Any, Step, str]] = []
     for s in plan.segments:
         if s.tail.name == plan.pole and "^" not in s.symbol:
-            on_guide = s.head in of.coincident.values() and s.head.rule is not LINE_LINE
             size = np.abs(s.head.value - s.tail.value)
-            (under if on_guide else columns).append((s.symbol.replace(BAR, ""), size, s.head, plan.unit))
+            (under if s.head in of.carried else columns).append((s.symbol.replace(BAR, ""), size, s.head, plan.unit))
     letter, unit = ("ω", "rad/s") if key == "velocity" else ("ε", "rad/s2")
     seen: list[Step] = []
     for link, step in of.rates.items():
