@@ -403,7 +403,8 @@ def _over_positions(r: Reader, of: Any, key: str) -> tuple[tuple[Text, ...], ...
     columns: list[tuple[str, Any, Step, str]] = []
     under: list[tuple[str, Any, Step, str]] = []
     for s in plan.segments:
-        if s.tail.name == plan.pole and "^" not in s.symbol:
+        # Against a fixed point it is the same vector under another name.
+        if s.tail.name == plan.pole and "^" not in s.symbol and not any(s.head is step for _, _, step, _ in columns):
             size = np.abs(s.head.value - s.tail.value)
             (under if s.head in of.carried else columns).append((s.symbol.replace(BAR, ""), size, s.head, plan.unit))
     letter, unit = ("ω", "rad/s") if key == "velocity" else ("ε", "rad/s2")
