@@ -12,7 +12,6 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import symbol
-from tmm_sheets.methods.linkage.velocities import RIGID
 from tmm_sheets.numbers import is_zero
 from tmm_sheets.sheets import linkage
 from tmm_sheets.sheets.frame import extent
@@ -237,8 +236,8 @@ def arm_sign(sign: str) -> str:
 def turned_vectors(lv: Lever) -> list[Segment]:
     """Vectors of the velocity plan that the lever shows: none of a guide's point under a slider that no force hangs on."""
     vel = lv.velocities
-    under = [step for step in vel.coincident.values() if step.rule is RIGID and step.name not in lv.points]
-    under = [step for step in under if not any(seg.tail is step and seg.head.name in lv.points for seg in vel.plan.segments)]
+    held = {seg.tail.name for seg in vel.plan.segments if seg.head.name in lv.points} | set(lv.points)
+    under = [step for step in vel.carried if step.name not in held]
     return [seg for seg in vel.plan.segments if seg.tail not in under and seg.head not in under]
 
 

@@ -66,6 +66,11 @@ class Accelerations(MotionPolygon):
         """Angular acceleration of every link, rad/s2."""
         return self.rates
 
+    @property
+    def of_coriolis(self) -> set[str]:
+        """Symbols of the Coriolis segments."""
+        return {s.symbol for s in self.plan.segments if s.head.rule is CORIOLIS}
+
     def guide(self, guide: str, at: str) -> tuple[Step, Step, str]:
         """Acceleration and velocity of the guide's point coinciding with ``at``, and the guide's link."""
         m, vel = self.positions.mechanism, self.velocities

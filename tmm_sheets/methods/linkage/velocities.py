@@ -58,7 +58,7 @@ class MotionPolygon:
     """What velocity and acceleration polygons have in common: vectors of points from the pole, rates of turning of links.
 
     ``reference`` holds two points of a link and their vectors, ``coincident`` the points of guides under those of the sliders,
-    ``special`` the singular points of groups of class III.
+    ``carried`` those of them that were found by the turning of their link, ``special`` the singular points of groups of class III.
     """
 
     POLE: ClassVar[str]
@@ -73,6 +73,7 @@ class MotionPolygon:
     rates: dict[str, Step] = field(default_factory=dict)
     reference: dict[str, tuple[str, str, Step, Step]] = field(default_factory=dict)
     coincident: dict[str, Step] = field(default_factory=dict)
+    carried: list[Step] = field(default_factory=list)
     special: dict[str, Step] = field(default_factory=dict)
 
     @property
@@ -91,8 +92,9 @@ class MotionPolygon:
             start = self.coincident.get(on_link(through, link), self.points[through])
             if through == at:
                 return start
-            self.coincident[here] = self.rotated(here, start, link, through, at)
-            self.plan.vector(f"{self.VECTOR}_{{{here}}}", self.pole, self.coincident[here])
+            found = self.coincident[here] = self.rotated(here, start, link, through, at)
+            self.plan.vector(f"{self.VECTOR}_{{{here}}}", self.pole, found)
+            self.carried.append(found)
         return self.coincident[here]
 
     def rotated(self, point: str, start: Step, link: str, q: str, b: str) -> Step:

@@ -21,8 +21,6 @@ from tmm_sheets.numbers import is_zero
 from tmm_sheets.sheets.false_positions import triads
 
 BAR = "\u0305"
-CORIOLIS = "Coriolis acceleration"
-"""Name of the rule that lays it off."""
 MOST_COLUMNS = 9
 """Columns of a table over the positions beside the number of the position."""
 
@@ -210,7 +208,7 @@ def _of_special(r: Reader, plan: Plan, step: Step, start: Step, path: Sequence[s
     """
     study = r.project.study
     if plan is study.accelerations.plan:
-        turned = {s.symbol for s in plan.segments if s.head.rule.name == CORIOLIS}
+        turned = study.accelerations.of_coriolis
         rest = {symbol: "r" if symbol in turned else "τ" for symbol in path if symbol in turned or symbol.endswith("^n")}
         return [f"{symbol.partition('^')[0]}^{kind}" for symbol, kind in rest.items()]
     m, v = study.mechanism, study.velocities
@@ -405,10 +403,10 @@ def _over_positions(r: Reader, of: Any, key: str) -> tuple[tuple[Text, ...], ...
     columns: list[tuple[str, Any, Step, str]] = []
     under: list[tuple[str, Any, Step, str]] = []
     for s in plan.segments:
-        if s.tail.name == plan.pole and "^" not in s.symbol:
-            on_guide = s.head in of.coincident.values() and s.head.rule is not LINE_LINE
+        # Against a fixed point it is the same vector under another name.
+        if s.tail.name == plan.pole and "^" not in s.symbol and not any(s.head is step for _, _, step, _ in columns):
             size = np.abs(s.head.value - s.tail.value)
-            (under if on_guide else columns).append((s.symbol.replace(BAR, ""), size, s.head, plan.unit))
+            (under if s.head in of.carried else columns).append((s.symbol.replace(BAR, ""), size, s.head, plan.unit))
     letter, unit = ("ω", "rad/s") if key == "velocity" else ("ε", "rad/s2")
     seen: list[Step] = []
     for link, step in of.rates.items():
