@@ -287,7 +287,7 @@ def _named_angles(project: Project, s: Stage) -> None:
     pivot, start = here.at(c.pivot), float(cycle.world(cycle.turned[0]))
     angles = {k: float(plan[f"φ_{k}k"].value) for k in (1, 2)}
     longer = max(angles, key=lambda k: abs(angles[k]))
-    arcs = {}
+    arcs: dict[int, _Arc] = {}
     for k, angle in angles.items():
         name = f"{c.pin}_{k}k"
         for end in (c.pivot, far):
@@ -295,7 +295,8 @@ def _named_angles(project: Project, s: Stage) -> None:
         here.dot(name, 0.8, "main")
         here.letters(name, f"{c.pin}_{{{k}k}}", here.at(name) - pivot, gap=1.5)
         # The shorter arc lies outside: each has a part with no other beyond it.
-        arcs[k] = (*sorted((start, start + cycle.sense * angle)), c.length / s.frame.mu[1] + (9.0 if k == longer else 14.0))
+        end_at = start + cycle.sense * angle
+        arcs[k] = min(start, end_at), max(start, end_at), c.length / s.frame.mu[1] + (9.0 if k == longer else 14.0)
     for k, (lo, hi, radius) in arcs.items():
         text = f"φ_{{{k}k}} = {number(round(degrees(angles[k]), 2), 5)}°"
         share = _free_share(s.canvas, pivot, list(arcs.values()), arcs[k], text)
