@@ -11,6 +11,7 @@ from tests.compare.own_layouts import Drawn, follows
 from tests.compare.slip_photographs import followed
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.diagnosis.built_plan import errors_of
+from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint
 from tmm_sheets.compare.known_sheet import known_sheet
 from tmm_sheets.compare.photo import built_photo, tracing
 from tmm_sheets.compare.photo.judging import judge
@@ -43,7 +44,7 @@ def examined(elements, hidden=None):
     found = SimpleNamespace(ink=ink, hidden=hidden, uncertainty=0.15, soft=False)
     findings = [judge(t, 0.25, 0.15) for t in tracing.trace(KNOWN.elements, ink, hidden)[0]]
     built = built_photo.built_otherwise(SHAPER, KNOWN, findings, ink, hidden)
-    return built, built_photo.as_built(KNOWN.elements, built, found, 0.25)[0] if built else findings
+    return built, built_photo.as_built(findings, built, found, 0.25)[0] if built else findings
 
 
 def slipped(**ways):
@@ -159,6 +160,7 @@ def test_ink_that_crosses_a_line_is_none_along_it():
     ((0, 0), {}, False), ((1j, 1j), {}, True), ((0, 1j), {}, True), ((0.5j, -0.5j), {}, False),  # aside
     ((3, 3), {}, False), ((3, 0), {"ends": (0.0, np.nan)}, True), ((0, 3), {"ends": (0.0, np.nan)}, False),  # along itself
     ((0, -3), {"head": "there"}, True), ((-3, 0), {"head": "there"}, False), ((0, -1), {"head": "there"}, False),
+    ((1.5, 0), {"ends": (0.0, np.nan)}, True), ((0.5, 0), {"ends": (0.0, np.nan)}, False),
     ((1j, 1j), {"deviation": 2.0}, False), ((1j, 1j), {"status": "shared"}, False), ((1j, 1j), {"status": "dense"}, False),
 ])
 def test_a_line_that_is_in_its_place_speaks_against_a_mistake_that_leads_it_elsewhere(by, found, stays):
@@ -175,6 +177,41 @@ def test_a_line_that_is_in_its_place_speaks_against_a_mistake_that_leads_it_else
 def test_a_line_that_would_run_off_the_paper_is_not_called_missing(by, told):
     was = next(e for e in KNOWN.elements if e.kind == "line" and e.role == "vector")
     f = judge(tracing.Trace(replace(was, points=was.points + by), "missing"), 0.25, 0.15)
-    judged = built_photo._judged(f, was, SimpleNamespace(uncertainty=0.15), 0.25)
+    first = judge(tracing.Trace(was, "missing"), 0.25, 0.15)
+    judged = built_photo._judged(f, first, SimpleNamespace(uncertainty=0.15), 0.25)
     assert (judged.verdict, judged.what) == ("red", told)
     assert PAPER.contains(judged.at)  # or its number would stand off the overlay
+
+
+VECTOR = next(e for e in KNOWN.elements if e.kind == "line" and e.role == "vector" and e.length > 20)
+WAY = (VECTOR.points[1] - VECTOR.points[0]) / VECTOR.length
+SEEN = {"status": "measured", "ends": (0.0, 0.0)}
+
+
+@pytest.mark.parametrize(("by", "here", "there", "told"), [
+    (3j, {"status": "measured"}, {"status": "measured"}, "green"),  # it itself was measured in its place
+    (3.0, SEEN, {"status": "missing"}, "green"),  # so was an end of it
+    (3.0, {"status": "measured"}, {"status": "measured"}, "amber"),  # of what would lie elsewhere nothing is seen in either place
+    (3.0, {"status": "measured"}, {"status": "missing"}, "amber"),
+    (3.0, {"status": "measured"}, SEEN, "red"),  # its ends are where the mistake leads them
+    (3j, {"status": "missing"}, {"status": "measured"}, "red"),
+    (3j, {"status": "shared"}, {"status": "measured"}, "red"),  # a stroke that others have, too
+    (0.6j, {"status": "measured"}, {"status": "measured"}, "amber"),
+])
+def test_what_was_measured_in_its_place_is_not_elsewhere(by, here, there, told):
+    first = judge(tracing.Trace(VECTOR, **here), 0.25, 0.15)
+    now = replace(VECTOR, points=VECTOR.points + by * WAY)
+    f = built_photo._judged(judge(tracing.Trace(now, **there), 0.25, 0.15), first, SimpleNamespace(uncertainty=0.15), 0.25)
+    assert f.verdict == told
+    assert f.element is VECTOR
+    assert ("as follows from the mistake" in f.what) == (told != "green")
+
+
+@pytest.mark.parametrize(("against", "contradicted"), [(2, True), (1, True), (0, False)])
+def test_lines_in_their_places_speak_against_a_mistake(against, contradicted):
+    red = judge(tracing.Trace(VECTOR, "missing"), 0.25, 0.15)
+    step = errors_of(SHAPER, KNOWN)[0]["accelerations"]["k"]
+    built = None, [PlanPoint(step, z, z + 3j * WAY) for z in VECTOR.points]
+    stays = judge(tracing.Trace(VECTOR, "measured"), 0.25, 0.15)
+    assert built_photo._contradicted(built, [red] * 3 + [stays] * against) is contradicted
+    assert not built_photo._contradicted(built, [red] * 7 + [stays] * min(against, 1))

@@ -1,5 +1,7 @@
 """Paper that bulges over something: told by several lines bent alike, followed, or not judged; a hand's mistakes are none."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from tmm_sheets.compare.photo.ink_levels import ink_levels
 from tmm_sheets.compare.photo.profiles import pixels
 from tmm_sheets.compare.photo.rectification import straighten
 from tmm_sheets.compare.photo.sheet_map import Map, homography
+from tmm_sheets.drawing.marks import Trace
 
 NOTHING = np.zeros((594, 841), bool)
 CORNERS = np.array([0, 841, 841 + 594j, 594j])
@@ -62,6 +65,24 @@ def test_lines_in_one_stroke_are_bent_once():
     assert not len(bulging(taken(over_a_pencil, SHEET[:1]), [*SHEET, *again]))
     assert not len(bulging(taken(over_a_pencil, SHEET[:2]), [*SHEET, *again]))
     assert len(bulging(taken(over_a_pencil, SHEET[:3]), [*SHEET, *again]))
+
+
+@pytest.mark.parametrize(("high", "found"), [
+    ((2.5, 2.5, 2.5), True),
+    ((-2.5, -2.5, -2.5), True),
+    ((2.5, 2.5), False),
+    ((2.5,), False),
+    ((), False),
+    ((2.5, 2.5, -2.5), False),  # not alike: lettering
+    ((2.5, 1.2, 4.5), False),
+])
+def test_lines_of_tables_are_bent_by_the_paper_where_several_are_alike(high, found):
+    rows = [replace(e, by=Trace("table")) for e in SHEET[:3]]
+    off = dict(zip((e.points[0] for e in rows), high, strict=False))
+    picture = taken(lambda z: over_a_pencil(z, next((by for at, by in off.items() if abs(z[0] - at) < 1e-6), 0)))
+    places = bulging(picture, [*rows, *SHEET[3:]])
+    assert bool(len(places)) == found
+    assert (np.abs(places.real - 360) < 25).all()
 
 
 def test_a_map_follows_a_bulge_and_no_single_line_in_it():

@@ -43,8 +43,9 @@ SHOWN = 0.5
 """Share of a line that must show for it to be judged by what shows."""
 ENDS = 1.5
 """Beside the ends of a line others begin, mm."""
-STAYS = 2.0
-"""How many tolerances aside a line must be led for it to be seen that it is not there, and how many mm along itself."""
+STAYS, ENDS_STAY = 2.0, 1.0
+"""How many tolerances aside a line must be led for it to be seen that it is not there, how many mm along itself by its head; and by
+an end that shows, which is told more exactly."""
 CONTRADICTED = 3
 """Where every so many wrong lines of a plan have one that stays in its place though it would be led elsewhere, another mistake was
 made."""
@@ -92,26 +93,42 @@ def _contradicted(built: tuple[BuiltPlan, Sequence[PlanPoint]], findings: Sequen
 
 
 def _stays(f: PhotoFinding, now: Points) -> bool:
-    """Whether a vector that would lie elsewhere, ``now``, is in its place: it itself, an end that shows, or its head."""
-    t, was = f.trace, f.element.points[[0, -1]]
-    if f.verdict != "green" or t.status != "measured":
-        return False
-    by = (now - was) * np.conj(was[1] - was[0]) / abs(was[1] - was[0])
-    shown = np.isfinite(t.ends) | np.array([False, t.head == "there"])
-    return bool(np.abs(by.imag).max() > STAYS * f.tolerance or (np.abs(by.real)[shown] > STAYS).any())
+    """Whether an element that would lie elsewhere, ``now``, is in its place: it itself, an end that shows, or its head."""
+    return f.verdict == "green" and f.trace.status == "measured" and _told(f, now)
 
 
-def as_built(elements: Sequence[Element], built: Built, found: Rectified, pencil: float) -> tuple[
+def _told(f: PhotoFinding, now: Points) -> bool:
+    """Whether what was measured of an element tells its place from where it would lie by a mistake, ``now``."""
+    t, by = f.trace, now - f.element.points
+    if f.element.kind != "line":
+        return bool(np.abs(by).max() > STAYS * f.tolerance)
+    along = f.element.points[-1] - f.element.points[0]
+    by = by * np.conj(along) / abs(along)
+    far = np.abs(by.real)
+    return bool(np.abs(by.imag).max() > STAYS * f.tolerance or (far > ENDS_STAY)[np.isfinite(t.ends)].any()
+                or (t.head == "there" and far[1] > STAYS))
+
+
+def as_built(findings: Sequence[PhotoFinding], built: Built, found: Rectified, pencil: float) -> tuple[
         list[PhotoFinding], list[ExtraInk]]:
-    """Findings on all elements, in order, those of plans compared as they were built; and ink that belongs to none."""
+    """Findings on all elements, in order, those of plans compared as they were built; and ink that belongs to none.
+
+    ``findings`` are those by the places where they ought to be.
+    """
+    elements = [f.element for f in findings]
     now = [rebuilt(e, built[e.view][1]) if e.view in built else e for e in elements]
     traces, extra = tracing.trace([e for e in now if not vanished(e)], found.ink, found.hidden)
     of = {t.element.number: judge(t, pencil, found.uncertainty, found.soft) for t in traces}
-    return [_judged(of.get(e.number), e, found, pencil) for e in elements], extra
+    return [_judged(of.get(f.element.number), f, found, pencil) for f in findings], extra
 
 
-def _judged(f: PhotoFinding | None, was: Element, found: Rectified, pencil: float) -> PhotoFinding:
-    """A finding on an element that may have been built elsewhere, judged by the place ``was`` that it should have."""
+def _judged(f: PhotoFinding | None, first: PhotoFinding, found: Rectified, pencil: float) -> PhotoFinding:
+    """A finding on an element that may have been built elsewhere, judged by the place that it should have.
+
+    ``first`` is what was found there: what was measured in its place is not elsewhere, and what was right by what could be seen of
+    it may be wrong for sure only by what is measured where the mistake leads it.
+    """
+    was = first.element
     if f is None:
         said, tolerance = tell("without length, as follows from the mistake"), pencil + found.uncertainty
         return PhotoFinding(was, verdict(was.length, tolerance), was.length, said, was.middle, Trace(was, "small"), tolerance)
@@ -119,12 +136,17 @@ def _judged(f: PhotoFinding | None, was: Element, found: Rectified, pencil: floa
     off = float(np.abs(now.points - was.points).max()) if len(now.points) == len(was.points) else 0.0
     if off <= f.tolerance or was.kind == "text" or f.trace.status not in ("measured", "shared", "missing", "beside") or f.unknown:
         return f
+    if _stays(first, now.points):
+        return first
     said = tell("up to {by} mm off, as follows from the mistake").format(by=millimetres(off))
     beyond = f.trace.status == "missing" and not all(map(PAPER.contains, now.points.tolist()))
     rest = tell("there it runs off the paper, so it cannot be looked for") if beyond else f.what
     what = said if f.verdict == "green" else f"{said}; {rest}"
     deviation = max(off, f.deviation)
-    return replace(f, verdict=verdict(deviation, f.tolerance), deviation=deviation, what=what, at=was.middle if beyond else f.at)
+    colour = verdict(deviation, f.tolerance)
+    if first.verdict == "green" and first.trace.status == "measured" and not _told(f, now.points) and colour == "red":
+        colour = "amber"
+    return replace(f, verdict=colour, deviation=deviation, what=what, at=was.middle if beyond else f.at)
 
 
 def inked(ink: Any, line: Points, level: float, hidden: Mask | None = None) -> float:

@@ -41,7 +41,8 @@ INKED = 0.8
 SEVERAL, TOGETHER = 3, 60.0
 """Least number of lines bent near each other by which the paper bulges, and how near that is, mm."""
 TABLES = ("frame", "table")
-"""Roles of lines too near to lettering to tell of a bulge."""
+"""Roles of lines too near to lettering to tell of a bulge, but when several are bent alike, by nearly as much, this near, mm."""
+ALIKE, BESIDE = 0.5, 40.0
 CELL, ABOUT = 12.0, 50.0
 """Side of the cells of the spline by which a map follows a bulge, mm, and how far about its bends it may."""
 FAR = (3.0, 1.5, 0.8, 0.5, 0.5)
@@ -106,7 +107,9 @@ def followed(elements: Sequence[Element], ink: Any, level: float, hidden: Mask) 
 
 def bulges(lines: Sequence[Followed]) -> Points:
     """Places at which lines are bent near others that are."""
-    bends = [(line, line.points[line.bent]) for line in lines if line.bent.any() and line.element.role not in TABLES]
+    bent = [line for line in lines if line.bent.any()]
+    alike = _alike([line for line in bent if line.element.role in TABLES])
+    bends = [(line, line.points[line.bent]) for line in bent if line.element.role not in TABLES] + alike
     if len(bends) < SEVERAL:
         return np.zeros(0, complex)
     strokes = _strokes([z for _, z in bends])
@@ -114,6 +117,19 @@ def bulges(lines: Sequence[Followed]) -> Points:
     near = [sum((np.abs(z[:, None] - np.concatenate(stroke)[None, ::3]).min(1) < TOGETHER).astype(int) for stroke in strokes)
             for _, z in bends]
     return np.concatenate([z[count >= SEVERAL] for (_, z), count in zip(bends, near, strict=True)])
+
+
+def _alike(lines: Sequence[Followed]) -> list[tuple[Followed, Points]]:
+    """Bends of lines, most of each like those of several; at the end of the reach it is something else that is followed."""
+    bends = [(line.points[here], (line.off * line.normals)[here]) for line in lines
+             for here in [line.bent & (np.abs(line.off) < REACH - LOOSE)]]
+    out = []
+    for line, (z, by) in zip(lines, bends, strict=True):
+        same = [((np.abs(z[:, None] - other) < BESIDE) & (np.abs(by[:, None] - its) < ALIKE)).any(1) for other, its in bends]
+        some = z[np.sum(same, 0) >= SEVERAL]
+        if len(some) > 0.5 * len(z):
+            out.append((line, some))
+    return out
 
 
 def _strokes(bends: Sequence[Points]) -> list[list[Points]]:

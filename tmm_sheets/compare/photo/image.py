@@ -136,7 +136,7 @@ def examine(
         say(tell("looking for what was done wrong"))
         built = built_photo.built_otherwise(project, ours, findings, found.ink, found.hidden)
     if built:
-        findings, extra = built_photo.as_built(known, built, found, pencil)
+        findings, extra = built_photo.as_built(findings, built, found, pencil)
     extra = [x for x in extra if placed is None or placed.strange(x)]
     readings = None
     if reader is not None:
