@@ -86,6 +86,9 @@ class Values:
                     for a in step.args:
                         if not isinstance(a, Step):
                             found += _shown(a.value if isinstance(a, Given) else a, getattr(a, "unit", ""), set())
+        if project.variant.flywheel is not None:  # how many times the ordinates of one graph are enlarged against another's
+            scales = project.flywheel.scales
+            found.append(np.array([scales.work.mu / (scales.excess or scales.energy).mu]))
         every = np.abs(np.concatenate([np.ravel(v) for v in found]).astype(float))
         self.values = np.unique(every[np.isfinite(every)])
 

@@ -23,7 +23,7 @@ LETTERS = 3.5
 """Height of the lettering that has to be read, mm on the sheet."""
 READABLE = 1.95
 """Least height of lettering on the page, mm: two, as a ruler tells it."""
-USUAL = 0.715
+USUAL = 0.66
 """Scale of a picture where there is room: lettering a little higher than it has to be."""
 SMALL = 70.0
 """Size up to which a small picture is not reduced, mm."""

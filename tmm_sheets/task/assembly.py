@@ -205,7 +205,7 @@ def _force(of: Givens, plan: Plan, i: int, f: ForceTable, mechanism: Mechanism, 
     toward = unit(f.direction) if isinstance(f.direction, float) else sense
     against = {"against motion": -1.0, "along motion": 1.0}.get(str(f.direction))
     motion = motion.within(f.from_, f.to)
-    laws, signs = _by_run(f.name, motion, f.stroke, tables, against)
+    laws, signs = _by_run(motion, f.stroke, tables, against, f.name)
     always = against is None and f.tables is not None
     law, jumps = stroke_law(motion, laws, signs, f.curve == "smooth", always)
     return Applied(f.name, f.link, f.point, toward, law, jumps, motion, diagrams, _along(of, i, toward))
@@ -260,13 +260,13 @@ def _moment(of: Givens, plan: Plan, i: int, m: MomentTable, mechanism: Mechanism
         raise CannotBuild(*_no_strokes(m.name))
     motion = turning_motion(mechanism, cycle, m.link, sense, m.first)
     against = {"against motion": -1.0, "along motion": 1.0}.get(m.direction)
-    laws, signs = _by_run(m.name, motion, m.stroke, tables, against)
+    laws, signs = _by_run(motion, m.stroke, tables, against, m.name)
     signs = [s * (fixed if fixed is not None else sense) for s in signs]
     law, jumps = stroke_law(motion, laws, signs, m.curve == "smooth")
     return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion, _diagrams(of, plan, m, tables, None, (), "moment", i))
 
 
-def _by_run(name: str, motion: OutputMotion, stroke: str, tables: Sequence[Table | None], against: float | None) -> tuple[
+def _by_run(motion: OutputMotion, stroke: str, tables: Sequence[Table | None], against: float | None, name: str) -> tuple[
         list[Table | None], list[float]]:
     """Diagram of each run, that of its stroke, and sign: it follows the motion unless the direction is fixed."""
     strokes = len({run.stroke for run in motion.runs})

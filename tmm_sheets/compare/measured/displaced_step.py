@@ -29,7 +29,12 @@ NEARLY = 0.9
 
 
 def displaced_step(evidence: Evidence, i: int) -> Explanation | None:
-    """The displaced step behind a red number; None when it explains nothing else."""
+    """The displaced step behind a red number; None when it explains nothing else, or where the number is where it ought to be.
+
+    A number within its tolerance may be red because it does not follow from the student's own: no step need be displaced for it.
+    """
+    if abs(evidence.judged[i].deviation) <= evidence.judged[i].tolerance:
+        return None
     possible = (_mistake(evidence, place) for place in evidence.places[i] if _can_be_wrong(evidence, place))
     candidates = sorted(possible, key=lambda m: -m.score)
     candidates = [_mistake(evidence, m.place, exact=True) for m in candidates[:TRIED]]
