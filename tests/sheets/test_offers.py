@@ -10,6 +10,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.drawing.marks import Polyline
 from tmm_sheets.numbers import number
 from tmm_sheets.project import Project
@@ -244,3 +245,11 @@ def test_nothing_stands_between_a_title_and_the_plans_of_several_positions():
     assert taken[int((440 - FIELD.x0) / 2), int((265 - FIELD.y0) / 2)]
     assert taken[int((300 - FIELD.x0) / 2), int((265 - FIELD.y0) / 2)]
     assert not taken[int((600 - FIELD.x0) / 2), int((265 - FIELD.y0) / 2)]
+
+
+@pytest.mark.parametrize("width", [40.0, 60.0, 80.0, 100.0, 1e6])
+def test_a_force_is_not_parted_from_its_value(width):
+    text = "ΣM_p = F_1·56,38 + 68,67·19,52 − 15,65·1,029 = 0; F_1\u00a0= 278,51 Н"
+    lines = broken(text, width, 3.5)
+    assert " ".join(lines) == text.replace("\u00a0", " ")
+    assert sum("F_1 = 278,51 Н" in line for line in lines) == 1

@@ -282,9 +282,9 @@ SIGNS = r"(?= [+−] | = (?!0$))"
 
 
 def broken(text: str, width: float, height: float, signs: str = SIGNS) -> list[str]:
-    """A formula in lines no wider than ``width``, mm, where its ``signs`` let it be broken."""
+    """A formula in lines no wider than ``width``, mm, where its ``signs`` let it be broken, but not at a no-break space."""
     lines = [""]
-    for piece in re.split(signs, text):
+    for piece in (part.replace("\u00a0", " ") for part in re.split(signs, text)):
         if lines[-1] and letter(lines[-1] + piece, height).width > width:
             lines.append(piece.lstrip())
         else:

@@ -94,11 +94,10 @@ def shown_load(forces: Kinetostatics, load: Load, about: Step, k: int) -> Shown:
 def _hinge(project: Project, about: Step, reaction: OuterReaction, k: int) -> list[Shown]:
     """Reaction in an outer turning pair, as its normal and tangential parts where the method splits it; arms about a point."""
     study = project.study
-    source = project.mechanism.owner(reaction.point)
-    name = pair_index(reaction.link, source)
+    name = pair_index(reaction.link, project.mechanism.owner(reaction.point))
     at, step = complex(study.positions.points[reaction.point].at(k)), study.forces.reactions[f"F{name}"]
     total = complex(step.at(k))
-    part = study.forces.split_off(reaction.link, source)
+    part = study.forces.parts.get(f"F{name}")
     if part is None:
         return [Shown(f"F̅_{{{name}}}", at, total, step, step)]
     tangential = complex(part.at(k))

@@ -164,6 +164,7 @@ def _lever_lines(project: Project, canvas: Canvas, width: float, height: float, 
         written = (own_term._replace(letters=f"{sign}·{h}"),
                    *(term._replace(letters="·".join(map(number, term.values))) for term in terms))
         said = [tr("ΣM_p = {sum} = 0; {force} = {value} N").format(sum=_sum(written), force=sign, value=found)]
+        said = [text.replace(f"; {sign} = ", f"; {sign}\u00a0= ") for text in said]  # a force stands with its value
     if by_moment:
         m = project.mechanism.crank
         said.append(tr("{moment} = {force}·l_{{{crank}}} = {value} N·m (“+”: in the sense of ω_1)").format(
@@ -176,21 +177,17 @@ def _terms(project: Project, total: Step, about: str = "") -> Iterator[Term]:
     """Terms of a sum of moments at the analysed position, without those that are nothing; ``about`` stands above their arms."""
     k, forces = project.force_index, project.study.forces
     letters = {id(load.vector): load.symbol for loads in forces.loads.values() for load in loads}
+    letters |= {id(part): f"{symbol(name)}^τ" for name, part in forces.parts.items()}
     least = forces.moment_size(k)
     for at, vector, couple in zip(total.args[1::3], total.args[2::3], total.args[3::3], strict=True):
         if isinstance(vector, Step):
             arm = forces.arm_about(total.args[0], at, vector)
             force, length = abs(complex(vector.at(k))), float(arm.at(k))
-            sign = letters.get(id(vector), _split(vector.name)).replace(BAR, "")
+            sign = letters.get(id(vector), symbol(vector.name)).replace(BAR, "")
             if np.isfinite(length) and not is_zero(force * length, least):  # a force of nothing has no arm
                 yield Term(f"{sign}·{arm_sign(sign)}{about}", 1.0 if length > 0 else -1.0, (force, abs(length)))
         if isinstance(couple, Step) and not is_zero(value := float(couple.at(k)), least):
             yield Term(symbol(couple.symbol or couple.name).replace(BAR, ""), 1.0 if value > 0 else -1.0, (abs(value),))
-
-
-def _split(name: str) -> str:
-    """Lettering of a part of a reaction by its name: F21τ is F with the index 21 and τ above."""
-    return f"{symbol(name[:-1])}^{name[-1]}" if name[-1] in "τn" else symbol(name)
 
 
 def _sum(terms: Sequence[Term], numbers: bool = False) -> str:

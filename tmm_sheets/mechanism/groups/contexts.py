@@ -123,6 +123,7 @@ class ForcePlans(Protocol[M, G]):
     loads: dict[str, list[Load]]
     plan: Plan
     reactions: dict[str, Step]
+    parts: dict[str, Step]
 
     @property
     def positions(self) -> PositionPlan[M, G]:

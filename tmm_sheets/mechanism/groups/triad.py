@@ -411,7 +411,8 @@ class TriadKind(GroupKind):
                 part[leg] = forces.tangential(leg.link, owner[leg], total, leg.corner, leg.outer)
             else:
                 own = [load.vector for load in forces.loads[leg.link]]
-                part[leg] = forces.plan.add(f"F{pair_index(leg.link, owner[leg])}τ", ALONG_SLOT, pos.directions[leg.link], *own)
+                name = f"F{pair_index(leg.link, owner[leg])}"
+                part[leg] = forces.parts[name] = forces.plan.add(f"{name}τ", ALONG_SLOT, pos.directions[leg.link], *own)
             more.append((pos.points[leg.outer], part[leg], 0.0))
         total = forces.moment_sum(f"ΣM{s.name}", s.step, g.links, more)
         normal = forces.plan.add(f"F{pair_index(c.link, owner[c])}n", BY_MOMENTS, total, s.step, pos.points[c.at],

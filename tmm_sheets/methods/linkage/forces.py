@@ -78,7 +78,8 @@ class Kinetostatics:
 
     ``loads`` are all forces on each link, reactions included, as they were used; ``reactions`` by name ("F54", "F11,10");
     ``couples`` and ``arms`` of sliding pairs by name ("h50"); ``link_couples`` are inertia couples and applied
-    moments of each link; ``from_moments`` are the parts of reactions that moment equations gave, in the order they were found.
+    moments of each link; ``from_moments`` are the parts of reactions that moment equations gave, in the order they were found;
+    ``parts`` those known before the normal part, by the reaction's name, from moments or along a slot.
     """
 
     positions: Positions
@@ -91,6 +92,7 @@ class Kinetostatics:
     arms: dict[str, Step] = field(default_factory=dict)
     plans: dict[str, ForcePlan] = field(default_factory=dict)
     from_moments: list[TangentialPart] = field(default_factory=list)
+    parts: dict[str, Step] = field(default_factory=dict)
     balancing: Step | None = None
     friction: Friction | None = None
 
@@ -103,11 +105,6 @@ class Kinetostatics:
     def couple_points(self) -> dict[str, str]:
         """Points that the couples of sliding pairs' reactions refer to: the force is taken there."""
         return {name: couple.args[0].args[0].name for name, couple in self.couples.items()}
-
-    def split_off(self, link: str, source: str) -> Step | None:
-        """Part of a reaction that is known before its normal part, from moments or along a slot, N; None where it is not split."""
-        name = f"F{pair_index(link, source)}τ"
-        return next((step for step in self.plan if step.name == name), None)
 
     def about_special(self, point: Step) -> Step | None:
         """The component that the moments of a whole group of class III about a special point give; None where they give none."""
@@ -185,6 +182,7 @@ class Kinetostatics:
         z = self.positions.points
         step = self.plan.add(f"F{pair_index(j, k)}τ", TANGENTIAL, total, z[centre], z[at])
         self.from_moments.append(TangentialPart(j, k, at, centre, step))
+        self.parts[f"F{pair_index(j, k)}"] = step
         return step
 
     def plan_of(self, name: str, links: tuple[str, ...]) -> ForcePlan:
