@@ -270,11 +270,11 @@ def _by_run(motion: OutputMotion, stroke: str, tables: Sequence[Table | None], a
         list[Table | None], list[float]]:
     """Diagram of each run, that of its stroke, and sign: it follows the motion unless the direction is fixed."""
     strokes = len({run.stroke for run in motion.runs})
-    if len(tables) > strokes > 0:
+    if strokes and strokes % len(tables):
         raise CannotBuild(
-            tell("{name}: {tables} tables for {strokes} strokes of a cycle, the last would never act").format(
+            tell("{name}: {tables} tables for {strokes} strokes of a cycle: which table is for which stroke is not clear").format(
                 name=name, tables=len(tables), strokes=strokes),
-            tell("give a table for each stroke; a four-stroke engine has turns = 2 in [cycle]"))
+            tell("give a table for each stroke, [] for none; a four-stroke engine has turns = 2 in [cycle]"))
     acts = [stroke == "both" or (stroke == "working") == run.working for run in motion.runs]
     laws = [tables[run.stroke % len(tables)] if on else None for run, on in zip(motion.runs, acts, strict=True)]
     return laws, [1.0 if against is None else against * run.sense for run in motion.runs]

@@ -415,6 +415,13 @@ def test_a_diagram_for_a_stroke_that_never_comes():
     assert "turns = 2" in str(e.value) + e.value.hint
 
 
+def test_diagrams_that_do_not_come_out_even():
+    """Three for four strokes would begin again in the middle: which was meant for which stroke nobody can tell."""
+    tables = [[[0, f"{n} N m"]] for n in (10, 20, 30)]
+    with pytest.raises(CannotBuild, match="3 tables for 4 strokes of a cycle"):
+        moment("1", {"cycle.turns": 4}, sense="counter-clockwise", tables=tables, direction="clockwise")
+
+
 def test_moment_over_the_angle():
     m = moment("1", over="angle", direction="clockwise",
                table=[["0 deg", "10 N m"], ["180 deg", "30 N m"], ["180 deg", "0 N m"], ["360 deg", "0 N m"]])
