@@ -230,6 +230,9 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
         length = scale.mm(abs(float(arm.at(k)))) if arm is not None else np.inf
         if 0.05 < length < max(box.width, box.height):
             said.append(tr("ΣM_{centre} = 0: h_{{{index}}} = {value} mm").format(centre=about, index=pair, value=fixed(length, 1)))
+    for couple in outer_forces(project, g, k)[1]:
+        said.append(tr("ΣM_{centre} = 0: {couple} = {value} N·m").format(
+            centre=about if len(about) == 1 else f"{{{about}}}", couple=couple.symbol, value=number(abs(couple.value), 5)))
     if said:
         _fitted(canvas, complex(box.centre.real, box.y0), "; ".join(said), 3.5, box.width - 4.0)
 

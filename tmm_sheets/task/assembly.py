@@ -199,7 +199,7 @@ def _force(of: Givens, plan: Plan, i: int, f: ForceTable, mechanism: Mechanism, 
             tell("force {name}: which way are its working strokes?").format(name=f.name), tell('add for example sense = "+x"')
         )
     told = ("force", i, "sense") if f.sense is not None else ("cycle", "working_sense")
-    sense = GivenPoint(SENSES[named] if named in SENSES else _along_guide(mechanism, named, f.name), place(told), "", "",
+    sense = GivenPoint(_way(mechanism, f.link, named, f.name), place(told), "", "",
                        of.variant.source(*told))
     motion = straight_motion(mechanism, cycle, f.point, sense, cycle.strokes, f.first)
     toward = unit(f.direction) if isinstance(f.direction, float) else sense
@@ -226,6 +226,18 @@ def _steady(load: ForceTable | MomentTable) -> bool:
 def _along(of: Givens, i: int, toward: complex) -> GivenPoint:
     """Direction of a force."""
     return GivenPoint(toward, f"force[{i}].direction", "", "", of.variant.source("force", i, "direction"))
+
+
+def _way(mechanism: Mechanism, link: str, named: str, force: str) -> complex:
+    """Unit vector of a named sense; for a link on a fixed guide an axis only tells which way along the guide is meant."""
+    if named not in SENSES:
+        return _along_guide(mechanism, named, force)
+    for at in (reaction for g in mechanism.groups for reaction in g.kind.outer_reactions(g)):
+        if at.link == link and at.guide and (guide := mechanism.guides[at.guide]).link == mechanism.frame:
+            along = unit(guide.direction)
+            share = (along * SENSES[named].conjugate()).real
+            return (1 if share > 0 else -1) * along if 1e-9 < abs(share) < 1 - 1e-12 else SENSES[named]
+    return SENSES[named]
 
 
 def _along_guide(mechanism: Mechanism, named: str, force: str) -> complex:

@@ -350,7 +350,8 @@ class ForceTable(Table):
     direction: ForceDirection = Field(
         description=marked('"against motion", "along motion" or an angle')
     )
-    """the first two follow the motion of the point; an angle is a fixed direction of the world frame"""
+    """the first two follow the motion of the point: along the fixed guide the link slides on, else along the axis of `sense`; an
+    angle is a fixed direction of the world frame"""
     stroke: Literal["working", "idle", "both"] = "both"
     """the strokes it acts on"""
     sense: Name | None = None
@@ -358,13 +359,14 @@ class ForceTable(Table):
     value: Newtons | None = None
     """a constant force"""
     over: Literal["stroke", "angle"] = "stroke"
-    """argument of the diagrams: fraction of the stroke, or crank angle turned from position 0"""
+    """argument of the diagrams: place on the way, 0 where the working stroke begins, 1 where it ends, on the way back as well; or
+    crank angle turned from position 0"""
     table: Diagram | None = None
     """a diagram, for example `[[0, "0 N"], [0.6, "0 N"], [1, "1000 kN"]]`"""
     tables: tuple[Diagram, ...] | None = None
     """a diagram for each stroke in turn, `[]` for none"""
     first: Angle = 0.0
-    """with `tables`: the first is for the stroke that begins nearest to this crank angle"""
+    """with `tables`: the first is for the stroke that begins nearest to this crank angle, turned from position 0"""
     bore: Length | None = None
     """diameter of a piston: the diagrams are then pressures"""
     ambient: Pressure = 0.0
@@ -407,7 +409,7 @@ class MomentTable(Table):
     value: Torque | None = None
     """a constant moment"""
     over: Literal["stroke", "angle"] = "stroke"
-    """argument of the diagrams: fraction of the link's way, or crank angle turned from position 0"""
+    """argument of the diagrams: place on the link's way, as for forces, or crank angle turned from position 0"""
     table: Diagram | None = None
     """a diagram, as for forces"""
     tables: tuple[Diagram, ...] | None = None

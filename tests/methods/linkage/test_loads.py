@@ -4,7 +4,7 @@ The crank (0.1 m, counter-clockwise from the x axis) and the rod (0.35 m) lie in
 between 0.25 m and 0.45 m. Everything that is asked of a load follows from that: no plans, no strokes found from velocities.
 """
 
-from math import acos, asin, pi
+from math import acos, asin, cos, pi, radians, sin
 
 import numpy as np
 import pytest
@@ -70,6 +70,24 @@ def test_signs_follow_the_motion(sense, stroke, direction, sign):
     working = ~IN if sense == "+x" else IN
     acts = {"working": working, "idle": ~working, "both": working | True}[stroke]
     np.testing.assert_array_equal(f.vector(TURN), np.where(acts, sign * 500 * np.where(IN, -1, 1), 0))
+
+
+@pytest.mark.parametrize(("sense", "way"), [("+x", 30), ("-x", 210), ("+y", 30), ("-y", 210)])
+def test_on_an_inclined_guide_the_force_is_along_the_guide(sense, way):
+    """The axis only tells which way is meant: along x it would do cos 30 deg of the work of the stroke."""
+    f = force({"guide[1].direction": "30 deg"}, stroke="working", sense=sense, value="500 N")
+    assert f.toward == pytest.approx(complex(cos(radians(way)), sin(radians(way))), abs=1e-15)
+
+
+def test_across_its_guide_a_point_has_no_strokes():
+    with pytest.raises(CannotBuild, match="does not move to and fro that way"):
+        force(sense="+y", value="500 N")
+
+
+def test_off_a_guide_the_force_is_along_the_axis():
+    """A point of the rod moves along a curve: of its direction the axis is all that is told."""
+    f = force(link="2", point="A", sense="+y", value="500 N")
+    assert f.toward == 1j
 
 
 def test_fixed_direction_whatever_the_motion():
