@@ -247,3 +247,28 @@ def test_works_by_ordinates_far_from_the_area_have_room(method, sheet, table):
 def test_a_constant_moment_is_written_with_three_digits_unless_it_is_nothing(constant, varying, said):
     moment = SimpleNamespace(value=np.array([0.0, -varying]))
     assert constant_moment(SimpleNamespace(M_constant=constant, at_samples=SimpleNamespace(moment=lambda: moment))) == said
+
+
+@pytest.mark.parametrize("second", [3900, 4000, 200])
+def test_forces_of_both_signs_have_room(second):
+    """Their graphs stand on one axis: what counts is the extent of all of them."""
+    load = {key: value for key, value in project_files.FORCE["force"][0].items() if key != "value"}
+    loads = [load | {"table": [[0, "0 N"], [0.5, "4000 N"], [1, "0 N"]]},
+             load | {"name": "F4", "direction": "along motion", "stroke": "both", "table": [[0, f"{-second} N"], [1, f"{-second} N"]]}]
+    own = project_files.read(
+        project_files.SLIDER, project_files.WORKING, project_files.MASS, project_files.MOMENT, project_files.FLYWHEEL,
+        {"project.sheets": ["flywheel"], "flywheel.form": "rim", "force": loads})
+    assert not composed(Project(own), 1).crowded
+
+
+@pytest.mark.parametrize(("density", "iron"), [("7300 kg/m3", True), ("7599 kg/m3", True), ("7800 kg/m3", False)])
+def test_a_fast_wheel_is_no_cast_iron(density, iron):
+    """At 30 m/s and more the sizes found with the density of cast iron are none to be proud of: it is said."""
+    own = Project(project_files.read(
+        project_files.SLIDER, project_files.WORKING, project_files.MASS, project_files.MOMENT, project_files.FORCE,
+        project_files.FLYWHEEL, {"crank.speed": "9000 rpm", "flywheel.form": "disc",
+                                 "flywheel.density": density, "project.sheets": ["flywheel"]}))
+    assert own.flywheel.wheel.speed > 30
+    lettering = [m.text for m in composed(own, 1).drawing.marks if isinstance(m, Text)]
+    assert any("чугуна (ρ" in text for text in lettering) == iron
+    assert any("маховик стальной" in text for text in lettering) != iron

@@ -698,12 +698,13 @@ def _sizes(fw: Flywheel) -> list[str]:
     numbers = {"width_ratio": number(d.width_ratio), "thickness_ratio": number(d.thickness_ratio),
                "diameter": number(w.diameter, 5), "width": number(w.width, 4),
                "thickness": number(w.thickness) if w.form == "rim" else "",
-               "mass": number(w.mass, 4), "speed": fixed(w.speed, 2)}
+               "mass": number(w.mass, 4), "speed": fixed(w.speed, 2), "density": number(d.density or 0.0)}
     if w.form == "disc" and "V_об" in w.plan:  # of the rim that the disc stands for: what made it a disc
         numbers["speed"] = fixed(float(w.plan["V_об"].value), 2)
         speed = tr("A rim would have V = {speed} m/s ≥ 30 m/s: a disc is taken")
     else:
         speed = tr("V = ω_1·D/2 = {speed} m/s < 30 m/s") if w.speed < 30 else \
+            tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s: too fast for cast iron (ρ = {density} kg/m^3)") if fw.cast_iron else \
             tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s: the wheel is of steel")
     return [line.format(**numbers) for line in (*said, speed)]
 

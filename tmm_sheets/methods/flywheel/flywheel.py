@@ -27,7 +27,7 @@ from tmm_sheets.construction.step import Helper, Rule, Step, Told
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT, STOPS, AtAngles, ConvergedWheel, speed, too_light
 from tmm_sheets.methods.flywheel.running import Energy, Running, steady
-from tmm_sheets.methods.flywheel.wheel import MotorCheck, RimWheel, motor_check, wheel
+from tmm_sheets.methods.flywheel.wheel import STEEL, MotorCheck, RimWheel, motor_check, wheel
 from tmm_sheets.methods.integration import (
     AREA,
     ON_CURVE,
@@ -155,7 +155,8 @@ class DiagramSpace:
     """Room for the diagrams on paper, mm: length of the angle axis and extents of the ordinates.
 
     ``stack`` is the room together of the first ``stacked`` of moment, work, energy and inertia, which stand one under another:
-    the extents of each are the most it may have. Of the heights multiplied that of the energy counts ``reading`` times.
+    the extents of each are the most it may have. Of the heights multiplied that of the energy counts ``reading`` times. What is
+    drawn by few ordinates may take ``spare`` more, and what the graph of the forces leaves of ``force``, if it ``heads`` them.
     """
 
     angle: float = 256.0
@@ -168,6 +169,8 @@ class DiagramSpace:
     stack: float = 456.0
     stacked: int = 3
     reading: int = 1
+    spare: float = 1.0
+    heads: bool = True
 
 
 @dataclass(frozen=True)
@@ -449,10 +452,12 @@ class Flywheel(ABC):
             raise CannotBuild(tell("a flywheel needs links with masses"),
                               tell("add mass, centre and inertia to [[link]] of the project file"))
         spans = (float(np.ptp(moment)), float(np.ptp(done)), float(np.ptp(energies)), heaviest)
-        mu_m, mu_a, mu_e, mu_j = _scaled(spans, self._drawn_spans(spans, mass), mu_phi, space)
+        force = fit(*(("μ_M′", tr("N·m/mm")) if reduced.forces_are_moments else ("μ_F", tr("N/mm"))), largest, space.force)
+        spare = space.spare + (space.force - largest / force.mu if space.heads else 0.0)
+        mu_m, mu_a, mu_e, mu_j = _scaled(spans, self._drawn_spans(moment, mass, heaviest), mu_phi, space, spare)
         return FlywheelScales(
             angle=Scale("μ_φ", mu_phi, tr("rad/mm")),
-            force=fit(*(("μ_M′", tr("N·m/mm")) if reduced.forces_are_moments else ("μ_F", tr("N/mm"))), largest, space.force),
+            force=force,
             moment=Scale("μ_M", mu_m, tr("N·m/mm")),
             work=Scale("μ_A", mu_a, tr("J/mm")),
             energy=Scale("μ_E", mu_e, tr("J/mm")),
@@ -461,16 +466,16 @@ class Flywheel(ABC):
             excess=self._own_scale(float(np.ptp(np.append(excess, 0.0))), mu_e),
         )
 
-    def _drawn_spans(self, exact: Four, mass: Floats) -> Four:
+    def _drawn_spans(self, moment: Floats, mass: Floats, heaviest: float) -> Four:
         """Extents as they are drawn: the works by the ordinates in the middles of the intervals; ``mass`` is J at the samples."""
         behind, before = self.at_borders.moment(1).value, self.at_borders.moment(-1).value
         ends = np.append(0.0, np.cumsum(self.at_middles.moment().value * np.diff(self.edges)))
         work = Curve(self.edges, ends, behind[:-1], before[1:])(self.samples)
         constant = -work[-1] / self.reduced.period
         excess = work + constant * self.samples
-        moment, _, _, heaviest = exact
         energies = [*excess, *self._energies(excess, mass), 0.0]
-        return max(moment, abs(constant)), float(np.ptp(np.append(work, -work[-1]))), float(np.ptp(energies)), heaviest
+        moments, works = np.append(moment, constant), np.append(work, -work[-1])
+        return float(np.ptp(moments)), float(np.ptp(works)), float(np.ptp(energies)), heaviest
 
     def _own_scale(self, excess: float, mu_energy: float) -> Scale | None:
         """Scale factor of the graph of dE, whose values span ``excess`` J, where that of energy is none for it."""
@@ -1029,6 +1034,11 @@ class Flywheel(ABC):
                      named(d.width_ratio, "flywheel.width_ratio", "κ"), named(d.thickness_ratio, "flywheel.thickness_ratio", "c"),
                      named(d.rim_share, "flywheel.rim_share"), self.where)
 
+    @property
+    def cast_iron(self) -> bool:
+        """Whether the density told is that of cast iron, which no rim faster than 30 m/s may be of (manual 000, 5.7)."""
+        return self.data.density is not None and self.data.density < STEEL
+
     @cached_property
     def motor(self) -> MotorCheck | None:
         """Check of the motor (manual 002, 1.13); None when the task has none."""
@@ -1159,7 +1169,8 @@ ACCELERATION = Rule("acceleration of the crank", lambda m, slope, j, omega: (m -
 
 
 def _largest(forces: Mapping[str, Floats]) -> float:
-    largest = max((float(np.max(values) - min(np.min(values), 0.0)) for values in forces.values()), default=0.0)
+    """Extent of the graph of the forces, which stand on one axis."""
+    largest = float(np.ptp(np.concatenate([np.zeros(1), *map(np.ravel, forces.values())])))
     if not largest > 0:
         raise CannotBuild(tell("a flywheel needs a technological force or moment, and {names} is 0 at every position").format(
             names=re.sub("[_{}]", "", ", ".join(forces))), tell("give it a value, or leave the flywheel and its sheets out"))
@@ -1173,12 +1184,13 @@ def _next_handy(mu: float) -> float:
 Four = tuple[float, float, float, float]
 
 
-def _scaled(spans: Four, drawn: Four, mu_phi: float, space: DiagramSpace) -> Four:
+def _scaled(spans: Four, drawn: Four, mu_phi: float, space: DiagramSpace, spare: float) -> Four:
     """Scale factors of moment, work, energy and inertia; those of moment and work suit the pole.
 
     Of all with which the graphs one under another fit together those with the greatest product of their heights. The moments are
     what everything else comes from: where they can, they get ``READABLE`` first, or one of the ``SHARES`` of it. What stands alone
-    fills its own room. What is ``drawn`` by few ordinates may be much higher than the extents: it has to fit, too.
+    fills its own room. What is ``drawn`` by few ordinates may be much higher than the extents: it has to fit, too, with ``spare``
+    mm more.
     """
     series = []
     for k, room in enumerate((space.moment, space.work, space.energy, space.inertia)):
@@ -1190,7 +1202,7 @@ def _scaled(spans: Four, drawn: Four, mu_phi: float, space: DiagramSpace) -> Fou
     heights = [span / m for span, m in zip(spans, mu, strict=True)]
     pole = mu[1] / (mu[0] * mu_phi)
     on_paper = sum(span / m for span, m in zip(drawn[:space.stacked], mu, strict=False))
-    fitting = (sum(heights[:space.stacked]) <= space.stack) & (on_paper <= space.stack + TO_SPARE)
+    fitting = (sum(heights[:space.stacked]) <= space.stack) & (on_paper <= space.stack + spare)
     fitting = fitting & (pole >= space.pole[0]) & (pole <= space.pole[1])
     # Then a pole distance that a ruler lays off, in half millimetres, where there is one.
     for wanted in (*(heights[0] >= share * READABLE for share in SHARES), np.abs(2 * pole - np.round(2 * pole)) < 1e-6):
@@ -1206,8 +1218,6 @@ READABLE = 80.0
 """Height of the graphs of the moments together from which on they read well, mm."""
 SHARES = 1.0, 0.75, 0.65
 """Shares of it that are asked for in turn."""
-TO_SPARE = 4.0
-"""What the sheets have left beyond the room of the graphs together, mm."""
 STEPS = 17
 """So many steps of the series of scale factors are nearly two decades."""
 

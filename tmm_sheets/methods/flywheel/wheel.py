@@ -13,6 +13,8 @@ from tmm_sheets.words import marked, tr
 
 RIM_SPEED = 30.0
 """Speed of the rim up to which a rim with spokes is used, m/s (manual 000, 5.7)."""
+STEEL = 7600.0
+"""Density that parts cast iron, 6800 to 7400 kg/m3, from steel, 7700 to 7900 kg/m3."""
 _SOURCE = "000, 5.7"
 
 RIM_INERTIA = Rule("share of the rim", lambda share, j: share * j, ("number", "number"), "number",

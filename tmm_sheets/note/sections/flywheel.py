@@ -160,7 +160,8 @@ def _results(r: Reader, found: Scope) -> None:
                 found.fields[f"wheel_{name}"] = r.of(plan[name])
     found.fields["wheel"] = wheel is not None
     speed = found.fields.get("wheel_V")
-    found.fields |= {"slow": speed is not None and speed.value < SAFE, "safe": r.number(SAFE, "m/s", "flywheel.safe", digits=2)}
+    found.fields |= {"slow": speed is not None and speed.value < SAFE, "iron": fw.cast_iron,
+                     "safe": r.number(SAFE, "m/s", "flywheel.safe", digits=2)}
     found.tables["comparison"] = (
         (
             (words(r.language)["flywheel"]["quantity"],),
