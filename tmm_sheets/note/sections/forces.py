@@ -45,6 +45,7 @@ def scope(r: Reader) -> Scope:
     found.fields["crank_part"] = _crank(r)
     _lever(r, found)
     found.tables["reactions"] = _reactions(r)
+    found.fields["sign_of_moment"] = r.project.study.forces.balancing is not None and r.project.study.lever.line is None
     _compare(r, found)
     for name, picture in (
         ("crank", "kinetics.crank"),
@@ -513,17 +514,8 @@ def _reactions(r: Reader) -> tuple[tuple[Text, ...], ...]:
         cells: list[Text] = [(label,)]
         cells += [(r.number(abs(complex(step.value[i])), "", r.id(step), label, kind=size),) for _, step in columns]
         if forces.balancing is not None:
-            value = np.real(study.balance["along"].value[i]) if study.lever.line is not None else np.real(forces.balancing.value[i])
-            cells.append(
-                (
-                    r.number(
-                        float(value),
-                        "",
-                        r.id(study.balance["along"] if study.lever.line is not None else forces.balancing),
-                        label,
-                        kind=size if study.lever.line is not None else forces.moment_size(i),
-                    ),
-                )
-            )
+            shown = study.balance["along" if study.lever.line is not None else "M"]
+            kind = size if study.lever.line is not None else forces.moment_size(i)
+            cells.append((r.number(float(np.real(shown.value[i])), "", r.id(shown), label, kind=kind),))
         rows.append(tuple(cells))
     return tuple(rows)

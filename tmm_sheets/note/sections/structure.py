@@ -8,7 +8,7 @@ from tmm_sheets.note.document import Number, Symbol, Text
 from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Scope
 from tmm_sheets.note.reader import Quantity, Reader
-from tmm_sheets.words import of_file
+from tmm_sheets.words import of_file, tr
 
 
 def scope(r: Reader) -> Scope:
@@ -25,7 +25,7 @@ def scope(r: Reader) -> Scope:
                 "links": g.name,
                 "kind": str(g.kind.number),
                 "triad": g.kind.grade == 3,
-                "form": g.form if g.kind.grade == 2 else g.kind.told(g),
+                "form": tr(g.form) if g.kind.grade == 2 else g.kind.told(g),
                 "nth": str(i),
                 "mobility": _mobility(r, f"W_{{{g.name}}}", len(g.links), len(g.kind.pairs(m, g)), 0, f"structure.groups[{i}]"),
                 "pairs": _pairs_of(r, g.name),
