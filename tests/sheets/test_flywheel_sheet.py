@@ -272,3 +272,14 @@ def test_a_fast_wheel_is_no_cast_iron(density, iron):
     lettering = [m.text for m in composed(own, 1).drawing.marks if isinstance(m, Text)]
     assert any("чугуна (ρ" in text for text in lettering) == iron
     assert any("маховик стальной" in text for text in lettering) != iron
+
+
+def test_nothing_is_no_share_of_a_work_that_is_nothing():
+    """A constant force of fixed direction does no work over the cycle: what the ordinates find is no per cent of it."""
+    own = Project(project_files.read(
+        project_files.SLIDER, project_files.WORKING, project_files.MASS, project_files.MOMENT, project_files.FLYWHEEL,
+        {"project.sheets": ["flywheel"], "flywheel.form": "rim",
+         "force": [{"name": "F3", "link": "3", "point": "B", "direction": "180 deg", "value": "500 N"}]}))
+    lettering = " ".join(m.text for m in composed(own, 1).drawing.marks if isinstance(m, Text))
+    assert "%)" not in lettering.partition("по ординатам")[2].partition("График")[0]
+    assert "по площади графика 0 Дж" in lettering or "по ординатам" not in lettering

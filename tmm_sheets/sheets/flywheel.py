@@ -23,7 +23,7 @@ from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import wrapped
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.numbers import decimals_for, enough, fixed, number
+from tmm_sheets.numbers import decimals_for, enough, fixed, is_zero, number
 from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import ratio, standard, together
 from tmm_sheets.sheets.player import Stage, play, stage
@@ -307,12 +307,13 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     share = fixed(100 * fw.work_error, 2)
     # So many figures that both can be told apart.
     drawn, converged = graphs.column([float(fw.work[-1]), float(fw.work_converged[-1])], 4, least=1)
-    note: tuple[str, ...] = (
-        tr("A_{index}({label}) = {work} J by the ordinates in the middles of the intervals,").format(
-            index=varying, label=fw.labels[-1], work=drawn),
-        tr("by the area of the graph {work} J ({share} %)").format(
-            work=converged, share=share if share.startswith("−") else f"+{share}"))
-    if abs(fw.work_error) >= FELT and (fw.given or fw.needed) and abs(fw.difference_percent) < 100:
+    # Nothing is a share of a work that is nothing: a weight that comes back to where it was.
+    nothing = is_zero(float(fw.work_converged[-1]), float(np.abs(fw.work).max()))
+    by_area = tr("by the area of the graph 0 J") if nothing else tr("by the area of the graph {work} J ({share} %)").format(
+        work=converged, share=share if share.startswith("−") else f"+{share}")
+    note: tuple[str, ...] = (tr("A_{index}({label}) = {work} J by the ordinates in the middles of the intervals,").format(
+        index=varying, label=fw.labels[-1], work=drawn), by_area)
+    if not nothing and abs(fw.work_error) >= FELT and (fw.given or fw.needed) and abs(fw.difference_percent) < 100:
         far = tr("δ by them: {difference} % from n → ∞") if fw.given else tr("J_{{f}} by them: {difference} % from n → ∞")
         note += (far.format(difference=f"{'+' if fw.difference_percent > 0 else ''}{fixed(fw.difference_percent, 2)}"),)
     graphs.note(canvas, Box(g.origin.real, g.origin.imag + low, g.origin.real + end.real, g.origin.imag + high), note,
