@@ -254,7 +254,8 @@ def test_forces_of_both_signs_have_room(second):
     """Their graphs stand on one axis: what counts is the extent of all of them."""
     load = {key: value for key, value in project_files.FORCE["force"][0].items() if key != "value"}
     loads = [load | {"table": [[0, "0 N"], [0.5, "4000 N"], [1, "0 N"]]},
-             load | {"name": "F4", "direction": "along motion", "stroke": "both", "table": [[0, f"{-second} N"], [1, f"{-second} N"]]}]
+             load | {"name": "F4", "direction": "along motion", "stroke": "both",
+                     "table": [[0, f"{-second} N"], [1, f"{-second} N"]]}]
     own = project_files.read(
         project_files.SLIDER, project_files.WORKING, project_files.MASS, project_files.MOMENT, project_files.FLYWHEEL,
         {"project.sheets": ["flywheel"], "flywheel.form": "rim", "force": loads})
