@@ -77,7 +77,7 @@ def corner_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> tu
 def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The ``nth`` corner of all plans enlarged, and its circle on the plan."""
     nth = int(options.get("nth", 1))
-    it, name = list(_corners(project, canvas))[nth - 1], NAMES[nth - 1]
+    it, name = list(_corners(project, canvas))[nth - 1], next_name(canvas)
     window = Box(box.x0, box.y0, box.x1, box.y1 - 16.0)
     half = min(window.width, window.height) / 2
     times, factor = _factor(canvas, it, half)
@@ -86,10 +86,19 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
         canvas.window(window.centre, half)
         _enlarged(canvas, it, window.centre, half, times)
         radius = _free_radius(canvas, it)
+        # The sign of a vector that lies in the circle stands in the detail: on the plan it would need a leader out of the corner.
+        inside = {sign for sign, *ends in it.vectors if all(abs(it.points[name] - it.centre) < radius for name in ends)}
+        canvas.labels[:] = [label for label in canvas.labels
+                            if label.part != it.frame.view or label.text not in inside or abs(label.anchor - it.centre) > radius]
         canvas.begin(canvas.parts[it.frame.view].box, "", "details.corner")
         canvas.window(it.centre, radius)
         # On a shelf: a slanting I among lines would be one of them (GOST 2.305).
         canvas.label(it.centre, name, 1 + 1j, 5.0, radius + 2.0, shelf=radius)
+
+
+def next_name(canvas: Canvas) -> str:
+    """Roman number of the next detail of a sheet, by those that stand there."""
+    return NAMES[sum(part.title.split(" ")[0] in NAMES for part in canvas.parts)]
 
 
 def _factor(canvas: Canvas, it: Corner, half: float) -> tuple[int, Scale]:
