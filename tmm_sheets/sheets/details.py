@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -90,6 +91,7 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
         inside = {sign for sign, *ends in it.vectors if all(abs(it.points[name] - it.centre) < radius for name in ends)}
         canvas.labels[:] = [label for label in canvas.labels
                             if label.part != it.frame.view or label.text not in inside or abs(label.anchor - it.centre) > radius]
+        _no_more_zero(canvas, it)
         canvas.begin(canvas.parts[it.frame.view].box, "", "details.corner")
         canvas.window(it.centre, radius)
         # On a shelf: a slanting I among lines would be one of them (GOST 2.305).
@@ -99,6 +101,14 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
 def next_name(canvas: Canvas) -> str:
     """Roman number of the next detail of a sheet, by those that stand there."""
     return NAMES[sum(part.title.split(" ")[0] in NAMES for part in canvas.parts)]
+
+
+def _no_more_zero(canvas: Canvas, it: Corner) -> None:
+    """A vector that the detail draws is not told to be about zero beside the plan."""
+    drawn = {sign for sign, tail, head in it.vectors if {tail, head} & set(it.names)}
+    kept = [replace(note, signs=tuple(sign for sign in note.signs if sign not in drawn)) if note.part == it.frame.view else note
+            for note in canvas.notes]
+    canvas.notes[:] = [note for note, was in zip(kept, canvas.notes, strict=True) if note.signs or not was.signs]
 
 
 def _factor(canvas: Canvas, it: Corner, half: float) -> tuple[int, Scale]:

@@ -108,8 +108,8 @@ def _times(found: Crowd, half: float) -> float:
 def _enlarged(canvas: Canvas, found: Crowd, at: Callable[[complex], complex], middle: complex, half: float) -> None:
     """Lines, arrows and dots of the lever that are seen in the window; heads and dots keep their sizes."""
     end = canvas.parts[found.part + 1].first if found.part + 1 < len(canvas.parts) else len(canvas.marks)
-    marks = canvas.marks[:end]
-    drawn = {n for n, mark in enumerate(marks) if n >= canvas.parts[found.part].first and mark.by is not None and mark.by.role in ROLES}
+    marks, first = canvas.marks[:end], canvas.parts[found.part].first
+    drawn = {n for n, mark in enumerate(marks[first:], first) if mark.by is not None and mark.by.role in ROLES}
     for group in [group for group in canvas.groups if group.first in drawn]:
         own = range(group.first, group.end)
         fills = [mark for n in own if isinstance(mark := marks[n], Fill)]
