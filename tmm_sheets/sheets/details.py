@@ -92,10 +92,16 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
         canvas.labels[:] = [label for label in canvas.labels
                             if label.part != it.frame.view or label.text not in inside or abs(label.anchor - it.centre) > radius]
         _no_more_zero(canvas, it)
-        canvas.begin(canvas.parts[it.frame.view].box, "", "details.corner")
-        canvas.window(it.centre, radius)
-        # On a shelf: a slanting I among lines would be one of them (GOST 2.305).
-        canvas.label(it.centre, name, 1 + 1j, 5.0, radius + 2.0, shelf=radius)
+        mark(canvas, it.frame.view, it.centre, radius, name, 1 + 1j)
+
+
+def mark(canvas: Canvas, part: int, centre: complex, radius: float, name: str, away: complex) -> None:
+    """Circle of a detail on the picture that it enlarges, and its name, which finds its place before the letters about it."""
+    canvas.begin(canvas.parts[part].box, "", "details.corner")
+    canvas.window(centre, radius)
+    # On a shelf: a slanting I among lines would be one of them (GOST 2.305).
+    canvas.label(centre, name, away, 5.0, radius + 2.0, shelf=radius)
+    canvas.labels.insert(0, canvas.labels.pop())
 
 
 def next_name(canvas: Canvas) -> str:

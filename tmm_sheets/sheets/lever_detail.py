@@ -17,7 +17,7 @@ from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.clipping import chord
 from tmm_sheets.drawing.marks import Fill, Line
 from tmm_sheets.numbers import number
-from tmm_sheets.sheets.details import next_name
+from tmm_sheets.sheets.details import mark, next_name
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -79,9 +79,7 @@ def crowd(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         canvas.labels[:] = [label for label in canvas.labels if label not in found.labels]
         for label in found.labels:
             canvas.label(at(label.anchor), label.text, label.away, max(label.height, LETTERS), label.gap, label.leader)
-        canvas.begin(canvas.parts[found.part].box, "", "details.corner")
-        canvas.window(found.centre, half / times)
-        canvas.label(found.centre, name, -1 + 1j, 5.0, half / times + 2.0, shelf=half / times)
+        mark(canvas, found.part, found.centre, half / times, name, -1 + 1j)
 
 
 def _crowd(canvas: Canvas) -> Crowd | None:
@@ -109,19 +107,20 @@ def _enlarged(canvas: Canvas, found: Crowd, at: Callable[[complex], complex], mi
     """Lines, arrows and dots of the lever that are seen in the window; heads and dots keep their sizes."""
     end = canvas.parts[found.part + 1].first if found.part + 1 < len(canvas.parts) else len(canvas.marks)
     marks, first = canvas.marks[:end], canvas.parts[found.part].first
-    drawn = {n for n, mark in enumerate(marks[first:], first) if mark.by is not None and mark.by.role in ROLES}
+    drawn = {n for n, m in enumerate(marks[first:], first) if m.by is not None and m.by.role in ROLES}
+
+    def seen(a: complex, b: complex) -> tuple[complex, complex] | None:
+        part = chord(middle, half, at(a), at(b))
+        return part if part is not None and abs(part[1] - part[0]) >= 1.0 else None
+
     for group in [group for group in canvas.groups if group.first in drawn]:
         own = range(group.first, group.end)
-        fills = [mark for n in own if isinstance(mark := marks[n], Fill)]
-        if group.kind == "dot" and (here := at(complex(fills[0].points.mean()))) and abs(here - middle) < half - 1.0:
-            canvas.dot(here, float(np.abs(fills[0].points - fills[0].points.mean()).max()), fills[0].style)
-        elif group.kind == "arrow":
-            line, tip = marks[group.first], at(complex(fills[-1].points[0]))
-            seen = chord(middle, half, at(line.a), tip) if isinstance(line, Line) else None
-            if seen is not None and abs(seen[1] - seen[0]) >= 1.0:
-                (canvas.arrow if abs(seen[1] - tip) < 1e-9 else canvas.line)(*seen, fills[-1].style)
+        line, fill = marks[group.first], next(m for m in (marks[n] for n in reversed(own)) if isinstance(m, Fill))
+        if group.kind == "dot" and abs(at(here := complex(fill.points.mean())) - middle) < half - 1.0:
+            canvas.dot(at(here), float(np.abs(fill.points - here).max()), fill.style)
+        elif group.kind == "arrow" and isinstance(line, Line) and (part := seen(line.a, tip := complex(fill.points[0]))):
+            (canvas.arrow if abs(part[1] - at(tip)) < 1e-9 else canvas.line)(*part, fill.style)
         drawn.difference_update(own)
-    for mark in (marks[n] for n in sorted(drawn)):
-        seen = chord(middle, half, at(mark.a), at(mark.b)) if isinstance(mark, Line) else None
-        if isinstance(mark, Line) and seen is not None and abs(seen[1] - seen[0]) >= 1.0:
-            canvas.line(*seen, mark.style)
+    for line in (marks[n] for n in sorted(drawn)):
+        if isinstance(line, Line) and (part := seen(line.a, line.b)) is not None:
+            canvas.line(*part, line.style)
