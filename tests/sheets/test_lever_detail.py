@@ -70,7 +70,7 @@ def test_letters_go_into_the_detail_and_its_lines_are_the_levers_enlarged():
     assert all(abs(z - middle) < half + 1e-9 for m in drawn for z in (m.a, m.b))
     tips = [m.points[0] for m in canvas.marks[lines:] if isinstance(m, Fill) and len(m.points) == 3]
     at = middle + times * (420 + 200j - found.centre)
-    assert [abs(tip - at) < 1e-9 for tip in tips] == ([True] if abs(at - middle) < half else [])  # that of the upright one is outside
+    assert [abs(tip - at) < 1e-9 for tip in tips] == ([True] if abs(at - middle) < half else [])  # the other is outside
     circles = [m for m in canvas.marks[lines:] if isinstance(m, Arc)]
     assert [round(m.radius * f, 6) for m, f in zip(circles, (1, times), strict=True)] == [half, half]
 
