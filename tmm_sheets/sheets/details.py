@@ -96,12 +96,11 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
 
 
 def mark(canvas: Canvas, part: int, centre: complex, radius: float, name: str, away: complex) -> None:
-    """Circle of a detail on the picture that it enlarges, and its name, which finds its place before the letters about it."""
+    """Circle of a detail on the picture that it enlarges, and its name."""
     canvas.begin(canvas.parts[part].box, "", "details.corner")
     canvas.window(centre, radius)
     # On a shelf: a slanting I among lines would be one of them (GOST 2.305).
     canvas.label(centre, name, away, 5.0, radius + 2.0, shelf=radius)
-    canvas.labels.insert(0, canvas.labels.pop())
 
 
 def next_name(canvas: Canvas) -> str:
