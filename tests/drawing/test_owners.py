@@ -254,3 +254,17 @@ def test_a_window_parts_no_label_from_what_it_names():
             draw(canvas, 100 + 100j, 1.5)
         marks = [m for n, m in enumerate(canvas.marks) if n not in canvas.windows]
         assert (not marks) is free
+
+
+@pytest.mark.parametrize(("shelf", "end", "ill"), [
+    (2.0, 80 + 60j, 1),  # through the shelf, under the letters
+    (0.0, 80 + 60j, 0),  # letters without one
+    (2.0, 80 + 56j, 0),  # under both
+    (2.0, 80 + 66j, 1),  # through the letters
+])  # fmt: skip
+def test_the_shelf_of_a_name_is_part_of_it(shelf, end, ill):
+    grid, ink = labels.Grid(Box(0.0, 0.0, 100.0, 100.0), [], 2), owners.Ink([])
+    grid.put(ink, 0, Label(65 + 80j, "II", 5.0, shelf=shelf), Box(60.0, 60.0, 70.0, 65.0))
+    grid.put(ink, 1, Label(50 + 58j, "3, 4", 2.5), Box(end.real, end.imag, end.real + 5, end.imag + 2.5))
+    assert min(grid.ill(1), 1) == ill
+    assert (0 in grid.met(1)) is bool(ill)

@@ -13,7 +13,9 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import place, text_box
 from tmm_sheets.drawing.marks import Box, Polyline, Text, flat
 from tmm_sheets.methods.gears.gear_pair import gear_pair
+from tmm_sheets.numbers import fixed
 from tmm_sheets.resources import template
+from tmm_sheets.sheets import gear as gear_sheet
 
 TITLE_BLOCK = Box(651, 5, 836, 60)
 DESIGNATION = Box(20, 575, 90, 589)
@@ -142,3 +144,28 @@ def test_nothing_but_the_gear_is_asked_for():
     """A view of this sheet reads the gear pair alone: any other attribute of the project would fail here."""
     for name, box in arrangement():
         drawn(name, box, SimpleNamespace(gear=PROJECTS["manual 000"].gear))
+
+
+@pytest.mark.parametrize(("teeth", "shift", "driver", "broken"), [
+    ((14, 120), (0.2, 0.1), 1, True), ((11, 60), (0.5, 0.5), 1, True), ((12, 48), (0.4, -0.4), 2, True),  # N2 at either side
+    ((14, 28), (3 / 17, 0.0), 1, False), ((60, 11), (0.5, 0.5), 1, False),  # the picture is as it was; wheel 2 is the small one
+])
+def test_a_far_greater_wheel_is_broken_so_that_the_mesh_can_be_read(teeth, shift, driver, broken):
+    data, box = project(teeth, shift, 0.004, driver), dict(arrangement())["gear.engagement"]
+    gear, canvas = data.gear, drawn("gear.engagement", box, data)
+    assert gear_sheet.picture(gear, box.width, box.height)[1] is broken
+    whole = gear.picture_scale(gear_sheet.picture_room(gear, box.width, box.height)).mu
+    mu = canvas.scales["gear-engagement"].mu
+    anchors = {label.text: label.anchor for label in canvas.labels}
+    apart = abs(anchors["O_1"] - anchors["O_2"])
+    points = ink(canvas.marks)
+    assert box.contains(points.real.min() + 1j * points.imag.min(), 1e-6)
+    assert box.contains(points.real.max() + 1j * points.imag.max(), 1e-6)
+    assert all(box.contains(anchors[name]) for name in ("O_1", "O_2", "N_1", "N_2", "A", "B"))
+    assert any(d.text == f"a_w = {fixed(gear.a_w * 1e3, 2)}" and abs(abs(d.a - d.b) - apart) < 1e-9 for d in canvas.dimensions)
+    if broken:
+        assert mu <= whole / 2
+        assert apart < 0.8 * gear.a_w / mu
+    else:
+        assert mu == whole
+        assert apart == pytest.approx(gear.a_w / mu)

@@ -56,3 +56,17 @@ def test_the_title_of_the_energy_mass_diagram_is_as_large_as_the_others_and_no_l
                                              (10000.0, "10000"), (106232.4, "106232")])
 def test_forces_have_no_more_figures_than_can_be_believed(force, said):
     assert kinetics.newtons(force) == said
+
+
+@pytest.mark.parametrize(("terms", "values", "width", "most", "lines", "height"), [
+    (1, 1, 200.0, 3, 2, 3.5), (8, 4, 400.0, 3, 2, 3.5), (8, 1, 90.0, 3, 3, 3.5), (8, 4, 90.0, 4, 4, 3.5), (8, 1, 130.0, 2, 2, 2.5),
+    (8, 0, 400.0, 3, 1, 3.5), (12, 4, 30.0, 3, 3, 2.5),
+], ids=["one", "wide", "two lines", "room for four", "no room for three", "no value", "narrow"])  # fmt: skip
+def test_an_equation_takes_more_lines_rather_than_smaller_letters(terms, values, width, most, lines, height):
+    signs = [f"F̅_{{{k}0}}({k}–{k + 1})" for k in range(1, terms + 1)]
+    found, size = kinetics.equation(signs, ["F_{10} = 12345,6 Н"] * values, width, most)
+    assert (len(found), size) == (lines, height)
+    whole = " ".join(found)
+    assert whole.startswith(" + ".join(signs) + " = 0")
+    assert whole.count("= 12345,6 Н") == values
+    assert not any(line.startswith(("+", "=", "Н")) for line in found)

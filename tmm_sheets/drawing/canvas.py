@@ -53,13 +53,20 @@ class Label:
 class Note:
     """A remark to a view in words; the sheet finds it a free place, in ``box`` or near it, when all labels are set.
 
-    ``of`` and ``part`` are those of the canvas when the note was asked for.
+    ``of`` and ``part`` are those of the canvas when the note was asked for. ``signs`` are what it ends with, a list that may become
+    shorter until it is set.
     """
 
     text: str
     box: Box
     of: str = ""
     part: int = -1
+    signs: tuple[str, ...] = ()
+
+    @property
+    def said(self) -> str:
+        """The whole of it."""
+        return f"{self.text}{', '.join(self.signs)}"
 
 
 class Part(NamedTuple):
@@ -301,9 +308,9 @@ class Canvas:
             self.labels.append(
                 Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1, self.by, shelf))
 
-    def note(self, box: Box, text: str) -> None:
+    def note(self, box: Box, text: str, signs: Iterable[str] = ()) -> None:
         """Ask for a remark in words to the view in ``box``; see :class:`Note`."""
-        self.notes.append(Note(text, box, self.of, len(self.parts) - 1))
+        self.notes.append(Note(text, box, self.of, len(self.parts) - 1, tuple(signs)))
 
     def title(self, box: Box, text: str, factor: str = "", height: float = 5.0) -> Box:
         """Title of a view centred at the top of its place, the scale factor under it and no larger; returns what is left below."""

@@ -32,13 +32,18 @@ def empty_cells(drawing: Drawing) -> float:
 
 
 def fills(drawing: Drawing) -> Iterator[tuple[str, float]]:
-    """Name of each view of a sheet and the share of its place that the rectangle round its ink takes, 0 .. 1."""
-    for view in drawing.views:
+    """Name of each view of a sheet and the share of its place that the rectangle round its ink takes, 0 .. 1.
+
+    What a view draws beyond its place, as projection lines to another graph, fills nothing of it. The circle of an enlarged detail
+    is no view with a place of its own.
+    """
+    for view in {view.box: view for view in reversed(drawing.views)}.values():
         marks = [mark for a, b in view.spans for mark in drawing.marks[a:b] if mark.of != FRAME]
         z = [_outline(mark) for mark in marks]
         if any(not isinstance(mark, Text) for mark in marks) and view.box.width * view.box.height > 0:
-            ink = Box.around(np.concatenate(z))
-            yield view.name, ink.width * ink.height / (view.box.width * view.box.height)
+            ink, place = Box.around(np.concatenate(z)), view.box
+            wide, high = min(ink.x1, place.x1) - max(ink.x0, place.x0), min(ink.y1, place.y1) - max(ink.y0, place.y0)
+            yield view.name, max(wide, 0.0) * max(high, 0.0) / (place.width * place.height)
 
 
 def _outline(mark: Mark) -> Points:

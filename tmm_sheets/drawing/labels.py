@@ -160,8 +160,8 @@ class Grid:
         self._lead(None)
 
     def put(self, ink: owners.Ink, k: int, label: Label, box: Box) -> None:
-        """Label ``k`` is set."""
-        self.boxes[k] = box
+        """Label ``k`` is set; the shelf it may stand on is part of it."""
+        self.boxes[k] = box._replace(y0=box.y0 - SHELF - CLEAR) if label.shelf else box
         self._led.pop(k, None)
         if _led(label, box):
             self._led[k] = _way(label, box)

@@ -43,7 +43,7 @@ def place(canvas: Canvas, area: Box) -> list[Crowded]:
                 _set(canvas, note, corner, lines, height)
                 break
         else:
-            crowded.append(Crowded(note.text, note.box.centre))
+            crowded.append(Crowded(note.said, note.box.centre))
     canvas.notes.clear()
     return crowded
 
@@ -84,7 +84,7 @@ def _choice(grid: Grid, region: Box, ink: Box, note: Note, height: float, count:
 
     Best is near the lower edge of the ``ink`` of its view: a view may leave most of its place to others.
     """
-    lines = wrapped(note.text, height, count)
+    lines = wrapped(note.said, height, count)
     laid = [letter(line, height) for line in lines]
     w = max(line.width for line in laid) + 0.15 * height
     h = (len(laid) - 1) * LEADING * height + laid[0].ascent + laid[-1].descent

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -77,7 +78,7 @@ def corner_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> tu
 def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The ``nth`` corner of all plans enlarged, and its circle on the plan."""
     nth = int(options.get("nth", 1))
-    it, name = list(_corners(project, canvas))[nth - 1], NAMES[nth - 1]
+    it, name = list(_corners(project, canvas))[nth - 1], next_name(canvas)
     window = Box(box.x0, box.y0, box.x1, box.y1 - 16.0)
     half = min(window.width, window.height) / 2
     times, factor = _factor(canvas, it, half)
@@ -86,10 +87,33 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
         canvas.window(window.centre, half)
         _enlarged(canvas, it, window.centre, half, times)
         radius = _free_radius(canvas, it)
-        canvas.begin(canvas.parts[it.frame.view].box, "", "details.corner")
-        canvas.window(it.centre, radius)
-        # On a shelf: a slanting I among lines would be one of them (GOST 2.305).
-        canvas.label(it.centre, name, 1 + 1j, 5.0, radius + 2.0, shelf=radius)
+        # The sign of a vector that lies in the circle stands in the detail: on the plan it would need a leader out of the corner.
+        inside = {sign for sign, *ends in it.vectors if all(abs(it.points[name] - it.centre) < radius for name in ends)}
+        canvas.labels[:] = [label for label in canvas.labels
+                            if label.part != it.frame.view or label.text not in inside or abs(label.anchor - it.centre) > radius]
+        _no_more_zero(canvas, it)
+        mark(canvas, it.frame.view, it.centre, radius, name, 1 + 1j)
+
+
+def mark(canvas: Canvas, part: int, centre: complex, radius: float, name: str, away: complex) -> None:
+    """Circle of a detail on the picture that it enlarges, and its name."""
+    canvas.begin(canvas.parts[part].box, "", "details.corner")
+    canvas.window(centre, radius)
+    # On a shelf: a slanting I among lines would be one of them (GOST 2.305).
+    canvas.label(centre, name, away, 5.0, radius + 2.0, shelf=radius)
+
+
+def next_name(canvas: Canvas) -> str:
+    """Roman number of the next detail of a sheet, by those that stand there."""
+    return NAMES[sum(part.title.split(" ")[0] in NAMES for part in canvas.parts)]
+
+
+def _no_more_zero(canvas: Canvas, it: Corner) -> None:
+    """A vector that the detail draws is not told to be about zero beside the plan."""
+    drawn = {sign for sign, tail, head in it.vectors if {tail, head} & set(it.names)}
+    kept = [replace(note, signs=tuple(sign for sign in note.signs if sign not in drawn)) if note.part == it.frame.view else note
+            for note in canvas.notes]
+    canvas.notes[:] = [note for note, was in zip(kept, canvas.notes, strict=True) if note.signs or not was.signs]
 
 
 def _factor(canvas: Canvas, it: Corner, half: float) -> tuple[int, Scale]:

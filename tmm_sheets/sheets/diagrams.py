@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.motion import Output
     from tmm_sheets.project import Project
 
-TITLED = 74.0
-"""Width of the title of the table of motion, mm."""
 GRAPH_SIZES = (280.0, 110.0), (240.0, 96.0), (200.0, 84.0), (170.0, 76.0)
 """Sizes of a single graph over the cycle for room that a sheet has left, mm."""
 
@@ -91,8 +89,7 @@ def motion_table(project: Project, canvas: Canvas, box: Box, options: graphs.Opt
     # The same quantities of one output stand together.
     every.sort(key=lambda row: row[0][1:])
     beside = _of_bars(project, {symbol for symbol, _, _ in every}) if options.get("links") else []
-    title = tr("Motion of the output link") if len(every) == 3 else tr("Motion of the output links")
-    left = canvas.title(box, tr("Motion of the links") if beside else title)
+    left = canvas.title(box, tr("Motion of the links") if beside else _of_outputs(len(every)))
     every = [*beside, *every]
     for digits in (4, 3):
         rows = _motion_rows(_rows_of(project), every, digits, two=bool(beside))
@@ -106,13 +103,20 @@ def motion_table(project: Project, canvas: Canvas, box: Box, options: graphs.Opt
     canvas.table(complex(box.x0, left.y1), widths, rows, row, height, header=2 if beside else 1)
 
 
+def _of_outputs(columns: int) -> str:
+    """Title of the table of the outputs with so many columns."""
+    return tr("Motion of the output link") if columns == 3 else tr("Motion of the output links")
+
+
 def motion_table_sizes(project: Project, canvas: Canvas, options: graphs.Options) -> list[tuple[float, float]]:
     """Places that the table can do with, mm: rows of 7 mm to 4.6 mm, columns of 26 mm to 16 mm."""
     if not _columns(project, options):
         return []
     rows, columns = len(_rows_of(project)) + 1, 3 * len(project.diagrams)
     sizes = ((26.0, 7.0), (22.0, 7.0), (20.0, 5.6), (16.0, 4.6))
-    return [(max(12.0 + wide * columns, TITLED), 11.0 + row * rows) for wide, row in sizes]
+    # As wide as its title is in letters of the height that the others have, if there is room.
+    titled = [letter(_of_outputs(columns), height).width + 2.0 for height in (5.0, 3.5)]
+    return [(max(12.0 + wide * columns, least), 11.0 + row * rows) for wide, row in sizes for least in titled]
 
 
 def _rows_of(project: Project) -> tuple[tuple[int, str], ...]:
@@ -295,14 +299,12 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQ
 
 
 def _numbers(project: Project, canvas: Canvas, o: complex, x: Any, length: float, q: DiagramQuantity, curves: list[Any]) -> None:
-    """Numbers of the positions at the axis, on the side where the first graph is not; the end of a turn is position 0."""
-    labels = project.cycle.labels
-    pitch = length / len(labels)
+    """Numbers of the positions at the axis, on the side where the first graph is not, and of the one that closes the turn."""
+    pitch = length / len(project.cycle.labels)
     height = 3.5 if pitch >= letter("00", 3.5).width + 2.0 else 2.5
     ink = np.concatenate(curves)
     first = q.curves[0]
-    closing = 0 if project.cycle.swings else 1
-    for xi, label, y in zip([*x, *[length] * closing], [*labels, *labels[:closing]], [*first.at, *first.at[:closing]], strict=True):
+    for xi, label, y in zip([*x, length], project.cycle.ends, [*first.at, first.at[0]], strict=False):
         at = o + xi
         canvas.line(at - 0.8j, at + 0.8j, "axis")
         width = letter(label, height).width

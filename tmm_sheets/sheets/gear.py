@@ -30,6 +30,10 @@ LEVEL = radians(7)
 """Angle that radii keep from the level centre line."""
 PITCHES, MOST = 1.25, 1.5
 """Pitches that the view of the meshing zone must show at least, and those it shows at most."""
+LEGIBLE, GREATER = 25.0, 4.0
+"""Height of a tooth on the picture, mm, below which a wheel 2 so many times greater is broken so that the scale can be larger."""
+HUB, UNDER, BESIDE = 44.0, 14.0, 14.0
+"""Height of what is left of a broken wheel about its centre; room under the foot N of its perpendicular and at its side, mm."""
 MESH = 18.0, 32.0
 """What comes to the meshing zone: names of circles beside it; title and edges over and under it, mm."""
 DEEPEST = 10.0
@@ -60,21 +64,46 @@ def picture_room(gear: Any, width: float, height: float) -> float:
     return float(min(tall, (width - 12) / smaller * gear.height))
 
 
+def picture(gear: Any, width: float, height: float) -> tuple[Scale, bool]:
+    """Scale of the engagement picture in a place of this size, mm, and whether the greater wheel is broken for it."""
+    whole: Scale = gear.picture_scale(picture_room(gear, width, height))
+    tooth = max(abs(w.ra - w.rf) for w in gear.wheels)
+    one, two = gear.wheels
+    if gear.internal or two.teeth < GREATER * one.teeth or whole.mm(tooth) >= LEGIBLE:
+        return whole, False
+    left, right, below, above = _broken_extent(gear)
+    larger = standard((left + right, width - 6.0 - 2 * BESIDE), (below + above, height - 16.0 - HUB - 2 * UNDER))
+    return (larger, True) if larger.mu < whole.mu else (whole, False)
+
+
+def _broken_extent(gear: Any) -> tuple[float, float, float, float]:
+    """What is to be seen about the pole of a pair whose wheel 2 is broken, m: the side of its foot N2, the other, below, above."""
+    one, _ = gear.wheels
+    foot = complex(gear.engagement["N2"].value)
+    reach = 1.25 * abs(foot.real)  # divisions go on beyond the foot
+    return max(reach, one.ra), one.ra, max(1.25 * abs(foot.imag), one.ra - one.rw), one.rw + one.ra
+
+
 class _GearPicture:
-    """The engagement picture in its place: turns metres of the plans into millimetres of the sheet."""
+    """The engagement picture in its place: turns metres of the plans into millimetres of the sheet.
+
+    Of a pair with a far greater wheel 2 that wheel is ``broken`` between the mesh and its centre (GOST 2.305).
+    """
 
     def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
         self.gear, self.canvas = gear, canvas
-        self.mu: Scale = gear.picture_scale(picture_room(gear, box.width, box.height))
+        self.mu, self.broken = picture(gear, box.width, box.height)
         for name in ("engagement", "involute-1", "involute-2", "tooth-1", "tooth-2"):
             canvas.scales[f"gear-{name}"] = self.mu
         self.box = canvas.title(box, tr("Gear meshing"), ratio(self.mu))
-        self.pole = self.pole_of_ring() if gear.internal else self.pole_of_pair()
+        self.pole = self.pole_of_ring() if gear.internal else self.pole_of_broken() if self.broken else self.pole_of_pair()
         self.at = Frame(self.mu, self.pole)
         self.stage = stage(canvas, gear.engagement, 0, self.at)
         self.tooth = {w.number: stage(canvas, gear.tooth(w), 0, self.at) for w in gear.wheels}
         if gear.internal:  # the ring ends a little over its centre
             self.box = Box(*self.box[:3], min(self.box.y1, self.of("O2").imag + EDGE))
+        if self.broken:
+            self.hub, self.box = complex(self.pole.real, self.box.y0 + 0.55 * HUB), self.box._replace(y0=self.box.y0 + HUB)
         self.window = Window(canvas, self.box.inset(3))  # room for the kinks of break lines
         self.mm = self.mu.mm
 
@@ -84,6 +113,14 @@ class _GearPicture:
         below = (ring.outside - ring.rw) / self.mu.mu
         spare = self.box.height - below - ring.rw / self.mu.mu - EDGE
         return complex((self.box.x0 + self.box.x1) / 2, self.box.y0 + spare / 2 + below)
+
+    def pole_of_broken(self) -> complex:
+        """Place of the pole of a broken pair: what its divisions need at the side of N2, the rest is left over and under it."""
+        left, right, below, above = (length / self.mu.mu for length in _broken_extent(self.gear))
+        if self.gear.engagement["N2"].value.real > 0:
+            left, right = right, left
+        spare = self.box.width - left - right, self.box.height - HUB - below - above
+        return complex(self.box.x0 + spare[0] / 2 + left, self.box.y0 + HUB + spare[1] / 2 + below)
 
     def pole_of_pair(self) -> complex:
         """Place of the pole between two wheels one over the other."""
@@ -99,6 +136,10 @@ class _GearPicture:
     def of(self, name: str) -> complex:
         """Point of the engagement plan on the sheet."""
         return self.stage.at(name)
+
+    def centre(self, wheel: Any) -> complex:
+        """Where a wheel's centre is drawn: nearer than it is if the wheel is broken."""
+        return self.hub if self.broken and wheel.number == 2 else self.of(f"O{wheel.number}")
 
     def away(self, wheel: Any) -> int:
         """+1 when the wheel's far side is up."""
@@ -128,8 +169,13 @@ class _GearPicture:
             # At the right the extension line of the centre distance continues it; of a ring there is nothing at this level.
             left = 12.0 if wheel.ring else self.mm(wheel.ra) + 6.0
             self.window.line(self.stage, f"O{wheel.number}", centre - left, centre + 12, "centre")
-            self.stage.pen(f"O{wheel.number}", "symbol").circle(centre, 2.0, "main")
-            self.canvas.label(centre, f"O_{wheel.number}", away=complex(1, self.away(wheel)), height=5, gap=3)
+            at = self.centre(wheel)
+            if at != centre:  # what is left of it beyond the break
+                s = self.stage.pen("O1O2", "axis")
+                s.line(complex(at.real, self.box.y0 - 1.0), at - 12j, "centre")
+                s.line(at - 12, at + 12, "centre")
+            self.stage.pen(f"O{wheel.number}", "symbol").circle(at, 2.0, "main")
+            self.canvas.label(at, f"O_{wheel.number}", away=complex(1, self.away(wheel)), height=5, gap=3)
 
     def radii(self) -> None:
         """Radii of the circles as arrows from the centre, where the picture has most room."""
@@ -198,7 +244,7 @@ class _GearPicture:
             centre = self.of(f"O{i}")
             away = (foot - centre) / abs(foot - centre)
             inward = (pole - foot) / abs(pole - foot)
-            s.line(f"N{i}", centre, foot, "thin", "axis")
+            self.window.line(s, f"N{i}", centre, foot, "thin")
             corner = foot + 3 * inward - 3 * away
             s.line(f"N{i}", foot - 3 * away, corner, "thin", "symbol")
             s.line(f"N{i}", corner, foot + 3 * inward, "thin", "symbol")
@@ -228,7 +274,7 @@ class _GearPicture:
 
     def dimension_of_centres(self) -> None:
         """Centre distance at the edge of the picture."""
-        top, bottom = (self.of(f"O{i}") for i in ((2, 1) if self.gear.internal else (1, 2)))
+        top, bottom = (self.centre(self.gear.wheels[i - 1]) for i in ((2, 1) if self.gear.internal else (1, 2)))
         reach = self.box.x1 - 12 - top.real
         self.canvas.dimension(bottom + 12, top + 12, 12 - reach, f"a_w = {fixed(self.gear.a_w * 1e3, 2)}", 5.0)
 
@@ -309,7 +355,9 @@ class _GearPicture:
         first, last = ends
         drawn = float(self.gear.engagement[f"phi{i}"].value)
         pen = self.stage.pen(f"phi{i}", "dimension")
-        angle_beside(pen, centre, first, last, self.mm(wheel.rf) * 0.66, f"φ_{{α{i}}} = {fixed(degrees(drawn), 2)}°")
+        # Of a broken wheel in what is seen of it.
+        radius = self.mm(wheel.rf) * 0.66 if self.centre(wheel) == centre else self.box.y0 + UNDER - centre.imag
+        angle_beside(pen, centre, first, last, radius, f"φ_{{α{i}}} = {fixed(degrees(drawn), 2)}°")
 
     def dimensions(self, wheel: Any) -> None:
         """Chordal thickness on an outer tooth, chordal pitch between the axes of the other two."""
@@ -332,7 +380,7 @@ class _GearPicture:
         """Arrow of the angular velocity."""
         first = -1 if self.gear.sense == "clockwise" else 1
         sense = first if wheel.number == 1 or wheel.ring else -first
-        centre = self.of(f"O{wheel.number}")
+        centre = self.centre(wheel)
         middle = pi / 2 * self.away(wheel)
         half = radians(50)
         self.canvas.tracing("symbol").arc_arrow(centre, 12, middle - sense * half, middle + sense * half)

@@ -34,7 +34,9 @@ def engagement(project: Project, view: View) -> Node:
     pair = project.gear
 
     def drawn(width: int, height: int) -> float:
-        mu = pair.picture_scale(gear.picture_room(pair, width, height))
+        mu, broken = gear.picture(pair, width, height)
+        if broken:
+            return float(width * height) * (1.0 + 1e-3 / mu.mu)  # the scale is what counts
         whole = min(2 * min(w.ra for w in pair.wheels) / mu.mu + BESIDE, width)
         return (whole + (width - whole) * OTHER) * height
 

@@ -499,7 +499,7 @@ def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[
     flat_crossings.warn(project, canvas, box, acc.plan)
     tiny = _draw_plan(stage(canvas, acc.plan, k, frame), "π", symbols_at=True)
     if tiny:
-        canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny)))
+        canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
 
 
 def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
@@ -525,7 +525,7 @@ def second_accelerations(project: Project, canvas: Canvas, box: Box, options: di
     canvas.title(box, kinematic_frames.title_of_accelerations(project, k), str(scale))
     tiny = _draw_plan(stage(canvas, acc.plan, k, Frame(scale, inside.centre - scale.mm(real.centre))), "π", symbols_at=True)
     if tiny:
-        canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny)))
+        canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
 
 
 COLUMNS = 7

@@ -15,7 +15,7 @@ from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import ARROW, Align, Canvas
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.notes import TOGETHER
+from tmm_sheets.drawing.notes import TOGETHER, wrapped
 from tmm_sheets.drawing.tables import widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, decimals_for, fixed, is_zero, number
@@ -70,6 +70,8 @@ GAP = 4.0
 """Distance of groups that share a place, mm."""
 ROOM = 6.0
 """Room for labels between a force polygon and its equation, mm."""
+LINE, LINES = 6.25, 3
+"""Distance of the lines of that equation and of the values under it, mm, and how many there is always room for."""
 STACKED = 90.0
 """Height from which on the plans of a group stand one over another, mm; in lower places side by side."""
 
@@ -301,15 +303,16 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     if tiny:
         canvas.note(box, tr("Less than 1{space}mm: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny.values())))
     # Equation and values close under a polygon that does not fill the height of its place.
-    low = max(box.y0, min(frame(z).imag for z in points.values()) - AROUND[1] - ROOM)
+    lowest = min(frame(z).imag for z in points.values())
     asked = [side[:3] for side in sides if side[3]] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
     found = [tr("{quantity} = {value} N").format(quantity=sign.replace(BAR, ""),
                                                  value=newtons(clean(fp.plan.length(tail, head).at(k), size)))
              for sign, tail, head in asked]
-    lines = [*_equation(terms(sides), box.width - 4.0), "; ".join(found)]
-    size = size_for(lines, box.width - 4.0, 3.5)
-    for line, y in zip(reversed(lines), (3.0, 9.5, 15.5), strict=False):
-        canvas.text(complex(box.centre.real, low + y), line, size, "centre")
+    most = max(LINES, int((lowest - ROOM - box.y0) / LINE))
+    lines, size = equation(terms(sides), found, box.width - 4.0, most)
+    low = max(box.y0, lowest - ROOM - max(AROUND[1], LINE * len(lines)))
+    for k, line in enumerate(reversed(lines)):
+        canvas.text(complex(box.centre.real, low + 3.0 + LINE * k), line, size, "centre")
 
 
 def heads_apart(sides: Sequence[tuple[complex, complex]]) -> list[float | None]:
@@ -345,13 +348,25 @@ def newtons(force: float) -> str:
     return fixed(force, 0 if force >= 1e4 else 1) if force >= 10 else number(force, 4)
 
 
-def _equation(terms: list[str], width: float) -> list[str]:
-    """Vector equation of a force plan; one that would become unreadably small in its width goes on two lines."""
-    whole = " + ".join(terms) + " = 0"
-    if letter(whole, 2.5).width <= width:
-        return [whole]
-    half = (len(terms) + 1) // 2
-    return [" + ".join(terms[:half]) + " +", " + ".join(terms[half:]) + " = 0"]
+def equation(terms: list[str], values: list[str], width: float, most: int) -> tuple[list[str], float]:
+    """Vector equation of a force plan and the values found, on ``most`` lines at most, and the height of their letters, mm.
+
+    Rather on more lines than in smaller letters: all equations of a sheet are to be read alike.
+    """
+    # A line ends after a sign; a value is not parted from its unit.
+    texts = [f"{TOGETHER}+ ".join(terms) + f"{TOGETHER}={TOGETHER}0", "; ".join(value.replace(" ", TOGETHER) for value in values)]
+    for height in (3.5, 2.5):
+        broken = [_broken(text, height, width, most) for text in texts if text]
+        if all(broken) and sum(map(len, broken)) <= most:
+            return [line for lines in broken for line in lines], height
+    lines = [line for text, count in zip(texts, (2, 1), strict=True) if text for line in wrapped(text, 2.5, count)]
+    return lines, size_for(lines, width, 2.5)
+
+
+def _broken(text: str, height: float, width: float, most: int) -> list[str]:
+    """A text on as few lines as it needs; none where so many are not enough."""
+    found = (wrapped(text, height, count) for count in range(1, most + 1))
+    return next((lines for lines in found if max(letter(line, height).width for line in lines) <= width), [])
 
 
 def _fitted(canvas: Canvas, at: complex, text: str, height: float, width: float, align: Align = "centre") -> None:

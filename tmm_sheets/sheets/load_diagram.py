@@ -101,7 +101,8 @@ def _size(of: tuple[float, str]) -> tuple[float, str]:
 def _positions(project: Project, canvas: Canvas, shown: list[Applied], at: Frame, frame: int) -> None:
     """Numbers of the positions under the axis, and ordinates of the largest load over those inside the turn."""
     cycle = project.cycle
-    for label, angle in (*zip(cycle.labels, cycle.turned, strict=True), (cycle.labels[0], cycle.period)):
+    for k, (number, angle) in enumerate(zip(cycle.ends, (*cycle.turned, cycle.period), strict=False)):
+        label = cycle.labels[k % len(cycle.labels)]
         value, largest = max(((float(np.ravel(f.shown(angle, side))[0]), f.name) for f in shown for side in (-1, 1)), key=_size)
         foot = complex(at(angle))
         with canvas.traced("curve", f"loads/{largest}", label, frame):
@@ -109,4 +110,4 @@ def _positions(project: Project, canvas: Canvas, shown: list[Applied], at: Frame
                 canvas.line(foot, complex(at(angle + 1j * value)), "thin")
         with canvas.traced("axis", f"loads/{largest}", label, frame):
             canvas.line(foot - 1j, foot, "thin")
-            canvas.text(foot - 5.0j, label, 2.5, "centre")
+            canvas.text(foot - 5.0j, number, 2.5, "centre")

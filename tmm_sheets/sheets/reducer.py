@@ -34,6 +34,8 @@ NAME = 30.0
 """Room for a link's speed of rotation on its plan, mm."""
 OVER = 34.0
 """Room over and under the views with their title, mm."""
+CLEAR = 7.5
+"""Least distance of the scale factor over the uppermost line of the picture of velocities, mm: letters stand at its end."""
 ROW = 12.0
 """Greatest height of a row of the tables, mm."""
 NARROWEST, WIDEST = 75.0, 100.0
@@ -137,7 +139,7 @@ class SchemeViews:
         laid = fitted(str(mu), self.picture.width, 5.0)
         bottom, top = (f([v.imag for v in ends.values()]) for f in (min, max))
         # Over the picture, and clear of the scale factor under the title of the views.
-        level = min(self.picture.y1 - 8.0, self.y(top) + 12.0)
+        level = max(min(self.picture.y1 - 8.0, self.y(top) + 12.0), self.y(top) + CLEAR)
         c.put(laid, complex((self.picture.x0 + self.picture.x1 - laid.width) / 2, level), 0.0, str(mu))
 
         s = placed(c, plan, complex(zero, self.axis), (mu.mu, self.mu.mu))

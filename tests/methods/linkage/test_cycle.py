@@ -10,6 +10,7 @@ from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import RPR, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, LinkPoint, StructuralGroup
+from tmm_sheets.methods.linkage.cycle import closed
 from tmm_sheets.methods.linkage.dead_positions import dead_positions
 from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle
 from tmm_sheets.methods.linkage.positions import position_plan
@@ -178,3 +179,11 @@ def test_dead_positions_found_as_zeros_where_they_cannot_be_constructed():
 def test_root_to_the_last_bit():
     assert root(np.cos, 0.0, 3.0) == pytest.approx(pi / 2, abs=5e-16)
     assert root(lambda x: np.exp(x) - 5, -10, 10) == pytest.approx(np.log(5), abs=5e-16)
+
+
+@pytest.mark.parametrize(("labels", "closing"), [
+    (("0",), "0"), (("0", "1", "2"), "3"), (("12", *map(str, range(1, 12))), "12"), (("0", "1", "1a"), "0"), (("3", "1", "2"), "3"),
+    (("4", "5", "3"), "4"),
+], ids=["one", "from naught", "from the last", "no number", "turned", "taken"])  # fmt: skip
+def test_number_that_closes_the_turn(labels, closing):
+    assert closed(labels) == (*labels, closing)

@@ -38,6 +38,7 @@ from tmm_sheets.methods.integration import (
     differentiate,
     integrate,
 )
+from tmm_sheets.methods.linkage.cycle import closed
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
@@ -350,9 +351,7 @@ class Flywheel(ABC):
     @cached_property
     def labels(self) -> tuple[str, ...]:
         """Numbers of the positions with the one that closes the cycle."""
-        first, *others = self.reduced.labels
-        last = str(int(others[-1]) + 1) if others[-1].isdigit() else first
-        return (first, *others, first if last in others else last)
+        return closed(self.reduced.labels)
 
     @cached_property
     def edges(self) -> Floats:

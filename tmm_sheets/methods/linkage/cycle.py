@@ -47,6 +47,13 @@ class Strokes:
         return np.asarray((t > near) & (t < width - near))
 
 
+def closed(labels: tuple[str, ...]) -> tuple[str, ...]:
+    """Numbers of the positions with the one that closes the cycle: the next number, or the first again that has it."""
+    first, *others = labels
+    last = str(int(others[-1]) + 1) if others and others[-1].isdigit() else first
+    return (*labels, first if last in others else last)
+
+
 @dataclass(frozen=True)
 class Cycle:
     """Numbered positions: angles ``turned`` from position 0 in the sense of rotation, world angles ``phi``, rad, shape (n,).
@@ -64,6 +71,11 @@ class Cycle:
     plan: Plan | None
     numbering: Plan | None = None
     swings: bool = False
+
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """Numbers along an axis over the cycle: those of the positions and the one that closes a turn; a swing ends at its last."""
+        return self.labels if self.swings else closed(self.labels)
 
     @property
     def plans(self) -> dict[str, Plan]:

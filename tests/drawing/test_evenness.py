@@ -1,0 +1,24 @@
+"""What a view uses of its place: never more than all of it."""
+
+import pytest
+
+from tmm_sheets.box import Box
+from tmm_sheets.drawing import evenness
+from tmm_sheets.drawing.marks import Arc, Drawing, Line, View
+
+PLACE = Box(100.0, 100.0, 200.0, 200.0)
+
+
+@pytest.mark.parametrize(("a", "b", "share"), [
+    (100 + 100j, 200 + 200j, 1.0), (100 + 100j, 150 + 200j, 0.5), (150 + 150j, 150 + 150j, 0.0),
+    (0j, 400 + 400j, 1.0), (150 + 150j, 400 + 400j, 0.25), (300 + 300j, 400 + 400j, 0.0),
+], ids=["whole", "half", "point", "beyond", "over a corner", "elsewhere"])  # fmt: skip
+def test_fill_of_a_place(a, b, share):
+    drawing = Drawing(841.0, 594.0, "", (Line(a, b, "main"),), views=(View("view", PLACE, ((0, 1),)),))
+    assert dict(evenness.fills(drawing)) == {"view": pytest.approx(share)}
+
+
+def test_the_circle_of_a_detail_has_no_place_of_its_own():
+    marks = Line(100 + 100j, 200 + 200j, "main"), Arc(150 + 150j, 2.0, 0.0, 6.28, "thin")
+    drawing = Drawing(841.0, 594.0, "", marks, views=(View("plan", PLACE, ((0, 1),)), View("mark", PLACE, ((1, 2),))))
+    assert [name for name, _ in evenness.fills(drawing)] == ["plan"]

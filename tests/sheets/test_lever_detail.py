@@ -1,0 +1,98 @@
+"""The crowd about the pole of the lever goes into an enlarged detail, and nothing is named twice or by nobody."""
+
+import numpy as np
+import pytest
+
+from tmm_sheets.box import Box
+from tmm_sheets.construction.scale import Scale
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame
+from tmm_sheets.sheets import details, lever_detail
+
+PLACE = Box(100.0, 100.0, 180.0, 196.0)
+
+
+def lever(*anchors):
+    """A lever with a letter at each of these points, mm, an arrow over all of them and a title."""
+    canvas = Canvas()
+    canvas.scales["lever"] = Scale("μ_V", 0.01, "(m/s)/mm")
+    canvas.begin(Box(300.0, 100.0, 500.0, 300.0), "", "kinetics.lever")
+    canvas.title(Box(300.0, 100.0, 500.0, 300.0), "lever")
+    pen = canvas.tracing("vector", "lever/b")
+    pen.arrow(400 + 200j, 420 + 200j, "vector")
+    pen.arrow(400 + 200j, 400 + 280j, "vector")
+    canvas.tracing("construction", "lever/h").line(380 + 190j, 440 + 190j, "thin")
+    canvas.tracing("point", "lever/p").dot(400 + 200j, 0.9)
+    for k, at in enumerate(anchors):
+        canvas.label(400 + 200j + at, f"h_{{{k}}}", height=2.5)
+    canvas.begin(Box(600.0, 100.0, 700.0, 200.0), "", "other")
+    canvas.label(401 + 200j, "other")
+    return canvas
+
+
+def row(count, step=2.0):
+    return [step * k for k in range(count)]
+
+
+@pytest.mark.parametrize(("anchors", "crowded"), [
+    ([], 0), ([0.0], 0), (row(8), 0), (row(9), 9), ([0.0] * 9, 9), (row(9, 30.0), 0), ([*row(9), 60.0], 9),
+    ([*row(10, 1.0), *(80 + z for z in row(9, 1.0))], 10),  # of two crowds the thicker
+], ids=["none", "one", "few", "many", "coincident", "apart", "one far off", "two crowds"])  # fmt: skip
+def test_what_is_a_crowd(anchors, crowded):
+    canvas = lever(*anchors)
+    found = lever_detail._crowd(canvas)
+    assert (len(found.labels) if found else 0) == crowded
+    sizes = lever_detail.crowd_sizes(None, canvas, {})
+    assert bool(sizes) is bool(crowded)
+    if found:
+        assert all(abs(label.anchor - found.centre) < found.radius for label in found.labels)
+
+
+def test_no_lever_no_crowd():
+    assert lever_detail.crowd_sizes(None, Canvas(), {}) == []
+
+
+def test_letters_go_into_the_detail_and_its_lines_are_the_levers_enlarged():
+    canvas = lever(*row(9), 60.0)
+    before, lines = list(canvas.labels), len(canvas.marks)
+    found = lever_detail._crowd(canvas)
+    lever_detail.crowd(None, canvas, PLACE, {})
+    assert sorted(label.text for label in canvas.labels) == sorted([*(label.text for label in before), "I"])
+    half, middle = 40.0, PLACE.x0 + 40.0 + 1j * (PLACE.y0 + 40.0)
+    times = lever_detail._times(found, half)
+    moved = {label.text: label for label in canvas.labels if abs(label.anchor - middle) < half}
+    assert moved.keys() == {label.text for label in found.labels}
+    for was in found.labels:
+        assert abs(moved[was.text].anchor - middle - times * (was.anchor - found.centre)) < 1e-9
+        assert moved[was.text].height == 3.5
+    assert "".join(m.text for m in canvas.marks[lines:] if hasattr(m, "text")).startswith(f"I ({times:g}:1)".replace(".", ","))
+    drawn = [m for m in canvas.marks[lines:] if isinstance(m, Line) and m.style in ("vector", "thin")]
+    assert all(abs(z - middle) < half + 1e-9 for m in drawn for z in (m.a, m.b))
+    tips = [m.points[0] for m in canvas.marks[lines:] if isinstance(m, Fill) and len(m.points) == 3]
+    at = middle + times * (420 + 200j - found.centre)
+    assert [abs(tip - at) < 1e-9 for tip in tips] == ([True] if abs(at - middle) < half else [])  # the other is outside
+    circles = [m for m in canvas.marks[lines:] if isinstance(m, Arc)]
+    assert [round(m.radius * f, 6) for m, f in zip(circles, (1, times), strict=True)] == [half, half]
+
+
+@pytest.mark.parametrize(("signs", "drawn", "left"), [
+    ((), ["a"], None), (("a",), ["a"], []), (("a", "b"), ["a"], ["b"]), (("b",), ["a"], ["b"])])  # fmt: skip
+def test_what_a_detail_draws_is_not_about_zero(signs, drawn, left):
+    canvas = Canvas()
+    canvas.begin(PLACE, "plan")
+    canvas.note(PLACE, "≈ 0: ", signs)
+    canvas.begin(PLACE, "another")
+    canvas.note(PLACE, "≈ 0: ", ("a",))
+    vectors, points = tuple((sign, "1", "2") for sign in drawn), {"1": 0j, "2": 1 + 0j}
+    corner = details.Corner(None, PlacedFrame(0, "plan", "", 0j, (1.0, 1.0)), vectors, points, ("1", "2"))
+    details._no_more_zero(canvas, corner)
+    assert [note.said for note in canvas.notes] == [*([] if left == [] else [f"≈ 0: {', '.join(left or [])}"]), "≈ 0: a"]
+
+
+def test_details_are_numbered_as_they_stand_there():
+    canvas = Canvas()
+    assert details.next_name(canvas) == "I"
+    for title in ("План сил", "I (5:1)", "II (2,5:1)"):
+        canvas.begin(PLACE, title)
+    assert details.next_name(canvas) == "III"
+    assert np.unique(details.NAMES).size == len(details.NAMES)

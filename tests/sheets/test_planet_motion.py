@@ -1,0 +1,71 @@
+"""Room left beside trains and reducers: what stands there is true, and follows from teeth and speeds alone."""
+
+import re
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tmm_sheets.catalogue import read
+from tmm_sheets.project import Project
+from tmm_sheets.sheets import planet_motion
+
+
+def mesh(central, planet, sign, carrier="H"):
+    return SimpleNamespace(central=central, planet=planet, sign=sign, carrier=carrier)
+
+
+def train(meshes, teeth, speeds, satellites=3):
+    plan = {f"n{name}": SimpleNamespace(value=n) for name, n in speeds.items()}
+    return SimpleNamespace(meshes=meshes, data=SimpleNamespace(teeth=teeth, satellites=satellites), kinematics=plan)
+
+
+ROW = [mesh("1", "2", 1), mesh("3", "2", -1)]
+TEETH = {"1": 24, "2": 45, "3": 114}
+
+
+@pytest.mark.parametrize(("meshes", "teeth", "satellites", "said"), [
+    ([mesh("1", "2", 1, "")], {"1": 20, "2": 40}, 3, []),  # no carrier
+    (ROW[:1], TEETH, 3, ["69·sin(180°/3) = 59,76 > 47"]),  # one mesh
+    (ROW, TEETH, 3, ["24 + 45 = 114 − 45 = 69", "(24 + 114)/3 = 46", "= 59,76 > 47"]),
+    (ROW, TEETH, 1, ["24 + 45 = 114 − 45 = 69"]),  # one planet has no neighbour
+    (ROW, TEETH, 5, ["= 69", "= 27,6 (не целое", "= 40,56 < 47"]),  # neither fit in nor clear
+    ([ROW[0], mesh("3", "2", 1)], {"1": 24, "2": 45, "3": 25}, 3, ["≈", "(24 − 25)/3 = −0,3333 (не", "> 47"]),  # shifted
+    ([ROW[0], mesh("4", "3", -1)], {"1": 24, "2": 45, "3": 20, "4": 89}, 3,  # a block of two planets
+     ["24 + 45 = 89 − 20 = 69", "(24·20 + 45·89)/(3·НОД(45; 20)) = 299", "> 47"]),
+])  # fmt: skip
+def test_conditions_of_planets(meshes, teeth, satellites, said):
+    lines = list(planet_motion._checks(train(meshes, teeth, {}, satellites)))
+    assert all(any(part in line for line in lines) for part in said), lines
+    assert bool(lines) is bool(said)
+
+
+@pytest.mark.parametrize(("meshes", "speeds", "count"), [
+    (ROW[:1], {"1": 1000.0, "H": 0.0}, 0),  # no two central wheels
+    (ROW, {"1": 1450.0, "3": 0.0, "H": 1450 * 24 / 138}, 2),
+    (ROW, {"1": 950.0, "3": -200.0, "H": 0.0}, 2),  # the carrier stands
+    (ROW, {"1": 500.0, "3": 500.0, "H": 500.0}, 0),  # all turn as one
+    ([ROW[0], mesh("3", "2", -1, "H2")], {"1": 1.0, "3": 2.0, "H": 0.0, "H2": 0.0}, 0),  # on other carriers
+])  # fmt: skip
+def test_ratios_by_speeds_and_by_teeth_agree(meshes, speeds, count):
+    lines = list(planet_motion._ratios(train(meshes, TEETH, speeds)))
+    assert len(lines) == count
+    assert len({line.rsplit(" = ", 1)[1] for line in lines}) <= 1
+
+
+@pytest.mark.parametrize(("name", "rows"), [("tests/projects/ferguson.toml", 4), ("tests/projects/hoist.toml", 3),
+                                            ("tests/projects/winder.toml", 3)])
+def test_relative_speeds_are_as_the_teeth_demand(name, rows):
+    """Who turns with the carrier sees an ordinary train: the speeds of two wheels in mesh are as their teeth, inverted."""
+    project = Project(read(name))
+    found = {name: n - h for _, name, n, h in planet_motion._inverted(project)}
+    assert len(found) == rows
+    if project.variant.train is not None:
+        teeth, meshes = project.train.data.teeth, [(m.central, m.planet) for m in project.train.meshes if m.carrier]
+    else:
+        one, two, _, four = project.reducer.stages[0].wheels
+        teeth, meshes = {w.number: w.teeth for w in (one, two, four)}, [(one.number, two.number), (four.number, two.number)]
+    for central, planet in meshes:
+        assert np.isclose(abs(found[central] * teeth[central]), abs(found[planet] * teeth[planet]), rtol=1e-9)
+    for line in planet_motion._ratios(project.train) if project.variant.train is not None else ():
+        assert re.search(r"= −?[\d,]+$", line)
