@@ -529,9 +529,11 @@ def second_accelerations(project: Project, canvas: Canvas, box: Box, options: di
 
 
 COLUMNS = 7
-"""So many segments the table of lengths shows of those of the velocity plans, if there are."""
+"""So many columns the table of lengths has in about half of the place; with more it shares the width with that of speeds."""
 COLUMN = 12.5
-"""Width of a column, mm, from which on it shows more: all segments that the speeds are worked out from, if there is room."""
+"""Width of a column, mm, below which the tables lie down: a row for each quantity, a column for each position."""
+LOWEST = 3.9
+"""Height of a row, mm, below which letters of 2.5 mm touch its lines."""
 
 
 def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -549,21 +551,24 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
                if np.ndim(w.value) and link in vel.reference]
     speeds = [*linear.items(), *turning]
     stacked = bool(options.get("stacked"))
-    room = max(COLUMNS, int((box.width - 30.0) / COLUMN) - (0 if stacked else len(speeds)))
-    lengths = _measured_lengths(project, canvas, varying, [link.removeprefix("ω_") for link, _ in turning], room)
-    left, right = _table_places(box, len(lengths), len(speeds), stacked=stacked)
+    lengths = _measured_lengths(project, canvas, varying, [link.removeprefix("ω_") for link, _ in turning])
+    width = box.width - 30.0
+    lying = COLUMN * (max(len(lengths), len(speeds)) if stacked else len(lengths) + len(speeds)) > width
+    # Tables that lie down have the same columns.
+    left, right = _table_places(box, len(speeds) if lying and lengths else len(lengths), len(speeds), stacked=stacked)
     if lengths:
         mu = canvas.scales["velocities"].mu
         said = [f"{_segment(seg.tail, seg.head)} = {fixed(float(value[0]) / mu, 1)}" for seg, value in constant]
-        _table_over_positions(project, canvas, left, "; ".join([tr("Lengths of the segments, mm"), *said]), lengths, 1)
+        title = "; ".join([tr("Lengths of the segments, mm"), *said])
+        _table_over_positions(project, canvas, left, title, lengths, 1, lying=lying)
     if speeds:
         title = tr("Linear, m/s, and angular, rad/s, velocities") if turning else tr("Linear velocities, m/s")
-        _table_over_positions(project, canvas, right, title, speeds, 3)
+        _table_over_positions(project, canvas, right, title, speeds, 3, lying=lying)
 
 
-def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segment, Any]], turning: list[str],
-                      room: int) -> list[tuple[str, Any]]:
-    """Captions and lengths, mm, of the segments to be measured, as many as there is room for; none (NaN) of a plan not drawn.
+def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segment, Any]],
+                      turning: list[str]) -> list[tuple[str, Any]]:
+    """Captions and lengths, mm, of the segments to be measured; none (NaN) of a plan that is not drawn.
 
     They are what the speeds come from: the vectors of the plans, and the segments that the links ``turning`` have there.
     """
@@ -573,11 +578,7 @@ def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segm
     for q, b in (vel.reference[link][2:] for link in turning):
         if _segment(q, b) not in drawn and _segment(b, q) not in drawn:
             drawn[_segment(q, b)] = np.abs(np.asarray(b.value) - np.asarray(q.value)) / mu
-    if not lengths and len(drawn) <= room:
-        lengths = list(drawn.items())
-    else:
-        others = [(name, v) for name, v in drawn.items() if not any(np.allclose(v, w) for _, w in lengths)]
-        lengths += others[:max(room - len(lengths), 0)]
+    lengths += [(name, v) for name, v in drawn.items() if not any(np.allclose(v, w) for _, w in lengths)]
     for i, _ in kinematic_frames.beyond_drawing(project):
         lengths = [(name, np.where((np.arange(len(v)) == i) & name.startswith("|"), np.nan, v)) for name, v in lengths]
     return lengths
@@ -625,22 +626,29 @@ NOTHING = 1e-4
 
 
 def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: str, columns: list[tuple[str, Any]],
-                          decimals: int) -> None:
-    """A column for each quantity, a row for each position that is drawn; a dash where there is no number.
+                          decimals: int, *, lying: bool = False) -> None:
+    """A column for each quantity, a row for each position that is drawn; the other way round ``lying``; a dash for no number.
 
-    ``decimals`` unless a column's numbers are too small for them, but for those that are nothing beside the others.
+    ``decimals`` unless a column's numbers are too small for them, but for those that are nothing beside the others. What has no
+    room at all is named in a remark.
     """
     cycle = project.cycle
     greatest = {name: float(np.nanmax(np.abs(v), initial=0.0)) for name, v in columns}
     places = {name: decimals_for([size], decimals) if size > NOTHING * max(greatest.values()) else decimals
               for name, size in greatest.items()}
-    row = min((place.height - 15.0) / (len(cycle.drawn) + 2), 7.5)
-    canvas.text(complex(place.centre.real, place.y1 - 5.0), title, size_for([title], place.width, 3.5), "centre")
     cells = [[tr("No."), *(name for name, _ in columns)]]
     cells += [[label, *("–" if np.isnan(v[i]) else fixed(float(v[i]), places[name]) for name, v in columns)]
               for i, label in cycle.drawn]
-    height = size_in(row)
-    widths = widened([10.0] + [(place.width - 10.0) / len(columns)] * len(columns), cells, height)
+    if lying:
+        cells = [list(row) for row in zip(*cells, strict=True)]
+        room = max(int((place.height - 9.0) / LOWEST), 2)
+        if len(cells) > room:
+            canvas.note(place, tr("The table has no room for {names}").format(names=", ".join(row[0] for row in cells[room:])))
+            cells = cells[:room]
+    row = min((place.height - 15.0) / (len(cells) + 1), 7.5) if not lying else min((place.height - 9.0) / len(cells), 7.5)
+    canvas.text(complex(place.centre.real, place.y1 - 5.0), title, size_for([title], place.width, 3.5), "centre")
+    height, count = size_in(row), len(cells[0]) - 1
+    widths = widened([10.0] + [(place.width - 10.0) / count] * count, cells, height)
     canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, height)
 
 
