@@ -270,11 +270,13 @@ def _strokes(project: Project, s: Stage) -> None:
     first = cycle.world(cycle.turned[0])
     last = cycle.world(cycle.turned[count] if count else cycle.strokes.end)
     working, idle = tr_in("angle of the crank", "φ_w"), tr_in("angle of the crank", "φ_i")
-    for text, a, b, at in ((working, first, last, 0.5), (idle, last, first + cycle.sense * 2 * pi, 0.2)):
-        # The sign of the idle angle stands near its beginning: about its middle the links of many positions crowd.
-        lo, hi = min(a, b), max(a, b)
-        share = at if b > a else 1 - at
-        s.canvas.angle_mark(s.at(c.pivot), lo, hi, radius, f"{text} = {number(round(degrees(hi - lo), 6))}°", 3.5, share)
+    pivot, end = s.at(c.pivot), first + cycle.sense * 2 * pi
+    arcs = [(min(a, b), max(a, b), radius) for a, b in ((first, last), (last, end))]
+    # The sign of the idle angle stands near its beginning: about its middle the links of many positions crowd.
+    for sign, arc, at in zip((working, idle), arcs, (0.5, 0.2 if cycle.sense > 0 else 0.8), strict=True):
+        text = f"{sign} = {number(round(degrees(arc[1] - arc[0]), 6))}°"
+        share = _free_share(s.canvas, pivot, arcs, arc, text, at)
+        s.canvas.angle_mark(pivot, *arc, text, 3.5, share)
 
 
 def _named_angles(project: Project, s: Stage) -> None:
@@ -307,21 +309,32 @@ _Arc = tuple[float, float, float]
 """Of an arc: from, to, rad, and its radius, mm."""
 
 
-def _free_share(canvas: Canvas, centre: complex, arcs: list[_Arc], own: _Arc, text: str) -> float:
-    """Where along its arc the number of an angle stands over least."""
+CROSSED = 20
+"""Millimetres of lines under a number up to which it finds a place beside them by itself."""
+
+
+def _free_share(canvas: Canvas, centre: complex, arcs: list[_Arc], own: _Arc, text: str, wanted: float | None = None) -> float:
+    """Where along its arc the number of an angle stands over least and within its view; where it is ``wanted`` if that will do."""
+    place = canvas.parts[-1].box
     marks = canvas.marks[canvas.parts[-1].first:]
     thick = [mark for mark in marks if not isinstance(mark, Text) and mark.style in HEAVY]
     drawn = [centre + radius * np.exp(1j * np.arange(lo, hi, 1 / radius)) for lo, hi, radius in arcs]
     anchors = [label.anchor for label in canvas.labels] * 4
-    ink = np.concatenate([dense(marks, 1.0), *[dense(thick, 1.0)] * 4, *drawn * 8, np.array(anchors, complex)])
+    ink = np.concatenate([dense(marks, 1.0), *[dense(thick, 1.0)] * 4, *drawn * (8 if wanted is None else 2),
+                          np.array(anchors, complex)])
     laid = letter(text, 3.5)
     half = complex(laid.width / 2 + 1.0, (laid.ascent + laid.descent) / 2 + 1.0)
 
     def over(share: Any) -> tuple[int, float]:
         u = complex(np.exp(1j * (own[0] + share * (own[1] - own[0]))))
-        off = ink - centre - (own[2] + 1.0) * u - complex(half.real * u.real, half.imag * u.imag)
-        return int(((np.abs(off.real) < half.real) & (np.abs(off.imag) < half.imag)).sum()), abs(share - 0.5)
+        at = centre + (own[2] + 1.0) * u + complex(half.real * u.real, half.imag * u.imag)
+        off = ink - at
+        out = 0 if place.contains(at - half) and place.contains(at + half) else len(ink)
+        covered = int(((np.abs(off.real) < half.real) & (np.abs(off.imag) < half.imag)).sum())
+        return covered + out, abs(share - (0.5 if wanted is None else wanted))
 
+    if wanted is not None and over(wanted)[0] <= CROSSED:
+        return wanted
     return float(min(np.linspace(0.06, 0.94, 45), key=over))
 
 
