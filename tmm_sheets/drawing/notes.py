@@ -96,7 +96,7 @@ def _ink(canvas: Canvas, note: Note) -> Box:
 
 def _choice(grid: Grid, region: Box, ink: Box, note: Note, height: float, count: int,
             apart: list[Box]) -> tuple[float, complex, list[str]] | None:
-    """The best free place in ``region``, ``apart`` from some boxes, for a note of so many lines: its cost, lower left corner, lines.
+    """The best free place in ``region``, ``apart`` from some boxes, for a note of so many lines: cost, corner, lines.
 
     Best is near the lower edge of the ``ink`` of its view: a view may leave most of its place to others.
     """

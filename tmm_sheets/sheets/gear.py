@@ -109,7 +109,7 @@ class _GearPicture:
         spare = self.box.width / 2 - max(abs(x) for x in lasts) - DIVISION
         if spare >= 0 or wheel + EDGE / 2 > self.box.width / 2:
             return pole
-        shift = min(-spare, self.box.width / 2 - wheel - EDGE / 2)
+        shift = float(min(-spare, self.box.width / 2 - wheel - EDGE / 2))
         return pole - (shift if max(lasts, key=abs) > 0 else -shift)
 
     def of(self, name: str) -> complex:

@@ -659,7 +659,10 @@ def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: s
             canvas.note(place, tr("The table has no room for {names}").format(names=", ".join(row[0] for row in cells[room:])))
             cells = cells[:room]
     row = min((place.height - 15.0) / (len(cells) + 1), 7.5) if not lying else min((place.height - 9.0) / len(cells), 7.5)
-    canvas.text(complex(place.centre.real, place.y1 - 5.0), title, size_for([title], place.width, 3.5), "centre")
+    # A head that is too long goes on in a second line: beside a larger one nobody reads it.
+    head = [title] if letter(title, 3.5).width <= place.width else [part for part in title.partition("; ")[::2] if part]
+    begin = complex(place.centre.real, place.y1 - (5.0 if len(head) == 1 else 2.2))
+    canvas.lines(begin, head, 5.0, size_for(head, place.width, 3.5), "centre")
     height, count = size_in(row), len(cells[0]) - 1
     widths = widened([10.0] + [(place.width - 10.0) / count] * count, cells, height)
     canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, height)
