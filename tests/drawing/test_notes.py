@@ -54,3 +54,16 @@ def test_a_remark_of_no_view_has_its_place():
     canvas.note(Box(50.0, 200.0, 250.0, 290.0), "Less than 1 mm")
     _, at = placed(canvas)
     assert 200 < at.imag < 290
+
+
+@pytest.mark.parametrize("low", [60.0, 12.0], ids=["room below", "no room below"])
+def test_a_remark_stands_between_no_plan_and_its_caption_where_there_is_another_place(low):
+    canvas, box = Canvas(), Box(10.0, 8.0, 390.0, 200.0)
+    canvas.begin(box, "", "velocity plans")
+    canvas.note(box, "Less than 1 mm")
+    for x in (10.0, 137.0, 264.0):
+        canvas.begin(Box(x, low, x + 126.0, low + 100.0), "Velocity plan", "velocity plans")
+        canvas.line(complex(x + 5, low + 60), complex(x + 121, low + 90), "vector")
+        canvas.text(complex(x + 60, low + 2), "Position 1", 3.5, "centre")
+    _, at = placed(canvas)
+    assert at.imag < low or at.imag > low + 60

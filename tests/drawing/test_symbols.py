@@ -21,3 +21,14 @@ def test_a_bar_without_a_hinge_at_its_end_goes_up_to_it():
     assert bar(0j, 10 + 0j, [0j, 25 + 0j]) == [(1 + 0j, 10 + 0j)]
     assert bar(0j, 10 + 0j, [4 + 0j]) == [(0j, 3 + 0j), (5 + 0j, 10 + 0j)]
     assert bar(0j, 10 + 0j, [10.5 + 0j]) == [(0j, 9.5 + 0j)]
+
+
+@pytest.mark.parametrize(("u", "v", "marks"), [
+    (7 + 0j, 3j, 1), (1 + 0j, -1 + 1j, 1), (1 + 0j, 2 + 0.1j, 0), (1 + 0j, -1 + 0j, 0), (1 + 0j, 5 + 0j, 0),
+], ids=["right", "obtuse", "all but straight", "straight", "one on the other"])  # fmt: skip
+def test_a_rigid_corner_is_marked_unless_its_sides_are_one_line(u, v, marks):
+    canvas = Canvas()
+    symbols.rigid_corner(canvas, 10 + 10j, u, v)
+    assert len(canvas.marks) == marks
+    for mark in canvas.marks:
+        assert max(abs(mark.points - (10 + 10j))) == pytest.approx(symbols.CORNER)

@@ -14,7 +14,7 @@ from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.drawing.marks import Polyline
 from tmm_sheets.numbers import number
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import diagrams, hodograph, kinetics, linkage, moments, offers, position_tables, reducer
+from tmm_sheets.sheets import diagrams, hodograph, kinetics, linkage, moments, offers, position_tables, reducer, train
 from tmm_sheets.sheets.sheet import _code, composed
 
 FIELD = Box(20.0, 5.0, 836.0, 589.0)
@@ -49,6 +49,29 @@ def test_a_place_is_clear_of_all_ink_and_outside_pictures(lines, found):
         for a, b in lines:
             z = a + np.linspace(0, 1, 2000) * (b - a)
             assert not ((z.real > box.x0 - 5) & (z.real < box.x1 + 5) & (z.imag > box.y0 - 5) & (z.imag < box.y1 + 5)).any()
+
+
+@pytest.mark.parametrize(("draw", "free"), [("view", True), ("train.scheme", False)])
+def test_nothing_stands_between_the_edges_of_a_wheel(draw, free):
+    canvas = Canvas()
+    canvas.begin(FIELD, "", draw)
+    for y in (30.0, 560.0):
+        canvas.line(complex(20, y), complex(836, y), "main")
+    assert (offers._place(cells(canvas), [(200.0, 120.0)], FIELD) is not None) is free
+
+
+@pytest.mark.parametrize("name", ["hoist", "ferguson"])
+def test_every_wheel_of_a_train_has_its_diameter_once(name):
+    project = Project(read(f"tests/projects/{name}.toml"))
+    lines = train.dimensions(project)
+    said = [line.split(" = ")[0] for line in lines if line.startswith("d_")]
+    meshed = {w for mesh in project.train.meshes for w in (mesh.central, mesh.planet)}
+    assert {sign[3:-1] for sign in said} == meshed
+    assert len(lines) == len(set(lines))
+    for line in lines:
+        if "m·z" in line and line.startswith("d_"):
+            module, teeth = (float(v.replace(",", ".")) for v in line.split(" = ")[2].split("·"))
+            assert module * teeth == pytest.approx(float(line.split(" = ")[3].replace(",", ".")), rel=1e-3)
 
 
 def test_the_next_smaller_size_is_taken_and_none_that_does_not_fit():

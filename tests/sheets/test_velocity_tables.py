@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 from tmm_sheets.catalogue import read
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import kinematics
 from tmm_sheets.sheets.sheet import composed
@@ -14,9 +17,9 @@ def tables(project, monkeypatch):
     found = []
     original = kinematics._table_over_positions
 
-    def keeping(project, canvas, place, title, columns, decimals):
+    def keeping(project, canvas, place, title, columns, decimals, **way):
         found.append((title, dict(columns)))
-        original(project, canvas, place, title, columns, decimals)
+        original(project, canvas, place, title, columns, decimals, **way)
 
     monkeypatch.setattr(kinematics, "_table_over_positions", keeping)
     scales = composed(project, 1).scales
@@ -43,10 +46,30 @@ def test_what_does_not_change_is_told_once(monkeypatch):
     assert "|pb|" not in lengths
 
 
-def test_a_narrow_place_has_some_columns_only(monkeypatch):
-    ((_, lengths), (_, speeds)), _ = tables(Project(read("lugansk/shaper")), monkeypatch)
-    assert len(lengths) >= kinematics.COLUMNS
-    assert len(lengths) <= kinematics.COLUMNS or (len(lengths) + len(speeds)) * kinematics.COLUMN <= 377
+def drawn(columns, place, lying):
+    """Canvas with the table of some columns in a place, and the rectangles of its cells' texts by columns of lines."""
+    project = Project(read("screen"))
+    canvas = Canvas()
+    canvas.begin(place, "", "kinematics.velocity_tables")
+    values = np.linspace(-99.0, 99.0, len(project.cycle.labels))
+    table = [(f"ω_{{{n}}}", values) for n in range(columns)]
+    kinematics._table_over_positions(project, canvas, place, "velocities", table, 3, lying=lying)
+    return project, canvas
+
+
+@pytest.mark.parametrize(("columns", "kept"), [(1, 1), (14, 14), (26, 26), (27, 27), (40, 27)])
+def test_a_table_that_lies_down_has_all_its_numbers_in_their_cells_or_names_what_it_lacks(columns, kept):
+    place = Box(100.0, 100.0, 300.0, 220.0)
+    project, canvas = drawn(columns, place, lying=True)
+    rules = sorted({mark.a.real for mark in canvas.marks if isinstance(mark, Line) and mark.a.real == mark.b.real})
+    assert len(rules) == len(project.cycle.drawn) + 2
+    for mark in canvas.marks:
+        if isinstance(mark, Text) and mark.at.imag < place.y1 - 9.0:
+            x = text_box(mark).real
+            assert np.searchsorted(rules, x.min()) == np.searchsorted(rules, x.max()), mark.text
+    assert len({mark.a.imag for mark in canvas.marks if isinstance(mark, Line) and mark.a.imag == mark.b.imag}) == kept + 2
+    said = "".join(note.text for note in canvas.notes)
+    assert [f"ω_{{{n}}}" in said for n in range(columns)] == [n >= kept for n in range(columns)]
 
 
 @pytest.mark.parametrize("name", ["screen", "lugansk/shaper"])

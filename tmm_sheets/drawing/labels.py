@@ -46,6 +46,8 @@ CROSSING, OVER, MISREAD = 8.0, 300.0, 1e4
 """Cost of each thing a leader crosses or runs along, of lettering under it, of being read as another thing's letter, mm."""
 OUTSIDE = 20.0
 """Cost of a place that leaves the place of the label's view, in millimetres of distance."""
+AWAY, STRAYED = 8.0, 24.0
+"""So far beyond that place, mm, a label has left it: as bad as a leader that meets three things."""
 SEVERAL = 10
 """So many leaders met are as bad as a label that is read as another thing's."""
 TURNING = 4.0
@@ -280,8 +282,11 @@ class _Places:
         x0, y0, x1, y1 = sides + _MARGIN
         self.run_on = _beside(sides, grid.written, WORD * label.height)
         cost = cost + LIGHT * grid.under(grid.light, sides) + RUN_ON * self.run_on
+        self._strayed = np.zeros(len(cost), bool)
         if 0 <= label.part < len(grid.views) and (view := grid.views[label.part]).contains(label.anchor):
-            cost = cost + OUTSIDE * ((x0 < view.x0) | (y0 < view.y0) | (x1 > view.x1) | (y1 > view.y1))
+            beyond = np.maximum.reduce([view.x0 - x0, view.y0 - y0, x1 - view.x1, y1 - view.y1])
+            cost = cost + OUTSIDE * (beyond > 0)
+            self._strayed = beyond > AWAY
         p = grid.leaders
         p = p[(p.real > x0.min()) & (p.real < x1.max()) & (p.imag > y0.min()) & (p.imag < y1.max())]
         if len(p):
@@ -315,10 +320,11 @@ class _Places:
     def ill(self, here: owners.Round, k: int) -> float:
         """Cost of what is wrong with the label at a place, 0 for nothing."""
         box = self.box(k)
+        far = STRAYED * bool(self._strayed[k])
         if not _led(self.label, box):
-            return MISREAD if here.reads(box) else 0.0
+            return far + (MISREAD if here.reads(box) else 0.0)
         over = _over(self._grid.written, *_way(self.label, box))
-        return OVER * over if over else CROSSING * here.met(*_way(self.label, box))
+        return far + (OVER * over if over else CROSSING * here.met(*_way(self.label, box)))
 
     def apart(self, here: owners.Round) -> Iterator[int]:
         """Free places whose leader runs over no lettering, the cheapest first, none near one before it."""

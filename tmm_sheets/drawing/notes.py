@@ -27,6 +27,8 @@ STEP = 1.0
 """Distance of the places tried, mm."""
 OUTSIDE = 4.0
 """What a millimetre of distance from the view's ink costs, in millimetres from its lower edge."""
+FAR = 250.0
+"""Cost from which on a place is too far from the view to keep clear of its pictures."""
 TITLE, BESIDE_TITLE = 17.0, 40.0
 """Height of a title with its scale factor, mm, and what it costs to stand beside it: that would be read as part of it."""
 
@@ -36,8 +38,11 @@ def place(canvas: Canvas, area: Box) -> list[Crowded]:
     crowded = []
     for note in canvas.notes:
         grid, ink = Grid(area, canvas.marks), _ink(canvas, note)
-        for region, height in product((note.box, area), HEIGHTS):
-            found = [choice for n in LINES if (choice := _choice(grid, region, ink, note, height, n)) is not None]
+        pictures = _pictures(canvas, note)
+        # Best between no picture of the view and its caption, if that is not far from the view.
+        for apart, region, height in product((pictures, []), (note.box, area), HEIGHTS):
+            found = [choice for n in LINES if (choice := _choice(grid, region, ink, note, height, n, apart)) is not None
+                     and (choice[0] < FAR or apart is not pictures)]
             if found:
                 _, corner, lines = min(found, key=lambda choice: choice[0])
                 _set(canvas, note, corner, lines, height)
@@ -68,6 +73,16 @@ def wrapped(text: str, height: float, count: int) -> list[str]:
         room += height
 
 
+def _pictures(canvas: Canvas, note: Note) -> list[Box]:
+    """Rectangles round the pictures that a view has several of, each with its caption."""
+    if note.part < 0:
+        return []
+    ends = [*(part.first for part in canvas.parts[1:]), len(canvas.marks)]
+    drawn = [dense(canvas.marks[part.first:end], 5.0) for part, end in zip(canvas.parts, ends, strict=True)
+             if part.title and part.box != note.box and all(note.box.contains(z, 0.1) for z in part.box.corners)]
+    return [Box.around(z) for z in drawn if len(z)]
+
+
 def _ink(canvas: Canvas, note: Note) -> Box:
     """What is drawn of a view, in all its parts; its place where there is nothing, or nobody said what belongs to it."""
     if note.part < 0:
@@ -79,8 +94,9 @@ def _ink(canvas: Canvas, note: Note) -> Box:
     return Box.around(drawn) if len(drawn) else note.box
 
 
-def _choice(grid: Grid, region: Box, ink: Box, note: Note, height: float, count: int) -> tuple[float, complex, list[str]] | None:
-    """The best free place in ``region`` for a note of so many lines: its cost, the lower left corner, the lines.
+def _choice(grid: Grid, region: Box, ink: Box, note: Note, height: float, count: int,
+            apart: list[Box]) -> tuple[float, complex, list[str]] | None:
+    """The best free place in ``region``, ``apart`` from some boxes, for a note of so many lines: cost, corner, lines.
 
     Best is near the lower edge of the ``ink`` of its view: a view may leave most of its place to others.
     """
@@ -97,6 +113,8 @@ def _choice(grid: Grid, region: Box, ink: Box, note: Note, height: float, count:
     cost += BESIDE_TITLE * (sides[3] > box.y1 - TITLE)
     cost += height * LINES.index(count)
     covered = grid.under(grid.heavy, _with_margin(sides)) + grid.under(grid.light, _with_margin(sides))
+    for b in apart:
+        covered += (sides[0] < b.x1) & (sides[1] < b.y1) & (sides[2] > b.x0) & (sides[3] > b.y0)
     cost = np.where(covered > 0, np.inf, cost)
     best = int(np.argmin(cost)) if cost.size else 0
     if not cost.size or not np.isfinite(cost[best]):

@@ -9,6 +9,8 @@ from tmm_sheets.drawing.canvas import Canvas, in_role
 
 HINGE = 1.6
 """Radius of a hinge's circle, mm."""
+CORNER, STRAIGHT = 5.0, 0.1
+"""How far the mark of a rigid angle reaches along its sides, mm; sine of the angle below which they are one line."""
 BLOCK = (10.0, 6.0)
 """Length and width of a sliding block, mm."""
 
@@ -59,6 +61,14 @@ def bar(canvas: Canvas, points: Iterable[complex], hinges: Iterable[complex], st
             start = max(start, hi)
         if start < length:
             canvas.line(a + start * u, b, style)
+
+
+@in_role("symbol")
+def rigid_corner(canvas: Canvas, at: complex, u: complex, v: complex, style: str = "main") -> None:
+    """Rigid angle of one link, filled between the lines along ``u`` and ``v``; nothing where they lie along each other."""
+    u, v = u / abs(u), v / abs(v)
+    if abs((u.conjugate() * v).imag) > STRAIGHT:
+        canvas.fill((at + HINGE * u, at + CORNER * u, at + CORNER * v, at + HINGE * v), style)
 
 
 @in_role("symbol")

@@ -34,6 +34,8 @@ STEEP = 1.5
 """Condition number up to which a position is recommended instead: lines over 40 degrees."""
 COARSE = 1.0
 """Error of a point, mm, above which it is told."""
+GAIN = 0.8
+"""Share of its error up to which another position is better: above it nothing is gained that a pencil shows."""
 _KINEMATIC = {"positions": "mu_l", "velocities": "mu_V", "accelerations": "mu_a"}
 
 
@@ -74,7 +76,7 @@ def find(project: Project, plan: Plan, drawn: Iterable[int], scales: dict[str, A
             size = kinematic_frames.plan_extent(plan, worst)
             hopeless = not scales[plan.name].real(mm[worst]) < 0.5 * max(size.width, size.height)
             # Lines that meet steeper, but are longer, may gain nothing.
-            better = _better(project, worst, [k for k in range(len(mm)) if hopeless or mm[k] < mm[worst]])
+            better = _better(project, worst, [k for k in range(len(mm)) if hopeless or mm[k] < GAIN * mm[worst]])
             found.append(Flat(plan, plan[name], bad, worst, None if hopeless else float(mm[worst]), asin(1 / float(steep[worst])),
                               better, float("nan") if better is None else float(mm[better])))
     return found

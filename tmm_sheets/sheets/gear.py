@@ -26,6 +26,8 @@ STRIP = 2.5
 """Depth of the hatched strip along the working part of a flank, mm."""
 DIMENSION = 8.0
 """Distance of the dimension lines of the teeth from the root circle, mm."""
+DIVISION = 10.0
+"""Room beyond the last division of an involute for its number, mm."""
 LEVEL = radians(7)
 """Angle that radii keep from the level centre line."""
 PITCHES, MOST = 1.25, 1.5
@@ -96,7 +98,8 @@ class _GearPicture:
         for name in ("engagement", "involute-1", "involute-2", "tooth-1", "tooth-2"):
             canvas.scales[f"gear-{name}"] = self.mu
         self.box = canvas.title(box, tr("Gear meshing"), ratio(self.mu))
-        self.pole = self.pole_of_ring() if gear.internal else self.pole_of_broken() if self.broken else self.pole_of_pair()
+        self.pole = self.pole_of_broken() if self.broken else self.beside(
+            self.pole_of_ring() if gear.internal else self.pole_of_pair())
         self.at = Frame(self.mu, self.pole)
         self.stage = stage(canvas, gear.engagement, 0, self.at)
         self.tooth = {w.number: stage(canvas, gear.tooth(w), 0, self.at) for w in gear.wheels}
@@ -132,6 +135,20 @@ class _GearPicture:
         if not EDGE <= above <= spare - EDGE or min(one, two) > 0.7 * spare:
             above = spare / 2
         return complex((self.box.x0 + self.box.x1) / 2, self.box.y1 - above - gear.wheels[0].rw / self.mu.mu)
+
+    def beside(self, pole: complex) -> complex:
+        """The pole moved aside where the divisions of an involute, which go on beyond its foot N, would leave the picture.
+
+        Not so far that the smaller wheel would leave it at the other side.
+        """
+        gear, mu = self.gear, self.mu
+        lasts = [gear.involute(w, mu)[str(gear.divisions(w, mu)[-1])].value.real / mu.mu for w in gear.wheels]
+        wheel = min(w.ra for w in gear.wheels) / mu.mu
+        spare = self.box.width / 2 - max(abs(x) for x in lasts) - DIVISION
+        if spare >= 0 or wheel + EDGE / 2 > self.box.width / 2:
+            return pole
+        shift = float(min(-spare, self.box.width / 2 - wheel - EDGE / 2))
+        return pole - (shift if max(lasts, key=abs) > 0 else -shift)
 
     def of(self, name: str) -> complex:
         """Point of the engagement plan on the sheet."""

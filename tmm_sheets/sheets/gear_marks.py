@@ -93,7 +93,10 @@ class Window:
                 middle = rect(1, start + share * (end - start))
                 c.label(centre + radius * middle, name, away=-middle)
         ends.sort()
-        for (y, name), at in zip(ends, spread([y for y, _ in ends], 6.0), strict=True):
+        apart = spread([y for y, _ in ends], 6.0)
+        # Names spread over the lower edge go up together.
+        up = max(self.box.y0 - min(apart, default=self.box.y0), 0.0)
+        for (y, name), at in zip(ends, (at + up for at in apart), strict=True):
             c.tracing("dimension").line(complex(self.box.x1, y), complex(self.box.x1 + 4, at), "thin")
             c.text(complex(self.box.x1 + 5, at - 1.75), name, 3.5)
 

@@ -270,11 +270,13 @@ def _strokes(project: Project, s: Stage) -> None:
     first = cycle.world(cycle.turned[0])
     last = cycle.world(cycle.turned[count] if count else cycle.strokes.end)
     working, idle = tr_in("angle of the crank", "φ_w"), tr_in("angle of the crank", "φ_i")
-    for text, a, b, at in ((working, first, last, 0.5), (idle, last, first + cycle.sense * 2 * pi, 0.2)):
-        # The sign of the idle angle stands near its beginning: about its middle the links of many positions crowd.
-        lo, hi = min(a, b), max(a, b)
-        share = at if b > a else 1 - at
-        s.canvas.angle_mark(s.at(c.pivot), lo, hi, radius, f"{text} = {number(round(degrees(hi - lo), 6))}°", 3.5, share)
+    pivot, end = s.at(c.pivot), first + cycle.sense * 2 * pi
+    arcs = [(min(a, b), max(a, b), radius) for a, b in ((first, last), (last, end))]
+    # The sign of the idle angle stands near its beginning: about its middle the links of many positions crowd.
+    for sign, arc, at in zip((working, idle), arcs, (0.5, 0.2 if cycle.sense > 0 else 0.8), strict=True):
+        text = f"{sign} = {number(round(degrees(arc[1] - arc[0]), 6))}°"
+        share = _free_share(s.canvas, pivot, arcs, arc, text, at)
+        s.canvas.angle_mark(pivot, *arc, text, 3.5, share)
 
 
 def _named_angles(project: Project, s: Stage) -> None:
@@ -307,21 +309,32 @@ _Arc = tuple[float, float, float]
 """Of an arc: from, to, rad, and its radius, mm."""
 
 
-def _free_share(canvas: Canvas, centre: complex, arcs: list[_Arc], own: _Arc, text: str) -> float:
-    """Where along its arc the number of an angle stands over least."""
+CROSSED = 20
+"""Millimetres of lines under a number up to which it finds a place beside them by itself."""
+
+
+def _free_share(canvas: Canvas, centre: complex, arcs: list[_Arc], own: _Arc, text: str, wanted: float | None = None) -> float:
+    """Where along its arc the number of an angle stands over least and within its view; where it is ``wanted`` if that will do."""
+    place = canvas.parts[-1].box
     marks = canvas.marks[canvas.parts[-1].first:]
     thick = [mark for mark in marks if not isinstance(mark, Text) and mark.style in HEAVY]
     drawn = [centre + radius * np.exp(1j * np.arange(lo, hi, 1 / radius)) for lo, hi, radius in arcs]
     anchors = [label.anchor for label in canvas.labels] * 4
-    ink = np.concatenate([dense(marks, 1.0), *[dense(thick, 1.0)] * 4, *drawn * 8, np.array(anchors, complex)])
+    ink = np.concatenate([dense(marks, 1.0), *[dense(thick, 1.0)] * 4, *drawn * (8 if wanted is None else 2),
+                          np.array(anchors, complex)])
     laid = letter(text, 3.5)
     half = complex(laid.width / 2 + 1.0, (laid.ascent + laid.descent) / 2 + 1.0)
 
     def over(share: Any) -> tuple[int, float]:
         u = complex(np.exp(1j * (own[0] + share * (own[1] - own[0]))))
-        off = ink - centre - (own[2] + 1.0) * u - complex(half.real * u.real, half.imag * u.imag)
-        return int(((np.abs(off.real) < half.real) & (np.abs(off.imag) < half.imag)).sum()), abs(share - 0.5)
+        at = centre + (own[2] + 1.0) * u + complex(half.real * u.real, half.imag * u.imag)
+        off = ink - at
+        out = 0 if place.contains(at - half) and place.contains(at + half) else len(ink)
+        covered = int(((np.abs(off.real) < half.real) & (np.abs(off.imag) < half.imag)).sum())
+        return covered + out, abs(share - (0.5 if wanted is None else wanted))
 
+    if wanted is not None and over(wanted)[0] <= CROSSED:
+        return wanted
     return float(min(np.linspace(0.06, 0.94, 45), key=over))
 
 
@@ -529,9 +542,11 @@ def second_accelerations(project: Project, canvas: Canvas, box: Box, options: di
 
 
 COLUMNS = 7
-"""So many segments the table of lengths shows of those of the velocity plans, if there are."""
+"""So many columns the table of lengths has in about half of the place; with more it shares the width with that of speeds."""
 COLUMN = 12.5
-"""Width of a column, mm, from which on it shows more: all segments that the speeds are worked out from, if there is room."""
+"""Width of a column, mm, below which the tables lie down: a row for each quantity, a column for each position."""
+LOWEST = 3.9
+"""Height of a row, mm, below which letters of 2.5 mm touch its lines."""
 
 
 def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -549,21 +564,24 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
                if np.ndim(w.value) and link in vel.reference]
     speeds = [*linear.items(), *turning]
     stacked = bool(options.get("stacked"))
-    room = max(COLUMNS, int((box.width - 30.0) / COLUMN) - (0 if stacked else len(speeds)))
-    lengths = _measured_lengths(project, canvas, varying, [link.removeprefix("ω_") for link, _ in turning], room)
-    left, right = _table_places(box, len(lengths), len(speeds), stacked=stacked)
+    lengths = _measured_lengths(project, canvas, varying, [link.removeprefix("ω_") for link, _ in turning])
+    width = box.width - 30.0
+    lying = COLUMN * (max(len(lengths), len(speeds)) if stacked else len(lengths) + len(speeds)) > width
+    # Tables that lie down have the same columns.
+    left, right = _table_places(box, len(speeds) if lying and lengths else len(lengths), len(speeds), stacked=stacked)
     if lengths:
         mu = canvas.scales["velocities"].mu
         said = [f"{_segment(seg.tail, seg.head)} = {fixed(float(value[0]) / mu, 1)}" for seg, value in constant]
-        _table_over_positions(project, canvas, left, "; ".join([tr("Lengths of the segments, mm"), *said]), lengths, 1)
+        title = "; ".join([tr("Lengths of the segments, mm"), *said])
+        _table_over_positions(project, canvas, left, title, lengths, 1, lying=lying)
     if speeds:
         title = tr("Linear, m/s, and angular, rad/s, velocities") if turning else tr("Linear velocities, m/s")
-        _table_over_positions(project, canvas, right, title, speeds, 3)
+        _table_over_positions(project, canvas, right, title, speeds, 3, lying=lying)
 
 
-def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segment, Any]], turning: list[str],
-                      room: int) -> list[tuple[str, Any]]:
-    """Captions and lengths, mm, of the segments to be measured, as many as there is room for; none (NaN) of a plan not drawn.
+def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segment, Any]],
+                      turning: list[str]) -> list[tuple[str, Any]]:
+    """Captions and lengths, mm, of the segments to be measured; none (NaN) of a plan that is not drawn.
 
     They are what the speeds come from: the vectors of the plans, and the segments that the links ``turning`` have there.
     """
@@ -573,11 +591,7 @@ def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segm
     for q, b in (vel.reference[link][2:] for link in turning):
         if _segment(q, b) not in drawn and _segment(b, q) not in drawn:
             drawn[_segment(q, b)] = np.abs(np.asarray(b.value) - np.asarray(q.value)) / mu
-    if not lengths and len(drawn) <= room:
-        lengths = list(drawn.items())
-    else:
-        others = [(name, v) for name, v in drawn.items() if not any(np.allclose(v, w) for _, w in lengths)]
-        lengths += others[:max(room - len(lengths), 0)]
+    lengths += [(name, v) for name, v in drawn.items() if not any(np.allclose(v, w) for _, w in lengths)]
     for i, _ in kinematic_frames.beyond_drawing(project):
         lengths = [(name, np.where((np.arange(len(v)) == i) & name.startswith("|"), np.nan, v)) for name, v in lengths]
     return lengths
@@ -625,22 +639,32 @@ NOTHING = 1e-4
 
 
 def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: str, columns: list[tuple[str, Any]],
-                          decimals: int) -> None:
-    """A column for each quantity, a row for each position that is drawn; a dash where there is no number.
+                          decimals: int, *, lying: bool = False) -> None:
+    """A column for each quantity, a row for each position that is drawn; the other way round ``lying``; a dash for no number.
 
-    ``decimals`` unless a column's numbers are too small for them, but for those that are nothing beside the others.
+    ``decimals`` unless a column's numbers are too small for them, but for those that are nothing beside the others. What has no
+    room at all is named in a remark.
     """
     cycle = project.cycle
     greatest = {name: float(np.nanmax(np.abs(v), initial=0.0)) for name, v in columns}
     places = {name: decimals_for([size], decimals) if size > NOTHING * max(greatest.values()) else decimals
               for name, size in greatest.items()}
-    row = min((place.height - 15.0) / (len(cycle.drawn) + 2), 7.5)
-    canvas.text(complex(place.centre.real, place.y1 - 5.0), title, size_for([title], place.width, 3.5), "centre")
     cells = [[tr("No."), *(name for name, _ in columns)]]
     cells += [[label, *("–" if np.isnan(v[i]) else fixed(float(v[i]), places[name]) for name, v in columns)]
               for i, label in cycle.drawn]
-    height = size_in(row)
-    widths = widened([10.0] + [(place.width - 10.0) / len(columns)] * len(columns), cells, height)
+    if lying:
+        cells = [list(row) for row in zip(*cells, strict=True)]
+        room = max(int((place.height - 9.0) / LOWEST), 2)
+        if len(cells) > room:
+            canvas.note(place, tr("The table has no room for {names}").format(names=", ".join(row[0] for row in cells[room:])))
+            cells = cells[:room]
+    row = min((place.height - 15.0) / (len(cells) + 1), 7.5) if not lying else min((place.height - 9.0) / len(cells), 7.5)
+    # A head that is too long goes on in a second line: beside a larger one nobody reads it.
+    head = [title] if letter(title, 3.5).width <= place.width else [part for part in title.partition("; ")[::2] if part]
+    begin = complex(place.centre.real, place.y1 - (5.0 if len(head) == 1 else 2.2))
+    canvas.lines(begin, head, 5.0, size_for(head, place.width, 3.5), "centre")
+    height, count = size_in(row), len(cells[0]) - 1
+    widths = widened([10.0] + [(place.width - 10.0) / count] * count, cells, height)
     canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, height)
 
 

@@ -14,7 +14,7 @@ from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import symbol
 from tmm_sheets.numbers import is_zero
 from tmm_sheets.sheets import linkage
-from tmm_sheets.sheets.frame import extent
+from tmm_sheets.sheets.frame import extent, needed
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -31,6 +31,10 @@ if TYPE_CHECKING:
 BAR = "\u0305"
 LONG, SHORT = 26.0, 13.0
 """Longest and shortest force arrow on a loaded scheme, mm (schemes show directions, plans show magnitudes)."""
+LOW, CUT, GAIN = 40.0, 0.6, 1.2
+"""Size of a group on its scheme, mm, below which its arrows are cut to a share if that makes it so many times as large."""
+
+
 @dataclass(frozen=True)
 class Shown:
     """A force on a scheme: sheet markup, the point in the plan's unit, the vector, N, its step and that of its moment or arm."""
@@ -168,24 +172,34 @@ def with_arms(project: Project, g: StructuralGroup, shown: Iterable[Shown]) -> l
 
 
 def loaded(points: Iterable[complex], shown: list[Shown], about: complex, more: Iterable[tuple[complex, complex]] = (),
-           armed: Sequence[Shown] | None = None) -> tuple[list[complex], list[complex]]:
+           armed: Sequence[Shown] | None = None, share: float = 1.0) -> tuple[list[complex], list[complex]]:
     """Points with forces and their arms about a point, and what reaches from each on paper, mm; ``more`` are further ones.
 
     ``armed`` are those whose arms are drawn; all without it.
     """
     rest = [*((force.foot(about), 0j) for force in (shown if armed is None else armed)), *more]
-    z, d = _reach(points, shown)
+    z, d = _reach(points, shown, share)
     return [*z, *(z for z, _ in rest)], [*d, *(d for _, d in rest)]
 
 
-def scheme(project: Project, g: StructuralGroup, k: int) -> tuple[list[complex], list[complex]]:
-    """The same for the loaded scheme of a group."""
+def scheme(project: Project, g: StructuralGroup, k: int, share: float = 1.0) -> tuple[list[complex], list[complex]]:
+    """The same for the loaded scheme of a group, its arrows this ``share`` of their usual length."""
     pos = project.study.positions
     shown, _ = outer_forces(project, g, k)
     hinges, centres = scheme_points(project, g, [shape for shape in linkage.shapes(pos) if shape.link in g.links])
     points = [complex(pos.points[name].at(k)) for name in (*hinges, *dict.fromkeys(centres))]
     about = complex(pos.place(g.kind.about(g)).at(k))
-    return loaded([*points, *(force.at for force in shown)], shown, about, armed=with_arms(project, g, shown))
+    return loaded([*points, *(force.at for force in shown)], shown, about, armed=with_arms(project, g, shown), share=share)
+
+
+def share_of_arrows(project: Project, g: StructuralGroup, k: int, box: Box) -> float:
+    """Share of the usual length of the arrows on a group's scheme: whole ones would leave the group nothing of a low place."""
+    needs, sizes = [], []
+    for share in (1.0, CUT):
+        z, d = (np.asarray(of, complex) for of in scheme(project, g, k, share))
+        needs.append(max(needed(z.real, d.real, box.width), needed(z.imag, d.imag, box.height)))
+        sizes.append(max(np.ptp(z.real), np.ptp(z.imag)))
+    return CUT if needs[1] > 0 and sizes[0] < LOW * needs[0] and needs[0] > GAIN * needs[1] else 1.0
 
 
 def on_crank(project: Project, k: int) -> list[Shown]:
@@ -264,13 +278,13 @@ def hinge_of(project: Project, couple: Couple) -> str | None:
     return None if friction is None else friction.hinges.get(couple.step.name)
 
 
-def arrows(shown: Iterable[Shown]) -> list[tuple[Shown, complex]]:
-    """Arrow of each force in mm; forces along one ray from one point get different lengths."""
+def arrows(shown: Iterable[Shown], share: float = 1.0) -> list[tuple[Shown, complex]]:
+    """Arrow of each force in mm, a ``share`` of its usual length; forces along one ray from one point get different lengths."""
     forces = sorted(shown, key=lambda s: abs(s.vector))
     size = max((abs(a.at - b.at) for a in forces for b in forces), default=0.0)
     found: list[tuple[Shown, complex]] = []
     for s in forces:
-        length = SHORT + (LONG - SHORT) * (abs(s.vector) / abs(forces[-1].vector)) ** 0.5
+        length = share * (SHORT + (LONG - SHORT) * (abs(s.vector) / abs(forces[-1].vector)) ** 0.5)
         for other, arrow in found:
             if abs(other.at - s.at) <= 0.01 * size and abs(s.along - other.along) < 0.2 and length < abs(arrow) + 9.0:
                 length = abs(arrow) + 9.0
@@ -278,10 +292,10 @@ def arrows(shown: Iterable[Shown]) -> list[tuple[Shown, complex]]:
     return found
 
 
-def _reach(points: Iterable[complex], shown: Iterable[Shown]) -> tuple[list[complex], list[complex]]:
+def _reach(points: Iterable[complex], shown: Iterable[Shown], share: float) -> tuple[list[complex], list[complex]]:
     """Points and what sticks out of them on paper: arrows with their labels, symbols of pairs."""
     z, d = [], []
-    for s, arrow in arrows(shown):
+    for s, arrow in arrows(shown, share):
         z.append(s.at)
         d.append(arrow * (1 + 7.0 / abs(arrow)))
     for p in points:

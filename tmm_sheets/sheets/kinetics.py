@@ -47,6 +47,7 @@ from tmm_sheets.sheets.kinetic_frames import (
     polygon,
     scheme,
     scheme_points,
+    share_of_arrows,
     terms,
     turned_vectors,
     with_arms,
@@ -157,7 +158,8 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     hinges, centres = scheme_points(project, g, drawn)
     points = [pos.points[name] for name in (*hinges, *dict.fromkeys(centres))]
     about = complex(pos.place(g.kind.about(g)).at(k))
-    around = scheme(project, g, k)
+    share = share_of_arrows(project, g, k, box.inset(*SCHEME))
+    around = scheme(project, g, k, share)
     frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", tr("m/mm"), *around, box.inset(*SCHEME))
     canvas.of = f"group {g.name}"
     title = tr("Assur group {name} (kind {number})") if g.kind.grade == 2 else tr("Assur group {name} (class III, order 3)")
@@ -176,7 +178,7 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
         point = pos.special[g.kind.about(g)].step
         s.dot(point, 0.9, "main")
         s.letters(point, linkage.indexed(point.name), gap=1.5)
-    draw_forces(s, shown)
+    draw_forces(s, shown, share)
     low = min((frame(z) + d).imag for z, d in zip(*around, strict=True)) - SCHEME[1]
     _from_moments(project, canvas, box._replace(y0=max(box.y0, low)), g, k, frame.scale)
     for c in couples:
@@ -239,9 +241,9 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
         _fitted(canvas, complex(box.centre.real, box.y0), "; ".join(said), 3.5, box.width - 4.0)
 
 
-def draw_forces(s: Stage, shown: Iterable[Shown]) -> None:
-    """Arrows with their tails at the points they act at."""
-    for force, arrow in arrows(shown):
+def draw_forces(s: Stage, shown: Iterable[Shown], share: float = 1.0) -> None:
+    """Arrows with their tails at the points they act at, a ``share`` of their usual length."""
+    for force, arrow in arrows(shown, share):
         tail, u = s.frame(force.at), force.along
         pen = s.pen(force.step, "vector", f"{force.step.name}n" if force.symbol.endswith("^n") else "")
         pen.arrow(tail, tail + arrow, "vector")

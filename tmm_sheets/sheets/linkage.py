@@ -239,6 +239,8 @@ def draw(s: Stage, pos: Positions, style: str, only: Collection[str] | None = No
 def _draw_bar(s: Stage, pos: Positions, shape: Shape, hinges: list[complex], style: str,
               ends: tuple[NDArray[Any] | None, NDArray[Any] | None]) -> None:
     """A bar interrupted at hinges, in a bare plan from end to end; ``ends`` are free ones beyond its points."""
+    if style == "main":
+        _corners(s, pos, shape)
     for line in outlines(s, pos, shape):
         pen = s.pen(pos.directions[shape.link], "link", f"{line[0]}–{line[-1]}")
         points = [s.at(pos.points[name]) for name in (line if style == "main" else (line[0], line[-1]))]
@@ -248,6 +250,23 @@ def _draw_bar(s: Stage, pos: Positions, shape: Shape, hinges: list[complex], sty
             nearest = min(points, key=lambda z: abs(z - free))
             gap = symbols.HINGE if any(abs(nearest - hinge) < symbols.HINGE for hinge in hinges) else 0.0
             s.line(pos.directions[shape.link], nearest + gap * (free - nearest) / abs(free - nearest), free, style, "symbol")
+
+
+def _corners(s: Stage, pos: Positions, shape: Shape) -> None:
+    """Marks of rigid angles between the bar of a link and its arms: without them they would be read as two links in a hinge."""
+    lines, done = outlines(s, pos, shape), set[frozenset[tuple[str, ...]]]()
+    for arm in shape.arms:
+        for end, far in (arm, arm[::-1]):
+            z = s.at(pos.points[end])
+            beside = [(line, name) for line in lines if line != arm and end in line for name in line if name != end]
+            u = s.at(pos.points[far]) - z
+            ways = [(line, s.at(pos.points[name]) - z) for line, name in beside]
+            if not abs(u) or not (ways := [(line, v) for line, v in ways if abs(v) > symbols.CORNER]):
+                continue
+            line, v = min(ways, key=lambda way: round(abs(float(np.angle(way[1] / u))), 9))
+            if frozenset((arm, line)) not in done:
+                done.add(frozenset((arm, line)))
+                symbols.rigid_corner(s.pen(pos.directions[shape.link], "symbol"), z, u, v)
 
 
 def _draw_block(s: Stage, pos: Positions, shape: Shape, style: str) -> None:

@@ -37,6 +37,8 @@ CLOSE = (100.0, 200.0)
 """Distances of a view from the spot that it belongs to, mm: as near as is wanted, and as is allowed."""
 FORCES = ("kinetics.group", "kinetics.groups", "kinetics.crank")
 """Views of a scheme with its force plans, which stand in columns of their own."""
+SCHEMES = ("train.scheme", "reducer.scheme")
+"""Views whose pictures reach from edge to edge of their wheels: what stands between these would be read as part of them."""
 FAR = 10**6
 """More cells than a sheet has."""
 APART = (12.0, 9.0, 6.0)
@@ -183,6 +185,8 @@ def _of_part(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> NDA
     own = _cells(canvas, range(k, k + 1), inside, shape)
     along, across = _between(own, 0), _between(own, 1)
     taken = along[0] | across[0] | along[1] & across[1]
+    if part.draw in SCHEMES:
+        taken |= across[1]
     if part.title and own.any():
         # A title is that of all parts up to the next one: plans of several positions.
         after = (n for n in range(k + 1, len(canvas.parts)) if canvas.parts[n].headed or canvas.parts[n].draw != part.draw)

@@ -82,7 +82,7 @@ def sizes(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
 
 
 def dimensions(project: Any) -> list[str]:
-    """Distance of the axes of every stage, half the sum or the difference of its diameters, and diameters of the central wheels."""
+    """Distance of the axes of every stage, half the sum or the difference of its diameters, and diameters of the wheels."""
     train = project.train
     plan = train.kinematics
     m, lines, shown = float(plan["m"].value), list[str](), set[str]()
@@ -96,8 +96,11 @@ def dimensions(project: Any) -> list[str]:
                          f"{number(1e3 * train.distance(mesh))}")
         # Where wheels of another sum of teeth run at the same distance the circles are not those of the module.
         rolled = float(diameter.value)
-        of_module = f"m·z_{{{c}}} = {number(m)}·{z[c]} = " if abs(rolled - m * z[c]) < 1e-9 * rolled else ""
-        lines.append(f"d_{{{c}}} = {of_module}{number(rolled)}")
+        true = abs(rolled - m * z[c]) < 1e-9 * rolled
+        of_module = {name: f"m·z_{{{name}}} = {number(m)}·{z[name]} = " if true else "" for name in z}
+        # A wheel in several meshes has one diameter unless its circles in them differ.
+        both = (f"d_{{{name}}} = {of_module[name]}{number(rolled * z[name] / z[c])}" for name in (c, p))
+        lines += [line for line in both if line not in lines]
     return lines
 
 
