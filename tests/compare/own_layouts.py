@@ -221,7 +221,9 @@ def follows(found: Measurables, known: KnownSheet, drawn: Drawn, slip: Slip) -> 
             was, now = (np.asarray(x) for x in (s.value, hand.value(s)))
             if was.dtype.kind == "c":
                 z, w = (complex(frame(complex(x[k] if x.ndim else x))) for x in (was, now))
-                if np.isfinite(w) and np.abs(points - z).min() < 0.03:
+                if np.abs(points - z).min() < 0.03:
+                    if not np.isfinite(w):
+                        return False  # what cannot be drawn on with is noticed
                     moved_to[s], at_steps[v, s.path] = (z, w), w
         far = max((abs(z - w) for z, w in moved_to.values()), default=0.0) * drawn.places[v].scale
         if far > 400:

@@ -231,7 +231,7 @@ def _advice(judged: list[Judged]) -> list[str]:
 
 def _what(j: Judged) -> str:
     if j.wrong:
-        return tell("; or: ").join(h.said() for h in j.wrong)
+        return tell("; or: ").join(dict.fromkeys(h.said() for h in j.wrong))
     said = tell("{measured} instead of {exact}, {times} times the tolerance") if j.tolerance > EXACT else tell(
         "{measured} instead of {exact}")
     times = told(f"{abs(j.deviation) / j.tolerance:.3g}")
@@ -291,7 +291,7 @@ def _tree(name: str, judged: list[Judged], filled: measured_file.Filled, pencil:
         "starts": [{"id": j.entry.id, "why": _what(j), "step": _step(j),
                     "said": said(j), "same_as": None if first[id(j)] is j else first[id(j)].entry.id,
                     "kind": j.wrong[0].kind if j.wrong else None,
-                    "or": [h.said() for h in j.wrong[1:]],
+                    "or": list(dict.fromkeys(words for h in j.wrong[1:] if (words := h.said()) != j.wrong[0].said())),
                     "off_mm": _off(j), "followers": [f.entry.id for f in judged if f.follows is j]}
                    for j in sorted(judged, key=lambda j: j.order) if j.starts],
         "numbers": [{
