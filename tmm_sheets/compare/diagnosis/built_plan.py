@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from tmm_sheets.compare.diagnosis.drawn_plan import DRAWN, SHOWS, DrawnPlan, PlanPoint, between, drawn_plan, drawn_positions
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, hypotheses
-from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
+from tmm_sheets.compare.diagnosis.replay import Change, displaced, of_position, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import KnownSheet
@@ -52,6 +52,8 @@ BEYOND, ASIDE = 1.0, 0.3
 """How far beyond the end of a line it is looked whether it goes on, and how near another one has the same ink, mm of our sheet."""
 SAME, TOLD = 0.1, 3
 """How near points of a plan are, mm of our sheet, that two mistakes lead to the same place; how many such mistakes are told."""
+NEW_INK = 2
+"""Places of ink, 1 mm, that a plan with a point elsewhere must have more: else its line only lies on another one."""
 FARTHEST = 250.0
 """A point is sought among the tips of lines no farther than this from its place, mm."""
 
@@ -190,9 +192,19 @@ def possible(shown: Iterable[DrawnPlan], errors: Errors) -> list[Hypothesis]:
         steps = [p.step for p in drawn.points]
         before = list(ordered(steps, lambda step: [a for a in errors.arguments(step) if isinstance(a, Step)]))
         for k in drawn.positions:
-            for h in hypotheses(before, k, drawn.plan.labels):
+            for h in (*hypotheses(before, k, drawn.plan.labels), *_twice(drawn, k)):
                 found.setdefault((h.words, id(h.step), h.at, h.other), h)
     return sorted(found.values(), key=lambda h: KINDS.index(h.kind))
+
+
+def _twice(drawn: DrawnPlan, k: int) -> Iterator[Hypothesis]:
+    """The plan of another position in place of this one."""
+    steps = [p.step for p in drawn.points if np.size(p.step.value) == len(drawn.plan.labels) > 1]
+    if steps and not drawn.of_positions:
+        for other, label in enumerate(drawn.plan.labels):
+            if other != k:
+                changes = tuple(Change(s, of_position(other), k) for s in steps)
+                yield Hypothesis("neighbour", "drawn twice", steps[-1], changes, k, label)
 
 
 def _replay(errors: Errors, mistakes: Iterable[_Mistake]) -> Callable[[Step], Any]:
@@ -249,8 +261,9 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float,
     if drawn.of_positions:
         return None  # a link that lies elsewhere is told as that
     # A point may lie on another one, or on another vector: that only makes what is wrong disappear.
-    off = [f for _, f in _best(tried(_points_off(drawn, drawing), before), more)]
-    return max(off, key=lambda f: _ink(drawn, drawing, f.points), default=None)
+    off = [(_ink(drawn, drawing, f.points), f) for _, f in _best(tried(_points_off(drawn, drawing), before), more)]
+    most, best = max(off, key=lambda x: x[0], default=(0, None))
+    return best if most > _ink(drawn, drawing, drawn.points) + NEW_INK else None
 
 
 def _best(found: Sequence[_Found], gain: Callable[[_Mistake], float]) -> list[tuple[float, _Found]]:

@@ -152,10 +152,11 @@ def _story(title: str, judged: list[Judged], filled: measured_file.Filled, notes
 
 
 def _summary(judged: list[Judged], filled: measured_file.Filled) -> list[str]:
-    lines = [_counted(judged, filled)]
-    for i, m in enumerate(_mistakes(judged), 1):
-        lines += [f"{i}. {m.where}: {m.what}", *(f"   {line}" for line in m.details)]
-    return [*lines, *_advice(judged)]
+    mistakes = [line for i, m in enumerate(_mistakes(judged), 1)
+                for line in (f"{i}. {m.where}: {m.what}", *(f"   {line}" for line in m.details))]
+    # Where nearly everything is wrong the single mistakes are guesses.
+    many = len(_grouped(judged)) > MOST
+    return [_counted(judged, filled), *(_advice(judged) if many else []), *mistakes, *([] if many else _advice(judged))]
 
 
 def _own(judged: list[Judged]) -> dict[str, int]:
