@@ -48,8 +48,10 @@ def mistakes(found: cad_report.Examined, lost: set[ElementView]) -> list[Mistake
 
     turned = [replace(_mistake(found, v, of_view.pop(v, []), None), what=said, verdict="red", named=True)
               for v, said in found.turned.items() if v not in lost]
-    return turned + [_mistake(found, v, of_view[v], first.get(found.built[v].said()) if v in found.built else None)
-                     for v in sorted(of_view, key=place)]
+    order = sorted(of_view, key=place)
+    one_by_one = [_mistake(found, v, of_view[v], first.get(found.built[v].said()) if v in found.built else None) for v in order]
+    named = sum(m.named for m in one_by_one)
+    return [*one_by_one[:named], *turned, *one_by_one[named:]]
 
 
 def _mistake(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFinding], first: ElementView | None) -> Mistake:
