@@ -15,6 +15,7 @@ from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
 from tmm_sheets.compare.cad.laying import Laid
 from tmm_sheets.compare.cad.layout import Layout
 from tmm_sheets.compare.cad.view_search import SHAPES
+from tmm_sheets.compare.diagnosis.hypotheses import WORDS
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.findings import called, origin, place, table, worst
 from tmm_sheets.compare.placing import Placing, moved
@@ -60,6 +61,13 @@ class Examined:
         """Views that lie as in a mirror, or turned by right angles, on a drawing that else does not; in words."""
         out = {v: _turned(move) for v, move in self.places.moves.items() if v.n}
         return {v: said for v, said in out.items() if said}
+
+    @property
+    def mirrored(self) -> str:
+        """That the whole drawing lies as in a mirror, and how; "" where it does not. A sheet of paper may be turned, not that."""
+        placing = self.laid.placing
+        said = WORDS["mechanism across" if round(placing.degrees / 90) % 4 == 2 else "mechanism upside down"]
+        return tell(said) if placing.mirrored else ""
 
 
 def _turned(move: Placing) -> str:
@@ -264,7 +272,8 @@ def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any
                    "verdict": look.verdict, "elements": list(look.elements),
                    "entities": [entity(laid.space.entities[i]) for i in look.entities]} for k, look in enumerate(outcome.looks, 1)],
         "built": [{"view": v.name, "what": b.said(), "explained": b.explained()} for v, b in found.built.items()] + [
-            {"view": v.name, "what": said, "explained": ""} for v, said in found.turned.items()],
+            {"view": name, "what": said, "explained": ""}
+            for name, said in (("", found.mirrored), *((v.name, said) for v, said in found.turned.items())) if said],
         "not_drawn": [{"view": x.view.name, "kind": x.kind, "count": x.count} for x in outcome.absent],
         "summary": {"green": colours["green"], "amber": colours["amber"], "red": colours["red"], "skipped": colours[None],
                     "extra": len(outcome.extras), "looks": len(outcome.looks),

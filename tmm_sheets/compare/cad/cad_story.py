@@ -51,7 +51,8 @@ def mistakes(found: cad_report.Examined, lost: set[ElementView]) -> list[Mistake
     order = sorted(of_view, key=place)
     one_by_one = [_mistake(found, v, of_view[v], first.get(found.built[v].said()) if v in found.built else None) for v in order]
     named = sum(m.named for m in one_by_one)
-    return [*one_by_one[:named], *turned, *one_by_one[named:]]
+    whole = [Mistake(tell("the whole drawing"), found.mirrored, "red", named=True)] if found.mirrored else []
+    return [*whole, *one_by_one[:named], *turned, *one_by_one[named:]]
 
 
 def _mistake(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFinding], first: ElementView | None) -> Mistake:
