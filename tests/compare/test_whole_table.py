@@ -7,6 +7,8 @@ import pytest
 
 from tests.compare.students import PENCIL, READING, Hand
 from tests.project_files import MOMENT, SLIDER, WORKING, project
+from tmm_sheets.compare import group
+from tmm_sheets.compare.measured import measured_lengths
 from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.collecting import measurables
 from tmm_sheets.compare.measured.measured_file import Filled
@@ -106,3 +108,25 @@ def test_a_single_number_in_another_unit(found, lines):
     judged, starts = told(found, lines, lambda e, value: value * 30 / np.pi if e.id == "results/3/omega2" else value)
     assert starts == ["results/3/omega2"]
     assert next(j.remark for j in judged if j.starts).startswith("as if in rpm")
+
+
+def test_a_table_of_another_mechanism_is_told_as_that(found, lines):
+    """Where nearly everything is off the single mistakes are guesses: one line comes first, and alone in the table of a group."""
+    rng = np.random.default_rng(1)
+    some = [line for line in lines if line.entry.kind == "length" and line.value > 5][::2]
+    judged, starts = told(found, some, lambda e, value: value * rng.uniform(1.1, 1.6))
+    assert len(starts) > measured_lengths.MOST
+    (said,) = measured_lengths._advice(judged)
+    assert said.startswith("So many mistakes: was another variant drawn")
+    assert measured_lengths._summary(judged, Filled([]))[1] == said
+    tree = measured_lengths._tree("own", judged, Filled([]), PENCIL, READING)
+    faults, mistakes = group._faults(tree)
+    assert mistakes == (said,)
+    assert faults["mistake"] == len([s for s in tree["starts"] if s["same_as"] is None])
+
+
+def test_single_mistakes_are_told_one_by_one(found, lines):
+    judged, _ = told(found, lines, times(1e-3, "mm"))
+    tree = measured_lengths._tree("own", judged, Filled([]), PENCIL, READING)
+    assert tree["another"] is None
+    assert group._faults(tree)[1] == ("the numbers are written in m, not mm",)

@@ -154,8 +154,7 @@ def _story(title: str, judged: list[Judged], filled: measured_file.Filled, notes
 def _summary(judged: list[Judged], filled: measured_file.Filled) -> list[str]:
     mistakes = [line for i, m in enumerate(_mistakes(judged), 1)
                 for line in (f"{i}. {m.where}: {m.what}", *(f"   {line}" for line in m.details))]
-    # Where nearly everything is wrong the single mistakes are guesses.
-    many = len(_grouped(judged)) > MOST
+    many = _too_many(judged)
     return [_counted(judged, filled), *(_advice(judged) if many else []), *mistakes, *([] if many else _advice(judged))]
 
 
@@ -216,10 +215,15 @@ def _mistakes(judged: list[Judged], pictures: PlanPictures | None = None) -> Ite
                             pictures.picture(j) if pictures is not None else None)
 
 
+def _too_many(judged: list[Judged]) -> bool:
+    """Whether nearly everything is wrong: the single mistakes are guesses then."""
+    return len(_grouped(judged)) > MOST
+
+
 def _advice(judged: list[Judged]) -> list[str]:
     """What to do now."""
     starts, own = len(_grouped(judged)), _own(judged)
-    if starts > MOST:
+    if _too_many(judged):
         return [tell("So many mistakes: was another variant drawn, or with other scale factors than stated?")]
     if starts:
         return [tell("Mend the first one first: what follows from it is right as soon as that is.")]
@@ -289,6 +293,7 @@ def _tree(name: str, judged: list[Judged], filled: measured_file.Filled, pencil:
         "scales": dict(filled.factors),
         "summary": {**{v: sum(j.verdict == v for j in own) for v in ("green", "amber", "red")},
                     "following": len(judged) - len(own), "empty": filled.empty},
+        "another": _advice(judged)[0] if _too_many(judged) else None,
         "starts": [{"id": j.entry.id, "why": _what(j), "step": _step(j),
                     "said": said(j), "same_as": None if first[id(j)] is j else first[id(j)].entry.id,
                     "kind": j.wrong[0].kind if j.wrong else None,
