@@ -80,6 +80,13 @@ def test_one_mistake(found, lines, change, said):
     assert all(j.line.value == by_id[j.entry.id] for j in judged)  # as it was written
 
 
+@pytest.mark.parametrize("half", [0, 180])
+def test_angles_of_the_crank_alone_are_no_mirrored_mechanism(found, lines, half):
+    """A crank that turns the other way has them, too; its plans do not lie as in a mirror."""
+    _, starts = told(found, lines, lambda e, value: half - value if (e.plan, e.kind) == ("positions", "angle") else value)
+    assert not [words for words, _ in (s for s in starts if isinstance(s, tuple)) if words.startswith("mechanism")]
+
+
 @pytest.mark.parametrize("by", [1, 5, -1])
 def test_positions_from_another_start(found, lines, by):
     other = str(by % 12)

@@ -23,6 +23,8 @@ REACH = 2.0
 """Tolerances beyond which a number is off, and within which it is explained."""
 FEW, MOST = 4, 0.85
 """Fewer numbers than this must all be explained, more of them to this share."""
+POSITIONS = "positions"
+"""Name of the plan of the positions."""
 LEAST = 2
 """Numbers that a mistake of the whole table must explain at the least."""
 
@@ -45,8 +47,9 @@ class Whole:
 
 def whole_table(judged: Sequence[Judged], labels: Sequence[str]) -> Whole | None:
     """The mistake with the whole table that explains most numbers; None without. ``labels`` are those of the positions."""
+    plans = [j for j in judged if j.entry.plan != POSITIONS]  # else the crank only turns the other way
     found = [(count, whole) for whole in (*_units(judged), *_mirrored(judged), *_numbered(judged, labels))
-             if (count := _explained(judged, whole.meant))]
+             if (count := _explained(judged, whole.meant)) and (whole.mistake.kind != "mirror" or _explained(plans, whole.meant))]
     return max(found, key=lambda x: x[0])[1] if found else None
 
 
