@@ -221,7 +221,9 @@ def follows(found: Measurables, known: KnownSheet, drawn: Drawn, slip: Slip) -> 
             was, now = (np.asarray(x) for x in (s.value, hand.value(s)))
             if was.dtype.kind == "c":
                 z, w = (complex(frame(complex(x[k] if x.ndim else x))) for x in (was, now))
-                if np.isfinite(w) and np.abs(points - z).min() < 0.03:
+                if np.abs(points - z).min() < 0.03:
+                    if not np.isfinite(w):
+                        return False  # what cannot be drawn on with is noticed
                     moved_to[s], at_steps[v, s.path] = (z, w), w
         far = max((abs(z - w) for z, w in moved_to.values()), default=0.0) * drawn.places[v].scale
         if far > 400:
@@ -441,16 +443,19 @@ def judge(project: Project, name: str, n: int, path: Path, drawn: Drawn, known: 
         count["slips that nothing shows"] += 1
     elif drawn.slip is not None:
         shown = {v for v in drawn.built if v in there}
-        told = {v: b.mistake for v, b in found.built.items() if not isinstance(b.mistake, str)}
-        said = [h for v, h in told.items() if v in shown]
-        exact = any(h.kind == drawn.slip.kind and h.step.path in {s.path for s in drawn.slip.ways} for h in said)
+        told = {v: b for v, b in found.built.items() if not isinstance(b.mistake, str)}
+        said = [told[v].mistake for v in told if v in shown]
+        after_or = [h for v in told if v in shown for h in told[v].alike]
+
+        def exact(some: list[Hypothesis]) -> bool:
+            return any(h.kind == drawn.slip.kind and h.step.path in {s.path for s in drawn.slip.ways} for h in some)
+
+        outcome = ("named" if exact(said) else "named after or" if exact(after_or) else "named as what draws the same"
+                   if any(draws_alike(project, known, h, drawn) for h in said) else "named wrongly" if told else "not named")
         count["slips"] += 1
-        count["named"] += exact
-        alike = not exact and any(draws_alike(project, known, h, drawn) for h in said)
-        count["named as what draws the same"] += alike
-        count["named wrongly"] += bool(told) and not exact and not alike
-        if not exact:
-            out.append(f"{'alike' if alike else 'not named'}: {drawn.slip}; said {[h.said() for h in said]}; lost "
+        count[outcome] += 1
+        if outcome != "named":
+            out.append(f"{outcome}: {drawn.slip}; said {list(dict.fromkeys(b.said() for b in told.values()))}; lost "
                        f"{[v.name for v in drawn.built if v not in there]}")
     else:
         count["named, none made"] += any(not isinstance(b.mistake, str) for v, b in found.built.items() if v not in drawn.built)

@@ -159,8 +159,9 @@ def judged(project: Project, known: KnownSheet, drawn: Drawn, built: dict) -> st
     told = [b.mistake for b in built.values() if not isinstance(b.mistake, str)]
     if drawn.slip is None:
         return "sound, named" if built else "sound, nothing named"
-    if any(h.kind == drawn.slip.kind and h.step.path in {s.path for s in drawn.slip.ways} for h in told):
-        return "named"
+    for some, outcome in ((told, "named"), ([h for b in built.values() for h in b.alike], "named after or")):
+        if any(h.kind == drawn.slip.kind and h.step.path in {s.path for s in drawn.slip.ways} for h in some):
+            return outcome
     if any(draws_alike(project, known, h, drawn) for h in told):
         return "named as what draws the same"
     return "named wrongly" if told else "told as a point" if built else "not named"

@@ -110,6 +110,8 @@ def test_wrong_units_and_turns_are_mended_and_said(tmp_path):
 def test_a_mirrored_drawing_at_half_size_is_turned_over_and_said(tmp_path):
     report = compare(drawn(EXACT, mirrored=True, turn=0.5, shift=500), tmp_path)
     assert "the drawing is mirrored; it was turned over for the comparison" in report.notes
+    mirrored = "the mechanism is drawn mirrored, top and bottom exchanged, and all plans with it"
+    assert [(b["view"], b["what"]) for b in report.tree["built"]] == [("", mirrored)]  # a mistake, for teachers and marks
     assert "the drawing is at scale 1:2; it was scaled to 1:1" in report.notes
     assert summary(report) == ALL_GREEN
 

@@ -5,9 +5,8 @@ import pytest
 from tests.compare.manual_tables import compared, count, is_right, tables
 from tmm_sheets.compare.measured import measured_lengths
 
-DRAWN_BADLY = {"sh.arm.F34", "en.arm.Fi4", "en.arm.Fi2", "en.F21t", "en.F30", "en.M1k", "en.ab"}
-"""Clean cells that are red: arms and a closing side of the manual that are off by 2 to 4.5 mm, and what follows from them; the
-segment ab that is 8 % shorter than what the manual's own velocities give."""
+DRAWN_BADLY = {"sh.arm.F34", "en.arm.Fi4", "en.arm.Fi2", "en.F21t", "en.F30", "en.M1k"}
+"""Clean cells that are red: arms and a closing side of the manual that are off by 2 to 4.5 mm, and what follows from them."""
 FOUND = {
     "2 pS3_mm", "4 pS3_mm", "2 VS3_m_s", "4 VS3_m_s", "2 m3VS3sq_kg_m2_s2", "4 m3VS3sq_kg_m2_s2", "sh.VS3", "sh.F21t",
     "|2-3| of link 2", "en.arm.h12", "en.arm.h14", "6 theta1", "S0", "r0", "rho_min", "pr.ab", "pr.Md",

@@ -34,7 +34,8 @@ ACCELERATIONS, POSITIONS = VIEWS["План ускорений (положени�
 FORCES = [VIEWS[f"План сил звена {n}"] for n in (1, 3)]
 PLACES = {ACCELERATIONS: Placing(0.5 + 0j, -40 + 300j), FORCES[0]: Placing(0.4 + 0j, 0j), FORCES[1]: Placing(0.4 + 0j, -700j),
           POSITIONS: Placing(1 + 0j, 300 - 50j),
-          VIEWS["План скоростей, положение 3"]: Placing(2 + 0j, 400 + 100j)}
+          VIEWS["План скоростей, положение 3"]: Placing(2 + 0j, 400 + 100j),
+          VIEWS["План скоростей, положение 7"]: Placing(1j, 1500 + 100j)}
 
 
 @pytest.fixture(scope="module")
@@ -60,6 +61,43 @@ def test_the_views_are_found_at_their_scales(compared):
     for view, place in PLACES.items():
         points = view.box.corners
         assert is_there(place, found.places.moves[view], points, 1.0), view.name
+
+
+def test_a_view_that_is_turned_is_told_so_once(compared):
+    """It is neither missing nor wrong line by line; the others are not turned."""
+    _, found, _ = compared
+    turned = VIEWS["План скоростей, положение 7"]
+    assert found.turned == {turned: "drawn turned by 90° counter-clockwise"}
+    (told,) = (m for m in cad_story.mistakes(found, cad_report.gone(found.outcome)) if m.where == turned.name)
+    assert (told.what, told.verdict, told.named) == (found.turned[turned], "red", True)
+    assert not [f for f in found.outcome.findings if f.element.view == turned and f.verdict == "red"]
+
+
+@pytest.mark.parametrize(("move", "said"), [
+    (Placing(2 + 0j), ""), (Placing(1 + 0.001j), ""), (Placing(-1j), "drawn turned by 90° clockwise"),
+    (Placing(-1 + 0j), "drawn turned by 180°: every arrow points the other way"),
+    (Placing(-2 + 0j, 0j, True), "drawn mirrored, left and right exchanged"),
+    (Placing(1 + 0j, 0j, True), "drawn mirrored, top and bottom exchanged"), (Placing(1j, 0j, True), "drawn mirrored and turned")])
+def test_how_a_view_is_turned(move, said):
+    assert cad_report._turned(move) == said
+
+
+@pytest.mark.parametrize("again", ["5", "8"])
+def test_a_plan_drawn_twice_is_named(again):
+    """In place of a plan that of another position is drawn."""
+    plans, errors = errors_of(SHAPER, KNOWN)
+    view = VIEWS["План скоростей, положение 7"]
+    drawn = drawn_plan(KNOWN, plans, view)
+    made = next(h for h in possible([drawn], errors) if h.words == "drawn twice" and h.other == again)
+    now = [between(e, drawn.moved(replay(errors, made.changes))) for e in drawn.vectors]
+    theirs = lines(now)
+
+    def seen(view):
+        return Drawing(lambda line: cad_built._inked(theirs, Placing(), line), lambda z: z, [])
+
+    other = [v for v in KNOWN.elements if v.view.n and v.view != view]
+    (found, _), = built_otherwise(SHAPER, KNOWN, {view: list(drawn.vectors)}, seen, absent={e.view for e in other}).values()
+    assert found.said() == f"here the plan of position {again} is drawn once more"
 
 
 def test_the_note_counts_the_views_that_a_mistake_had_hidden(compared):

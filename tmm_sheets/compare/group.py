@@ -196,7 +196,8 @@ def _faults(tree: Mapping[str, Any]) -> tuple[dict[str, int], tuple[str, ...]]:
         starts = [s for s in tree["starts"] if s.get("same_as") is None]
         left = [n for n in tree["numbers"] if n["follows"] is None and not n["starts"]]
         count = Counter(n["verdict"] for n in left)
-        return {"mistake": len(starts), "red": count["red"], "amber": count["amber"]}, tuple(s["said"] for s in starts)
+        said = (tree["another"],) if tree.get("another") else tuple(s["said"] for s in starts)
+        return {"mistake": len(starts), "red": count["red"], "amber": count["amber"]}, said
     built = {b["view"]: b["what"] for b in tree.get("built", ())}
     summary = tree.get("summary", {})
     missing, tables = (set(summary.get(key, ())) for key in ("missing_views", "missing_tables"))

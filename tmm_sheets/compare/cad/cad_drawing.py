@@ -98,6 +98,7 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     shaped = places.share
     if laid.views:
         lost, made = lost_views(project, laid.known, space, places)
+        shaped = {v: share for v, share in places.share.items() if v not in lost}  # these are where a mistake leads them
         places = places.with_more(lost)
     outcome = match(laid.known.elements, space, places.moves, pencil, say)
     say(tell("looking for what was done wrong"))

@@ -15,9 +15,10 @@ from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
 from tmm_sheets.compare.cad.laying import Laid
 from tmm_sheets.compare.cad.layout import Layout
 from tmm_sheets.compare.cad.view_search import SHAPES
+from tmm_sheets.compare.diagnosis.hypotheses import WORDS
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.findings import called, origin, place, table, worst
-from tmm_sheets.compare.placing import moved
+from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.compare.report import said_verdict
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
@@ -53,6 +54,30 @@ class Examined:
     def exact(self) -> tuple[Element, ...]:
         """What the findings are on as it should be, where the drawing has its view; the findings have it as it was built."""
         return tuple(moved(e, self.places.moves[e.view]) if e.view in self.places.moves else e for e in self.laid.known.elements)
+
+
+    @cached_property
+    def turned(self) -> dict[ElementView, str]:
+        """Views that lie as in a mirror, or turned by right angles, on a drawing that else does not; in words."""
+        out = {v: _turned(move) for v, move in self.places.moves.items() if v.n}
+        return {v: said for v, said in out.items() if said}
+
+    @property
+    def mirrored(self) -> str:
+        """That the whole drawing lies as in a mirror, and how; "" where it does not. A sheet of paper may be turned, not that."""
+        placing = self.laid.placing
+        said = WORDS["mechanism across" if round(placing.degrees / 90) % 4 == 2 else "mechanism upside down"]
+        return tell(said) if placing.mirrored else ""
+
+
+def _turned(move: Placing) -> str:
+    """How a view is turned, "" where it is not."""
+    quarter = round(move.degrees / 90) % 4
+    if move.mirrored:
+        said = {0: tell("drawn mirrored, top and bottom exchanged"), 2: tell("drawn mirrored, left and right exchanged")}
+        return said.get(quarter, tell("drawn mirrored and turned"))
+    return ("", tell("drawn turned by 90° counter-clockwise"), tell("drawn turned by 180°: every arrow points the other way"),
+            tell("drawn turned by 90° clockwise"))[quarter]
 
 
 class Built(Protocol):
@@ -246,7 +271,9 @@ def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any
         "looks": [{"number": k, "view": look.view.name if look.view is not None else None, "lines": look.lines, "what": look.what,
                    "verdict": look.verdict, "elements": list(look.elements),
                    "entities": [entity(laid.space.entities[i]) for i in look.entities]} for k, look in enumerate(outcome.looks, 1)],
-        "built": [{"view": v.name, "what": b.said(), "explained": b.explained()} for v, b in found.built.items()],
+        "built": [{"view": v.name, "what": b.said(), "explained": b.explained()} for v, b in found.built.items()] + [
+            {"view": name, "what": said, "explained": ""}
+            for name, said in (("", found.mirrored), *((v.name, said) for v, said in found.turned.items())) if said],
         "not_drawn": [{"view": x.view.name, "kind": x.kind, "count": x.count} for x in outcome.absent],
         "summary": {"green": colours["green"], "amber": colours["amber"], "red": colours["red"], "skipped": colours[None],
                     "extra": len(outcome.extras), "looks": len(outcome.looks),

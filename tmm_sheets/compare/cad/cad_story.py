@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -45,8 +46,13 @@ def mistakes(found: cad_report.Examined, lost: set[ElementView]) -> list[Mistake
             return False, list(found.built).index(v), 0
         return True, -sum(f.verdict == "red" for f in of_view[v]), v.n
 
-    return [_mistake(found, v, of_view[v], first.get(found.built[v].said()) if v in found.built else None)
-            for v in sorted(of_view, key=place)]
+    turned = [replace(_mistake(found, v, of_view.pop(v, []), None), what=said, verdict="red", named=True)
+              for v, said in found.turned.items() if v not in lost]
+    order = sorted(of_view, key=place)
+    one_by_one = [_mistake(found, v, of_view[v], first.get(found.built[v].said()) if v in found.built else None) for v in order]
+    named = sum(m.named for m in one_by_one)
+    whole = [Mistake(tell("the whole drawing"), found.mirrored, "red", named=True)] if found.mirrored else []
+    return [*whole, *one_by_one[:named], *turned, *one_by_one[named:]]
 
 
 def _mistake(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFinding], first: ElementView | None) -> Mistake:
@@ -79,7 +85,8 @@ def _picture(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFin
                  for p in drawn(e))
     entities = {k for f in bad for k in f.entities}
     wrong = [s.points for s in found.space.strokes if s.entity in entities]
-    wrong += [p for f in bad if f.missing or view in found.built for p in drawn(f.element)]
+    # Where a line is missing nothing is drawn wrong: the exact one and its number tell it.
+    wrong += [p for f in bad if view in found.built and not f.missing for p in drawn(f.element)]
     lines = [f for f in bad if f.element.kind != "text"]
     if not lines:
         return None

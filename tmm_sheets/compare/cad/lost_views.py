@@ -21,11 +21,14 @@ from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.diagnosis.replay import replay
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.known_sheet import KnownSheet
+from tmm_sheets.compare.placing import Placing, moved
 
 if TYPE_CHECKING:
     from tmm_sheets.compare.cad.layout import Layout
     from tmm_sheets.project import Project
 
+TURNS = (Placing(1j), Placing(-1j), Placing(-1 + 0j), Placing(-1 + 0j, 0j, True), Placing(1 + 0j, 0j, True))
+"""Ways a view may lie on a drawing of which the others lie as they should."""
 HALF = 0.5
 """Share of its ink without which a view is no longer where it was found."""
 MISTAKES = 2
@@ -183,7 +186,29 @@ class _Lost:
         return self.usual[view] if there else 0.0
 
     def left_over(self) -> dict[ElementView, FoundView]:
-        """The views of a line or two, without title or letters, that are found in the ink no other view has."""
+        """The views that are found in the ink no other view has: of a line or two, without title or letters; or turned."""
+        out = self._of_few_lines()
+        for view, found in self._turned(out).items():
+            out[view] = found
+        return out
+
+    def _turned(self, already: Collection[ElementView]) -> dict[ElementView, FoundView]:
+        """Views that are drawn whole, but turned by a right angle or two, or as in a mirror."""
+        lost = [v for v in dict.fromkeys(e.view for e in self.known.elements)
+                if v.n and v not in self.moves and v not in already]
+        search, out = self._search(lost), {}
+        for view in search.views:
+            whole = search.main[view]
+            found = [(one, way) for way in TURNS if search.enough()
+                     and (one := search.changed(view, [moved(e, way) for e in whole])) is not None and one.share >= SURE]
+            if found:
+                one, way = max(found, key=lambda x: search.worth(view, x[0]))
+                out[view] = FoundView(one.placing.after(way), one.share)
+                search.changed(view, [moved(e, way) for e in whole])
+                search.without(view, one.placing)
+        return out
+
+    def _of_few_lines(self) -> dict[ElementView, FoundView]:
         search = self._search([v for v in dict.fromkeys(e.view for e in self.known.elements) if v.n and v not in self.moves])
         out: dict[ElementView, FoundView] = {}
         for view in search.views:

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tmm_sheets.compare.diagnosis.drawn_plan import DRAWN, SHOWS, DrawnPlan, PlanPoint, between, drawn_plan, drawn_positions
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, hypotheses
-from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
+from tmm_sheets.compare.diagnosis.replay import Change, displaced, of_position, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import KnownSheet
@@ -50,6 +50,10 @@ WEIGHT = 25.0
 """A longer vector tells no more than one of this length, mm of our sheet."""
 BEYOND, ASIDE = 1.0, 0.3
 """How far beyond the end of a line it is looked whether it goes on, and how near another one has the same ink, mm of our sheet."""
+SAME, TOLD = 0.1, 3
+"""How near points of a plan are, mm of our sheet, that two mistakes lead to the same place; how many such mistakes are told."""
+NEW_INK = 2
+"""Places of ink, 1 mm, that a plan with a point elsewhere must have more: else its line only lies on another one."""
 FARTHEST = 250.0
 """A point is sought among the tips of lines no farther than this from its place, mm."""
 
@@ -58,17 +62,19 @@ FARTHEST = 250.0
 class BuiltPlan:
     """A plan that was built on a mistake, and how many of its wrong lines that explains; the point that is off where it is none.
 
-    ``position`` is that at which it was made, in a plan of several.
+    ``position`` is that at which it was made, in a plan of several; ``alike`` are mistakes that lead to the very same drawing.
     """
 
     mistake: Hypothesis | str
     explains: int
     of: int
     position: str = ""
+    alike: tuple[Hypothesis, ...] = ()
 
     def said(self) -> str:
-        """What was done wrong."""
-        said = self.mistake if isinstance(self.mistake, str) else self.mistake.said()
+        """What was done wrong, or whatever draws the same."""
+        said = self.mistake if isinstance(self.mistake, str) else tell("; or: ").join(
+            dict.fromkeys(h.said() for h in (self.mistake, *self.alike)))
         return tell("{mistake} (position {position})").format(mistake=said, position=self.position) if self.position else said
 
     def explained(self) -> str:
@@ -143,7 +149,7 @@ def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementV
 
         A mistake that may be one view's ``alone`` is not refuted by the others.
         """
-        value = replay(errors, [c for m in (*before, mistake) for c in m.changes])
+        value = _replay(errors, (*before, mistake))
         more = {view: _share(drawn, drawings[view], points) - share[view]
                 for view, drawn in shown.items() if (points := drawn.moved(value))}
         if not alone and min(more.values(), default=0.0) <= -GAIN:
@@ -151,6 +157,7 @@ def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementV
         return sum(weight[view] * (max(m, 0.0) if alone else m) for view, m in more.items())
 
     order, out = list(plans), {}
+    alike: dict[int, tuple[Hypothesis, ...]] = {}
     for view, drawn in sorted(shown.items(), key=lambda x: order.index(x[1].plan.name)):
         found = _explained(drawn, errors, drawings[view], share[view], before, gain) if view in wrong else None
         if found is not None:
@@ -162,10 +169,14 @@ def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementV
                         if e.number in there and np.abs(there[e.number] - e.points[[0, -1]]).max() >= SHOWS}
             h = found.mistake.said
             position = "" if isinstance(h, str) or h.at is None or not drawn.of_positions else drawn.plan.labels[h.at]
-            out[view] = BuiltPlan(h, len(numbers & there.keys()), len(numbers), position), found.points
             share[view] = found.share
             if found.mistake not in before and not drawn.of_positions:
                 before.append(found.mistake)
+            if id(h) not in alike:
+                of = list(shown.values()) if found.mistake in before else [drawn]
+                alike[id(h)] = _alike(h, [m for m in before if m.said is not h], drawn, of, errors)
+            built = BuiltPlan(h, len(numbers & there.keys()), len(numbers), position, alike[id(h)])
+            out[view] = built, found.points
     return out
 
 
@@ -181,9 +192,41 @@ def possible(shown: Iterable[DrawnPlan], errors: Errors) -> list[Hypothesis]:
         steps = [p.step for p in drawn.points]
         before = list(ordered(steps, lambda step: [a for a in errors.arguments(step) if isinstance(a, Step)]))
         for k in drawn.positions:
-            for h in hypotheses(before, k, drawn.plan.labels):
+            for h in (*hypotheses(before, k, drawn.plan.labels), *_twice(drawn, k)):
                 found.setdefault((h.words, id(h.step), h.at, h.other), h)
     return sorted(found.values(), key=lambda h: KINDS.index(h.kind))
+
+
+def _twice(drawn: DrawnPlan, k: int) -> Iterator[Hypothesis]:
+    """The plan of another position in place of this one."""
+    steps = [p.step for p in drawn.points if np.size(p.step.value) == len(drawn.plan.labels) > 1]
+    if steps and not drawn.of_positions:
+        for other, label in enumerate(drawn.plan.labels):
+            if other != k:
+                changes = tuple(Change(s, of_position(other), k) for s in steps)
+                yield Hypothesis("neighbour", "drawn twice", steps[-1], changes, k, label)
+
+
+def _replay(errors: Errors, mistakes: Iterable[_Mistake]) -> Callable[[Step], Any]:
+    """The construction with mistakes."""
+    return replay(errors, [c for m in mistakes for c in m.changes])
+
+
+def _alike(mistake: Hypothesis | str, others: Sequence[_Mistake], drawn: DrawnPlan, of: Sequence[DrawnPlan],
+           errors: Errors) -> tuple[Hypothesis, ...]:
+    """Other mistakes than one that was found in a plan that draw the same of it and ``of`` all: no drawing can tell them apart."""
+    if isinstance(mistake, str):
+        return ()
+    value = _replay(errors, [*others, _Mistake(mistake, mistake.changes)])
+    out: list[Hypothesis] = []
+    for h in possible([drawn], errors):
+        if len(out) == TOLD - 1:
+            break
+        if h.words != mistake.words or h.step is not mistake.step:
+            other = _replay(errors, [*others, _Mistake(h, h.changes)])
+            if all(np.allclose(plan.places(other), plan.places(value), 0, SAME, equal_nan=True) for plan in (drawn, *of)):
+                out.append(h)
+    return tuple(out)
 
 
 def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float, before: Sequence[_Mistake],
@@ -196,7 +239,7 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float,
     def tried(mistakes: Iterable[_Mistake], made: Sequence[_Mistake]) -> list[_Found]:
         out = []
         for m in mistakes:
-            points = drawn.moved(replay(errors, [c for one in (*made, m) for c in one.changes]))
+            points = drawn.moved(_replay(errors, (*made, m)))
             share = _share(drawn, drawing, points) if points else 0.0
             # One of the positions is little of them all.
             if share >= MOST and explains(usual, share, 0.0 if drawn.of_positions else EQUAL):
@@ -218,8 +261,9 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float,
     if drawn.of_positions:
         return None  # a link that lies elsewhere is told as that
     # A point may lie on another one, or on another vector: that only makes what is wrong disappear.
-    off = [f for _, f in _best(tried(_points_off(drawn, drawing), before), more)]
-    return max(off, key=lambda f: _ink(drawn, drawing, f.points), default=None)
+    off = [(_ink(drawn, drawing, f.points), f) for _, f in _best(tried(_points_off(drawn, drawing), before), more)]
+    most, best = max(off, key=lambda x: x[0], default=(0, None))
+    return best if most > _ink(drawn, drawing, drawn.points) + NEW_INK else None
 
 
 def _best(found: Sequence[_Found], gain: Callable[[_Mistake], float]) -> list[tuple[float, _Found]]:

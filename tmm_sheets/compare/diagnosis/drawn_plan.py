@@ -58,10 +58,14 @@ class DrawnPlan:
 
     def moved(self, value: Callable[[Step], Any]) -> tuple[PlanPoint, ...]:
         """Its points in a construction drawn again; none where none of them moves or one cannot be built."""
-        with np.errstate(all="ignore"):
-            new = tuple(replace(p, now=self.place(value(p.step), p.k)) for p in self.points)
+        new = tuple(replace(p, now=now) for p, now in zip(self.points, self.places(value).tolist(), strict=True))
         far = np.abs([p.now - p.was for p in new])
         return new if len(far) and (far <= PAPER).all() and far.max() >= SHOWS else ()  # NaN is on no paper either
+
+    def places(self, value: Callable[[Step], Any]) -> Points:
+        """Where its points are in a construction drawn again; NaN of what cannot be built."""
+        with np.errstate(all="ignore"):
+            return np.array([self.place(value(p.step), p.k) for p in self.points], dtype=complex)
 
     def place(self, value: Any, k: int) -> complex:
         """Where a point of the plan, or that of a position, is on the sheet."""

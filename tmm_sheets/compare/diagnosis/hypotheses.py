@@ -66,6 +66,11 @@ WORDS: Mapping[str, str] = {
     "position after": marked("in {other} stands the number of the position after each"),
     "position": marked("for {step} the number of position {other} is taken"),
     "number": marked("for {step} the number of {other} is taken"),
+    "drawn twice": marked("here the plan of position {other} is drawn once more"),
+    "numbering": marked("the positions are numbered from another start: {other}, and so on"),
+    "unit": marked("the numbers are written in {other}"),
+    "mechanism across": marked("the mechanism is drawn mirrored, left and right exchanged, and all plans with it"),
+    "mechanism upside down": marked("the mechanism is drawn mirrored, top and bottom exchanged, and all plans with it"),
 }
 """How they are told; ``step`` is where the mistake was made, ``other`` what it was mistaken for or done with."""
 

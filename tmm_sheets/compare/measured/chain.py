@@ -16,6 +16,7 @@ from statistics import NormalDist
 import numpy as np
 
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
+from tmm_sheets.compare.measured import measured_units as units
 from tmm_sheets.compare.measured.evidence import CURVED, Evidence, Explanation, place_of
 from tmm_sheets.compare.measured.explaining import explanation
 from tmm_sheets.compare.measured.judged import Judged, Place
@@ -24,6 +25,7 @@ from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, fact
 from tmm_sheets.compare.measured.own_numbers import OwnNumbers
 from tmm_sheets.compare.measured.own_steps import OwnValue
 from tmm_sheets.compare.measured.plan_scales import wrong_scales
+from tmm_sheets.compare.measured.whole_table import Whole, mark, whole_table
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.numbers import rounded, told
@@ -31,6 +33,8 @@ from tmm_sheets.words import tell, tell_n
 
 ROUNDED = 0.005
 """Share of a result that rounding to three digits on the way (9.81, pi, omega, lengths of links) may bring."""
+WHOLES = 3
+"""Mistakes with the whole table that are looked for."""
 MOST = 10
 """Mistakes that are looked for; where there are more, another mechanism was drawn."""
 SHARE = 0.5
@@ -53,7 +57,13 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     numbers = {name: i for i, name in enumerate(found.entries)}
     # In the order of the sheets, so that steps are numbered plan after plan as they are drawn.
     lines = sorted(filled.lines, key=lambda line: numbers[line.entry.id])
-    judged = [_judged(line, found, filled.factors, errors, reading) for line in lines]
+    written = judged = [_judged(line, found, filled.factors, errors, reading) for line in lines]
+    labels = next((plan.labels for plan, _ in found.plans if plan.name == "positions"), ())
+    wholes: list[Whole] = []
+    while len(wholes) < WHOLES and (whole := whole_table(judged, labels)) is not None:
+        wholes.append(whole)
+        lines = [whole.line(line) for line in lines]
+        judged = [_judged(line, found, filled.factors, errors, reading) for line in lines]
     computed = _check_arithmetic(judged, filled, found)
     for j in judged:
         if j.verdict == "red" and all(n.verdict == "green" for n in computed.get(id(j), ())):
@@ -65,7 +75,6 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
         own = OwnNumbers(judged, errors)
         left = wrong_scales([j for j in judged if id(j) not in computed])
         _against_own(own, {id(j) for j in left})
-        labels = next((plan.labels for plan, _ in found.plans if plan.name == "positions"), ())
         _chains(Evidence(left, errors, labels), own, computed)
     for j in judged:
         if id(j) in computed and j.verdict != "green":
@@ -75,6 +84,7 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
             said = tell_n("one of {n} number may be off so far by chance", "one of {n} numbers may be off so far by chance",
                           len(judged))
             j.remark = j.remark or said.format(n=len(judged))
+    mark(judged, wholes, written)
     return judged
 
 
@@ -145,7 +155,7 @@ def _remark(judged: Judged, measured: float, tolerance: float) -> str:
         return _way_round(judged)
     if judged.entry.signed and abs(-measured - judged.exact) <= tolerance:
         return tell("the sign is wrong")
-    return _slip(measured, judged.exact, tolerance)
+    return _slip(measured, judged.exact, tolerance, judged.entry.unit)
 
 
 def _way_round(judged: Judged) -> str:
@@ -162,8 +172,11 @@ def _tilted(angle: float, slope: tuple[str, str], found: Measurables, factors: M
     return degrees(atan(tan(radians(angle)) * x / y))
 
 
-def _slip(measured: float, exact: float, tolerance: float) -> str:
-    """Slips of the pen that are recognised at sight: a factor of two or ten, metres for millimetres."""
+def _slip(measured: float, exact: float, tolerance: float, unit: str) -> str:
+    """Slips of the pen that are recognised at sight: another unit, a factor of two or ten."""
+    for other, factor in units.OTHERS.get(unit, ()):
+        if factor != units.SCALE and abs(measured / factor - exact) <= tolerance and abs(exact) > 3 * tolerance:
+            return tell("as if in {unit}").format(unit=units.said(other))
     for factor in (10.0, 0.1, 2.0, 0.5, 100.0, 0.01, 1000.0, 0.001):
         if abs(measured / factor - exact) <= tolerance and abs(exact) > 3 * tolerance:
             return tell("{times} times the exact value").format(times=told(f"{factor:g}"))
@@ -233,9 +246,9 @@ def _chains(evidence: Evidence, own: OwnNumbers, computed: Mapping[int, list[Jud
         start.starts = True
         tried += 1
         found = explanation(evidence, int(first)) if tried <= MOST else None
-        if found is None:
+        if found is None and tried <= MOST:
             _wrong_row(start, judged)
-        else:
+        elif found is not None:
             open_[_told(evidence, start, found, beyond)] = False
             if found.then is not None and (second := _shows(evidence, start, found.then)) is not None:
                 second.starts, second.follows = True, None

@@ -152,10 +152,10 @@ def _story(title: str, judged: list[Judged], filled: measured_file.Filled, notes
 
 
 def _summary(judged: list[Judged], filled: measured_file.Filled) -> list[str]:
-    lines = [_counted(judged, filled)]
-    for i, m in enumerate(_mistakes(judged), 1):
-        lines += [f"{i}. {m.where}: {m.what}", *(f"   {line}" for line in m.details)]
-    return [*lines, *_advice(judged)]
+    mistakes = [line for i, m in enumerate(_mistakes(judged), 1)
+                for line in (f"{i}. {m.where}: {m.what}", *(f"   {line}" for line in m.details))]
+    many = _too_many(judged)
+    return [_counted(judged, filled), *(_advice(judged) if many else []), *mistakes, *([] if many else _advice(judged))]
 
 
 def _own(judged: list[Judged]) -> dict[str, int]:
@@ -215,10 +215,15 @@ def _mistakes(judged: list[Judged], pictures: PlanPictures | None = None) -> Ite
                             pictures.picture(j) if pictures is not None else None)
 
 
+def _too_many(judged: list[Judged]) -> bool:
+    """Whether nearly everything is wrong: the single mistakes are guesses then."""
+    return len(_grouped(judged)) > MOST
+
+
 def _advice(judged: list[Judged]) -> list[str]:
     """What to do now."""
     starts, own = len(_grouped(judged)), _own(judged)
-    if starts > MOST:
+    if _too_many(judged):
         return [tell("So many mistakes: was another variant drawn, or with other scale factors than stated?")]
     if starts:
         return [tell("Mend the first one first: what follows from it is right as soon as that is.")]
@@ -231,7 +236,7 @@ def _advice(judged: list[Judged]) -> list[str]:
 
 def _what(j: Judged) -> str:
     if j.wrong:
-        return tell("; or: ").join(h.said() for h in j.wrong)
+        return tell("; or: ").join(dict.fromkeys(h.said() for h in j.wrong))
     said = tell("{measured} instead of {exact}, {times} times the tolerance") if j.tolerance > EXACT else tell(
         "{measured} instead of {exact}")
     times = told(f"{abs(j.deviation) / j.tolerance:.3g}")
@@ -288,10 +293,11 @@ def _tree(name: str, judged: list[Judged], filled: measured_file.Filled, pencil:
         "scales": dict(filled.factors),
         "summary": {**{v: sum(j.verdict == v for j in own) for v in ("green", "amber", "red")},
                     "following": len(judged) - len(own), "empty": filled.empty},
+        "another": _advice(judged)[0] if _too_many(judged) else None,
         "starts": [{"id": j.entry.id, "why": _what(j), "step": _step(j),
                     "said": said(j), "same_as": None if first[id(j)] is j else first[id(j)].entry.id,
                     "kind": j.wrong[0].kind if j.wrong else None,
-                    "or": [h.said() for h in j.wrong[1:]],
+                    "or": list(dict.fromkeys(words for h in j.wrong[1:] if (words := h.said()) != j.wrong[0].said())),
                     "off_mm": _off(j), "followers": [f.entry.id for f in judged if f.follows is j]}
                    for j in sorted(judged, key=lambda j: j.order) if j.starts],
         "numbers": [{

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from math import degrees
+from math import degrees, pi
 
 from tmm_sheets.words import marked, tell
 
@@ -13,6 +13,14 @@ SPEED, ANGULAR_SPEED, ACCELERATION, ANGULAR_ACCELERATION = marked("m/s"), marked
 FORCE, MOMENT, MASS, INERTIA, ENERGY = marked("N"), marked("N·m"), marked("kg"), marked("kg·m²"), marked("kg·m²/s²")
 
 _RADIAN = degrees(1)
+SCALE = 0.1
+"""Times as long as they should be that lengths may be in another unit, or drawn to another scale factor."""
+OTHERS: Mapping[str, tuple[tuple[str, float], ...]] = {
+    MILLIMETRES: ((METRES, 1e-3), (marked("cm"), SCALE)), DEGREES: ((marked("rad"), 1 / _RADIAN),),
+    SPEED: ((marked("mm/s"), 1e3),), ACCELERATION: ((marked("mm/s²"), 1e3),), ANGULAR_SPEED: ((TURNS, 30 / pi),),
+    FORCE: ((marked("kgf"), 1 / 9.81), (marked("kN"), 1e-3)), MOMENT: ((marked("N·mm"), 1e3), (marked("kgf·m"), 1 / 9.81)),
+}
+"""Units that are written by mistake for each, and how many times as large a number is in them."""
 _LENGTHS: Mapping[str, float] = {"mm": 1.0, "cm": 10.0, "m": 1000.0}
 _ANGLES: Mapping[str, float] = {"°": 1.0, "deg": 1.0, "rad": _RADIAN}
 _LATIN: Mapping[str, str] = {

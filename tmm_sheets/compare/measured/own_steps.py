@@ -110,7 +110,7 @@ class OwnSteps:
             # A length is plotted from, a result computed from what was written down.
             again.take(step, place, max(before, key=lambda m: (m.entry.kind == j.entry.kind, self._rank[id(m)])))
             return True
-        if len(again.steps) == FAR:
+        if len(again.steps) >= FAR:
             return False
         made_of = [*self._made_of(step, k)]
         for a, at in made_of:
