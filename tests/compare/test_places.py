@@ -96,6 +96,29 @@ def test_ink_as_large_as_lettering_that_is_not_there_is_told_with_it(by, size, s
     assert len(rest) == (said == "no lettering here")
 
 
+def moved(number, at, by, view=PLAN):
+    e = Element(number, view, "abc"[number - 1], "text", at + np.array([0, 3, 3 + 4j, 4j]), "text")
+    return judge(Trace(e, "absent lettering", by, deviation=abs(by), at=None if by is None else e.points + by), 0.25, 0.15)
+
+
+@pytest.mark.parametrize(("findings", "expected"), [
+    ([moved(1, 100, 8j)], [1]), ([moved(1, 100, 8j), moved(2, 107, 7.5j), moved(3, 114, 1 + 7.2j)], [3]),
+    ([moved(1, 100, 8j), moved(2, 107, -8j)], [1, 1]), ([moved(1, 100, 8j), moved(2, 160, 8j)], [1, 1]),
+    ([moved(1, 100, 8j), moved(2, 107, 8j, OTHER)], [1, 1]),
+])
+def test_lettering_that_was_moved_together_is_one_place(findings, expected):
+    told = places(findings, [])
+    assert [len(p.findings) for p in told] == expected
+    assert image_story.said(told[0]).startswith("no lettering here; what stands 8.0 mm too far up may be it")
+    assert ("here also: text b, text c" in image_story.said(told[0])) == (expected == [3])
+
+
+def test_the_ink_of_lettering_that_was_moved_is_told_with_it():
+    off = moved(1, 100, 8j)
+    assert shares(off, extra=[ink(101 + 9j, 103 + 11j)]) == [(1, 0, 1)]
+    assert shares(off, extra=[ink(101 - 9j, 103 - 7j)]) == [(1, 0, 0), (0, 0, 1)]
+
+
 @pytest.mark.parametrize(("arcs", "by"), [([(0, 40), (90, 130), (200, 240)], 3.6), ([(0, 40), (90, 130), (200, 240)], -2.0),
                                           ([(0, 40), (90, 130)], None)])  # fmt: skip
 def test_ink_on_a_circle_about_the_centre_of_another_is_told_as_a_circle(arcs, by):

@@ -1,5 +1,6 @@
 """Elements measured in ink that was put where it is known to be: ends, strokes in common, displacements, ink too much."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import cv2
@@ -12,16 +13,18 @@ from tmm_sheets.compare.photo import arrow_heads
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.profiles import SCALE
+from tmm_sheets.compare.photo.traces import Trace
 from tmm_sheets.compare.photo.tracing import trace
 from tmm_sheets.drawing.marks import Text
+from tmm_sheets.drawing.marks import Trace as By
 from tmm_sheets.drawing.styles import line_type
 
 ROWS, COLUMNS = 594 * 6, 841 * 6
 VIEW = ElementView(0, "view", Box(0, 0, 841, 594))
 
 
-def line(number, a, b, style="main"):
-    return Element(number, VIEW, "", "line", np.array([a, b]), style)
+def line(number, a, b, style="main", role="link"):
+    return Element(number, VIEW, "", "line", np.array([a, b]), style, by=By(role, "", ""))
 
 
 def paper():
@@ -153,6 +156,19 @@ def test_thin_lines_drawn_over_are_a_remark_and_none_in_a_soft_picture():
         assert judge(found[0], 0.25, 0.15, soft=True).verdict == "green"
 
 
+@pytest.mark.parametrize(("role", "style", "off", "verdict"), [
+    ("link", "main", -1.3, "amber"), ("vector", "vector", -1.3, "amber"), ("link", "main", -4.0, "red"),
+    ("symbol", "main", -1.3, "green"), ("symbol", "main", 1.3, "green"), ("symbol", "main", -4.0, "amber"),
+    ("curve", "curve", -1.7, "green"), ("curve", "curve", -4.0, "amber"),
+    ("axis", "centre", -3.5, "green"), ("axis", "centre", 3.5, "amber"), ("axis", "centre", -7.0, "amber"),
+    ("axis", "thin", -3.5, "amber"), ("axis", "hidden", -3.5, "green"), ("axis", "hidden", -5.0, "amber"),
+])
+def test_how_far_a_line_may_end_from_its_end(role, style, off, verdict):
+    """Guides, supports and curves end where the hand stopped, dashed lines in a gap; links and vectors end in points."""
+    e = line(1, 240 + 300j, 300 + 300j, style, role)
+    assert judge(Trace(e, "measured", ends=(0.0, off), at=e.points), 0.25, 0.15).verdict == verdict
+
+
 def test_a_soft_picture_has_a_wider_tolerance():
     known = [line(1, 240 + 300j, CORNER)]
     found, _ = traced(known, [(240 + 300.5j, CORNER + 0.5j, "main")])
@@ -281,15 +297,42 @@ def word(*runs, bar=False):
 def test_part_of_lettering_is_missed(runs, letters, bar, status):
     """A run of letters is looked for by itself, and the bar over letters that stand elsewhere is no lettering."""
     ink = paper()
-    for k in range(len(letters)):  # zigzags, 4 mm each
-        x = 300.3 + 4 * k
-        for one, other in ((0, 1 + 4j), (1 + 4j, 2), (2, 3 + 4j)):
-            draw(ink, x + one + 300j, x + other + 300j, "thin")
+    write(ink, letters, 300 + 300j)
     known = word(*runs, bar=bar)
     for a, b in known.pieces:
         draw(ink, a, b, "thin")
     found, _ = trace([known], ink)
     assert found[0].status == status
+
+
+def write(ink, letters, at):
+    """Zigzags, 4 mm each."""
+    for k in range(len(letters)):
+        x = at + 0.3 + 4 * k
+        for one, other in ((0, 1 + 4j), (1 + 4j, 2), (2, 3 + 4j)):
+            draw(ink, x + one, x + other, "thin")
+
+
+@pytest.mark.parametrize(("letters", "by", "where"), [
+    ("WMW", 9j, 9j), ("WMW", 10 - 8j, 10 - 8j), ("WMW", -6 + 0j, -6 + 0j), ("W", 9j, None), ("WMWMW", 9j, None),
+    ("WMW", 18j, None), ("", 9j, None),
+])
+def test_lettering_is_looked_for_beside_its_place(letters, by, where):
+    """By ink of its size, as a whole even where it lies partly in its old place."""
+    ink, known = paper(), word("WMW")
+    write(ink, letters, 300 + 300j + by)
+    (found,), _ = trace([known], ink)
+    assert found.status == "absent lettering"
+    assert (found.at is None) == (where is None)
+    assert found.shift == pytest.approx(where or 0, abs=0.7)
+
+
+def test_neither_other_lettering_nor_what_lies_on_a_line_is_taken_for_it():
+    ink, known = paper(), word("WMW")
+    other = replace(known, number=2, points=known.points + 9j, marks=tuple(m._replace(at=m.at + 9j) for m in known.marks))
+    write(ink, "WMW", 300 + 309j)
+    (found, there), _ = trace([known, other], ink)
+    assert (found.status, found.at, there.status) == ("absent lettering", None, "lettering")
 
 
 @pytest.mark.parametrize(("dark", "deviation"), [(60, 3.0), (170, 0.0)])

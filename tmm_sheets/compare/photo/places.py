@@ -16,19 +16,22 @@ from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import sampled
 from tmm_sheets.compare.findings import of_radius, worst
 from tmm_sheets.compare.photo.judging import PhotoFinding
+from tmm_sheets.compare.photo.moved_labels import ALIKE, MOVED, TOGETHER
 from tmm_sheets.compare.photo.traces import ExtraInk, Trace
 from tmm_sheets.compare.report import Verdict
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import tell
 
-TOGETHER = 5.0
+ONE = 5.0
 """mm between places of one view that are off, within which they are one: the circles round them would lie upon each other."""
 ON, MOSTLY = 1.5, 0.5
 """mm from a line within which ink is its own, and least share of one that lies so near the other."""
 BESIDE, ALONG = 6.0, 0.8
 """mm from the place of a line that is off within which ink may be its own, and least share of the ink that lies so near."""
-MOVED, LIKE = 15.0, (0.5, 1.5)
-"""mm from its place within which ink may be lettering that is not there, and its extent in that of the lettering."""
+LIKE = (0.5, 1.5)
+"""Extent of ink that may be lettering that is not there, in that of the lettering."""
+ROOM = 2.0
+"""mm about the place where lettering stands that was moved within which ink is its own."""
 NEXT = 6.0
 """mm between pieces of ink that are one thing to the eye."""
 GAP, IN_LINE = 30.0, 0.5
@@ -111,12 +114,22 @@ def places(findings: Sequence[PhotoFinding], extra: Sequence[ExtraInk]) -> list[
 
 
 def one_place(f: PhotoFinding, g: PhotoFinding) -> bool:
-    """Whether two findings are about one place: lines off there, or one stroke that may be either's; lettering is apart."""
+    """Whether two findings are about one place: lines off there, or one stroke that may be either's; lettering is apart, and
+    together where it was moved together.
+    """
     a, b = f.element, g.element
+    if a.view is b.view and a.kind == b.kind == "text":
+        return _moved_alike(f, g)
     if a.view is not b.view or "text" in (a.kind, b.kind):
         return False
-    near = np.abs(_off(f)[:, None] - _off(g)).min() < TOGETHER
+    near = np.abs(_off(f)[:, None] - _off(g)).min() < ONE
     return bool(near) or ("beside" in (f.trace.status, g.trace.status) and _one_stroke(f, g))
+
+
+def _moved_alike(f: PhotoFinding, g: PhotoFinding) -> bool:
+    """Whether two pieces of lettering that stand near each other were moved by the same."""
+    near = abs(f.element.middle - g.element.middle) < TOGETHER
+    return near and f.trace.at is not None and g.trace.at is not None and abs(f.trace.shift - g.trace.shift) < ALIKE
 
 
 def _off(f: PhotoFinding) -> Points:
@@ -165,6 +178,8 @@ def _letters(f: PhotoFinding, x: ExtraInk) -> bool:
     """Whether ink may be the lettering that is not in its place."""
     if f.trace.status not in ("absent lettering", "part of lettering"):
         return False
+    if f.trace.at is not None:
+        return Box.around(f.trace.at, ROOM).contains(x.middle)
     box = Box.around(f.element.points)
     alike = all(LIKE[0] * size <= found <= LIKE[1] * size + 1.0 for found, size in ((x.width, box.width), (x.height, box.height)))
     return alike and abs(x.middle - f.element.middle) <= MOVED

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.compare.elements import Element, grown
+from tmm_sheets.compare.photo import moved_labels
 from tmm_sheets.compare.photo.arrow_heads import with_heads
 from tmm_sheets.compare.photo.displacement import beside, displaced, rather_elsewhere
 from tmm_sheets.compare.photo.dots import displaced_dots
@@ -95,8 +96,10 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         else:
             wipe_small(wiped, t.element)
     left = ink.copy()
+    covers = np.zeros_like(ink)
     if hidden.any():
-        left[cv2.resize(hidden.astype(np.uint8), ink.shape[::-1], interpolation=cv2.INTER_NEAREST) > 0] = 0
+        covers = cv2.resize(hidden.astype(np.uint8), ink.shape[::-1], interpolation=cv2.INTER_NEAREST) * np.uint8(255)
+        left[covers > 0] = 0
     left[wiped > 0] = 0
     found += _displaced(absent, ink, left, wiped, owners, pale)
     found = _doubted(found, alone, ink, left, wiped, owners, pale)
@@ -108,6 +111,8 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     lines = {t.element.number: t for t in (*found, *ended)}
     headed = with_heads(list(lines.values()), ink, owners, words, hidden)
     out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
+    unseen = [t for t in out.values() if t.status in ("absent lettering", "part of lettering")]
+    out |= {t.element.number: t for t in moved_labels.with_places(unseen, found, small, ink, covers, level)}
     out |= {t.element.number: t for t in _dots(small, headed, ink, words, hidden)}
     near = {"missing": widened(hidden)} | dict.fromkeys(("absent lettering", "part of lettering"), widened(hidden, WASHED_OUT))
     for t in [t for t in out.values() if t.status in near]:
