@@ -109,7 +109,7 @@ def moved(number, at, by, view=PLAN):
 def test_lettering_that_was_moved_together_is_one_place(findings, expected):
     told = places(findings, [])
     assert [len(p.findings) for p in told] == expected
-    assert image_story.said(told[0]).startswith("no lettering here; what stands 8.0 mm too far up may be it")
+    assert image_story.said(told[0]).startswith("not in its place: what stands 8.0 mm too far up may be it")
     assert ("here also: text b, text c" in image_story.said(told[0])) == (expected == [3])
 
 

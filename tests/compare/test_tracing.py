@@ -305,6 +305,12 @@ def test_part_of_lettering_is_missed(runs, letters, bar, status):
     assert found[0].status == status
 
 
+def test_the_words_of_the_form_outside_the_frame_are_not_looked_for():
+    known = word("WMW")
+    outside = replace(known, number=2, points=known.points - 298j, marks=tuple(m._replace(at=m.at - 298j) for m in known.marks))
+    assert [t.status for t in trace([known, outside], paper())[0]] == ["absent lettering", "small"]
+
+
 def write(ink, letters, at):
     """Zigzags, 4 mm each."""
     for k in range(len(letters)):
@@ -315,7 +321,7 @@ def write(ink, letters, at):
 
 @pytest.mark.parametrize(("letters", "by", "where"), [
     ("WMW", 9j, 9j), ("WMW", 10 - 8j, 10 - 8j), ("WMW", -6 + 0j, -6 + 0j), ("W", 9j, None), ("WMWMW", 9j, None),
-    ("WMW", 18j, None), ("", 9j, None),
+    ("WMW", 18j, None), ("", 9j, None), ("WMW", -8 + 0j, -8 + 0j),
 ])
 def test_lettering_is_looked_for_beside_its_place(letters, by, where):
     """By ink of its size, as a whole even where it lies partly in its old place."""
@@ -325,6 +331,15 @@ def test_lettering_is_looked_for_beside_its_place(letters, by, where):
     assert found.status == "absent lettering"
     assert (found.at is None) == (where is None)
     assert found.shift == pytest.approx(where or 0, abs=0.7)
+
+
+@pytest.mark.parametrize("by", [8 + 0j, 4 + 2j])
+def test_lettering_is_seen_elsewhere_though_some_ink_is_in_its_place(by):
+    """Its old place is not quite empty where it was moved by less than its length."""
+    ink, known = paper(), word("WMWWMW")
+    write(ink, "WMWWMW", 300 + 300j + by)
+    (found,), _ = trace([known], ink)
+    assert (found.status, found.shift) == ("absent lettering", pytest.approx(by, abs=0.7))
 
 
 def test_neither_other_lettering_nor_what_lies_on_a_line_is_taken_for_it():

@@ -134,7 +134,7 @@ def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFindi
     if t.status in ("absent lettering", "part of lettering"):
         said = tell("no lettering here") if t.status == "absent lettering" else tell("part of the lettering is not here")
         if t.at is not None:
-            said = "; ".join((said, tell("what stands {how} may be it").format(how=shifted(t.shift))))
+            said = tell("not in its place: what stands {how} may be it").format(how=shifted(t.shift))
         return PhotoFinding(e, "amber", t.deviation, said, complex(e.points.mean()), t, tolerance)
     if t.status == "shared" and t.deviation <= tolerance:
         said = tell("within a pencil's reach, with others in one stroke")

@@ -28,8 +28,10 @@ WRITTEN = 0.06
 """Least share of its box with ink, there as in its place."""
 ASIDE, EDGE = 0.9, 0.5
 """mm about lines and about other lettering whose ink is theirs."""
-APART, WORDS = 0.4, 0.8
+APART, WORDS = 0.5, 0.8
 """Paper between the letters of a word, and between words, as a share of their height."""
+LONG = 30.0
+"""mm of lettering up to which ink beside its middle is not a part of it."""
 TOGETHER, ALIKE = 25.0, 1.5
 """mm between lettering that may have been moved together, and mm by which it was not moved quite alike."""
 
@@ -41,7 +43,7 @@ def with_places(traces: Sequence[Trace], lines: Iterable[Trace], small: Sequence
     Parameters
     ----------
     traces
-        Of lettering that is not, or not all, in its place.
+        Of lettering of which not all is surely in its place.
     lines
         What was found of lines.
     small
@@ -75,13 +77,15 @@ def _candidates(t: Trace, taken: Any, words: Sequence[Element], ink: Any, level:
 
     e = t.element
     box = Box.around(e.points)
+    if t.status == "lettering" and max(box.width, box.height) > LONG:
+        return np.zeros(0, complex)
     corner = pixels(np.array([complex(box.x0 - MOVED, box.y1 + MOVED), complex(box.x1 + MOVED, box.y0 - MOVED)]))
     rows, columns = (slice(max(round(a), 0), max(round(b), 0)) for a, b in (corner.imag, corner.real))
     here = ink[rows, columns]
     if not here.size:
         return np.zeros(0, complex)
     free = taken[rows, columns] == 0
-    if t.status == "part of lettering":
+    if t.status != "absent lettering":
         own = np.zeros_like(here)
         _fill(own, grown(e.points, EDGE), columns.start, rows.start)
         for other in words:
@@ -98,9 +102,11 @@ def _candidates(t: Trace, taken: Any, words: Sequence[Element], ink: Any, level:
         x, y, w, h = (int(n) for n in stats[k, :4])
         size = (w / SCALE, h / SCALE)
         by = complex((columns.start + x + w / 2) / SCALE, PAPER.y1 - (rows.start + y + h / 2) / SCALE) - e.middle
-        if (area[k] >= WRITTEN * box.width * box.height * SCALE**2 and _alike(size, box) and LEAST <= abs(by) <= MOVED):
+        if area[k] >= WRITTEN * box.width * box.height * SCALE**2 and _alike(size, box) and abs(by) <= MOVED:
             found.append((abs(size[0] - box.width) + abs(size[1] - box.height) + 0.1 * abs(by), by))
-    return np.array([by for _, by in sorted(found, key=lambda f: f[0])], complex)
+    if t.status == "lettering" and any(abs(by) < LEAST for _, by in found):
+        return np.zeros(0, complex)
+    return np.array([by for _, by in sorted(found, key=lambda f: f[0]) if abs(by) >= LEAST], complex)
 
 
 def _with_others(few: Sequence[Trace], by: Sequence[Points]) -> Iterator[Trace]:

@@ -32,7 +32,7 @@ from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.line_ends import with_ends
 from tmm_sheets.compare.photo.own_place import in_place, strips, uncovered
 from tmm_sheets.compare.photo.profiles import pixels, sample
-from tmm_sheets.compare.photo.sheet_map import Floats
+from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
 from tmm_sheets.compare.photo.stations import LEAST, expected_ink, measurable, stations
 from tmm_sheets.compare.photo.traces import ExtraInk, Status, Trace
 from tmm_sheets.compare.photo.wiping import ROOM, fill, paint, wipe_found, wipe_small
@@ -47,6 +47,7 @@ washed out with the lines."""
 WRITTEN = 0.06  # share of its place with ink from which on lettering counts as there: a dash has 0.12
 PARTLY, CLEAR = 0.45, 0.9
 """Share of the columns of its place with ink below which part of lettering is missing, and least share of columns to be seen."""
+GAPPY = 0.8  # share of such columns below which it is looked whether lettering stands elsewhere
 OPEN = 0.3  # least share of a place that is free of lines for it to be told whether there is lettering
 PALE, GAPS = 0.6, 0.85
 """Darkness of a line as a share of that usual for its kind, and share of it with ink, below which it may be another line."""
@@ -111,7 +112,8 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     lines = {t.element.number: t for t in (*found, *ended)}
     headed = with_heads(list(lines.values()), ink, owners, words, hidden)
     out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
-    unseen = [t for t in out.values() if t.status in ("absent lettering", "part of lettering")]
+    unseen = [t for t in out.values() if t.status in ("absent lettering", "part of lettering")
+              or (t.status == "lettering" and t.covered < GAPPY)]  # fmt: skip
     out |= {t.element.number: t for t in moved_labels.with_places(unseen, found, small, ink, covers, level)}
     out |= {t.element.number: t for t in _dots(small, headed, ink, words, hidden)}
     near = {"missing": widened(hidden)} | dict.fromkeys(("absent lettering", "part of lettering"), widened(hidden, WASHED_OUT))
@@ -260,7 +262,8 @@ def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level:
     count, bars over letters among them, nor does a place that they fill.
     """
     out = {e.number: Trace(e, "small", covered=1.0) for e in small}
-    words = [e for e in small if e.kind == "text"]
+    # What the form has outside its frame is cut off with the margin, and nobody's mistake.
+    words = [e for e in small if e.kind == "text" and FRAME.contains(e.middle)]
     if not words:
         return out
     others = np.zeros_like(ink)
@@ -286,5 +289,5 @@ def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level:
     for e in words:
         mine = of == e.number
         status: Status = "absent lettering" if not there[mine].any() else "part of lettering" if gone[mine].any() else "lettering"
-        out[e.number] = Trace(e, status, covered=float(shares[mine].max()))
+        out[e.number] = Trace(e, status, covered=float(columns[mine & clear].min(initial=1.0)))
     return out
