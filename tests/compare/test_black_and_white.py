@@ -52,9 +52,12 @@ def test_thin_lines_are_in_pieces_all_over_the_sheet(traces, does):
     (found("missing", length=20, covered=0.5), "red", "green"), (found("missing", length=60, covered=0.5), "red", "green"),
     (found("missing", length=60, covered=0.02), "red", "red"), (found("missing", "main", length=20, covered=0.5), "red", "red"),
     (found("covered"), "amber", "green"), (found("covered", "vector"), "amber", "amber"),
+    (found("measured", deviation=0.6), "amber", "green"), (found("measured", "main", deviation=0.6), "amber", "amber"),
     (found("measured", deviation=4.0), "red", "red"), (found("measured", deviation=4.0, covered=0.7), "red", "green"),
     (lettering("part of lettering", "F10"), "amber", "green"), (lettering("absent lettering", "7"), "amber", "green"),
-    (lettering("absent lettering", "7", 6j), "amber", "amber"), (lettering("absent lettering", "F10"), "amber", "amber"),
+    (lettering("absent lettering", "7", 6j), "amber", "green"), (lettering("absent lettering", "12", 6j), "amber", "amber"),
+    (lettering("absent lettering", "12"), "amber", "green"), (lettering("part of lettering", "F10", 6j), "amber", "green"),
+    (lettering("absent lettering", "F10"), "amber", "amber"),
 ])
 def test_what_may_be_eaten_is_not_judged_and_what_is_clear_is(trace, seen, eaten):
     assert judge(trace, 0.25, 0.15).verdict == seen

@@ -21,13 +21,13 @@ BLACK, WHITE, GREY = 64, 192, 0.25
 """Levels of black and white, and most pixels between them, as a share of the black ones; there are none but for compression."""
 THIN = 0.3
 """mm; width of lines up to which they are eaten."""
-LONG, BROKEN, MANY = 15.0, 0.9, 0.03
+LONG, BROKEN, MANY = 15.0, 0.9, 0.02
 """mm of a thin line, share of it with ink below which it is broken, and share of such lines that are: a pencil leaves gaps in one
 of a hundred."""
 SURE, LARGE, NOTHING = 0.85, 30.0, 0.1
 """Share of a thin line with ink from which on what lies elsewhere is it; mm of one that is not eaten whole, and its least rest."""
 LETTERS = 3
-"""Letters that are not eaten all."""
+"""Letters that are not eaten all; of lettering that stands elsewhere one less."""
 
 
 def without_grey(grey: Any) -> bool:
@@ -49,12 +49,14 @@ def may_be_eaten(t: Trace, tolerance: float) -> bool:
     if t.status == "part of lettering":
         return True
     if t.status == "absent lettering":
-        return t.at is None and sum(map(str.isalnum, t.element.text)) < LETTERS
+        return sum(map(str.isalnum, t.element.text)) < LETTERS - (t.at is not None)
     if not _thin(t):
         return False
     if t.status == "missing":
         return t.element.length < LARGE or t.covered > NOTHING
-    return t.status == "covered" or (t.status == "measured" and t.deviation > tolerance and t.covered < SURE)
+    if t.status == "measured":
+        return t.deviation > tolerance and (t.covered < SURE or t.deviation <= 2 * tolerance)
+    return t.status == "covered"
 
 
 def whole(t: Trace) -> Trace:

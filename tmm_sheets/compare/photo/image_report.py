@@ -233,7 +233,7 @@ def _row(f: PhotoFinding) -> dict[str, Any]:
     """A finding for JSON, null where nothing was measured."""
     t, middle = f.trace, f.element.middle
     ends = [round(float(x), 2) if np.isfinite(x) else None for x in t.ends]
-    measured = t.status in ("measured", "shared", "beside") or (t.status == "absent lettering" and t.at is not None)
+    measured = t.status in ("measured", "shared", "beside") or (t.element.kind == "text" and t.at is not None)
     return origin(f.element) | {
         "middle": [round(middle.real, 1), round(middle.imag, 1)], "status": t.status, "verdict": f.verdict, "said": f.what,
         "shift": [round(t.shift.real, 2), round(t.shift.imag, 2)] if measured else None,

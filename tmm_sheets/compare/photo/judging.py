@@ -28,6 +28,10 @@ TINY = 8.0
 that say nothing unless they are off by twice as much."""
 SOFT_TOLERANCE = 0.15  # mm added in a picture that is not sharp
 IN_REACH = marked("within a pencil's reach")
+TOO_NEAR = marked("not measurable: too near to others")
+CROWDED = 0.55
+"""Share of a line near which no other is drawn below which its own ink cannot be told from theirs to twice a tolerance: it takes
+the edge of theirs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +120,11 @@ def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFindi
     middle = complex(e.points[len(e.points) // 2]) if e.kind != "line" else complex(e.points.mean())
     if t.status == "measured":
         deviations = [_displacement(t, tolerance, middle), *_ends(t, pencil, tolerance, soft)]
-        if _tiny(e):
+        if _crowded(t, tolerance):
+            del deviations[0]
+            if all(d.share <= 1 for d in deviations):
+                return PhotoFinding(e, "green", 0.0, tell(TOO_NEAR), middle, replace(t, status="dense"), tolerance)
+        elif _tiny(e):
             deviations = _of_tiny(t, tolerance, deviations[0])
         worst = max(deviations, key=lambda d: d.share)
         said = "; ".join(d.said for d in deviations if d.said)
@@ -141,8 +149,15 @@ def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFindi
         return PhotoFinding(e, "green", t.deviation, said, middle, t, tolerance)
     if t.status == "hidden":
         return PhotoFinding(e, "green", 0.0, tell("hidden in the picture"), middle, t, tolerance)
-    word = tell("not measurable: too near to others") if t.status in ("dense", "shared") else tell("there")
+    word = tell(TOO_NEAR) if t.status in ("dense", "shared") else tell("there")
     return PhotoFinding(e, "green", 0.0, word, middle, t, tolerance)
+
+
+def _crowded(t: Trace, tolerance: float) -> bool:
+    """Whether a line seems off in its place for the ink of others that run near most of it; a small outline by any ink there."""
+    if t.element.kind == "circle" or t.free >= CROWDED or t.deviation <= tolerance:
+        return False
+    return t.deviation <= 2 * tolerance or _tiny(t.element)
 
 
 def _tiny(e: Element) -> bool:

@@ -16,7 +16,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo.profiles import SCALE, pixels
 from tmm_sheets.compare.photo.sheet_map import PAPER
-from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.compare.photo.traces import Status, Trace
 from tmm_sheets.compare.photo.wiping import fill, paint
 from tmm_sheets.drawing.marks import Points
 
@@ -119,7 +119,8 @@ def _with_others(few: Sequence[Trace], by: Sequence[Points]) -> Iterator[Trace]:
             yield t
             continue
         z = complex(own[int(np.argmax(votes))])
-        yield replace(t, status="absent lettering", shift=z, deviation=abs(z), at=t.element.points + z)
+        status: Status = "absent lettering" if t.status == "absent lettering" else "part of lettering"
+        yield replace(t, status=status, shift=z, deviation=abs(z), at=t.element.points + z)
 
 
 def _alike(size: tuple[float, float], box: Box) -> bool:

@@ -24,6 +24,7 @@ BROAD = 18  # steps; a wider stroke is not measured as one
 OFF = 0.6  # mm; a line farther off its place is measured a second time
 AS_DARK = 0.6  # darkness of its own place, as a share of that where a line was found, at which the place is not bare
 FREE = 0.25  # least share of a line free of others for it to be measured by itself
+ASIDE = 1.4  # mm from its edge to the next line's from which on a piece of a curve is surely not drawn towards that
 LEAST_END = 3.0  # mm of a quarter of a line by which its end is judged
 SHARED = 0.4  # least share of a line free or in one stroke with others for it to be measured with them
 CLEAR, WITHIN = 0.3, 0.3
@@ -106,11 +107,12 @@ def in_place(strip: Strip, level: float) -> Trace | None:
         x = fit(base, o, use, 0.3)
         if _at_home(profile, base @ x):
             return Trace(e, "dense", covered=float(there.mean()), at=e.points)
-    t = replace(measured(e, s, base @ x, free, float(share / expected)), darkness=float(np.median(strength[use])))
+    t = replace(measured(e, s, base @ x, free, float(share / expected)), darkness=float(np.median(strength[use])),
+                free=float(free.mean()))
     if shrunk(e, t):
         return None
     if e.kind == "curve":
-        t = replace(t, deviation=max(t.deviation, _local(o, use, e.length / len(o))))
+        t = replace(t, deviation=max(t.deviation, _local(o, use & (away > width / 2 + ASIDE), e.length / len(o))))
     return t
 
 

@@ -42,6 +42,7 @@ class Trace:
     darkness : of its line where it was found in its place; 0 where that is not known
     head : of an arrow: "there", "absent", "left out": absent, and its line is a thin one, "reversed": at its other end; "unknown"
         also when it has none or several
+    free : share of it near which no other line is drawn, where it was measured in its place
     """
 
     element: Element
@@ -55,6 +56,7 @@ class Trace:
     at: Points | None = None
     darkness: float = 0.0
     head: Head = "unknown"
+    free: float = 1.0
 
 
 class ExtraInk(NamedTuple):

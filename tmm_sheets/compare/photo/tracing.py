@@ -47,13 +47,15 @@ washed out with the lines."""
 WRITTEN = 0.06  # share of its place with ink from which on lettering counts as there: a dash has 0.12
 PARTLY, CLEAR = 0.45, 0.9
 """Share of the columns of its place with ink below which part of lettering is missing, and least share of columns to be seen."""
-GAPPY = 0.8  # share of such columns below which it is looked whether lettering stands elsewhere
+GAPPY = 0.65  # share of such columns below which it is looked whether lettering stands elsewhere
 OPEN = 0.3  # least share of a place that is free of lines for it to be told whether there is lettering
 PALE, GAPS = 0.6, 0.85
 """Darkness of a line as a share of that usual for its kind, and share of it with ink, below which it may be another line."""
 COVERED, FAINT, BARE = 0.65, 0.3, 0.6
 """Share of a line that others cover or run along from which on what was taken for it may be theirs: where it is alone, darkness as
 a share of the usual up to which it is not seen, and share of such places from which on it was theirs."""
+AWAY = 1.0
+"""mm from its place beyond which a line that was not seen there is elsewhere."""
 CLOSE = 0.9  # mm by which a line drawn by hand and photographed is wider than its own width
 BESIDE = 0.9  # mm about lines whose ink is theirs
 
@@ -160,12 +162,19 @@ def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owner
     found = []
     for e in sorted(absent, key=lambda e: -e.length):
         t = displaced(e, stations(e, e.kind != "line"), left, wiped, ink, owners, level)
+        if _edge(t):
+            t = Trace(e, "dense", covered=t.covered, at=e.points)
         found.append(t)
         if t.at is not None:
             owners.add(e, t.at)
             wipe_found(wiped, t)
             wipe_found(left, t, 0)
     return found
+
+
+def _edge(t: Trace) -> bool:
+    """Whether what was found elsewhere is so near its place that it is the edge of another's ink."""
+    return t.status == "measured" and t.deviation < AWAY and t.element.kind != "circle"
 
 
 def _doubted(
@@ -184,7 +193,8 @@ def _doubted(
             t = replace(t, status="covered", covered=0.0, darkness=0.0)
         if covered or (t.darkness and (t.darkness < PALE * dark or t.covered < GAPS)):
             better = rather_elsewhere(t, stations(t.element, t.element.kind != "line"), left, wiped, ink, owners, level)
-            if better is not None and better.at is not None and not (covered and better.darkness < PALE * dark):
+            believed = better is not None and not _edge(better) and not (covered and better.darkness < PALE * dark)
+            if believed and better is not None and better.at is not None:
                 owners.add(t.element, better.at)
                 wipe_found(wiped, better)
                 wipe_found(left, better, 0)
