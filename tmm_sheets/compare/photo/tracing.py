@@ -236,7 +236,8 @@ def _dots(small: Sequence[Element], found: Sequence[Trace], ink: Any, words: Any
         where = t.element.points if t.at is None else t.at
         paint(taken, t.element, where, CLOSE)
         paint(lines, t.element, where, 0)
-    return displaced_dots(dots, lines, taken, ink, words, hidden, max(usual.values()))
+    rods = [t.element.points for t in found if t.element.kind == "line"]
+    return displaced_dots(dots, rods, lines, taken, ink, words, hidden, max(usual.values()))
 
 
 def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
