@@ -91,6 +91,30 @@ def test_a_line_that_parts_from_another_is_no_head(turn):
     assert heads(known, drawn, [(B, 0.2), (B, 0.9)])[0].head == "unknown"
 
 
+@pytest.mark.parametrize(
+    ("sides", "at", "head"),
+    [
+        ((), [], "absent"),
+        ((1,), [], "absent"),  # another's stroke runs past: a head has two sides
+        ((-1,), [], "absent"),
+        ((1, -1), [], "unknown"),  # it may be a head drawn as an outline
+        ((1,), [BACK], "there"),
+        ((1,), [OTHER], "reversed"),
+    ],
+)
+def test_ink_on_one_side_of_the_line_is_no_head(sides, at, head):
+    e = arrow(1, A, B)
+    past = [line(2, B + (-6 + 0.75j * k) * WAY, B + (3 + 0.75j * k) * WAY, "thin") for k in sides]
+    assert heads([e], [e, *past], at)[0].head == head
+
+
+@pytest.mark.parametrize(("at", "head"), [([OTHER], "reversed"), ([], "absent"), ([BACK], "there"), ([BACK, OTHER], "there")])
+def test_lines_that_open_beyond_the_tip_are_no_head(at, head):
+    e = arrow(1, A, B)
+    beyond = [line(k, B, B + 5 * WAY * np.exp(1j * turn), "vector") for k, turn in enumerate((0.35, -0.35), 2)]
+    assert heads([e], [e, *beyond], at)[0].head == head
+
+
 def test_a_short_vector_is_not_looked_at():
     e = arrow(1, A, A + 8 * WAY)
     assert heads([e], [e])[0].head == "unknown"

@@ -61,6 +61,10 @@ WRITTEN = 0.85
 BARE, LITTLE, HARDLY_LIKE, OPEN, EACH = 0.2, 0.2, 0.6, 0.45, 0.15
 """Share up to which there is no head in its place, share and likeness from which on there may be one a little off or smaller, and
 least part of it that must be seen in its place for it to be missed, of all of it or of each of its sides."""
+UNLIKE = 0.5
+"""Likeness up to which ink in the place of a head that is on one side of the line only is another's that runs past it."""
+NOTHING = 0.1
+"""Share up to which there is nothing of a head in its place, and one that seems a little off it is another's ink."""
 ON_LINE = 0.998
 """Cosine of the angle up to which another arrow lies on the same line."""
 BESIDE_LINE = 0.4
@@ -164,7 +168,18 @@ class _End:
     def bare(self, pale: float = 1.0) -> bool:
         """Whether nothing of a head that is ``pale`` times as dark is in its place, as far as that is seen."""
         here = next(self.likeness(NEAR, SIZES))
-        return here.part > SCANT and here.share <= BARE * pale
+        return here.part > SCANT and (here.share <= BARE * pale or (here.alike <= UNLIKE and self.one_sided()))
+
+    def one_sided(self) -> bool:
+        """Whether all of the place of a head is seen, and ink is there to one side of the line only."""
+        sides = self.sides()
+        least, most = sorted(s.share for s in sides)
+        return min(s.part for s in sides) >= WHOLE * HALF and least <= NOTHING and most > BARE
+
+    def empty(self) -> bool:
+        """Whether all of the place of a head is seen, and nothing is there."""
+        here = next(self.likeness(NEAR, SIZES))
+        return here.part >= WHOLE and here.share <= NOTHING
 
     def headless(self, pale: float = 1.0) -> bool:
         """Whether the line goes on to its tip and has no head in its place, nor a little off it, nor a small one."""
@@ -176,7 +191,7 @@ class _End:
         if any(s.part >= EACH and s.share >= BESIDE_LINE * pale and s.alike >= HARDLY_LIKE for s in sides):
             return False
         looked = chain(self.likeness(NEAR, SIZES), self.likeness(FARTHER, SIZES[:1]))
-        return not any(h.part >= SEEN and h.share >= LITTLE * pale and h.alike >= HARDLY_LIKE for h in looked)
+        return self.one_sided() or not any(h.part >= SEEN and h.share >= LITTLE * pale and h.alike >= HARDLY_LIKE for h in looked)
 
 
 @dataclass(frozen=True)
@@ -307,9 +322,12 @@ def _head(t: Trace, paper: _Paper) -> tuple[Head, _End | None]:
     here = paper.end(t.element, tip, begin)
     if here is None:
         return "unknown", None
-    if here.has_head():
+    has = here.has_head()
+    if has and not here.empty():
         return "there", here
     there = paper.end(t.element, begin, tip)
+    if has and not (there is not None and there.has_head(SURELY, VERY_LIKE)):
+        return "there", here
     if there is not None:
         # The less is seen of the tip, the more must be seen of the other end.
         part = SEEN if next(here.likeness(NEAR, SIZES)).part >= SEEN else HALF
