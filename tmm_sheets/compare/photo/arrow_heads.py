@@ -65,6 +65,8 @@ UNLIKE = 0.5
 """Likeness up to which ink in the place of a head that is on one side of the line only is another's that runs past it."""
 NOTHING = 0.1
 """Share up to which there is nothing of a head in its place, and one that seems a little off it is another's ink."""
+UNDER = 0.3
+"""mm by which a helper line may be off a vector that it runs under, or end before it."""
 ON_LINE = 0.998
 """Cosine of the angle up to which another arrow lies on the same line."""
 BESIDE_LINE = 0.4
@@ -298,6 +300,43 @@ def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hi
         left_out = end is not None and end.across < thin and (head == "absent" or (head == "unknown" and end.headless(PALE)))
         out[k] = replace(traces[k], head="left out" if left_out else head)
     return out
+
+
+def exchanged(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hidden: Mask) -> list[Trace]:
+    """The traces in the same order; a vector without a head and a line under it that was found beside have changed places if the
+    head is there: the vector was drawn elsewhere, and what lies in its place is the helper line.
+
+    What is given is as for :func:`with_heads`.
+    """
+    out = list(traces)
+    for k, v in enumerate(traces):
+        if v.head not in ("absent", "left out"):
+            continue
+        for j, under in enumerate(traces):
+            if under.status != "beside" or not _runs_under(under.element, v.element):
+                continue
+            assert under.at is not None
+            begin, way = under.element.points[0], under.element.points[1] - under.element.points[0]
+            there = under.at[0] + (v.element.points - begin) * (under.at[1] - under.at[0]) / way
+            off = float(np.abs(there - v.element.points).max())
+            moved = replace(v, status="shared", shift=complex((there - v.element.points).mean()), turn=under.turn, deviation=off,
+                            ends=(np.nan, np.nan), at=there, head="unknown")
+            [moved] = with_heads([moved], ink, owners, words, hidden)
+            if moved.head == "there":
+                out[k] = replace(moved, status="beside")
+                out[j] = replace(under, status="shared", shift=v.shift, turn=v.turn, deviation=v.deviation, at=under.element.points)
+                break
+    return out
+
+
+def _runs_under(e: Element, vector: Element) -> bool:
+    """Whether a line without a head lies under all of a vector."""
+    if e.kind != "line" or e.fills or e.view is not vector.view:
+        return False
+    way = e.points[1] - e.points[0]
+    along = (vector.points - e.points[0]) / way
+    beyond = np.maximum(np.abs(along.real - 0.5) - 0.5, 0.0)
+    return bool((np.maximum(beyond, np.abs(along.imag)) * abs(way) < UNDER).all())
 
 
 def _wanted(t: Trace) -> bool:

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.compare.elements import Element, grown
-from tmm_sheets.compare.photo.arrow_heads import with_heads
+from tmm_sheets.compare.photo.arrow_heads import exchanged, with_heads
 from tmm_sheets.compare.photo.displacement import beside, displaced, rather_elsewhere
 from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.extra_ink import extra_ink, without_creases
@@ -106,7 +106,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     ended = with_ends(open_lines, ink, owners, words, pale)
     ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
     lines = {t.element.number: t for t in (*found, *ended)}
-    headed = with_heads(list(lines.values()), ink, owners, words, hidden)
+    headed = exchanged(with_heads(list(lines.values()), ink, owners, words, hidden), ink, owners, words, hidden)
     out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
     out |= {t.element.number: t for t in _dots(small, headed, ink, words, hidden)}
     near = {"missing": widened(hidden)} | dict.fromkeys(("absent lettering", "part of lettering"), widened(hidden, WASHED_OUT))
