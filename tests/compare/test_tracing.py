@@ -414,10 +414,10 @@ def test_a_small_dot_where_lines_cross_is_taken_for_a_spot_beside(places, verdic
     assert [judge(t, 0.25, 0.15).verdict for t in found[3:]] == verdicts
 
 
-def stands(some, rods, ink, words):
+def stands(some, rods, ink, words, usual=180):
     """Where dots stand that are not in their places, by number."""
     nothing = np.zeros_like(ink)
-    found = displaced_dots(some, rods, nothing, nothing, ink, words, np.zeros((1, 1), bool), 180)
+    found = displaced_dots(some, rods, nothing, nothing, ink, words, np.zeros((1, 1), bool), usual)
     return {t.element.number: complex(np.round(t.shift, 0)) for t in found}
 
 
@@ -445,7 +445,16 @@ def test_a_large_dot_is_known_upon_a_letter(radius, places, room, found):
         draw(ink, CORNER + by - 0.5 * radius, CORNER + by + 0.5 * radius, "main")
         for k in range(8):
             draw(ink, CORNER + by, CORNER + by + (radius - 0.2) * np.exp(1j * k), "main")
-    assert stands([dot(1, CORNER, radius)], [], ink, words) == found
+    assert stands([dot(1, CORNER, radius)], [], ink, words, 150) == found
+
+
+@pytest.mark.parametrize(("dark", "found"), [(140, {}), (180, {1: 4 + 0j})])
+def test_a_letter_that_runs_together_is_paler_than_a_dot(dark, found):
+    ink, words = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
+    words[:, round(302 * SCALE) :] = 255
+    for y in (-0.6, 0, 0.6):
+        draw(ink, CORNER + 3.4 + 1j * y, CORNER + 4.6 + 1j * y, "main", dark)
+    assert stands([dot(1, CORNER, 0.7)], [], ink, words, 150) == found
 
 
 @pytest.mark.parametrize(

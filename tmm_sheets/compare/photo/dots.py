@@ -45,9 +45,9 @@ COVERED = 0.3
 """Share of a small dot under lines from which on its place, where they cross, is dark with it or without."""
 TELLS = 0.15
 """Least share of a dot that lines do not show as well for anything to be told of its place."""
-LARGE, THICK, RIM = 0.65, 0.6, 0.1
+LARGE, THICK, RIM, CORE = 0.65, 0.6, 0.1, 1.05
 """Radius, mm, from which on a dot is wider than where strokes of a letter meet; its least darkness all over, as a share of the
-lines', and mm about its edge that are paler.
+lines', mm about its edge that are paler, and darkness of its middle: blur makes lines paler than it, and letters that run together.
 """
 LEADS, TOWARDS = 0.95, 0.4
 """Least share with ink of what a line has to a spot, and share of its way from which on that is no other's than its own."""
@@ -85,7 +85,7 @@ def displaced_dots(
         spots = _spots(e, lines, taken, ink, words, FAINT * usual, least)
         # Where letters stand in its own place, it may be among them.
         if e.radius >= LARGE and not len(spots) and not sample(words, pixels(e.points)).any():
-            spots = _thick(e, taken, ink, THICK * usual)
+            spots = _thick(e, taken, ink, usual)
         spots = spots[~at(spots, hidden)]
         if len(spots) and not (there := _in_place(e, lines, ink, words, least)):
             spot = complex(spots[np.abs(spots - e.centre).argmin()])
@@ -123,7 +123,7 @@ def _spots(e: Element, lines: Any, taken: Any, ink: Any, words: Any, faint: floa
     return np.array(out, complex)
 
 
-def _thick(e: Element, taken: Any, ink: Any, least: float) -> Points:
+def _thick(e: Element, taken: Any, ink: Any, usual: float) -> Points:
     """The middle of the darkest place about a large dot's that is as wide as it is, on paper or on letters; none where none is."""
     import cv2
 
@@ -137,8 +137,9 @@ def _thick(e: Element, taken: Any, ink: Any, least: float) -> Points:
     z = (left + column + 0.5) / SCALE + 1j * (PAPER.y1 - (top + row + 0.5) / SCALE)
     away = np.abs(z - e.centre)
     all_over[(away <= max(LEAST, e.radius + ASIDE)) | (away >= FAR)] = 0
-    there = all_over > max(least, 0.9 * float(all_over.max()))
-    return np.array([z[there].mean()]) if there.any() else np.zeros(0, complex)
+    there = all_over > max(THICK * usual, 0.9 * float(all_over.max()))
+    found = np.array([z[there].mean()] if there.any() else [], complex)
+    return found[sample(ink, pixels(found)) > CORE * usual]
 
 
 def _leads(begin: complex, spot: complex, radius: float, ink: Any, faint: float) -> bool:
