@@ -139,7 +139,7 @@ def _thick(e: Element, taken: Any, ink: Any, usual: float) -> Points:
     all_over[(away <= max(LEAST, e.radius + ASIDE)) | (away >= FAR)] = 0
     there = all_over > max(THICK * usual, 0.9 * float(all_over.max()))
     found = np.array([z[there].mean()] if there.any() else [], complex)
-    return found[sample(ink, pixels(found)) > CORE * usual]
+    return np.asarray(found[sample(ink, pixels(found)) > CORE * usual])
 
 
 def _leads(begin: complex, spot: complex, radius: float, ink: Any, faint: float) -> bool:
