@@ -56,6 +56,10 @@ def shares(*findings, extra=()):
     ([line(1, 0, 50, 3j), line(2, 80 + 30j, 50, 3j, OTHER)], [(1, 0, 0), (1, 0, 0)]),
     ([line(1, 0, 50, 4j, status="beside"), line(2, 0, 50 + 8j, -4j, status="beside")], [(2, 0, 0)]),  # one stroke for both
     ([line(1, 0, 50, 4j, status="beside"), line(2, 0, 50 + 8j, -8j, status="beside")], [(1, 0, 0), (1, 0, 0)]),
+    # the point of a line that shares the stroke of the worst, and the same of another view
+    ([line(1, 0, 50, 4j, status="beside"), line(2, 0, 43, 3.44j, status="beside"), line(3, 43 + 40j, 43, 0.7j)], [(3, 0, 0)]),
+    ([line(1, 0, 50, 4j, status="beside"), line(2, 0, 43, 3.44j, status="beside"), line(3, 43 + 40j, 43, 0.7j, OTHER)],
+     [(2, 0, 0), (1, 0, 0)]),
 ])
 def test_lines_that_are_off_at_one_point_or_claim_one_stroke_are_one_place(findings, expected):
     assert shares(*findings) == expected

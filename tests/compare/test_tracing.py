@@ -10,6 +10,7 @@ import pytest
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.photo import arrow_heads
+from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.profiles import SCALE
@@ -499,6 +500,71 @@ def test_a_small_dot_where_lines_cross_is_taken_for_a_spot_beside(places, verdic
         draw(ink, CORNER + by - 0.1, CORNER + by + 0.1, "thin", 230)
     found, _ = trace([*lines, dot(4, CORNER, 0.35), dot(5, CORNER + 6, 0.35)], ink)
     assert [judge(t, 0.25, 0.15).verdict for t in found[3:]] == verdicts
+
+
+def stands(some, rods, ink, words, usual=180):
+    """Where dots stand that are not in their places, by number."""
+    nothing = np.zeros_like(ink)
+    found = displaced_dots(some, rods, nothing, nothing, ink, words, np.zeros((1, 1), bool), usual)
+    return {t.element.number: complex(np.round(t.shift, 0)) for t in found}
+
+
+@pytest.mark.parametrize(
+    ("radius", "places", "room", "found"),
+    [
+        (0.7, [3 + 1j], 2, {1: 3 + 1j}),
+        (0.7, [-3 - 1j], 2, {1: -3 - 1j}),
+        (0.7, [], 2, {}),  # where strokes cross they are not as wide as a dot
+        (0.7, [0j, 3 + 1j], 2, {}),  # one too many, but this is in its place
+        (0.7, [3 + 1j], 0, {}),  # this may be among letters too
+        (0.7, [8 + 0j], 2, {}),
+        (0.5, [3 + 1j], 2, {}),  # no wider than where strokes meet
+    ],
+)
+def test_a_large_dot_is_known_upon_a_letter(radius, places, room, found):
+    ink, words = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
+    for by, letters in ((20, 255), (room, 0)):  # letters about the dot's place, but not in it
+        rows = slice(round((594 - 300 - by) * SCALE), round((594 - 300 + by) * SCALE))
+        words[rows, round((300 - by) * SCALE) : round((300 + by) * SCALE)] = letters
+    for way in (1 + 1j, 1 - 1j):
+        for middle in (3 + 1j, -3 - 1j, 3 - 3j):
+            draw(ink, CORNER + middle - 2 * way, CORNER + middle + 2 * way, "thin")
+    for by in places:
+        draw(ink, CORNER + by - 0.5 * radius, CORNER + by + 0.5 * radius, "main")
+        for k in range(8):
+            draw(ink, CORNER + by, CORNER + by + (radius - 0.2) * np.exp(1j * k), "main")
+    assert stands([dot(1, CORNER, radius)], [], ink, words, 150) == found
+
+
+@pytest.mark.parametrize(("dark", "found"), [(140, {}), (180, {1: 4 + 0j})])
+def test_a_letter_that_runs_together_is_paler_than_a_dot(dark, found):
+    ink, words = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
+    words[:, round(302 * SCALE) :] = 255
+    for y in (-0.6, 0, 0.6):
+        draw(ink, CORNER + 3.4 + 1j * y, CORNER + 4.6 + 1j * y, "main", dark)
+    assert stands([dot(1, CORNER, 0.7)], [], ink, words, 150) == found
+
+
+@pytest.mark.parametrize(
+    ("drawn", "meant"),
+    [
+        ((), 1),  # no line is seen: the nearer one
+        ((CORNER + 2j - 25, CORNER - 2j), 2),  # where its line goes
+        ((CORNER - 25, CORNER - 2j), 1),
+        ((CORNER + 2j - 25, CORNER + 2j), 1),  # its line goes to its place
+        ((CORNER + 2j - 25, CORNER - 8), 1),  # and ends before
+    ],
+)
+def test_of_two_dots_the_one_is_meant_whose_line_leads_to_the_spot(drawn, meant):
+    ink = paper()
+    rods = [np.array([CORNER + 2j - 25, CORNER + 2j]), np.array([CORNER, CORNER - 25])]
+    draw(ink, CORNER - 2.2j, CORNER - 1.8j, "main", 230)
+    if drawn:
+        way = (drawn[1] - drawn[0]) / abs(drawn[1] - drawn[0])
+        draw(ink, drawn[0], drawn[1] - way, "thin", 230)
+    some = [dot(1, CORNER, 0.5), dot(2, CORNER + 2j, 0.5)]
+    found = stands(some, rods, ink, np.zeros((ROWS, COLUMNS), np.uint8))
+    assert found == {meant: -2j if meant == 1 else -4j}
 
 
 @pytest.mark.parametrize("over", [0.5, 1.2, 2.0])

@@ -24,6 +24,8 @@ from tmm_sheets.words import tell
 
 ONE = 5.0
 """mm between places of one view that are off, within which they are one: the circles round them would lie upon each other."""
+SAME = 0.7
+"""mm within which ends of lines are one point."""
 ON, MOSTLY = 1.5, 0.5
 """mm from a line within which ink is its own, and least share of one that lies so near the other."""
 BESIDE, ALONG = 6.0, 0.8
@@ -89,7 +91,7 @@ def places(findings: Sequence[PhotoFinding], extra: Sequence[ExtraInk]) -> list[
     """The places where something is off: those with findings first, the worst first, then ink alone, the longest first."""
     groups: list[list[PhotoFinding]] = []
     for f in worst(findings):
-        place = next((g for g in groups if one_place(g[0], f)), None)
+        place = next((g for g in groups if one_place(g[0], f) or any(one_point(h, f) for h in g)), None)
         if place is None:
             groups.append([f])
         else:
@@ -132,12 +134,25 @@ def _moved_alike(f: PhotoFinding, g: PhotoFinding) -> bool:
     return near and f.trace.at is not None and g.trace.at is not None and abs(f.trace.shift - g.trace.shift) < ALIKE
 
 
-def _off(f: PhotoFinding) -> Points:
-    """Where an element is off, mm: the place that counts most, and ends of its line that were found elsewhere."""
+def one_point(f: PhotoFinding, g: PhotoFinding) -> bool:
+    """Whether two lines are off at an end they have in common: it is the point that was drawn elsewhere."""
+    if f.element.view is not g.element.view or "text" in (f.element.kind, g.element.kind):
+        return False
+    a, b = _ends_off(f), _ends_off(g)
+    return bool((np.abs(a[:, None] - b) < SAME).any())
+
+
+def _ends_off(f: PhotoFinding) -> Points:
+    """The ends of a straight line, where they belong, that were found elsewhere."""
     e, at = f.element, f.trace.at
     if at is None or e.kind != "line" or len(at) != len(e.points):
-        return np.array([f.at])
-    return np.append(e.points[np.abs(at - e.points) > f.tolerance], f.at)
+        return np.zeros(0, complex)
+    return e.points[np.abs(at - e.points) > f.tolerance]
+
+
+def _off(f: PhotoFinding) -> Points:
+    """Where an element is off, mm: the place that counts most, and ends of its line that were found elsewhere."""
+    return np.append(_ends_off(f), f.at)
 
 
 def _one_stroke(f: PhotoFinding, g: PhotoFinding) -> bool:

@@ -21,7 +21,7 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo import moved_labels
-from tmm_sheets.compare.photo.arrow_heads import with_heads
+from tmm_sheets.compare.photo.arrow_heads import exchanged, with_heads
 from tmm_sheets.compare.photo.displacement import beside, displaced, rather_elsewhere
 from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.extra_ink import extra_ink, without_creases
@@ -112,7 +112,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     ended = with_ends(open_lines, ink, owners, words, pale)
     ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
     lines = {t.element.number: t for t in (*found, *ended)}
-    headed = with_heads(list(lines.values()), ink, owners, words, hidden)
+    headed = exchanged(with_heads(list(lines.values()), ink, owners, words, hidden), ink, owners, words, hidden)
     out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
     unseen = [t for t in out.values() if t.status in ("absent lettering", "part of lettering")
               or (t.status == "lettering" and t.covered < GAPPY)]  # fmt: skip
@@ -253,7 +253,8 @@ def _dots(small: Sequence[Element], found: Sequence[Trace], ink: Any, words: Any
         where = t.element.points if t.at is None else t.at
         paint(taken, t.element, where, CLOSE)
         paint(lines, t.element, where, 0)
-    return displaced_dots(dots, lines, taken, ink, words, hidden, max(usual.values()))
+    rods = [t.element.points for t in found if t.element.kind == "line"]
+    return displaced_dots(dots, rods, lines, taken, ink, words, hidden, max(usual.values()))
 
 
 def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
