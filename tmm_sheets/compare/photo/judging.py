@@ -11,6 +11,7 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.findings import Finding, millimetres, of_radius, shifted, turned
+from tmm_sheets.compare.photo.torn import HALF
 from tmm_sheets.compare.photo.traces import Trace, open_line
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.numbers import told
@@ -77,7 +78,19 @@ def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False) -> Ph
         Whether the picture is not sharp: the tolerance is wider, and the ends of thin lines, which fade near others, are not
         judged.
     """
-    return _with_head(_line(t, pencil, uncertainty, soft))
+    return _with_head(_in_pieces(_line(t, pencil, uncertainty, soft)))
+
+
+def _in_pieces(f: PhotoFinding) -> PhotoFinding:
+    """What was found of a line of which the picture may have taken the rest: never more than a remark."""
+    if f.verdict != "red" or not f.trace.pieces:
+        return f
+    if f.trace.status == "missing":
+        half = f.trace.covered >= HALF
+        what = tell("only pieces of it are seen") if half else tell("not seen; lines as thin as it are in pieces in this picture")
+    else:
+        what = f"{f.what}; {tell('only pieces of it are seen')}"
+    return replace(f, verdict="amber", what=what)
 
 
 def _with_head(f: PhotoFinding) -> PhotoFinding:
