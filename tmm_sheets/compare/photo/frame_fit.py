@@ -144,7 +144,7 @@ def _smear(profile: Any, offsets: Floats, at: Floats) -> float:
 
 
 def _local_ink(grey: Any, at: Points, inside: Any) -> Floats:
-    """Darkness of profiles across lines relative to the paper beside them, 0 to 1; what is not ``inside`` the picture is not dark."""
+    """Darkness of profiles relative to the paper beside the lines, 0 to 1; nothing is dark that is not ``inside`` the picture."""
     g = np.where(inside, sample(grey, at), np.nan)
     g[~inside.any(1)] = 255.0
     paper = np.maximum(np.nanpercentile(g, 70, axis=1), 1.0)
