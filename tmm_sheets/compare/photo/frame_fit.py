@@ -145,7 +145,7 @@ def _smear(profile: Any, offsets: Floats, at: Floats) -> float:
 
 def _local_ink(grey: Any, at: Points, inside: Any) -> Floats:
     """Darkness of profiles relative to the paper beside the lines, 0 to 1; nothing is dark that is not ``inside`` the picture."""
-    g = np.where(inside, sample(grey, at), np.nan)
-    g[~inside.any(1)] = 255.0
-    paper = np.maximum(np.nanpercentile(g, 70, axis=1), 1.0)
-    return np.asarray(np.nan_to_num(np.clip(1 - g / paper[:, None], 0, 1)))
+    g = sample(grey, at).astype(np.float64)
+    g = np.where(inside, g, np.where(inside, g, 0).max(1, keepdims=True))
+    paper = np.maximum(np.percentile(g, 70, axis=1), 1.0)
+    return np.asarray(np.where(inside, np.clip(1 - g / paper[:, None], 0, 1), 0))
