@@ -4,6 +4,8 @@ A place is hidden when its ground is not the paper's or the lines that belong th
 what hides a sheet reaches into it from outside. A shadow is no such thing (the lines are there), nor is a line that was left out.
 The back of a dog-ear is white paper too: it lies where the corner that is gone would be mirrored in the crease.
 Where a flash or a lamp's reflection has washed out the paper, lines that are not seen are hidden too.
+What covers the frame may be as white as the paper, and have an edge like a line: where the frame is not seen, nothing is up to the
+first line that is.
 """
 
 from __future__ import annotations
@@ -142,7 +144,7 @@ def _under_covers(ink: Any, seen: Points, level: float, shape: tuple[int, int]) 
     # The same way round for every side: along it, inwards.
     ways = [(FRAME.x0 + FRAME.y0 * 1j, 1 + 0j, 1j, FRAME.width), (FRAME.x1 + FRAME.y0 * 1j, 1j, -1 + 0j, FRAME.height),
             (FRAME.x0 + FRAME.y1 * 1j, 1 + 0j, -1j, FRAME.width), (FRAME.x0 + FRAME.y0 * 1j, 1j, 1 + 0j, FRAME.height)]
-    places = [begin + along * (np.arange(int(length)) + 0.5) for begin, along, _, length in ways]
+    places = [np.asarray(begin + along * (np.arange(int(length)) + 0.5), np.complex128) for begin, along, _, length in ways]
     dark = [profiles(ink, ProfileLines(p, np.full(len(p), inwards), np.zeros(0, np.int64)), OFFSETS).max(1)
             for p, (_, _, inwards, _) in zip(places, ways, strict=True)]
     inked = np.concatenate(dark)
