@@ -12,6 +12,7 @@ import numpy as np
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.findings import Finding, millimetres, of_radius, shifted, turned
 from tmm_sheets.compare.photo.black_and_white import may_be_eaten, whole
+from tmm_sheets.compare.photo.torn import HALF
 from tmm_sheets.compare.photo.traces import Trace, open_line
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.styles import line_type
@@ -95,11 +96,23 @@ def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False, eats:
     if eats and may_be_eaten(t, tolerance := _tolerance(pencil, uncertainty, soft)):
         said = tell("not measurable: eaten by the black and white picture")
         return PhotoFinding(t.element, "green", 0.0, said, t.element.middle, Trace(t.element, "eaten"), tolerance)
-    return _with_head(_line(whole(t) if eats else t, pencil, uncertainty, soft))
+    return _with_head(_in_pieces(_line(whole(t) if eats else t, pencil, uncertainty, soft)))
 
 
 def _tolerance(pencil: float, uncertainty: float, soft: bool) -> float:
     return pencil + uncertainty + (SOFT_TOLERANCE if soft else 0.0)
+
+
+def _in_pieces(f: PhotoFinding) -> PhotoFinding:
+    """What was found of a line of which the picture may have taken the rest: never more than a remark."""
+    if f.verdict != "red" or not f.trace.pieces:
+        return f
+    if f.trace.status == "missing":
+        half = f.trace.covered >= HALF
+        what = tell("only pieces of it are seen") if half else tell("not seen; lines as thin as it are in pieces in this picture")
+    else:
+        what = f"{f.what}; {tell('only pieces of it are seen')}"
+    return replace(f, verdict="amber", what=what)
 
 
 def _with_head(f: PhotoFinding) -> PhotoFinding:

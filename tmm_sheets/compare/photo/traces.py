@@ -40,6 +40,7 @@ class Trace:
     covered : share of it that has ink
     at : its line as it was found, mm
     darkness : of its line where it was found in its place; 0 where that is not known
+    pieces : whether so little of it is seen, or of others as thin, that its absence may be the picture's doing
     head : of an arrow: "there", "absent", "left out": absent, and its line is a thin one, "reversed": at its other end; "unknown"
         also when it has none or several
     free : share of it near which no other line is drawn, where it was measured in its place
@@ -56,6 +57,7 @@ class Trace:
     at: Points | None = None
     darkness: float = 0.0
     head: Head = "unknown"
+    pieces: bool = False
     free: float = 1.0
 
 

@@ -34,6 +34,7 @@ from tmm_sheets.compare.photo.own_place import in_place, strips, uncovered
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
 from tmm_sheets.compare.photo.stations import LEAST, expected_ink, measurable, stations
+from tmm_sheets.compare.photo.torn import in_pieces, torn_widths
 from tmm_sheets.compare.photo.traces import ExtraInk, Status, Trace
 from tmm_sheets.compare.photo.wiping import ROOM, fill, paint, wipe_found, wipe_small
 from tmm_sheets.drawing.labels import text_box
@@ -87,7 +88,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     out_of_sight = {e.number: Trace(e, "hidden") for e in elements if share_hidden(e, hidden) > OUT_OF_SIGHT}
     shown = [e for e in elements if e.number not in out_of_sight]
     small = [e for e in shown if not measurable(e)]
-    found, absent, alone = _in_their_places([e for e in shown if measurable(e)], ink, owners, pale)
+    found, absent, alone = _in_their_places([e for e in shown if measurable(e)], ink, owners, pale, hidden)
     wiped = np.zeros_like(ink)
     for e in small:
         wipe_small(wiped, e)
@@ -126,6 +127,8 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         if e.kind == "text":
             fill(words, grown(e.points, 0.8 * e.height + 1.0))
     left = without_creases(left, ink, level)
+    tears = torn_widths(found)
+    out |= {t.element.number: replace(t, pieces=True) for t in out.values() if in_pieces(t, tears)}
     return [out[e.number] for e in elements], extra_ink(left, level, words, wiped, PALE * min(_usual(found).values(), default=0.0))
 
 
@@ -136,7 +139,7 @@ def _shown_ends(t: Trace, hidden: Mask) -> tuple[float, float]:
 
 
 def _in_their_places(
-    lines: Sequence[Element], ink: Any, owners: Owners, level: float,
+    lines: Sequence[Element], ink: Any, owners: Owners, level: float, hidden: Mask,
 ) -> tuple[list[Trace], list[Element], dict[int, Floats]]:
     """Traces of the lines that are where they belong, the lines that are not, and how dark the places of the former are where no
     other line covers them, by number.
@@ -144,7 +147,7 @@ def _in_their_places(
     found: list[Trace] = []
     absent: list[Element] = []
     alone: dict[int, Floats] = {}
-    for strip in strips(lines, ink, owners):
+    for strip in strips(lines, ink, owners, hidden):
         t = in_place(strip, level)
         if t is None:
             absent.append(strip.element)
