@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.compare.test_tracing import COLUMNS, ROWS, arrow, draw, fill_head, line, paper
-from tmm_sheets.compare.photo.arrow_heads import with_heads
+from tmm_sheets.compare.photo.arrow_heads import exchanged, with_heads
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.line_ends import with_ends
@@ -89,6 +89,61 @@ def test_a_line_that_parts_from_another_is_no_head(turn):
     known = [e, *(arrow(k, B - 20 * np.exp(1j * a), B) for k, a in enumerate((0.2, 0.9, 1.1), 2))]
     drawn = [*known, ray(5, turn)]
     assert heads(known, drawn, [(B, 0.2), (B, 0.9)])[0].head == "unknown"
+
+
+@pytest.mark.parametrize(
+    ("sides", "at", "head"),
+    [
+        ((), [], "absent"),
+        ((1,), [], "absent"),  # another's stroke runs past: a head has two sides
+        ((-1,), [], "absent"),
+        ((1, -1), [], "unknown"),  # it may be a head drawn as an outline
+        ((1,), [BACK], "there"),
+        ((1,), [OTHER], "reversed"),
+    ],
+)
+def test_ink_on_one_side_of_the_line_is_no_head(sides, at, head):
+    e = arrow(1, A, B)
+    past = [line(2, B + (-6 + 0.75j * k) * WAY, B + (3 + 0.75j * k) * WAY, "thin") for k in sides]
+    assert heads([e], [e, *past], at)[0].head == head
+
+
+@pytest.mark.parametrize(("at", "head"), [([OTHER], "reversed"), ([], "absent"), ([BACK], "there"), ([BACK, OTHER], "there")])
+def test_lines_that_open_beyond_the_tip_are_no_head(at, head):
+    e = arrow(1, A, B)
+    beyond = [line(k, B, B + 5 * WAY * np.exp(1j * turn), "vector") for k, turn in enumerate((0.35, -0.35), 2)]
+    assert heads([e], [e, *beyond], at)[0].head == head
+
+
+@pytest.mark.parametrize(
+    ("under", "drawn", "status", "head"),
+    [
+        ((A, B + 6 * WAY), True, ("beside", "shared"), "there"),
+        ((A - 3 * WAY, B + 1j * WAY * 0.2), True, ("beside", "shared"), "there"),
+        ((B + 6 * WAY, A), True, ("beside", "shared"), "there"),  # given the other way round
+        ((A, B + 6 * WAY), False, ("measured", "beside"), "absent"),  # no head there either
+        ((A, B - 6 * WAY), True, ("measured", "beside"), "absent"),  # not under all of it
+        ((A, B + 3j * WAY), True, ("measured", "beside"), "absent"),  # nor in its direction
+    ],
+)
+def test_a_vector_drawn_elsewhere_leaves_its_place_to_the_helper_line(under, drawn, status, head):
+    """The head is sought where the line lies that was taken for the helper line."""
+    vector, helper, turn = arrow(1, A, B), line(2, *under, "construction"), np.exp(0.1j)
+    there = A + (helper.points - A) * turn
+    ink, words, owners = paper(), np.zeros((ROWS, COLUMNS), np.uint8), Owners(ROWS, COLUMNS)
+    for e in (vector, helper):
+        owners.add(e, e.points)
+    draw(ink, *helper.points, "construction")
+    draw(ink, A, A + (B - A) * turn, "vector")
+    if drawn:
+        fill_head(ink, A + (B - A) * turn, float(np.angle(WAY * turn)))
+    traces = [Trace(vector, "measured", at=vector.points, head="absent"), Trace(helper, "beside", turn=0.1, deviation=4, at=there)]
+    found = exchanged(traces, ink, owners, words, np.zeros((594, 841), bool))
+    assert (found[0].status, found[1].status) == status
+    assert found[0].head == head
+    if status[0] == "beside":
+        assert [judge(t, 0.25, 0.15).verdict for t in found] == ["amber", "green"]
+        assert abs(found[0].deviation - 0.1 * abs(B - A)) < 0.1
 
 
 def test_a_short_vector_is_not_looked_at():

@@ -18,7 +18,8 @@ PLAN, TABLE = (ElementView(n, name, Box(0, 0, 841, 594)) for n, name in enumerat
 
 def finding(status, view=PLAN, deviation=0.0, kind="line", name=""):
     e = Element(1, view, name, kind, np.array([0, 20 + 0j]), "main")
-    return judge(Trace(e, status, shift=1j * deviation, deviation=deviation, at=e.points + 1j * deviation), 0.25, 0.15)
+    at = None if kind == "text" else e.points + 1j * deviation
+    return judge(Trace(e, status, shift=1j * deviation, deviation=deviation, at=at), 0.25, 0.15)
 
 
 @pytest.mark.parametrize(("off", "said"), [

@@ -56,6 +56,10 @@ def shares(*findings, extra=()):
     ([line(1, 0, 50, 3j), line(2, 80 + 30j, 50, 3j, OTHER)], [(1, 0, 0), (1, 0, 0)]),
     ([line(1, 0, 50, 4j, status="beside"), line(2, 0, 50 + 8j, -4j, status="beside")], [(2, 0, 0)]),  # one stroke for both
     ([line(1, 0, 50, 4j, status="beside"), line(2, 0, 50 + 8j, -8j, status="beside")], [(1, 0, 0), (1, 0, 0)]),
+    # the point of a line that shares the stroke of the worst, and the same of another view
+    ([line(1, 0, 50, 4j, status="beside"), line(2, 0, 43, 3.44j, status="beside"), line(3, 43 + 40j, 43, 0.7j)], [(3, 0, 0)]),
+    ([line(1, 0, 50, 4j, status="beside"), line(2, 0, 43, 3.44j, status="beside"), line(3, 43 + 40j, 43, 0.7j, OTHER)],
+     [(2, 0, 0), (1, 0, 0)]),
 ])
 def test_lines_that_are_off_at_one_point_or_claim_one_stroke_are_one_place(findings, expected):
     assert shares(*findings) == expected
@@ -94,6 +98,29 @@ def test_ink_as_large_as_lettering_that_is_not_there_is_told_with_it(by, size, s
     first, *rest = places([off], [ExtraInk(text.middle + by, size, 5.0, 8.0, text.middle + by + np.zeros(3))])
     assert image_story.said(first) == said
     assert len(rest) == (said == "no lettering here")
+
+
+def moved(number, at, by, view=PLAN):
+    e = Element(number, view, "abc"[number - 1], "text", at + np.array([0, 3, 3 + 4j, 4j]), "text")
+    return judge(Trace(e, "absent lettering", by, deviation=abs(by), at=None if by is None else e.points + by), 0.25, 0.15)
+
+
+@pytest.mark.parametrize(("findings", "expected"), [
+    ([moved(1, 100, 8j)], [1]), ([moved(1, 100, 8j), moved(2, 107, 7.5j), moved(3, 114, 1 + 7.2j)], [3]),
+    ([moved(1, 100, 8j), moved(2, 107, -8j)], [1, 1]), ([moved(1, 100, 8j), moved(2, 160, 8j)], [1, 1]),
+    ([moved(1, 100, 8j), moved(2, 107, 8j, OTHER)], [1, 1]),
+])
+def test_lettering_that_was_moved_together_is_one_place(findings, expected):
+    told = places(findings, [])
+    assert [len(p.findings) for p in told] == expected
+    assert image_story.said(told[0]).startswith("not in its place: what stands 8.0 mm too far up may be it")
+    assert ("here also: text b, text c" in image_story.said(told[0])) == (expected == [3])
+
+
+def test_the_ink_of_lettering_that_was_moved_is_told_with_it():
+    off = moved(1, 100, 8j)
+    assert shares(off, extra=[ink(101 + 9j, 103 + 11j)]) == [(1, 0, 1)]
+    assert shares(off, extra=[ink(101 - 9j, 103 - 7j)]) == [(1, 0, 0), (0, 0, 1)]
 
 
 @pytest.mark.parametrize(("arcs", "by"), [([(0, 40), (90, 130), (200, 240)], 3.6), ([(0, 40), (90, 130), (200, 240)], -2.0),

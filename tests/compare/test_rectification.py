@@ -282,15 +282,28 @@ SEEN_WHOLE = FitCheck(0.95, np.zeros(0, complex), np.zeros(0, complex), 60, 0.3,
         ((1, 1, 1, 0), 0.85, False, True),  # but with fewer lines in place another may be better
         ((0, 1, 1, 1), 0.85, False, True),
         ((1, 1, 1, 0.89), 0.95, True, True),
-        ((1, 1, 0, 0), 0.95, False, False),
+        ((1, 1, 0, 0), 0.95, False, True),  # lines all over the sheet hold it
+        ((1, 1, 0, 0), 0.89, False, False),
+        ((1, 0, 0, 0), 0.95, False, False),
         ((1, 1, 0.7, 0), 0.95, False, True),  # seen in part: enough to judge, not to stop looking
-        ((1, 1, 0.59, 0), 0.95, False, False),
+        ((1, 1, 0.59, 0), 0.89, False, False),
         ((1, 1, 1, 1), 0.49, False, False),
     ],
 )
 def test_how_many_sides_must_be_seen(sides_seen, match, sound, acceptable):
     check = replace(SEEN_WHOLE, sides=np.array(sides_seen, float), match=match)
     assert (check.sound, check.acceptable) == (sound, acceptable)
+
+
+def test_two_sides_hold_no_sheet_of_which_a_part_is_elsewhere():
+    check = replace(SEEN_WHOLE, sides=np.array([1.0, 1.0, 0.0, 0.0]), astray=np.array([300 + 300j]))
+    assert not check.acceptable
+    assert replace(check, sides=np.array([1.0, 1.0, 1.0, 0.0])).acceptable  # a view may be the student's
+
+
+def test_what_goes_on_beyond_the_pictures_edge_is_not_seen():
+    m = Map(400 + 300j, 500.0, homography((profiles.pixels(CORNERS, 1.0) - (400 + 300j)) / 500, CORNERS))  # 800 x 600 pixels
+    assert fit_check._in_picture(m, np.array([400 + 300j, 799 + 300j, 802 + 300j, 836 + 5j])).tolist() == [True, True, False, False]
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """Elements measured in ink that was put where it is known to be: ends, strokes in common, displacements, ink too much."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import cv2
@@ -9,19 +10,22 @@ import pytest
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.photo import arrow_heads
+from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.profiles import SCALE
+from tmm_sheets.compare.photo.traces import Trace
 from tmm_sheets.compare.photo.tracing import trace
 from tmm_sheets.drawing.marks import Text
+from tmm_sheets.drawing.marks import Trace as By
 from tmm_sheets.drawing.styles import line_type
 
 ROWS, COLUMNS = 594 * 6, 841 * 6
 VIEW = ElementView(0, "view", Box(0, 0, 841, 594))
 
 
-def line(number, a, b, style="main"):
-    return Element(number, VIEW, "", "line", np.array([a, b]), style)
+def line(number, a, b, style="main", role="link"):
+    return Element(number, VIEW, "", "line", np.array([a, b]), style, by=By(role, "", ""))
 
 
 def paper():
@@ -153,6 +157,49 @@ def test_thin_lines_drawn_over_are_a_remark_and_none_in_a_soft_picture():
         assert judge(found[0], 0.25, 0.15, soft=True).verdict == "green"
 
 
+@pytest.mark.parametrize(("role", "style", "off", "verdict"), [
+    ("link", "main", -1.3, "amber"), ("vector", "vector", -1.3, "amber"), ("link", "main", -4.0, "red"),
+    ("symbol", "main", -1.3, "green"), ("symbol", "main", 1.3, "green"), ("symbol", "main", -4.0, "amber"),
+    ("curve", "curve", -1.7, "green"), ("curve", "curve", -4.0, "amber"),
+    ("axis", "centre", -3.5, "green"), ("axis", "centre", 3.5, "amber"), ("axis", "centre", -7.0, "amber"),
+    ("axis", "thin", -3.5, "amber"), ("axis", "hidden", -3.5, "green"), ("axis", "hidden", -5.0, "amber"),
+])
+def test_how_far_a_line_may_end_from_its_end(role, style, off, verdict):
+    """Guides, supports and curves end where the hand stopped, dashed lines in a gap; links and vectors end in points."""
+    e = line(1, 240 + 300j, 300 + 300j, style, role)
+    assert judge(Trace(e, "measured", ends=(0.0, off), at=e.points), 0.25, 0.15).verdict == verdict
+
+
+SLIDER = np.array([-3 - 2j, 3 - 2j, 3 + 2j, -3 + 2j, -3 - 2j]) + 300 + 300j
+
+
+@pytest.mark.parametrize(("kind", "free", "off", "verdict"), [
+    ("line", 1.0, 0.6, "amber"), ("line", 0.4, 0.6, "green"), ("line", 0.4, 0.3, "green"), ("line", 0.4, 1.2, "red"),
+    ("curve", 1.0, 0.6, "amber"), ("curve", 0.4, 0.6, "green"), ("curve", 0.4, 1.2, "green"), ("curve", 1.0, 1.2, "amber"),
+    ("circle", 0.4, 0.6, "amber"),
+])
+def test_what_is_a_little_off_among_others_is_not_judged(kind, free, off, verdict):
+    """Its ink cannot be told from the edge of theirs; what is far off can, but for a small outline, which any ink is near."""
+    z = SLIDER if kind == "curve" else 300 + 300j + np.array([0, 40])
+    e = Element(1, VIEW, "", kind, z, "thin", radius=2.0)
+    f = judge(Trace(e, "measured", 1j * off, deviation=off, at=z + 1j * off, free=free), 0.25, 0.15)
+    assert f.verdict == verdict
+    assert f.unknown == (verdict == "green" and off > 0.4)
+
+
+def test_an_end_that_is_short_is_told_though_others_run_along():
+    e = line(1, 240 + 300j, 300 + 300j)
+    f = judge(Trace(e, "measured", 0.6j, deviation=0.6, at=e.points + 0.6j, free=0.4, ends=(0.0, -4.0)), 0.25, 0.15)
+    assert (f.verdict, f.what) == ("red", "4.0 mm too short at its end")
+
+
+def test_the_edge_of_another_line_is_no_displaced_one():
+    """A line that is not there, beside two thick ones whose edges are as near as it could be drawn."""
+    known = [line(1, 240 + 300j, 300 + 300j, "thin"), line(2, 240 + 300.9j, 300 + 300.9j), line(3, 240 + 299.1j, 300 + 299.1j)]
+    found, _ = traced(known, [(*e.points, "main") for e in known[1:]])
+    assert judge(found[0], 0.25, 0.15).verdict == "green"
+
+
 def test_a_soft_picture_has_a_wider_tolerance():
     known = [line(1, 240 + 300j, CORNER)]
     found, _ = traced(known, [(240 + 300.5j, CORNER + 0.5j, "main")])
@@ -281,15 +328,57 @@ def word(*runs, bar=False):
 def test_part_of_lettering_is_missed(runs, letters, bar, status):
     """A run of letters is looked for by itself, and the bar over letters that stand elsewhere is no lettering."""
     ink = paper()
-    for k in range(len(letters)):  # zigzags, 4 mm each
-        x = 300.3 + 4 * k
-        for one, other in ((0, 1 + 4j), (1 + 4j, 2), (2, 3 + 4j)):
-            draw(ink, x + one + 300j, x + other + 300j, "thin")
+    write(ink, letters, 300 + 300j)
     known = word(*runs, bar=bar)
     for a, b in known.pieces:
         draw(ink, a, b, "thin")
     found, _ = trace([known], ink)
     assert found[0].status == status
+
+
+def test_the_words_of_the_form_outside_the_frame_are_not_looked_for():
+    known = word("WMW")
+    outside = replace(known, number=2, points=known.points - 298j, marks=tuple(m._replace(at=m.at - 298j) for m in known.marks))
+    assert [t.status for t in trace([known, outside], paper())[0]] == ["absent lettering", "small"]
+
+
+def write(ink, letters, at):
+    """Zigzags, 4 mm each."""
+    for k in range(len(letters)):
+        x = at + 0.3 + 4 * k
+        for one, other in ((0, 1 + 4j), (1 + 4j, 2), (2, 3 + 4j)):
+            draw(ink, x + one, x + other, "thin")
+
+
+@pytest.mark.parametrize(("letters", "by", "where"), [
+    ("WMW", 9j, 9j), ("WMW", 10 - 8j, 10 - 8j), ("WMW", -6 + 0j, -6 + 0j), ("W", 9j, None), ("WMWMW", 9j, None),
+    ("WMW", 18j, None), ("", 9j, None), ("WMW", -8 + 0j, -8 + 0j),
+])
+def test_lettering_is_looked_for_beside_its_place(letters, by, where):
+    """By ink of its size, as a whole even where it lies partly in its old place."""
+    ink, known = paper(), word("WMW")
+    write(ink, letters, 300 + 300j + by)
+    (found,), _ = trace([known], ink)
+    assert found.status in ("absent lettering", "part of lettering")
+    assert (found.at is None) == (where is None)
+    assert found.shift == pytest.approx(where or 0, abs=0.7)
+
+
+@pytest.mark.parametrize("by", [8 + 0j, 11 + 1j])
+def test_lettering_is_seen_elsewhere_though_some_ink_is_in_its_place(by):
+    """Its old place is not quite empty where it was moved by less than its length."""
+    ink, known = paper(), word("WMWWMW")
+    write(ink, "WMWWMW", 300 + 300j + by)
+    (found,), _ = trace([known], ink)
+    assert (found.status, found.shift) == ("part of lettering", pytest.approx(by, abs=0.7))
+
+
+def test_neither_other_lettering_nor_what_lies_on_a_line_is_taken_for_it():
+    ink, known = paper(), word("WMW")
+    other = replace(known, number=2, points=known.points + 9j, marks=tuple(m._replace(at=m.at + 9j) for m in known.marks))
+    write(ink, "WMW", 300 + 309j)
+    (found, there), _ = trace([known, other], ink)
+    assert (found.status, found.at, there.status) == ("absent lettering", None, "lettering")
 
 
 @pytest.mark.parametrize(("dark", "deviation"), [(60, 3.0), (170, 0.0)])
@@ -411,6 +500,71 @@ def test_a_small_dot_where_lines_cross_is_taken_for_a_spot_beside(places, verdic
         draw(ink, CORNER + by - 0.1, CORNER + by + 0.1, "thin", 230)
     found, _ = trace([*lines, dot(4, CORNER, 0.35), dot(5, CORNER + 6, 0.35)], ink)
     assert [judge(t, 0.25, 0.15).verdict for t in found[3:]] == verdicts
+
+
+def stands(some, rods, ink, words, usual=180):
+    """Where dots stand that are not in their places, by number."""
+    nothing = np.zeros_like(ink)
+    found = displaced_dots(some, rods, nothing, nothing, ink, words, np.zeros((1, 1), bool), usual)
+    return {t.element.number: complex(np.round(t.shift, 0)) for t in found}
+
+
+@pytest.mark.parametrize(
+    ("radius", "places", "room", "found"),
+    [
+        (0.7, [3 + 1j], 2, {1: 3 + 1j}),
+        (0.7, [-3 - 1j], 2, {1: -3 - 1j}),
+        (0.7, [], 2, {}),  # where strokes cross they are not as wide as a dot
+        (0.7, [0j, 3 + 1j], 2, {}),  # one too many, but this is in its place
+        (0.7, [3 + 1j], 0, {}),  # this may be among letters too
+        (0.7, [8 + 0j], 2, {}),
+        (0.5, [3 + 1j], 2, {}),  # no wider than where strokes meet
+    ],
+)
+def test_a_large_dot_is_known_upon_a_letter(radius, places, room, found):
+    ink, words = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
+    for by, letters in ((20, 255), (room, 0)):  # letters about the dot's place, but not in it
+        rows = slice(round((594 - 300 - by) * SCALE), round((594 - 300 + by) * SCALE))
+        words[rows, round((300 - by) * SCALE) : round((300 + by) * SCALE)] = letters
+    for way in (1 + 1j, 1 - 1j):
+        for middle in (3 + 1j, -3 - 1j, 3 - 3j):
+            draw(ink, CORNER + middle - 2 * way, CORNER + middle + 2 * way, "thin")
+    for by in places:
+        draw(ink, CORNER + by - 0.5 * radius, CORNER + by + 0.5 * radius, "main")
+        for k in range(8):
+            draw(ink, CORNER + by, CORNER + by + (radius - 0.2) * np.exp(1j * k), "main")
+    assert stands([dot(1, CORNER, radius)], [], ink, words, 150) == found
+
+
+@pytest.mark.parametrize(("dark", "found"), [(140, {}), (180, {1: 4 + 0j})])
+def test_a_letter_that_runs_together_is_paler_than_a_dot(dark, found):
+    ink, words = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
+    words[:, round(302 * SCALE) :] = 255
+    for y in (-0.6, 0, 0.6):
+        draw(ink, CORNER + 3.4 + 1j * y, CORNER + 4.6 + 1j * y, "main", dark)
+    assert stands([dot(1, CORNER, 0.7)], [], ink, words, 150) == found
+
+
+@pytest.mark.parametrize(
+    ("drawn", "meant"),
+    [
+        ((), 1),  # no line is seen: the nearer one
+        ((CORNER + 2j - 25, CORNER - 2j), 2),  # where its line goes
+        ((CORNER - 25, CORNER - 2j), 1),
+        ((CORNER + 2j - 25, CORNER + 2j), 1),  # its line goes to its place
+        ((CORNER + 2j - 25, CORNER - 8), 1),  # and ends before
+    ],
+)
+def test_of_two_dots_the_one_is_meant_whose_line_leads_to_the_spot(drawn, meant):
+    ink = paper()
+    rods = [np.array([CORNER + 2j - 25, CORNER + 2j]), np.array([CORNER, CORNER - 25])]
+    draw(ink, CORNER - 2.2j, CORNER - 1.8j, "main", 230)
+    if drawn:
+        way = (drawn[1] - drawn[0]) / abs(drawn[1] - drawn[0])
+        draw(ink, drawn[0], drawn[1] - way, "thin", 230)
+    some = [dot(1, CORNER, 0.5), dot(2, CORNER + 2j, 0.5)]
+    found = stands(some, rods, ink, np.zeros((ROWS, COLUMNS), np.uint8))
+    assert found == {meant: -2j if meant == 1 else -4j}
 
 
 @pytest.mark.parametrize("over", [0.5, 1.2, 2.0])

@@ -61,6 +61,12 @@ WRITTEN = 0.85
 BARE, LITTLE, HARDLY_LIKE, OPEN, EACH = 0.2, 0.2, 0.6, 0.45, 0.15
 """Share up to which there is no head in its place, share and likeness from which on there may be one a little off or smaller, and
 least part of it that must be seen in its place for it to be missed, of all of it or of each of its sides."""
+UNLIKE = 0.5
+"""Likeness up to which ink in the place of a head that is on one side of the line only is another's that runs past it."""
+NOTHING = 0.1
+"""Share up to which there is nothing of a head in its place, and one that seems a little off it is another's ink."""
+UNDER = 0.3
+"""mm by which a helper line may be off a vector that it runs under, or end before it."""
 ON_LINE = 0.998
 """Cosine of the angle up to which another arrow lies on the same line."""
 BESIDE_LINE = 0.4
@@ -164,7 +170,18 @@ class _End:
     def bare(self, pale: float = 1.0) -> bool:
         """Whether nothing of a head that is ``pale`` times as dark is in its place, as far as that is seen."""
         here = next(self.likeness(NEAR, SIZES))
-        return here.part > SCANT and here.share <= BARE * pale
+        return here.part > SCANT and (here.share <= BARE * pale or (here.alike <= UNLIKE and self.one_sided()))
+
+    def one_sided(self) -> bool:
+        """Whether all of the place of a head is seen, and ink is there to one side of the line only."""
+        sides = self.sides()
+        least, most = sorted(s.share for s in sides)
+        return min(s.part for s in sides) >= WHOLE * HALF and least <= NOTHING and most > BARE
+
+    def empty(self) -> bool:
+        """Whether all of the place of a head is seen, and nothing is there."""
+        here = next(self.likeness(NEAR, SIZES))
+        return here.part >= WHOLE and here.share <= NOTHING
 
     def headless(self, pale: float = 1.0) -> bool:
         """Whether the line goes on to its tip and has no head in its place, nor a little off it, nor a small one."""
@@ -176,7 +193,7 @@ class _End:
         if any(s.part >= EACH and s.share >= BESIDE_LINE * pale and s.alike >= HARDLY_LIKE for s in sides):
             return False
         looked = chain(self.likeness(NEAR, SIZES), self.likeness(FARTHER, SIZES[:1]))
-        return not any(h.part >= SEEN and h.share >= LITTLE * pale and h.alike >= HARDLY_LIKE for h in looked)
+        return self.one_sided() or not any(h.part >= SEEN and h.share >= LITTLE * pale and h.alike >= HARDLY_LIKE for h in looked)
 
 
 @dataclass(frozen=True)
@@ -285,6 +302,43 @@ def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hi
     return out
 
 
+def exchanged(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hidden: Mask) -> list[Trace]:
+    """The traces in the same order; a vector without a head and a line under it that was found beside have changed places if the
+    head is there: the vector was drawn elsewhere, and what lies in its place is the helper line.
+
+    What is given is as for :func:`with_heads`.
+    """
+    out = list(traces)
+    for k, v in enumerate(traces):
+        if v.head not in ("absent", "left out"):
+            continue
+        for j, under in enumerate(traces):
+            if under.status != "beside" or not _runs_under(under.element, v.element):
+                continue
+            assert under.at is not None
+            begin, way = under.element.points[0], under.element.points[1] - under.element.points[0]
+            there = under.at[0] + (v.element.points - begin) * (under.at[1] - under.at[0]) / way
+            off = float(np.abs(there - v.element.points).max())
+            moved = replace(v, status="shared", shift=complex((there - v.element.points).mean()), turn=under.turn, deviation=off,
+                            ends=(np.nan, np.nan), at=there, head="unknown")
+            [moved] = with_heads([moved], ink, owners, words, hidden)
+            if moved.head == "there":
+                out[k] = replace(moved, status="beside")
+                out[j] = replace(under, status="shared", shift=v.shift, turn=v.turn, deviation=v.deviation, at=under.element.points)
+                break
+    return out
+
+
+def _runs_under(e: Element, vector: Element) -> bool:
+    """Whether a line without a head lies under all of a vector."""
+    if e.kind != "line" or e.fills or e.view is not vector.view:
+        return False
+    way = e.points[1] - e.points[0]
+    along = (vector.points - e.points[0]) / way
+    beyond = np.maximum(np.abs(along.real - 0.5) - 0.5, 0.0)
+    return bool((np.maximum(beyond, np.abs(along.imag)) * abs(way) < UNDER).all())
+
+
 def _wanted(t: Trace) -> bool:
     """Whether it is a vector that was found, long enough for its head to be told from it."""
     e = t.element
@@ -307,9 +361,12 @@ def _head(t: Trace, paper: _Paper) -> tuple[Head, _End | None]:
     here = paper.end(t.element, tip, begin)
     if here is None:
         return "unknown", None
-    if here.has_head():
+    has = here.has_head()
+    if has and not here.empty():
         return "there", here
     there = paper.end(t.element, begin, tip)
+    if has and not (there is not None and there.has_head(SURELY, VERY_LIKE)):
+        return "there", here
     if there is not None:
         # The less is seen of the tip, the more must be seen of the other end.
         part = SEEN if next(here.likeness(NEAR, SIZES)).part >= SEEN else HALF

@@ -118,7 +118,7 @@ def as_built(findings: Sequence[PhotoFinding], built: Built, found: Rectified, p
     elements = [f.element for f in findings]
     now = [rebuilt(e, built[e.view][1]) if e.view in built else e for e in elements]
     traces, extra = tracing.trace([e for e in now if not vanished(e)], found.ink, found.hidden)
-    of = {t.element.number: judge(t, pencil, found.uncertainty, found.soft) for t in traces}
+    of = {t.element.number: judge(t, pencil, found.uncertainty, found.soft, found.eats) for t in traces}
     return [_judged(of.get(f.element.number), f, found, pencil) for f in findings], extra
 
 

@@ -190,7 +190,9 @@ def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Flo
             y = y + fit(base, close - base @ y, use, loose)
     if np.abs(base @ y).max() > reach + 0.5:
         return None
-    found = measured(e, s, base @ y, np.ones(n, bool), float(share[best] / expected))
+    # By how much it is off where it is seen: in a hub the way goes on under others.
+    shown = (hit[row, column] & seen)[best]
+    found = measured(e, s, base @ y, shown, float(share[best] / expected))
     if shrunk(e, found):
         return None
     return replace(found, darkness=float(np.median(strength[use])) if use.any() else 0.0)

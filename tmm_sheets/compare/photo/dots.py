@@ -2,7 +2,8 @@
 
 A dot is too small to be measured among lines, but one in a wrong place is a round spot that belongs to nothing, and its own place
 has none: about it the picture is taken for lines and a dot, each as dark as fits best. A spot alone is no displaced dot where the
-dot is seen in its place; where lines cross, a small one shows no more than they do, and the spot is taken for it.
+dot is seen in its place; where lines cross, a small one shows no more than they do, and the spot is taken for it. A large dot is
+known even upon a letter: it is wider than any stroke. Of several dots that may be meant it is the one whose line leads to the spot.
 """
 
 from __future__ import annotations
@@ -44,11 +45,17 @@ COVERED = 0.3
 """Share of a small dot under lines from which on its place, where they cross, is dark with it or without."""
 TELLS = 0.15
 """Least share of a dot that lines do not show as well for anything to be told of its place."""
+LARGE, THICK, RIM, CORE = 0.65, 0.6, 0.1, 1.05
+"""Radius, mm, from which on a dot is wider than where strokes of a letter meet; its least darkness all over, as a share of the
+lines', mm about its edge that are paler, and darkness of its middle: blur makes lines paler than it, and letters that run together.
+"""
+LEADS, TOWARDS = 0.95, 0.4
+"""Least share with ink of what a line has to a spot, and share of its way from which on that is no other's than its own."""
 RAYS = np.exp(2j * np.pi * np.arange(16) / 16) * np.linspace(0, ALONE, 6)[:, None]  # places about a spot, mm
 
 
 def displaced_dots(
-    some: Sequence[Element], lines: Any, taken: Any, ink: Any, words: Any, hidden: Mask, usual: float,
+    some: Sequence[Element], rods: Sequence[Points], lines: Any, taken: Any, ink: Any, words: Any, hidden: Mask, usual: float,
 ) -> list[Trace]:
     """Traces of dots that stand beside their places.
 
@@ -56,6 +63,8 @@ def displaced_dots(
     ----------
     some
         The dots.
+    rods
+        Both ends of the straight lines that belong on the sheet.
     lines
         A picture of all other lines where they were found, 255 there.
     taken
@@ -69,16 +78,22 @@ def displaced_dots(
     usual
         How dark lines usually are.
     """
-    found: list[tuple[Element, complex, bool | None]] = []
+    found: list[tuple[Element, complex, bool, bool | None]] = []
+    begins, ends = np.array([(z, w) for a, b in rods for z, w in ((a, b), (b, a))], complex).reshape(-1, 2).T
     for e in some:
         least = usual * (SMALL_DARK if e.radius < SMALL else DARK)
         spots = _spots(e, lines, taken, ink, words, FAINT * usual, least)
+        # Where letters stand in its own place, it may be among them.
+        if e.radius >= LARGE and not len(spots) and not sample(words, pixels(e.points)).any():
+            spots = _thick(e, taken, ink, usual)
         spots = spots[~at(spots, hidden)]
         if len(spots) and not (there := _in_place(e, lines, ink, words, least)):
-            found.append((e, complex(spots[np.abs(spots - e.centre).argmin()]), there))
+            spot = complex(spots[np.abs(spots - e.centre).argmin()])
+            its = begins[np.abs(ends - e.centre) <= ASIDE]
+            found.append((e, spot, any(_leads(z, spot, e.radius, ink, FAINT * usual) for z in its), there))
     out: dict[complex, Trace] = {}
-    # A spot is one dot's: first of those that are surely not in their places, then of the nearest.
-    for e, spot, _ in sorted(found, key=lambda f: (f[2] is None, abs(f[1] - f[0].centre))):
+    # A spot is one dot's: first of one whose line leads there, then of those that are surely not in their places, of the nearest.
+    for e, spot, _, _ in sorted(found, key=lambda f: (not f[2], f[3] is None, abs(f[1] - f[0].centre))):
         by = spot - e.centre
         out.setdefault(spot, Trace(e, "beside", by, deviation=abs(by), at=np.asarray(e.points + by)))
     return list(out.values())
@@ -106,6 +121,34 @@ def _spots(e: Element, lines: Any, taken: Any, ink: Any, words: Any, faint: floa
                 and (e.radius >= SMALL or clear[round(middles[k, 1]), round(middles[k, 0])] or _aside(z, lines, ink))):  # fmt: skip
             out.append(z)
     return np.array(out, complex)
+
+
+def _thick(e: Element, taken: Any, ink: Any, usual: float) -> Points:
+    """The middle of the darkest place about a large dot's that is as wide as it is, on paper or on letters; none where none is."""
+    import cv2
+
+    middle, half = complex(pixels(np.array([e.centre]))[0]), round((FAR + ROOM) * SCALE)
+    top, left = max(round(middle.imag) - half, 0), max(round(middle.real) - half, 0)
+    here = (slice(top, round(middle.imag) + half), slice(left, round(middle.real) + half))
+    side = np.arange(-int(e.radius * SCALE), int(e.radius * SCALE) + 1)
+    disc = (np.hypot(side, side[:, None]) <= (e.radius - RIM) * SCALE).astype(np.uint8)
+    all_over = np.where(taken[here] == 0, cv2.erode(ink[here], disc), 0)
+    row, column = np.mgrid[: all_over.shape[0], : all_over.shape[1]]
+    z = (left + column + 0.5) / SCALE + 1j * (PAPER.y1 - (top + row + 0.5) / SCALE)
+    away = np.abs(z - e.centre)
+    all_over[(away <= max(LEAST, e.radius + ASIDE)) | (away >= FAR)] = 0
+    there = all_over > max(THICK * usual, 0.9 * float(all_over.max()))
+    found = np.array([z[there].mean()] if there.any() else [], complex)
+    return np.asarray(found[sample(ink, pixels(found)) > CORE * usual])
+
+
+def _leads(begin: complex, spot: complex, radius: float, ink: Any, faint: float) -> bool:
+    """Whether there is ink all the way from the beginning of a line to a spot, where that is not the way to its own end."""
+    length = abs(spot - begin)
+    share = np.arange(TOWARDS * length, length - radius, 1 / SCALE) / max(length, radius)
+    across = 1j * (spot - begin) / max(length, radius) * np.array([-0.2, 0.0, 0.2])
+    dark = sample(ink, pixels(begin + share[:, None] * (spot - begin) + across)).max(1) > faint
+    return bool(len(dark) and dark.mean() >= LEADS)
 
 
 def _aside(z: complex, lines: Any, ink: Any) -> bool:

@@ -46,8 +46,8 @@ WHOLE = 0.9
 """Least share of a side's points that has a line in a fit that is beyond doubt."""
 SIDE, ALONGSIDE = 0.6, 0.5
 """Least share of a side's points that must have a line for the side to count as seen, as a whole and beside a cell."""
-SIDES = 3
-"""Least number of sides that must be seen."""
+SIDES, SIDES_OF_PLACED = 3, 2
+"""Least number of sides that must be seen; and where nearly all lines are in place, all over the sheet."""
 SHIFTED, ALIKE = 1.5, 0.8
 """mm from its place beyond which a patch is shifted, and by which neighbours that are shifted alike may differ."""
 TOGETHER = 3
@@ -93,7 +93,7 @@ class FitCheck:
         """Whether all is right but what lies beside a side that is not seen."""
         return (self.match >= MATCH and len(self.astray) <= LOCAL * self.judged and not len(self.lost)
                 and not len(self.shifted)
-                and int((self.sides >= SIDE).sum()) >= SIDES)
+                and int((self.sides >= SIDE).sum()) >= (SIDES_OF_PLACED if self.match >= CLOSE and not len(self.astray) else SIDES))
 
     @property
     def framed(self) -> bool:
@@ -130,17 +130,24 @@ def check(m: Map, straight: Map, sides: Seen, ink: Any, lines: ProfileLines, lev
     across = profiles(ink, lines, OFFSETS, at - lines.points, scale)
     o, strength = peaks(across, OFFSETS, 0.0, 0.8, 0.4)
     good = (strength > level) & (np.abs(o) < IN_PLACE)
+    some = (across.max(1) > level) & _in_picture(m, lines.points)
     seen = Seen(straight.to_picture(at + lines.normals * o), lines.points, lines.normals, good.astype(float))
     met = _on_sides(m, straight, sides, ink, level, scale)
-    astray, judged = _astray(lines, good, across.max(1) > level)
+    astray, judged = _astray(lines, good, some)
     shares = np.array([part.mean() for part in np.split(met, 4)])
     lost = np.array([z for z in astray if not _side_seen(z, sides.sheet, met)], complex)
     found = FitCheck(float(good.mean()), astray, lost, judged, _between_halves(m, sides, seen), _together(lines, o, good), shares,
-                     np.zeros(0, complex), 0.0, _adrift(lines, good, across.max(1) > level, shares))
+                     np.zeros(0, complex), 0.0, _adrift(lines, good, some, shares))
     if not found.moored:  # refused without that
         return found
     shifted, by = _shifted(patches(m, straight, ink, lines, scale), m)
     return replace(found, shifted=shifted, shift=by)
+
+
+def _in_picture(m: Map, p: Points) -> Any:
+    """Which points of the sheet are in the picture: beyond its edge the last pixels go on like lines."""
+    q = m.to_picture(p) - m.middle
+    return (np.abs(q.real) < m.middle.real) & (np.abs(q.imag) < m.middle.imag)
 
 
 def _shifted(seen: Seen, m: Map) -> tuple[Points, float]:

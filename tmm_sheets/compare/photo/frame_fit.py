@@ -120,11 +120,12 @@ def _seek(grey: Grey, m: Map, width: float, least: int = 2) -> tuple[Seen, Float
     p, n, side = _side_points()
     offsets = _offsets(width)
     at = m.to_picture(p[:, None] + n[:, None] * offsets)
-    inside = ((at.real >= 0) & (at.imag >= 0) & (at.real <= grey.shape[1] - 1) & (at.imag <= grey.shape[0] - 1)).all(1)
-    profile = np.where(inside[:, None], _local_ink(grey, at), 0.0)  # what is beyond the picture's edge is not dark
+    inside = (at.real >= 0) & (at.imag >= 0) & (at.real <= grey.shape[1] - 1) & (at.imag <= grey.shape[0] - 1)
+    profile = _local_ink(grey, at, inside)
+    shown = inside[:, inside.shape[1] // 2]
     centre = offsets[follow(profile.reshape(4, STATIONS, -1), 3)].ravel()
     o, strength = peaks(profile, offsets, centre, 0.5, 0.8)
-    use = strength > 0.4 * np.median(strength[inside] if inside.any() else strength)
+    use = (strength > 0.4 * np.median(strength[shown] if shown.any() else strength)) & (strength > 0)
     hidden = np.flatnonzero(np.bincount(side[use], minlength=4) < STATIONS / 4)
     if 4 - len(hidden) < least:
         raise CannotBuild(tell("the frame cannot be followed along three of its sides"), hint=tell(WANTED))
@@ -142,8 +143,9 @@ def _smear(profile: Any, offsets: Floats, at: Floats) -> float:
     return float(np.median(mean.max(1) / np.maximum(steepest, 1e-6)) / np.sqrt(2 * pi))
 
 
-def _local_ink(grey: Any, at: Points) -> Floats:
-    """Darkness of profiles across lines relative to the paper beside them, 0 to 1."""
+def _local_ink(grey: Any, at: Points, inside: Any) -> Floats:
+    """Darkness of profiles relative to the paper beside the lines, 0 to 1; nothing is dark that is not ``inside`` the picture."""
     g = sample(grey, at).astype(np.float64)
+    g = np.where(inside, g, np.where(inside, g, 0).max(1, keepdims=True))
     paper = np.maximum(np.percentile(g, 70, axis=1), 1.0)
-    return np.asarray(np.clip(1 - g / paper[:, None], 0, 1))
+    return np.asarray(np.where(inside, np.clip(1 - g / paper[:, None], 0, 1), 0))

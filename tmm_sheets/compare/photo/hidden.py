@@ -4,6 +4,8 @@ A place is hidden when its ground is not the paper's or the lines that belong th
 what hides a sheet reaches into it from outside. A shadow is no such thing (the lines are there), nor is a line that was left out.
 The back of a dog-ear is white paper too: it lies where the corner that is gone would be mirrored in the crease.
 Where a flash or a lamp's reflection has washed out the paper, lines that are not seen are hidden too.
+What covers the frame may be as white as the paper, and have an edge like a line: where the frame is not seen, nothing is up to the
+first line that is.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ import numpy.typing as npt
 from tmm_sheets.compare.elements import Element, sampled
 from tmm_sheets.compare.photo.profiles import ProfileLines, peaks, profiles
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Floats, Map
+from tmm_sheets.drawing.marks import Points
 
 Mask = npt.NDArray[np.bool_]
 
@@ -41,6 +44,11 @@ MARGIN, EDGE = 5, 3
 INSIDE, LEG, GONE = 2, (20, 150), 0.9
 """mm inside an edge of the paper where it is seen how much of a corner is gone, the least and most of that, and least share of the
 corner that is gone with it."""
+PALE, COVERED = 0.4, 6
+"""Darkness of the frame, as a share of the usual, below which it is not seen, and mm in a row of that by which it is covered."""
+ASIDE, DEEPEST, MARGIN_OUT = 8.0, 30.0, 20.0
+"""How near beside a place of a covered frame a line tells that the cover ends there, how far a cover is believed to reach inwards
+at most where none tells, and how far out the paper goes on, mm."""
 OFFSETS = np.arange(-1.5, 1.55, 0.1)
 
 
@@ -94,6 +102,7 @@ def hidden_places(grey: Any, m: Map, ink: Any, lines: ProfileLines, sides: Profi
     if np.median(ground) < PAPER_GREY:
         single = ~there & (ground[row, column] >= GLARE)
         out[row[single], column[single]] = True
+    out |= _under_covers(ink, lines.points[there[: len(lines.points)]], level, shape)
     if not out.any():
         return out
     out = widened(out)
@@ -124,6 +133,47 @@ def at(p: Any, hidden: Mask) -> Any:
     rows, columns = hidden.shape
     i = np.clip((PAPER.y1 - np.imag(p)).astype(int), 0, rows - 1)
     return hidden[i, np.clip(np.real(p).astype(int), 0, columns - 1)]
+
+
+def _under_covers(ink: Any, seen: Points, level: float, shape: tuple[int, int]) -> Mask:
+    """Where the frame is not seen, from the edge of the paper as far as the first line that is: what covers it may be paper too.
+
+    ``seen`` are points of the lines inside that are in their places.
+    """
+    out = np.zeros(shape, bool)
+    # The same way round for every side: along it, inwards.
+    ways = [(FRAME.x0 + FRAME.y0 * 1j, 1 + 0j, 1j, FRAME.width), (FRAME.x1 + FRAME.y0 * 1j, 1j, -1 + 0j, FRAME.height),
+            (FRAME.x0 + FRAME.y1 * 1j, 1 + 0j, -1j, FRAME.width), (FRAME.x0 + FRAME.y0 * 1j, 1j, 1 + 0j, FRAME.height)]
+    places = [np.asarray(begin + along * (np.arange(int(length)) + 0.5), np.complex128) for begin, along, _, length in ways]
+    dark = [profiles(ink, ProfileLines(p, np.full(len(p), inwards), np.zeros(0, np.int64)), OFFSETS).max(1)
+            for p, (_, _, inwards, _) in zip(places, ways, strict=True)]
+    inked = np.concatenate(dark)
+    if (inked > level).mean() < 0.5:  # a sheet without a frame
+        return out
+    bare = max(level, PALE * float(np.median(inked[inked > level])))
+    for strength, (begin, along, inwards, _) in zip(dark, ways, strict=True):
+        unseen = _long(strength < bare)
+        if not unseen.any():
+            continue
+        where = seen - begin
+        run, deep = (where * np.conj(along)).real, (where * np.conj(inwards)).real
+        inside = (deep > OFFSETS[-1]) & (deep < DEEPEST)
+        for k in np.flatnonzero(unseen):
+            near = deep[inside & (np.abs(run - k - 0.5) < ASIDE)]
+            to = begin + along * (k + 0.5) + inwards * np.arange(-MARGIN_OUT, near.min(initial=DEEPEST))
+            row, column = (PAPER.y1 - to.imag).astype(int), to.real.astype(int)
+            valid = (row >= 0) & (row < shape[0]) & (column >= 0) & (column < shape[1])
+            out[row[valid], column[valid]] = True
+    return out
+
+
+def _long(some: Any) -> Any:
+    """Those in runs of at least :data:`COVERED`."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], some.astype(np.int8), [0]))))
+    out = np.zeros(len(some), bool)
+    for a, b in zip(edges[::2], edges[1::2], strict=True):
+        out[a:b] = b - a >= COVERED
+    return out
 
 
 def _flaps(hidden: Mask) -> Iterator[Mask]:

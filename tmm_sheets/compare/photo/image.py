@@ -16,6 +16,7 @@ from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
 from tmm_sheets.compare.photo import built_photo, numbers_read, placed_views, rectification, tracing
+from tmm_sheets.compare.photo.black_and_white import eats, without_grey
 from tmm_sheets.compare.photo.fit_check import MATCH
 from tmm_sheets.compare.photo.image_report import image_report
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
@@ -27,7 +28,7 @@ from tmm_sheets.compare.photo.stations import as_lines
 from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.compare.report import Report
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.words import tell
+from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -39,6 +40,10 @@ UNLIKE = 0.35
 """Share of its lines in place below which a sheet is another drawing rather than badly fitted."""
 CERTAIN = 0.12
 """By how much more of its lines another sheet must match for a picture to be called a picture of it."""
+EATEN = marked(
+    "{file} is black and white, without grey, and its thin lines are in pieces: what of thin lines and small lettering is short, "
+    "broken or missing is not judged; photograph again without the filter (no document mode)"
+)
 
 
 @dataclass(frozen=True)
@@ -130,7 +135,10 @@ def examine(
         raise refusal(picture.grey, found, known, path, n)
     say(tell("measuring the elements"))
     traces, extra = tracing.trace(known, found.ink, found.hidden)
-    findings = [judge(t, pencil, found.uncertainty, found.soft) for t in traces]
+    if without_grey(picture.grey) and eats(traces):
+        found = replace(found, eats=True)
+        notes = (*notes, tell(EATEN).format(file=path.name))
+    findings = [judge(t, pencil, found.uncertainty, found.soft, found.eats) for t in traces]
     built: built_photo.Built = {}
     if placed is None:
         say(tell("looking for what was done wrong"))

@@ -204,10 +204,12 @@ def _rows(judged: _Judged) -> list[tuple[str, ...]]:
 
 def _tree(judged: _Judged) -> dict[str, Any]:
     """What JSON tells of the elements and of extra ink."""
-    told = ("measured", "shared", "beside", "covered", "missing", "dense", "part of lettering", "absent lettering", "hidden")
+    told = ("measured", "shared", "beside", "covered", "missing", "dense", "part of lettering", "absent lettering", "hidden",
+            "eaten")
     measured = sum(f.trace.status == "measured" for f in judged.findings)
     return {
         "count": {**judged.count, "dense": len(judged.dense), "hidden": len(judged.hidden), "hidden_ends": judged.hidden_ends,
+                  "eaten": sum(f.trace.status == "eaten" for f in judged.findings),
                   "measured": measured},
         "elements": [_row(f) | {"place": judged.number.get(f.element.number)} for f in judged.findings
                      if f.trace.status in told or f.verdict != "green"],
@@ -231,7 +233,7 @@ def _row(f: PhotoFinding) -> dict[str, Any]:
     """A finding for JSON, null where nothing was measured."""
     t, middle = f.trace, f.element.middle
     ends = [round(float(x), 2) if np.isfinite(x) else None for x in t.ends]
-    measured = t.status in ("measured", "shared", "beside")
+    measured = t.status in ("measured", "shared", "beside") or (t.element.kind == "text" and t.at is not None)
     return origin(f.element) | {
         "middle": [round(middle.real, 1), round(middle.imag, 1)], "status": t.status, "verdict": f.verdict, "said": f.what,
         "shift": [round(t.shift.real, 2), round(t.shift.imag, 2)] if measured else None,

@@ -79,6 +79,8 @@ def said(p: Place) -> str:
     if others:
         words.append(tell("here also: {elements}").format(elements=", ".join([*others[:OTHERS], *["…"] * (len(others) > OTHERS)])))
     if p.ink and first.element.kind == "text":
+        if first.trace.at is not None:
+            return "; ".join(words)
         away = min((x.middle - first.element.middle for x in p.ink), key=abs)
         words.append(tell("what stands {how} may be it").format(how=shifted(away)))
     elif p.ink:
@@ -103,5 +105,6 @@ def shown(p: Place) -> tuple[Points, ...]:
 def _shown(f: PhotoFinding) -> Points:
     t = f.trace
     if t.element.kind in ("text", "hatch"):
-        return np.append(t.element.points, t.element.points[:1])
+        corners = t.element.points if t.at is None else t.at
+        return np.append(corners, corners[:1])
     return t.at if t.at is not None else t.element.points

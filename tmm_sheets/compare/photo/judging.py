@@ -11,19 +11,28 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.findings import Finding, millimetres, of_radius, shifted, turned
+from tmm_sheets.compare.photo.black_and_white import may_be_eaten, whole
+from tmm_sheets.compare.photo.torn import HALF
 from tmm_sheets.compare.photo.traces import Trace, open_line
 from tmm_sheets.compare.report import verdict
+from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell
 
 LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "twodot"})
 """Lines whose ends mean nothing exact: by hand they are overdrawn."""
-LOOSE = 2.5  # mm by which those may be too long or too short
+LOOSE_ROLES = frozenset({"symbol", "curve"})
+"""So are the lines of guides and supports, and curves: no end of theirs is a point of a construction."""
+LOOSE = 2.5  # mm by which those may be too long or too short; a dashed one shorter by a gap
 TINY = 8.0
 """mm; a closed outline of no more to each side is judged by where it is: its sides, each off by a pencil, give it a turn and a size
 that say nothing unless they are off by twice as much."""
 SOFT_TOLERANCE = 0.15  # mm added in a picture that is not sharp
 IN_REACH = marked("within a pencil's reach")
+TOO_NEAR = marked("not measurable: too near to others")
+CROWDED = 0.55
+"""Share of a line near which no other is drawn below which its own ink cannot be told from theirs to twice a tolerance: it takes
+the edge of theirs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +56,13 @@ class PhotoFinding(Finding):
     def hidden_ends(self) -> int:
         """How many of its ends are hidden by others, if they mean anything exact."""
         t = self.trace
-        exact = t.status == "measured" and t.element.style not in LOOSE_STYLES and open_line(t.element)
+        exact = t.status == "measured" and not loose_ends(t.element) and open_line(t.element)
         return sum(map(isnan, t.ends)) if exact else 0
+
+
+def loose_ends(e: Element) -> bool:
+    """Whether the ends of an element mean nothing exact."""
+    return e.style in LOOSE_STYLES or e.role in LOOSE_ROLES
 
 
 class _Deviation(NamedTuple):
@@ -64,7 +78,7 @@ class _Deviation(NamedTuple):
         return self.off / self.allowed
 
 
-def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False) -> PhotoFinding:
+def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False, eats: bool = False) -> PhotoFinding:
     """Judge a trace.
 
     Parameters
@@ -76,8 +90,29 @@ def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False) -> Ph
     soft
         Whether the picture is not sharp: the tolerance is wider, and the ends of thin lines, which fade near others, are not
         judged.
+    eats
+        Whether the picture eats thin lines (see ``black_and_white``): what that may be the reason of is not judged.
     """
-    return _with_head(_line(t, pencil, uncertainty, soft))
+    if eats and may_be_eaten(t, tolerance := _tolerance(pencil, uncertainty, soft)):
+        said = tell("not measurable: eaten by the black and white picture")
+        return PhotoFinding(t.element, "green", 0.0, said, t.element.middle, Trace(t.element, "eaten"), tolerance)
+    return _with_head(_in_pieces(_line(whole(t) if eats else t, pencil, uncertainty, soft)))
+
+
+def _tolerance(pencil: float, uncertainty: float, soft: bool) -> float:
+    return pencil + uncertainty + (SOFT_TOLERANCE if soft else 0.0)
+
+
+def _in_pieces(f: PhotoFinding) -> PhotoFinding:
+    """What was found of a line of which the picture may have taken the rest: never more than a remark."""
+    if f.verdict != "red" or not f.trace.pieces:
+        return f
+    if f.trace.status == "missing":
+        half = f.trace.covered >= HALF
+        what = tell("only pieces of it are seen") if half else tell("not seen; lines as thin as it are in pieces in this picture")
+    else:
+        what = f"{f.what}; {tell('only pieces of it are seen')}"
+    return replace(f, verdict="amber", what=what)
 
 
 def _with_head(f: PhotoFinding) -> PhotoFinding:
@@ -94,11 +129,15 @@ def _with_head(f: PhotoFinding) -> PhotoFinding:
 
 def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFinding:
     """Judge what was found of a line or of lettering, heads aside."""
-    e, tolerance = t.element, pencil + uncertainty + (SOFT_TOLERANCE if soft else 0.0)
+    e, tolerance = t.element, _tolerance(pencil, uncertainty, soft)
     middle = complex(e.points[len(e.points) // 2]) if e.kind != "line" else complex(e.points.mean())
     if t.status == "measured":
         deviations = [_displacement(t, tolerance, middle), *_ends(t, pencil, tolerance, soft)]
-        if _tiny(e):
+        if _crowded(t, tolerance):
+            del deviations[0]
+            if all(d.share <= 1 for d in deviations):
+                return PhotoFinding(e, "green", 0.0, tell(TOO_NEAR), middle, replace(t, status="dense"), tolerance)
+        elif _tiny(e):
             deviations = _of_tiny(t, tolerance, deviations[0])
         worst = max(deviations, key=lambda d: d.share)
         said = "; ".join(d.said for d in deviations if d.said)
@@ -115,14 +154,23 @@ def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFindi
         return PhotoFinding(e, "red", e.length, tell("missing"), middle, t, tolerance)
     if t.status in ("absent lettering", "part of lettering"):
         said = tell("no lettering here") if t.status == "absent lettering" else tell("part of the lettering is not here")
-        return PhotoFinding(e, "amber", 0.0, said, complex(e.points.mean()), t, tolerance)
+        if t.at is not None:
+            said = tell("not in its place: what stands {how} may be it").format(how=shifted(t.shift))
+        return PhotoFinding(e, "amber", t.deviation, said, complex(e.points.mean()), t, tolerance)
     if t.status == "shared" and t.deviation <= tolerance:
         said = tell("within a pencil's reach, with others in one stroke")
         return PhotoFinding(e, "green", t.deviation, said, middle, t, tolerance)
     if t.status == "hidden":
         return PhotoFinding(e, "green", 0.0, tell("hidden in the picture"), middle, t, tolerance)
-    word = tell("not measurable: too near to others") if t.status in ("dense", "shared") else tell("there")
+    word = tell(TOO_NEAR) if t.status in ("dense", "shared") else tell("there")
     return PhotoFinding(e, "green", 0.0, word, middle, t, tolerance)
+
+
+def _crowded(t: Trace, tolerance: float) -> bool:
+    """Whether a line seems off in its place for the ink of others that run near most of it; a small outline by any ink there."""
+    if t.element.kind == "circle" or t.free >= CROWDED or t.deviation <= tolerance:
+        return False
+    return t.deviation <= 2 * tolerance or _tiny(t.element)
 
 
 def _tiny(e: Element) -> bool:
@@ -155,14 +203,16 @@ _END = {
 
 def _ends(t: Trace, pencil: float, tolerance: float, soft: bool) -> Iterator[_Deviation]:
     """How far the ends that could be seen are off."""
-    e, loose = t.element, t.element.style in LOOSE_STYLES
-    allowed = LOOSE if loose else tolerance + pencil + 0.2  # 0.2 mm: the steps in which ends are seen
+    e, loose = t.element, loose_ends(t.element)
+    gap = -min(line_type(e.style).pattern, default=0.0)
     for k, at in ((0, e.points[0]), (1, e.points[-1])):
         end = t.ends[k]
-        if not np.isfinite(end) or (loose and soft):
+        if not np.isfinite(end) or (e.style in LOOSE_STYLES and soft):
             continue
+        # 0.2 mm: the steps in which ends are seen. By hand a dashed line ends in a gap as well as in a dash.
+        allowed = LOOSE + (gap if end < 0 else 0.0) if loose else tolerance + pencil + 0.2
         said = tell(_END[k, bool(end > 0)]).format(by=millimetres(end)) if abs(end) > allowed else ""
-        off = min(abs(end), 2 * LOOSE) if loose else abs(end)  # a thin line drawn over is never more than a remark
+        off = min(abs(end), 2 * allowed) if loose else abs(end)  # a thin line drawn over is never more than a remark
         yield _Deviation(off, allowed, complex(at), said)
 
 

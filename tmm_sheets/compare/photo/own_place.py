@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.photo.hidden import Mask, at
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
@@ -24,6 +25,7 @@ BROAD = 18  # steps; a wider stroke is not measured as one
 OFF = 0.6  # mm; a line farther off its place is measured a second time
 AS_DARK = 0.6  # darkness of its own place, as a share of that where a line was found, at which the place is not bare
 FREE = 0.25  # least share of a line free of others for it to be measured by itself
+ASIDE = 1.4  # mm from its edge to the next line's from which on a piece of a curve is surely not drawn towards that
 LEAST_END = 3.0  # mm of a quarter of a line by which its end is judged
 SHARED = 0.4  # least share of a line free or in one stroke with others for it to be measured with them
 CLEAR, WITHIN = 0.3, 0.3
@@ -39,16 +41,22 @@ class Strip(NamedTuple):
     others: Any
 
 
-def strips(elements: Sequence[Element], ink: Any, owners: Owners) -> Iterator[Strip]:
-    """The strips of elements, in order, sampled many at a time."""
+def strips(elements: Sequence[Element], ink: Any, owners: Owners, hidden: Mask) -> Iterator[Strip]:
+    """The strips of elements, in order, sampled many at a time; without the stations that are ``hidden``."""
     # A curve in its place is off here and there rather than too large.
     waiting: list[tuple[Element, Stations]] = []
     for e in elements:
-        waiting.append((e, stations(e, e.kind in ("circle", "arc"))))
+        waiting.append((e, _shown(stations(e, e.kind in ("circle", "arc")), hidden)))
         if sum(len(s.points) for _, s in waiting) > AT_ONCE:
             yield from _across(waiting, ink, owners)
             waiting = []
     yield from _across(waiting, ink, owners)
+
+
+def _shown(s: Stations, hidden: Mask) -> Stations:
+    """Those stations that are not hidden, if there are any: what is seen there is the edge of what hides the others."""
+    here = ~at(s.points, hidden)
+    return s._replace(points=s.points[here], normals=s.normals[here], raw=s.raw[here]) if 0 < here.sum() < len(here) else s
 
 
 def _across(some: Sequence[tuple[Element, Stations]], ink: Any, owners: Owners) -> Iterator[Strip]:
@@ -56,8 +64,8 @@ def _across(some: Sequence[tuple[Element, Stations]], ink: Any, owners: Owners) 
         return
     counts = [len(s.points) for _, s in some]
     p, n = np.concatenate([s.points for _, s in some]), np.concatenate([s.normals for _, s in some])
-    at = p[:, None] + n[:, None] * OFFSETS
-    profile, others = sample(ink, pixels(at)), owners.others(np.repeat([e.number for e, _ in some], counts)[:, None], at)
+    places = p[:, None] + n[:, None] * OFFSETS
+    profile, others = sample(ink, pixels(places)), owners.others(np.repeat([e.number for e, _ in some], counts)[:, None], places)
     first = 0
     for (e, s), count in zip(some, counts, strict=True):
         here = slice(first, first + count)
@@ -106,11 +114,12 @@ def in_place(strip: Strip, level: float) -> Trace | None:
         x = fit(base, o, use, 0.3)
         if _at_home(profile, base @ x):
             return Trace(e, "dense", covered=float(there.mean()), at=e.points)
-    t = replace(measured(e, s, base @ x, free, float(share / expected)), darkness=float(np.median(strength[use])))
+    t = replace(measured(e, s, base @ x, free, float(share / expected)), darkness=float(np.median(strength[use])),
+                free=float(free.mean()))
     if shrunk(e, t):
         return None
     if e.kind == "curve":
-        t = replace(t, deviation=max(t.deviation, _local(o, use, e.length / len(o))))
+        t = replace(t, deviation=max(t.deviation, _local(o, use & (away > width / 2 + ASIDE), e.length / len(o))))
     return t
 
 

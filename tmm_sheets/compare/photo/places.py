@@ -16,19 +16,24 @@ from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import sampled
 from tmm_sheets.compare.findings import of_radius, worst
 from tmm_sheets.compare.photo.judging import PhotoFinding
+from tmm_sheets.compare.photo.moved_labels import ALIKE, MOVED, TOGETHER
 from tmm_sheets.compare.photo.traces import ExtraInk, Trace
 from tmm_sheets.compare.report import Verdict
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import tell
 
-TOGETHER = 5.0
+ONE = 5.0
 """mm between places of one view that are off, within which they are one: the circles round them would lie upon each other."""
+SAME = 0.7
+"""mm within which ends of lines are one point."""
 ON, MOSTLY = 1.5, 0.5
 """mm from a line within which ink is its own, and least share of one that lies so near the other."""
 BESIDE, ALONG = 6.0, 0.8
 """mm from the place of a line that is off within which ink may be its own, and least share of the ink that lies so near."""
-MOVED, LIKE = 15.0, (0.5, 1.5)
-"""mm from its place within which ink may be lettering that is not there, and its extent in that of the lettering."""
+LIKE = (0.5, 1.5)
+"""Extent of ink that may be lettering that is not there, in that of the lettering."""
+ROOM = 2.0
+"""mm about the place where lettering stands that was moved within which ink is its own."""
 NEXT = 6.0
 """mm between pieces of ink that are one thing to the eye."""
 GAP, IN_LINE = 30.0, 0.5
@@ -86,7 +91,7 @@ def places(findings: Sequence[PhotoFinding], extra: Sequence[ExtraInk]) -> list[
     """The places where something is off: those with findings first, the worst first, then ink alone, the longest first."""
     groups: list[list[PhotoFinding]] = []
     for f in worst(findings):
-        place = next((g for g in groups if one_place(g[0], f)), None)
+        place = next((g for g in groups if one_place(g[0], f) or any(one_point(h, f) for h in g)), None)
         if place is None:
             groups.append([f])
         else:
@@ -111,20 +116,43 @@ def places(findings: Sequence[PhotoFinding], extra: Sequence[ExtraInk]) -> list[
 
 
 def one_place(f: PhotoFinding, g: PhotoFinding) -> bool:
-    """Whether two findings are about one place: lines off there, or one stroke that may be either's; lettering is apart."""
+    """Whether two findings are about one place: lines off there, or one stroke that may be either's; lettering is apart, and
+    together where it was moved together.
+    """
     a, b = f.element, g.element
+    if a.view is b.view and a.kind == b.kind == "text":
+        return _moved_alike(f, g)
     if a.view is not b.view or "text" in (a.kind, b.kind):
         return False
-    near = np.abs(_off(f)[:, None] - _off(g)).min() < TOGETHER
+    near = np.abs(_off(f)[:, None] - _off(g)).min() < ONE
     return bool(near) or ("beside" in (f.trace.status, g.trace.status) and _one_stroke(f, g))
+
+
+def _moved_alike(f: PhotoFinding, g: PhotoFinding) -> bool:
+    """Whether two pieces of lettering that stand near each other were moved by the same."""
+    near = abs(f.element.middle - g.element.middle) < TOGETHER
+    return near and f.trace.at is not None and g.trace.at is not None and abs(f.trace.shift - g.trace.shift) < ALIKE
+
+
+def one_point(f: PhotoFinding, g: PhotoFinding) -> bool:
+    """Whether two lines are off at an end they have in common: it is the point that was drawn elsewhere."""
+    if f.element.view is not g.element.view or "text" in (f.element.kind, g.element.kind):
+        return False
+    a, b = _ends_off(f), _ends_off(g)
+    return bool((np.abs(a[:, None] - b) < SAME).any())
+
+
+def _ends_off(f: PhotoFinding) -> Points:
+    """The ends of a straight line, where they belong, that were found elsewhere."""
+    e, at = f.element, f.trace.at
+    if at is None or e.kind != "line" or len(at) != len(e.points):
+        return np.zeros(0, complex)
+    return e.points[np.abs(at - e.points) > f.tolerance]
 
 
 def _off(f: PhotoFinding) -> Points:
     """Where an element is off, mm: the place that counts most, and ends of its line that were found elsewhere."""
-    e, at = f.element, f.trace.at
-    if at is None or e.kind != "line" or len(at) != len(e.points):
-        return np.array([f.at])
-    return np.append(e.points[np.abs(at - e.points) > f.tolerance], f.at)
+    return np.append(_ends_off(f), f.at)
 
 
 def _one_stroke(f: PhotoFinding, g: PhotoFinding) -> bool:
@@ -165,6 +193,8 @@ def _letters(f: PhotoFinding, x: ExtraInk) -> bool:
     """Whether ink may be the lettering that is not in its place."""
     if f.trace.status not in ("absent lettering", "part of lettering"):
         return False
+    if f.trace.at is not None:
+        return Box.around(f.trace.at, ROOM).contains(x.middle)
     box = Box.around(f.element.points)
     alike = all(LIKE[0] * size <= found <= LIKE[1] * size + 1.0 for found, size in ((x.width, box.width), (x.height, box.height)))
     return alike and abs(x.middle - f.element.middle) <= MOVED

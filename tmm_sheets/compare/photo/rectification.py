@@ -100,6 +100,7 @@ class Rectified:
     check : what is to be said of the fit
     hidden : where the sheet does not show, see ``hidden.hidden_places``, or bulges
     bulging : where the paper bulges and the map does not follow, see ``bulges``
+    eats : whether it eats thin lines, see ``black_and_white``
     """
 
     ink: Any
@@ -115,6 +116,7 @@ class Rectified:
     check: FitCheck
     hidden: Mask
     bulging: Mask
+    eats: bool = False
 
 
 def frame_lines(known: Sequence[Element]) -> ProfileLines:

@@ -12,7 +12,7 @@ from tmm_sheets.drawing.marks import Points
 
 SHORTEST = 8.0  # mm of line whose ends are looked for
 Status = Literal["measured", "shared", "beside", "covered", "missing", "dense", "lettering", "part of lettering",
-                 "absent lettering", "small", "hidden"]  # fmt: skip
+                 "absent lettering", "small", "hidden", "eaten"]  # fmt: skip
 
 Head = Literal["unknown", "there", "absent", "left out", "reversed"]
 
@@ -30,7 +30,8 @@ class Trace:
     ----------
     status : "measured" by itself; "shared": in one stroke with others; "beside": so, but a line like it
         lies beside; "covered": there is ink only where others are drawn; "missing"; "dense": its ink cannot be told from others';
-        "lettering", "part of lettering" or "absent lettering"; "small": not looked at; "hidden": it does not show in the picture
+        "lettering", "part of lettering" or "absent lettering"; "small": not looked at; "hidden": it does not show in the picture;
+        "eaten": the picture is black and white and has too little of it left
     shift : of its middle, mm
     turn : rad, counter-clockwise
     growth : of the radius or half length, mm
@@ -39,8 +40,10 @@ class Trace:
     covered : share of it that has ink
     at : its line as it was found, mm
     darkness : of its line where it was found in its place; 0 where that is not known
+    pieces : whether so little of it is seen, or of others as thin, that its absence may be the picture's doing
     head : of an arrow: "there", "absent", "left out": absent, and its line is a thin one, "reversed": at its other end; "unknown"
         also when it has none or several
+    free : share of it near which no other line is drawn, where it was measured in its place
     """
 
     element: Element
@@ -54,6 +57,8 @@ class Trace:
     at: Points | None = None
     darkness: float = 0.0
     head: Head = "unknown"
+    pieces: bool = False
+    free: float = 1.0
 
 
 class ExtraInk(NamedTuple):

@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.compare.elements import Element, grown
-from tmm_sheets.compare.photo.arrow_heads import with_heads
+from tmm_sheets.compare.photo import moved_labels
+from tmm_sheets.compare.photo.arrow_heads import exchanged, with_heads
 from tmm_sheets.compare.photo.displacement import beside, displaced, rather_elsewhere
 from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.extra_ink import extra_ink, without_creases
@@ -31,8 +32,9 @@ from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.line_ends import with_ends
 from tmm_sheets.compare.photo.own_place import in_place, strips, uncovered
 from tmm_sheets.compare.photo.profiles import pixels, sample
-from tmm_sheets.compare.photo.sheet_map import Floats
+from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
 from tmm_sheets.compare.photo.stations import LEAST, expected_ink, measurable, stations
+from tmm_sheets.compare.photo.torn import in_pieces, torn_widths
 from tmm_sheets.compare.photo.traces import ExtraInk, Status, Trace
 from tmm_sheets.compare.photo.wiping import ROOM, fill, paint, wipe_found, wipe_small
 from tmm_sheets.drawing.labels import text_box
@@ -46,12 +48,15 @@ washed out with the lines."""
 WRITTEN = 0.06  # share of its place with ink from which on lettering counts as there: a dash has 0.12
 PARTLY, CLEAR = 0.45, 0.9
 """Share of the columns of its place with ink below which part of lettering is missing, and least share of columns to be seen."""
+GAPPY = 0.65  # share of such columns below which it is looked whether lettering stands elsewhere
 OPEN = 0.3  # least share of a place that is free of lines for it to be told whether there is lettering
 PALE, GAPS = 0.6, 0.85
 """Darkness of a line as a share of that usual for its kind, and share of it with ink, below which it may be another line."""
 COVERED, FAINT, BARE = 0.65, 0.3, 0.6
 """Share of a line that others cover or run along from which on what was taken for it may be theirs: where it is alone, darkness as
 a share of the usual up to which it is not seen, and share of such places from which on it was theirs."""
+AWAY = 1.0
+"""mm from its place beyond which a line that was not seen there is elsewhere."""
 CLOSE = 0.9  # mm by which a line drawn by hand and photographed is wider than its own width
 BESIDE = 0.9  # mm about lines whose ink is theirs
 
@@ -83,7 +88,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     out_of_sight = {e.number: Trace(e, "hidden") for e in elements if share_hidden(e, hidden) > OUT_OF_SIGHT}
     shown = [e for e in elements if e.number not in out_of_sight]
     small = [e for e in shown if not measurable(e)]
-    found, absent, alone = _in_their_places([e for e in shown if measurable(e)], ink, owners, pale)
+    found, absent, alone = _in_their_places([e for e in shown if measurable(e)], ink, owners, pale, hidden)
     wiped = np.zeros_like(ink)
     for e in small:
         wipe_small(wiped, e)
@@ -95,8 +100,10 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         else:
             wipe_small(wiped, t.element)
     left = ink.copy()
+    covers = np.zeros_like(ink)
     if hidden.any():
-        left[cv2.resize(hidden.astype(np.uint8), ink.shape[::-1], interpolation=cv2.INTER_NEAREST) > 0] = 0
+        covers = cv2.resize(hidden.astype(np.uint8), ink.shape[::-1], interpolation=cv2.INTER_NEAREST) * np.uint8(255)
+        left[covers > 0] = 0
     left[wiped > 0] = 0
     found += _displaced(absent, ink, left, wiped, owners, pale)
     found = _doubted(found, alone, ink, left, wiped, owners, pale)
@@ -106,8 +113,11 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     ended = with_ends(open_lines, ink, owners, words, pale)
     ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
     lines = {t.element.number: t for t in (*found, *ended)}
-    headed = with_heads(list(lines.values()), ink, owners, words, hidden)
+    headed = exchanged(with_heads(list(lines.values()), ink, owners, words, hidden), ink, owners, words, hidden)
     out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
+    unseen = [t for t in out.values() if t.status in ("absent lettering", "part of lettering")
+              or (t.status == "lettering" and t.covered < GAPPY)]  # fmt: skip
+    out |= {t.element.number: t for t in moved_labels.with_places(unseen, found, small, ink, covers, level)}
     out |= {t.element.number: t for t in _dots(small, headed, ink, words, hidden)}
     near = {"missing": widened(hidden)} | dict.fromkeys(("absent lettering", "part of lettering"), widened(hidden, WASHED_OUT))
     for t in [t for t in out.values() if t.status in near]:
@@ -117,6 +127,8 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         if e.kind == "text":
             fill(words, grown(e.points, 0.8 * e.height + 1.0))
     left = without_creases(left, ink, level)
+    tears = torn_widths(found)
+    out |= {t.element.number: replace(t, pieces=True) for t in out.values() if in_pieces(t, tears)}
     return [out[e.number] for e in elements], extra_ink(left, level, words, wiped, PALE * min(_usual(found).values(), default=0.0))
 
 
@@ -127,7 +139,7 @@ def _shown_ends(t: Trace, hidden: Mask) -> tuple[float, float]:
 
 
 def _in_their_places(
-    lines: Sequence[Element], ink: Any, owners: Owners, level: float,
+    lines: Sequence[Element], ink: Any, owners: Owners, level: float, hidden: Mask,
 ) -> tuple[list[Trace], list[Element], dict[int, Floats]]:
     """Traces of the lines that are where they belong, the lines that are not, and how dark the places of the former are where no
     other line covers them, by number.
@@ -135,7 +147,7 @@ def _in_their_places(
     found: list[Trace] = []
     absent: list[Element] = []
     alone: dict[int, Floats] = {}
-    for strip in strips(lines, ink, owners):
+    for strip in strips(lines, ink, owners, hidden):
         t = in_place(strip, level)
         if t is None:
             absent.append(strip.element)
@@ -153,12 +165,19 @@ def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owner
     found = []
     for e in sorted(absent, key=lambda e: -e.length):
         t = displaced(e, stations(e, e.kind != "line"), left, wiped, ink, owners, level)
+        if _edge(t):
+            t = Trace(e, "dense", covered=t.covered, at=e.points)
         found.append(t)
         if t.at is not None:
             owners.add(e, t.at)
             wipe_found(wiped, t)
             wipe_found(left, t, 0)
     return found
+
+
+def _edge(t: Trace) -> bool:
+    """Whether what was found elsewhere is so near its place that it is the edge of another's ink."""
+    return t.status == "measured" and t.deviation < AWAY and t.element.kind != "circle"
 
 
 def _doubted(
@@ -177,7 +196,8 @@ def _doubted(
             t = replace(t, status="covered", covered=0.0, darkness=0.0)
         if covered or (t.darkness and (t.darkness < PALE * dark or t.covered < GAPS)):
             better = rather_elsewhere(t, stations(t.element, t.element.kind != "line"), left, wiped, ink, owners, level)
-            if better is not None and better.at is not None and not (covered and better.darkness < PALE * dark):
+            believed = better is not None and not _edge(better) and not (covered and better.darkness < PALE * dark)
+            if believed and better is not None and better.at is not None:
                 owners.add(t.element, better.at)
                 wipe_found(wiped, better)
                 wipe_found(left, better, 0)
@@ -236,7 +256,8 @@ def _dots(small: Sequence[Element], found: Sequence[Trace], ink: Any, words: Any
         where = t.element.points if t.at is None else t.at
         paint(taken, t.element, where, CLOSE)
         paint(lines, t.element, where, 0)
-    return displaced_dots(dots, lines, taken, ink, words, hidden, max(usual.values()))
+    rods = [t.element.points for t in found if t.element.kind == "line"]
+    return displaced_dots(dots, rods, lines, taken, ink, words, hidden, max(usual.values()))
 
 
 def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
@@ -255,7 +276,8 @@ def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level:
     count, bars over letters among them, nor does a place that they fill.
     """
     out = {e.number: Trace(e, "small", covered=1.0) for e in small}
-    words = [e for e in small if e.kind == "text"]
+    # What the form has outside its frame is cut off with the margin, and nobody's mistake.
+    words = [e for e in small if e.kind == "text" and FRAME.contains(e.middle)]
     if not words:
         return out
     others = np.zeros_like(ink)
@@ -281,5 +303,5 @@ def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level:
     for e in words:
         mine = of == e.number
         status: Status = "absent lettering" if not there[mine].any() else "part of lettering" if gone[mine].any() else "lettering"
-        out[e.number] = Trace(e, status, covered=float(shares[mine].max()))
+        out[e.number] = Trace(e, status, covered=float(columns[mine & clear].min(initial=1.0)))
     return out
