@@ -146,6 +146,16 @@ def test_nothing_but_the_gear_is_asked_for():
         drawn(name, box, SimpleNamespace(gear=PROJECTS["manual 000"].gear))
 
 
+@pytest.mark.parametrize(("teeth", "shift", "module"), [((11, 60), (0.36, 0.0), 0.005), ((11, 90), (0.4, 0.0), 0.004)])
+def test_nothing_of_a_broken_wheel_is_drawn_beyond_its_break(teeth, shift, module):
+    """Radii that are lettered beside the mesh begin at the break, not at the far centre."""
+    data, box = project(teeth, shift, module, 1), dict(arrangement())["gear.engagement"]
+    points = ink(drawn("gear.engagement", box, data).marks)
+    assert gear_sheet.picture(data.gear, box.width, box.height)[1]
+    assert box.contains(points.real.min() + 1j * points.imag.min(), 1e-6)
+    assert box.contains(points.real.max() + 1j * points.imag.max(), 1e-6)
+
+
 @pytest.mark.parametrize(("teeth", "shift", "driver", "broken"), [
     ((14, 120), (0.2, 0.1), 1, True), ((11, 60), (0.5, 0.5), 1, True), ((12, 48), (0.4, -0.4), 2, True),  # N2 at either side
     ((14, 28), (3 / 17, 0.0), 1, False), ((60, 11), (0.5, 0.5), 1, False),  # the picture is as it was; wheel 2 is the small one

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cmath import phase, rect
-from math import cos, degrees, pi, radians
+from math import cos, degrees, pi, radians, sin
 from typing import Any
 
 import numpy as np
@@ -205,7 +205,9 @@ class _GearPicture:
                     continue
                 tip, first = centre + rect(radius, direction), len(self.canvas.marks)
                 pen = self.stage.pen(f"{key}{wheel.number}", "dimension")
-                pen.line(centre + rect(2.0, direction), tip - rect(2.5, direction), "thin")
+                # Of a broken wheel in what is seen of it.
+                begin = 2.0 if self.centre(wheel) == centre else (self.box.y0 - centre.imag) / sin(direction)
+                pen.line(centre + rect(begin, direction), tip - rect(2.5, direction), "thin")
                 pen.arrow_head(tip, rect(1, direction))
                 text = f"{symbol % wheel.number} = {fixed(getattr(wheel, key) * 1e3, 2)}"
                 laid = letter(text, 3.5)
