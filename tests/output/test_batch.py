@@ -456,7 +456,7 @@ def test_a_signal_ends_one_project(number, tmp_path):
     out.mkdir()
     os.mkfifo(out / "sheet2.svg")
     running = command("build", "sixbar/2:1", "--format", "svg", "-o", out)
-    until(lambda: any(p.name.endswith(".part") for p in out.iterdir()), "the first file")
+    until(lambda: any(p.name.endswith(".part") and p.stat().st_size for p in out.iterdir()), "the first file")
     running.send_signal(number)
     _, errors = running.communicate(timeout=ALL_DONE)
     assert (running.returncode, errors) == (128 + number, "")

@@ -9,7 +9,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame
 from tmm_sheets.sheets import details, lever_detail
 
-PLACE = Box(100.0, 100.0, 180.0, 196.0)
+PLACE = Box(100.0, 100.0, 200.0, 196.0)
 
 
 def lever(*anchors):
@@ -58,7 +58,7 @@ def test_letters_go_into_the_detail_and_its_lines_are_the_levers_enlarged():
     found = lever_detail._crowd(canvas)
     lever_detail.crowd(None, canvas, PLACE, {})
     assert sorted(label.text for label in canvas.labels) == sorted([*(label.text for label in before), "I"])
-    half, middle = 40.0, PLACE.x0 + 40.0 + 1j * (PLACE.y0 + 40.0)
+    half, middle = 40.0, PLACE.x0 + lever_detail.MARGIN + 40.0 + 1j * (PLACE.y0 + 40.0)
     times = lever_detail._times(found, half)
     moved = {label.text: label for label in canvas.labels if abs(label.anchor - middle) < half}
     assert moved.keys() == {label.text for label in found.labels}

@@ -33,6 +33,8 @@ HALVES = (46.0, 40.0, 35.0, 31.0)
 """Radii of the window, mm, the most welcome first."""
 HEAD = 16.0
 """Height of its title and scale factor, mm."""
+MARGIN = 10.0
+"""Room for letters at either side of the window, mm."""
 LETTERS = 3.5
 """Least height of its letters, mm."""
 ROLES = ("vector", "construction", "point")
@@ -50,7 +52,7 @@ class Crowd(NamedTuple):
 def crowd_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the detail can do with, mm; none where every letter finds room on the lever."""
     found = _crowd(canvas)
-    return [] if found is None else [(2 * half, 2 * half + HEAD) for half in HALVES if _times(found, half)]
+    return [] if found is None else [(2 * (half + MARGIN), 2 * half + HEAD) for half in HALVES if _times(found, half)]
 
 
 def crowd_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[complex, int, list[int]]:
@@ -65,7 +67,7 @@ def crowd(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     found, name = _crowd(canvas), next_name(canvas)
     assert found is not None
     window = Box(box.x0, box.y0, box.x1, box.y1 - HEAD)
-    middle, half = window.centre, min(window.width, window.height) / 2
+    middle, half = window.centre, min(window.width - 2 * MARGIN, window.height) / 2
     times = _times(found, half)
     scale: Scale = canvas.scales["lever"]
     canvas.title(box, f"{name} ({number(times)}:1)", str(Scale(scale.symbol, float(f"{scale.mu / times:.6g}"), scale.unit)))

@@ -67,7 +67,8 @@ def leaving(canvas: Canvas, frame: Box, title_block: Box) -> list[Leaving]:
     views = _views(canvas)
     for k, (lines, labels) in enumerate(_ink(canvas)):
         part = canvas.parts[k]
-        if part.draw in ("title block", "labels"):
+        # The circle of a detail is where it has to be: what it is drawn round has left its place there, and is told.
+        if part.draw in ("title block", "labels") or (part.draw == "details.corner" and not part.title):
             continue
         beside = [other.box for other, v in zip(canvas.parts, views, strict=True)
                   if v is views[k] and other.title and _apart(other.box, part.box)]
