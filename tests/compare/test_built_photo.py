@@ -215,3 +215,30 @@ def test_lines_in_their_places_speak_against_a_mistake(against, contradicted):
     stays = judge(tracing.Trace(VECTOR, "measured"), 0.25, 0.15)
     assert built_photo._contradicted(built, [red] * 3 + [stays] * against) is contradicted
     assert not built_photo._contradicted(built, [red] * 7 + [stays] * min(against, 1))
+
+
+@pytest.mark.parametrize(("lines", "borne"), [
+    ([(0, 3, 3)], True),  # the line from the point to what follows it
+    ([(0, 3, 3), (10, 3, 0)], True),
+    ([], False),  # nothing was measured
+    ([(10, 3, 0)], False),  # one of the two alone may have been drawn wrong
+    ([(20, 0, 0)], False),  # a line that nothing of this leads elsewhere
+    ([(0, 3, 3), (20, 0, 5)], False),  # one line tells otherwise
+    ([(0, 0, 3)], False),
+    ([(0, 5, 5)], False),  # by far more than the point is said to be off
+])  # fmt: skip
+def test_a_point_that_is_off_is_told_as_one_that_others_follow_only_where_lines_bear_it_out(monkeypatch, lines, borne):
+    """Point 0 lies 3 mm higher, point 10 follows it, point 30 does not; a line is led where its ends are."""
+    step = SimpleNamespace()
+    points = [PlanPoint(step, 0j, 3j), PlanPoint(step, 10 + 0j, 10 + 3j), PlanPoint(step, 30 + 0j, 30 + 0j)]
+    now = {p.was: p.now for p in points} | {20 + 0j: 20 + 0j}
+    monkeypatch.setattr(built_photo, "between", lambda e, _: np.array([now[complex(z)] for z in e.points]))
+
+    def red(begin, *off):
+        ends = np.array([begin, begin + 10], complex)
+        element = SimpleNamespace(role="vector", kind="line", points=ends)
+        return SimpleNamespace(element=element, verdict="red", trace=SimpleNamespace(at=ends + 1j * np.array(off)))
+
+    built = (SimpleNamespace(mistake="point a lies 3.0 mm off"), points)
+    assert built_photo._borne_out(built, [red(*line) for line in lines]) is borne
+    assert built_photo._borne_out((SimpleNamespace(mistake=object()), points), [])  # one of the usual mistakes

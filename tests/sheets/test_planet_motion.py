@@ -40,6 +40,15 @@ def test_conditions_of_planets(meshes, teeth, satellites, said):
     assert bool(lines) is bool(said)
 
 
+@pytest.mark.parametrize(("meshes", "teeth", "wanted", "drawn"), [
+    (ROW[:1], TEETH, 3, 3),  # one mesh asks for nothing
+    (ROW, TEETH, 3, 3), (ROW, TEETH, 1, 1), (ROW, TEETH, 5, 3),  # 138 parts: 3, not 5 or 4
+    ([ROW[0], mesh("3", "2", 1)], {"1": 100, "2": 20, "3": 101}, 3, 1),  # Ferguson's
+])  # fmt: skip
+def test_planets_are_drawn_where_they_can_be_put_in(meshes, teeth, wanted, drawn):
+    assert planet_motion.at_equal_angles(train(meshes, teeth, {}, wanted), "H") == drawn
+
+
 @pytest.mark.parametrize(("meshes", "speeds", "count"), [
     (ROW[:1], {"1": 1000.0, "H": 0.0}, 0),  # no two central wheels
     (ROW, {"1": 1450.0, "3": 0.0, "H": 1450 * 24 / 138}, 2),

@@ -128,18 +128,30 @@ def _checks(train: Any) -> Iterator[str]:
         yield f"{sums[largest]}·sin(180°/{q}) = {fixed(between, 2)} {sign} {width}"
 
 
+def at_equal_angles(train: Any, carrier: str) -> int:
+    """So many planets of a carrier can be put in at equal angles, no more than the task has."""
+    one, *others = (m for m in train.meshes if m.carrier == carrier)
+    wanted: int = train.data.satellites
+    return next(q for q in range(wanted, 0, -1) if all(_parts(train.data.teeth, one, m) % q == 0 for m in others))
+
+
+def _parts(teeth: dict[str, int], one: Any, other: Any) -> int:
+    """What the number of planets at equal angles has to divide, of two central wheels of one carrier."""
+    (a, b), (c, d), sign = (one.central, one.planet), (other.central, other.planet), -1 if one.sign * other.sign > 0 else 1
+    return teeth[a] + sign * teeth[c] if b == d else (teeth[a] * teeth[d] + sign * teeth[b] * teeth[c]) // gcd(teeth[b], teeth[d])
+
+
 def _assembly(teeth: dict[str, int], q: int, one: Any, other: Any) -> dict[str, str]:
     """The whole number that lets planets stand at equal angles, of two central wheels of one carrier."""
-    join, sign = ("−", -1) if one.sign * other.sign > 0 else ("+", 1)
+    join = "−" if one.sign * other.sign > 0 else "+"
     (a, b), (c, d) = ((m.central, m.planet) for m in (one, other))
     if b == d:
         letters, numbers = f"(z_{{{a}}} {join} z_{{{c}}})/q", f"({teeth[a]} {join} {teeth[c]})/{q}"
-        value = (teeth[a] + sign * teeth[c]) / q
     else:
         divisor = tr("gcd({one}; {two})")
         letters = f"(z_{{{a}}}·z_{{{d}}} {join} z_{{{b}}}·z_{{{c}}})/(q·{divisor.format(one=f'z_{{{b}}}', two=f'z_{{{d}}}')})"
         numbers = f"({teeth[a]}·{teeth[d]} {join} {teeth[b]}·{teeth[c]})/({q}·{divisor.format(one=teeth[b], two=teeth[d])})"
-        value = (teeth[a] * teeth[d] + sign * teeth[b] * teeth[c]) / (q * gcd(teeth[b], teeth[d]))
+    value = _parts(teeth, one, other) / q
     said = f"{numbers} = {number(value)}"
     if value != int(value):
         said = tr("{number} (not whole: no equal angles)").format(number=said)

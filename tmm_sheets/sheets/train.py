@@ -11,6 +11,7 @@ from tmm_sheets.drawing.lettering import fitted, letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import number
 from tmm_sheets.sheets.gear_marks import ruled_table
+from tmm_sheets.sheets.planet_motion import at_equal_angles
 from tmm_sheets.sheets.reducer import (
     COLUMN,
     FACE,
@@ -293,7 +294,7 @@ class SchemeOfTrain(SchemeViews):
         c.label(complex(x, (self.axis + top) / 2), name, away=1, height=5, gap=1.2)
 
     def end_view(self) -> None:
-        """Pitch circles of all wheels, the planets of a carrier at equal angles."""
+        """Pitch circles of all wheels, the planets of a carrier at equal angles, as many as can be put in so."""
         c, o, mm, train = self.canvas, self.front, self.mu.mm, self.train
         reach = mm(self.side) + 4
         c.line(o - reach, o + reach, "centre")
@@ -303,7 +304,7 @@ class SchemeOfTrain(SchemeViews):
         for m in train.meshes:
             named.append((o, mm(train.radius(m.central, m)), m.central))
             c.circle(o, named[-1][1], "main" if train.stands(m.central) else "axis")
-            count = train.data.satellites if m.carrier else 1
+            count = at_equal_angles(train, m.carrier) if m.carrier else 1
             up = mm(self.height(m.planet))
             for k in range(count):
                 at = o + rect(up, pi / 2 + 2 * pi * k / count)

@@ -49,6 +49,10 @@ an end that shows, which is told more exactly."""
 CONTRADICTED = 3
 """Where every so many wrong lines of a plan have one that stays in its place though it would be led elsewhere, another mistake was
 made."""
+AGREES = 1.0
+"""How far from where a point that is off would lead it the end of a line may be measured, mm."""
+AT_POINT = 0.5
+"""From a point of the plan within which a line ends in it, mm."""
 Built = Mapping[ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]
 
 
@@ -82,7 +86,26 @@ def built_otherwise(project: Project, known: KnownSheet, findings: Sequence[Phot
         return Drawing(lambda line: inked(ink, line, level, hidden), lambda z: sample(near, pixels(z)) > level, tips.get(view, []))
 
     built = built_plan.built_otherwise(project, known, wrong, seen)
-    return {view: b for view, b in built.items() if not _contradicted(b, [f for f in findings if f.element.view == view])}
+    of = {view: [f for f in findings if f.element.view == view] for view in built}
+    return {view: b for view, b in built.items() if not _contradicted(b, of[view]) and _borne_out(b, of[view])}
+
+
+def _borne_out(built: tuple[BuiltPlan, Sequence[PlanPoint]], findings: Sequence[PhotoFinding]) -> bool:
+    """Whether a point that is off is what was measured: all lines agree with it, at two points that it moves.
+
+    What nothing follows from, and what the lines tell otherwise, they tell better themselves.
+    """
+    mistake, points = built[0].mistake, built[1]
+    if not isinstance(mistake, str):
+        return True
+    moved = {p.was for p in points if abs(p.now - p.was) > AGREES}
+    led = set()
+    for f in findings:
+        if f.element.role == "vector" and f.element.kind == "line" and f.verdict == "red" and f.trace.at is not None:
+            if np.abs(f.trace.at[[0, -1]] - between(f.element, points)).max() > AGREES:
+                return False
+            led |= {was for was in moved if np.abs(f.element.points[[0, -1]] - was).min() < AT_POINT}
+    return len(led) > 1
 
 
 def _contradicted(built: tuple[BuiltPlan, Sequence[PlanPoint]], findings: Sequence[PhotoFinding]) -> bool:
