@@ -1,4 +1,4 @@
-"""Paper that bulges over something: told by lines bent near each other, followed, or not judged; a hand's mistakes are none."""
+"""Paper that bulges over something: told by several lines bent alike, followed, or not judged; a hand's mistakes are none."""
 
 from dataclasses import replace
 
@@ -47,9 +47,7 @@ def bulging(picture, sheet=SHEET):
 @pytest.mark.parametrize(("place", "some", "found"), [
     (lambda z: z, [], False),
     (over_a_pencil, SHEET[:1], False),
-    (over_a_pencil, SHEET[:2], True),
-    (lambda z: over_a_pencil(z, 5.0), SHEET[:2], False),  # beyond reach: something else may be followed
-    (over_a_pencil, [SHEET[0], SHEET[7]], False),  # the other one is straight
+    (over_a_pencil, SHEET[:2], False),
     (over_a_pencil, SHEET[:3], True),
     (lambda z: over_a_pencil(z, -2.5), SHEET[:3], True),
     (lambda z: over_a_pencil(z, 0.4), SHEET, False),
@@ -65,7 +63,8 @@ def test_several_lines_bent_near_each_other_are_the_papers_doing(place, some, fo
 def test_lines_in_one_stroke_are_bent_once():
     again = [line(20 + k, *SHEET[0].points, style="thin") for k in range(3)]
     assert not len(bulging(taken(over_a_pencil, SHEET[:1]), [*SHEET, *again]))
-    assert len(bulging(taken(over_a_pencil, SHEET[:2]), [*SHEET, *again]))
+    assert not len(bulging(taken(over_a_pencil, SHEET[:2]), [*SHEET, *again]))
+    assert len(bulging(taken(over_a_pencil, SHEET[:3]), [*SHEET, *again]))
 
 
 @pytest.mark.parametrize(("high", "found"), [

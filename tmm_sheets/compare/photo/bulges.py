@@ -1,7 +1,7 @@
 """Places where the paper bulges: over what lies beneath it, across a crease, along an edge that stands up.
 
 A map follows paper as it usually bends. Where it does not, one straight line after the other is seen with the same bend in it. A
-hand draws lines in wrong places, too long, turned, but with a ruler and compasses: when two lines near each other are neither
+hand draws lines in wrong places, too long, turned, but with a ruler and compasses: when several lines near each other are neither
 straight nor round any more, the paper is guilty. There the map is corrected by all lines that can be followed; where that does not
 help, nothing is judged.
 """
@@ -38,9 +38,8 @@ BENT, BEND = 0.5, 6
 """mm off a similarity from which on a line is bent, and for how many stations."""
 INKED = 0.8
 """Least share of the stations of a bend, and of those beside it, that have ink."""
-SEVERAL, PAIR, TOGETHER = 3, 2, 60.0
-"""Least number of lines bent near each other by which the paper bulges; the same of those followed all along, not to the end of
-the reach, where it may be something else; how near that is, mm."""
+SEVERAL, TOGETHER = 3, 60.0
+"""Least number of lines bent near each other by which the paper bulges, and how near that is, mm."""
 TABLES = ("frame", "table")
 """Roles of lines too near to lettering to tell of a bulge, but when several are bent alike, by nearly as much, this near, mm."""
 ALIKE, BESIDE = 0.5, 40.0
@@ -111,15 +110,13 @@ def bulges(lines: Sequence[Followed]) -> Points:
     bent = [line for line in lines if line.bent.any()]
     alike = _alike([line for line in bent if line.element.role in TABLES])
     bends = [(line, line.points[line.bent]) for line in bent if line.element.role not in TABLES] + alike
-    if len(bends) < PAIR:
+    if len(bends) < SEVERAL:
         return np.zeros(0, complex)
     strokes = _strokes([z for _, z in bends])
-    sure = _strokes([z for line, z in bends
-                     if line.element.role not in TABLES and float(np.abs(line.off[line.bent]).max()) < REACH - LOOSE])
     # One every few mm is enough to be near to.
-    several, pair = ([sum((np.abs(z[:, None] - np.concatenate(stroke)[None, ::3]).min(1) < TOGETHER).astype(int) for stroke in some)
-                      for _, z in bends] for some in (strokes, sure))
-    return np.concatenate([z[(three >= SEVERAL) | (two >= PAIR)] for (_, z), three, two in zip(bends, several, pair, strict=True)])
+    near = [sum((np.abs(z[:, None] - np.concatenate(stroke)[None, ::3]).min(1) < TOGETHER).astype(int) for stroke in strokes)
+            for _, z in bends]
+    return np.concatenate([z[count >= SEVERAL] for (_, z), count in zip(bends, near, strict=True)])
 
 
 def _alike(lines: Sequence[Followed]) -> list[tuple[Followed, Points]]:
