@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from tests.sheets import traced
 from tmm_sheets.catalogue import read
-from tmm_sheets.drawing.marks import Fill, Text
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.rules import GIVEN
+from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame, Text
 from tmm_sheets.project import Project
 
 
@@ -23,6 +26,7 @@ def test_marks_know_their_steps_and_lie_where_these_say(name):
     assert not wrong
     assert min(checked[role] for role in ("point", "vector", "construction", "link")) > 20
     assert checked["curve"] >= 9
+    assert checked["detail"] >= (20 if name.startswith("transport") else 0)
 
 
 @pytest.fixture(scope="module")
@@ -64,3 +68,14 @@ def test_a_mark_that_tells_a_wrong_step_is_found(press, role):
     marks[i] = marks[i]._replace(by=marks[i].by._replace(step=other))
     changed = replace(sheet, drawing=replace(sheet.drawing, marks=tuple(marks)))
     assert len(traced.untrue(project, {n: changed})[1]) == 1
+
+
+@pytest.mark.parametrize(("mark", "off"), [
+    (Line(90 + 60j, 110 + 60j, "vector"), 0.0), (Line(90 + 61j, 110 + 61j, "vector"), 1.0),
+    (Arc(100 + 60j, 2.0, 0.0, 1.0, "thin"), np.inf),
+    (Fill(np.array([100 + 61j, 100 + 59j, 101 + 60j, 99 + 60j]), "vector"), 0.0),
+    (Fill(np.array([104 + 61j, 104 + 59j, 105 + 60j, 103 + 60j]), "vector"), 4.0)])
+def test_what_a_detail_shows_lies_where_its_step_says(mark, off):
+    plan = Plan("plan", "", "mm")
+    step = plan.add("b", GIVEN, 20 + 10j)
+    assert traced.enlarged(mark, step, complex(step.value), PlacedFrame(0, "plan", "", 0j, (0.2, 1 / 6))) == pytest.approx(off)

@@ -22,6 +22,7 @@ from tmm_sheets.construction.step import Helper, Step, value_at
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, PlacedFrame, Points, Polyline, Text, flat
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.details import NAMES
 from tmm_sheets.sheets.sheet import Composed, every
 
 ROOMS = {
@@ -125,7 +126,16 @@ def untrue(project: Project, sheets: dict[int, Composed]) -> tuple[Counter[str],
             if m.by.step not in known:
                 wrong.append(f"sheet {n}: {m.by.step} is no step")
                 continue
-            if m.by.role not in CHECKED or m.by.frame < 0:
+            if m.by.frame < 0:
+                continue
+            if m.by.role == "symbol" and sheet.parts[sheet.frames[m.by.frame].view].title.split(" ")[0] in NAMES:
+                frame, step = sheet.frames[m.by.frame], known[m.by.step]
+                off = min(enlarged(m, step, complex(step.at(k)), frame) for k in places(m.by.position, of[step.plan]))
+                checked["detail"] += 1
+                if not off <= EXACT:
+                    wrong.append(f"sheet {n}: {m.by.step} in a detail: off by {off:.4f} mm")
+                continue
+            if m.by.role not in CHECKED:
                 continue
             if isinstance(m, Text) or (isinstance(m, Fill) and m.by.role != "point"):
                 continue  # letters and heads
@@ -141,6 +151,18 @@ def untrue(project: Project, sheets: dict[int, Composed]) -> tuple[Counter[str],
             if not off <= EXACT:
                 wrong.append(f"sheet {n}: {m.by.role} {m.by.step} at {m.by.position or 'all'}: off by {off:.4f} mm")
     return checked, wrong
+
+
+def enlarged(m: Mark, step: Step, value: complex, frame: PlacedFrame) -> float:
+    """How far what an enlarged detail shows lies from where its step says, mm: dots at the point, lines towards it."""
+    if isinstance(m, Fill):
+        return abs(_middle(m) - frame(value)) if _is_point(step) and len(m.points) > 3 else 0.0
+    if not isinstance(m, Line):
+        return np.inf
+    along = (m.b - m.a) / abs(m.b - m.a)
+    if step.rule.gives == "force":
+        return abs((value * np.conj(along)).imag / abs(value)) * abs(m.b - m.a)
+    return abs(((frame(value) - m.a) * np.conj(along)).imag) if _is_point(step) else 0.0
 
 
 def distance(m: Mark, step: Step, k: int, frame: PlacedFrame, known: dict[str, Step], head: Mark | None) -> float:

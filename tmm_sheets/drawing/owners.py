@@ -150,10 +150,10 @@ class Round:
 
 
 def _vector(ink: Ink, here: Round, label: Label) -> tuple[complex, complex] | None:
-    """Ends of the vector, or of the construction line named by its own letter as an arm is, beside which a label stands."""
+    """Ends of the vector, or of the construction line or line of a detail named by its own letter, beside which a label stands."""
     if label.by is None or not label.by.step:
         return None
-    roles = {"vector"} | {"construction"} & {label.by.role}
+    roles = {"vector"} | {"construction", "symbol"} & {label.by.role}
     for number in ink.of_step(label.by):
         mark = ink.marks[number]
         if (isinstance(mark, Line) and mark.by is not None and mark.by.role in roles and abs(mark.b - mark.a) > LONG

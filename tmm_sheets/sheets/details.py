@@ -19,6 +19,7 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import PlacedFrame, Text
 from tmm_sheets.sheets import linkage
 from tmm_sheets.sheets.frame import together
+from tmm_sheets.sheets.player import Stage
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -72,7 +73,8 @@ def corner_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> tu
     """What the detail shows, mm of the sheet, the part of its plan, and those of the plans it could be taken for a detail of."""
     it = list(_corners(project, canvas))[int(options.get("nth", 1)) - 1]
     plans = _polygons(project)
-    return it.centre, it.frame.view, [frame.view for frame in canvas.frames if frame.plan in plans and frame.view != it.frame.view]
+    first = {(frame.plan, frame.position): frame.view for frame in reversed(canvas.frames)}  # later ones are details
+    return it.centre, it.frame.view, [view for (plan, _), view in first.items() if plan in plans and view != it.frame.view]
 
 
 def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -85,7 +87,8 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     canvas.title(box, f"{name} ({times}:1)", str(factor))
     with canvas.as_role("symbol"):
         canvas.window(window.centre, half)
-        _enlarged(canvas, it, window.centre, half, times)
+        place = placed(canvas, it.frame, it.centre, window.centre, times)
+        _enlarged(Stage(canvas, it.plan, project.force_index, canvas.frames[place], place), it, window.centre, half)
         radius = _free_radius(canvas, it)
         # The sign of a vector that lies in the circle stands in the detail: on the plan it would need a leader out of the corner.
         inside = {sign for sign, *ends in it.vectors if all(abs(it.points[name] - it.centre) < radius for name in ends)}
@@ -93,6 +96,12 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
                             if label.part != it.frame.view or label.text not in inside or abs(label.anchor - it.centre) > radius]
         _no_more_zero(canvas, it)
         mark(canvas, it.frame.view, it.centre, radius, name, 1 + 1j)
+
+
+def placed(canvas: Canvas, frame: PlacedFrame, centre: complex, middle: complex, times: float) -> int:
+    """The plan of a frame once more, enlarged about what lies at ``centre`` on the sheet, which gets to ``middle``, mm."""
+    origin, mu = middle + times * (frame.origin - centre), (frame.mu[0] / times, frame.mu[1] / times)
+    return canvas.placed(frame.plan, frame.position, origin, mu, frame.turn, frame.mirror)
 
 
 def mark(canvas: Canvas, part: int, centre: complex, radius: float, name: str, away: complex) -> None:
@@ -130,23 +139,25 @@ def _free_radius(canvas: Canvas, it: Corner) -> float:
     return next((r for r in usual + 0.5 * np.arange(8) if not any(b.min() < r + 0.2 and b.max() > r - 0.2 for b in boxes)), usual)
 
 
-def _enlarged(canvas: Canvas, it: Corner, middle: complex, half: float, times: float) -> None:
+def _enlarged(s: Stage, it: Corner, middle: complex, half: float) -> None:
     """Vectors and letters of a corner inside a circle of a radius, mm."""
-    at = {name: middle + times * (z - it.centre) for name, z in it.points.items()}
+    at = {name: s.at(name) for name in it.points}
     for sign, tail, head in it.vectors:
         seen = chord(middle, half, at[tail], at[head])
         if seen is None or abs(seen[1] - seen[0]) < 1.0:
             continue
         a, b = seen
+        pen = s.pen(head, "symbol", f"{tail}–{head}")
         if abs(b - at[head]) < 1e-9 and abs(b - a) > 3.0:
-            canvas.arrow(a, b, "vector")
+            pen.arrow(a, b, "vector")
         else:
-            canvas.line(a, b, "vector")
-        canvas.label((a + b) / 2, sign, 1j * (b - a), 3.5, 1.0)
+            pen.line(a, b, "vector")
+        pen.label((a + b) / 2, sign, 1j * (b - a), 3.5, 1.0)
     for same in together([at[name] for name in it.names], 0.8):
-        here = at[it.names[same[0]]]
-        canvas.dot(here, 0.6)
-        canvas.label(here, ", ".join(_letters(it.plan, it.names[i]) for i in same), here - middle, 3.5, 1.0)
+        first = it.names[same[0]]
+        pen = s.pen(first, "symbol")
+        pen.dot(at[first], 0.6)
+        pen.label(at[first], ", ".join(_letters(it.plan, it.names[i]) for i in same), at[first] - middle, 3.5, 1.0)
 
 
 def _letters(plan: Plan, name: str) -> str:

@@ -15,9 +15,9 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.clipping import chord
-from tmm_sheets.drawing.marks import Fill, Line
+from tmm_sheets.drawing.marks import Fill, Line, Trace
 from tmm_sheets.numbers import number
-from tmm_sheets.sheets.details import mark, next_name
+from tmm_sheets.sheets.details import mark, next_name, placed
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -75,12 +75,21 @@ def crowd(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     def at(z: complex) -> complex:
         return middle + times * (z - found.centre)
 
+    places: dict[int, int] = {-1: -1}
+    for n in sorted({m.by.frame for m in canvas.marks if m.by is not None and m.by.frame >= 0}):
+        if canvas.frames[n].view == found.part:
+            places[n] = placed(canvas, canvas.frames[n], found.centre, middle, times)
+
+    def of(by: Trace | None) -> Canvas:
+        return canvas.tracing("symbol") if by is None else canvas.tracing("symbol", by.step, by.position, places[by.frame], by.name)
+
     with canvas.as_role("symbol"):
         canvas.window(middle, half)
-        _enlarged(canvas, found, at, middle, half)
-        canvas.labels[:] = [label for label in canvas.labels if label not in found.labels]
-        for label in found.labels:
-            canvas.label(at(label.anchor), label.text, label.away, max(label.height, LETTERS), label.gap, label.leader)
+    _enlarged(canvas, found, at, middle, half, of)
+    canvas.labels[:] = [label for label in canvas.labels if label not in found.labels]
+    for label in found.labels:
+        of(label.by).label(at(label.anchor), label.text, label.away, max(label.height, LETTERS), label.gap, label.leader)
+    with canvas.as_role("symbol"):
         mark(canvas, found.part, found.centre, half / times, name, -1 + 1j)
 
 
@@ -105,7 +114,8 @@ def _times(found: Crowd, half: float) -> float:
     return max((t for t in TIMES if t * found.radius <= half), default=0.0)
 
 
-def _enlarged(canvas: Canvas, found: Crowd, at: Callable[[complex], complex], middle: complex, half: float) -> None:
+def _enlarged(canvas: Canvas, found: Crowd, at: Callable[[complex], complex], middle: complex, half: float,
+              of: Callable[[Trace | None], Canvas]) -> None:
     """Lines, arrows and dots of the lever that are seen in the window; heads and dots keep their sizes."""
     end = canvas.parts[found.part + 1].first if found.part + 1 < len(canvas.parts) else len(canvas.marks)
     marks, first = canvas.marks[:end], canvas.parts[found.part].first
@@ -119,10 +129,11 @@ def _enlarged(canvas: Canvas, found: Crowd, at: Callable[[complex], complex], mi
         own = range(group.first, group.end)
         line, fill = marks[group.first], next(m for m in (marks[n] for n in reversed(own)) if isinstance(m, Fill))
         if group.kind == "dot" and abs(at(here := complex(fill.points.mean())) - middle) < half - 1.0:
-            canvas.dot(at(here), float(np.abs(fill.points - here).max()), fill.style)
+            of(fill.by).dot(at(here), float(np.abs(fill.points - here).max()), fill.style)
         elif group.kind == "arrow" and isinstance(line, Line) and (part := seen(line.a, tip := complex(fill.points[0]))):
-            (canvas.arrow if abs(part[1] - at(tip)) < 1e-9 else canvas.line)(*part, fill.style)
+            pen = of(line.by)
+            (pen.arrow if abs(part[1] - at(tip)) < 1e-9 else pen.line)(*part, fill.style)
         drawn.difference_update(own)
     for line in (marks[n] for n in sorted(drawn)):
         if isinstance(line, Line) and (part := seen(line.a, line.b)) is not None:
-            canvas.line(*part, line.style)
+            of(line.by).line(*part, line.style)

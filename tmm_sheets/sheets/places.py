@@ -63,20 +63,22 @@ def leaving(canvas: Canvas, frame: Box, title_block: Box) -> list[Leaving]:
     A part may use what its view leaves free, but not the box of a part beside it. Only what ties diagrams together may go from
     view to view; nothing may cross the frame.
     """
-    found = []
+    found: dict[tuple[str, Box], Leaving] = {}
     views = _views(canvas)
+    titles = {part.box: part.title for part in reversed(canvas.parts) if part.title}
     for k, (lines, labels) in enumerate(_ink(canvas)):
         part = canvas.parts[k]
-        # The circle of a detail is where it has to be: what it is drawn round has left its place there, and is told.
-        if part.draw in ("title block", "labels") or (part.draw == "details.corner" and not part.title):
+        if part.draw in ("title block", "labels"):
             continue
         beside = [other.box for other, v in zip(canvas.parts, views, strict=True)
                   if v is views[k] and other.title and _apart(other.box, part.box)]
         bounds = _Bounds(part.box, views[k], frame, title_block)
         out = [*bounds.left_by(lines, TOUCH, beside), *bounds.left_by(labels, BESIDE, [])]
         if out:
-            found.append(Leaving(_plain(part.title or part.draw), *max(out), _scales(canvas, k)))
-    return found
+            # What is drawn later in the place of a titled part is one view with it.
+            it = Leaving(_plain(part.title or titles.get(part.box) or part.draw), *max(out), _scales(canvas, k))
+            found[it.title, part.box] = max(found.get((it.title, part.box), it), it, key=lambda each: each.by)
+    return list(found.values())
 
 
 WIDEST = 1.2
@@ -111,11 +113,13 @@ def _views(canvas: Canvas) -> list[Box]:
 def _ink(canvas: Canvas) -> list[tuple[list[Mark], list[Mark]]]:
     """Lines and labels of every part; labels are set when all views are drawn, without their leader lines.
 
-    Notes, which have no anchor, take free paper anywhere.
+    Notes, which have no anchor, take free paper anywhere. The circle of a detail has to be where it is: what it is drawn round has
+    left its place there, and is told.
     """
     ends = [part.first for part in canvas.parts[1:]] + [len(canvas.marks)]
     found: list[tuple[list[Mark], list[Mark]]] = [
-        (canvas.marks[part.first:end], []) for part, end in zip(canvas.parts, ends, strict=True)]
+        ([canvas.marks[n] for n in range(part.first, end) if n not in canvas.windows], [])
+        for part, end in zip(canvas.parts, ends, strict=True)]
     for group in canvas.groups:
         if group.part >= 0 and group.anchor is not None:
             found[group.part][1].extend(mark for mark in canvas.marks[group.first:group.end] if isinstance(mark, Text))
