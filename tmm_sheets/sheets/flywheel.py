@@ -622,6 +622,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         _asked(fw),
         _converged(fw),
         *disagreement(fw),
+        *motor(fw),
         *power(fw),
         *_sizes(fw),
     ]
@@ -665,6 +666,20 @@ def power(fw: Flywheel) -> list[str]:
         tr("P_m = M_{index}·ω_1 = {power} kW;  P_out = P_m·η = {power}·{efficiency} = {further} kW")
     here, further = (number(float(fw.power_plan[name].value) / 1000, 4) for name in ("P", "P_дв"))
     return [said.format(index=indices(fw)[1], power=here, efficiency=number(fw.data.efficiency), further=further)]
+
+
+def motor(fw: Flywheel) -> list[str]:
+    """Whether the motor is strong enough and remains a motor; nothing where none is given."""
+    check, data = fw.motor, fw.data.motor
+    if check is None or data is None:
+        return []
+    strong = tr("P = M_{index}·ω_1/η = {needed} kW {sign} {rated} kW ({name});  η = {efficiency} (η taken)") if data.accepted else \
+        tr("P = M_{index}·ω_1/η = {needed} kW {sign} {rated} kW ({name});  η = {efficiency}")
+    steady = tr("[δ] = 2(n_s − n_r)/n_r = {permitted} ≥ δ: it never runs as a generator") if check.steady else \
+        tr("[δ] = 2(n_s − n_r)/n_r = {permitted} < δ: the motor runs as a generator at times")
+    return [strong.format(index=indices(fw)[1], needed=fixed(check.power / 1000, 2), sign="≤" if check.strong else ">",
+                          rated=number(check.rated_power / 1000), name=data.name, efficiency=number(data.efficiency)),
+            steady.format(permitted=fixed(check.permitted, 4))]
 
 
 def _alike(fw: Flywheel) -> list[str]:

@@ -449,7 +449,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     _turned_letters(s, turned, lv.points, vectors)
     if lv.contact is not None and project.driver is not None:
         play(s, [lv.contact], "axis")
-        s.letters(lv.contact, "f′", gap=1.2)
+        s.letters(lv.contact, lv.contact.name, gap=1.2)
     draw_arms(s, 0j, shown, points=[frame(z) for z in points])
     draw_forces(s, shown)
 

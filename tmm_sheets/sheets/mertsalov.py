@@ -221,7 +221,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
             inertia=enough(inertia, 2)),
         tr("ε_1 = (M − ω_{{1m}}^2/2·d{sign}/dφ)/({held} + {sign}) = {epsilon} rad/s^2").format(
             sign=sign, held=held, epsilon=enough(epsilon, 3, size([plan["ε1"].value], k))),
-        *_motor(fw), *flywheel.power(fw), *flywheel.disagreement(fw), *_size(fw)]
+        *flywheel.motor(fw), *flywheel.power(fw), *flywheel.disagreement(fw), *_size(fw)]
     left = canvas.title(box, tr("Flywheel design by Mertsalov's method"))
     step = min(left.height / len(rows), 11.0)
     for i, line in enumerate(rows):
@@ -283,20 +283,6 @@ def _extremes(fw: Mertsalov) -> tuple[str, str]:
     fast, slow = (said.format(found=fixed(found, digits), permitted=fixed(float(fw.speed_plan[f"[ω_{name}]"].value), digits))
                   for said, found, name in zip(texts, fw.extremes, ("max", "min"), strict=True))
     return fast, slow
-
-
-def _motor(fw: Mertsalov) -> list[str]:
-    """Whether the motor is strong enough and remains a motor; nothing where none is given."""
-    motor, data = fw.motor, fw.data.motor
-    if motor is None or data is None:
-        return []
-    power = tr("P = M_{index}·ω_1/η = {needed} kW {sign} {rated} kW ({name});  η = {efficiency} (η taken)") if data.accepted else \
-        tr("P = M_{index}·ω_1/η = {needed} kW {sign} {rated} kW ({name});  η = {efficiency}")
-    steady = tr("[δ] = 2(n_s − n_r)/n_r = {permitted} ≥ δ: it never runs as a generator") if motor.steady else \
-        tr("[δ] = 2(n_s − n_r)/n_r = {permitted} < δ: the motor runs as a generator at times")
-    return [power.format(index=flywheel.indices(fw)[1], needed=fixed(motor.power / 1000, 2), sign="≤" if motor.strong else ">",
-                         rated=number(motor.rated_power / 1000), name=data.name, efficiency=number(data.efficiency)),
-            steady.format(permitted=fixed(motor.permitted, 4))]
 
 
 def _size(fw: Mertsalov) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cmath import rect
-from math import pi
+from math import cos, pi
 from typing import Any
 
 from tmm_sheets.drawing.canvas import Canvas
@@ -180,6 +180,9 @@ class SchemeOfTrain(SchemeViews):
         self.reducer = self.train = train
         ends = [(self.height(name) + side * train.radius(name, m)) for m in train.meshes
                 for name in (m.central, m.planet) for side in (1, -1)]
+        # In the end view the planets of a carrier stand all round.
+        ends += [self.height(m.planet) * cos(turn) + side * train.radius(m.planet, m) for m in train.meshes if m.carrier
+                 for turn in self.turns(m) for side in (1, -1)]
         self.top, self.bottom = max(ends), -min(ends)
         self.side = max(train.radius(m.central, m) for m in train.meshes)
         self.side = max(self.side, *(train.distance(m) + train.radius(m.planet, m) for m in train.meshes if m.carrier), 0.0)
@@ -190,6 +193,11 @@ class SchemeOfTrain(SchemeViews):
         """Height of a wheel's axis over the main one, m."""
         found = self.train.height(name)
         return float(found)
+
+    def turns(self, m: Any) -> list[float]:
+        """Angles of the planets of a mesh from the first, as many as can be put in at equal angles, rad."""
+        count = at_equal_angles(self.train, m.carrier) if m.carrier else 1
+        return [2 * pi * k / count for k in range(count)]
 
     def draw(self) -> None:
         """Draw the three views."""
@@ -304,10 +312,9 @@ class SchemeOfTrain(SchemeViews):
         for m in train.meshes:
             named.append((o, mm(train.radius(m.central, m)), m.central))
             c.circle(o, named[-1][1], "main" if train.stands(m.central) else "axis")
-            count = at_equal_angles(train, m.carrier) if m.carrier else 1
             up = mm(self.height(m.planet))
-            for k in range(count):
-                at = o + rect(up, pi / 2 + 2 * pi * k / count)
+            for turn in self.turns(m):
+                at = o + rect(up, pi / 2 + turn)
                 if m.carrier:
                     c.line(o, at, "main")
                 c.circle(at, mm(train.radius(m.planet, m)), "axis")

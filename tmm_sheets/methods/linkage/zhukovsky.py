@@ -21,6 +21,8 @@ from tmm_sheets.methods.linkage.forces import GearForce, contact_point
 from tmm_sheets.methods.linkage.velocities import POLE, SAME, SIMILAR, Velocities
 from tmm_sheets.words import marked, tr
 
+CONTACT = "fquwxyz"
+"""Letters of the point where the gear force acts: the first that no point of the mechanism has."""
 TURNED = Rule("turned plan point", lambda v: 1j * v, ("point",), "point",
               marked("Turn the vector p{0} of the velocity polygon by 90°: point {name}."), lambda a, v: (Helper("line", 0j, v),))
 COUPLE_FORCE = Rule("force of a couple", lambda m, x, y: 1j * m * ar.ray(x, y) / np.abs(y - x), ("number", "point", "point"),
@@ -124,8 +126,10 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
         hang(tr("F̅_{Mb}"), b, plan.add("Fур на рычаге", VECTOR_OF, force, across, symbol=tr("Fb on the lever")), "F̅_{Мур}")
         return result
     at = contact_point(pos, driver)
-    f_step = plan.add(plan.free("f"), SIMILAR, vel.pole, vel.points[c.pin], pos.points[c.pivot], pos.points[c.pin], at)
-    contact = plan.add(plan.free("f′"), TURNED, f_step)
+    known = {*vel.plan.steps, *plan.steps}
+    letter = next((letter for letter in CONTACT if not {letter, f"{letter}′"} & known), plan.free("f"))
+    f_step = plan.add(letter, SIMILAR, vel.pole, vel.points[c.pin], pos.points[c.pivot], pos.points[c.pin], at)
+    contact = plan.add(f"{letter}′", TURNED, f_step)
     result.line = driver.line(c.sense)
     result.balancing = plan.add(driver.name, BALANCE, pole, contact, result.line, *terms)
     force = plan.add(f"{driver.name} на рычаге", VECTOR_OF, result.balancing, result.line,
