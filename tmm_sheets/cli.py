@@ -141,10 +141,13 @@ def show(project: str, corrected: bool, as_file: bool, output: Path | None) -> N
 def check(project: str, corrected: bool) -> None:
     """Read and assemble PROJECT, tell what no pencil can draw; write nothing."""
     opened = _open(project, corrected)
+    from tmm_sheets.sheets import composition
+
     opened.check()
+    composition.check(opened)
     if opened.variant.crank is not None:
         from tmm_sheets import summary
-        from tmm_sheets.sheets import composition, flat_crossings
+        from tmm_sheets.sheets import flat_crossings
 
         for line in (*composition.left_out(opened, range(1, len(opened.sheets) + 1)), *flat_crossings.lines(opened)):
             click.echo(f"{opened.variant.project.name}: {line}", err=True)

@@ -329,7 +329,9 @@ class Project:
         for part in self.parts:
             try:
                 if part == "positions":
-                    _ = self.study, self.force_index, self.diagrams
+                    _ = self.study, self.force_index
+                    for name in self.diagrams:
+                        _ = self.motion.link(name) if name in self.mechanism.links else self.motion.point(name)
                 elif part == "forces" and "positions" not in refused:
                     _ = self.applied
                     if self.friction is not None:

@@ -516,6 +516,18 @@ def _kinematic(project: Project, n: int) -> tuple[View, ...]:
     return arranged(project, n).views if any(view.draw.startswith("kinematics.") for view in views) else ()
 
 
+def check(project: Project) -> None:
+    """Tell before anything is drawn that a sheet cannot be: :class:`CannotBuild` names what the project lacks for it."""
+    from tmm_sheets.sheets import flywheel, mertsalov
+
+    for n in range(1, len(project.sheets) + 1):
+        for view in arrangement(project.sheets[n - 1]).fitted(project.parts).views:
+            if view.draw in flywheel.TANGENTS:
+                flywheel.with_tangents(project)
+            elif view.draw.startswith("mertsalov."):
+                mertsalov.procedure(project)
+
+
 def left_out(project: Project, sheets: Iterable[int]) -> Iterator[str]:
     """What some sheets leave out of the velocity plans, and why, for the command line."""
     for view in (view for n in sheets for view in _kinematic(project, n) if view.draw == "kinematics.velocity_plans"):

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
     from tmm_sheets.sheets.arrangement import Arrangement, View
 
+TANGENTS = ("flywheel.force_graph", "flywheel.total_work", "flywheel.energy_mass", "flywheel.results", "crank_speed.graph")
+"""Views of a flywheel by the energy-mass diagram."""
 Options = dict[str, Any]
 CLEAR = 14.0
 """How far the sign of a straight graph stands from the other curve, mm."""
@@ -739,7 +741,7 @@ def by_method(project: Any, method: str, hint: str) -> Any:
 
 def with_tangents(project: Any) -> Wittenbauer:
     """The flywheel by the energy-mass diagram; CannotBuild for one by another method."""
-    hint = tell("take the views of mertsalov in the arrangement of the sheet")
+    hint = tell("take an arrangement with the views of mertsalov among the project's sheets: sixbar_2, or press_1")
     return cast("Wittenbauer", by_method(project, "wittenbauer", hint))
 
 

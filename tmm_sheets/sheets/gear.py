@@ -34,6 +34,8 @@ PITCHES, MOST = 1.25, 1.5
 """Pitches that the view of the meshing zone must show at least, and those it shows at most."""
 LEGIBLE, GREATER = 25.0, 4.0
 """Height of a tooth on the picture, mm, below which a wheel 2 so many times greater is broken so that the scale can be larger."""
+NEARLY, LEAST = 0.8, 20.0
+"""Share of its scale that a picture gives up at most so that no wheel is cut at its edges; height of a tooth that it keeps, mm."""
 HUB, UNDER, BESIDE = 44.0, 14.0, 14.0
 """Height of what is left of a broken wheel about its centre; room under the foot N of its perpendicular and at its side, mm."""
 MESH = 18.0, 32.0
@@ -70,6 +72,11 @@ def picture(gear: Any, width: float, height: float) -> tuple[Scale, bool]:
     """Scale of the engagement picture in a place of this size, mm, and whether the greater wheel is broken for it."""
     whole: Scale = gear.picture_scale(picture_room(gear, width, height))
     tooth = max(abs(w.ra - w.rf) for w in gear.wheels)
+    if not gear.internal:
+        uncut = standard((2 * max(w.ra for w in gear.wheels), width - 2 * BESIDE),
+                         (gear.a_w + sum(w.ra for w in gear.wheels), height - 16.0 - 2 * BESIDE))
+        if whole.mu < uncut.mu <= whole.mu / NEARLY and uncut.mm(tooth) >= LEAST:
+            return uncut, False
     one, two = gear.wheels
     if gear.internal or two.teeth < GREATER * one.teeth or whole.mm(tooth) >= LEGIBLE:
         return whole, False

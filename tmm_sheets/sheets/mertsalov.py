@@ -39,7 +39,8 @@ LEGEND = 6.0
 """Room of the legend, mm."""
 
 
-def _procedure(project: Any) -> Mertsalov:
+def procedure(project: Any) -> Mertsalov:
+    """The flywheel by the crank's energy; CannotBuild for one by another method."""
     hint = tell("take the arrangement flywheel among the project's sheets")
     return cast("Mertsalov", flywheel.by_method(project, "mertsalov", hint))
 
@@ -51,7 +52,7 @@ def _signs(options: Options) -> tuple[str, str, str, str]:
 
 def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """All graphs one under another: moments, works, energies, inertia; each as high as it is, the room left over between them."""
-    fw = _procedure(project)
+    fw = procedure(project)
     s = fw.scales
     energy = np.concatenate(([0.0], fw.energy_curve(fw.samples), np.imag(fw.first_curve(fw.samples))))
     flywheel.stacked(project, canvas, box, options, "mertsalov.column", [
@@ -61,7 +62,7 @@ def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
 
 def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Reduced moment of inertia of the second group with its terms, read as its energy too; the tangent at the chosen position."""
-    fw = _procedure(project)
+    fw = procedure(project)
     s = fw.scales
     _, second, _, sign = _signs(options)
     mu_e = Scale(f"μ_{{{flat(second)}}}", float(fw.energy_plan.asides["μ_T"].value), tr("J/mm"))
@@ -127,7 +128,7 @@ def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
 
     The same curve measured from the axis through the middle of ab is the angular velocity of the crank.
     """
-    fw = _procedure(project)
+    fw = procedure(project)
     s, plan = fw.scales, fw.energy_plan
     change, second, first, _ = _signs(options)
     omega = _omega_scale(fw)
@@ -178,7 +179,7 @@ def _omega_scale(fw: Mertsalov) -> Scale:
 
 def position_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """What was found at every position: moment, work, energies, inertia, angular velocity and acceleration of the crank."""
-    fw = _procedure(project)
+    fw = procedure(project)
     varying, _ = flywheel.indices(fw)
     change, second, first, sign = _signs(options)
     columns = [
@@ -201,7 +202,7 @@ def position_table(project: Any, canvas: Canvas, box: Box, options: Options) -> 
 
 def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Formulas with their numbers: segment, moment of inertia, scale factor and check of omega, acceleration, motor, sizes."""
-    fw = _procedure(project)
+    fw = procedure(project)
     k = project.force_index
     _, _, _, sign = _signs(options)
     varying, constant = flywheel.indices(fw)
@@ -307,7 +308,7 @@ def _size(fw: Mertsalov) -> list[str]:
 
 def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """Mertsalov's flywheel beside Wittenbauer's, drawn and exact, each with the exact running of the machine that has it."""
-    fw = _procedure(project)
+    fw = procedure(project)
     rows = [[tr("Flywheel"), tr("J_I, kg·m^2"), tr("ω_{max}, rad/s"), tr("ω_{min}, rad/s"), "δ"]]
     omega = fw.reduced.omega1
     made = [(c.name, c.first, c.running.fastest, c.running.slowest, c.running.delta) for c in fw.compared]

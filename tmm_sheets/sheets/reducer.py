@@ -560,7 +560,8 @@ def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
         (tr("Efficiency: pair; planetary part; whole"), f"{number(chosen['eta_pair'])}; {fixed(chosen['eta_planetary'], 3)}; "
          f"{fixed(chosen['eta'], 3)}"),
     ]
-    if r.simple:
+    pair = project.variant.gear
+    if r.simple and pair is not None and pair.teeth in ("reducer", tuple(int(wheel.teeth) for wheel in r.simple)):
         first, second = r.simple
         rows += [(tr("Wheels 1 and 2 of the gear meshing"),
                   tr("{one} (z = {teeth}) and {two} (z = {teeth2})").format(

@@ -16,7 +16,7 @@ from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.linkage.dead_positions import named_angles
 from tmm_sheets.methods.linkage.study import Study
-from tmm_sheets.words import marked, tr
+from tmm_sheets.words import marked, tell, tr
 
 SAMPLES = 15
 """Points of a curve between two positions."""
@@ -161,8 +161,8 @@ def _path(name: str, way: Any) -> complex:
     size = abs(far)
     u = far / size if size else 1 + 0j
     if np.max(np.abs((way * np.conj(u)).imag)) > STRAIGHT * size:
-        raise CannotBuild(f"point {name} does not move along a straight line: it has no diagram S(φ)",
-                          "name a point of a slider in cycle.diagrams, or the number of a link for its angle")
+        raise CannotBuild(tell("point {name} does not move along a straight line: it has no diagram S(φ)").format(name=name),
+                          tell("name a point of a slider on a fixed guide in cycle.diagrams, or the number of a link for its angle"))
     return u * _begins((way * np.conj(u)).real)
 
 
