@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import pi
 from typing import TYPE_CHECKING, Any
@@ -115,8 +115,22 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     else:
         left, places = _parted(box, share, [forces.plans[name] for name in names], k, stacked=bool(options.get("stacked")))
     _scheme(project, canvas, left, g, k)
+    for line in jumps(project, g.links):
+        canvas.note(left, line)
     for name, place in zip(names, places, strict=True):
         _force_plan(project, canvas, place, forces.plans[name], k)
+
+
+def jumps(project: Project, links: Collection[str]) -> Iterator[str]:
+    """What loads of some links do that jump at the position of the force analysis, and which of their values counts."""
+    k = project.force_index
+    for load in project.applied:
+        found = load.jump(float(project.cycle.turned[k])) if load.link in links else None
+        if found is not None:
+            unit = tr("N") if load.point is not None else tr("N·m")
+            before, after, here = (f"{number(value)}{TOGETHER}{unit}" for value in found)
+            yield tr("At position {label} {load} jumps from {before} to {after}; {here} are taken").format(
+                label=project.cycle.labels[k], load=linkage.indexed(load.name), before=before, after=after, here=here)
 
 
 def _parted(box: Box, share: float, plans: list[ForcePlan], k: int, *, stacked: bool) -> tuple[Box, list[Box]]:
@@ -403,6 +417,8 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     moment = None if driver is not None else forces.balancing
     if moment is not None and not is_zero(moment.at(k), forces.moment_size(k)):
         _turning(s, s.at(centre), 24.0, away, Couple(balancing_sign(project), 0j, float(moment.at(k)), moment))
+    for line in jumps(project, [c.link]):
+        canvas.note(left, line)
     _crank_couples(project, s, left, s.at(centre), away)
     _force_plan(project, canvas, right, forces.plans[c.link], k)
 

@@ -112,6 +112,15 @@ def test_sides_of_a_dead_point():
     np.testing.assert_array_equal(f.magnitude(at, 1), [0, 500, 0, 500])
 
 
+@pytest.mark.parametrize(("law", "at", "jump"), [
+    ({"stroke": "working", "sense": "+x"}, 1.0, None), ({"stroke": "working", "sense": "+x"}, pi, (0.0, 500.0, 0.0)),
+    ({"stroke": "working", "sense": "+x"}, 0.0, (500.0, 0.0, 0.0)), ({"sense": "+x"}, pi, (500.0, -500.0, 0.0)),
+    ({"sense": "+x"}, pi + 0.01, None),
+    ({"direction": "0 deg"}, pi, None)], ids=["on a stroke", "begins", "ends", "turns over", "beside", "steady"])
+def test_a_load_that_jumps_where_forces_are_asked_for_tells_it(law, at, jump):
+    assert force(value="500 N", **law).jump(at) == jump
+
+
 def test_sense_along_a_guide_and_unknown_sense():
     np.testing.assert_array_equal(force(stroke="working", sense="-x", value="1 N").vector(TURN),
                                   force(stroke="idle", sense="+x", value="1 N").vector(TURN))

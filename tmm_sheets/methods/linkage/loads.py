@@ -250,6 +250,10 @@ class LoadDiagram:
     turns: float = 1.0
 
 
+JUMP = 1e-6
+"""Share of a load by which its values on both sides of an angle differ where it jumps."""
+
+
 class Loads(tuple["Applied", ...]):
     """Technological forces and moments in the order of the project file; ``plans`` has their diagrams."""
 
@@ -329,6 +333,16 @@ class Applied:
         """Absolute values, N or N m, in the shape of the angles ``turned``, rad."""
         return np.abs(self.law(turned, side))
 
+    def jump(self, turned: float) -> tuple[float, float, float] | None:
+        """Values before and after an angle turned (rad) where they differ, and the one that counts there, N or N m.
+
+        With their signs only where the load turns over.
+        """
+        found = np.array([float(np.ravel(self.law(np.array([turned]), side))[0]) for side in (-1, 1, 0)])
+        if not np.ptp(found) > JUMP * np.abs(found).max():
+            return None
+        before, after, here = found if found.min() < 0 < found.max() else np.abs(found)
+        return float(before), float(after), float(here)
 
     @cached_property
     def changes_sign(self) -> bool:

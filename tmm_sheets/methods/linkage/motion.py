@@ -162,7 +162,8 @@ def _path(name: str, way: Any) -> complex:
     u = far / size if size else 1 + 0j
     if np.max(np.abs((way * np.conj(u)).imag)) > STRAIGHT * size:
         raise CannotBuild(tell("point {name} does not move along a straight line: it has no diagram S(φ)").format(name=name),
-                          tell("name a point of a slider on a fixed guide in cycle.diagrams, or the number of a link for its angle"))
+                          tell("name a point of a slider on a fixed guide in cycle.diagrams, or the number of a link for its "
+                               "angle"))
     return u * _begins((way * np.conj(u)).real)
 
 
