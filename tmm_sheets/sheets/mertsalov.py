@@ -17,6 +17,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.numbers import decimals_for, enough, fixed, number, size
 from tmm_sheets.sheets import flywheel, graphs
@@ -35,6 +36,8 @@ OF_SIXBAR = (marked("E_links"), marked("E_f"), marked("J_links"))
 """Signs that templates/sheets/sixbar_2.toml takes instead."""
 NAMED = 3
 """So many terms of the inertia are lettered at their curves; more are numbered, with a legend under the heading."""
+LOW = 4.0
+"""What stays below would run along the axis, mm."""
 LEGEND = 6.0
 """Room of the legend, mm."""
 
@@ -57,7 +60,7 @@ def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     energy = np.concatenate(([0.0], fw.energy_curve(fw.samples), np.imag(fw.first_curve(fw.samples))))
     flywheel.stacked(project, canvas, box, options, "mertsalov.column", [
         *flywheel.of_moments(fw), (energies, float(np.ptp(energy)), 8.0),
-        (inertia, float(s.inertia.mm(fw.inertia(fw.samples)).max()) + (LEGEND if len(_terms(fw)) > NAMED else 0.0), 8.0)])
+        (inertia, float(s.inertia.mm(fw.inertia(fw.samples)).max()) + (LEGEND if len(_terms(fw)[0]) > NAMED else 0.0), 8.0)])
 
 
 def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -77,7 +80,10 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     doubled = s.inertia.mu * fw.reduced.omega1**2  # the terms are doubled energies
     terms = stage(canvas, fw.reduced.numbered.plan, None, g.place(s.angle.mu, doubled))
     of.curve("points", g(x + 1j * curve))
-    parts = _terms(fw)
+    parts, low = _terms(fw)
+    if low:
+        canvas.note(box, tr("Not drawn, lower than {height:g}{space}mm: {terms}").format(
+            height=LOW, space=TOGETHER, terms=", ".join(low)))
     for n, (name, step, part) in enumerate(parts, 1):
         terms.curve(step, g(x + 1j * part), "main")
         # A narrow peak is named at its left flank, where there is room.
@@ -94,15 +100,12 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     _tangent(fw, of.position(project.force_index), box, graphs.HEAD + (LEGEND if len(parts) > NAMED else 0.0))
 
 
-def _terms(fw: Mertsalov) -> list[tuple[str, Step, Any]]:
-    """Terms of the reduced moment of inertia with their ordinates at the samples, mm; what would run along the axis is left out.
-
-    Each with its step at the positions.
-    """
+def _terms(fw: Mertsalov) -> tuple[list[tuple[str, Step, Any]], list[str]]:
+    """Terms of the reduced moment of inertia, each with its step and its ordinates at the samples, mm; names of those too low."""
     steps = fw.reduced.numbered.terms
     found = [(f"{name.removesuffix('²')}^2/ω_1^2", steps[name], fw.scales.inertia.mm(values))
              for name, values in fw.reduced.parts(fw.at_samples).items()]
-    return [(name, step, part) for name, step, part in found if part.max() > 4.0]
+    return [term for term in found if term[2].max() > LOW], [name for name, _, part in found if not part.max() > LOW]
 
 
 def _tangent(fw: Mertsalov, of: Stage, box: Box, head: float) -> None:
