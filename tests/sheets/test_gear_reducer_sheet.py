@@ -28,7 +28,7 @@ MODULES = {"gear": gear, "rack": rack, "reducer": reducers}
 def project(machine, c, **over):
     found = reducer(cases.column(machine, c, **over))
     section = GearTable(teeth="reducer", shift="rule", pressure_angle="20 deg", profile="rack")
-    return SimpleNamespace(reducer=found, gear=gear_pair(settled(section, found)))
+    return SimpleNamespace(reducer=found, gear=gear_pair(settled(section, found)), variant=SimpleNamespace(gear=section))
 
 
 PROJECTS = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cmath import phase, rect
+from itertools import pairwise
 from math import cos, degrees, pi, radians, sin
 from typing import Any
 
@@ -28,6 +29,8 @@ DIMENSION = 8.0
 """Distance of the dimension lines of the teeth from the root circle, mm."""
 DIVISION = 10.0
 """Room beyond the last division of an involute for its number, mm."""
+RADII = 7.0
+"""Distance of radii from each other where they are named, mm."""
 LEVEL = radians(7)
 """Angle that radii keep from the level centre line."""
 PITCHES, MOST = 1.25, 1.5
@@ -235,20 +238,31 @@ class _GearPicture:
             self.canvas.label(centre + radius * out, symbol, away=-out)
 
     def directions(self, wheel: Any) -> list[float | None]:
-        """Directions in which a wheel's circles lie inside the picture, away from the teeth in mesh; None without room."""
+        """Directions in which a wheel's circles lie inside the picture, away from the teeth in mesh; None without room.
+
+        Three on one side and two on the other where the largest circle is seen there; else each circle where it has room itself.
+        """
         centre, far = self.of(f"O{wheel.number}"), self.away(wheel) * pi / 2
         busy = max(2.2 * wheel.tau, radians(15)) + radians(14)
-        place = self.box.inset(3)
+        place, largest = self.box.inset(3), self.mm(max(wheel.ra, wheel.rf))
+        angles = [a for a in np.radians(np.arange(14.0, 180.0 - degrees(busy), 1.0)) if abs(a - pi / 2) > LEVEL]
+        # The radii are named beside one another a little inside the root circle, of a ring inside the tip circle.
+        least = RADII / (0.7 * self.mm(wheel.rf))
         chosen: list[float | None] = []
         for side, count in ((1, 3), (-1, 2)):
-            free = [a for a in np.radians(np.arange(14.0, 180.0 - degrees(busy), 1.0))
-                    if abs(a - pi / 2) > LEVEL and place.contains(centre + rect(self.mm(max(wheel.ra, wheel.rf)), far + side * a))]
-            # The radii are named beside one another a little inside the root circle, of a ring inside the tip circle.
-            room = (free[-1] - free[0]) * 0.7 * self.mm(wheel.rf) if free else 0.0
-            apart = min(count, 1 + int(room / 7)) if free else 0
-            chosen += [far + side * free[round((k + 0.5) / apart * (len(free) - 1))] for k in range(apart)]
-            chosen += [None] * (count - apart)
-        return chosen
+            free = [far + side * a for a in angles if place.contains(centre + rect(largest, far + side * a))]
+            some = [free[round((k + 0.5) / count * (len(free) - 1))] for k in range(count)] if free else []
+            chosen += some if all(abs(a - b) >= least for a, b in pairwise(some)) else []
+        if len(chosen) == len(CIRCLES):
+            return chosen
+        found: dict[str, float] = {}
+        for key in sorted((key for key, _, _ in CIRCLES), key=lambda key: -getattr(wheel, key)):
+            radius = self.mm(getattr(wheel, key))
+            free = [a for a in (far + side * a for side in (1, -1) for a in angles) if place.contains(centre + rect(radius, a))]
+            apart = {a: min((abs(a - other) for other in found.values()), default=pi) for a in free}
+            if apart and max(apart.values()) >= least:
+                found[key] = max(apart, key=lambda a: apart[a])
+        return [found.get(key) for key, _, _ in CIRCLES]
 
     def line_of_action(self) -> None:
         c, s = self.canvas, self.stage
