@@ -250,17 +250,17 @@ class SchemeOfReducer(SchemeViews):
         self.arrow(complex(at + STUB, other), tr("n_{out}"), 1)
 
     def ring(self, wheel: Any, x: float) -> None:
-        """A ring that stands still: its rim above and below, held in the frame."""
-        c, r = self.canvas, wheel.diameter / 2
-        for side in (1, -1):
-            rim = complex(x, self.y(side * r))
-            out = rim + 6j * side
-            c.line(rim - FACE / 2, rim + FACE / 2, "main")
-            c.line(rim, out, "main")
-            a, b = out - 5, out + 5
-            c.line(a, b, "main")
-            c.hatch(a, b, side)
-        c.label(complex(x - FACE / 2, self.y(r)), wheel.number, away=-1 + 0.3j, height=5, gap=1.2)
+        """A ring that stands still, held in the frame; as the satellite is drawn once, its rim is drawn where they mesh alone.
+
+        Its other edge would be tied to nothing, far under all else.
+        """
+        c, rim = self.canvas, complex(x, self.y(wheel.diameter / 2))
+        out = rim + 6j
+        c.line(rim - FACE / 2, rim + FACE / 2, "main")
+        c.line(rim, out, "main")
+        c.line(out - 5, out + 5, "main")
+        c.hatch(out - 5, out + 5, 1)
+        c.label(rim - FACE / 2, wheel.number, away=-1 + 0.3j, height=5, gap=1.2)
 
     def bell(self, wheel: Any, x: float, web: float) -> None:
         """A ring that turns: its rims joined by a disc at ``web``."""
