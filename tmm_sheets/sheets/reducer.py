@@ -38,8 +38,15 @@ CLEAR = 7.5
 """Least distance of the scale factor over the uppermost line of the picture of velocities, mm: letters stand at its end."""
 ROW = 12.0
 """Greatest height of a row of the tables, mm."""
+LARGE = 16.0
+"""Height of a row where there is room for letters as large as a title's, mm."""
 NARROWEST, WIDEST = 75.0, 100.0
 """Least width left for the picture of velocities and what its velocities may always take, mm."""
+
+
+def letters_in(row: float) -> tuple[float, float]:
+    """Height of the rows of a table that has room for rows so high, and of the letters in them, mm."""
+    return (LARGE, 5.0) if row >= LARGE else (min(row, ROW), 3.5)
 
 
 def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -500,15 +507,16 @@ def links(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
 def sizes_of_links(of: Any, canvas: Canvas, part: str) -> list[tuple[float, float]]:
     """The same of a reducer or a train."""
     rows = len(_rows_of_links(of, canvas, part))
-    return [(width, 11.0 + row * rows) for width, row in ((180.0, ROW), (150.0, 9.0), (120.0, 7.0))]
+    return [(width, 11.0 + row * rows) for width, row in ((220.0, LARGE), (180.0, ROW), (150.0, 9.0), (120.0, 7.0))]
 
 
 def table_of_links(of: Any, canvas: Canvas, box: Box, part: str) -> None:
     """The same of a reducer or a train."""
     rows = _rows_of_links(of, canvas, part)
     left = canvas.title(box, tr("Speeds of rotation by the plan"))
-    widths = widened([0.24 * box.width, 0.4 * box.width, 0.36 * box.width], rows, 3.5)
-    canvas.table(complex(box.x0, left.y1), widths, rows, min(left.height / len(rows), ROW), 3.5)
+    row, height = letters_in(left.height / len(rows))
+    widths = widened([0.24 * box.width, 0.4 * box.width, 0.36 * box.width], rows, height)
+    canvas.table(complex(box.x0, left.y1), widths, rows, row, height)
 
 
 def _rows_of_links(of: Any, canvas: Canvas, part: str) -> list[list[str]]:
