@@ -327,8 +327,11 @@ class Canvas:
         return Box(box.x0, box.y0, box.x1, y - 3.0)
 
     @in_role("dimension")
-    def dimension(self, a: complex, b: complex, offset: float, markup: str, height: float = 3.5) -> None:
-        """Linear dimension of ``a`` .. ``b`` with extension lines; the dimension line lies ``offset`` mm to the left."""
+    def dimension(self, a: complex, b: complex, offset: float, markup: str, height: float = 3.5, share: float = 0.5) -> None:
+        """Linear dimension of ``a`` .. ``b`` with extension lines; the dimension line lies ``offset`` mm to the left.
+
+        Its lettering is at this ``share`` of the way.
+        """
         if not abs(b - a) > 0:
             return
         u = (b - a) / abs(b - a)
@@ -352,7 +355,7 @@ class Canvas:
         if angle > pi / 2 + 1e-6 or angle <= -pi / 2 + 1e-6:
             u, angle = -u, phase(-u)
         # Indices hang below the baseline: they must clear the dimension line too.
-        base = (p + q) / 2 + 1j * u * (0.7 + letter(markup, height).descent)
+        base = p + share * (q - p) + 1j * u * (0.7 + letter(markup, height).descent)
         self.text(base, markup, height, "centre", angle)
         self.dimensions.append(Dimension("linear", start, len(self.marks), a, b, p, markup, base + 1j * u * height / 2))
 

@@ -313,10 +313,23 @@ class _GearPicture:
         self.canvas.label(end, "P_w", away=way, height=5, gap=0.5, leader=False)
 
     def dimension_of_centres(self) -> None:
-        """Centre distance at the edge of the picture."""
+        """Centre distance at the edge of the picture, lettered where no circle crosses it, as near to the middle as can be."""
         top, bottom = (self.centre(self.gear.wheels[i - 1]) for i in ((2, 1) if self.gear.internal else (1, 2)))
-        reach = self.box.x1 - 12 - top.real
-        self.canvas.dimension(bottom + 12, top + 12, 12 - reach, f"a_w = {fixed(self.gear.a_w * 1e3, 2)}", 5.0)
+        x, text = self.box.x1 - 12, f"a_w = {fixed(self.gear.a_w * 1e3, 2)}"
+        half, middle, crossed = letter(text, 5.0).width / 2 + 2.0, (top.imag + bottom.imag) / 2, list[tuple[float, float]]()
+        for wheel in self.gear.wheels:
+            centre = self.of(f"O{wheel.number}")
+            reach = np.array([x - 8.0, x + 1.0]) - centre.real  # from the top of the letters to the line
+            for radius in (self.mm(getattr(wheel, key)) for key, _, _ in CIRCLES):
+                ends = np.sqrt(np.maximum(radius**2 - reach**2, 0.0))
+                if ends.max() > 0:
+                    crossed += [tuple(sorted(centre.imag + side * ends)) for side in (1, -1)]
+        places = [middle, *(low - half for low, _ in crossed), *(high + half for _, high in crossed)]
+        free = [y for y in places if bottom.imag + half < y < top.imag - half
+                and all(y + half <= low or high <= y - half for low, high in crossed)]
+        at = min(free, key=lambda y: abs(y - middle), default=middle)
+        self.canvas.dimension(bottom + 12, top + 12, 12 - (x - top.real), text, 5.0,
+                              (at - bottom.imag) / (top.imag - bottom.imag))
 
     def unrolling(self, wheel: Any) -> None:
         """Divisions of P_wN, equal arcs, tangents and the involute through their ends."""

@@ -12,12 +12,12 @@ from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import widened
 from tmm_sheets.numbers import fixed, is_zero, number
-from tmm_sheets.sheets.reducer import ROW
+from tmm_sheets.sheets.reducer import LARGE, ROW, letters_in
 from tmm_sheets.words import tr
 
 SIZES = ((5.0, 5.0, 12.0), (5.0, 3.5, 10.0), (5.0, 3.5, 7.0), (3.5, 3.5, 7.0))
 """Heights of the letters of a title and of the lines under it, and distances of these, that are tried, mm."""
-PLACES = ((180.0, ROW), (150.0, 9.0), (120.0, 7.0))
+PLACES = ((220.0, LARGE), (180.0, ROW), (150.0, 9.0), (120.0, 7.0))
 """Widths and heights of rows of the table that are tried, mm."""
 
 
@@ -35,7 +35,8 @@ def inverted(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     for carrier, name, n, n_carrier in found:
         rows.append([f"{name} ({carrier})" if several else name, number(n), number(n - n_carrier), number(n * pi / 30, 5)])
     left = canvas.title(box, tr("Inverted motion (carrier held)"))
-    canvas.table(complex(box.x0, left.y1), widened([0.25 * box.width] * 4, rows, 3.5), rows, min(left.height / len(rows), ROW), 3.5)
+    row, height = letters_in(left.height / len(rows))
+    canvas.table(complex(box.x0, left.y1), widened([0.25 * box.width] * 4, rows, height), rows, row, height)
 
 
 def _inverted(project: Any) -> Iterator[tuple[str, str, float, float]]:

@@ -38,8 +38,15 @@ CLEAR = 7.5
 """Least distance of the scale factor over the uppermost line of the picture of velocities, mm: letters stand at its end."""
 ROW = 12.0
 """Greatest height of a row of the tables, mm."""
+LARGE = 16.0
+"""Height of a row where there is room for letters as large as a title's, mm."""
 NARROWEST, WIDEST = 75.0, 100.0
 """Least width left for the picture of velocities and what its velocities may always take, mm."""
+
+
+def letters_in(row: float) -> tuple[float, float]:
+    """Height of the rows of a table that has room for rows so high, and of the letters in them, mm."""
+    return (LARGE, 5.0) if row >= LARGE else (min(row, ROW), 3.5)
 
 
 def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -250,17 +257,17 @@ class SchemeOfReducer(SchemeViews):
         self.arrow(complex(at + STUB, other), tr("n_{out}"), 1)
 
     def ring(self, wheel: Any, x: float) -> None:
-        """A ring that stands still: its rim above and below, held in the frame."""
-        c, r = self.canvas, wheel.diameter / 2
-        for side in (1, -1):
-            rim = complex(x, self.y(side * r))
-            out = rim + 6j * side
-            c.line(rim - FACE / 2, rim + FACE / 2, "main")
-            c.line(rim, out, "main")
-            a, b = out - 5, out + 5
-            c.line(a, b, "main")
-            c.hatch(a, b, side)
-        c.label(complex(x - FACE / 2, self.y(r)), wheel.number, away=-1 + 0.3j, height=5, gap=1.2)
+        """A ring that stands still, held in the frame; as the satellite is drawn once, its rim is drawn where they mesh alone.
+
+        Its other edge would be tied to nothing, far under all else.
+        """
+        c, rim = self.canvas, complex(x, self.y(wheel.diameter / 2))
+        out = rim + 6j
+        c.line(rim - FACE / 2, rim + FACE / 2, "main")
+        c.line(rim, out, "main")
+        c.line(out - 5, out + 5, "main")
+        c.hatch(out - 5, out + 5, 1)
+        c.label(rim - FACE / 2, wheel.number, away=-1 + 0.3j, height=5, gap=1.2)
 
     def bell(self, wheel: Any, x: float, web: float) -> None:
         """A ring that turns: its rims joined by a disc at ``web``."""
@@ -500,15 +507,16 @@ def links(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
 def sizes_of_links(of: Any, canvas: Canvas, part: str) -> list[tuple[float, float]]:
     """The same of a reducer or a train."""
     rows = len(_rows_of_links(of, canvas, part))
-    return [(width, 11.0 + row * rows) for width, row in ((180.0, ROW), (150.0, 9.0), (120.0, 7.0))]
+    return [(width, 11.0 + row * rows) for width, row in ((220.0, LARGE), (180.0, ROW), (150.0, 9.0), (120.0, 7.0))]
 
 
 def table_of_links(of: Any, canvas: Canvas, box: Box, part: str) -> None:
     """The same of a reducer or a train."""
     rows = _rows_of_links(of, canvas, part)
     left = canvas.title(box, tr("Speeds of rotation by the plan"))
-    widths = widened([0.24 * box.width, 0.4 * box.width, 0.36 * box.width], rows, 3.5)
-    canvas.table(complex(box.x0, left.y1), widths, rows, min(left.height / len(rows), ROW), 3.5)
+    row, height = letters_in(left.height / len(rows))
+    widths = widened([0.24 * box.width, 0.4 * box.width, 0.36 * box.width], rows, height)
+    canvas.table(complex(box.x0, left.y1), widths, rows, row, height)
 
 
 def _rows_of_links(of: Any, canvas: Canvas, part: str) -> list[list[str]]:

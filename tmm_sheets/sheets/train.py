@@ -272,13 +272,13 @@ class SchemeOfTrain(SchemeViews):
                 self.canvas.hatch(a, b, side, depth=2.0, step=2.0)
 
     def ring(self, name: str, r: float, x: float, stands: bool) -> None:
-        """A ring: its rim held in the frame, or joined by a disc beside the planets to a sleeve about the main axis."""
+        """A ring: held in the frame where it meshes, or joined by a disc beside the planets to a sleeve about the main axis."""
         c, web = self.canvas, x + FACE + 3
-        for side in (1, -1):
+        for side in (1,) if stands else (1, -1):
             rim = complex(x, self.y(side * r))
             c.line(rim - FACE / 2, rim + FACE / 2, "main")
             if stands:
-                out = rim + 6j * side
+                out = rim + 6j
                 c.line(rim, out, "main")
                 c.line(out - 5, out + 5, "main")
                 c.hatch(out - 5, out + 5, side)
@@ -287,7 +287,8 @@ class SchemeOfTrain(SchemeViews):
             c.line(rim + FACE / 2, complex(web, rim.imag), "main")
             c.line(complex(web, rim.imag), hub, "main")
             c.line(hub - FACE / 2, hub + FACE / 2, "main")
-        c.label(complex(x - FACE / 2, self.y(-r)), name, away=-1 - 0.6j, height=5, gap=1.2)
+        away = -1 + 0.3j if stands else -1 - 0.6j
+        c.label(complex(x - FACE / 2, self.y(r if stands else -r)), name, away=away, height=5, gap=1.2)
 
     def arm(self, carrier: str, m: Any, x: float) -> None:
         """The carrier's arm from the main axis to the planets'."""
