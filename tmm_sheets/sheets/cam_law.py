@@ -24,8 +24,8 @@ FORMS: dict[str, tuple[tuple[str, tuple[str, str, str]], ...]] = {
 
 A law that is given as a diagram of its second derivative has no formula.
 """
-STEPS = 8.0, 7.0, 6.0
-"""Distances of the lines that are tried, mm."""
+WAYS = (5.0, 12.0), (3.5, 8.0), (3.5, 7.0), (3.5, 6.0)
+"""Heights of the letters and distances of the lines that are tried, mm."""
 APART = 14.0
 """Distance of the formulas of both phases where they stand side by side, mm."""
 
@@ -33,9 +33,12 @@ APART = 14.0
 def equations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the formulas can do with, mm: those of both phases one under another or side by side."""
     rise, fall = _phases(project.cam.law)
-    one, two = _width(rise), _width(fall)
-    return [size for step in STEPS for size in ((max(one, two) + 6.0, 12.0 + step * (len(rise) + len(fall))),
-                                                (one + APART + two + 6.0, 12.0 + step * max(len(rise), len(fall))))]
+    sizes = []
+    for height, step in WAYS:
+        one, two = _width(rise, height), _width(fall, height)
+        sizes += [(max(one, two) + 6.0, 12.0 + step * (len(rise) + len(fall))),
+                  (one + APART + two + 6.0, 12.0 + step * max(len(rise), len(fall)))]
+    return sizes
 
 
 def equations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -43,17 +46,20 @@ def equations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     rise, fall = _phases(project.cam.law)
     canvas.of = project.cam.motion.plan.name
     left = canvas.title(box, tr("Law of motion in formulas"))
-    wide = box.width >= _width(rise) + APART + _width(fall)
-    columns = [rise, fall] if wide else [rise + fall]
-    step = min(STEPS[0], (left.y1 - box.y0) / max(map(len, columns)))
+    for height, most in WAYS:
+        wide = box.width >= _width(rise, height) + APART + _width(fall, height)
+        columns = [rise, fall] if wide else [rise + fall]
+        step = min(most, (left.y1 - box.y0) / max(map(len, columns)))
+        if step >= 2 * height and _width(rise + fall, height) <= box.width:
+            break
     x = box.x0 + 3.0
     for lines in columns:
-        canvas.lines(complex(x, left.y1 - 0.8 * step), lines, step, 3.5)
-        x += _width(lines) + APART
+        canvas.lines(complex(x, left.y1 - 0.8 * step), lines, step, height)
+        x += _width(lines, height) + APART
 
 
-def _width(lines: list[str]) -> float:
-    return max(letter(line, 3.5).width for line in lines)
+def _width(lines: list[str], height: float) -> float:
+    return max(letter(line, height).width for line in lines)
 
 
 def _phases(law: PositionFunction) -> tuple[list[str], list[str]]:
