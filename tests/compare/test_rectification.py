@@ -303,6 +303,19 @@ def test_how_many_sides_must_be_seen(sides_seen, match, sound, acceptable):
     assert (check.sound, check.acceptable) == (sound, acceptable)
 
 
+@pytest.mark.parametrize(("first", "last", "unseen", "rim"), [
+    (0, 0, 0, 0.0), (232, 240, 0, 0.5), (232, 240, 3, 0.5), (232, 240, 4, 0.0), (236, 240, 0, 0.25), (237, 240, 0, 0.0),
+])  # fmt: skip
+def test_a_part_of_a_side_that_is_off_tells_of_paper_that_is_not_smooth(first, last, unseen, rim):
+    from tmm_sheets.compare.photo.frame_fit import _side_points
+
+    p, n, _ = _side_points()
+    m = Map(0j, 1.0, homography(CORNERS, CORNERS))
+    off, weight = np.zeros(len(p)), np.ones(len(p))
+    off[first:last], weight[232 : 232 + unseen] = -0.5, 0.0
+    assert fit_check._rim(m, Seen(p + n * off, p, n, weight)) == pytest.approx(rim, abs=1e-6)
+
+
 def test_two_sides_hold_no_sheet_of_which_a_part_is_elsewhere():
     check = replace(SEEN_WHOLE, sides=np.array([1.0, 1.0, 0.0, 0.0]), astray=np.array([300 + 300j]))
     assert not check.acceptable

@@ -16,7 +16,7 @@ LENS = np.array([0.05, 0.03])
 """Usual distortion coefficients."""
 HEIGHT = {2: 4.0, 3: 2.0, 4: 1.0, 5: 0.6, 6: 0.4}
 """Usual height of the paper in a term of each degree, mm."""
-FOCUS, FOOT = 1.2, 80.0
+FOCUS, FOOT = 1.2, 40.0
 """Usual focal length of a telephone, half diagonals of its picture, and error of the camera's foot found by it, mm."""
 ANYWHERE = 400.0
 """Usual distance of the foot from the middle of the sheet, mm, where nothing tells of it."""

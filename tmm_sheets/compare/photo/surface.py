@@ -24,6 +24,8 @@ CURVED = 2.0e-3
 """Usual curvature of the height, 1/mm."""
 TALL, LONG = 20.0, 1.0
 """Usual height and usual displacement in the plane, mm."""
+FREE = 2.0
+"""How much more freely the camera's foot may move than in a smooth map: what is wrong in the height is taken up in the plane."""
 STEPS, SETTLED = 8, 0.05
 """Most steps, and mm of change at every point below which no further one is done."""
 
@@ -52,7 +54,7 @@ def fit_surface(m: Map, sides: Seen, loose: float, seen: Seen, far: float) -> Ma
     count, few = height.shape[1], plane.shape[1]
     spacing = FRAME.width / CELLS[0]
     rough, uneven = _bending(shape) / (CURVED * spacing**2), _bending(flat) / LONG
-    usual = np.concatenate((np.full(8, np.inf), LENS, (error, error), np.full(count, TALL), np.full(2 * few, LONG)))
+    usual = np.concatenate((np.full(8, np.inf), LENS, (FREE * error, FREE * error), np.full(count, TALL), np.full(2 * few, LONG)))
     middle = np.zeros(len(usual))
     middle[10:12] = foot.real, foot.imag
     prior = np.diag(usual**-2.0)
