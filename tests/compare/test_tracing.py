@@ -655,3 +655,31 @@ def test_an_end_that_goes_on_paler_is_under_adhesive_tape(dark, to, short):
         draw(ink, end - 60, end + to, dark=dark)
     f = judge(trace(known, ink)[0][0], 0.25, 0.15)
     assert ("too short at its end" in f.what) == short
+
+
+@pytest.mark.parametrize(
+    ("radius", "aside", "verdict", "said"),
+    [
+        (1.6, 0, "green", ""),
+        (1.6, 0.25, "green", ""),  # a hand's reach
+        (1.75, 0, "green", ""),
+        (2.3, 0, "amber", "0.7"),
+        (2.3, 0.2j, "amber", "0.7"),
+        (1.3, 0, "green", ""),
+        (None, 0, "green", ""),  # none is seen among the lines
+    ],
+)
+def test_the_circle_of_a_joint_is_told_by_its_outer_edge(radius, aside, verdict, said):
+    """Within it lines end and a dot stands; three of its sides are left free by them."""
+    ways = 12 * np.exp(1j * np.array([0.2, 1.4, 1.6, 3.3]))
+    circle = np.exp(2j * np.pi * np.arange(61) / 60)
+    joint = Element(9, VIEW, "", "circle", CORNER + 1.6 * circle, "main", CORNER, 1.6, 0.0, 2 * np.pi)
+    ink = paper()
+    for w in ways:
+        draw(ink, CORNER, CORNER + w)
+    for a, b in pairwise(CORNER + aside + (radius or 0) * circle) if radius else ():
+        draw(ink, a, b)
+    found, _ = trace([*(line(k, CORNER, CORNER + w) for k, w in enumerate(ways)), joint], ink)
+    f = judge(found[-1], 0.25, 0.15)
+    assert f.verdict == verdict
+    assert not said or f"radius {said}" in f.what
