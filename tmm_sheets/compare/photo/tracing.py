@@ -4,7 +4,8 @@ Each element is first looked for in its own place, no farther than half way to t
 is found is wiped out of the picture with a pencil's width to spare, and so are lettering and arrow heads. Elements not found are
 sought in the ink that is left, some millimetres away, turned or of another size (``displacement``). Ink left after that belongs to
 nothing (``extra_ink``). Lines that coincide in one stroke are measured together: what the eye cannot tell apart is not told apart.
-One that leaves the stroke at a small angle is told by its end (``forks``).
+One that leaves the stroke at a small angle is told by its end (``forks``). The circles of joints are told by their outer edges
+(``joints``).
 
 The displacement of an element is a similarity, two shifts, a turn and a growth, of which only what shows along its normals is
 determined: a straight line has no shift along itself and no growth; its length is measured at its ends (``line_ends``).
@@ -29,6 +30,7 @@ from tmm_sheets.compare.photo.forks import parted
 from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden, widened
 from tmm_sheets.compare.photo.ink_levels import ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.line_ends import with_ends
 from tmm_sheets.compare.photo.own_place import in_place, strips, uncovered
 from tmm_sheets.compare.photo.profiles import pixels, sample
@@ -108,8 +110,9 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     found += _displaced(absent, ink, left, wiped, owners, pale)
     found = _doubted(found, alone, ink, left, wiped, owners, pale)
     found = _beside_strokes(found, small, ink, owners, pale)
-    open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
     words = _places_of_lettering(elements, ink)
+    found = with_edges(found, ink, owners, words)
+    open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
     ended = with_ends(open_lines, ink, owners, words, pale)
     ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
     lines = {t.element.number: t for t in (*found, *ended)}
