@@ -19,6 +19,8 @@ from tmm_sheets.drawing.styles import line_type
 
 BLACK, WHITE, GREY = 64, 192, 0.25
 """Levels of black and white, and most pixels between them, as a share of the black ones; there are none but for compression."""
+FINE = 7.0
+"""Pixels per mm from which on thin lines are two pixels wide: those that are whole all over the sheet are not eaten anywhere."""
 THIN = 0.3
 """mm; width of lines up to which they are eaten."""
 LONG, BROKEN, MANY = 15.0, 0.9, 0.02

@@ -101,6 +101,7 @@ class Rectified:
     hidden : where the sheet does not show, see ``hidden.hidden_places``, or bulges
     bulging : where the paper bulges and the map does not follow, see ``bulges``
     eats : whether it eats thin lines, see ``black_and_white``
+    uneven : where the light takes letters away, if it took some, see ``light``
     """
 
     ink: Any
@@ -117,6 +118,7 @@ class Rectified:
     hidden: Mask
     bulging: Mask
     eats: bool = False
+    uneven: Mask | None = None
 
 
 def frame_lines(known: Sequence[Element]) -> ProfileLines:
