@@ -42,6 +42,7 @@ TURNED = (100 + 300j, 200 + 305j)
     ([beside(1, 100, *TURNED), beside(2, 100, *TURNED)], set()),  # truly open
     ([beside(1, 100, *TURNED), beside(2, 100, 100 + 300.8j, 200 + 304.2j)], {2}),  # no end of it stays
     ([beside(1, 100, *TURNED), beside(2, 60, 100 + 300j, 160 + 303j, view=1)], set()),  # another view
+    ([beside(1, 100, 100 + 303j, 200 + 308j)], {1}),  # neither end is near its own
     ([beside(1, 100, *TURNED), beside(2, 60, 100 + 300j, 160 + 293j)], set()),  # other ink
 ])
 def test_ink_beside_a_stroke_is_the_line_whose_ends_it_has(found, wrong):

@@ -21,6 +21,8 @@ ON, MOSTLY = 1.0, 0.6
 """mm within which lines that were found are one, and least share of the shorter one that lies so near the other."""
 ENDS, STAYS = 1.0, 0.2
 """By how much more than another line's the ends of one, or the better one of them, may be off for it to be the line as well, mm."""
+ASTRAY = 2.0
+"""mm; of a line that was drawn askew one end is no farther off."""
 
 
 def others_in_stroke(found: Sequence[Trace], ink: Any, owners: Owners, words: Any, level: float) -> set[int]:
@@ -48,7 +50,7 @@ def _others(some: Sequence[Trace]) -> list[Trace]:
     ends = np.array([np.abs([by for by in t.ends if np.isfinite(by)]).max(initial=0.0) for t in some])
     stays = np.array([_stays(t) for t in some])
     likely = ends <= ends.min() + ENDS
-    likely &= stays <= stays[likely].min() + STAYS
+    likely &= stays <= min(stays[likely].min() + STAYS, ASTRAY)
     return [t for t, may in zip(some, likely, strict=True) if not may]
 
 
