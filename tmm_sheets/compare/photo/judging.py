@@ -34,9 +34,9 @@ SHORT = 12.0
 SOFT_TOLERANCE = 0.15  # mm added in a picture that is not sharp
 IN_REACH = marked("within a pencil's reach")
 TOO_NEAR = marked("not measurable: too near to others")
-CROWDED = 0.55
+CROWDED, CROWDED_THIN = 0.55, 0.8
 """Share of a line near which no other is drawn below which its own ink cannot be told from theirs to twice a tolerance: it takes
-the edge of theirs."""
+the edge of theirs, a thin line more so."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,7 +182,8 @@ def _loosely_judged(e: Element) -> bool:
 
 def _crowded(t: Trace, tolerance: float) -> bool:
     """Whether a line seems off in its place for the ink of others that run near most of it; a small outline by any ink there."""
-    if t.element.kind == "circle" or t.free >= CROWDED or t.deviation <= tolerance:
+    thin = t.element.kind == "line" and t.element.style in LOOSE_STYLES
+    if t.element.kind == "circle" or t.free >= (CROWDED_THIN if thin else CROWDED) or t.deviation <= tolerance:
         return False
     return t.deviation <= 2 * tolerance or _tiny(t.element)
 
