@@ -16,7 +16,7 @@ from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
 from tmm_sheets.compare.photo import built_photo, light, numbers_read, placed_views, rectification, tracing
-from tmm_sheets.compare.photo.black_and_white import FINE, eats, without_grey
+from tmm_sheets.compare.photo.black_and_white import eaten
 from tmm_sheets.compare.photo.fit_check import MATCH
 from tmm_sheets.compare.photo.image_report import image_report
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
@@ -152,8 +152,8 @@ def examine(
         found, traces = replace(found, uneven=uneven), seen
         middle, sides = box.centre, {"width": f"{box.width:.0f}", "height": f"{box.height:.0f}"}
         notes = (*notes, tell(UNEVEN).format(file=path.name, x=f"{middle.real:.0f}", y=f"{middle.imag:.0f}", **sides))
-    if without_grey(picture.grey) and (found.scale < FINE or eats(traces)):
-        found = replace(found, eats=True)
+    if (some := eaten(picture.grey, traces, found.scale)) != "nothing":
+        found = replace(found, eats=some)
         notes = (*notes, tell(EATEN).format(file=path.name))
     findings = [judge(t, pencil, found.uncertainty, found.soft, found.eats) for t in traces]
     if (tolerance := tolerance_of(pencil, found.uncertainty, found.soft)) > ROUGH:

@@ -11,7 +11,7 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.findings import Finding, millimetres, of_radius, shifted, turned
-from tmm_sheets.compare.photo.black_and_white import may_be_eaten, whole
+from tmm_sheets.compare.photo.black_and_white import Eaten, may_be_eaten, whole
 from tmm_sheets.compare.photo.torn import HALF
 from tmm_sheets.compare.photo.traces import Trace, open_line
 from tmm_sheets.compare.report import verdict
@@ -82,7 +82,7 @@ class _Deviation(NamedTuple):
         return self.off / self.allowed
 
 
-def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False, eats: bool = False) -> PhotoFinding:
+def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False, eats: Eaten = "nothing") -> PhotoFinding:
     """Judge a trace.
 
     Parameters
@@ -95,12 +95,12 @@ def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False, eats:
         Whether the picture is not sharp: the tolerance is wider, and the ends of thin lines, which fade near others, are not
         judged.
     eats
-        Whether the picture eats thin lines (see ``black_and_white``): what that may be the reason of is not judged.
+        What the picture eats of thin lines (see ``black_and_white``): what that may be the reason of is not judged.
     """
-    if eats and may_be_eaten(t, tolerance := tolerance_of(pencil, uncertainty, soft)):
+    if may_be_eaten(t, tolerance := tolerance_of(pencil, uncertainty, soft), eats):
         said = tell("not measurable: eaten by the black and white picture")
         return PhotoFinding(t.element, "green", 0.0, said, t.element.middle, Trace(t.element, "eaten"), tolerance)
-    return _with_head(_in_pieces(_line(whole(t) if eats else t, pencil, uncertainty, soft)))
+    return _with_head(_in_pieces(_line(t if eats == "nothing" else whole(t), pencil, uncertainty, soft)))
 
 
 def tolerance_of(pencil: float, uncertainty: float, soft: bool) -> float:
