@@ -46,8 +46,8 @@ EATEN = marked(
     "missing is not judged; photograph again without the filter (no document mode)"
 )
 UNEVEN = marked(
-    "{file}: a flash or the edge of a shadow has taken lettering away on {width} x {height} mm about x = {x}, y = {y}: what is not "
-    "seen of it is not judged; photograph again in even light"
+    "{file}: a flash or the edge of a shadow has taken lettering or thin lines away, about (x; y) = {places} mm: what is not seen "
+    "of them is not judged; photograph again in even light"
 )
 ROUGH = 0.8
 """mm of tolerance from which on it is told at the top that little can be said."""
@@ -148,10 +148,10 @@ def examine(
     traces, extra = tracing.trace(known, found.ink, found.hidden)
     uneven = light.uneven_places(picture.grey, found.map)
     seen = light.without_taken(traces, uneven)
-    if (box := light.taken(traces, seen)) is not None:
+    if dim := light.taken(traces, seen):
         found, traces = replace(found, uneven=uneven), seen
-        middle, sides = box.centre, {"width": f"{box.width:.0f}", "height": f"{box.height:.0f}"}
-        notes = (*notes, tell(UNEVEN).format(file=path.name, x=f"{middle.real:.0f}", y=f"{middle.imag:.0f}", **sides))
+        where = ", ".join(f"({z.real:.0f}; {z.imag:.0f})" for z in dim)
+        notes = (*notes, tell(UNEVEN).format(file=path.name, places=where))
     if (some := eaten(picture.grey, traces, found.scale)) != "nothing":
         found = replace(found, eats=some)
         notes = (*notes, tell(EATEN).format(file=path.name))

@@ -21,6 +21,8 @@ ABOUT, STEEP = 7, 0.9
 """mm within which a shadow begins, and brightness of its dark side as a share of the other up to which its edge is steep."""
 TAKEN = 0.3
 """Share of an element's place in such light from which on nothing is told of what is not seen of it."""
+APART = 50.0
+"""mm from which on two places are told of."""
 LETTERING = ("absent lettering", "part of lettering")
 
 
@@ -43,10 +45,13 @@ def without_taken(traces: Sequence[Trace], uneven: Mask) -> list[Trace]:
     return [Trace(t.element, "hidden") if _doubtful(t) and at(_places(t.element), uneven).mean() >= TAKEN else t for t in traces]
 
 
-def taken(before: Sequence[Trace], after: Sequence[Trace]) -> Box | None:
-    """What the light took of the sheet: the box of all that, None where it took nothing."""
-    gone = [t.element.points for s, t in zip(before, after, strict=True) if s is not t]
-    return Box.around(np.concatenate(gone)) if gone else None
+def taken(before: Sequence[Trace], after: Sequence[Trace]) -> list[complex]:
+    """About where the light took something of the sheet, mm; nothing where it took nothing."""
+    places: list[complex] = []
+    for middle in (t.element.middle for s, t in zip(before, after, strict=True) if s is not t):
+        if all(abs(middle - z) > APART for z in places):
+            places.append(middle)
+    return places
 
 
 def _doubtful(t: Trace) -> bool:
