@@ -117,7 +117,8 @@ def _in_pieces(f: PhotoFinding) -> PhotoFinding:
         what = (tell("ink in parts of its place only: it lies elsewhere, or pieces of it are seen") if half else
                 tell("not seen; lines as thin as it are in pieces in this picture"))
     else:
-        what = f"{f.what}; {tell('only pieces of it are seen')}"
+        pieces = tell("only pieces of it are seen")
+        what = f"{f.what}; {pieces}"
     return replace(f, verdict="amber", what=what)
 
 
