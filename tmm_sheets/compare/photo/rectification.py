@@ -21,6 +21,7 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo import fit_check, frame_fit, frame_search, patches
+from tmm_sheets.compare.photo.black_and_white import Eaten
 from tmm_sheets.compare.photo.bulges import about, bulge_notes, over_bulges
 from tmm_sheets.compare.photo.fit_check import MATCH, FitCheck
 from tmm_sheets.compare.photo.frame_search import FoundFrame
@@ -101,7 +102,8 @@ class Rectified:
     check : what is to be said of the fit
     hidden : where the sheet does not show, see ``hidden.hidden_places``, or bulges
     bulging : where the paper bulges and the map does not follow, see ``bulges``
-    eats : whether it eats thin lines, see ``black_and_white``
+    eats : what it eats of thin lines, see ``black_and_white``
+    uneven : where the light takes letters away, if it took some, see ``light``
     """
 
     ink: Any
@@ -117,7 +119,8 @@ class Rectified:
     check: FitCheck
     hidden: Mask
     bulging: Mask
-    eats: bool = False
+    eats: Eaten = "nothing"
+    uneven: Mask | None = None
 
 
 def frame_lines(known: Sequence[Element]) -> ProfileLines:

@@ -32,6 +32,7 @@ from tmm_sheets.compare.photo.ink_levels import ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.line_ends import with_ends
+from tmm_sheets.compare.photo.one_stroke import others_in_stroke
 from tmm_sheets.compare.photo.own_place import in_place, strips, uncovered
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
@@ -230,7 +231,7 @@ def _beside_strokes(found: Sequence[Trace], small: Sequence[Element], ink: Any, 
             paint(lines, t.element, t.at, 0)
             paint(taken, t.element, t.at, CLOSE)
     usual = _usual(found)
-    out = []
+    moved: dict[int, Trace] = {}
     for t in found:
         if t.status in ("shared", "dense") and t.element.kind == "line":
             other = beside(t, stations(t.element, False), ink, lines, taken, owners, level)
@@ -238,9 +239,11 @@ def _beside_strokes(found: Sequence[Trace], small: Sequence[Element], ink: Any, 
             # Paler lines were rubbed out, or are the edges of others.
             if other is None or other.darkness <= PALE * dark:
                 other = parted(t, ink, words, owners, dark) if dark else None
-            t = other or t
-        out.append(t)
-    return out
+            if other is not None:
+                moved[t.element.number] = other
+    for number in others_in_stroke(list(moved.values()), ink, owners, words, level):
+        del moved[number]
+    return [moved.get(t.element.number, t) for t in found]
 
 
 def _dots(small: Sequence[Element], found: Sequence[Trace], ink: Any, words: Any, hidden: Mask) -> list[Trace]:
