@@ -431,7 +431,8 @@ def _head(t: Trace, paper: _Paper) -> tuple[Head, _End | None]:
         return ("there" if has else "absent" if here.headless() else "unknown"), here
     part = next(here.likeness(NEAR, SIZES)).part
     bare = here.bare() and (alone or part >= HALF)
-    whole = there.has_head(SURELY, VERY_LIKE, WHOLE)
+    seen = next(there.likeness(NEAR, SIZES)).part
+    whole = seen >= WHOLE and there.has_head(SURELY, VERY_LIKE, WHOLE)
     if whole and (bare or (alone and here.empty(SCARCELY))):
         return "reversed", here
     if has and alone:
@@ -442,6 +443,6 @@ def _head(t: Trace, paper: _Paper) -> tuple[Head, _End | None]:
     # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
     if here.lined >= LINED and not paper.others_begin(t.element, begin, way) and there.has_head(SURELY, ALONE, WHOLE):
         return "reversed", here
-    if whole or (not alone and there.better_seen().has_head(SURELY, VERY_LIKE, HALF)):
+    if whole or (not alone and seen >= HALF and there.better_seen().has_head(SURELY, VERY_LIKE, HALF)):
         return "doubled", here
     return ("there" if has else "absent" if here.headless() else "unknown"), here
