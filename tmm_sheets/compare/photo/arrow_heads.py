@@ -251,8 +251,9 @@ class _Paper:
         back = np.arange(-AHEAD, head + BEHIND + FARTHER[-1] + STEP, STEP)
         ink, others, letters, hidden = self._beside(e, tip, way, back)
         dark = own[MIDDLE].max()
-        wide = ACROSS * float((own - own.min() > 0.5 * (dark - own.min())).sum())
-        if wide >= BROAD * 2 * _half_width(e):
+        inked = own - own.min() > 0.5 * (dark - own.min())
+        wide = ACROSS * float(inked.sum())
+        if np.abs(ASIDE[~inked]).min() >= BROAD * _half_width(e):
             return None
         before = (back >= 2 * STEP) & (back <= head + 2 * SHAFT)
         lined = float((ink[before][:, MIDDLE].max(1) > 0.5 * dark).mean())
