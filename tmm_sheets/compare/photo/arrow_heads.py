@@ -253,7 +253,9 @@ class _Paper:
         dark = own[MIDDLE].max()
         inked = own - own.min() > 0.5 * (dark - own.min())
         wide = ACROSS * float(inked.sum())
-        if np.abs(ASIDE[~inked]).min() >= BROAD * _half_width(e):
+        left, right = (ASIDE[side & ~inked] for side in (ASIDE < 0, ASIDE >= 0))
+        # With paper to both sides, or it is others' ink that begins there.
+        if len(left) and len(right) and right.min() - left.max() - ACROSS >= BROAD * 2 * _half_width(e):
             return None
         before = (back >= 2 * STEP) & (back <= head + 2 * SHAFT)
         lined = float((ink[before][:, MIDDLE].max(1) > 0.5 * dark).mean())
