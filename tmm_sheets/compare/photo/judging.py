@@ -127,6 +127,11 @@ def _with_head(f: PhotoFinding) -> PhotoFinding:
     e, head = f.element, f.trace.head
     if head == "reversed":
         return replace(f, verdict="red", deviation=e.length, what=tell("the arrow points the other way"))
+    if head == "doubled" and f.verdict == "green":
+        said = tell("an arrow head at its beginning, where none belongs: it or one in a stroke with it points the other way")
+        return replace(f, verdict="amber", what=said, at=complex(e.points[0]))
+    if head == "absent" and f.verdict != "green":  # what was drawn elsewhere has its head there
+        return f
     if head in ("absent", "left out"):
         no_head = tell("no arrow head here") if head == "absent" else tell("only a thin line here, and no arrow head")
         what = no_head if f.verdict == "green" else f"{f.what}; {no_head}"
