@@ -159,3 +159,10 @@ def test_what_lies_along_one_line_is_placed_by_its_ends(vectors, by):
     there = [made._there(v, _Try(0.0, 0, 0, place, 1.0)).placing for v, place in zip((first, second), aside, strict=True)]
     assert abs(there[0].shift - PLACES[0].shift) < 1e-9
     assert there[1] == aside[1]
+
+
+def test_a_single_curve_has_no_ends_to_be_known_by():
+    of, (line,) = view(1, ALONG[:1])
+    curve = replace(line, kind="curve", points=np.array([0j, 20 + 15j, 40 + 2j, 60 + 20j]))
+    made = search([(of, [curve], drawn([line], PLACES[0], "whole"))])
+    assert not made._ends(of, PLACES[0])

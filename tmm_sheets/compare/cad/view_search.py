@@ -298,7 +298,10 @@ class Search:
 
     def _ends(self, v: ElementView, placing: Placing) -> bool:
         """Whether the longest line of a view, at a scale one may choose, is in the drawing and no longer there."""
-        whole = max((z for z, _ in _together([e.points for e in self.main[v]])), key=lambda z: float(abs(z[1] - z[0])))
+        straight = [z for z, _ in _together([e.points for e in self.main[v]])]
+        if not straight:
+            return False  # a single curve
+        whole = max(straight, key=lambda z: float(abs(z[1] - z[0])))
         a, b = placing(whole)
         u = (b - a) / max(abs(b - a), 1e-9)
         inside, beyond = np.linspace(a, b, MOST // 10), np.array([a - OVER * u, b + OVER * u])
