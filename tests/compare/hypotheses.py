@@ -87,7 +87,7 @@ class Slipping(Hand):
                     if made.ndim:
                         made[k] = slip.ways[step](at, made, k)
                     else:
-                        made = np.array(slip.ways[step](at, made, k))
+                        made = np.array(slip.ways[step](at, np.broadcast_to(made, k + 1), k))
         return made
 
     def measured(self, e: Measurable) -> float:

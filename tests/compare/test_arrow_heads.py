@@ -245,3 +245,58 @@ def test_a_head_seen_beside_its_line_is_not_missed():
     e = arrow(1, A, B)
     found = heads([e], [e], [(B + 0.45j * WAY, BACK[1])])
     assert found[0].head != "absent"
+
+
+@pytest.mark.parametrize(
+    ("at", "said"),
+    [
+        ([BACK], ["there", "there"]),
+        ([BACK, OTHER], ["doubled", "doubled"]),  # either may be the one
+        ([OTHER], ["reversed", "reversed"]),
+        ([], ["absent", "absent"]),
+    ],
+)
+@pytest.mark.parametrize("by", [0.0, 0.1])
+def test_a_head_at_the_beginning_of_a_stroke_of_two_vectors_is_one_too_many(at, said, by):
+    known = [arrow(1, A, B), arrow(2, A + by * WAY, B + by * WAY)]
+    found = [t.head for t in heads(known, known, at)]
+    # With nothing to be seen of its own tip no more is said of it.
+    assert found == said or (at != [BACK, OTHER] and set(found) <= {*said, "unknown", "doubled" if at else "unknown"})
+
+
+@pytest.mark.parametrize("short", [12, 20])
+def test_a_shorter_vector_of_the_stroke_that_has_its_head_is_not_asked(short):
+    """Nor one beside which another is known to point the other way."""
+    known = [arrow(1, A, B), arrow(2, A, B), arrow(3, A, A + short * WAY)]
+    there = A + short * WAY, BACK[1]
+    assert [t.head for t in heads(known, known, [BACK, OTHER, there])] == ["doubled", "doubled", "there"]
+    assert [t.head for t in heads(known, known, [BACK, OTHER])] == ["unknown", "unknown", "reversed"]
+
+
+@pytest.mark.parametrize("turn", [0.0, np.pi])
+def test_a_head_that_belongs_at_the_beginning_is_none_too_many(turn):
+    """Another vector ends there, on the stroke or on its other side."""
+    known = [arrow(1, A, B), arrow(2, A, B), arrow(3, A + 20 * WAY * np.exp(1j * turn), A)]
+    found = heads(known, known, [BACK, (A, float(np.angle(-WAY * np.exp(1j * turn))))])
+    assert all(t.head in ("there", "unknown") for t in found)
+
+
+@pytest.mark.parametrize(("at", "head"), [([BACK], "there"), ([], "absent"), ([OTHER], "reversed")])
+def test_a_force_along_a_link_has_its_head_beyond_the_edges_of_the_link(at, head):
+    link = line(2, A - 2 * WAY, B + 30 * WAY, "main")
+    known = [arrow(1, A, B), link]
+    assert heads(known, known, at)[0].head == head
+
+
+@pytest.mark.parametrize(("wide", "head"), [(0, "absent"), (1.2, "unknown")])
+def test_a_stroke_as_broad_as_a_head_hides_it(wide, head):
+    e = arrow(1, A, B)
+    beside = [line(2, A + 1j * off * WAY, B + 1j * off * WAY, "vector") for off in np.arange(-wide / 2, wide / 2 + 0.1, 0.3)]
+    assert heads([e], [e, *beside], [])[0].head == head
+
+
+@pytest.mark.parametrize(("deviation", "said"), [(0.0, "no arrow head here"), (3.0, "3.0 mm too far up")])
+def test_of_a_vector_drawn_elsewhere_no_head_is_missed_in_its_place(deviation, said):
+    e = arrow(1, 300 + 300j, 340 + 300j)
+    t = Trace(e, "measured", shift=1j * deviation, deviation=deviation, at=e.points + 1j * deviation, head="absent")
+    assert judge(t, 0.25, 0.15).what == said

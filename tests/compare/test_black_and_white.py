@@ -5,7 +5,7 @@ import pytest
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.photo.black_and_white import eats, without_grey
+from tmm_sheets.compare.photo.black_and_white import eaten, eats, without_grey
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.traces import Trace
 from tmm_sheets.drawing.labels import text_box
@@ -61,10 +61,31 @@ def test_thin_lines_are_in_pieces_all_over_the_sheet(traces, does):
 ])
 def test_what_may_be_eaten_is_not_judged_and_what_is_clear_is(trace, seen, eaten):
     assert judge(trace, 0.25, 0.15).verdict == seen
-    f = judge(trace, 0.25, 0.15, eats=True)
+    f = judge(trace, 0.25, 0.15, eats="lines")
     assert f.verdict == eaten
     assert not f.unknown
 
 
+BLACK_ON_WHITE, PAPER = np.repeat(np.array([255, 0], np.uint8), [900, 100])[None].repeat(60, 0), np.full((60, 1000), 180, np.uint8)
+
+
+@pytest.mark.parametrize(("grey", "broken", "scale", "some"), [
+    (BLACK_ON_WHITE, 0, 3.5, "ends"), (BLACK_ON_WHITE, 10, 3.5, "lines"), (BLACK_ON_WHITE, 0, 11.8, "nothing"),  # a fine scan
+    (BLACK_ON_WHITE, 10, 11.8, "lines"), (PAPER, 10, 3.5, "nothing")])  # fmt: skip
+def test_what_a_picture_eats(grey, broken, scale, some):
+    traces = [found("measured")] * 90 + [found("measured", covered=0.8)] * broken
+    assert eaten(grey, traces, scale) == some
+
+
+@pytest.mark.parametrize(("trace", "judged"), [
+    (found("measured", ends=(0.0, -6.0)), "green"), (found("measured", "main", ends=(0.0, -6.0)), "red"),
+    (found("measured", deviation=0.6), "green"), (found("measured", deviation=4.0, covered=0.7), "red"),
+    (found("missing", length=20, covered=0.2), "red"), (found("covered"), "amber"),
+    (lettering("part of lettering", "F10"), "green"), (lettering("part of lettering", "F10", 6j), "amber"),
+    (lettering("absent lettering", "7"), "amber")])  # fmt: skip
+def test_where_lines_are_whole_only_ends_and_parts_of_letters_are_eaten(trace, judged):
+    assert judge(trace, 0.25, 0.15, eats="ends").verdict == judged
+
+
 def test_a_sound_line_stays_measured():
-    assert judge(found("measured", covered=0.7), 0.25, 0.15, eats=True).trace.status == "measured"
+    assert judge(found("measured", covered=0.7), 0.25, 0.15, eats="lines").trace.status == "measured"

@@ -41,7 +41,7 @@ def examined(elements, hidden=None):
     ink = photographed(elements)
     if hidden is not None:
         ink[np.kron(hidden, np.ones((round(SCALE), round(SCALE)), bool))] = 0
-    found = SimpleNamespace(ink=ink, hidden=hidden, uncertainty=0.15, soft=False, eats=False)
+    found = SimpleNamespace(ink=ink, hidden=hidden, uncertainty=0.15, soft=False, eats="nothing", uneven=None)
     findings = [judge(t, 0.25, 0.15) for t in tracing.trace(KNOWN.elements, ink, hidden)[0]]
     built = built_photo.built_otherwise(SHAPER, KNOWN, findings, ink, hidden)
     return built, built_photo.as_built(findings, built, found, 0.25)[0] if built else findings

@@ -231,3 +231,14 @@ def test_the_report_as_a_page(compared):
     assert "<script" not in text
     assert "http" not in text.replace("http-equiv", "")
     assert page(report, ".pdf", "").startswith(b"%PDF")
+
+
+def test_what_was_said_of_a_view_before_is_not_said_again(compared):
+    """A view that follows leads back to it; in the terminal all are in one line."""
+    _, found, _ = compared
+    told = cad_story.mistakes(found, cad_report.gone(found.outcome))
+    one, *others = (m for m in told if m.named and m.what.startswith("the Cor"))
+    assert not one.again
+    assert others
+    assert all(one.where in m.again and m.what == one.what for m in others)
+    assert len(listed([one, *others])) == 3

@@ -12,6 +12,7 @@ from tmm_sheets.compare.legend import around, legend
 from tmm_sheets.compare.photo import image_report, overlay
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.drawing.marks import Trace as By
 
 PLAN, TABLE = (ElementView(n, name, Box(0, 0, 841, 594)) for n, name in enumerate(("plan", "table"), 1))
 
@@ -28,6 +29,22 @@ def finding(status, view=PLAN, deviation=0.0, kind="line", name=""):
 ])
 def test_what_may_be_right_is_not_called_wrong(off, said):
     assert counted([finding("measured", deviation=by) for by in off]) == said
+
+
+@pytest.mark.parametrize(("role", "style", "length", "by", "verdict"), [
+    ("link", "main", 40, 0.6, "amber"), ("table", "main", 40, 0.6, "green"), ("frame", "thin", 40, 0.6, "green"),
+    ("table", "main", 40, 1.0, "red"), ("link", "thin", 40, 0.6, "amber"), ("link", "thin", 10, 0.6, "green"),
+    ("link", "thin", 10, 1.0, "red"), ("vector", "main", 10, 0.6, "amber"), ("link", "thin", 10, 0.3, "green")])  # fmt: skip
+def test_rules_of_tables_and_short_helper_lines_are_told_when_off_for_sure(role, style, length, by, verdict):
+    e = Element(1, PLAN, "", "line", np.array([0, length + 0j]), style, by=By(role, "", ""))
+    assert judge(Trace(e, "measured", shift=1j * by, deviation=by, at=e.points + 1j * by), 0.25, 0.15).verdict == verdict
+
+
+@pytest.mark.parametrize(("free", "style", "verdict"), [(0.7, "thin", "green"), (0.9, "thin", "amber"), (0.7, "main", "amber"),
+                                                        (0.5, "main", "green")])  # fmt: skip
+def test_a_thin_line_among_others_takes_their_edge(free, style, verdict):
+    e = Element(1, PLAN, "", "line", np.array([0, 40 + 0j]), style, by=By("link", "", ""))
+    assert judge(Trace(e, "measured", shift=0.6j, deviation=0.6, at=e.points + 0.6j, free=free), 0.25, 0.15).verdict == verdict
 
 
 @pytest.mark.parametrize(("name", "said"), [

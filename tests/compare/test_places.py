@@ -76,6 +76,38 @@ def test_the_worst_speaks_for_a_place_and_lettering_for_itself():
     assert alone.findings == (letter,)
 
 
+def in_pieces(number, a, b, pieces=True):
+    """A line that is seen in pieces, or not at all."""
+    e = Element(number, PLAN, f"a{number}", "line", np.array([a, b], complex), "main")
+    return judge(Trace(e, "missing", covered=0.5 if pieces else 0.0, pieces=pieces), 0.25, 0.15)
+
+
+@pytest.mark.parametrize(("other", "expected"), [
+    (in_pieces(2, 0, 50), [2]), (in_pieces(2, 80 + 30j, 50), [2]),  # its twin, and a line from the point that is off
+    (in_pieces(2, 80 + 30j, 0), [1, 1]), (in_pieces(2, 80 + 30j, 50, pieces=False), [1, 1]),  # left out
+])
+def test_what_is_in_pieces_from_a_point_that_is_off_was_drawn_from_there(other, expected):
+    assert [len(p.findings) for p in places([line(1, 0, 50, 8j), other], [])] == expected
+
+
+def test_lines_between_which_nothing_decides_are_told_as_such():
+    either = [line(1, 0, 50, 4j, status="beside"), line(2, 0, 50, 4j, status="beside"), line(3, 80 + 30j, 50, 3j)]
+    (place,) = places(either, [])
+    assert {f.element.number for f in place.findings} == {1, 2, 3}
+    place = replace(place, findings=tuple(either))
+    assert image_story.said(place).endswith("; it may be instead: line a2; here also: line a3")
+
+
+@pytest.mark.parametrize(("high", "beside", "rim"), [(0.5, 0.4, True), (0.5, 2.0, False), (1.0, 0.4, False)])
+def test_a_strip_beside_what_was_wiped_out_is_its_rim(high, beside, rim):
+    def rows(low, high):
+        return slice(round((PAPER.y1 - 300 - high) * SCALE), round((PAPER.y1 - 300 - low) * SCALE))
+
+    left, wiped = (np.zeros((round(PAPER.height * SCALE), round(PAPER.width * SCALE)), np.uint8) for _ in range(2))
+    left[rows(0, high), 1200:1500], wiped[rows(high + beside - 0.3, high + beside + 1), 1000:1700] = 90, 255
+    assert len(extra_ink.extra_ink(left, 18.0, np.zeros_like(left), wiped)) == (not rim)
+
+
 @pytest.mark.parametrize(("extra", "expected"), [
     ([ink(10 + 0.5j, 40 + 2.5j)], [(1, 1, 0)]),  # by which it was found
     ([ink(10 - 3j, 40 - 3j)], [(1, 0, 1)]),

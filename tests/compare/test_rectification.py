@@ -16,9 +16,9 @@ from tmm_sheets.compare.photo.fit_check import FitCheck
 from tmm_sheets.compare.photo.frame_fit import FrameFit, initial_map, sides_near
 from tmm_sheets.compare.photo.frame_search import FoundFrame
 from tmm_sheets.compare.photo.frame_sides import FrameGuess, follow_sides, inked, side_moved_to_ink
-from tmm_sheets.compare.photo.map_fit import Seen, fit_map, fit_waves
-from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, RELIEF, Map, heights, homography
-from tmm_sheets.compare.photo.surface import FOCUS, camera_foot, fit_surface
+from tmm_sheets.compare.photo.map_fit import FOCUS, Seen, camera_foot, fit_map, fit_waves
+from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, PAPER, RELIEF, Map, heights, homography
+from tmm_sheets.compare.photo.surface import fit_surface
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 
@@ -121,7 +121,15 @@ def test_the_foot_of_the_camera_is_told_by_the_perspective():
     down = np.cross(away, right)
     x, y, z = np.stack((right, down, away)) @ (np.stack((CORNERS.real, CORNERS.imag, 0 * CORNERS.real)) - eye[:, None])
     m = Map(0j, 1.0, homography(FOCUS * (x + 1j * y) / z, CORNERS))
-    assert abs(camera_foot(m) - (500 + 200j)) < 1e-6
+    foot, error = camera_foot(m)
+    assert abs(foot - (500 + 200j)) < 1e-6
+    assert error < 100
+
+
+@pytest.mark.parametrize(("turn", "margin", "anywhere"), [(0.0, 0.0, True), (1.5, 0.0, False), (0.0, 30.0, False)])
+def test_a_picture_that_was_made_a_rectangle_tells_nothing_of_the_camera(turn, margin, anywhere):
+    turned = np.conj(CORNERS - PAPER.centre) * np.exp(1j * np.radians(turn)) + margin
+    assert (camera_foot(Map(0j, 1.0, homography(turned / 500, CORNERS)))[1] > 300) is anywhere
 
 
 @pytest.mark.parametrize(("off", "points", "found"), [(0.0, 30, 0), (2.5, 30, 1), (2.5, 4, 0)])
@@ -293,6 +301,19 @@ SEEN_WHOLE = FitCheck(0.95, np.zeros(0, complex), np.zeros(0, complex), 60, 0.3,
 def test_how_many_sides_must_be_seen(sides_seen, match, sound, acceptable):
     check = replace(SEEN_WHOLE, sides=np.array(sides_seen, float), match=match)
     assert (check.sound, check.acceptable) == (sound, acceptable)
+
+
+@pytest.mark.parametrize(("first", "last", "unseen", "rim"), [
+    (0, 0, 0, 0.0), (232, 240, 0, 0.5), (232, 240, 3, 0.5), (232, 240, 4, 0.0), (236, 240, 0, 0.25), (237, 240, 0, 0.0),
+])  # fmt: skip
+def test_a_part_of_a_side_that_is_off_tells_of_paper_that_is_not_smooth(first, last, unseen, rim):
+    from tmm_sheets.compare.photo.frame_fit import _side_points
+
+    p, n, _ = _side_points()
+    m = Map(0j, 1.0, homography(CORNERS, CORNERS))
+    off, weight = np.zeros(len(p)), np.ones(len(p))
+    off[first:last], weight[232 : 232 + unseen] = -0.5, 0.0
+    assert fit_check._rim(m, Seen(p + n * off, p, n, weight)) == pytest.approx(rim, abs=1e-6)
 
 
 def test_two_sides_hold_no_sheet_of_which_a_part_is_elsewhere():

@@ -536,6 +536,47 @@ def test_a_large_dot_is_known_upon_a_letter(radius, places, room, found):
     assert stands([dot(1, CORNER, radius)], [], ink, words, 150) == found
 
 
+def on_a_line(places, radius=0.6, heads=(), usual=180):
+    """Dots of that radius upon a thin line through CORNER and a thick one beside, where they are found, by number."""
+    ink, lines = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
+    for a, b, style in ((270 + 300j, 330 + 300j, "thin"), (270 + 304j, 330 + 304j, "main")):
+        draw(ink, a, b, style)
+        ends = ((round(z.real * SCALE), round((594 - z.imag) * SCALE)) for z in (a, b))
+        cv2.line(lines, *ends, 255, round(SCALE * line_type(style).width))
+    for by in places:
+        for k in range(8):
+            draw(ink, CORNER + by, CORNER + by + (radius - 0.2) * np.exp(1j * k), "main")
+    for tip in heads:
+        fill_head(ink, CORNER + tip, 1)
+    words = np.zeros((ROWS, COLUMNS), np.uint8)
+    found = displaced_dots([dot(1, CORNER, radius)], [], lines, lines, ink, words, np.zeros((1, 1), bool), usual)
+    return {t.element.number: complex(np.round(t.shift, 0)) for t in found}
+
+
+@pytest.mark.parametrize(
+    ("places", "radius", "found"),
+    [
+        ([3 + 0j], 0.6, {1: 3 + 0j}),  # a bump on its line
+        ([-3 + 0j], 0.6, {1: -3 + 0j}),
+        ([-2 + 0.5j], 0.6, {1: -2 + 0j}),  # half upon it
+        ([], 0.6, {}),
+        ([0j], 0.6, {}),
+        ([0.3 + 0j, 3 + 0j], 0.6, {}),  # one too many, but this is in its place
+        ([1.1 + 0j], 0.6, {}),  # nearly in its place
+        ([1 + 4j], 0.5, {}),  # in the thick line: no wider than a pencil makes that
+        ([1 + 4.5j], 0.6, {1: 1 + 5j}),  # at its edge
+        ([7 + 0j], 0.6, {}),
+    ],
+)
+def test_a_dot_upon_a_line_is_a_bump(places, radius, found):
+    assert on_a_line(places, radius) == found
+
+
+def test_a_head_upon_a_line_and_black_lines_are_no_bumps():
+    assert on_a_line([], heads=[2 + 0j]) == {}
+    assert on_a_line([3 + 0j], usual=250) == {}  # a picture without grey
+
+
 @pytest.mark.parametrize(("dark", "found"), [(140, {}), (180, {1: 4 + 0j})])
 def test_a_letter_that_runs_together_is_paler_than_a_dot(dark, found):
     ink, words = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
@@ -614,3 +655,31 @@ def test_an_end_that_goes_on_paler_is_under_adhesive_tape(dark, to, short):
         draw(ink, end - 60, end + to, dark=dark)
     f = judge(trace(known, ink)[0][0], 0.25, 0.15)
     assert ("too short at its end" in f.what) == short
+
+
+@pytest.mark.parametrize(
+    ("radius", "aside", "verdict", "said"),
+    [
+        (1.6, 0, "green", ""),
+        (1.6, 0.25, "green", ""),  # a hand's reach
+        (1.75, 0, "green", ""),
+        (2.3, 0, "amber", "0.7"),
+        (2.3, 0.2j, "amber", "0.7"),
+        (1.3, 0, "green", ""),
+        (None, 0, "green", ""),  # none is seen among the lines
+    ],
+)
+def test_the_circle_of_a_joint_is_told_by_its_outer_edge(radius, aside, verdict, said):
+    """Within it lines end and a dot stands; three of its sides are left free by them."""
+    ways = 12 * np.exp(1j * np.array([0.2, 1.4, 1.6, 3.3]))
+    circle = np.exp(2j * np.pi * np.arange(61) / 60)
+    joint = Element(9, VIEW, "", "circle", CORNER + 1.6 * circle, "main", CORNER, 1.6, 0.0, 2 * np.pi)
+    ink = paper()
+    for w in ways:
+        draw(ink, CORNER, CORNER + w)
+    for a, b in pairwise(CORNER + aside + (radius or 0) * circle) if radius else ():
+        draw(ink, a, b)
+    found, _ = trace([*(line(k, CORNER, CORNER + w) for k, w in enumerate(ways)), joint], ink)
+    f = judge(found[-1], 0.25, 0.15)
+    assert f.verdict == verdict
+    assert not said or f"radius {said}" in f.what

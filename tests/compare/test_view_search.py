@@ -11,7 +11,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, DrawnStroke, Writing
 from tmm_sheets.compare.cad.laying import Laid, _to_size
 from tmm_sheets.compare.cad.line_fit import lines
-from tmm_sheets.compare.cad.view_search import FoundView, Search, distinct
+from tmm_sheets.compare.cad.view_search import FoundView, Search, _Try, distinct
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.drawing.marks import Trace
@@ -147,3 +147,22 @@ def test_a_title_is_worth_more_over_a_view_than_beside_it():
     made = search([(of, elements, strokes)], [title(of.name, places[1](210j))])
     assert [made.titled(of, place, 0.5) for place in places] == [0.5, 1]
     assert is_at(made.found()[of], places[1])
+
+
+@pytest.mark.parametrize("by", [0.0, 0.4, -1.5])
+@pytest.mark.parametrize("vectors", [ALONG, ALONG[:2], ALONG[:1]], ids=["along", "opposite", "one"])
+def test_what_lies_along_one_line_is_placed_by_its_ends(vectors, by):
+    """Being near their lines does not tell where along them the ends are; lines of two directions are left as they were fitted."""
+    (first, line), (second, star) = view(1, vectors), view(2, STAR)
+    made = search([(first, line, drawn(line, PLACES[0], "whole")), (second, star, drawn(star, PLACES[1], "whole"))])
+    aside = [place._replace(shift=place.shift + by) for place in PLACES]
+    there = [made._there(v, _Try(0.0, 0, 0, place, 1.0)).placing for v, place in zip((first, second), aside, strict=True)]
+    assert abs(there[0].shift - PLACES[0].shift) < 1e-9
+    assert there[1] == aside[1]
+
+
+def test_a_single_curve_has_no_ends_to_be_known_by():
+    of, (line,) = view(1, ALONG[:1])
+    curve = replace(line, kind="curve", points=np.array([0j, 20 + 15j, 40 + 2j, 60 + 20j]))
+    made = search([(of, [curve], drawn([line], PLACES[0], "whole"))])
+    assert not made._ends(of, PLACES[0])

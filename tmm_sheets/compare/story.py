@@ -45,7 +45,7 @@ class Picture:
 class Mistake:
     """Something done wrong: in which view, what, in how many words it needs, how bad ("red", "amber"), and what it looks like.
 
-    ``named`` where ``what`` is what was done, not how many lines are off.
+    ``named`` where ``what`` is what was done, not how many lines are off; ``again`` is said instead where a view before has that.
     """
 
     where: str
@@ -54,6 +54,7 @@ class Mistake:
     details: tuple[str, ...] = ()
     picture: Picture | None = None
     named: bool = False
+    again: str = ""
 
 
 @dataclass(frozen=True)

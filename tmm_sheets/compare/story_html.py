@@ -62,8 +62,8 @@ def _parts(story: Story, folder: str) -> Iterator[str]:
 
 def _mistake(m: Mistake) -> str:
     details = "".join(f"<li>{escape(line)}</li>" for line in m.details)
-    said = (f'<div><p class="where">{escape(m.where)}</p><h3>{escape(m.what)}</h3>' + (f"<ul>{details}</ul>" if details else "")
-            + "</div>")
+    said = (f'<div><p class="where">{escape(m.where)}</p><h3>{escape(m.again or m.what)}</h3>'
+            + (f"<ul>{details}</ul>" if details else "") + "</div>")
     return f'<article class="{m.verdict}">{said}{_picture(m.picture) if m.picture is not None else ""}</article>'
 
 

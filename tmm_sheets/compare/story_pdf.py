@@ -80,9 +80,10 @@ _LIKE = {"\u0305": "", "\u0304": "", "\u202f": " ", "\xa0": " ", "…": "...", "
 
 
 def _mistake(m: Mistake) -> Any:
+    what = _said(m.again or m.what)
     parts: list[Any] = [Spacer(0, 5), Paragraph(_said(m.where), WHERE),
-                        Paragraph(f'<font color="{SIDES[m.verdict].hexval().replace("0x", "#")}">■</font> {_said(m.what)}'
-                                  if _has("■") else _said(m.what), TEXT)]
+                        Paragraph(f'<font color="{SIDES[m.verdict].hexval().replace("0x", "#")}">■</font> {what}'
+                                  if _has("■") else what, TEXT)]
     parts += [Paragraph("– " + _said(line), SMALL) for line in m.details]
     if m.picture is not None:
         parts += [Spacer(0, 3), _picture(m.picture)]

@@ -65,18 +65,19 @@ def _mistake(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFin
                for f in others[:SHOWN]]
     if len(others) > SHOWN:
         details.append(tell("and {n} more, in the table").format(n=len(others) - SHOWN))
+    again = ""
     if built is not None:
         after = [f for f in bad if f.follows and f.element.kind == "line" and f.element.role in ("vector", "link")]
         said = [built.explained()]
         if first is not None and first != view:
-            said = [tell('the same as in view "{view}": it follows from there').format(view=first.name), *said]
+            again = tell('the same as in view "{view}": it follows from there').format(view=first.name)
         if after:
             told_all = tell("up to {by} mm off, as follows from the mistake: {lines}")
             said.append(told_all.format(by=millimetres(max(f.deviation for f in after)),
                                         lines=", ".join(dict.fromkeys(f.element.name for f in after))))
         details = [*said, *details]
     return Mistake(view.name, what, "red" if red else "amber", tuple(details), _picture(found, view, bad),
-                   named=built is not None)
+                   named=built is not None, again=again[:1].upper() + again[1:])
 
 
 def _picture(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFinding]) -> Picture | None:

@@ -21,7 +21,7 @@ from tmm_sheets.compare.cad.cad_text import meant
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines, refine
 from tmm_sheets.compare.cad.overlaps import runs
 from tmm_sheets.compare.elements import Element, ElementView, sampled
-from tmm_sheets.compare.placing import HINGE, Placing
+from tmm_sheets.compare.placing import HINGE, Placing, moved
 from tmm_sheets.construction.scale import HANDY
 from tmm_sheets.drawing.marks import Points, Role
 
@@ -63,8 +63,16 @@ TRIED, TRIED_LAST = 10, 60
 """How many places of a view are looked at, and how many in what the others leave."""
 MOST = 500
 """Most points of a view that are compared."""
+COARSE = 3
+"""Each of so many points is enough to see whether a place is worth more."""
+HOPELESS, FEW = 0.7, 0.2
+"""With less than that part of the share that is to agree, or less than that share, near lines a place is none."""
 SCALES = tuple(sorted({a / b * 10.0**k for a in HANDY for b in HANDY for k in (-1, 0, 1) if 0.1 < a / b * 10.0**k < 10}))
 """Ratios of scale factors: how much larger or smaller than ours a student may have drawn a view."""
+ROUND = 0.004
+"""How near one of them a scale is that is meant to be it, relatively."""
+SLID = 2.0
+"""How far along its only direction a view of lines upon one another may have been placed wrongly, mm."""
 
 
 def main_lines(elements: Sequence[Element]) -> list[Element]:
@@ -139,6 +147,7 @@ class Search:
             self.words.setdefault(meant(w.text), []).append(w.at)
         self.titles = [(_tokens(w.text), w.at) for w in writings if len(normal(w.text)) > 4]
         self.shapes = _of_drawing(strokes)
+        self.tips = np.concatenate([s.points[[0, -1]] for s in strokes]) if strokes else np.zeros(0, complex)
         self.free = theirs
         self.scales: dict[float | None, float] = {v.mu: p.scale for v, p in known.items() if v.mu is not None}
         self.owners: Mapping[frozenset[str], ElementView] = {}
@@ -163,7 +172,23 @@ class Search:
                           and not (left_over and self._ends(v, one.placing)))]
         found = [(self.worth(v, FoundView(one.placing, one.share)) - one.less, one) for one in tries]
         best = max(found, key=lambda x: x[0], default=None)
-        return None if best is None else FoundView(best[1].placing, best[1].share)
+        return None if best is None else self._there(v, best[1])
+
+    def _there(self, v: ElementView, one: _Try) -> FoundView:
+        """A view where it was found; what lies along one direction is where the ends of its lines say."""
+        placing, main = one.placing, self.main[v]
+        ends = np.array([moved(e, placing).points[[0, -1]] for e in main if e.kind == "line"], dtype=complex)
+        if len(ends) < len(main) or not len(self.tips):
+            return FoundView(placing, one.share)
+        along = ends[:, 1] - ends[:, 0]
+        u = along[np.abs(along).argmax()] / np.abs(along).max()
+        if np.abs((along * np.conj(u)).imag).max() > NEAR:
+            return FoundView(placing, one.share)
+        off = (self.tips[None, :] - ends.ravel()[:, None]) * np.conj(u)
+        off[np.abs(off.imag) > NEAR] = np.inf
+        by = off[np.arange(len(off)), np.abs(off).argmin(axis=1)].real
+        by = by[np.abs(by) < SLID]
+        return FoundView(placing._replace(shift=placing.shift + np.median(by) * u) if len(by) else placing, one.share)
 
     def enough(self) -> bool:
         """Whether there are lines for a changed view to be known by."""
@@ -221,8 +246,8 @@ class Search:
                 if again is not None:
                     heappush(heap, again)
                 continue
-            out[v] = FoundView(best.placing, best.share)
-            self.without(v, best.placing)
+            out[v] = self._there(v, best)
+            self.without(v, out[v].placing)
 
     def tries(self, k: int, v: ElementView, scale: float | None, least: int, taken: int, agree: float = 0.0,
               left_over: bool = False) -> Iterator[_Try]:
@@ -233,7 +258,7 @@ class Search:
         for placing in _voted(_of_sheet(self.main[v]), self.shapes, middle, scale, agree, 4 * most):
             if agree and self.free.share(placing(self.points[v][::10]), 2.0) < agree:
                 continue
-            fitted = _fitted(self.points[v], self.free, placing, scale)
+            fitted = _fitted(self.points[v], self.free, placing, scale, agree)
             if fitted is None or any(_alike(fitted, p, middle) for p in seen):
                 continue
             seen.append(fitted)
@@ -273,7 +298,10 @@ class Search:
 
     def _ends(self, v: ElementView, placing: Placing) -> bool:
         """Whether the longest line of a view, at a scale one may choose, is in the drawing and no longer there."""
-        whole = max((z for z, _ in _together([e.points for e in self.main[v]])), key=lambda z: float(abs(z[1] - z[0])))
+        straight = [z for z, _ in _together([e.points for e in self.main[v]])]
+        if not straight:
+            return False  # a single curve
+        whole = max(straight, key=lambda z: float(abs(z[1] - z[0])))
         a, b = placing(whole)
         u = (b - a) / max(abs(b - a), 1e-9)
         inside, beyond = np.linspace(a, b, MOST // 10), np.array([a - OVER * u, b + OVER * u])
@@ -312,7 +340,7 @@ def distinct(elements: Iterable[Element]) -> int:
 
 def handy(placing: Placing) -> bool:
     """Whether one may have drawn at that scale: its ratio to ours is one of handy scale factors."""
-    return abs(placing.scale / _handiest(placing) - 1) < 0.004
+    return abs(placing.scale / _handiest(placing) - 1) < ROUND
 
 
 def _handiest(placing: Placing) -> float:
@@ -421,25 +449,32 @@ def _voted(ours: _Shapes, theirs: _Shapes, about: complex, known: float | None, 
             best.setdefault(cell, []).append(n)
     weights = {cell: float(ours.weight[list(of)].sum()) for cell, of in votes.items()}
     least = agree * sum(float(w) for w, of in zip(ours.weight, ours.parts, strict=True) if len(of) == 1)
-    for cell in sorted((cell for cell, weight in weights.items() if weight >= least), key=lambda cell: -weights[cell])[:most]:
-        rows = np.array(best[cell])
-        # The longest line tells the scale best.
-        n = int(rows[ours.weight[i[rows]].argmax()])
+    # The longest line tells the scale best.
+    longest = {cell: max(best[cell], key=lambda n: ours.weight[i[n]]) for cell, weight in weights.items() if weight >= least}
+    odd = np.abs(scale[:, None] / np.array(SCALES) - 1).min(axis=1) > ROUND  # of lines alone many places are as good
+    for cell in sorted(longest, key=lambda cell: (-weights[cell], odd[longest[cell]]))[:most]:
+        n = longest[cell]
         yield Placing(complex(scale[n]), complex(at[n]) - scale[n] * about)
 
 
-def _fitted(ours: Points, theirs: KnownLines, start: Placing, known: float | None) -> Placing | None:
-    """A placing refined on the lines, without turn; at the known scale, or a handy one where it is nearly that."""
-    nudged = refine(ours, theirs, start.inverse(), (2.0, 1.0, 0.5), True, 1).placing.inverse()
+def _fitted(ours: Points, theirs: KnownLines, start: Placing, known: float | None, agree: float) -> Placing | None:
+    """A placing refined on the lines, without turn; at the known scale, or a handy one where it is nearly that.
+
+    None where few points come near lines, and far less than that share that is to ``agree``.
+    """
+    quick = refine(ours[::COARSE] if len(ours) > 40 * COARSE else ours, theirs, start.inverse(), (2.0, 1.0, 0.5), True, 1)
+    nudged = quick.placing.inverse()
     if not 0.9 < nudged.scale / start.scale < 1.1 or abs(nudged.degrees) > 3:
         nudged = start
+    elif quick.share < max(HOPELESS * agree, FEW):
+        return None
     middle = complex(ours.mean())
     scale = known or _handiest(nudged)
     if known is None and abs(nudged.scale / scale - 1) > 0.01:
         scale = nudged.scale
     level = Placing(complex(scale), complex(nudged(middle)) - scale * middle)
     found = refine(ours, theirs, level.inverse(), (1.5, 0.8, 0.4, 0.25), False, 1)
-    return found.placing.inverse() if found.share > 0.2 else None
+    return found.placing.inverse() if found.share > FEW else None
 
 
 def unused(theirs: KnownLines, known: Points, step: float = 6.0) -> KnownLines:

@@ -3,7 +3,11 @@
 About both ends of a line there is looked for ink beside it as a head has it by the drawing: more and more backwards from the tip,
 then nothing any more. It is held against what lies beside the line farther along. Only what belongs to nobody else is looked at:
 where others are drawn, letters may stand or the sheet is hidden, nothing can be told; among letters a whole head is known all the
-same. A picture that is not flat, or a hand, may have a head a little farther along the line or a little smaller.
+same, and so is bare paper. A picture that is not flat, or a hand, may have a head a little farther along the line or a little
+smaller.
+
+Of vectors in one stroke with one tip the heads lie on each other: whose is missing cannot be seen. One that was drawn the other
+way is told by its head at the beginning of the stroke, where none belongs.
 """
 
 from __future__ import annotations
@@ -42,6 +46,10 @@ SIZES = ((1.0, 1.0), (0.85, 1.0), (0.7, 1.0), (1.0, 0.7), (0.7, 0.7))
 """Length and width of heads drawn by hand by those of the drawing."""
 BESIDE = 0.22
 """mm from the edge of the line beyond which nothing of others may be: what runs along under it, a helper line, is no matter."""
+BROAD = 0.8
+"""Width of a line as a share of that of a head from which on it may hide the head."""
+ALL_ALONG, THICKEST = 0.9, 0.5
+"""Least share of a line along which a thicker one, a link, must run under it to be taken for its own ink, and mm to either side."""
 ALONG = 0.3
 """Least share of a line along which others must run under it for their ink to be part of its own."""
 SOME = 6
@@ -63,17 +71,20 @@ BARE, LITTLE, HARDLY_LIKE, OPEN, EACH = 0.2, 0.2, 0.6, 0.45, 0.15
 least part of it that must be seen in its place for it to be missed, of all of it or of each of its sides."""
 UNLIKE = 0.5
 """Likeness up to which ink in the place of a head that is on one side of the line only is another's that runs past it."""
-NOTHING = 0.1
-"""Share up to which there is nothing of a head in its place, and one that seems a little off it is another's ink."""
+NOTHING, SCARCELY = 0.1, 0.3
+"""Share up to which nothing of a head is on a side of its place, and in all of its place where a whole one is at the other end."""
 UNDER = 0.3
 """mm by which a helper line may be off a vector that it runs under, or end before it."""
 ON_LINE = 0.998
 """Cosine of the angle up to which another arrow lies on the same line."""
+TOGETHER = 1.5
+"""mm between tips up to which two heads on one line cannot be told from each other."""
 BESIDE_LINE = 0.4
 """Share of a side of a head from which on it is one beside the line, as a line that is not quite where it was found has it."""
-THIN, ENOUGH, PALE = 0.65, 3, 2.0
+THIN, ENOUGH, NEAREST, PALE = 0.65, 3, 9, 2.0
 """Ink across a line without a head, as a share of what vectors with heads have, up to which it is a helper line and the vector was
-left out; least number of those; how much darker than such a line a head would be."""
+left out; least number of those, and of how many about it the middle one is taken: where the picture is small, all lines are paler;
+how much darker than such a line a head would be."""
 LINED, MOSTLY = 0.9, 0.6
 """Least share of the way to the tip on which the line must be seen for its head to be missed, and where it is at the other end."""
 
@@ -98,6 +109,7 @@ class _End:
     own : darkness across the line elsewhere
     grown : mm by which the line is wider than it was drawn
     lined : share of the way to the tip on which the line is seen
+    lies_on : whether it lies on a thicker line
     """
 
     element: Element
@@ -108,6 +120,7 @@ class _End:
     own: Floats
     grown: float
     lined: float
+    lies_on: bool
 
     @property
     def across(self) -> float:
@@ -126,9 +139,7 @@ class _End:
         import cv2
 
         e, length = self.element, long * _length(self.element)
-        corners = (e.fills[0] - e.fills[0][0]) / (e.points[0] - e.fills[0][0])
-        most = wide * float(np.abs(corners.imag).max()) * abs(e.points[0] - e.fills[0][0])
-        half = most * self.back / length + self.grown / 2
+        half = wide * _half_width(e) * self.back / length + self.grown / 2
         inside = (np.abs(ASIDE) <= half[:, None]) & ((self.back >= 0) & (self.back <= length))[:, None]
         # As blurred as a line is.
         full = cv2.GaussianBlur(inside.astype(np.float32), (7, 5), sigmaX=0.2 / ACROSS, sigmaY=0.2 / STEP)
@@ -152,9 +163,13 @@ class _End:
 
     def has_head(self, share: float = HAS, alike: float = LIKE, part: float = SEEN) -> bool:
         """Whether there is a head in its place."""
-        written = replace(self, known=self.legible)
+        written = self.written()
         return any(h.part >= part and h.share >= share and h.alike >= alike for h in self.likeness(NEAR, SIZES)) or any(
             h.part >= WHOLE and h.share >= SURELY and h.alike >= WRITTEN for h in written.likeness(NEAR, SIZES))
+
+    def written(self) -> _End:
+        """It, if there are no letters."""
+        return replace(self, known=self.legible)
 
     def better_seen(self) -> _End:
         """Only the side of it that is seen where others hide nearly all of the other: what is left of that is mostly their edge."""
@@ -178,13 +193,19 @@ class _End:
         least, most = sorted(s.share for s in sides)
         return min(s.part for s in sides) >= WHOLE * HALF and least <= NOTHING and most > BARE
 
-    def empty(self) -> bool:
-        """Whether all of the place of a head is seen, and nothing is there."""
+    def empty(self, share: float = BARE) -> bool:
+        """Whether all of the place of a head is seen, and nothing like one is there: a head a little off would reach into it."""
         here = next(self.likeness(NEAR, SIZES))
-        return here.part >= WHOLE and here.share <= NOTHING
+        return here.part >= WHOLE and here.share <= share and here.alike <= UNLIKE
 
     def headless(self, pale: float = 1.0) -> bool:
-        """Whether the line goes on to its tip and has no head in its place, nor a little off it, nor a small one."""
+        """Whether the line goes on to its tip and has no head in its place, nor a little off it, nor a small one.
+
+        Letters may add ink to paper, and take none away.
+        """
+        return self._headless(pale) or self.written()._headless(pale)
+
+    def _headless(self, pale: float) -> bool:
         if self.lined < LINED or not self.bare(pale):
             return False
         sides = self.sides()
@@ -193,7 +214,8 @@ class _End:
         if any(s.part >= EACH and s.share >= BESIDE_LINE * pale and s.alike >= HARDLY_LIKE for s in sides):
             return False
         looked = chain(self.likeness(NEAR, SIZES), self.likeness(FARTHER, SIZES[:1]))
-        return self.one_sided() or not any(h.part >= SEEN and h.share >= LITTLE * pale and h.alike >= HARDLY_LIKE for h in looked)
+        seen = WHOLE if self.empty() else SEEN
+        return self.one_sided() or not any(h.part >= seen and h.share >= LITTLE * pale and h.alike >= HARDLY_LIKE for h in looked)
 
 
 @dataclass(frozen=True)
@@ -214,8 +236,12 @@ class _Paper:
         way = (other - tip) / length
         shaft = np.linspace(head + SHAFT, max(length - head - SHAFT, head + SHAFT + 0.5 * SHORTEST), 60)
         ink, others, letters, hidden = self._beside(e, tip, way, shaft)
-        close = np.abs(ASIDE) <= line_type(e.style).width / 2 + BESIDE
-        under = close & (others.mean(0) > ALONG)
+        pen = line_type(e.style).width / 2
+        half = max(pen, _run_under(others))
+        # In steps of pixels a line that lies under all of it shows beside it here and there.
+        covered = bool(others[:, MIDDLE].any(1).mean() > ALL_ALONG)
+        close = np.abs(ASIDE) <= half + BESIDE + covered * ACROSS
+        under = close & ((others.mean(0) > ALONG) | covered)
         free = ~_widened(others & ~close)
         own = _usual(ink, free & ~hidden & ~letters)
         if own is None:  # letters may stand along it, but not everywhere
@@ -225,11 +251,16 @@ class _Paper:
         back = np.arange(-AHEAD, head + BEHIND + FARTHER[-1] + STEP, STEP)
         ink, others, letters, hidden = self._beside(e, tip, way, back)
         dark = own[MIDDLE].max()
-        wide = ACROSS * float((own - own.min() > 0.5 * (dark - own.min())).sum())
+        inked = own - own.min() > 0.5 * (dark - own.min())
+        wide = ACROSS * float(inked.sum())
+        left, right = (ASIDE[side & ~inked] for side in (ASIDE < 0, ASIDE >= 0))
+        # With paper to both sides, or it is others' ink that begins there.
+        if len(left) and len(right) and right.min() - left.max() - ACROSS >= BROAD * 2 * _half_width(e):
+            return None
         before = (back >= 2 * STEP) & (back <= head + 2 * SHAFT)
         lined = float((ink[before][:, MIDDLE].max(1) > 0.5 * dark).mean())
         legible = ~_widened(others & ~under) & ~hidden
-        return _End(e, back, ink - own, legible & ~letters, legible, own, max(0.0, wide - line_type(e.style).width), lined)
+        return _End(e, back, ink - own, legible & ~letters, legible, own, max(0.0, wide - 2 * half), lined, half > pen)
 
     def _beside(self, e: Element, tip: complex, way: complex, back: Floats) -> tuple[Any, Any, Any, Any]:
         """Ink across a line ``back`` mm from its tip, where others are, where letters may stand, and where it is hidden."""
@@ -241,6 +272,11 @@ class _Paper:
         """Whether another arrow on the same line points to where this one begins: the head there is that one's."""
         return any(abs(z - start) < _length(e) and ((back - z) / abs(back - z) / way).real > ON_LINE for z, back in self.heads)
 
+    def shares_tip(self, e: Element, way: complex) -> bool:
+        """Whether the head of another arrow lies on its own."""
+        tip = complex(e.fills[0][0])
+        return sum(abs(z - tip) < TOGETHER and ((z - back) / abs(z - back) / way).real > ON_LINE for z, back in self.heads) > 1
+
     def others_begin(self, e: Element, start: complex, way: complex) -> bool:
         """Whether the tip of another arrow, or another line beside this one, is where this one begins."""
         return any(abs(z - start) < _length(e) for z, _ in self.heads) or self.accompanied(e, start, way)
@@ -251,6 +287,12 @@ class _Paper:
         aside = np.arange(half + 0.1, 1.1, 0.15)
         places = start + way * (np.arange(1.2, 5.0, 0.2)[:, None] + 1j * np.concatenate((-aside, aside)))
         return bool(self.owners.others(e.number, places).any())
+
+
+def _run_under(others: Any) -> float:
+    """How far to either side of a line others lie under all of it, mm."""
+    missing = np.abs(ASIDE)[others.mean(0) < ALL_ALONG].min(initial=np.inf)
+    return float(missing - 1.5 * ACROSS) if missing <= THICKEST + 1.5 * ACROSS else 0.0
 
 
 def _widened(others: Any) -> Any:
@@ -293,13 +335,29 @@ def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hi
     """
     paper = _Paper(ink, owners, words, hidden, [(complex(f[0]), complex(f[1:].mean())) for t in traces for f in t.element.fills])
     found = {k: _head(t, paper) for k, t in enumerate(traces) if _wanted(t)}
-    usual = [end.across for head, end in found.values() if head == "there" and end is not None]
-    thin = THIN * float(np.median(usual)) if len(usual) >= ENOUGH else 0.0
+    usual = [end for head, end in found.values() if head == "there" and end is not None and not end.lies_on]
     out = list(traces)
     for k, (head, end) in found.items():
+        thin = THIN * _across_about(traces[k].element, usual)
         left_out = end is not None and end.across < thin and (head == "absent" or (head == "unknown" and end.headless(PALE)))
         out[k] = replace(traces[k], head="left out" if left_out else head)
-    return out
+    told = [t.element for t in out if t.head == "reversed"]
+    return [replace(t, head="unknown") if t.head == "doubled" and any(_one_stroke(t.element, e) for e in told) else t for t in out]
+
+
+def _across_about(e: Element, ends: Sequence[_End]) -> float:
+    """How much ink vectors with heads about a line have across them; 0 where too few are known."""
+    if len(ends) < ENOUGH:
+        return 0.0
+    about = sorted(ends, key=lambda end: abs(end.element.middle - e.middle))
+    return float(np.median([end.across for end in about[:NEAREST]]))
+
+
+def _one_stroke(e: Element, other: Element) -> bool:
+    """Whether two vectors leave one point in one direction: a head at their beginning may be either's."""
+    ways = [v.points[-1] - v.points[0] for v in (e, other)]
+    alike = (ways[0] / ways[1]).real / abs(ways[0] / ways[1]) > ON_LINE
+    return bool(alike and abs(e.points[0] - other.points[0]) < TOGETHER)
 
 
 def exchanged(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hidden: Mask) -> list[Trace]:
@@ -352,6 +410,12 @@ def _length(e: Element) -> float:
     return float(abs(e.fills[0][0] - e.fills[0][1:].mean()))
 
 
+def _half_width(e: Element) -> float:
+    """Half the width of the head of an arrow, mm."""
+    way = e.points[0] - e.fills[0][0]
+    return float(np.abs(((e.fills[0] - e.fills[0][0]) / way).imag).max() * abs(way))
+
+
 def _head(t: Trace, paper: _Paper) -> tuple[Head, _End | None]:
     """What there is of a head at the tip, and at the other end when there is none; and what there is about the tip."""
     assert t.at is not None
@@ -361,20 +425,27 @@ def _head(t: Trace, paper: _Paper) -> tuple[Head, _End | None]:
     here = paper.end(t.element, tip, begin)
     if here is None:
         return "unknown", None
-    has = here.has_head()
-    if has and not here.empty():
+    alone = not paper.shares_tip(t.element, way)
+    has = here.has_head() and not here.empty()
+    if has and alone and not here.bare():
         return "there", here
     there = paper.end(t.element, begin, tip)
-    if has and not (there is not None and there.has_head(SURELY, VERY_LIKE)):
+    if there is None or here.lined < MOSTLY or paper.another_points(t.element, begin, way):
+        return ("there" if has else "absent" if here.headless() else "unknown"), here
+    part = next(here.likeness(NEAR, SIZES)).part
+    bare = here.bare() and (alone or part >= HALF)
+    seen = next(there.likeness(NEAR, SIZES)).part
+    whole = seen >= WHOLE and there.has_head(SURELY, VERY_LIKE, WHOLE)
+    if whole and (bare or (alone and here.empty(SCARCELY))):
+        return "reversed", here
+    if has and alone:
         return "there", here
-    if there is not None:
-        # The less is seen of the tip, the more must be seen of the other end.
-        part = SEEN if next(here.likeness(NEAR, SIZES)).part >= SEEN else HALF
-        bare = here.lined >= MOSTLY and here.bare() and not paper.another_points(t.element, begin, way)
-        if bare and there.better_seen().has_head(SURELY, VERY_LIKE, part):
-            return "reversed", here
-        # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
-        alone = here.lined >= LINED and not paper.others_begin(t.element, begin, way)
-        if alone and there.has_head(SURELY, ALONE, WHOLE):
-            return "reversed", here
-    return "absent" if here.headless() else "unknown", here
+    # The less is seen of the tip, the more must be seen of the other end.
+    if bare and there.better_seen().has_head(SURELY, VERY_LIKE, SEEN if part >= SEEN else HALF):
+        return "reversed", here
+    # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
+    if here.lined >= LINED and not paper.others_begin(t.element, begin, way) and there.has_head(SURELY, ALONE, WHOLE):
+        return "reversed", here
+    if whole or (not alone and seen >= HALF and there.better_seen().has_head(SURELY, VERY_LIKE, HALF)):
+        return "doubled", here
+    return ("there" if has else "absent" if here.headless() else "unknown"), here

@@ -1,15 +1,15 @@
 """Pictures without grey, as a telephone's document mode makes them: of few pixels they eat thin lines and small letters.
 
-Whether a picture does is seen by thin lines all over the sheet that are there in pieces. What is short, broken or gone of a thin
-line or of letters says nothing of the drawing then: it is told once of the picture. What stands in a wrong place is a mistake
-still, and so is what is gone of thick lines.
+Where they are there in pieces all over the sheet, what is short, broken or gone of a thin line or of letters says nothing of the
+drawing: it is told once of the picture. Where they are whole, their ends and parts of letters may be eaten still, unless there are
+many pixels. What stands in a wrong place is a mistake always, and so is what is gone of thick lines.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from tmm_sheets.drawing.styles import line_type
 
 BLACK, WHITE, GREY = 64, 192, 0.25
 """Levels of black and white, and most pixels between them, as a share of the black ones; there are none but for compression."""
+FINE = 7.0
+"""Pixels per mm from which on thin lines are two pixels wide: those that are whole all over the sheet are not eaten anywhere."""
 THIN = 0.3
 """mm; width of lines up to which they are eaten."""
 LONG, BROKEN, MANY = 15.0, 0.9, 0.02
@@ -29,12 +31,22 @@ SURE, LARGE, NOTHING = 0.85, 30.0, 0.1
 LETTERS = 3
 """Letters that are not eaten all; of lettering that stands elsewhere one less."""
 
+Eaten = Literal["nothing", "ends", "lines"]
+"""What a picture eats of thin lines, and of letters with them."""
+
 
 def without_grey(grey: Any) -> bool:
     """Whether a picture has black and white only."""
     few = grey[::3, ::3]
     black, white = float((few < BLACK).mean()), float((few > WHITE).mean())
     return black > 0 and 1 - black - white < GREY * black
+
+
+def eaten(grey: Any, traces: Sequence[Trace], scale: float) -> Eaten:
+    """What a picture of so many pixels per mm eats, by it and by what was found in it."""
+    if not without_grey(grey):
+        return "nothing"
+    return "lines" if eats(traces) else "ends" if scale < FINE else "nothing"
 
 
 def eats(traces: Sequence[Trace]) -> bool:
@@ -44,8 +56,13 @@ def eats(traces: Sequence[Trace]) -> bool:
     return bool(thin) and float(np.mean(thin)) > MANY
 
 
-def may_be_eaten(t: Trace, tolerance: float) -> bool:
-    """Whether what was found of an element, other than its ends, may be the fault of a picture that eats thin lines."""
+def may_be_eaten(t: Trace, tolerance: float, some: Eaten) -> bool:
+    """Whether what was found of an element, other than its ends, may be the fault of a picture that eats ``some`` of thin lines."""
+    if some == "ends":
+        small = _thin(t) and t.status == "measured" and tolerance < t.deviation <= 2 * tolerance
+        return small or (t.status == "part of lettering" and t.at is None)
+    if some == "nothing":
+        return False
     if t.status == "part of lettering":
         return True
     if t.status == "absent lettering":

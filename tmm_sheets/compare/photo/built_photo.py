@@ -19,6 +19,7 @@ from tmm_sheets.compare.photo.hidden import Mask
 from tmm_sheets.compare.photo.hidden import at as hidden_at
 from tmm_sheets.compare.photo.ink_levels import line_level
 from tmm_sheets.compare.photo.judging import PhotoFinding, judge
+from tmm_sheets.compare.photo.light import without_taken
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.photo.sheet_map import PAPER
@@ -141,6 +142,8 @@ def as_built(findings: Sequence[PhotoFinding], built: Built, found: Rectified, p
     elements = [f.element for f in findings]
     now = [rebuilt(e, built[e.view][1]) if e.view in built else e for e in elements]
     traces, extra = tracing.trace([e for e in now if not vanished(e)], found.ink, found.hidden)
+    if found.uneven is not None:
+        traces = without_taken(traces, found.uneven)
     of = {t.element.number: judge(t, pencil, found.uncertainty, found.soft, found.eats) for t in traces}
     return [_judged(of.get(f.element.number), f, found, pencil) for f in findings], extra
 

@@ -3,12 +3,15 @@
 A dot is too small to be measured among lines, but one in a wrong place is a round spot that belongs to nothing, and its own place
 has none: about it the picture is taken for lines and a dot, each as dark as fits best. A spot alone is no displaced dot where the
 dot is seen in its place; where lines cross, a small one shows no more than they do, and the spot is taken for it. A large dot is
-known even upon a letter: it is wider than any stroke. Of several dots that may be meant it is the one whose line leads to the spot.
+known even upon a letter: it is wider than any stroke. One upon a line is a bump: all over as dark as a dot where nothing as wide is
+drawn, and it ends all round, which a head or strokes that meet do not. Of several dots that may be meant it is the one whose line
+leads to the spot, or the one least seen in its place.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isnan, nan
 from typing import Any
 
 import numpy as np
@@ -36,11 +39,14 @@ FAINT, DARK, SMALL_DARK, SMALL = 0.3, 0.6, 0.35, 0.45
 """Darkness from which on a place belongs to a spot, and least darkness of a spot and of a dot in its place, as shares of the
 lines'; the same of dots of less than the radius, mm, which blur makes pale."""
 TOUCHED = 9
-"""Pixels about the middle of a small spot that nothing else may take, unless it lies beside a line."""
-FALLS = 0.75
+"""Pixels about the middle of a small spot that nothing else may take, unless it is no end of a line."""
+FALLS = 0.9
 """Share of its darkness below which ink falls on all sides of a spot within :data:`ALONE` mm."""
-PAST, WIDE = 1.8, 1.2
-"""mm about a spot within which a line that runs past takes an angle, rad, as none does that ends there."""
+ACROSS, OVER = 0.6, 4.0
+"""mm beside the way on of a line, and beyond its end, within which a spot may be what was drawn too far of it."""
+UNKNOWN, AS_SEEN, AS_NEAR = 1.0, 0.15, 0.3
+"""Darkness in its place, as a share of the lines', of a dot that lines would show as well; by how much one must be seen less than
+another, and by how many mm be nearer, to be meant rather."""
 COVERED = 0.3
 """Share of a small dot under lines from which on its place, where they cross, is dark with it or without."""
 TELLS = 0.15
@@ -51,6 +57,17 @@ lines', mm about its edge that are paler, and darkness of its middle: blur makes
 """
 LEADS, TOWARDS = 0.95, 0.4
 """Least share with ink of what a line has to a spot, and share of its way from which on that is no other's than its own."""
+NO_GREY = 245
+"""Darkness of lines in a black and white picture, which says nothing of how wide they are."""
+PENCIL, MEET = 0.3, 5
+"""mm by which a dot drawn by hand may be larger or aside; pixels between lines that blur fills."""
+BUMP, OWN, SPREAD, WITHIN = 0.5, 0.1, 0.4, 0.75
+"""Darkness all over a dot on lines beyond what they have, as a share of the usual, and such beyond which it is in its place; mm by
+which the places where its middle may be are wider than its radius; and how much of its radius a head beside it is wide."""
+BEYOND, PALER, ODD, CLEAR = 0.45, 0.4, 0.07, 0.25
+"""mm beyond its edge where ink ends that is darker than this share of the usual; share of the way round there that may have more
+ink than lines have, and least share that is bare."""
+RING = np.exp(2j * np.pi * np.arange(32) / 32)
 RAYS = np.exp(2j * np.pi * np.arange(16) / 16) * np.linspace(0, ALONE, 6)[:, None]  # places about a spot, mm
 
 
@@ -66,7 +83,7 @@ def displaced_dots(
     rods
         Both ends of the straight lines that belong on the sheet.
     lines
-        A picture of all other lines where they were found, 255 there.
+        A picture of all other lines, heads and short strokes where they were found, 255 there.
     taken
         The same with the dots, with room to spare.
     ink
@@ -78,28 +95,41 @@ def displaced_dots(
     usual
         How dark lines usually are.
     """
-    found: list[tuple[Element, complex, bool, bool | None]] = []
+    found: dict[complex, list[tuple[bool, float, float, Element]]] = {}
     begins, ends = np.array([(z, w) for a, b in rods for z, w in ((a, b), (b, a))], complex).reshape(-1, 2).T
     for e in some:
         least = usual * (SMALL_DARK if e.radius < SMALL else DARK)
-        spots = _spots(e, lines, taken, ink, words, FAINT * usual, least)
+        if (there := _seen_in_place(e, lines, ink, words)) > least:
+            continue
+        spots = _spots(e, (begins, ends), taken, ink, words, FAINT * usual, least)
         # Where letters stand in its own place, it may be among them.
         if e.radius >= LARGE and not len(spots) and not sample(words, pixels(e.points)).any():
             spots = _thick(e, taken, ink, usual)
+        if e.radius >= SMALL and not len(spots) and usual < NO_GREY:
+            spots = _bumps(e, some, lines, ink, words, usual)
         spots = spots[~at(spots, hidden)]
-        if len(spots) and not (there := _in_place(e, lines, ink, words, least)):
+        if len(spots):
             spot = complex(spots[np.abs(spots - e.centre).argmin()])
             its = begins[np.abs(ends - e.centre) <= ASIDE]
-            found.append((e, spot, any(_leads(z, spot, e.radius, ink, FAINT * usual) for z in its), there))
-    out: dict[complex, Trace] = {}
-    # A spot is one dot's: first of one whose line leads there, then of those that are surely not in their places, of the nearest.
-    for e, spot, _, _ in sorted(found, key=lambda f: (not f[2], f[3] is None, abs(f[1] - f[0].centre))):
-        by = spot - e.centre
-        out.setdefault(spot, Trace(e, "beside", by, deviation=abs(by), at=np.asarray(e.points + by)))
-    return list(out.values())
+            leads = any(_leads(z, spot, e.radius, ink, FAINT * usual) for z in its)
+            spot = next((z for z in found if abs(z - spot) < ASIDE), spot)  # seen from another dot
+            found.setdefault(spot, []).append((not leads, UNKNOWN if isnan(there) else there / usual, abs(spot - e.centre), e))
+    return [Trace(e, "beside", spot - e.centre, deviation=abs(spot - e.centre), at=np.asarray(e.points + spot - e.centre))
+            for spot, those in found.items() for e in _meant(those)]
 
 
-def _spots(e: Element, lines: Any, taken: Any, ink: Any, words: Any, faint: float, least: float) -> Points:
+def _meant(those: Sequence[tuple[bool, float, float, Element]]) -> list[Element]:
+    """Whose a spot is: of dots whose line leads there, if it does, the one least seen in its place, and of such the nearest.
+
+    Several, where nothing tells one from another.
+    """
+    leads, seen, _, _ = min(those, key=lambda t: t[:2])
+    those = [t for t in those if t[0] == leads and t[1] <= seen + AS_SEEN]
+    nearest = min(t[2] for t in those)
+    return [t[3] for t in those if t[2] <= nearest + AS_NEAR]
+
+
+def _spots(e: Element, rods: tuple[Points, Points], taken: Any, ink: Any, words: Any, faint: float, least: float) -> Points:
     """Middles of spots about a dot's place that may be this dot: from ``faint`` on they are seen, ``least`` dark in the middle."""
     import cv2
 
@@ -118,7 +148,7 @@ def _spots(e: Element, lines: Any, taken: Any, ink: Any, words: Any, faint: floa
         round_ = max(w, h) <= min(ROUND * min(w, h), (2 * e.radius + WIDER) * SCALE) and area > FULL * w * h
         if (round_ and SIZES[0] * size < area < SIZES[1] * size and max(LEAST, e.radius + ASIDE) < abs(z - e.centre) < FAR
                 and int(ink[here][labels == k].max()) > least and _alone(seen, stats[k])
-                and (e.radius >= SMALL or clear[round(middles[k, 1]), round(middles[k, 0])] or _aside(z, lines, ink))):  # fmt: skip
+                and (e.radius >= SMALL or clear[round(middles[k, 1]), round(middles[k, 0])] or _aside(z, rods, ink))):  # fmt: skip
             out.append(z)
     return np.array(out, complex)
 
@@ -130,9 +160,7 @@ def _thick(e: Element, taken: Any, ink: Any, usual: float) -> Points:
     middle, half = complex(pixels(np.array([e.centre]))[0]), round((FAR + ROOM) * SCALE)
     top, left = max(round(middle.imag) - half, 0), max(round(middle.real) - half, 0)
     here = (slice(top, round(middle.imag) + half), slice(left, round(middle.real) + half))
-    side = np.arange(-int(e.radius * SCALE), int(e.radius * SCALE) + 1)
-    disc = (np.hypot(side, side[:, None]) <= (e.radius - RIM) * SCALE).astype(np.uint8)
-    all_over = np.where(taken[here] == 0, cv2.erode(ink[here], disc), 0)
+    all_over = np.where(taken[here] == 0, cv2.erode(ink[here], _disc(e.radius - RIM)), 0)
     row, column = np.mgrid[: all_over.shape[0], : all_over.shape[1]]
     z = (left + column + 0.5) / SCALE + 1j * (PAPER.y1 - (top + row + 0.5) / SCALE)
     away = np.abs(z - e.centre)
@@ -151,14 +179,14 @@ def _leads(begin: complex, spot: complex, radius: float, ink: Any, faint: float)
     return bool(len(dark) and dark.mean() >= LEADS)
 
 
-def _aside(z: complex, lines: Any, ink: Any) -> bool:
-    """Whether a spot lies beside a line, no end of one drawn over: ink is paler on all its sides, and the line runs past it."""
+def _aside(z: complex, rods: tuple[Points, Points], ink: Any) -> bool:
+    """Whether a spot is no end of a line drawn over: ink is paler on all its sides, and no line that went on would reach it."""
     around = sample(ink, pixels(z + RAYS))
-    side = np.arange(-PAST, PAST + 0.5 / SCALE, 1 / SCALE)
-    about = (side - 1j * side[:, None])[np.hypot(side, side[:, None]) <= PAST]
-    near = about[sample(lines, pixels(z + about), nearest=True) > 127]
-    angle = np.ptp(np.angle(near / near.mean())) if len(near) else 0.0
-    return bool((around.min(0) < FALLS * around[:2].max()).all() and angle > WIDE)
+    begins, ends = rods
+    along = ends - begins
+    beyond = (z - ends) * np.conj(along / np.maximum(np.abs(along), 1e-9))
+    drawn_over = (beyond.real > -ACROSS) & (beyond.real < OVER) & (np.abs(beyond.imag) < ACROSS)
+    return bool((around.min(0) < FALLS * around[:2].max()).all() and not drawn_over.any())
 
 
 def _alone(seen: Any, box: Any) -> bool:
@@ -168,8 +196,8 @@ def _alone(seen: Any, box: Any) -> bool:
     return int(seen[max(y - by, 0) : y + h + by, max(x - by, 0) : x + w + by].sum()) <= 1.1 * area
 
 
-def _in_place(e: Element, lines: Any, ink: Any, words: Any, least: float) -> bool | None:
-    """Whether a dot is clearly seen in its place, or a little beside; None of a small one where lines would show as much."""
+def _seen_in_place(e: Element, lines: Any, ink: Any, words: Any) -> float:
+    """How dark a dot is in its place, or a little beside; nan of a small one where lines would show as much."""
     grid = np.arange(-REACH, REACH + 0.5 / SCALE, 1 / SCALE)
     places = e.centre + grid - 1j * grid[:, None]
     p = pixels(places)
@@ -177,17 +205,61 @@ def _in_place(e: Element, lines: Any, ink: Any, words: Any, least: float) -> boo
     plain = np.stack((drawn[seen], np.ones(seen.sum())), -1)
     line = sample(lines, p) > 127
     if e.radius < SMALL and line[np.abs(places - e.centre) <= e.radius].mean() > COVERED:
-        return None
-    told = e.radius >= SMALL
+        return nan
+    fit, best = np.linalg.pinv(plain), 0.0 if e.radius >= SMALL else nan
     for by in (grid + 1j * grid[:, None])[np.hypot(grid, grid[:, None]) <= ASIDE]:
         disc = 255.0 * (np.abs(places - e.centre - by) <= e.radius)
         dot = _soft(np.where(line, 0.0, disc))[seen]
-        rest = dot - plain @ np.linalg.lstsq(plain, dot, rcond=None)[0]
+        rest = dot - plain @ (fit @ dot)
         if rest @ rest > TELLS * float((_soft(disc) ** 2).sum()):
-            told = True
-            if float(rest @ y[seen] / (rest @ rest)) > least:
-                return True
-    return False if told else None
+            best = float(np.fmax(best, rest @ y[seen] / (rest @ rest)))
+    return best
+
+
+def _bumps(e: Element, some: Sequence[Element], lines: Any, ink: Any, words: Any, usual: float) -> Points:
+    """Middles of the places about a dot's that are as wide as it is all round, on lines or not, where nothing so wide is drawn.
+
+    None where its own place is such a one.
+    """
+    import cv2
+
+    middle, half = complex(pixels(np.array([e.centre]))[0]), round((FAR + ROOM) * SCALE)
+    top, left = max(round(middle.imag) - half, 0), max(round(middle.real) - half, 0)
+    here = (slice(top, round(middle.imag) + half), slice(left, round(middle.real) + half))
+    row, column = np.mgrid[: ink[here].shape[0], : ink[here].shape[1]]
+    z = (left + column + 0.5) / SCALE + 1j * (PAPER.y1 - (top + row + 0.5) / SCALE)
+    # A pencil's reach wider; what nearly meets runs together.
+    near, joined = np.ones((3, 3), np.uint8), cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (MEET, MEET))
+    drawn = cv2.dilate(lines[here], near)
+    for other in some:
+        if other is not e and abs(other.centre - e.centre) < FAR + ROOM:
+            drawn[np.abs(z - other.centre) <= other.radius + PENCIL] = 255
+    drawn = cv2.morphologyEx(drawn, cv2.MORPH_CLOSE, joined)
+    disc, small = _disc(e.radius - RIM), _disc(WITHIN * (e.radius - RIM))
+    thick = cv2.erode(ink[here], disc) / usual - cv2.erode(_soft(drawn), disc)
+    strokes = cv2.erode(ink[here], small) / usual - cv2.erode(_soft(lines[here]), small)
+    away = np.abs(z - e.centre)
+    if thick[away <= ASIDE].max(initial=0.0) > OWN:
+        return np.zeros(0, complex)
+    there = (thick > BUMP) & (away > max(LEAST, e.radius + ASIDE)) & (away < FAR) & (words[here] == 0)
+    _, _, stats, middles = cv2.connectedComponentsWithStats(there.astype(np.uint8), connectivity=8)
+    known = np.maximum(drawn, words[here])
+    out = []
+    for (_, _, w, h, _), (x, y) in zip(stats[1:].tolist(), middles[1:].tolist(), strict=True):
+        spot = complex((left + x + 0.5) / SCALE, PAPER.y1 - (top + y + 0.5) / SCALE)
+        around = pixels(spot + (e.radius + BEYOND) * RING)
+        local = around - complex(left, top)
+        dark, of_others = sample(ink, around) > PALER * usual, sample(known, local) > 0
+        odd = (dark & ~of_others) | (sample(strokes, local) > PALER)
+        if max(w, h) <= (e.radius + SPREAD) * SCALE and odd.mean() <= ODD and (~dark & ~of_others).mean() >= CLEAR:
+            out.append(spot)
+    return np.array(out, complex)
+
+
+def _disc(radius: float) -> Any:
+    """The pixels of a disc."""
+    side = np.arange(-int(radius * SCALE), int(radius * SCALE) + 1)
+    return (np.hypot(side, side[:, None]) <= radius * SCALE).astype(np.uint8)
 
 
 def _soft(picture: Any) -> Floats:

@@ -33,6 +33,11 @@ FOLD, FAINTER, EVERY = 0.25, 3.0, 8
 distance of the pixels that are looked at."""
 
 
+RIM, ALL = 0.8, 0.8
+"""mm to a side within which something was wiped out along a strip one coarse pixel wide, and the least share of the strip, for it
+to be the rim of that: a line is wider."""
+
+
 SHORT, WIDE = 2.0, 0.9
 """Least length and largest width of a piece of a stroke, mm."""
 RAGGED = 0.4
@@ -65,6 +70,8 @@ def extra_ink(left: Any, level: float, words: Any, wiped: Any = None, dark: floa
             out.append(x)
     smooth = _without_creases(out)
     creases = [x for x in out if x not in smooth]
+    if wiped is not None:
+        smooth = [x for x in smooth if not _rim(x, wiped)]
     for x in [] if wiped is None else _strokes(left, wiped, words, max(level, dark)):
         crease = min(x.width, x.height) <= CREASE and (x.length > SPAN or any(_in_common(x, y) for y in creases))
         if not crease and all(_in_common(x, y) <= 0.5 * x.length for y in smooth):
@@ -94,6 +101,15 @@ def without_creases(left: Any, ink: Any, level: float) -> Any:
             else:
                 out[at] = strip.T
     return out
+
+
+def _rim(x: ExtraInk, wiped: Any) -> bool:
+    """Whether ink is no more than the rim of a level or upright line that was wiped out beside it."""
+    if min(x.width, x.height) > COARSE / SCALE + 1e-9:
+        return False
+    aside = RIM * (1j if x.height < x.width else 1)
+    beside = [sample(wiped, pixels(x.points + by), nearest=True) > 0 for by in (aside / 2, aside, -aside / 2, -aside)]
+    return bool(np.maximum(np.logical_or(*beside[:2]).mean(), np.logical_or(*beside[2:]).mean()) >= ALL)
 
 
 def _in_common(x: ExtraInk, y: ExtraInk) -> float:

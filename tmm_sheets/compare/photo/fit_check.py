@@ -52,6 +52,8 @@ SHIFTED, ALIKE = 1.5, 0.8
 """mm from its place beyond which a patch is shifted, and by which neighbours that are shifted alike may differ."""
 TOGETHER = 3
 """Least number of patches near each other, shifted alike."""
+RUN = 8
+"""Points of a side by which it is seen how far it is off there."""
 OFFSETS = np.arange(-NEAR, NEAR + 0.05, 0.1)
 
 
@@ -70,6 +72,7 @@ class FitCheck:
     shifted : middles of the patches that lie elsewhere, each beside others that do so alike, mm
     shift : by how much they do, mm
     sides : share of each side of the frame that has a line where the map has it, bottom first
+    rim : how far the frame is off in a part of a side, mm, the most
     """
 
     match: float
@@ -82,6 +85,7 @@ class FitCheck:
     shifted: Points
     shift: float
     adrift: Points = field(default_factory=lambda: np.zeros(0, complex))
+    rim: float = 0.0
 
     @property
     def acceptable(self) -> bool:
@@ -137,7 +141,7 @@ def check(m: Map, straight: Map, sides: Seen, ink: Any, lines: ProfileLines, lev
     shares = np.array([part.mean() for part in np.split(met, 4)])
     lost = np.array([z for z in astray if not _side_seen(z, sides.sheet, met)], complex)
     found = FitCheck(float(good.mean()), astray, lost, judged, _between_halves(m, sides, seen), _together(lines, o, good), shares,
-                     np.zeros(0, complex), 0.0, _adrift(lines, good, some, shares))
+                     np.zeros(0, complex), 0.0, _adrift(lines, good, some, shares), _rim(m, sides))
     if not found.moored:  # refused without that
         return found
     shifted, by = _shifted(patches(m, straight, ink, lines, scale), m)
@@ -226,6 +230,13 @@ def _adrift(lines: ProfileLines, good: Any, some: Any, shares: Floats) -> Points
                     out.append(complex(p[shown].mean()))
                     break
     return np.array(out, complex)
+
+
+def _rim(m: Map, sides: Seen) -> float:
+    """How far the frame is off in a part of a side, mm: the largest median of neighbouring points of which most were seen."""
+    off = np.real(np.conj(sides.normals) * (m.to_sheet(sides.picture) - sides.sheet)).reshape(-1, RUN)
+    seen = (sides.weight > 0).reshape(-1, RUN)
+    return max((abs(float(np.median(o[s]))) for o, s in zip(off, seen, strict=True) if s.sum() > RUN / 2), default=0.0)
 
 
 def _side_seen(z: complex, p: Points, met: Any) -> bool:

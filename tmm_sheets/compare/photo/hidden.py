@@ -73,7 +73,7 @@ def hidden_places(grey: Any, m: Map, ink: Any, lines: ProfileLines, sides: Profi
     there = (strength > level) & (np.abs(o) < 0.7)
     row = np.clip((PAPER.y1 - all_lines.points.imag).astype(int), 0, shape[0] - 1)
     column = np.clip(all_lines.points.real.astype(int), 0, shape[1] - 1)
-    ground, outside = _ground(grey, m, shape)
+    ground, outside = ground_of(grey, m, shape)
     share = _brightness(ground, ~outside)
     foreign = (np.abs(share - 1) > FOREIGN) & ~outside
     absent = _absent(row, column, there, shape)
@@ -195,7 +195,7 @@ def _flaps(hidden: Mask) -> Iterator[Mask]:
         yield flap[::upside, ::mirrored] > 0
 
 
-def _ground(grey: Any, m: Map, shape: tuple[int, int]) -> tuple[Any, Mask]:
+def ground_of(grey: Any, m: Map, shape: tuple[int, int]) -> tuple[Any, Mask]:
     """Brightness of what lies under the lines, and what is outside the picture."""
     import cv2
 

@@ -15,12 +15,12 @@ from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
-from tmm_sheets.compare.photo import built_photo, numbers_read, placed_views, rectification, tracing
-from tmm_sheets.compare.photo.black_and_white import eats, without_grey
+from tmm_sheets.compare.photo import built_photo, light, numbers_read, placed_views, rectification, tracing
+from tmm_sheets.compare.photo.black_and_white import eaten
 from tmm_sheets.compare.photo.fit_check import MATCH
 from tmm_sheets.compare.photo.image_report import image_report
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
-from tmm_sheets.compare.photo.judging import PhotoFinding, judge
+from tmm_sheets.compare.photo.judging import PhotoFinding, judge, tolerance_of
 from tmm_sheets.compare.photo.photograph import Picture, read
 from tmm_sheets.compare.photo.rectification import LONGEST, Rectified, rectify
 from tmm_sheets.compare.photo.refusal import refusal
@@ -28,6 +28,7 @@ from tmm_sheets.compare.photo.stations import as_lines
 from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.compare.report import Report
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
@@ -41,8 +42,18 @@ UNLIKE = 0.35
 CERTAIN = 0.12
 """By how much more of its lines another sheet must match for a picture to be called a picture of it."""
 EATEN = marked(
-    "{file} is black and white, without grey, and its thin lines are in pieces: what of thin lines and small lettering is short, "
-    "broken or missing is not judged; photograph again without the filter (no document mode)"
+    "{file} is black and white, without grey, which eats thin lines: what of thin lines and small lettering is short, broken or "
+    "missing is not judged; photograph again without the filter (no document mode)"
+)
+UNEVEN = marked(
+    "{file}: a flash or the edge of a shadow has taken lettering or thin lines away, about (x; y) = {places} mm: what is not seen "
+    "of them is not judged; photograph again in even light"
+)
+ROUGH = 0.8
+"""mm of tolerance from which on it is told at the top that little can be said."""
+COARSELY = marked(
+    "{file} can be measured to {tolerance} mm only: what is less off is not told; photograph again from straight above, sharp, the "
+    "paper flat"
 )
 
 
@@ -135,10 +146,18 @@ def examine(
         raise refusal(picture.grey, found, known, path, n)
     say(tell("measuring the elements"))
     traces, extra = tracing.trace(known, found.ink, found.hidden)
-    if without_grey(picture.grey) and eats(traces):
-        found = replace(found, eats=True)
+    uneven = light.uneven_places(picture.grey, found.map)
+    seen = light.without_taken(traces, uneven)
+    if dim := light.taken(traces, seen):
+        found, traces = replace(found, uneven=uneven), seen
+        where = ", ".join(f"({z.real:.0f}; {z.imag:.0f})" for z in dim)
+        notes = (*notes, tell(UNEVEN).format(file=path.name, places=where))
+    if (some := eaten(picture.grey, traces, found.scale)) != "nothing":
+        found = replace(found, eats=some)
         notes = (*notes, tell(EATEN).format(file=path.name))
     findings = [judge(t, pencil, found.uncertainty, found.soft, found.eats) for t in traces]
+    if (tolerance := tolerance_of(pencil, found.uncertainty, found.soft)) > ROUGH:
+        notes = (tell(COARSELY).format(file=path.name, tolerance=told(f"{tolerance:.1f}")), *notes)
     built: built_photo.Built = {}
     if placed is None:
         say(tell("looking for what was done wrong"))

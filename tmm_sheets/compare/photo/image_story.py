@@ -14,7 +14,7 @@ from tmm_sheets.compare.elements import ElementView, drawn
 from tmm_sheets.compare.findings import called, counted, shifted
 from tmm_sheets.compare.photo import overlay
 from tmm_sheets.compare.photo.judging import PhotoFinding
-from tmm_sheets.compare.photo.places import Place
+from tmm_sheets.compare.photo.places import Place, may_be_either
 from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.story import Mistake, Photo, Picture
 from tmm_sheets.drawing.marks import Points
@@ -74,10 +74,12 @@ def said(p: Place) -> str:
     if not p.findings:
         return _of_ink(p)
     first, *rest = p.findings
-    others = list(dict.fromkeys(called(f.element) for f in rest if called(f.element) != called(first.element)))
     words = [first.what]
-    if others:
-        words.append(tell("here also: {elements}").format(elements=", ".join([*others[:OTHERS], *["…"] * (len(others) > OTHERS)])))
+    either = [f for f in rest if may_be_either(first, f)]
+    if others := _named(either, first):
+        words.append(tell("it may be instead: {elements}").format(elements=others))
+    if others := _named([f for f in rest if f not in either], first):
+        words.append(tell("here also: {elements}").format(elements=others))
     if p.ink and first.element.kind == "text":
         if first.trace.at is not None:
             return "; ".join(words)
@@ -86,6 +88,12 @@ def said(p: Place) -> str:
     elif p.ink:
         words.append(tell("ink that is not on the sheet lies beside it"))
     return "; ".join(words)
+
+
+def _named(some: Iterable[PhotoFinding], first: PhotoFinding) -> str:
+    """Elements by their names, each once, without that of the ``first``."""
+    names = list(dict.fromkeys(called(f.element) for f in some if called(f.element) != called(first.element)))
+    return ", ".join([*names[:OTHERS], *["…"] * (len(names) > OTHERS)])
 
 
 def _of_ink(p: Place) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.findings import Finding, millimetres, of_radius, shifted, turned
-from tmm_sheets.compare.photo.black_and_white import may_be_eaten, whole
+from tmm_sheets.compare.photo.black_and_white import Eaten, may_be_eaten, whole
 from tmm_sheets.compare.photo.torn import HALF
 from tmm_sheets.compare.photo.traces import Trace, open_line
 from tmm_sheets.compare.report import verdict
@@ -27,12 +27,16 @@ LOOSE = 2.5  # mm by which those may be too long or too short; a dashed one shor
 TINY = 8.0
 """mm; a closed outline of no more to each side is judged by where it is: its sides, each off by a pencil, give it a turn and a size
 that say nothing unless they are off by twice as much."""
+FORM_ROLES = frozenset({"frame", "table"})
+"""Rules of tables and of the form: no construction hangs on them, so doubt about them is not told."""
+SHORT = 12.0
+"""mm; a helper line of no more, each end off by a pencil, is turned as well: it is off for sure only by twice as much."""
 SOFT_TOLERANCE = 0.15  # mm added in a picture that is not sharp
 IN_REACH = marked("within a pencil's reach")
 TOO_NEAR = marked("not measurable: too near to others")
-CROWDED = 0.55
+CROWDED, CROWDED_THIN = 0.55, 0.8
 """Share of a line near which no other is drawn below which its own ink cannot be told from theirs to twice a tolerance: it takes
-the edge of theirs."""
+the edge of theirs, a thin line more so."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +82,7 @@ class _Deviation(NamedTuple):
         return self.off / self.allowed
 
 
-def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False, eats: bool = False) -> PhotoFinding:
+def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False, eats: Eaten = "nothing") -> PhotoFinding:
     """Judge a trace.
 
     Parameters
@@ -91,15 +95,16 @@ def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False, eats:
         Whether the picture is not sharp: the tolerance is wider, and the ends of thin lines, which fade near others, are not
         judged.
     eats
-        Whether the picture eats thin lines (see ``black_and_white``): what that may be the reason of is not judged.
+        What the picture eats of thin lines (see ``black_and_white``): what that may be the reason of is not judged.
     """
-    if eats and may_be_eaten(t, tolerance := _tolerance(pencil, uncertainty, soft)):
+    if may_be_eaten(t, tolerance := tolerance_of(pencil, uncertainty, soft), eats):
         said = tell("not measurable: eaten by the black and white picture")
         return PhotoFinding(t.element, "green", 0.0, said, t.element.middle, Trace(t.element, "eaten"), tolerance)
-    return _with_head(_in_pieces(_line(whole(t) if eats else t, pencil, uncertainty, soft)))
+    return _with_head(_in_pieces(_line(t if eats == "nothing" else whole(t), pencil, uncertainty, soft)))
 
 
-def _tolerance(pencil: float, uncertainty: float, soft: bool) -> float:
+def tolerance_of(pencil: float, uncertainty: float, soft: bool) -> float:
+    """How far off a line may be without being wrong, mm; the parameters are those of :func:`judge`."""
     return pencil + uncertainty + (SOFT_TOLERANCE if soft else 0.0)
 
 
@@ -109,9 +114,11 @@ def _in_pieces(f: PhotoFinding) -> PhotoFinding:
         return f
     if f.trace.status == "missing":
         half = f.trace.covered >= HALF
-        what = tell("only pieces of it are seen") if half else tell("not seen; lines as thin as it are in pieces in this picture")
+        what = (tell("ink in parts of its place only: it lies elsewhere, or pieces of it are seen") if half else
+                tell("not seen; lines as thin as it are in pieces in this picture"))
     else:
-        what = f"{f.what}; {tell('only pieces of it are seen')}"
+        pieces = tell("only pieces of it are seen")
+        what = f"{f.what}; {pieces}"
     return replace(f, verdict="amber", what=what)
 
 
@@ -120,6 +127,11 @@ def _with_head(f: PhotoFinding) -> PhotoFinding:
     e, head = f.element, f.trace.head
     if head == "reversed":
         return replace(f, verdict="red", deviation=e.length, what=tell("the arrow points the other way"))
+    if head == "doubled" and f.verdict == "green":
+        said = tell("an arrow head at its beginning, where none belongs: it or one in a stroke with it points the other way")
+        return replace(f, verdict="amber", what=said, at=complex(e.points[0]))
+    if head == "absent" and f.verdict != "green":  # what was drawn elsewhere has its head there
+        return f
     if head in ("absent", "left out"):
         no_head = tell("no arrow head here") if head == "absent" else tell("only a thin line here, and no arrow head")
         what = no_head if f.verdict == "green" else f"{f.what}; {no_head}"
@@ -129,7 +141,7 @@ def _with_head(f: PhotoFinding) -> PhotoFinding:
 
 def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFinding:
     """Judge what was found of a line or of lettering, heads aside."""
-    e, tolerance = t.element, _tolerance(pencil, uncertainty, soft)
+    e, tolerance = t.element, tolerance_of(pencil, uncertainty, soft)
     middle = complex(e.points[len(e.points) // 2]) if e.kind != "line" else complex(e.points.mean())
     if t.status == "measured":
         deviations = [_displacement(t, tolerance, middle), *_ends(t, pencil, tolerance, soft)]
@@ -140,6 +152,9 @@ def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFindi
         elif _tiny(e):
             deviations = _of_tiny(t, tolerance, deviations[0])
         worst = max(deviations, key=lambda d: d.share)
+        if 1 < worst.share <= 2 and _loosely_judged(e):
+            said = tell("a little aside, no more than its kind may be")
+            return PhotoFinding(e, "green", worst.off, said, worst.place, t, tolerance)
         said = "; ".join(d.said for d in deviations if d.said)
         return PhotoFinding(e, verdict(worst.off, worst.allowed), worst.off, said or tell(IN_REACH), worst.place, t, worst.allowed)
     if t.status == "beside":
@@ -166,9 +181,15 @@ def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFindi
     return PhotoFinding(e, "green", 0.0, word, middle, t, tolerance)
 
 
+def _loosely_judged(e: Element) -> bool:
+    """Whether an element is told to be off only when it is so for sure."""
+    return e.role in FORM_ROLES or (e.kind == "line" and e.style in LOOSE_STYLES and e.length <= SHORT)
+
+
 def _crowded(t: Trace, tolerance: float) -> bool:
     """Whether a line seems off in its place for the ink of others that run near most of it; a small outline by any ink there."""
-    if t.element.kind == "circle" or t.free >= CROWDED or t.deviation <= tolerance:
+    thin = t.element.kind == "line" and t.element.style in LOOSE_STYLES
+    if t.element.kind == "circle" or t.free >= (CROWDED_THIN if thin else CROWDED) or t.deviation <= tolerance:
         return False
     return t.deviation <= 2 * tolerance or _tiny(t.element)
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tmm_sheets.compare.photo.sheet_map import AWAY, DEGREE, FRAME, WAVES, Floats, Map, heights, waves
+from tmm_sheets.compare.photo.sheet_map import AWAY, CORNERS, DEGREE, FRAME, PAPER, WAVES, Floats, Map, heights, projected, waves
 from tmm_sheets.drawing.marks import Points
 
 USUAL = 0.005
@@ -16,8 +16,13 @@ LENS = np.array([0.05, 0.03])
 """Usual distortion coefficients."""
 HEIGHT = {2: 4.0, 3: 2.0, 4: 1.0, 5: 0.6, 6: 0.4}
 """Usual height of the paper in a term of each degree, mm."""
-FOOT = 400.0
-"""Usual distance from the middle of the sheet to the camera's foot, mm."""
+FOCUS, FOOT = 1.2, 40.0
+"""Usual focal length of a telephone, half diagonals of its picture, and error of the camera's foot found by it, mm."""
+ANYWHERE = 400.0
+"""Usual distance of the foot from the middle of the sheet, mm, where nothing tells of it."""
+PARALLEL, CENTRAL = 1.0, 10.0
+"""Degrees between the sides of the sheet and those of the picture, and mm between their middles, up to which a picture was made a
+rectangle, by an app or a scanner."""
 STEPS = 12
 SIDE = 3.0
 """Points of the frame count little beyond this distance, mm; they are seldom wrong."""
@@ -122,8 +127,9 @@ def _fit_base(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:
     size = np.append(np.maximum(np.abs(first[:8]), 1e-2), (0.05, 0.05)) * 1e-4
     x = np.concatenate((first, m.relief[active], (m.foot.real, m.foot.imag)))
     # Paper does not bend the way a lens does: weak priors keep either from imitating the other.
-    usual = np.concatenate((np.full(8, np.inf), LENS, [HEIGHT[int(d)] for d in DEGREE[active]], (FOOT, FOOT)))
-    middle = np.concatenate((np.zeros(10 + active.sum()), (FRAME.centre.real, FRAME.centre.imag)))
+    foot, error = camera_foot(m)
+    usual = np.concatenate((np.full(8, np.inf), LENS, [HEIGHT[int(d)] for d in DEGREE[active]], (error, error)))
+    middle = np.concatenate((np.zeros(10 + active.sum()), (foot.real, foot.imag)))
     prior = USUAL / usual * np.sqrt((seen.weight**2).sum())
     n = np.conj(seen.normals)
 
@@ -171,3 +177,18 @@ def _fit_base(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:
     relief[active] = x[10:-2]
     matrix = np.append(x[:8], 1.0).reshape(3, 3)
     return replace(m, matrix=matrix, bend=(float(x[8]), float(x[9])), relief=relief, foot=complex(*x[-2:]))
+
+
+def camera_foot(m: Map) -> tuple[complex, float]:
+    """The point of the sheet below the camera, by the perspective of a map, and its usual error, mm.
+
+    A picture that was made a rectangle shows no perspective: it was taken from anywhere.
+    """
+    corners = projected(np.linalg.inv(m.matrix), CORNERS)
+    sides = np.angle(np.roll(corners, -1) - corners, deg=True)
+    aside = abs(complex(m.to_base(np.array([m.middle]))[0]) - PAPER.centre)
+    if np.abs((sides + 45) % 90 - 45).max() < PARALLEL and aside < CENTRAL:
+        return PAPER.centre, ANYWHERE
+    g = np.linalg.inv(m.matrix) / np.array([[FOCUS], [FOCUS], [1.0]])
+    first, second, away = (g / np.linalg.norm(g[:, 0])).T
+    return complex(-first @ away, -second @ away), FOOT

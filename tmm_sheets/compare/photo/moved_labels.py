@@ -102,7 +102,9 @@ def _candidates(t: Trace, taken: Any, words: Sequence[Element], ink: Any, level:
         x, y, w, h = (int(n) for n in stats[k, :4])
         size = (w / SCALE, h / SCALE)
         by = complex((columns.start + x + w / 2) / SCALE, PAPER.y1 - (rows.start + y + h / 2) / SCALE) - e.middle
-        if area[k] >= WRITTEN * box.width * box.height * SCALE**2 and _alike(size, box) and abs(by) <= MOVED:
+        rest = abs(by.real) + size[0] / 2 <= box.width / 2 + EDGE and abs(by.imag) + size[1] / 2 <= box.height / 2 + EDGE
+        if (area[k] >= WRITTEN * box.width * box.height * SCALE**2 and _alike(size, box) and abs(by) <= MOVED
+                and not rest):  # what is left of it in its place
             found.append((abs(size[0] - box.width) + abs(size[1] - box.height) + 0.1 * abs(by), by))
     if t.status == "lettering" and any(abs(by) < LEAST for _, by in found):
         return np.zeros(0, complex)

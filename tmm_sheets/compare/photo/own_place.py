@@ -15,6 +15,7 @@ from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
 from tmm_sheets.compare.photo.stations import ENOUGH, STEP, Stations, expected_ink, fit, measured, shrunk, smoothed, stations
 from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
 NEAR = 2.0  # mm from its own place within which an element is sought
@@ -26,6 +27,7 @@ OFF = 0.6  # mm; a line farther off its place is measured a second time
 AS_DARK = 0.6  # darkness of its own place, as a share of that where a line was found, at which the place is not bare
 FREE = 0.25  # least share of a line free of others for it to be measured by itself
 ASIDE = 1.4  # mm from its edge to the next line's from which on a piece of a curve is surely not drawn towards that
+BRANCHES = 4.0  # mm from one branch of a curve to the next within which neither is surely seen by itself
 LEAST_END = 3.0  # mm of a quarter of a line by which its end is judged
 SHARED = 0.4  # least share of a line free or in one stroke with others for it to be measured with them
 CLEAR, WITHIN = 0.3, 0.3
@@ -119,7 +121,9 @@ def in_place(strip: Strip, level: float) -> Trace | None:
     if shrunk(e, t):
         return None
     if e.kind == "curve":
-        t = replace(t, deviation=max(t.deviation, _local(o, use & (away > width / 2 + ASIDE), e.length / len(o))))
+        step = e.length / len(o)
+        clear = use & (away > width / 2 + ASIDE) & ~_by_itself(s.points, step)
+        t = replace(t, deviation=max(t.deviation, _local(o, clear, step)))
     return t
 
 
@@ -172,6 +176,12 @@ def _shared(strip: Strip, o: Floats, use: Any, level: float) -> Trace | None:
         return None
     t = measured(e, s, base @ x, able, float(good.sum() / able.sum()))
     return replace(t, status="shared")
+
+
+def _by_itself(points: Points, step: float) -> Any:
+    """Places of a curve, ``step`` mm apart, near which it comes by once more: the ink is that of both its branches."""
+    k = np.arange(len(points))
+    return ((np.abs(points[:, None] - points) < BRANCHES) & (np.abs(k[:, None] - k) * step > 2 * BRANCHES)).any(1)
 
 
 def _local(o: Floats, use: Any, step: float) -> float:

@@ -128,6 +128,12 @@ def one_place(f: PhotoFinding, g: PhotoFinding) -> bool:
     return bool(near) or ("beside" in (f.trace.status, g.trace.status) and _one_stroke(f, g))
 
 
+def may_be_either(f: PhotoFinding, g: PhotoFinding) -> bool:
+    """Whether one line that was found beside its stroke may be either element."""
+    lines = all(h.trace.status == "beside" and h.element.kind == "line" for h in (f, g))
+    return lines and _one_stroke(f, g)
+
+
 def _moved_alike(f: PhotoFinding, g: PhotoFinding) -> bool:
     """Whether two pieces of lettering that stand near each other were moved by the same."""
     near = abs(f.element.middle - g.element.middle) < TOGETHER
@@ -143,8 +149,10 @@ def one_point(f: PhotoFinding, g: PhotoFinding) -> bool:
 
 
 def _ends_off(f: PhotoFinding) -> Points:
-    """The ends of a straight line, where they belong, that were found elsewhere."""
+    """The ends of a straight line, where they belong, that were found elsewhere, or that may be: of what is seen in pieces both."""
     e, at = f.element, f.trace.at
+    if f.trace.status == "missing" and f.trace.pieces and e.kind == "line":
+        return e.points
     if at is None or e.kind != "line" or len(at) != len(e.points):
         return np.zeros(0, complex)
     return e.points[np.abs(at - e.points) > f.tolerance]

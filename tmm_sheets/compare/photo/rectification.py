@@ -21,6 +21,7 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo import fit_check, frame_fit, frame_search, patches
+from tmm_sheets.compare.photo.black_and_white import Eaten
 from tmm_sheets.compare.photo.bulges import about, bulge_notes, over_bulges
 from tmm_sheets.compare.photo.fit_check import MATCH, FitCheck
 from tmm_sheets.compare.photo.frame_search import FoundFrame
@@ -63,8 +64,9 @@ ROUGHLY = ((90.0, 3.0), (90.0, 3.0), (60.0, 2.0), (60.0, 1.5))
 """Sides of the patches that a surface follows, one after the other; distance that counts as far off, mm."""
 FINER = ((2.0, 1.0), (1.5, 0.6), (1.2, 0.4), (0.8, 0.2))
 """Reach to either side of the lines that it follows then; distance that counts as far off, mm."""
-TOGETHER, BETTER = 0.07, 0.75
-"""mm by which lines near each other are off together in paper that is not smooth, and the share of it that may be left."""
+TOGETHER, RIM, BETTER = 0.07, 0.35, 0.75
+"""mm by which lines near each other are off together in paper that is not smooth, mm by which a part of a side is, and the share of
+the former that may be left."""
 BY_LINES = ((3.5, 0, 1.5), (3.5, 0, 1.5), (3.5, 0, 1.5), (3.5, 2, 1.0), (2.5, 2, 1.0))
 """The same for the lines alone, from a map that is right in part of the sheet."""
 WHOLE = 0.98
@@ -100,7 +102,8 @@ class Rectified:
     check : what is to be said of the fit
     hidden : where the sheet does not show, see ``hidden.hidden_places``, or bulges
     bulging : where the paper bulges and the map does not follow, see ``bulges``
-    eats : whether it eats thin lines, see ``black_and_white``
+    eats : what it eats of thin lines, see ``black_and_white``
+    uneven : where the light takes letters away, if it took some, see ``light``
     """
 
     ink: Any
@@ -116,7 +119,8 @@ class Rectified:
     check: FitCheck
     hidden: Mask
     bulging: Mask
-    eats: bool = False
+    eats: Eaten = "nothing"
+    uneven: Mask | None = None
 
 
 def frame_lines(known: Sequence[Element]) -> ProfileLines:
@@ -252,13 +256,14 @@ class _Attempts:
                 self._keep(self._fit(found, frame_fit.frame_about(self.grey, self._without_frame(attempt.map), ABOUT)))
 
     def finer(self) -> None:
-        """Fit paper with waves or creases when lines near each other are off together; kept if they no longer are.
+        """Fit paper with waves or creases when lines near each other, or a part of the frame, are off together; kept if lines no
+        longer are.
 
         Flat paper gains nothing by it: so fine a surface follows what few lines there are. Where the lines are not in place, the
         frame alone tells where to begin.
         """
         best = self.best
-        if best is None or (best.check.moored and best.check.together < TOGETHER):
+        if best is None or (best.check.moored and best.check.together < TOGETHER and best.check.rim < RIM):
             return
         # A fit that is right in most of the sheet may be bent to suit what was taken for a side; the frame followed first is not.
         starts = [(a, a is best) for a in ((best, self.framed) if best.check.moored else (self.framed, best)) if a is not None]

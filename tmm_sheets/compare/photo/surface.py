@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.compare.photo.map_fit import LENS, Seen
+from tmm_sheets.compare.photo.map_fit import LENS, Seen, camera_foot
 from tmm_sheets.compare.photo.sheet_map import AWAY, FRAME, Floats, Map, spline_base
 
 CELLS, STRETCHED = (20, 14), (8, 6)
@@ -24,8 +24,8 @@ CURVED = 2.0e-3
 """Usual curvature of the height, 1/mm."""
 TALL, LONG = 20.0, 1.0
 """Usual height and usual displacement in the plane, mm."""
-FOCUS, FOOT = 1.2, 80.0
-"""Usual focal length of a telephone, half diagonals of its picture, and error of the camera's foot found by it, mm."""
+FREE = 2.0
+"""How much more freely the camera's foot may move than in a smooth map: what is wrong in the height is taken up in the plane."""
 STEPS, SETTLED = 8, 0.05
 """Most steps, and mm of change at every point below which no further one is done."""
 
@@ -45,17 +45,17 @@ def fit_surface(m: Map, sides: Seen, loose: float, seen: Seen, far: float) -> Ma
     loosely = np.repeat((loose, far), (len(sides.weight), len(seen.weight)))
     seen = Seen(*(np.concatenate(pair) for pair in zip(sides, seen, strict=True)))
     shape, flat = (CELLS[1] + 3, CELLS[0] + 3), (STRETCHED[1] + 3, STRETCHED[0] + 3)
+    foot, error = camera_foot(m)
     if not m.surface.any():
-        m = replace(m, surface=np.zeros(shape), stretch=np.zeros((2, *flat)), foot=camera_foot(m))
+        m = replace(m, surface=np.zeros(shape), stretch=np.zeros((2, *flat)), foot=foot)
     m = replace(m, sides=np.zeros_like(m.sides), relief=np.zeros_like(m.relief), waves=np.zeros_like(m.waves))
     p, n = seen.sheet, np.conj(seen.normals)
     height, plane = spline_base(p, shape), spline_base(p, flat)
     count, few = height.shape[1], plane.shape[1]
     spacing = FRAME.width / CELLS[0]
     rough, uneven = _bending(shape) / (CURVED * spacing**2), _bending(flat) / LONG
-    usual = np.concatenate((np.full(8, np.inf), LENS, (FOOT, FOOT), np.full(count, TALL), np.full(2 * few, LONG)))
+    usual = np.concatenate((np.full(8, np.inf), LENS, (FREE * error, FREE * error), np.full(count, TALL), np.full(2 * few, LONG)))
     middle = np.zeros(len(usual))
-    foot = camera_foot(m)
     middle[10:12] = foot.real, foot.imag
     prior = np.diag(usual**-2.0)
     prior[12 : 12 + count, 12 : 12 + count] += rough.T @ rough
@@ -98,13 +98,6 @@ def fit_surface(m: Map, sides: Seen, loose: float, seen: Seen, far: float) -> Ma
         if float(np.abs(jacobian @ change).max()) < SETTLED:
             break
     return unpacked(x)
-
-
-def camera_foot(m: Map) -> complex:
-    """The point of the sheet below the camera, by the perspective of a map."""
-    g = np.linalg.inv(m.matrix) / np.array([[FOCUS], [FOCUS], [1.0]])
-    first, second, away = (g / np.linalg.norm(g[:, 0])).T
-    return complex(-first @ away, -second @ away)
 
 
 def _bending(shape: tuple[int, int]) -> Any:

@@ -14,7 +14,7 @@ SHORTEST = 8.0  # mm of line whose ends are looked for
 Status = Literal["measured", "shared", "beside", "covered", "missing", "dense", "lettering", "part of lettering",
                  "absent lettering", "small", "hidden", "eaten"]  # fmt: skip
 
-Head = Literal["unknown", "there", "absent", "left out", "reversed"]
+Head = Literal["unknown", "there", "absent", "left out", "reversed", "doubled"]
 
 
 def open_line(e: Element) -> bool:
@@ -41,8 +41,8 @@ class Trace:
     at : its line as it was found, mm
     darkness : of its line where it was found in its place; 0 where that is not known
     pieces : whether so little of it is seen, or of others as thin, that its absence may be the picture's doing
-    head : of an arrow: "there", "absent", "left out": absent, and its line is a thin one, "reversed": at its other end; "unknown"
-        also when it has none or several
+    head : of an arrow: "there", "absent", "left out": absent, and its line is a thin one, "reversed": at its other end,
+        "doubled": one is there, and others hide whether one is at its tip; "unknown" also when it has none or several
     free : share of it near which no other line is drawn, where it was measured in its place
     """
 

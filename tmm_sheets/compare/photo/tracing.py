@@ -4,7 +4,8 @@ Each element is first looked for in its own place, no farther than half way to t
 is found is wiped out of the picture with a pencil's width to spare, and so are lettering and arrow heads. Elements not found are
 sought in the ink that is left, some millimetres away, turned or of another size (``displacement``). Ink left after that belongs to
 nothing (``extra_ink``). Lines that coincide in one stroke are measured together: what the eye cannot tell apart is not told apart.
-One that leaves the stroke at a small angle is told by its end (``forks``).
+One that leaves the stroke at a small angle is told by its end (``forks``). The circles of joints are told by their outer edges
+(``joints``).
 
 The displacement of an element is a similarity, two shifts, a turn and a growth, of which only what shows along its normals is
 determined: a straight line has no shift along itself and no growth; its length is measured at its ends (``line_ends``).
@@ -29,7 +30,9 @@ from tmm_sheets.compare.photo.forks import parted
 from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden, widened
 from tmm_sheets.compare.photo.ink_levels import ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.line_ends import with_ends
+from tmm_sheets.compare.photo.one_stroke import others_in_stroke
 from tmm_sheets.compare.photo.own_place import in_place, strips, uncovered
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
@@ -108,8 +111,9 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     found += _displaced(absent, ink, left, wiped, owners, pale)
     found = _doubted(found, alone, ink, left, wiped, owners, pale)
     found = _beside_strokes(found, small, ink, owners, pale)
-    open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
     words = _places_of_lettering(elements, ink)
+    found = with_edges(found, ink, owners, words)
+    open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
     ended = with_ends(open_lines, ink, owners, words, pale)
     ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
     lines = {t.element.number: t for t in (*found, *ended)}
@@ -227,7 +231,7 @@ def _beside_strokes(found: Sequence[Trace], small: Sequence[Element], ink: Any, 
             paint(lines, t.element, t.at, 0)
             paint(taken, t.element, t.at, CLOSE)
     usual = _usual(found)
-    out = []
+    moved: dict[int, Trace] = {}
     for t in found:
         if t.status in ("shared", "dense") and t.element.kind == "line":
             other = beside(t, stations(t.element, False), ink, lines, taken, owners, level)
@@ -235,9 +239,11 @@ def _beside_strokes(found: Sequence[Trace], small: Sequence[Element], ink: Any, 
             # Paler lines were rubbed out, or are the edges of others.
             if other is None or other.darkness <= PALE * dark:
                 other = parted(t, ink, words, owners, dark) if dark else None
-            t = other or t
-        out.append(t)
-    return out
+            if other is not None:
+                moved[t.element.number] = other
+    for number in others_in_stroke(list(moved.values()), ink, owners, words, level):
+        del moved[number]
+    return [moved.get(t.element.number, t) for t in found]
 
 
 def _dots(small: Sequence[Element], found: Sequence[Trace], ink: Any, words: Any, hidden: Mask) -> list[Trace]:

@@ -1,0 +1,68 @@
+"""Places where the light takes letters and thin lines away: paper that a flash has washed out, and the edges of deep shadows.
+
+What is not seen there may have been drawn. A line whose paper is washed out is told by ``hidden``; letters are lost before lines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.box import Box
+from tmm_sheets.compare.elements import Element, sampled
+from tmm_sheets.compare.photo.hidden import GLARE, PAPER_GREY, Mask, at, ground_of
+from tmm_sheets.compare.photo.sheet_map import PAPER, Map
+from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.drawing.marks import Points
+
+ABOUT, STEEP = 7, 0.9
+"""mm within which a shadow begins, and brightness of its dark side as a share of the other up to which its edge is steep."""
+TAKEN = 0.3
+"""Share of an element's place in such light from which on nothing is told of what is not seen of it."""
+APART = 50.0
+"""mm from which on two places are told of."""
+LETTERING = ("absent lettering", "part of lettering")
+
+
+def uneven_places(grey: Any, m: Map) -> Mask:
+    """Where the light takes letters away, a pixel for each square millimetre, the upper row first.
+
+    ``grey`` is the picture and ``m`` its map.
+    """
+    import cv2
+
+    ground, _ = ground_of(grey, m, (round(PAPER.height), round(PAPER.width)))
+    about = np.ones((ABOUT, ABOUT), np.uint8)
+    edges = cv2.erode(ground, about) < STEEP * cv2.dilate(ground, about)
+    washed_out = (ground >= GLARE) & (np.median(ground) < PAPER_GREY)
+    return np.asarray(edges | washed_out)
+
+
+def without_taken(traces: Sequence[Trace], uneven: Mask) -> list[Trace]:
+    """The traces; what is not seen, or only in part, where the light takes it away is hidden."""
+    return [Trace(t.element, "hidden") if _doubtful(t) and at(_places(t.element), uneven).mean() >= TAKEN else t for t in traces]
+
+
+def taken(before: Sequence[Trace], after: Sequence[Trace]) -> list[complex]:
+    """About where the light took something of the sheet, mm; nothing where it took nothing."""
+    places: list[complex] = []
+    for middle in (t.element.middle for s, t in zip(before, after, strict=True) if s is not t):
+        if all(abs(middle - z) > APART for z in places):
+            places.append(middle)
+    return places
+
+
+def _doubtful(t: Trace) -> bool:
+    """Whether of an element too little is seen, and that may be the light's doing."""
+    return t.status in LETTERING or (t.status == "missing" and t.pieces)
+
+
+def _places(e: Element) -> Points:
+    """Places of a line, or of the box of lettering."""
+    if e.kind != "text":
+        return np.asarray(sampled(e.points, 1.0)[0])
+    box = Box.around(e.points)
+    x, y = np.meshgrid(np.arange(box.x0, box.x1 + 1), np.arange(box.y0, box.y1 + 1))
+    return np.asarray((x + 1j * y).ravel())
