@@ -18,7 +18,7 @@ from tmm_sheets.drawing.labels import HEAVY
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box, Text
 from tmm_sheets.drawing.notes import TOGETHER
-from tmm_sheets.drawing.tables import size_in, widened
+from tmm_sheets.drawing.tables import needs, size_in, widened
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import decimals_for, fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, graphs, indicator, kinematic_frames, linkage
@@ -664,6 +664,8 @@ def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: s
     begin = complex(place.centre.real, place.y1 - (5.0 if len(head) == 1 else 2.2))
     canvas.lines(begin, head, 5.0, size_for(head, place.width, 3.5), "centre")
     height, count = size_in(row), len(cells[0]) - 1
+    if sum(needs(cells, height)) > place.width:
+        height = 2.5  # numbers that touch the lines cannot be read
     widths = widened([10.0] + [(place.width - 10.0) / count] * count, cells, height)
     canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, height)
 
