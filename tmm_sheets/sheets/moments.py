@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import product
 from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -20,6 +21,7 @@ from tmm_sheets.sheets.linkage import indexed
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.mechanism.model import StructuralGroup
     from tmm_sheets.project import Project
 
 BAR = "\u0305"
@@ -36,30 +38,34 @@ class Term(NamedTuple):
 
 
 def equations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the equations can do with, mm: each in one line, then broken, then in small letters."""
-    texts = list(_lines(project))
-    if not texts:
-        return []
+    """Places that the equations can do with, mm: each in one line, then broken, then in small letters; last without guides."""
     sizes = []
-    for height, step, width in WAYS:
-        lines = [line for text in texts for line in broken(text, width, height)]
-        sizes.append((max(letter(line, height).width for line in lines) + 6.0, 12.0 + step * len(lines)))
+    for texts in _choices(project):
+        for height, step, width in WAYS:
+            lines = [line for text in texts for line in broken(text, width, height)]
+            sizes.append((max(letter(line, height).width for line in lines) + 6.0, 12.0 + step * len(lines)))
     return sizes
+
+
+def _choices(project: Project) -> list[list[str]]:
+    """The equations with those of the guides' reactions, if there are any, and without."""
+    every, usual = list(_lines(project, guides=True)), list(_lines(project))
+    return [texts for texts in ([every, usual] if len(every) > len(usual) else [usual]) if texts]
 
 
 def equations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Every equation of moments that gives a part of a reaction or the balancing moment: letters, then numbers."""
-    texts = list(_lines(project))
     canvas.of = "moments"
     left = canvas.title(box, tr("Equations of moments"))
-    for height, step, _ in WAYS:
+    for texts, (height, step, _) in product(_choices(project), WAYS):
         lines = [line for text in texts for line in broken(text, box.width - 6.0 + 1e-6, height)]
         if 12.0 + step * len(lines) <= box.height + 1e-6:
             break
     canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
 
 
-def _lines(project: Project) -> Iterator[str]:
+def _lines(project: Project, guides: bool = False) -> Iterator[str]:
+    """The equations, with those that give where the reactions of fixed ``guides`` act."""
     k, forces, pos = project.force_index, project.study.forces, project.study.positions
     for g in reversed(project.mechanism.groups):  # as the reactions are found: the crank's neighbours last
         for part in forces.from_moments:
@@ -70,6 +76,8 @@ def _lines(project: Project) -> Iterator[str]:
                 # The scheme of a class III group shows the arms about its special point: others say what they are about.
                 about = "" if g.kind.grade == 2 else f"^{part.centre}"
                 yield from _solved(project, indexed(part.centre), total, (sign, arm, length), part.vector, about)
+        if guides:
+            yield from _guided(project, g)
         if (about := g.kind.about(g)) in pos.special:
             point, third = pos.special[about].step, pos.special[about].third
             if (normal := forces.about_special(point)) is not None:
@@ -88,6 +96,24 @@ def _lines(project: Project) -> Iterator[str]:
             value = number(float(project.study.balance["M"].at(k)), 5, forces.moment_size(k))
             yield tr("{moment} = {sum} = {value} N·m (“+”: in the sense of ω_1)").format(
                 moment=name, sum=_sum(solved, numbers=True), value=value)
+
+
+def _guided(project: Project, g: StructuralGroup) -> Iterator[str]:
+    """Couples of the reactions of a group's guides, and the arms at which they act; none for one through its hinge."""
+    k, forces, guides = project.force_index, project.study.forces, project.mechanism.guides
+    for pair in (pair_index(link, guides[guide].link) for guide in g.guides for link in g.links):
+        couple = forces.couples.get(f"F{pair}")
+        if couple is None or not np.isfinite(value := float(couple.at(k))) or is_zero(value, forces.moment_size(k)):
+            continue
+        total = couple.args[0]
+        terms = list(_terms(project, total))
+        centre, sign = indexed(total.args[0].name), f"M_{{{pair}}}"
+        yield tr("ΣM_{centre} = {sum} = 0").format(centre=centre, sum=_sum([Term(sign, 1.0 if value > 0 else -1.0, ()), *terms]))
+        yield tr("{force} = |{sum}| = {value} N·m").format(force=sign, sum=_sum(terms, numbers=True), value=number(abs(value), 5))
+        force, arm = complex(forces.reactions[f"F{pair}"].at(k)), forces.arms.get(f"h{pair}")
+        if arm is not None and np.isfinite(arm.at(k)) and not is_zero(force, forces.force_size(k)):
+            yield tr("h_{{{pair}}} = M_{{{pair}}}/F_{{{pair}}} = {couple}/{force} = {value} m").format(
+                pair=pair, couple=number(abs(value), 5), force=number(abs(force), 5), value=number(abs(float(arm.at(k))), 4))
 
 
 def _solved(project: Project, centre: str, total: Step, own: tuple[str, str, float], found: Step,
