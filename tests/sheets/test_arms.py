@@ -120,3 +120,20 @@ def test_a_closed_polygon_folds_back_at_its_beginning_too():
     assert [size is not None for size in heads] == [False, False, False, True, True]
     heads = kinetics.heads_apart([(6j, 0), (0, 30), (30, -50j), (-50j, 6j)])
     assert [size is not None for size in heads] == [True, False, False, True]
+
+
+@pytest.mark.parametrize(("name", "lines"), [("lugansk/shaper", 3), ("sixbar/10:1", 2), ("press", 0)],
+                         ids=["arm", "no arm", "none"])
+def test_the_equation_of_a_guides_reaction_gives_its_couple_and_its_arm(name, lines):
+    """A frame of a slotted ram: the couple by the numbers written, and where the force acts by couple and force."""
+    project = Project(read(name))
+    usual = list(moments._lines(project))
+    extra = [line for line in moments._lines(project, guides=True) if line not in usual]
+    assert len(extra) == lines
+    forces, k = project.study.forces, project.force_index
+    for line in extra[1:]:
+        said, value = re.fullmatch(r".* = \|?([^=|]+)\|? = ([\d,]+) \S+", line).groups()
+        found = abs(eval(said.replace("−", "-").replace("·", "*").replace(",", ".")))
+        assert found == pytest.approx(float(value.replace(",", ".")), rel=2e-3)
+        truth = forces.couples["F50"] if line.startswith("M") else forces.arms["h50"]
+        assert found == pytest.approx(abs(float(truth.at(k))), rel=2e-3)
