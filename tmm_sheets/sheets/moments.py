@@ -40,24 +40,24 @@ class Term(NamedTuple):
 def equations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the equations can do with, mm: each in one line, then broken, then in small letters; last without guides."""
     sizes = []
-    for texts in _choices(project):
-        for height, step, width in WAYS:
-            lines = [line for text in texts for line in broken(text, width, height)]
-            sizes.append((max(letter(line, height).width for line in lines) + 6.0, 12.0 + step * len(lines)))
+    for texts, (height, step, width) in _choices(project):
+        lines = [line for text in texts for line in broken(text, width, height)]
+        sizes.append((max(letter(line, height).width for line in lines) + 6.0, 12.0 + step * len(lines)))
     return sizes
 
 
-def _choices(project: Project) -> list[list[str]]:
-    """The equations with those of the guides' reactions, if there are any, and without."""
+def _choices(project: Project) -> list[tuple[list[str], tuple[float, float, float]]]:
+    """The equations with those of the guides' reactions, if there are any, as they are lettered; then without, rather than small."""
     every, usual = list(_lines(project, guides=True)), list(_lines(project))
-    return [texts for texts in ([every, usual] if len(every) > len(usual) else [usual]) if texts]
+    guided = product([every], WAYS[:-1]) if len(every) > len(usual) else ()
+    return [(texts, way) for texts, way in (*guided, *product([usual], WAYS)) if texts]
 
 
 def equations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Every equation of moments that gives a part of a reaction or the balancing moment: letters, then numbers."""
     canvas.of = "moments"
     left = canvas.title(box, tr("Equations of moments"))
-    for texts, (height, step, _) in product(_choices(project), WAYS):
+    for texts, (height, step, _) in _choices(project):
         lines = [line for text in texts for line in broken(text, box.width - 6.0 + 1e-6, height)]
         if 12.0 + step * len(lines) <= box.height + 1e-6:
             break
