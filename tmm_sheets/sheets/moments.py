@@ -47,7 +47,7 @@ def equations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -
 
 
 def _choices(project: Project) -> list[tuple[list[str], tuple[float, float, float]]]:
-    """The equations with those of the guides' reactions, if there are any, as they are lettered; then without, rather than small."""
+    """The equations with those of the guides' reactions, if there are any; rather without them than in small letters."""
     every, usual = list(_lines(project, guides=True)), list(_lines(project))
     guided = product([every], WAYS[:-1]) if len(every) > len(usual) else ()
     return [(texts, way) for texts, way in (*guided, *product([usual], WAYS)) if texts]
