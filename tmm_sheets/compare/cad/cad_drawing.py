@@ -153,13 +153,18 @@ def _scaled(scale: float, declared: float | None) -> str:
     unit = declared or 1.0
     drawn_at = next((said for r, said in DRAWN_AT.items() if abs(scale / unit / r - 1) < 1e-3), None)
     units = next((name for mm, name in UNIT_NAMES.items() if abs(scale / mm - 1) < 1e-3), None)
+    declares = (tell("no units") if not declared else tell(UNIT_NAMES[unit]) if unit in UNIT_NAMES else
+                tell("units of {unit} mm").format(unit=told(f"{unit:g}")))
     if units is not None and (drawn_at is None or declared != 1.0):
-        declares = (tell("no units") if not declared else tell(UNIT_NAMES[unit]) if unit in UNIT_NAMES else
-                    tell("units of {unit} mm").format(unit=told(f"{unit:g}")))
         said = tell("the drawing is in {units} though the file declares {declares}; it was scaled accordingly")
         return said.format(units=tell(units), declares=declares)
     if drawn_at is not None:
         return tell("the drawing is at scale {scale}; it was scaled to 1:1").format(scale=told(drawn_at))
+    other = next(((name, at) for mm, name in reversed(UNIT_NAMES.items()) for r, at in DRAWN_AT.items()
+                  if abs(scale / mm / r - 1) < 1e-3), None)
+    if other is not None:
+        said = tell("the drawing is in {units} at scale {scale} though the file declares {declares}; it was scaled accordingly")
+        return said.format(units=tell(other[0]), scale=told(other[1]), declares=declares)
     said = tell("one unit of the drawing is {size} mm of the sheet; it was scaled accordingly")
     return said.format(size=told(f"{scale:.6g}"))
 

@@ -24,6 +24,14 @@ SURE = 0.5
 """Share of our lines found above which a placing is beyond doubt."""
 OWN = 0.4
 """Share of a drawing's ink that views must explain which stand in a layout of its own."""
+SIZES = tuple(dict.fromkeys((*RATIOS, *(1 / r for r in RATIOS))))
+"""Sizes of the letters, of ours, that a drawing at a scale of GOST 2.302 may have."""
+UNITS = (1.0, 25.4, 1000.0, 10.0)
+"""Units one draws in, mm."""
+ROUGHLY = 1.6
+"""How many times higher or lower than ours letters are."""
+SURELY_HANDY, BETTER = 0.8, 0.1
+"""Share of the plans with a handy scale factor from which on the unit is sure, and by how much another must be better."""
 PART = 100.0
 """Width plus height of the smallest part of a sheet that is looked for, mm."""
 
@@ -108,8 +116,8 @@ def _by_parts(known: Iterable[KnownSheet], ink: CadInk) -> Iterator[Laid]:
     for sheet in known:
         ours = lines([e.points for e in sheet.elements if e.view.n and e.kind not in ("text", "hatch", "fill")])
         for space in ink.spaces:
-            for ratio in RATIOS:
-                scale = Placing(complex((ink.unit or 1.0) * ratio))
+            for size in dict.fromkeys(base * ratio for base in (ink.unit or 1.0, 1.0) for ratio in RATIOS):
+                scale = Placing(complex(size))
                 z = space.lines.moved(scale).points(1.0)
                 if not 30 < len(z) < 60_000 or np.ptp(z.real) + np.ptp(z.imag) < PART:
                     continue
@@ -122,17 +130,49 @@ def _own_layout(known: Sequence[KnownSheet], ink: CadInk) -> Laid | None:
     """The drawing by its views, wherever they stand: those of the sheet that most of its ink belongs to; None if little does."""
     best: Laid | None = None
     for space in ink.spaces:
-        turn = Placing((ink.unit or 1.0) * 1j ** -_quarter(space))
+        turn = Placing(1j ** -_quarter(space))
         for sheet in known:
-            # By all letters of the sheet first: lines that lie close together are told apart at their own size.
-            placing = _to_size(Laid(sheet, space, turn, 0.0)).placing
-            laid = space.placed(placing)
-            views = list(dict.fromkeys(e.view for e in sheet.elements if e.view.n))
-            found = view_search.find(sheet.elements, views, laid.strokes, laid.lines, laid.writings, {})
-            share = _explained(sheet, laid, found)
-            if share >= OWN and (best is None or share > best.share):
-                best = Laid(sheet, space, placing, share, found)
+            likely: tuple[float, Laid] | None = None
+            for scale in _sizes(sheet, space, ink.unit):
+                laid = _by_views(sheet, space, turn._replace(turn=scale * turn.turn))
+                handy = _handy(laid)
+                if likely is None or handy * laid.share > likely[0] + BETTER:
+                    likely = handy * laid.share, laid
+                if handy > SURELY_HANDY and laid.share >= OWN:
+                    break
+            if likely is not None and likely[1].share >= OWN and (best is None or likely[1].share > best.share):
+                best = likely[1]
     return best if best is None else _to_size(best)
+
+
+def _by_views(sheet: KnownSheet, space: DrawingSpace, placing: Placing) -> Laid:
+    """A drawing of some size and turn by its views; the share is that of its ink."""
+    laid = space.placed(placing)
+    views = list(dict.fromkeys(e.view for e in sheet.elements if e.view.n))
+    found = view_search.find(sheet.elements, views, laid.strokes, laid.lines, laid.writings, {})
+    return Laid(sheet, space, placing, _explained(sheet, laid, found), found)
+
+
+def _sizes(sheet: KnownSheet, space: DrawingSpace, unit: float | None) -> list[float]:
+    """Sizes to try, mm of the sheet per unit of the drawing, the likely one first.
+
+    The declared unit is a hint only: AutoCAD declares inches for drawings in millimetres. The letters tell the size roughly, and
+    lines that lie close together are told apart at their own size.
+    """
+    sizes = {base: _to_size(Laid(sheet, space, Placing(complex(base)), 0.0)).placing.scale for base in (unit or 1.0, *UNITS)}
+    letters = _letters(Laid(sheet, space, Placing(), 0.0))
+    if not letters:
+        return list(dict.fromkeys((unit or 1.0, 1.0)))
+    high = float(np.median([size for some in letters for size in some]))
+    plain = sorted(sizes, key=lambda base: abs(np.log(sizes[base] / base)))
+    near = [sizes[base] for base in plain if abs(np.log(sizes[base] / high)) < np.log(ROUGHLY)] or [sizes[unit or 1.0]]
+    return [s for k, s in enumerate(near) if all(abs(s / other - 1) > 1e-3 for other in near[:k])]
+
+
+def _handy(laid: Laid) -> float:
+    """Share of the plans found, by their lines, that have a scale factor somebody takes: in a wrong unit few have."""
+    plans = Counter(e.view for e in laid.known.elements if e.view.mu is not None and e.view in laid.views)
+    return sum(n for v, n in plans.items() if view_search.handy(laid.views[v].placing)) / plans.total() if plans else 1.0
 
 
 def _quarter(space: DrawingSpace) -> int:
@@ -152,20 +192,25 @@ def _explained(sheet: KnownSheet, space: DrawingSpace, found: Mapping[ElementVie
 
 def _to_size(laid: Laid) -> Laid:
     """The same at the size at which its letters are as high as ours: symbols are as large in every scale of a view."""
+    votes: Counter[float] = Counter()
+    for sizes in _letters(laid):
+        votes.update({min(SIZES, key=lambda r: abs(np.log(laid.placing.scale * r / one))) for one in sizes})
+    if not votes:
+        return laid
+    times = max(votes, key=lambda r: (votes[r], -SIZES.index(r)))
+    views = {v: replace(one, placing=Placing(one.placing.turn * times, one.placing.shift * times))
+             for v, one in laid.views.items()}
+    return replace(laid, placing=Placing(laid.placing.turn * times), views=views)
+
+
+def _letters(laid: Laid) -> list[list[float]]:
+    """For each text that is on the sheet, too, mm of the sheet per unit of the drawing: a number may be of several heights."""
     high: dict[str, set[float]] = {}
     for e in laid.known.elements:
         if e.kind == "text" and (e.view in laid.views or not laid.views):
             high.setdefault(meant(e.text), set()).add(e.height)
-    votes: Counter[float] = Counter()
-    for w in laid.space.writings:  # a number may be one of several that are not equally high
-        ratios = [w.height * laid.placing.scale / h for h in high.get(meant(w.text), ())]
-        votes.update({min(RATIOS, key=lambda r: abs(np.log(one / r))) for one in ratios if one > 0})
-    if not votes:
-        return laid
-    times = max(votes, key=lambda r: (votes[r], -RATIOS.index(r)))
-    views = {v: replace(one, placing=Placing(one.placing.turn / times, one.placing.shift / times))
-             for v, one in laid.views.items()}
-    return replace(laid, placing=Placing(laid.placing.turn / times), views=views)
+    found = ([h / w.height for h in high.get(meant(w.text), ())] for w in laid.space.writings if w.height > 0)
+    return [sizes for sizes in found if sizes]
 
 
 def _best(tried: Sequence[Laid]) -> Laid:
