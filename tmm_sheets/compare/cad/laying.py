@@ -7,12 +7,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from tmm_sheets.compare.cad import layout, view_search
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.cad_text import meant
 from tmm_sheets.compare.cad.line_fit import HIT, RATIOS, KnownLines, candidates, lines, refine, search, snapped
-from tmm_sheets.compare.cad.view_search import FoundView
+from tmm_sheets.compare.cad.view_search import ASKEW, FoundView
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.known_sheet import KnownSheet
 from tmm_sheets.compare.placing import Placing, moved
@@ -32,6 +33,10 @@ ROUGHLY = 1.6
 """How many times higher or lower than ours letters are."""
 SURELY_HANDY, BETTER = 0.8, 0.1
 """Share of the plans with a handy scale factor from which on the unit is sure, and by how much another must be better."""
+LETTERS, MANY, MORE = 6, 0.3, 3
+"""So many texts tell how a drawing is turned, else its lines, if that share has one direction and so many times less is upright."""
+ALIGNED = 1e-3
+"""What is one direction, rad."""
 PART = 100.0
 """Width plus height of the smallest part of a sheet that is looked for, mm."""
 
@@ -51,7 +56,23 @@ class Laid:
 
 
 def lay(known: Sequence[KnownSheet], ink: CadInk) -> Laid:
-    """Lay a drawing over the sheet it fits best: by its frame, else by any of its lines or views, even mirrored or of one view."""
+    """Lay a drawing over the sheet it fits best: by its frame, else by any of its lines or views, even mirrored or of one view.
+
+    One turned as a whole, as in a user coordinate system, is turned back first.
+    """
+    back = [Placing(complex(np.exp(-1j * angle))) if (angle := _askew(space)) else None for space in ink.spaces]
+    if not any(back):
+        return _lay(known, ink)
+    spaces = [space.placed(turn) if turn else space for space, turn in zip(ink.spaces, back, strict=True)]
+    laid = _lay(known, replace(ink, spaces=tuple(spaces)))
+    k = next(k for k, space in enumerate(spaces) if space is laid.space)
+    if laid.share < OWN and (upright := _lay(known, ink)).share > laid.share:
+        return upright
+    return replace(laid, space=ink.spaces[k], placing=laid.placing.after(back[k] or Placing()))
+
+
+def _lay(known: Sequence[KnownSheet], ink: CadInk) -> Laid:
+    """The same of a drawing whose frame and tables, or lettering, are upright or lie on a side."""
     # With a frame the rest may have another layout: then the lettering tells the sheet.
     tried = _by_frame(known, ink)
     if not tried:
@@ -173,6 +194,27 @@ def _handy(laid: Laid) -> float:
     """Share of the plans found, by their lines, that have a scale factor somebody takes: in a wrong unit few have."""
     plans = Counter(e.view for e in laid.known.elements if e.view.mu is not None and e.view in laid.views)
     return sum(n for v, n in plans.items() if view_search.handy(laid.views[v].placing)) / plans.total() if plans else 1.0
+
+
+def _askew(space: DrawingSpace) -> float:
+    """The angle by which a drawing is turned beside quarter turns, rad: that of its lettering, else of its lines."""
+    angles = np.array([w.angle for w in space.writings])
+    weights = np.ones(len(angles))
+    if len(angles) < LETTERS:
+        angles, weights = np.angle(space.lines.b - space.lines.a), space.lines.length
+    if not len(angles) or not weights.any():
+        return 0.0
+    bins, k = np.unique(np.round(_beside(angles) / ALIGNED), return_inverse=True)
+    most = float(bins[np.bincount(k, weights).argmax()]) * ALIGNED
+    near, upright = (np.abs(_beside(angles - one)) < ALIGNED for one in (most, 0.0))
+    if abs(most) < ASKEW or weights[near].sum() < max(MANY * weights.sum(), MORE * weights[upright].sum()):
+        return 0.0
+    return most + float(np.median(_beside(angles - most)[near]))
+
+
+def _beside(angles: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Angles beside the nearest quarter turn, rad."""
+    return np.asarray((angles + np.pi / 4) % (np.pi / 2) - np.pi / 4)
 
 
 def _quarter(space: DrawingSpace) -> int:
