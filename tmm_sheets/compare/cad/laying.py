@@ -33,6 +33,8 @@ ROUGHLY = 1.6
 """How many times higher or lower than ours letters are."""
 SURELY_HANDY, BETTER = 0.8, 0.1
 """Share of the plans with a handy scale factor from which on the unit is sure, and by how much another must be better."""
+AWAY = 5.0
+"""How far from ours a view stands that is elsewhere, mm."""
 LETTERS, MANY, MORE = 6, 0.3, 3
 """So many texts tell how a drawing is turned, else its lines, if that share has one direction and so many times less is upright."""
 ALIGNED = 1e-3
@@ -75,6 +77,8 @@ def _lay(known: Sequence[KnownSheet], ink: CadInk) -> Laid:
     """The same of a drawing whose frame and tables, or lettering, are upright or lie on a side."""
     # With a frame the rest may have another layout: then the lettering tells the sheet.
     tried = _by_frame(known, ink)
+    if tried and _best(tried).share < SURE and (own := _own_layout_framed(tried, ink.unit)) is not None:
+        return own
     if not tried:
         tried += _by_lines(known, ink, mirrored=False)
         if _best(tried).share < SURE and (own := _own_layout(known, ink)) is not None:
@@ -166,12 +170,27 @@ def _own_layout(known: Sequence[KnownSheet], ink: CadInk) -> Laid | None:
     return best if best is None else _to_size(best)
 
 
-def _by_views(sheet: KnownSheet, space: DrawingSpace, placing: Placing) -> Laid:
-    """A drawing of some size and turn by its views; the share is that of its ink."""
+def _own_layout_framed(tried: Sequence[Laid], unit: float | None) -> Laid | None:
+    """A drawing in a frame by its views, the lettering upright; None if little of it is, or most of them are where ours are.
+
+    Nothing but the frame tells its ways from one another.
+    """
+    upright = [(laid.known, laid.space, _refined(laid, unit).placing) for laid in tried
+               if not laid.placing.mirrored and round(laid.placing.degrees / 90 + _quarter(laid.space)) % 4 == 0]
+    best = max((_by_views(*one, framed=True) for one in upright), key=lambda laid: laid.share, default=None)
+    if best is None or best.share < OWN:
+        return None
+    moved_off = [abs(one.placing(v.box.centre) - v.box.centre) > AWAY for v, one in best.views.items()]
+    return best if sum(moved_off) > 0.5 * len(moved_off) else None
+
+
+def _by_views(sheet: KnownSheet, space: DrawingSpace, placing: Placing, *, framed: bool = False) -> Laid:
+    """A drawing of some size and turn by its views; the share is that of its ink, with the title block if it is ``framed``."""
     laid = space.placed(placing)
     views = list(dict.fromkeys(e.view for e in sheet.elements if e.view.n))
     found = view_search.find(sheet.elements, views, laid.strokes, laid.lines, laid.writings, {})
-    return Laid(sheet, space, placing, _explained(sheet, laid, found), found)
+    block = {e.view: FoundView(Placing(), 1.0) for e in sheet.elements if framed and not e.view.n}
+    return Laid(sheet, space, placing, _explained(sheet, laid, {**found, **block}), found)
 
 
 def _sizes(sheet: KnownSheet, space: DrawingSpace, unit: float | None) -> list[float]:
