@@ -16,7 +16,7 @@ from tmm_sheets.compare.cad.line_fit import HIT, RATIOS, KnownLines, candidates,
 from tmm_sheets.compare.cad.view_search import ASKEW, FoundView
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.known_sheet import KnownSheet
-from tmm_sheets.compare.placing import Placing, moved
+from tmm_sheets.compare.placing import SAME, Placing, moved
 from tmm_sheets.drawing.marks import Points
 
 SIDES = (816.0, 841.0, 584.0, 594.0)
@@ -171,9 +171,9 @@ def _own_layout(known: Sequence[KnownSheet], ink: CadInk) -> Laid | None:
 
 
 def _own_layout_framed(tried: Sequence[Laid], unit: float | None) -> Laid | None:
-    """A drawing in a frame by its views, the lettering upright; None if little of it is, or most of them are where ours are.
+    """A drawing in a frame by its views, the lettering upright, for the frame alone has four ways; None if little of it is.
 
-    Nothing but the frame tells its ways from one another.
+    Neither is it one of its own where most views are where ours are, or all are as large and the title block is ours.
     """
     upright = [(laid.known, laid.space, _refined(laid, unit).placing) for laid in tried
                if not laid.placing.mirrored and round(laid.placing.degrees / 90 + _quarter(laid.space)) % 4 == 0]
@@ -181,7 +181,11 @@ def _own_layout_framed(tried: Sequence[Laid], unit: float | None) -> Laid | None
     if best is None or best.share < OWN:
         return None
     moved_off = [abs(one.placing(v.box.centre) - v.box.centre) > AWAY for v, one in best.views.items()]
-    return best if sum(moved_off) > 0.5 * len(moved_off) else None
+    if sum(moved_off) <= 0.5 * len(moved_off):
+        return None
+    block = layout.ink([e for e in best.known.elements if not e.view.n])
+    ours = best.space.lines.share(best.placing.back(block), HIT / best.placing.scale) > 0.9
+    return None if ours and all(abs(one.placing.scale - 1) < SAME for one in best.views.values()) else best
 
 
 def _by_views(sheet: KnownSheet, space: DrawingSpace, placing: Placing, *, framed: bool = False) -> Laid:
