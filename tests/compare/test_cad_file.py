@@ -244,6 +244,40 @@ def test_russian_in_a_file_that_declares_another_code_page(path, encoding):
     assert [e.layer for e in space.entities] == ["0", "Рамка"]
 
 
+def test_letters_that_the_code_page_lacks(path):
+    """AutoCAD writes them as codes; in a text of several lines, too."""
+    doc = ezdxf.new("R2000")
+    msp = doc.modelspace()
+    msp.add_line((0, 0), (1, 0))
+    msp.add_text("План сил", height=1, dxfattribs={"layer": "Layer"})
+    msp.add_mtext("{\\H3;Звено} é", dxfattribs={"char_height": 3})
+    text = StringIO()
+    doc.write(text)
+    assert "ANSI_1252" in text.getvalue()
+    path.write_bytes(text.getvalue().encode("cp1252", "dxfreplace"))
+    assert [w.text for w in cad_file.read(path).spaces[0].writings] == ["План сил", "Звено é"]
+
+
+@pytest.mark.parametrize(("text", "height"), [
+    ("a", 2), ("{\\H5;a}", 5), ("{\\fArial|b0|i0|c204;\\H1.5x;a}", 3), ("a{\\H0.7x;\\S^1;}", 2), ("\\H0;a", 2), ("\\H3;\\H2x;a", 6),
+    ("\\A1;\\C7;{\\L\\H.5x;a}", 1), ("", None)])
+def test_the_height_told_within_a_text(path, text, height):
+    """Unless it is that of an index."""
+    doc, msp = drawing()
+    msp.add_line((0, 0), (1, 1))
+    msp.add_mtext(text, dxfattribs={"char_height": 2})
+    assert [w.height for w in cad_file.read(saved(doc, path)).spaces[0].writings] == ([pytest.approx(height)] if height else [])
+
+
+def test_a_block_that_the_file_lacks(path):
+    doc, msp = drawing()
+    msp.add_line((0, 0), (1, 1))
+    msp.add_blockref("no such", (0, 0))
+    ink = cad_file.read(saved(doc, path))
+    assert len(ink.spaces[0].strokes) == 1
+    assert "INSERT" in ink.notes[0]
+
+
 def nested(depth, each):
     """Blocks of blocks: ``each`` to the power of ``depth`` lines."""
     doc, space = drawing()

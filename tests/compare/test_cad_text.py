@@ -48,3 +48,13 @@ def test_a_foreign_title_or_label_in_the_box_is_not_ours():
     assert says(("c", 2 + 2j)) == {"b": "c"}
     assert says(("d", 2 + 2j), ("b", 52 + 2j)) == {"b": "d", "d": "b"}
     assert says(("d", 2 + 2j), ("d", 52 + 2j)) == {"b": "d", "d": None}
+
+
+def test_the_title_of_another_view_is_no_part_of_a_title():
+    """Two plans stand close together: the one's title reaches into the box of the other's, which is in other words."""
+    first, second = label(1, "Position 1", 0, 0, 30, 5), label(2, "Position 4", 10, 1, 40, 6)
+    texts = [Writing("POSITION 4", 25 + 3.5j, 3.5, 28.0, 0.0, 0), Writing("Position 1", 15 + 2.5j, 3.5, 28.0, 0.0, 1)]
+    found = read([first, second], texts)
+    assert (found[0].says, found[1].says) == (None, "POSITION 4")
+    there = read([second, first], [*texts, texts[1]._replace(at=18 + 3j)])
+    assert there[0].says == "POSITION 4"

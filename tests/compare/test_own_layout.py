@@ -12,7 +12,7 @@ from tests.compare.cad_plants import Way, draw
 from tests.compare.hypotheses import Slip
 from tests.compare.own_layouts import Drawn, follows, is_there, taken
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare.cad import cad_built, cad_drawing, cad_report, cad_story, view_search
+from tmm_sheets.compare.cad import cad_built, cad_drawing, cad_file, cad_report, cad_story, laying, view_search
 from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.diagnosis.built_plan import Drawing, built_otherwise, errors_of, possible
 from tmm_sheets.compare.diagnosis.drawn_plan import between, drawn_plan, drawn_positions, rebuilt
@@ -61,6 +61,65 @@ def test_the_views_are_found_at_their_scales(compared):
     for view, place in PLACES.items():
         points = view.box.corners
         assert is_there(place, found.places.moves[view], points, 1.0), view.name
+
+
+@pytest.mark.parametrize(("declared", "unit", "at"), [
+    (25.4, 1.0, 1), (25.4, 25.4, 1), (None, 1.0, 1), (1.0, 10.0, 1), (25.4, 1.0, 10), (1000.0, 1.0, 2), (1.0, 25.4, 1),
+    (None, 1000.0, 1)])
+def test_the_unit_a_file_declares_is_a_hint(compared, declared, unit, at):
+    """AutoCAD declares inches for a drawing in millimetres: how high the letters are tells the size."""
+    _, found, _ = compared
+    drawn = found.laid.space.placed(Placing(complex(1 / unit / at)))
+    sizes = laying._sizes(KNOWN, drawn, declared)
+    assert sizes[0] == pytest.approx(unit * at)
+    assert len(sizes) < 4
+
+
+def test_in_a_wrong_unit_no_plan_has_a_scale_factor_somebody_takes(compared):
+    _, found, _ = compared
+    assert laying._handy(found.laid) > laying.SURELY_HANDY
+    odd = {v: replace(one, placing=Placing(one.placing.turn / 1.27)) for v, one in found.laid.views.items()}
+    assert laying._handy(replace(found.laid, views=odd)) < 0.2
+    assert laying._handy(replace(found.laid, views={})) == 1
+
+
+@pytest.mark.parametrize(("scale", "declared", "said"), [
+    (2.0, 25.4, "in millimetres at scale 1:2 though the file declares inches"), (1.0, 25.4, "in millimetres though"),
+    (12.7, 25.4, "at scale 2:1; it was scaled to 1:1"), (50.8, 1.0, "in inches at scale 1:2 though the file declares millimetres"),
+    (2.0, None, "at scale 1:2; it"), (3.3, 25.4, "one unit of the drawing is 3.3 mm")])
+def test_the_unit_that_was_taken_is_said(scale, declared, said):
+    assert said in cad_drawing._scaled(scale, declared)
+
+
+def test_a_layout_of_ones_own_in_a_frame_and_turned(compared, tmp_path):
+    """The frame alone has four ways, also mirrored ones, that are alike; a user coordinate system turns everything."""
+    _, found, drawn = compared
+    right = [v for v in PLACES if v not in found.built]
+    frame = [e for e in KNOWN.elements if not e.view.n and e.kind == "curve"]
+    views = [moved(e, PLACES[e.view]) for e in drawn.elements if e.view in right]
+    path = tmp_path / "framed.dxf"
+    path.write_bytes(draw(frame + views, Way(np.exp(1j * np.pi / 6), 70 - 20j, 1), random.Random(3)))
+    shaped = {e.view for e in KNOWN.elements if e.role in view_search.SHAPES}
+    few = replace(KNOWN, elements=tuple(e for e in KNOWN.elements if e.view in right or e.view not in shaped))
+    laid = laying.lay([few], cad_file.read(path))
+    assert not laid.placing.mirrored
+    assert laid.placing.degrees == pytest.approx(-30, abs=0.01)
+    assert laid.placing.scale == pytest.approx(1, abs=1e-4)
+    for v in right[:2]:
+        assert is_there(PLACES[v], laid.views[v].placing, v.box.corners, 1.0), v.name
+
+
+def test_the_lettering_tells_how_a_drawing_is_turned_else_its_lines(compared):
+    _, found, _ = compared
+    space = found.laid.space
+    assert laying._askew(space) == 0
+    for degrees, said in ((30, 30), (45, 45), (117, 27), (0.3, 0), (-20, -20), (90, 0)):
+        turned = space.placed(Placing(np.exp(1j * np.radians(degrees))))
+        assert (np.degrees(laying._askew(turned)) - said + 45) % 90 == pytest.approx(45, abs=0.01)
+    upright = replace(space, writings=(), strokes=tuple(s for s in space.strokes if abs(np.diff(s.points).imag).max() < 1e-6))
+    assert laying._askew(upright) == 0
+    assert np.degrees(laying._askew(upright.placed(Placing(np.exp(1j * np.pi / 6))))) == pytest.approx(30)
+    assert laying._askew(replace(space, writings=(), strokes=())) == 0
 
 
 def test_a_view_that_is_turned_is_told_so_once(compared):

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from tmm_sheets.compare import view_places
 from tmm_sheets.compare.cad import cad_built, cad_file, cad_overlay, cad_report, cad_story, layout
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
+from tmm_sheets.compare.cad.cad_language import lettered
 from tmm_sheets.compare.cad.laying import Laid, fitting, lay
 from tmm_sheets.compare.cad.lost_views import lost_views
 from tmm_sheets.compare.cad.matching import match
@@ -27,10 +27,8 @@ from tmm_sheets.compare.report import Report
 from tmm_sheets.compare.story import listed
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.numbers import decimal, told
-from tmm_sheets.words import marked, tell
-
-if TYPE_CHECKING:
-    from tmm_sheets.project import Project
+from tmm_sheets.project import Project
+from tmm_sheets.words import marked, on_paper, paper, tell
 
 LOST = 0.2
 """Share of a sheet's lines that must be found; a drawing with fewer is not of this sheet."""
@@ -38,6 +36,7 @@ DRAWN_AT = {2.0: "1:2", 2.5: "1:2.5", 4.0: "1:4", 5.0: "1:5", 10.0: "1:10", 0.5:
 """Scales of GOST 2.302 by mm of the sheet per mm drawn."""
 UNIT_NAMES = {1000.0: marked("metres"), 25.4: marked("inches"), 10.0: marked("centimetres"), 1.0: marked("millimetres")}
 """Units by mm."""
+LANGUAGE_NAMES = {"ru": marked("Russian"), "uk": marked("Ukrainian"), "en": marked("English")}
 
 
 def compare(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
@@ -86,8 +85,20 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     for n in numbers:
         say(tell("sheet {n}").format(n=n))
         known.append(known_sheet(project, n))
-    if views is not None and len(numbers) > 1:
+    if views is not None and len(known) > 1:
         raise BadInput(tell("--views needs --sheet N: its views are those of one sheet"))
+    language, said = lettered(project, known, ink)
+    if language == paper():
+        return _examined(project, sheet, path, views, pencil, say, ink, known)
+    with on_paper(language):
+        found = _examined(Project(project.variant), sheet, path, views, pencil, say, ink, said)
+    note = tell("the drawing is lettered in {language}; it was compared with the sheet in that language")
+    return replace(found, notes=(*found.notes, note.format(language=tell(LANGUAGE_NAMES[language]))))
+
+
+def _examined(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
+              say: Callable[[str], None], ink: CadInk, known: Sequence[KnownSheet]) -> cad_report.Examined:
+    """The contents of a drawing compared with the sheets known, in its language."""
     say(tell("laying it over the sheet"))
     laid = lay(known, ink)
     given = view_places.read(views, views_of(laid.known.sheet)) if views is not None else ()
@@ -153,13 +164,18 @@ def _scaled(scale: float, declared: float | None) -> str:
     unit = declared or 1.0
     drawn_at = next((said for r, said in DRAWN_AT.items() if abs(scale / unit / r - 1) < 1e-3), None)
     units = next((name for mm, name in UNIT_NAMES.items() if abs(scale / mm - 1) < 1e-3), None)
+    declares = (tell("no units") if not declared else tell(UNIT_NAMES[unit]) if unit in UNIT_NAMES else
+                tell("units of {unit} mm").format(unit=told(f"{unit:g}")))
     if units is not None and (drawn_at is None or declared != 1.0):
-        declares = (tell("no units") if not declared else tell(UNIT_NAMES[unit]) if unit in UNIT_NAMES else
-                    tell("units of {unit} mm").format(unit=told(f"{unit:g}")))
         said = tell("the drawing is in {units} though the file declares {declares}; it was scaled accordingly")
         return said.format(units=tell(units), declares=declares)
     if drawn_at is not None:
         return tell("the drawing is at scale {scale}; it was scaled to 1:1").format(scale=told(drawn_at))
+    other = next(((name, at) for mm, name in reversed(UNIT_NAMES.items()) for r, at in DRAWN_AT.items()
+                  if abs(scale / mm / r - 1) < 1e-3), None)
+    if other is not None:
+        said = tell("the drawing is in {units} at scale {scale} though the file declares {declares}; it was scaled accordingly")
+        return said.format(units=tell(other[0]), scale=told(other[1]), declares=declares)
     said = tell("one unit of the drawing is {size} mm of the sheet; it was scaled accordingly")
     return said.format(size=told(f"{scale:.6g}"))
 

@@ -61,6 +61,9 @@ BINARY = b"AutoCAD Binary DXF"
 """How a binary DXF file begins."""
 OTHERS = {b"%PDF": "PDF", b"\x89PNG": "PNG", b"\xff\xd8\xff": "JPEG", b"PK\x03\x04": "ZIP", b"KF\x1a": "KOMPAS"}
 """How files of other kinds begin that are taken for drawings."""
+BEGINNING = re.compile(r"(?:\{|\\[ACFHQTWcfp][^;\\{}]*;|\\[LOKlok])*")
+HEIGHT = re.compile(r"\\H(\d*\.?\d+)(x?);")
+"""Codes before the first letter of a text of several lines, and one of its height, or of that times so many."""
 SILENT = {"POINT", "VIEWPORT", "ATTDEF", "RAY", "XLINE", "LIGHT", "SUN"}
 
 
@@ -174,7 +177,11 @@ def _completed(data: bytes) -> bytes | None:
 
 
 def words(text: str, encoding: str) -> str:
-    """Text that was read with the wrong code page, as it was meant: UTF-8 or Russian Windows."""
+    """Text that was read with the wrong code page, as it was meant: UTF-8 or Russian Windows; of a code the letter it is for."""
+    from ezdxf.lldxf.encoding import decode_dxf_unicode, has_dxf_unicode
+
+    if has_dxf_unicode(text):  # of a letter that the code page lacks: then that is the right one
+        return decode_dxf_unicode(text).encode("utf-8", "replace").decode("utf-8")
     if text.isascii() or encoding.lower().replace("-", "") in ("utf8", "cp1251"):
         return text.encode("utf-8", "replace").decode("utf-8")
     try:
@@ -369,7 +376,8 @@ class _DxfReader:
             self.skipped += 1
             return
         name = str(e.dxf.get("name", "")).lower() if kind == "INSERT" else ""
-        if (name and name in within) or len(within) > DEEPEST:  # blocks that hold one another
+        missing = kind == "INSERT" and e.block() is None
+        if missing or (name and name in within) or len(within) > DEEPEST:  # blocks that hold one another
             self.unread[kind] += 1
             return
         if kind == "INSERT" and e.mcount > 1:
@@ -502,6 +510,9 @@ def _text(e: Any, n: int) -> Iterator[Writing]:
 def _mtext(e: Any, n: int) -> Iterator[Writing]:
     lines = [line for line in e.plain_text(split=True) if line.strip()]
     height = float(e.dxf.get("char_height", 2.5))
+    begins = BEGINNING.match(e.text)
+    for size, times in HEIGHT.findall(begins.group() if begins else ""):
+        height = float(size) * (height if times else 1.0) or height
     angle = radians(e.get_rotation())
     u = complex(np.exp(1j * angle))
     at = complex(e.dxf.insert.x, e.dxf.insert.y)

@@ -122,7 +122,8 @@ class _Reading:
         for _, n, k in sorted(pairs):
             if n not in self.found and k in self.free and self._meant_for(n, k):
                 want = self.wanted[n]
-                parts = {k, *(j for j in self._about(want) if j in self.free and _inside(want, self.writings[j].at, CLOSE))}
+                parts = {k, *(j for j in self._about(want) if j in self.free and _inside(want, self.writings[j].at, CLOSE)
+                              and not self._title_of_another(n, j))}
                 order = self._along(list(parts), want)
                 self._take(n, *order, says="".join(self.writings[j].text for j in order).strip())
 
@@ -137,6 +138,11 @@ class _Reading:
         owners = [m for m, want in self._missing() if m != n and meant(want.text) == meant(text)]
         return not owners or any(j != k and j in self.free and _inside(self.wanted[m], self.writings[j].at, 3.0)
                                  for m in owners for j in self._about(self.wanted[m]))
+
+    def _title_of_another(self, n: int, k: int) -> bool:
+        """Whether a text is the whole title of something else, which stands too near."""
+        text = self.writings[k].text
+        return bool(WORDS.search(text)) and any(m != n and meant(w.text) == meant(text) for m, w in enumerate(self.wanted))
 
     def _missing(self) -> Iterator[tuple[int, Element]]:
         return ((n, want) for n, want in enumerate(self.wanted) if n not in self.found)

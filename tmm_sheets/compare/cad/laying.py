@@ -7,15 +7,16 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from tmm_sheets.compare.cad import layout, view_search
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.cad_text import meant
 from tmm_sheets.compare.cad.line_fit import HIT, RATIOS, KnownLines, candidates, lines, refine, search, snapped
-from tmm_sheets.compare.cad.view_search import FoundView
+from tmm_sheets.compare.cad.view_search import ASKEW, FoundView
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.known_sheet import KnownSheet
-from tmm_sheets.compare.placing import Placing, moved
+from tmm_sheets.compare.placing import SAME, Placing, moved
 from tmm_sheets.drawing.marks import Points
 
 SIDES = (816.0, 841.0, 584.0, 594.0)
@@ -24,6 +25,20 @@ SURE = 0.5
 """Share of our lines found above which a placing is beyond doubt."""
 OWN = 0.4
 """Share of a drawing's ink that views must explain which stand in a layout of its own."""
+SIZES = tuple(dict.fromkeys((*RATIOS, *(1 / r for r in RATIOS))))
+"""Sizes of the letters, of ours, that a drawing at a scale of GOST 2.302 may have."""
+UNITS = (1.0, 25.4, 1000.0, 10.0)
+"""Units one draws in, mm."""
+ROUGHLY = 1.6
+"""How many times higher or lower than ours letters are."""
+SURELY_HANDY, BETTER = 0.8, 0.1
+"""Share of the plans with a handy scale factor from which on the unit is sure, and by how much another must be better."""
+AWAY = 5.0
+"""How far from ours a view stands that is elsewhere, mm."""
+LETTERS, MANY, MORE = 6, 0.3, 3
+"""So many texts tell how a drawing is turned, else its lines, if that share has one direction and so many times less is upright."""
+ALIGNED = 1e-3
+"""What is one direction, rad."""
 PART = 100.0
 """Width plus height of the smallest part of a sheet that is looked for, mm."""
 
@@ -43,9 +58,27 @@ class Laid:
 
 
 def lay(known: Sequence[KnownSheet], ink: CadInk) -> Laid:
-    """Lay a drawing over the sheet it fits best: by its frame, else by any of its lines or views, even mirrored or of one view."""
+    """Lay a drawing over the sheet it fits best: by its frame, else by any of its lines or views, even mirrored or of one view.
+
+    One turned as a whole, as in a user coordinate system, is turned back first.
+    """
+    back = [Placing(complex(np.exp(-1j * angle))) if (angle := _askew(space)) else None for space in ink.spaces]
+    if not any(back):
+        return _lay(known, ink)
+    spaces = [space.placed(turn) if turn else space for space, turn in zip(ink.spaces, back, strict=True)]
+    laid = _lay(known, replace(ink, spaces=tuple(spaces)))
+    k = next(k for k, space in enumerate(spaces) if space is laid.space)
+    if laid.share < OWN and (upright := _lay(known, ink)).share > laid.share:
+        return upright
+    return replace(laid, space=ink.spaces[k], placing=laid.placing.after(back[k] or Placing()))
+
+
+def _lay(known: Sequence[KnownSheet], ink: CadInk) -> Laid:
+    """The same of a drawing whose frame and tables, or lettering, are upright or lie on a side."""
     # With a frame the rest may have another layout: then the lettering tells the sheet.
     tried = _by_frame(known, ink)
+    if tried and _best(tried).share < SURE and (own := _own_layout_framed(tried, ink.unit)) is not None:
+        return own
     if not tried:
         tried += _by_lines(known, ink, mirrored=False)
         if _best(tried).share < SURE and (own := _own_layout(known, ink)) is not None:
@@ -108,8 +141,8 @@ def _by_parts(known: Iterable[KnownSheet], ink: CadInk) -> Iterator[Laid]:
     for sheet in known:
         ours = lines([e.points for e in sheet.elements if e.view.n and e.kind not in ("text", "hatch", "fill")])
         for space in ink.spaces:
-            for ratio in RATIOS:
-                scale = Placing(complex((ink.unit or 1.0) * ratio))
+            for size in dict.fromkeys(base * ratio for base in (ink.unit or 1.0, 1.0) for ratio in RATIOS):
+                scale = Placing(complex(size))
                 z = space.lines.moved(scale).points(1.0)
                 if not 30 < len(z) < 60_000 or np.ptp(z.real) + np.ptp(z.imag) < PART:
                     continue
@@ -122,17 +155,89 @@ def _own_layout(known: Sequence[KnownSheet], ink: CadInk) -> Laid | None:
     """The drawing by its views, wherever they stand: those of the sheet that most of its ink belongs to; None if little does."""
     best: Laid | None = None
     for space in ink.spaces:
-        turn = Placing((ink.unit or 1.0) * 1j ** -_quarter(space))
+        turn = Placing(1j ** -_quarter(space))
         for sheet in known:
-            # By all letters of the sheet first: lines that lie close together are told apart at their own size.
-            placing = _to_size(Laid(sheet, space, turn, 0.0)).placing
-            laid = space.placed(placing)
-            views = list(dict.fromkeys(e.view for e in sheet.elements if e.view.n))
-            found = view_search.find(sheet.elements, views, laid.strokes, laid.lines, laid.writings, {})
-            share = _explained(sheet, laid, found)
-            if share >= OWN and (best is None or share > best.share):
-                best = Laid(sheet, space, placing, share, found)
+            likely: tuple[float, Laid] | None = None
+            for scale in _sizes(sheet, space, ink.unit):
+                laid = _by_views(sheet, space, turn._replace(turn=scale * turn.turn))
+                handy = _handy(laid)
+                if likely is None or handy * laid.share > likely[0] + BETTER:
+                    likely = handy * laid.share, laid
+                if handy > SURELY_HANDY and laid.share >= OWN:
+                    break
+            if likely is not None and likely[1].share >= OWN and (best is None or likely[1].share > best.share):
+                best = likely[1]
     return best if best is None else _to_size(best)
+
+
+def _own_layout_framed(tried: Sequence[Laid], unit: float | None) -> Laid | None:
+    """A drawing in a frame by its views, the lettering upright, for the frame alone has four ways; None if little of it is.
+
+    Neither is it one of its own where most views are where ours are, or all are as large and the title block is ours.
+    """
+    upright = [(laid.known, laid.space, _refined(laid, unit).placing) for laid in tried
+               if not laid.placing.mirrored and round(laid.placing.degrees / 90 + _quarter(laid.space)) % 4 == 0]
+    best = max((_by_views(*one, framed=True) for one in upright), key=lambda laid: laid.share, default=None)
+    if best is None or best.share < OWN:
+        return None
+    moved_off = [abs(one.placing(v.box.centre) - v.box.centre) > AWAY for v, one in best.views.items()]
+    if sum(moved_off) <= 0.5 * len(moved_off):
+        return None
+    block = layout.ink([e for e in best.known.elements if not e.view.n])
+    ours = best.space.lines.share(best.placing.back(block), HIT / best.placing.scale) > 0.9
+    return None if ours and all(abs(one.placing.scale - 1) < SAME for one in best.views.values()) else best
+
+
+def _by_views(sheet: KnownSheet, space: DrawingSpace, placing: Placing, *, framed: bool = False) -> Laid:
+    """A drawing of some size and turn by its views; the share is that of its ink, with the title block if it is ``framed``."""
+    laid = space.placed(placing)
+    views = list(dict.fromkeys(e.view for e in sheet.elements if e.view.n))
+    found = view_search.find(sheet.elements, views, laid.strokes, laid.lines, laid.writings, {})
+    block = {e.view: FoundView(Placing(), 1.0) for e in sheet.elements if framed and not e.view.n}
+    return Laid(sheet, space, placing, _explained(sheet, laid, {**found, **block}), found)
+
+
+def _sizes(sheet: KnownSheet, space: DrawingSpace, unit: float | None) -> list[float]:
+    """Sizes to try, mm of the sheet per unit of the drawing, the likely one first.
+
+    The declared unit is a hint only: AutoCAD declares inches for drawings in millimetres. The letters tell the size roughly, and
+    lines that lie close together are told apart at their own size.
+    """
+    sizes = {base: _to_size(Laid(sheet, space, Placing(complex(base)), 0.0)).placing.scale for base in (unit or 1.0, *UNITS)}
+    letters = _letters(Laid(sheet, space, Placing(), 0.0))
+    if not letters:
+        return list(dict.fromkeys((unit or 1.0, 1.0)))
+    high = float(np.median([size for some in letters for size in some]))
+    plain = sorted(sizes, key=lambda base: abs(np.log(sizes[base] / base)))
+    near = [sizes[base] for base in plain if abs(np.log(sizes[base] / high)) < np.log(ROUGHLY)] or [sizes[unit or 1.0]]
+    return [s for k, s in enumerate(near) if all(abs(s / other - 1) > 1e-3 for other in near[:k])]
+
+
+def _handy(laid: Laid) -> float:
+    """Share of the plans found, by their lines, that have a scale factor somebody takes: in a wrong unit few have."""
+    plans = Counter(e.view for e in laid.known.elements if e.view.mu is not None and e.view in laid.views)
+    return sum(n for v, n in plans.items() if view_search.handy(laid.views[v].placing)) / plans.total() if plans else 1.0
+
+
+def _askew(space: DrawingSpace) -> float:
+    """The angle by which a drawing is turned beside quarter turns, rad: that of its lettering, else of its lines."""
+    angles = np.array([w.angle for w in space.writings])
+    weights = np.ones(len(angles))
+    if len(angles) < LETTERS:
+        angles, weights = np.angle(space.lines.b - space.lines.a), space.lines.length
+    if not len(angles) or not weights.any():
+        return 0.0
+    bins, k = np.unique(np.round(_beside(angles) / ALIGNED), return_inverse=True)
+    most = float(bins[np.bincount(k, weights).argmax()]) * ALIGNED
+    near, upright = (np.abs(_beside(angles - one)) < ALIGNED for one in (most, 0.0))
+    if abs(most) < ASKEW or weights[near].sum() < max(MANY * weights.sum(), MORE * weights[upright].sum()):
+        return 0.0
+    return most + float(np.median(_beside(angles - most)[near]))
+
+
+def _beside(angles: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Angles beside the nearest quarter turn, rad."""
+    return np.asarray((angles + np.pi / 4) % (np.pi / 2) - np.pi / 4)
 
 
 def _quarter(space: DrawingSpace) -> int:
@@ -152,20 +257,25 @@ def _explained(sheet: KnownSheet, space: DrawingSpace, found: Mapping[ElementVie
 
 def _to_size(laid: Laid) -> Laid:
     """The same at the size at which its letters are as high as ours: symbols are as large in every scale of a view."""
+    votes: Counter[float] = Counter()
+    for sizes in _letters(laid):
+        votes.update({min(SIZES, key=lambda r: abs(np.log(laid.placing.scale * r / one))) for one in sizes})
+    if not votes:
+        return laid
+    times = max(votes, key=lambda r: (votes[r], -SIZES.index(r)))
+    views = {v: replace(one, placing=Placing(one.placing.turn * times, one.placing.shift * times))
+             for v, one in laid.views.items()}
+    return replace(laid, placing=Placing(laid.placing.turn * times), views=views)
+
+
+def _letters(laid: Laid) -> list[list[float]]:
+    """For each text that is on the sheet, too, mm of the sheet per unit of the drawing: a number may be of several heights."""
     high: dict[str, set[float]] = {}
     for e in laid.known.elements:
         if e.kind == "text" and (e.view in laid.views or not laid.views):
             high.setdefault(meant(e.text), set()).add(e.height)
-    votes: Counter[float] = Counter()
-    for w in laid.space.writings:  # a number may be one of several that are not equally high
-        ratios = [w.height * laid.placing.scale / h for h in high.get(meant(w.text), ())]
-        votes.update({min(RATIOS, key=lambda r: abs(np.log(one / r))) for one in ratios if one > 0})
-    if not votes:
-        return laid
-    times = max(votes, key=lambda r: (votes[r], -RATIOS.index(r)))
-    views = {v: replace(one, placing=Placing(one.placing.turn / times, one.placing.shift / times))
-             for v, one in laid.views.items()}
-    return replace(laid, placing=Placing(laid.placing.turn / times), views=views)
+    found = ([h / w.height for h in high.get(meant(w.text), ())] for w in laid.space.writings if w.height > 0)
+    return [sizes for sizes in found if sizes]
 
 
 def _best(tried: Sequence[Laid]) -> Laid:

@@ -114,7 +114,7 @@ def candidates(theirs: KnownLines, unit: float | None, width: float, sides: Sequ
     found = [s / x for x in _longest(theirs) for s in sides]
     base = unit or 1.0
     found += [base * k for k in RATIOS]
-    found += [k for k in (1.0, 25.4, 1000.0, 10.0, 0.1, 0.001) if k != base]
+    found += [k for k in (1.0, 25.4, 1000.0, 10.0, 0.1, 0.001, *RATIOS) if k != base]
     z = np.concatenate((theirs.a, theirs.b))
     for span in (np.ptp(z.real), np.ptp(z.imag)):
         found += [width / float(span)] if span > 0 else []
