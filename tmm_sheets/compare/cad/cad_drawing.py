@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tmm_sheets.compare import view_places
 from tmm_sheets.compare.cad import cad_built, cad_file, cad_overlay, cad_report, cad_story, layout
@@ -27,8 +28,10 @@ from tmm_sheets.compare.report import Report
 from tmm_sheets.compare.story import listed
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.numbers import decimal, told
-from tmm_sheets.project import Project
 from tmm_sheets.words import marked, on_paper, paper, tell
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
 
 LOST = 0.2
 """Share of a sheet's lines that must be found; a drawing with fewer is not of this sheet."""
@@ -91,7 +94,7 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     if language == paper():
         return _examined(project, sheet, path, views, pencil, say, ink, known)
     with on_paper(language):
-        found = _examined(Project(project.variant), sheet, path, views, pencil, say, ink, said)
+        found = _examined(type(project)(project.variant), sheet, path, views, pencil, say, ink, said)
     note = tell("the drawing is lettered in {language}; it was compared with the sheet in that language")
     return replace(found, notes=(*found.notes, note.format(language=tell(LANGUAGE_NAMES[language]))))
 

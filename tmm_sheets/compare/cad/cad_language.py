@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 from tmm_sheets import words
 from tmm_sheets.compare.cad.cad_ink import CadInk, normal
 from tmm_sheets.compare.known_sheet import KnownSheet, known_sheet
-from tmm_sheets.project import Project
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
 
 WORD = re.compile(r"[^\W\d_]{4,}")
 """A label says the same in every language, a word does not."""
@@ -26,7 +29,7 @@ def lettered(project: Project, known: Sequence[KnownSheet], ink: CadInk) -> tupl
     for language in words.LANGUAGES:
         if language != here:
             with words.on_paper(language):
-                said = [known_sheet(Project(project.variant), sheet.n) for sheet in known]
+                said = [known_sheet(type(project)(project.variant), sheet.n) for sheet in known]
             if (share := _share(theirs, said)) > least:
                 best, least = (language, said), share
     return best
