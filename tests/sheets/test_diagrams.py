@@ -1,5 +1,7 @@
 """Kinematic diagrams and balancing moment: what is drawn against formulas, and both sheets of six-bar tasks without crowding."""
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 
@@ -188,3 +190,10 @@ def test_the_way_of_the_output_grows_with_its_axis(sense):
     assert along.a == up.a
     assert up.a.real == pytest.approx(begin, abs=0.01)
     assert (along.b - along.a).real * (end - begin) > 0
+
+
+@pytest.mark.parametrize(("name", "straight"), [("B", True), ("A", False), ("1", True), ("2", True), ("3", True)])
+def test_check_refuses_the_diagram_of_a_point_that_goes_round(name, straight):
+    asked = project(project_files.merged(project_files.SLIDER, project_files.EVEN), {"cycle.diagrams": [name]})
+    with nullcontext() if straight else pytest.raises(CannotBuild, match="straight line"):
+        asked.check()

@@ -1,6 +1,7 @@
 """The gear sheet: every view stays in its place, fills it, and shows what the plans hold."""
 
 import tomllib
+from cmath import rect
 from importlib import import_module
 from itertools import combinations
 from math import radians
@@ -9,11 +10,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import place, text_box
 from tmm_sheets.drawing.marks import Box, Polyline, Text, flat
 from tmm_sheets.methods.gears.gear_pair import gear_pair
 from tmm_sheets.numbers import fixed
+from tmm_sheets.project import Project
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import gear as gear_sheet
 
@@ -179,3 +182,15 @@ def test_a_far_greater_wheel_is_broken_so_that_the_mesh_can_be_read(teeth, shift
     else:
         assert mu == whole
         assert apart == pytest.approx(gear.a_w / mu)
+
+
+@pytest.mark.parametrize("size", [(393, 565), (213, 428), (150, 428), (120, 300)], ids=["wide", "narrow", "narrower", "small"])
+def test_radii_stand_apart_where_they_are_named_and_end_inside_the_picture(size):
+    gear = Project(read("lugansk/shaper")).gear
+    picture = gear_sheet._GearPicture(gear, Canvas(), Box(20, 20, 20 + size[0], 20 + size[1]))
+    for wheel in gear.wheels:
+        found = [(key, a) for (key, _, _), a in zip(gear_sheet.CIRCLES, picture.directions(wheel), strict=True) if a is not None]
+        apart = [abs(a - b) * 0.7 * picture.mm(wheel.rf) for (_, a), (_, b) in combinations(found, 2)]
+        assert all(by >= gear_sheet.RADII - 1e-9 for by in apart)
+        tips = [picture.of(f"O{wheel.number}") + rect(picture.mm(getattr(wheel, key)), a) for key, a in found]
+        assert all(picture.box.contains(z) for z in tips)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from importlib import import_module
 from itertools import pairwise
 from types import SimpleNamespace
@@ -18,8 +19,10 @@ from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.chosen import flywheel
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import mertsalov
+from tmm_sheets.resources import template
+from tmm_sheets.sheets import composition, mertsalov
 from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.flywheel import TANGENTS
 from tmm_sheets.sheets.sheet import composed
 
 AXIS = 382.0
@@ -150,6 +153,31 @@ def test_views_of_the_other_method_are_refused():
     project = SimpleNamespace(flywheel=flywheel(Shaper(), data))
     with pytest.raises(CannotBuild, match=r'belongs to flywheel\.method = "mertsalov"'):
         draw(project, "energies", Box(324, 100, 647, 400))
+
+
+VIEWS = sorted({view.draw for path in template("sheets/press_1.toml").parent.glob("*.toml") for view in arrangement(path.stem).views
+                if view.draw.partition(".")[0] in ("flywheel", "crank_speed")} | {"crank_speed.graph"})
+
+
+@pytest.mark.parametrize("view", VIEWS)
+def test_check_knows_the_views_that_another_method_cannot_draw(view):
+    module, _, function = view.partition(".")
+    project = SimpleNamespace(flywheel=SimpleNamespace(method="mertsalov"))
+    try:
+        getattr(import_module(f"tmm_sheets.sheets.{module}"), function)(project, Canvas(), Box(0, 0, 400, 300), {})
+        refused = False
+    except CannotBuild as e:
+        refused = "belongs to flywheel.method" in str(e)
+    except (AttributeError, KeyError):
+        refused = False  # it asks the flywheel for what every method has
+    assert refused == (view in TANGENTS)
+
+
+@pytest.mark.parametrize(("sheets", "refused"), [(["flywheel"], True), (["press_1"], False), (["press_1", "flywheel"], True)])
+def test_check_refuses_a_sheet_of_the_other_method(press, sheets, refused):
+    project = SimpleNamespace(sheets=sheets, parts=press.parts, flywheel=press.flywheel)
+    with pytest.raises(CannotBuild, match="belongs to") if refused else nullcontext():
+        composition.check(project)
 
 
 @pytest.mark.parametrize("name", ["press", "lugansk/shaper", "lugansk/engine", "loom", "screen"])
