@@ -6,9 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.project_files import project
 from tmm_sheets.catalogue import read
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import planet_motion
+from tmm_sheets.sheets.sheet import composed
 
 
 def mesh(central, planet, sign, carrier="H"):
@@ -60,6 +62,16 @@ def test_ratios_by_speeds_and_by_teeth_agree(meshes, speeds, count):
     lines = list(planet_motion._ratios(train(meshes, TEETH, speeds)))
     assert len(lines) == count
     assert len({line.rsplit(" = ", 1)[1] for line in lines}) <= 1
+
+
+@pytest.mark.parametrize("satellites", [1, 2, 3])
+def test_planets_all_round_stay_in_their_place(satellites):
+    """The planet opposite the first one reaches as far below the axis as the first above it."""
+    own = project({"project.sheets": ["train"], "train": {
+        "module": "2 mm", "teeth": {"1": 21, "2": 33, "3": 17, "4": 71}, "speeds": {"1": "900 rpm", "4": "0 rpm"},
+        "shafts": [["2", "3"]], "satellites": satellites,
+        "mesh": [{"sun": "1", "planet": "2", "carrier": "H"}, {"ring": "4", "planet": "3", "carrier": "H"}]}})
+    assert composed(own, 1).leaving == ()
 
 
 @pytest.mark.parametrize(("name", "rows"), [("tests/projects/ferguson.toml", 4), ("tests/projects/hoist.toml", 3),

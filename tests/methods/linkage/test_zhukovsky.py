@@ -119,3 +119,13 @@ def test_names_that_look_like_other_names():
     true = statics.solve(m, 0.7, 9.81, driver=(0.05 * np.exp(1j), driver.direction(1)))
     assert value(study.lever.balancing).real == pytest.approx(true.balancing, rel=1e-12)
     assert (value(study.forces.balancing) / driver.direction(1)).real == pytest.approx(true.balancing, rel=1e-12)
+
+
+@pytest.mark.parametrize(("points", "letter"), [("", "f"), ("F", "q"), ("FQ", "u")])
+def test_the_point_of_the_gear_force_has_a_letter_of_its_own(points, letter):
+    """f where the mechanism has no F, else the first letter that none of its points has."""
+    m = mechanism(StructuralGroup(RPR, ("2", "3"), ("B", "C")), fixed={"C": -0.26j},
+                  points=[LinkPoint(name, "3", "C", "B", 0.02 * n) for n, name in enumerate(points, 1)])
+    study = Study(m, even_cycle(m, 0.7, 4), np.zeros(1), ("0",), 9.81, tuple, GearForce("F1", 0.05, 0.35, 1.0))
+    assert study.lever.contact.name == f"{letter}′"
+    assert len({step.name for step in study.lever.points.values()} | {study.lever.contact.name}) == len(study.lever.points) + 1
