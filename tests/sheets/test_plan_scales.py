@@ -13,7 +13,7 @@ from tmm_sheets.__main__ import run
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import composition, sheet
-from tmm_sheets.sheets.frame import joined
+from tmm_sheets.sheets.frame import joined, needed
 
 HERE = Path(__file__).parent
 CLOSE, CONVEYOR = str(HERE / "close.toml"), str(HERE.parent / "projects" / "conveyor.toml")
@@ -180,3 +180,19 @@ def test_no_rounding_noise_on_the_sheets(name, label):
     for n in (1, 2):
         for text in lettering(sheet.composed(project, n)):
             assert not re.search(r"0,0{7}|10\^\{−\d\d\}|(?<!φ)−0(?![\d,])|−0,0+(?!\d)", text), text
+
+
+# --- the least factor --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("spread", [1.0, 1e-3, 1e-17, 1e-18, 0.0])
+def test_what_is_drawn_keeps_to_its_room_and_lies_on_a_line_but_for_rounding(spread):
+    """Points of one x differ by rounding beside arrows of 10 mm: an end is found, and what can be told apart keeps to the room."""
+    random = np.random.default_rng(5)
+    for _ in range(300):
+        n = random.integers(1, 9)
+        x, offset = random.normal(size=n) * spread + random.choice([0.0, 1.0, 100.0]), random.uniform(-9.0, 9.0, size=n)
+        mu = needed(x, offset, 20.0)
+        assert mu >= 0
+        if spread > 1e-10 and mu > 0:
+            assert np.ptp(x / mu + offset) <= 20.0 * (1 + 1e-9)

@@ -171,12 +171,15 @@ def needed(x: Any, offset: Any, room: float) -> float:
     if not span > 0:
         return 0.0
     inverse = room / span
-    while True:
+    before = np.inf
+    # Newton's steps on a convex extent only ever go down; where they do not, the points lie on one line but for rounding.
+    while inverse < before:
         drawn = x * inverse + offset
         last, first = int(np.argmax(drawn)), int(np.argmin(drawn))
         if drawn[last] - drawn[first] <= room * (1 + 1e-12):
-            return 1.0 / inverse
+            break
         slope, free = float(x[last] - x[first]), room - float(offset[last] - offset[first])
         if not (slope > 0 and free > 0):
             return span / room
-        inverse = free / slope
+        before, inverse = inverse, free / slope
+    return 1.0 / min(inverse, before)

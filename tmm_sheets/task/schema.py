@@ -28,6 +28,7 @@ from tmm_sheets.task.values import (
     Length,
     ManualName,
     Mass,
+    MemberName,
     Name,
     Newtons,
     Number,
@@ -771,11 +772,11 @@ class TrainTable(Table):
 
     module: Length = Field(description=marked('module, for example "2 mm"'))
     teeth: dict[WheelName, Teeth] = Field(description=marked('tooth numbers of all wheels, for example { "1" = 20, "2" = 40 }'))
-    speeds: dict[Name, SignedSpeed] = Field(
+    speeds: dict[MemberName, SignedSpeed] = Field(
         description=marked('speeds that are given, for example { "1" = "900 rpm", "H" = "0 rpm" }')
     )
     """of as many wheels or carriers as the train has degrees of freedom, with signs; `"0 rpm"` for what is held"""
-    shafts: tuple[tuple[Name, ...], ...] = ()
+    shafts: tuple[tuple[MemberName, ...], ...] = ()
     """wheels and carriers that turn together, for example `[["2", "3"], ["H1", "4"]]`"""
     satellites: Count = 3
     """number of planets on each carrier, for the picture"""

@@ -1,7 +1,8 @@
 """Assembly over the whole turn: what is said, where, by how much, and that the advice helps."""
 
 import re
-from math import acos, asin, degrees
+from cmath import rect
+from math import acos, asin, degrees, pi
 from time import perf_counter
 
 import numpy as np
@@ -121,6 +122,15 @@ def test_nothing_assembles_anywhere():
     message, hint = said(rrr(0.05, 0.6))
     assert message == "group 2-3 does not assemble at any position: CD = 600 mm is 350 mm too long beside BC = 50 mm"
     assert hint == "try BC from 400.1 mm to 799.9 mm"
+
+
+@pytest.mark.parametrize(("way", "far"), [({"positions": 12}, pi), ({"end": "120 deg", "positions": 5}, 2 * pi / 3)])
+def test_advice_for_a_swing_asks_for_no_more_than_the_swing(way, far):
+    short = {"group[1].lengths": ["0.15 m", "0.25 m"], "points.C": ["0.42 m", "0 m"], "cycle": {"start": "60 deg", **way}}
+    with pytest.raises(CannotBuild) as told:
+        _ = project_files.project(project_files.FOUR_BAR, short).dead_positions
+    least = float(re.findall(r"[\d.]+", told.value.hint)[0]) / 1e3
+    assert 0 < least - (abs(rect(0.1, far) - 0.42) - 0.25) < 1e-3
 
 
 def test_offset_too_large():

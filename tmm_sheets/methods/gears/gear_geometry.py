@@ -182,8 +182,10 @@ def _tooth_problems(pair: PairGeometry, w: GearWheel) -> Iterator[tuple[str, str
                      "below the tip circle") if w.sa < 0 else
                 tell("the tooth of wheel {wheel} (z{wheel} = {teeth}, x{wheel} = {shift:.4g}) is pointed: {thick:.3f} m thick "
                      "at the tip circle, less than {least:g} m"))
-        yield (said.format(wheel=i, teeth=w.teeth, shift=w.shift, thick=w.sa / pair.m, least=LEAST_TIP),
-               tell("take a smaller x{wheel}").format(wheel=i))
+        least_already = pair.profile == "fillet" and not w.ring and w.shift < w.least_shift + 5e-3
+        hint = (tell("take more teeth: a smaller x{wheel} would undercut them") if least_already else
+                tell("take a smaller x{wheel}"))
+        yield said.format(wheel=i, teeth=w.teeth, shift=w.shift, thick=w.sa / pair.m, least=LEAST_TIP), hint.format(wheel=i)
     if w.rf <= 0 or w.fillet != w.fillet:
         yield (tell("wheel {wheel} has no space between its teeth at the root circle").format(wheel=i),
                tell("take a smaller x{wheel} or more teeth").format(wheel=i))

@@ -20,7 +20,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step, Told
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears import reducer_speeds
-from tmm_sheets.methods.gears.train_steps import DISTANCE, FRAME, Kinematics, Mesh, Picture, distance_of
+from tmm_sheets.methods.gears.train_steps import DISTANCE, FRAME, Kinematics, Mesh, Picture, distance_of, is_wheel
 from tmm_sheets.numbers import number
 from tmm_sheets.words import tell, tr
 
@@ -54,7 +54,7 @@ class Train:
     def names(self) -> tuple[str, ...]:
         """All wheels by number, then the carriers."""
         found = dict.fromkeys(name for m in self.meshes for name in (m.central, m.planet, m.carrier) if name)
-        return tuple(sorted(found, key=lambda name: (not name.isdigit(), int(name) if name.isdigit() else 0, name)))
+        return tuple(sorted(found, key=lambda name: (not is_wheel(name), int(name.rstrip("′")) if is_wheel(name) else 0, name)))
 
     @cached_property
     def equations(self) -> tuple[list[str], npt.NDArray[np.float64]]:
@@ -134,7 +134,7 @@ class Train:
     def results(self) -> dict[str, Any]:
         """The ``train`` section of ``solve --json``: speeds in 1/min, distances in millimetres."""
         plan = self.kinematics
-        return {"teeth": {name: Told(plan[f"z{name}"]) for name in self.names if name.isdigit()},
+        return {"teeth": {name: Told(plan[f"z{name}"]) for name in self.names if is_wheel(name)},
                 "distances": {step.name: Told(step) for step in plan if step.rule is DISTANCE},
                 "speeds_rpm": {f"n{name}": Told(plan[f"n{name}"]) for name in self.names}}
 

@@ -115,6 +115,11 @@ def _next(train: Any, known: set[str]) -> Found:
     return Found(next(name for name in train.names if name not in known))
 
 
+def is_wheel(name: str) -> bool:
+    """Wheels have numbers, with primes where several are one block (2, 2′); carriers have letters."""
+    return name[0].isdigit()
+
+
 def distance_of(train: Any, mesh: Mesh) -> str:
     """Name of the step with the distance of a mesh: one for all of a carrier, else one for each pair."""
     return f"a_{mesh.carrier}" if mesh.carrier else f"a_{mesh.central}-{mesh.planet}"
@@ -127,7 +132,7 @@ class Kinematics:
         self.train = train
         self.plan = Plan("train-kinematics", tr("Diameters of the wheels and speeds of rotation of the links"), "mm")
         for name in train.names:
-            if name.isdigit():
+            if is_wheel(name):
                 self.plan.add(f"z{name}", TEETH, Given(train.data.teeth[name], f"train.teeth.{name}", over="none"),
                               symbol=f"z_{{{name}}}")
         self.diameters()

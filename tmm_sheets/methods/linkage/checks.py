@@ -62,7 +62,7 @@ def check_assembly(mechanism: Mechanism, cycle: Cycle) -> tuple[DeadPosition, ..
     search = _Search(mechanism, cycle, [limit for _, limit in limits])
     failures = [(search.failure(i, g), limit) for i, (g, limit) in enumerate(limits)]
     said = [message for message, _ in failures if message]
-    hints = [limit.hint(search.whole_turn) for message, limit in failures if message]
+    hints = [limit.hint(search.asked_turn()) for message, limit in failures if message]
     if said:
         # What lies upstream decides what the groups after it need: only the first advice is sure.
         raise CannotBuild("\n".join(said), hints[0])
@@ -121,6 +121,13 @@ class _Search:
         self.margins = np.concatenate((margins, found), axis=1)[:, order]
         # Of a crank that swings only its swing counts; how far it could go is told from the whole turn.
         self.asked = self.turned <= cycle.period + TOUCH if cycle.swings else np.full(self.turned.shape, True)
+
+    def asked_turn(self) -> Positions:
+        """Positions over the way asked for: what is advised need not hold where a crank that swings never comes."""
+        if not self.cycle.swings:
+            return self.whole_turn
+        there_and_back = 1.0 - np.abs(2.0 * np.arange(SWEEP) / SWEEP - 1.0)  # closed, as the whole turn is
+        return self._margins(self.cycle.period * there_and_back)[0]
 
     def _margins(self, turned: Floats) -> tuple[Positions, Floats]:
         pos = position_plan(self.mechanism, self.cycle.world(turned), purpose=ASSEMBLY)
