@@ -37,8 +37,12 @@ PITCHES, MOST = 1.25, 1.5
 """Pitches that the view of the meshing zone must show at least, and those it shows at most."""
 LEGIBLE, GREATER = 25.0, 4.0
 """Height of a tooth on the picture, mm, below which a wheel 2 so many times greater is broken so that the scale can be larger."""
-NEARLY, LEAST = 0.8, 20.0
-"""Share of its scale that a picture gives up at most so that no wheel is cut at its edges; height of a tooth that it keeps, mm."""
+NEARLY, HALF, LEAST = 0.8, 0.5, 20.0
+"""Shares of its scale that a picture gives up at most so that no wheel is cut at its edges, where it cuts one wheel and where it cuts
+both; height of a tooth that it keeps, mm.
+"""
+MOSTLY = 0.7
+"""Share of the room beyond the centres that the smaller wheel takes at most where it is shown whole."""
 HUB, UNDER, BESIDE = 44.0, 14.0, 14.0
 """Height of what is left of a broken wheel about its centre; room under the foot N of its perpendicular and at its side, mm."""
 MESH = 18.0, 32.0
@@ -78,7 +82,9 @@ def picture(gear: Any, width: float, height: float) -> tuple[Scale, bool]:
     if not gear.internal:
         uncut = standard((2 * max(w.ra for w in gear.wheels), width - 2 * BESIDE),
                          (gear.a_w + sum(w.ra for w in gear.wheels), height - 16.0 - 2 * BESIDE))
-        if whole.mu < uncut.mu <= whole.mu / NEARLY and uncut.mm(tooth) >= LEAST:
+        small, spare = min(w.ra for w in gear.wheels), height - 16.0 - whole.mm(gear.a_w)
+        cuts_both = whole.mm(small) + 4 > MOSTLY * spare or 2 * whole.mm(small) > width - 2 * BESIDE
+        if whole.mu < uncut.mu <= whole.mu / (HALF if cuts_both else NEARLY) and uncut.mm(tooth) >= LEAST:
             return uncut, False
     one, two = gear.wheels
     if gear.internal or two.teeth < GREATER * one.teeth or whole.mm(tooth) >= LEGIBLE:
@@ -142,7 +148,7 @@ class _GearPicture:
         spare = self.box.height - gear.a_w / self.mu.mu
         # The smaller wheel is shown whole, if that leaves room beyond the other's centre; both are cut alike otherwise.
         above = one if one <= two else spare - two
-        if not EDGE <= above <= spare - EDGE or min(one, two) > 0.7 * spare:
+        if not EDGE <= above <= spare - EDGE or min(one, two) > MOSTLY * spare:
             above = spare / 2
         return complex((self.box.x0 + self.box.x1) / 2, self.box.y1 - above - gear.wheels[0].rw / self.mu.mu)
 
