@@ -477,7 +477,7 @@ def spring(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
 
 def _spring_lines(spring: Spring, straight: bool) -> list[str]:
     """The spring in formulas and numbers; of a rocker the forces are those at the centre of the roller."""
-    moved, way = ("m", "S") if straight else ("J/AB^2", "AB·ψ")
+    moved, way = ("m", "S_{max}") if straight else ("J/AB^2", "(AB·ψ_{max})")
     held = tr("(F/Q)_{{min}} > 1: it stays on the cam") if spring.closed else tr(
         "(F/Q)_{{min}} ≤ 1: it leaves the cam! F_{{max}} ≥ {factor}·Q_{{max}} is needed")
     return [
@@ -487,7 +487,7 @@ def _spring_lines(spring: Spring, straight: bool) -> list[str]:
             force=number(spring.largest_inertia), symbol="S" if straight else "ψ"),
         tr("F_{{max}} = {factor}·Q_{{max}} = {force} N").format(factor=number(spring.factor), force=number(spring.f_max)),
         tr("F_0 = {share}·F_{{max}} = {force} N").format(share=number(spring.preload), force=number(spring.f_0)),
-        tr("c = (F_{{max}} − F_0)/{way}_{{max}} = {rate} N/mm").format(way=way, rate=number(spring.rate * 1e-3)),
+        tr("c = (F_{{max}} − F_0)/{way} = {rate} N/mm").format(way=way, rate=number(spring.rate * 1e-3)),
         tr("(F/Q)_{{min}} = {ratio} at φ = {angle}°").format(
             ratio=fixed(spring.worst, 3), angle=fixed(degrees(spring.worst_phi), 1)),
         held.format(factor=fixed(spring.needed_factor, 2)),

@@ -161,13 +161,14 @@ def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Option
     values, at = _row(course, every), _row(step, project.cycle.turned)
     angle = graphs.angle_axis(project, box)[0]
     left = canvas.title(box, tr("Graph of the balancing moment"), str(angle))
-    # The flywheel's construction has the constant moment already, a little apart from the mean of this curve.
-    mean = project.flywheel.driving_plan["M"] if project.variant.flywheel is not None else \
+    # The flywheel's construction has the constant moment already, a little apart from the mean of this curve; without friction.
+    rubbing = project.study.forces.friction is not None
+    mean = project.flywheel.driving_plan["M"] if project.variant.flywheel is not None and not rubbing else \
         project.study.mean_driving(course, every)
     sign = balancing_sign(project)
     moment = DiagramQuantity("graph-M", sign, tr("N·m"), (Curve("", step, every, values, at),))
     # Where the balancing moment is called as the driving one is, the constant one is its mean.
-    name = tr("M_d") if indexed(tr("M_d").replace("_", "")) != sign else tr("M_{dm}")
+    name = tr("M_d") if indexed(tr("M_d").replace("_", "")) != sign and not rubbing else tr("M_{dm}")
     _graph(project, canvas, left, angle, moment, level=(name, float(mean.value)))
 
 

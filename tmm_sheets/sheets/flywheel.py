@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.methods.flywheel.wheel import RimWheel
     from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
+    from tmm_sheets.project import Project
     from tmm_sheets.sheets.arrangement import Arrangement, View
 
 TANGENTS = ("flywheel.force_graph", "flywheel.total_work", "flywheel.energy_mass", "flywheel.results", "crank_speed.graph")
@@ -626,6 +627,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         *disagreement(fw),
         *motor(fw),
         *power(fw),
+        *frictionless(project),
         *_sizes(fw),
     ]
     left = canvas.title(box, tr("Flywheel design"))
@@ -682,6 +684,13 @@ def motor(fw: Flywheel) -> list[str]:
     return [strong.format(index=indices(fw)[1], needed=fixed(check.power / 1000, 2), sign="≤" if check.strong else ">",
                           rated=number(check.rated_power / 1000), name=data.name, efficiency=number(data.efficiency)),
             steady.format(permitted=fixed(check.permitted, 4))]
+
+
+def frictionless(project: Project) -> list[str]:
+    """That the moments of the flywheel leave out friction, where the force analysis has it."""
+    if project.variant.friction is None:
+        return []
+    return [tr("M_{index} is found without friction in the pairs").format(index=indices(project.flywheel)[1])]
 
 
 def _alike(fw: Flywheel) -> list[str]:

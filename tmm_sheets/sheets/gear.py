@@ -38,7 +38,7 @@ PITCHES, MOST = 1.25, 1.5
 LEGIBLE, GREATER = 25.0, 4.0
 """Height of a tooth on the picture, mm, below which a wheel 2 so many times greater is broken so that the scale can be larger."""
 NEARLY, HALF, LEAST = 0.8, 0.5, 20.0
-"""Shares of its scale that a picture gives up at most so that no wheel is cut at its edges, where it cuts one wheel and where it cuts
+"""Shares of its scale that a picture gives up at most so that no wheel is cut at its edges: where it cuts one, and where it cuts
 both; height of a tooth that it keeps, mm.
 """
 MOSTLY = 0.7

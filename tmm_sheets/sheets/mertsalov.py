@@ -225,7 +225,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
             inertia=enough(inertia, 2)),
         tr("ε_1 = (M − ω_{{1m}}^2/2·d{sign}/dφ)/({held} + {sign}) = {epsilon} rad/s^2").format(
             sign=sign, held=held, epsilon=enough(epsilon, 3, size([plan["ε1"].value], k))),
-        *flywheel.motor(fw), *flywheel.power(fw), *flywheel.disagreement(fw), *_size(fw)]
+        *flywheel.motor(fw), *flywheel.power(fw), *flywheel.frictionless(project), *flywheel.disagreement(fw), *_size(fw)]
     left = canvas.title(box, tr("Flywheel design by Mertsalov's method"))
     step = min(left.height / len(rows), 11.0)
     for i, line in enumerate(rows):

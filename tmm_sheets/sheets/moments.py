@@ -15,6 +15,7 @@ from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken, letter
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.mechanism.groups.force_plan import OPPOSITE_COUPLE
 from tmm_sheets.numbers import is_zero, number
 from tmm_sheets.sheets.kinetic_frames import arm_sign, balancing_sign, flat, normal_sign, on_lever
 from tmm_sheets.sheets.linkage import indexed
@@ -108,12 +109,23 @@ def _guided(project: Project, g: StructuralGroup) -> Iterator[str]:
         total = couple.args[0]
         terms = list(_terms(project, total))
         centre, sign = indexed(total.args[0].name), f"M_{{{pair}}}"
+        yield from _passed_on(project, total)
         yield tr("ΣM_{centre} = {sum} = 0").format(centre=centre, sum=_sum([Term(sign, 1.0 if value > 0 else -1.0, ()), *terms]))
         yield tr("{force} = |{sum}| = {value} N·m").format(force=sign, sum=_sum(terms, numbers=True), value=number(abs(value), 5))
         force, arm = complex(forces.reactions[f"F{pair}"].at(k)), forces.arms.get(f"h{pair}")
         if arm is not None and np.isfinite(arm.at(k)) and not is_zero(force, forces.force_size(k)):
             yield tr("h_{{{pair}}} = M_{{{pair}}}/F_{{{pair}}} = {couple}/{force} = {value} m").format(
                 pair=pair, couple=number(abs(value), 5), force=number(abs(force), 5), value=number(abs(float(arm.at(k))), 4))
+
+
+def _passed_on(project: Project, total: Step) -> Iterator[str]:
+    """Couples in a sum that a stone passes on from its own loads, such as friction in its hinge: the scheme shows only these."""
+    k = project.force_index
+    for couple in total.args[3::3]:
+        if isinstance(couple, Step) and couple.rule is OPPOSITE_COUPLE and (terms := list(_terms(project, couple.args[0].args[0]))):
+            yield tr("{force} = {sum} = {value} N·m").format(
+                force=symbol(couple.symbol or couple.name).replace(BAR, ""), sum=_sum(terms),
+                value=number(float(couple.at(k)), 5, project.study.forces.moment_size(k)))
 
 
 def _solved(project: Project, centre: str, total: Step, own: tuple[str, str, float], found: Step,
