@@ -31,6 +31,12 @@ DIVISION = 10.0
 """Room beyond the last division of an involute for its number, mm."""
 RADII = 7.0
 """Distance of radii from each other where they are named, mm."""
+ROOM_OF_CENTRES = 21.0
+"""Width at the picture's right edge that the dimension of the centre distance takes with its lettering, mm."""
+AXIS = 8.0
+"""Room about a wheel's axis that the names of radii leave free, mm: they would meet there."""
+FAN = radians(25)
+"""Between the names of whole circles whose radii have no room."""
 LEVEL = radians(7)
 """Angle that radii keep from the level centre line."""
 PITCHES, MOST = 1.25, 1.5
@@ -214,10 +220,12 @@ class _GearPicture:
         """Radii of the circles as arrows from the centre, where the picture has most room."""
         for wheel in self.gear.wheels:
             centre = self.of(f"O{wheel.number}")
-            for (key, symbol, _), direction in zip(CIRCLES, self.directions(wheel), strict=True):
+            for n, ((key, symbol, _), direction) in enumerate(zip(CIRCLES, self.directions(wheel), strict=True)):
                 radius = self.mm(getattr(wheel, key))
+                text = self.named(wheel, key, symbol)
                 if direction is None:
-                    self.name_on_arc(centre, radius, symbol % wheel.number)
+                    fan = self.away(wheel) * pi / 2 + FAN * (n - len(CIRCLES) // 2)
+                    self.name_on_arc(centre, radius, text, fan)
                     continue
                 tip, first = centre + rect(radius, direction), len(self.canvas.marks)
                 pen = self.stage.pen(f"{key}{wheel.number}", "dimension")
@@ -225,7 +233,6 @@ class _GearPicture:
                 begin = 2.0 if self.centre(wheel) == centre else (self.box.y0 - centre.imag) / sin(direction)
                 pen.line(centre + rect(begin, direction), tip - rect(2.5, direction), "thin")
                 pen.arrow_head(tip, rect(1, direction))
-                text = f"{symbol % wheel.number} = {fixed(getattr(wheel, key) * 1e3, 2)}"
                 laid = letter(text, 3.5)
                 outer = self.mm(min(wheel.ra, wheel.rf)) - 4
                 back = cos(direction) < -1e-9
@@ -235,36 +242,51 @@ class _GearPicture:
                 middle = centre + rect(outer - laid.width / 2, direction) + rect(1.2 + 1.75, turned + pi / 2)
                 self.canvas.dimensions.append(Dimension("radius", first, len(self.canvas.marks), centre, tip, tip, text, middle))
 
-    def name_on_arc(self, centre: complex, radius: float, symbol: str) -> None:
-        """Name of a circle on the longest arc that is seen, where its radius does not fit in."""
+    def named(self, wheel: Any, key: str, symbol: str) -> str:
+        """Name of a radius and its value, mm."""
+        return f"{symbol % wheel.number} = {fixed(getattr(wheel, key) * 1e3, 2)}"
+
+    def seen(self, wheel: Any, key: str, text: str, direction: float) -> bool:
+        """Whether a radius of a wheel has its tip in the picture, and its lettering clear of the dimension of the centres too."""
+        centre, place = self.of(f"O{wheel.number}"), self.box.inset(3)
+        outer, u = self.mm(min(wheel.ra, wheel.rf)) - 4, rect(1, direction)
+        beside = 1j * u if cos(direction) >= -1e-9 else -1j * u
+        ends = (outer, outer - letter(text, 3.5).width)
+        corners = [centre + along * u + up * beside for along in ends for up in (1.2, 1.2 + 3.5)]
+        return (ends[1] >= AXIS and place.contains(centre + self.mm(getattr(wheel, key)) * u)
+                and all(place.contains(z) and z.real < self.box.x1 - ROOM_OF_CENTRES for z in corners))
+
+    def name_on_arc(self, centre: complex, radius: float, name: str, direction: float) -> None:
+        """Name of a circle where its radius does not fit in: on the longest arc that is seen, of a whole circle in a direction."""
         arcs = arcs_inside(self.box, centre, radius)
         if arcs:
             start, end = max(arcs, key=lambda arc: arc[1] - arc[0])
-            out = rect(1, end - 0.05 * (end - start))  # beside the left edge, away from teeth and dimensions
-            self.canvas.label(centre + radius * out, symbol, away=-out)
+            whole = end - start > 2 * pi - 1e-6
+            out = rect(1, direction if whole else end - 0.05 * (end - start))  # beside the left edge, away from teeth and dimensions
+            self.canvas.label(centre + radius * out, name, away=out if whole else -out)
 
     def directions(self, wheel: Any) -> list[float | None]:
         """Directions in which a wheel's circles lie inside the picture, away from the teeth in mesh; None without room.
 
         Three on one side and two on the other where the largest circle is seen there; else each circle where it has room itself.
         """
-        centre, far = self.of(f"O{wheel.number}"), self.away(wheel) * pi / 2
+        far = self.away(wheel) * pi / 2
         busy = max(2.2 * wheel.tau, radians(15)) + radians(14)
-        place, largest = self.box.inset(3), self.mm(max(wheel.ra, wheel.rf))
         angles = [a for a in np.radians(np.arange(14.0, 180.0 - degrees(busy), 1.0)) if abs(a - pi / 2) > LEVEL]
         # The radii are named beside one another a little inside the root circle, of a ring inside the tip circle.
         least = RADII / (0.7 * self.mm(wheel.rf))
+        texts = {key: self.named(wheel, key, symbol) for key, symbol, _ in CIRCLES}
+        largest, longest = max(texts, key=lambda key: getattr(wheel, key)), max(texts.values(), key=len)
         chosen: list[float | None] = []
         for side, count in ((1, 3), (-1, 2)):
-            free = [far + side * a for a in angles if place.contains(centre + rect(largest, far + side * a))]
+            free = [far + side * a for a in angles if self.seen(wheel, largest, longest, far + side * a)]
             some = [free[round((k + 0.5) / count * (len(free) - 1))] for k in range(count)] if free else []
             chosen += some if all(abs(a - b) >= least for a, b in pairwise(some)) else []
         if len(chosen) == len(CIRCLES):
             return chosen
         found: dict[str, float] = {}
         for key in sorted((key for key, _, _ in CIRCLES), key=lambda key: -getattr(wheel, key)):
-            radius = self.mm(getattr(wheel, key))
-            free = [a for a in (far + side * a for side in (1, -1) for a in angles) if place.contains(centre + rect(radius, a))]
+            free = [a for a in (far + side * a for side in (1, -1) for a in angles) if self.seen(wheel, key, texts[key], a)]
             apart = {a: min((abs(a - other) for other in found.values()), default=pi) for a in free}
             if apart and max(apart.values()) >= least:
                 found[key] = max(apart, key=lambda a: apart[a])
