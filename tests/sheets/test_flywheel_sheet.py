@@ -49,8 +49,8 @@ class Engine(Shaper):
 def project(reduced, form="rim"):
     data = SimpleNamespace(
         method="wittenbauer", delta=0.025, form=form, density=7300.0, width_ratio=0.2, thickness_ratio=0.12,
-        rim_share=1.0, motor=None, inertia=None, efficiency=None)
-    return SimpleNamespace(flywheel=flywheel(reduced, data), reduced=reduced)
+        rim_share=1.0, motor=None, inertia=None, efficiency=None, weights=False)
+    return SimpleNamespace(flywheel=flywheel(reduced, data), reduced=reduced, variant=SimpleNamespace(friction=None))
 
 
 COLUMN = ("force_graph", "moments", "works")

@@ -149,7 +149,7 @@ def test_comparison_has_a_row_for_each_flywheel(press):
 
 def test_views_of_the_other_method_are_refused():
     data = SimpleNamespace(method="wittenbauer", delta=0.03, form="rim", density=7300.0, width_ratio=0.2, thickness_ratio=0.12,
-                           rim_share=1.0, motor=None, inertia=None, efficiency=None)
+                           rim_share=1.0, motor=None, inertia=None, efficiency=None, weights=False)
     project = SimpleNamespace(flywheel=flywheel(Shaper(), data))
     with pytest.raises(CannotBuild, match=r'belongs to flywheel\.method = "mertsalov"'):
         draw(project, "energies", Box(324, 100, 647, 400))

@@ -20,7 +20,7 @@ from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import Frame, pick
 from tmm_sheets.sheets.kinetic_frames import balancing_sign
 from tmm_sheets.sheets.linkage import indexed, shapes
-from tmm_sheets.words import marked, tell, tr
+from tmm_sheets.words import marked, tell, tr, tr_in
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
@@ -168,7 +168,9 @@ def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Option
     sign = balancing_sign(project)
     moment = DiagramQuantity("graph-M", sign, tr("N·m"), (Curve("", step, every, values, at),))
     # Where the balancing moment is called as the driving one is, the constant one is its mean.
-    name = tr("M_d") if indexed(tr("M_d").replace("_", "")) != sign and not rubbing else tr("M_{dm}")
+    known = project.variant.flywheel is not None and not project.reduced.resisting
+    constant = f"M_{{{tr_in('index of moment and work', 'r')}}}" if known else tr("M_d")
+    name = constant if indexed(constant.replace("_", "")) != sign and not rubbing else tr("M_{dm}")
     _graph(project, canvas, left, angle, moment, level=(name, float(mean.value)))
 
 

@@ -128,8 +128,9 @@ def force_graph(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
         (tr("Graph of the moment {shown}"), tr("Graphs of the moments {shown}"), "M", tr("N·m")) if r.forces_are_moments else
         (tr("Graph of the force {shown}"), tr("Graphs of the forces {shown}"), "F", tr("N")))
     title = one if len(names) == 1 else many
-    if r.moments_beside:  # no place among the ordinates of forces
-        canvas.note(box, tr("The reduced moment of forces counts as well: {shown}").format(shown=", ".join(r.moments_beside)))
+    beside = [*r.moments_beside, *([tr("the weights of the links")] if fw.data.weights else [])]
+    if beside:  # no place among the ordinates of forces
+        canvas.note(box, tr("The reduced moment of forces counts as well: {shown}").format(shown=", ".join(beside)))
     graphs.heading(canvas, box, options, title.format(shown=", ".join(f"{n}(φ_1)" for n in names)), f"{s.force}")
     acting = {name: _acting(fw, name) for name in names}
     low = min((float(line.imag.min()) for lines in acting.values() for line in lines), default=0.0)
@@ -717,23 +718,32 @@ def _sizes(fw: Flywheel) -> list[str]:
     w, d = fw.wheel, fw.data
     if w is None or d.width_ratio is None or d.thickness_ratio is None:
         return [] if fw.given else [tr("J_f ≤ 0: no flywheel is needed")]
-    said = (tr("Rim with spokes:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio}"),
-            tr("D = (4J_f/(πρκc))^{{1/5}} = {diameter} m"), tr("B = κD = {width} m;  H = cD = {thickness} m"),
-            tr("m = 4J_f/D^2 = {mass} kg")) if w.form == "rim" else \
-        (tr("Disc:  κ = B/D = {width_ratio}"), tr("D = (32J_f/(πρκ))^{{1/5}} = {diameter} m"), tr("B = κD = {width} m"),
-         tr("m = 8J_f/D^2 = {mass} kg"))
-    numbers = {"width_ratio": number(d.width_ratio), "thickness_ratio": number(d.thickness_ratio),
+    if w.form != "rim":
+        said = (tr("Disc:  κ = B/D = {width_ratio}"), tr("D = (32J_f/(πρκ))^{{1/5}} = {diameter} m"), tr("B = κD = {width} m"),
+                tr("m = 8J_f/D^2 = {mass} kg"))
+    elif d.rim_share < 1:
+        said = (tr("Rim, it has {share}·J_f:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio}"),
+                tr("D = (4·{share}·J_f/(πρκc))^{{1/5}} = {diameter} m"), tr("B = κD = {width} m;  H = cD = {thickness} m"),
+                tr("m = 4·{share}·J_f/D^2 = {mass} kg"))
+    else:
+        said = (tr("Rim with spokes:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio}"),
+                tr("D = (4J_f/(πρκc))^{{1/5}} = {diameter} m"), tr("B = κD = {width} m;  H = cD = {thickness} m"),
+                tr("m = 4J_f/D^2 = {mass} kg"))
+    numbers = {"share": number(d.rim_share), "width_ratio": number(d.width_ratio), "thickness_ratio": number(d.thickness_ratio),
                "diameter": number(w.diameter, 5), "width": number(w.width, 4),
                "thickness": number(w.thickness) if w.form == "rim" else "",
                "mass": number(w.mass, 4), "speed": fixed(w.speed, 2), "density": number(d.density or 0.0)}
-    if w.form == "disc" and "V_об" in w.plan:  # of the rim that the disc stands for: what made it a disc
-        numbers["speed"] = fixed(float(w.plan["V_об"].value), 2)
-        speed = tr("A rim would have V = {speed} m/s ≥ 30 m/s: a disc is taken")
-    else:
-        speed = tr("V = ω_1·D/2 = {speed} m/s < 30 m/s") if w.speed < 30 else \
-            tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s: too fast for cast iron (ρ = {density} kg/m^3)") if fw.cast_iron else \
-            tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s: the wheel is of steel")
-    return [line.format(**numbers) for line in (*said, speed)]
+    speed = tr("V = ω_1·D/2 = {speed} m/s < 30 m/s") if w.speed < 30 else \
+        tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s: too fast for cast iron (ρ = {density} kg/m^3)") if fw.cast_iron else \
+        tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s: the wheel is of steel")
+    return [*(line.format(**numbers) for line in said), *(disc_for_rim(w) or [speed.format(**numbers)])]
+
+
+def disc_for_rim(w: RimWheel) -> list[str]:
+    """What made a disc of the rim that was asked for; nothing where none was."""
+    if "V_об" not in w.plan:
+        return []
+    return [tr("A rim would have V = {speed} m/s ≥ 30 m/s: a disc is taken").format(speed=fixed(float(w.plan["V_об"].value), 2))]
 
 
 # --- parts shared by the views --------------------------------------------------------------------------

@@ -262,7 +262,7 @@ class _GearPicture:
         if arcs:
             start, end = max(arcs, key=lambda arc: arc[1] - arc[0])
             whole = end - start > 2 * pi - 1e-6
-            out = rect(1, direction if whole else end - 0.05 * (end - start))  # beside the left edge, away from teeth and dimensions
+            out = rect(1, direction if whole else end - 0.05 * (end - start))  # beside the left edge, away from teeth
             self.canvas.label(centre + radius * out, name, away=out if whole else -out)
 
     def directions(self, wheel: Any) -> list[float | None]:

@@ -218,7 +218,8 @@ def crank_scheme(project: Project, k: int, shown: list[Shown]) -> tuple[list[com
     c, driver, pos = project.mechanism.crank, project.driver, project.study.positions
     pivot, ends = complex(pos.points[c.pivot].at(k)), [complex(pos.points[name].at(k)) for name in linkage.crank_pins(pos)]
     wheel = [] if driver is None else [pivot + driver.radius * z for z in (1, -1, 1j, -1j)]
-    turning = (18.0 if driver is not None else 32.0) * clear(pivot, ends, shown)
+    outermost = [couple_radius(n) for n, couple in couples_of(project, c.link) if hinge_of(project, couple) is None]
+    turning = (max(outermost, default=10.0 if driver is not None else 24.0) + 8.0) * clear(pivot, ends, shown)
     return loaded([pivot, *ends, *(force.at for force in shown), *wheel], shown, pivot, [(pivot, turning)])
 
 
@@ -270,6 +271,11 @@ def couples_of(project: Project, link: str) -> Iterator[tuple[int, Couple]]:
         value = float(np.real(step.at(k)))
         if not is_zero(value, forces.moment_size(k)):
             yield n, Couple(symbol(step.symbol or step.name).replace(BAR, ""), 0j, value, step)
+
+
+def couple_radius(n: int) -> float:
+    """Radius of the arrow of the n-th couple on the initial link, mm: beyond those of its rotation and of what balances it."""
+    return 34.0 + 10.0 * n
 
 
 def hinge_of(project: Project, couple: Couple) -> str | None:

@@ -33,6 +33,7 @@ from tmm_sheets.sheets.kinetic_frames import (
     arrows,
     balancing_sign,
     clear,
+    couple_radius,
     couples_of,
     crank_scheme,
     finest,
@@ -430,7 +431,7 @@ def _crank_couples(project: Project, s: Stage, box: Box, at: complex, away: comp
     for n, couple in couples_of(project, project.mechanism.crank.link):
         hinge = hinge_of(project, couple)
         if hinge is None:
-            _turning(s, at, 34.0 + 10.0 * n, away, couple)
+            _turning(s, at, couple_radius(n), away, couple)
         else:
             _turning(s, s.at(hinge), 6.0, -away if s.at(hinge) == at else away, couple)
         said.append(tr("{quantity} = {value} N·m").format(quantity=couple.symbol, value=number(abs(couple.value), 5)))

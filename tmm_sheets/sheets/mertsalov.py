@@ -306,7 +306,7 @@ def _size(fw: Mertsalov) -> list[str]:
     numbers = {"share": number(d.rim_share), "density": number(d.density), "width_ratio": number(d.width_ratio),
                "thickness_ratio": number(d.thickness_ratio), "diameter": number(w.diameter, 5), "width": number(w.width),
                "thickness": number(w.thickness) if w.form == "rim" else "", "mass": number(w.mass)}
-    return [line.format(**numbers) for line in said]
+    return [*(line.format(**numbers) for line in said), *flywheel.disc_for_rim(w)]
 
 
 def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None:

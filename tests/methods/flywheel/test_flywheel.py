@@ -26,7 +26,7 @@ from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 
 MANUALS = Path(__file__).parents[2] / "manuals"
 DATA = SimpleNamespace(method="wittenbauer", delta=0.025, form="rim", density=7300.0, width_ratio=0.2, thickness_ratio=0.12,
-                       rim_share=1.0, motor=None, inertia=None, efficiency=None)
+                       rim_share=1.0, motor=None, inertia=None, efficiency=None, weights=False)
 MANUAL_SCALES = FlywheelScales(
     angle=Scale("μ_φ", 2 * pi / 72, "рад/мм"), force=Scale("μ_F", 100.0, "Н/мм"), moment=Scale("μ_M", 12.5, "Н·м/мм"),
     work=Scale("μ_A", 12.5 * 2 * pi / 72 * 16, "Дж/мм"), energy=Scale("μ_E", 12.5 * pi / 72 * 16, "Дж/мм"),
