@@ -38,7 +38,9 @@ CLOSE = (100.0, 200.0)
 FORCES = ("kinetics.group", "kinetics.groups", "kinetics.crank")
 """Views of a scheme with its force plans, which stand in columns of their own."""
 GIVEN = "given_data.links"
-"""The table that belongs to no plan: it stands where most is empty."""
+"""The table that belongs to no plan."""
+ANYWHERE = GIVEN, "cam_law.equations"
+"""Views that belong to no other: they go where most is empty."""
 LARGE = (160.0, 120.0)
 """An empty rectangle of these sides, upright or lying, is a gap in a sheet, mm."""
 SCHEMES = ("train.scheme", "reducer.scheme")
@@ -80,10 +82,11 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
             # among the forces only where there is no other room. Beside a plan that is all but one line there is much of it from
             # the title to the equation: no plan but a table may stand there.
             room = taken if view.draw.startswith("moments.") else taken | (drawn if view.draw == GIVEN else whole)
-            box = _place(room | ~_gaps(canvas, inside, closed), wanted, inside) if view.draw == GIVEN else None
-            if box is None and view.needs == "positions":
-                box = _place(room | forces, wanted, inside, at)
-            box = box or _place(room, wanted, inside, at)
+            if view.draw in ANYWHERE:
+                first = room | ~_gaps(canvas, inside, closed)
+            else:
+                first = room | forces if view.needs == "positions" else room
+            box = _place(first, wanted, inside, at) or _place(room, wanted, inside, at)
         if box is not None:
             canvas.of = view.draw
             canvas.begin(box, "", view.draw)
@@ -106,7 +109,8 @@ def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box]) -> Cells:
     for size in (LARGE, LARGE[::-1]):
         nx, ny = (int(np.ceil(length / CELL)) for length in size)
         begins = _windows(inked, nx, ny) == 0
-        count = np.zeros(np.add(inked.shape, 1), np.int64)  # how many of them begin and end at a corner: summed up, those over a cell
+        # How many of them have a corner here, with its sign: summed up, how many lie over a cell.
+        count = np.zeros(np.add(inked.shape, 1), np.int64)
         for (i, j), sign in {(0, 0): 1, (nx, 0): -1, (0, ny): -1, (nx, ny): 1}.items():
             count[i:i + begins.shape[0], j:j + begins.shape[1]] += sign * begins
         gaps |= count.cumsum(axis=0).cumsum(axis=1)[:-1, :-1] > 0
@@ -176,7 +180,7 @@ def _ink_box(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> Box
 
 
 def _whole(canvas: Canvas, inside: Box, shape: tuple[int, ...], lettering: bool = True) -> Cells:
-    """Cells between the pictures of one view of forces: a loaded scheme and its force plans; without ``lettering`` of lines alone."""
+    """Cells between the pictures of one view of forces: a loaded scheme and its force plans; ``lettering`` is part of them."""
     taken = np.zeros(shape, bool)
     begins = [k for k, part in enumerate(canvas.parts) if not part.title]
     for begin, end in pairwise([*begins, len(canvas.parts)]):
@@ -227,7 +231,7 @@ def _of_part(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> NDA
 
 
 def _cells(canvas: Canvas, parts: range, inside: Box, shape: tuple[int, ...], lettering: bool = True) -> NDArray[np.bool_]:
-    """Cells with ink of parts that follow each other, or under their labels that are not set yet; without ``lettering`` of lines."""
+    """Cells with ink of parts that follow each other, or under their labels not set yet; without ``lettering`` lines alone."""
     end = canvas.parts[parts.stop].first if parts.stop < len(canvas.parts) else len(canvas.marks)
     marks = canvas.marks[canvas.parts[parts.start].first:end]
     z = np.concatenate((dense(marks, CELL), *(_about(label) for label in canvas.labels if label.part in parts))) if lettering \
