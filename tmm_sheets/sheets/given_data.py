@@ -74,4 +74,4 @@ def _quantities(project: Project) -> Iterator[tuple[str, str]]:
             given = getattr(value, "step", value)  # one that a synthesis found has the letters of its step
             if value and getattr(given, "symbol", ""):
                 said = unit or {"kg": tr("kg"), "kg*m2": tr("kg·m²")}[given.unit]
-                yield f"{given.symbol}, {said}", number(float(value))
+                yield f"{given.symbol}, {said}", number(abs(float(value)))  # the other way along its line is no length
