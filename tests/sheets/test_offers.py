@@ -107,7 +107,7 @@ def test_what_belongs_to_a_plan_stands_beside_it_and_not_beside_another():
 ], ids=["nothing", "four", "narrow", "just not", "just"])  # fmt: skip
 def test_gaps_are_where_an_empty_rectangle_of_160_by_120_is(lines, count):
     canvas = canvas_with(*lines, (20 + 5j, 20 + 5j))
-    gaps, inked = offers._gaps(canvas, FIELD, []), offers._cells(canvas, range(1), FIELD, (408, 292))
+    gaps, inked = offers._gaps(canvas, FIELD, [], (160.0, 120.0)), offers._cells(canvas, range(1), FIELD, (408, 292))
     assert not (gaps & inked).any()
     nx, ny = 80, 60
     by_hand = np.zeros_like(gaps)

@@ -10,7 +10,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import needs, size_in
-from tmm_sheets.numbers import number
+from tmm_sheets.numbers import is_zero, number
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def links_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> li
 
 
 def links(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Lengths of the mechanism in the order in which it is put together, then masses and moments of inertia by links."""
+    """Where the fixed hinges are, lengths in the order in which the links are put together, then masses and moments of inertia."""
     _, rows, row = next(form for form in _forms(project) if form[0][0] <= box.width + 1e-6 and form[0][1] <= box.height + 1e-6)
     height = size_in(row)
     widths = needs(rows, height, ROOMY)
@@ -62,13 +62,18 @@ def _forms(project: Project) -> Iterator[tuple[tuple[float, float], Rows, float]
 
 
 def _quantities(project: Project) -> Iterator[tuple[str, str]]:
-    """Letters with unit, and number, of what the task gives of the links or a synthesis has found; nothing that is zero."""
+    """Letters with unit, and number, of what the task gives of frame and links or a synthesis has found; nothing that is zero."""
     m = project.mechanism
     lengths: list[Any] = [m.crank.length]
     for g in m.groups:
         lengths += [*g.lengths, g.offset, *getattr(g, "sides", ()), *(leg.length for leg in getattr(g, "legs", ()))]
     lengths += [p.distance for p in m.points]
-    of_links = [getattr(link, name) for name in ("mass", "inertia") for link in m.links.values()]
+    for name, at in m.fixed.items():
+        for axis, value in (("x", at.real), ("y", at.imag)):
+            if not is_zero(value, float(m.crank.length)):
+                yield f"{axis}_{{{name}}}, {tr('m')}", number(value)
+    links = sorted(m.links.values(), key=lambda link: (len(link.name), link.name))
+    of_links = [getattr(link, name) for name in ("mass", "inertia") for link in links]
     for unit, values in ((tr("m"), lengths), (None, of_links)):
         for value in values:
             given = getattr(value, "step", value)  # one that a synthesis found has the letters of its step

@@ -41,8 +41,8 @@ GIVEN = "given_data.links"
 """The table that belongs to no plan."""
 ANYWHERE = GIVEN, "cam_law.equations"
 """Views that belong to no other: they go where most is empty."""
-LARGE = (160.0, 120.0)
-"""An empty rectangle of these sides, upright or lying, is a gap in a sheet, mm."""
+LARGE = (160.0, 120.0), (150.0, 112.0)
+"""An empty rectangle of these sides, upright or lying, is a gap, mm; the second where cells that its edges cut hide one."""
 SCHEMES = ("train.scheme", "reducer.scheme")
 """Views whose pictures reach from edge to edge of their wheels: what stands between these would be read as part of them."""
 FAR = 10**6
@@ -61,8 +61,8 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
     taken = _closed(inside, closed)
     seen, forces = 0, _of_forces(canvas, inside)
     whole, drawn = (_whole(canvas, inside, taken.shape, lettering) for lettering in (True, False))
-    rooms = [(view, *_functions(view)) for view in offered]
-    for view, function, sizes, near, left in sorted(rooms, key=lambda room: room[3] is None):
+    views = [(view, *_functions(view)) for view in offered]
+    for view, function, sizes, near, left in sorted(views, key=lambda it: it[3] is None):
         try:
             wanted = sizes(project, canvas, view.options)
         except CannotBuild:
@@ -83,10 +83,10 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
             # the title to the equation: no plan but a table may stand there.
             room = taken if view.draw.startswith("moments.") else taken | (drawn if view.draw == GIVEN else whole)
             if view.draw in ANYWHERE:
-                first = room | ~_gaps(canvas, inside, closed)
+                rooms = [*(room | ~_gaps(canvas, inside, closed, sides) for sides in LARGE), room]
             else:
-                first = room | forces if view.needs == "positions" else room
-            box = _place(first, wanted, inside, at) or _place(room, wanted, inside, at)
+                rooms = [room | forces, room] if view.needs == "positions" else [room]
+            box = next((box for part in rooms if (box := _place(part, wanted, inside, at)) is not None), None)
         if box is not None:
             canvas.of = view.draw
             canvas.begin(box, "", view.draw)
@@ -101,12 +101,12 @@ def _functions(view: View) -> tuple[Callable[..., None], Callable[..., Any], Cal
             getattr(room, f"{function}_left", None))
 
 
-def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box]) -> Cells:
-    """Cells of empty rectangles that are ``LARGE``."""
+def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float, float]) -> Cells:
+    """Cells of empty rectangles of these sides, mm, lying or upright."""
     inked = _closed(inside, closed)
     inked |= _cells(canvas, range(len(canvas.parts)), inside, inked.shape)
     gaps = np.zeros(inked.shape, bool)
-    for size in (LARGE, LARGE[::-1]):
+    for size in (sides, sides[::-1]):
         nx, ny = (int(np.ceil(length / CELL)) for length in size)
         begins = _windows(inked, nx, ny) == 0
         # How many of them have a corner here, with its sign: summed up, how many lie over a cell.
