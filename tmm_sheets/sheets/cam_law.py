@@ -28,7 +28,7 @@ FORMS: dict[str, tuple[tuple[str, tuple[str, str, str]], ...]] = {
 
 A law that is given as a diagram of its second derivative has no formula.
 """
-WAYS = (5.0, 12.0, inf), (3.5, 8.0, inf), (3.5, 7.0, inf), (3.5, 6.0, inf), (3.5, 6.0, 70.0)
+WAYS = (5.0, 12.0, inf), (3.5, 8.0, inf), (3.5, 7.0, inf), (3.5, 6.0, inf), (3.5, 6.0, 62.0)
 """Heights of the letters, distances of the lines and widths at which these are broken that are tried, mm."""
 APART = 14.0
 """Distance of the formulas of both phases where they stand side by side, mm."""
@@ -54,12 +54,18 @@ def equations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
 def _forms(law: PositionFunction) -> Iterator[tuple[tuple[float, float], list[list[str]], float, float]]:
     """Size, columns, height of the letters and distance of the lines, mm, of the forms of the view: the clearest first."""
     for height, step, most in WAYS:
-        # What grows with its numbers is broken, no heading and no formula.
-        rise, fall = ([line for text in lines for line in (broken(text, most, height) if text.startswith("|") else [text])]
-                      for lines in _phases(law))
+        rise, fall = ([line for text in lines for line in _broken(text, most, height)] for lines in _phases(law))
         for columns in ([rise + fall], [rise, fall]):
             width = sum(_width(lines, height) for lines in columns) + APART * (len(columns) - 1)
             yield (width + 6.0, 12.0 + step * max(map(len, columns))), columns, height, step
+
+
+def _broken(text: str, most: float, height: float) -> list[str]:
+    """A line of no more than a width, mm: what grows with its numbers broken before a sign, a heading after its word."""
+    if letter(text, height).width <= most or text.startswith("|"):
+        return broken(text, most, height)
+    word, colon, rest = text.partition(": ")
+    return [f"{word}:", rest] if colon else [text]
 
 
 def _width(lines: list[str], height: float) -> float:
