@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tmm_sheets.methods.cams.cam_laws import LAWS, PositionFunction
-from tmm_sheets.sheets.cam_law import FORMS, _phases
+from tmm_sheets.sheets.cam_law import FORMS, _forms, _phases
 
 TOKEN = re.compile(r"S_\{max\}|φ_\w+|φ|sin|cos|π|x|\d+|[-+*/()]|\^")
 
@@ -42,3 +42,16 @@ def test_a_law_that_is_a_diagram_tells_its_greatest_value_only():
         assert len(lines) == 1
         assert lines[0].startswith("|ψ")
         assert lines[0][-1].isdigit()  # no unit
+
+
+@pytest.mark.parametrize("name", [*FORMS, "trapezoid"])
+def test_every_form_says_all_of_it(name):
+    """Wide or narrow, on one column or two: the same words in the same order, the narrowest the last."""
+    law = PositionFunction.of(1.2, 0.5, 1.7, 0.03, LAWS[name])
+    whole = " ".join(line for lines in _phases(law) for line in lines)
+    forms = list(_forms(law))
+    for size, columns, height, step in forms:
+        assert " ".join(line.strip() for lines in columns for line in lines).split() == whole.split()
+        assert size[1] == pytest.approx(12.0 + step * max(map(len, columns)))
+        assert step >= 1.6 * height
+    assert min(size[0] for size, *_ in forms[-2:]) == min(size[0] for size, *_ in forms)

@@ -25,11 +25,11 @@ DESIGNATION = Box(20, 575, 90, 589)
 FRAME = Box(20, 5, 836, 589)
 
 
-def project(teeth=(14, 28), shift=(3 / 17, 0.0), module=0.0035, driver=1, sense="clockwise"):
+def project(teeth=(14, 28), shift=(3 / 17, 0.0), module=0.0035, driver=1, sense="clockwise", profile="fillet"):
     angle = radians(20)
     return SimpleNamespace(gear=gear_pair(SimpleNamespace(
         teeth=teeth, shift=shift, module=module, pressure_angle=angle, addendum=1.0, clearance=0.25, driver=driver, sense=sense,
-        profile="fillet", mesh="external", centre_distance=None)))
+        profile=profile, mesh="external", centre_distance=None)))
 
 
 PROJECTS = {
@@ -141,6 +141,16 @@ def test_sliding_curves_show_the_table():
             order = np.argsort(points.real)  # N1 may stand at the right, as in the picture
             value = float(np.interp(at.real, points.real[order], points.imag[order])) - at.imag
             assert value * mu == pytest.approx(plan[f"theta{i}"].value[k], abs=0.02)
+
+
+@pytest.mark.parametrize("profile", ["fillet", "rack"])
+def test_the_tips_are_held_against_what_is_pointed(profile):
+    """As much of the module as both lengths of the table of the pair say, with either way to make the teeth."""
+    data = project(profile=profile)
+    said = [m.text for m in drawn("gear.results", Box(500, 60, 834, 330), data).marks if isinstance(m, Text)]
+    shares = [w.sa / 0.0035 for w in data.gear.wheels]
+    assert "; ".join(fixed(share, 2) for share in shares) in said
+    assert all(share > 0.2 for share in shares)
 
 
 def test_nothing_but_the_gear_is_asked_for():

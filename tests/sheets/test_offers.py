@@ -14,7 +14,7 @@ from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.drawing.marks import Polyline
 from tmm_sheets.numbers import number
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import diagrams, hodograph, kinetics, linkage, moments, offers, position_tables, reducer, train
+from tmm_sheets.sheets import diagrams, given_data, hodograph, kinetics, linkage, moments, offers, position_tables, reducer, train
 from tmm_sheets.sheets.sheet import _code, composed
 
 FIELD = Box(20.0, 5.0, 836.0, 589.0)
@@ -96,6 +96,27 @@ def test_what_belongs_to_a_plan_stands_beside_it_and_not_beside_another():
     walls = taken | offers._closed(FIELD, [Box(20.0, 5.0, 99.0, 589.0), Box(201.0, 5.0, 836.0, 589.0)])
     assert offers._near(walls, size, FIELD, spot, [own, other, below]) is None
     assert offers._near(offers._closed(FIELD, [Box(20.0, 5.0, 600.0, 589.0)]), size, FIELD, spot, [own]) is None  # too far
+
+
+@pytest.mark.parametrize(("lines", "count"), [
+    ([], 408 * 292),  # all is empty
+    ([(20 + 297j, 836 + 297j), (428 + 5j, 428 + 589j)], None),  # four gaps
+    ([(x + 5j, x + 589j) for x in range(30, 836, 118)], 0),  # 116 mm are no gap
+    ([(x + 5j, x + 589j) for x in (136, 230, 320, 410, 500, 590, 680, 770)], None),  # one of 116 mm, all others narrower
+    ([(x + 5j, x + 589j) for x in (142, 230, 320, 410, 500, 590, 680, 770)], 60 * 292),
+], ids=["nothing", "four", "narrow", "just not", "just"])  # fmt: skip
+def test_gaps_are_where_an_empty_rectangle_of_160_by_120_is(lines, count):
+    canvas = canvas_with(*lines, (20 + 5j, 20 + 5j))
+    gaps, inked = offers._gaps(canvas, FIELD, [], (160.0, 120.0)), offers._cells(canvas, range(1), FIELD, (408, 292))
+    assert not (gaps & inked).any()
+    nx, ny = 80, 60
+    by_hand = np.zeros_like(gaps)
+    for w, h in ((nx, ny), (ny, nx)):
+        for i, j in np.argwhere(offers._windows(inked, w, h) == 0):
+            by_hand[i:i + w, j:j + h] = True
+    assert (gaps == by_hand).all()
+    if count is not None:
+        assert abs(int(gaps.sum()) - count) <= 408  # but for the cell of a line
 
 
 def test_nothing_parts_a_scheme_from_its_force_plans():
@@ -276,3 +297,22 @@ def test_a_force_is_not_parted_from_its_value(width):
     lines = broken(text, width, 3.5)
     assert " ".join(lines) == text.replace("\u00a0", " ")
     assert sum("F_1 = 278,51 Н" in line for line in lines) == 1
+
+
+@pytest.mark.parametrize(("name", "lengths"), [
+    ("transport/press@07-ЭПС-718", {"l_{AB}", "l_{BC}"}), ("loom", set()), ("lugansk/shaper", {"l_{AB}"}),
+    ("tests/projects/visor.toml", {"l_{AB}", "l_{BC}", "l_{DF}"})])  # fmt: skip
+def test_the_table_of_given_sizes_holds_what_the_task_gives(name, lengths):
+    """Every number but zero, once, as it is in the mechanism; one that a synthesis has found has its letters too."""
+    project = Project(read(name))
+    rows = list(given_data._quantities(project))
+    signs = [sign.split(", ")[0] for sign, _ in rows]
+    assert lengths <= set(signs)
+    assert len(rows) == len(set(rows))
+    m = project.mechanism
+    assert ("кг" in {sign.split(", ")[1] for sign, _ in rows}) == any(link.mass for link in m.links.values())
+    assert not {"0", "−0"} & {value for _, value in rows}
+    assert number(float(m.crank.length)) in {value for sign, value in rows if sign.endswith(", м")}
+    for size, cells, row in given_data._forms(project):
+        assert size[1] == pytest.approx(8.0 + row * len(cells))
+        assert sum(cell != "" for line in cells[1:] for cell in line) == 2 * len(rows)

@@ -54,7 +54,7 @@ class Note:
     """A remark to a view in words; the sheet finds it a free place, in ``box`` or near it, when all labels are set.
 
     ``of`` and ``part`` are those of the canvas when the note was asked for. ``signs`` are what it ends with, a list that may become
-    shorter until it is set.
+    shorter until it is set. ``about`` tells what is remarked on, where another view may have more to say of it.
     """
 
     text: str
@@ -62,6 +62,7 @@ class Note:
     of: str = ""
     part: int = -1
     signs: tuple[str, ...] = ()
+    about: Any = None
 
     @property
     def said(self) -> str:
@@ -308,9 +309,9 @@ class Canvas:
             self.labels.append(
                 Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1, self.by, shelf))
 
-    def note(self, box: Box, text: str, signs: Iterable[str] = ()) -> None:
+    def note(self, box: Box, text: str, signs: Iterable[str] = (), about: Any = None) -> None:
         """Ask for a remark in words to the view in ``box``; see :class:`Note`."""
-        self.notes.append(Note(text, box, self.of, len(self.parts) - 1, tuple(signs)))
+        self.notes.append(Note(text, box, self.of, len(self.parts) - 1, tuple(signs), about))
 
     def title(self, box: Box, text: str, factor: str = "", height: float = 5.0) -> Box:
         """Title of a view centred at the top of its place, the scale factor under it and no larger; returns what is left below."""

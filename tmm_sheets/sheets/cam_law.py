@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from math import inf
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.lettering import broken, letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import number
 from tmm_sheets.words import tr
@@ -24,38 +28,44 @@ FORMS: dict[str, tuple[tuple[str, tuple[str, str, str]], ...]] = {
 
 A law that is given as a diagram of its second derivative has no formula.
 """
-WAYS = (5.0, 12.0), (3.5, 8.0), (3.5, 7.0), (3.5, 6.0)
-"""Heights of the letters and distances of the lines that are tried, mm."""
+WAYS = (5.0, 12.0, inf), (3.5, 8.0, inf), (3.5, 7.0, inf), (3.5, 6.0, inf), (3.5, 6.0, 62.0)
+"""Heights of the letters, distances of the lines and widths at which these are broken that are tried, mm."""
 APART = 14.0
 """Distance of the formulas of both phases where they stand side by side, mm."""
 
 
 def equations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the formulas can do with, mm: those of both phases one under another or side by side."""
-    rise, fall = _phases(project.cam.law)
-    sizes = []
-    for height, step in WAYS:
-        one, two = _width(rise, height), _width(fall, height)
-        sizes += [(max(one, two) + 6.0, 12.0 + step * (len(rise) + len(fall))),
-                  (one + APART + two + 6.0, 12.0 + step * max(len(rise), len(fall)))]
-    return sizes
+    return [size for size, _, _, _ in _forms(project.cam.law)]
 
 
 def equations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Displacement and both derivatives on the rise and on the return."""
-    rise, fall = _phases(project.cam.law)
     canvas.of = project.cam.motion.plan.name
     left = canvas.title(box, tr("Law of motion in formulas"))
-    for height, most in WAYS:
-        wide = box.width >= _width(rise, height) + APART + _width(fall, height)
-        columns = [rise, fall] if wide else [rise + fall]
-        step = min(most, (left.y1 - box.y0) / max(map(len, columns)))
-        if step >= 2 * height and _width(rise + fall, height) <= box.width:
-            break
+    fitting = (form for form in _forms(project.cam.law) if all(np.array(form[0]) <= np.array((box.width, box.height)) + 1e-6))
+    _, columns, height, step = next(fitting)
     x = box.x0 + 3.0
     for lines in columns:
         canvas.lines(complex(x, left.y1 - 0.8 * step), lines, step, height)
         x += _width(lines, height) + APART
+
+
+def _forms(law: PositionFunction) -> Iterator[tuple[tuple[float, float], list[list[str]], float, float]]:
+    """Size, columns, height of the letters and distance of the lines, mm, of the forms of the view: the clearest first."""
+    for height, step, most in WAYS:
+        rise, fall = ([line for text in lines for line in _broken(text, most, height)] for lines in _phases(law))
+        for columns in ([rise + fall], [rise, fall]):
+            width = sum(_width(lines, height) for lines in columns) + APART * (len(columns) - 1)
+            yield (width + 6.0, 12.0 + step * max(map(len, columns))), columns, height, step
+
+
+def _broken(text: str, most: float, height: float) -> list[str]:
+    """A line of no more than a width, mm: what grows with its numbers broken before a sign, a heading after its word."""
+    if letter(text, height).width <= most or text.startswith("|"):
+        return broken(text, most, height)
+    word, colon, rest = text.partition(": ")
+    return [f"{word}:", rest] if colon else [text]
 
 
 def _width(lines: list[str], height: float) -> float:

@@ -9,7 +9,7 @@ crossing tells, nothing else is computed.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import asin, degrees
 from typing import TYPE_CHECKING, Any
 
@@ -130,9 +130,44 @@ def _better(project: Project, i: int, among: Collection[int]) -> int | None:
 
 
 def warn(project: Project, canvas: Canvas, box: Box, plan: Plan, drawn: Iterable[int] | None = None) -> None:
-    """Ask for a note beside a view for every crossing of its plan that cannot be drawn; by default at the analysed position."""
+    """Ask for a note beside a view for every crossing of its plan that cannot be drawn; by default at the analysed position.
+
+    The same two links meet in all plans under one angle: the note of the first of them names the others.
+    """
     for flat in find(project, plan, [project.force_index] if drawn is None else drawn, canvas.scales):
-        canvas.note(box, said(project, flat))
+        about = _drawn(project, flat.worst), round(flat.angle, 4)
+        n = next((n for n, note in enumerate(canvas.notes) if note.about == about), None)
+        if n is None:
+            canvas.note(box, said(project, flat), about=about)
+        else:
+            canvas.notes[n] = replace(canvas.notes[n], text=f"{canvas.notes[n].text}; {likewise(project, flat)}")
+
+
+_LIKEWISE = {
+    "positions": marked("likewise point {name} ({error})"),
+    "velocities": marked("likewise on the velocity polygon point {name} ({error})"),
+    "accelerations": marked("likewise on the acceleration polygon point {name} ({error})"),
+    "link": marked("likewise on the force polygon of link {links} vertex {name} ({error})"),
+    "group": marked("likewise on the force polygon of group {links} vertex {name} ({error})"),
+}
+"""What is said of a further point that the same lines give."""
+
+
+def likewise(project: Project, flat: Flat) -> str:
+    """What the note of another plan says of this one, lettering markup."""
+    from tmm_sheets.sheets import linkage
+
+    kind, links = _kind(project, flat)
+    error = tr("not at all") if flat.mm is None else tr("{value} mm").format(value=fixed(flat.mm, 1))
+    return tr(_LIKEWISE[kind]).format(name=linkage.indexed(flat.step.name), links="–".join(links), error=error)
+
+
+def _kind(project: Project, flat: Flat) -> tuple[str, tuple[str, ...]]:
+    """Kind of a plan as it is named, and the links of a force plan."""
+    if flat.plan.name in ("positions", "velocities", "accelerations"):
+        return flat.plan.name, ()
+    links = next(fp.links for fp in project.study.forces.plans.values() if fp.plan is flat.plan)
+    return "group" if len(links) > 1 else "link", links
 
 
 _CANNOT = {
@@ -170,13 +205,9 @@ def said(project: Project, flat: Flat) -> str:
 
     labels = _labels(project)
     several = len(flat.positions) > 1
-    links: tuple[str, ...] = ()
-    kind = flat.plan.name
+    kind, links = _kind(project, flat)
     if kind == "positions":
         kind = "line" if flat.step.rule is rules.LINE_LINE else "arcs"
-    elif kind not in _CANNOT:
-        links = next(fp.links for fp in project.study.forces.plans.values() if fp.plan is flat.plan)
-        kind = "group" if len(links) > 1 else "link"
     what = tr(_CANNOT[kind][several + 2 * (flat.mm is not None)]).format(
         at=_listed(project, flat.positions), name=linkage.indexed(flat.step.name), links="–".join(links),
         mm=fixed(flat.mm or 0.0, 1))

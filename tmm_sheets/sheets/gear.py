@@ -768,8 +768,8 @@ def results(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     if gear.profile == "rack":
         rows += [(tr("ρ of wheel {wheel}: limit ≤ lowest, mm").format(wheel=w.number), f"ρ_{{l{w.number}}}; ρ_{{p{w.number}}}",
                   f"{fixed(w.rho_limit * 1e3, 2)}; {fixed(w.t_low * 1e3, 2)}") for w in gear.wheels]
-        rows += [(tr("Tooth thickness at the tip, in modules (≥ 0.2)"), "s_{a1}; s_{a2}",
-                  "; ".join(fixed(w.step("sa_m").value, 2) for w in gear.wheels))]
+    rows += [(tr("Tooth thickness at the tip, in modules (≥ 0.2)"), "s_{a1}; s_{a2}",
+              "; ".join(fixed(w.step("sa_m").value, 2) for w in gear.wheels))]
     if gear.internal:
         clear = degrees(float(gear.step("tips_clear").value))
         rows += [(tr("Clearance of the tips beside the mesh (≥ 0)"), "δ_{12}", f"{fixed(clear, 2)}°")]

@@ -20,7 +20,7 @@ from tmm_sheets.drawing.tables import widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, decimals_for, fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, linkage
-from tmm_sheets.sheets.frame import SHORTEST, fit_frame, joined, together
+from tmm_sheets.sheets.frame import SHORTEST, Frame, fit_frame, joined, together
 from tmm_sheets.sheets.kinetic_frames import (
     AROUND,
     CRANK,
@@ -309,9 +309,14 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
                       finest(fp, k))
     canvas.title(box, fp.plan.title, str(frame.scale))
     flat_crossings.warn(project, canvas, box, fp.plan)
+    extra = [seg for seg in fp.plan.segments if not any(seg.symbol == side[0] for side in fp.sides)]
+    asked = [side[:3] for side in sides if side[3]] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
+    found = [tr("{quantity} = {value} N").format(quantity=sign.replace(BAR, ""),
+                                                 value=newtons(clean(fp.plan.length(tail, head).at(k), size)))
+             for sign, tail, head in asked]
+    frame, lines, height = _over_equation(frame, list(points.values()), inside, box, (terms(sides), found))
     s = stage(canvas, fp.plan, k, frame)
     tiny = _draw_sides(s, sides, inside.centre)
-    extra = [seg for seg in fp.plan.segments if not any(seg.symbol == side[0] for side in fp.sides)]
     for seg in extra:
         s.vector(seg.tail, seg.head)
         s.letters(seg.head, seg.symbol, at=(s.at(seg.tail) + s.at(seg.head)) / 2)
@@ -321,15 +326,25 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
         canvas.note(box, tr("Less than 1{space}mm: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny.values())))
     # Equation and values close under a polygon that does not fill the height of its place.
     lowest = min(frame(z).imag for z in points.values())
-    asked = [side[:3] for side in sides if side[3]] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
-    found = [tr("{quantity} = {value} N").format(quantity=sign.replace(BAR, ""),
-                                                 value=newtons(clean(fp.plan.length(tail, head).at(k), size)))
-             for sign, tail, head in asked]
-    most = max(LINES, int((lowest - ROOM - box.y0) / LINE))
-    lines, size = equation(terms(sides), found, box.width - 4.0, most)
     low = max(box.y0, lowest - ROOM - max(AROUND[1], LINE * len(lines)))
     for k, line in enumerate(reversed(lines)):
-        canvas.text(complex(box.centre.real, low + 3.0 + LINE * k), line, size, "centre")
+        canvas.text(complex(box.centre.real, low + 3.0 + LINE * k), line, height, "centre")
+
+
+def _over_equation(frame: Frame, points: Sequence[complex], inside: Box, box: Box,
+                   texts: tuple[list[str], list[str]]) -> tuple[Frame, list[str], float]:
+    """A force polygon's frame, the lines of its equation and values, and their height.
+
+    Where there is room over the polygon it goes up rather than that they stand in smaller letters than those of its neighbours.
+    """
+    ends = [complex(frame(z)).imag for z in points]
+    least, most = (max(LINES, int((min(ends) + lift - ROOM - box.y0) / LINE)) for lift in (0.0, max(inside.y1 - max(ends), 0.0)))
+    lines, height = equation(*texts, box.width - 4.0, least)
+    higher, larger = equation(*texts, box.width - 4.0, most)
+    if larger <= height:
+        return frame, lines, height
+    lift = ROOM + LINE * len(higher) - (min(ends) - box.y0)
+    return replace(frame, origin=frame.origin + 1j * max(lift, 0.0)), higher, larger
 
 
 def heads_apart(sides: Sequence[tuple[complex, complex]]) -> list[float | None]:

@@ -37,6 +37,12 @@ CLOSE = (100.0, 200.0)
 """Distances of a view from the spot that it belongs to, mm: as near as is wanted, and as is allowed."""
 FORCES = ("kinetics.group", "kinetics.groups", "kinetics.crank")
 """Views of a scheme with its force plans, which stand in columns of their own."""
+GIVEN = "given_data.links"
+"""The table that belongs to no plan."""
+ANYWHERE = GIVEN, "cam_law.equations"
+"""Views that belong to no other: they go where most is empty."""
+LARGE = (160.0, 120.0), (150.0, 112.0)
+"""An empty rectangle of these sides, upright or lying, is a gap, mm; the second where cells that its edges cut hide one."""
 SCHEMES = ("train.scheme", "reducer.scheme")
 """Views whose pictures reach from edge to edge of their wheels: what stands between these would be read as part of them."""
 FAR = 10**6
@@ -53,9 +59,10 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
     ``module.function_near`` what it belongs to: it stands near that or nowhere, and those that do so choose first.
     """
     taken = _closed(inside, closed)
-    seen, whole, forces = 0, _whole(canvas, inside, taken.shape), _of_forces(canvas, inside)
-    rooms = [(view, *_functions(view)) for view in offered]
-    for view, function, sizes, near, left in sorted(rooms, key=lambda room: room[3] is None):
+    seen, forces = 0, _of_forces(canvas, inside)
+    whole, drawn = (_whole(canvas, inside, taken.shape, lettering) for lettering in (True, False))
+    views = [(view, *_functions(view)) for view in offered]
+    for view, function, sizes, near, left in sorted(views, key=lambda it: it[3] is None):
         try:
             wanted = sizes(project, canvas, view.options)
         except CannotBuild:
@@ -72,10 +79,14 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
         else:
             at = None if left is None else left(view.options)
             # Nothing parts a loaded scheme from its force plans but the equations that are read from it, and kinematics stand
-            # among the forces only where there is no other room.
-            room = taken if view.draw.startswith("moments.") else taken | whole
-            box = _place(room | forces, wanted, inside, at) if view.needs == "positions" else None
-            box = box or _place(room, wanted, inside, at)
+            # among the forces only where there is no other room. Beside a plan that is all but one line there is much of it from
+            # the title to the equation: no plan but a table may stand there.
+            room = taken if view.draw.startswith("moments.") else taken | (drawn if view.draw == GIVEN else whole)
+            if view.draw in ANYWHERE:
+                rooms = [*(room | ~_gaps(canvas, inside, closed, sides) for sides in LARGE), room]
+            else:
+                rooms = [room | forces, room] if view.needs == "positions" else [room]
+            box = next((box for part in rooms if (box := _place(part, wanted, inside, at)) is not None), None)
         if box is not None:
             canvas.of = view.draw
             canvas.begin(box, "", view.draw)
@@ -90,16 +101,37 @@ def _functions(view: View) -> tuple[Callable[..., None], Callable[..., Any], Cal
             getattr(room, f"{function}_left", None))
 
 
+def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float, float]) -> Cells:
+    """Cells of empty rectangles of these sides, mm, lying or upright."""
+    inked = _closed(inside, closed)
+    inked |= _cells(canvas, range(len(canvas.parts)), inside, inked.shape)
+    gaps = np.zeros(inked.shape, bool)
+    for size in (sides, sides[::-1]):
+        nx, ny = (int(np.ceil(length / CELL)) for length in size)
+        begins = _windows(inked, nx, ny) == 0
+        # How many of them have a corner here, with its sign: summed up, how many lie over a cell.
+        count = np.zeros(np.add(inked.shape, 1), np.int64)
+        for (i, j), sign in {(0, 0): 1, (nx, 0): -1, (0, ny): -1, (nx, ny): 1}.items():
+            count[i:i + begins.shape[0], j:j + begins.shape[1]] += sign * begins
+        gaps |= count.cumsum(axis=0).cumsum(axis=1)[:-1, :-1] > 0
+    return gaps
+
+
+def _windows(taken: Cells, nx: int, ny: int) -> NDArray[np.int64]:
+    """How many cells are taken of each rectangle of so many cells, by its lower left one."""
+    table = np.zeros(np.add(taken.shape, 1), np.int64)
+    table[1:, 1:] = taken.cumsum(axis=0, dtype=np.int64).cumsum(axis=1)
+    return np.asarray(table[nx:, ny:] - table[:-nx, ny:] - table[nx:, :-ny] + table[:-nx, :-ny])
+
+
 def _free(taken: Cells, sizes: Sequence[tuple[float, float]]) -> Iterator[tuple[tuple[float, float], float, Cells]]:
     """The sizes with distances from all else, the widest first, and the lowest left cells of all places that have them."""
-    table = np.zeros((taken.shape[0] + 1, taken.shape[1] + 1), np.int64)
-    table[1:, 1:] = taken.cumsum(axis=0, dtype=np.int64).cumsum(axis=1)
     for size in sizes:
         for apart in APART:
             nx, ny = (int(np.ceil((length + 2 * apart) / CELL)) for length in size)
-            if nx >= table.shape[0] or ny >= table.shape[1]:
+            if nx > taken.shape[0] or ny > taken.shape[1]:
                 continue
-            free = np.argwhere(table[nx:, ny:] - table[:-nx, ny:] - table[nx:, :-ny] + table[:-nx, :-ny] == 0)
+            free = np.argwhere(_windows(taken, nx, ny) == 0)
             if len(free):
                 yield size, apart, free
 
@@ -147,13 +179,13 @@ def _ink_box(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> Box
                                           inside.x0 + CELL * (i.max() + 1), inside.y0 + CELL * (j.max() + 1))))
 
 
-def _whole(canvas: Canvas, inside: Box, shape: tuple[int, ...]) -> Cells:
-    """Cells between the pictures of one view of forces: a loaded scheme and its force plans."""
+def _whole(canvas: Canvas, inside: Box, shape: tuple[int, ...], lettering: bool = True) -> Cells:
+    """Cells between the pictures of one view of forces: a loaded scheme and its force plans; ``lettering`` is part of them."""
     taken = np.zeros(shape, bool)
     begins = [k for k, part in enumerate(canvas.parts) if not part.title]
     for begin, end in pairwise([*begins, len(canvas.parts)]):
         if canvas.parts[begin].draw in FORCES:
-            picture = _cells(canvas, range(begin, end), inside, shape)
+            picture = _cells(canvas, range(begin, end), inside, shape, lettering)
             taken |= _between(picture, 0)[1] | _between(picture, 1)[1]
     return taken
 
@@ -198,11 +230,12 @@ def _of_part(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> NDA
     return taken
 
 
-def _cells(canvas: Canvas, parts: range, inside: Box, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-    """Cells with ink of parts that follow each other, or under their labels that are not set yet."""
+def _cells(canvas: Canvas, parts: range, inside: Box, shape: tuple[int, ...], lettering: bool = True) -> NDArray[np.bool_]:
+    """Cells with ink of parts that follow each other, or under their labels not set yet; without ``lettering`` lines alone."""
     end = canvas.parts[parts.stop].first if parts.stop < len(canvas.parts) else len(canvas.marks)
-    z = np.concatenate((dense(canvas.marks[canvas.parts[parts.start].first:end], CELL),
-                        *(_about(label) for label in canvas.labels if label.part in parts)))  # fmt: skip
+    marks = canvas.marks[canvas.parts[parts.start].first:end]
+    z = np.concatenate((dense(marks, CELL), *(_about(label) for label in canvas.labels if label.part in parts))) if lettering \
+        else dense((mark for mark in marks if mark.by is None or mark.by.role != "text"), CELL)
     own = np.zeros(shape, bool)
     i, j = ((z.real - inside.x0) / CELL).astype(int), ((z.imag - inside.y0) / CELL).astype(int)
     there = (i >= 0) & (i < shape[0]) & (j >= 0) & (j < shape[1])
