@@ -12,6 +12,7 @@ from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.photo import arrow_heads
 from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.traces import Trace
@@ -657,6 +658,13 @@ def test_an_end_that_goes_on_paler_is_under_adhesive_tape(dark, to, short):
     assert ("too short at its end" in f.what) == short
 
 
+def joint(step="positions/A"):
+    """The circle of a joint of 1.6 mm, and the directions of its points."""
+    circle = np.exp(2j * np.pi * np.arange(61) / 60)
+    e = Element(9, VIEW, "", "circle", CORNER + 1.6 * circle, "main", CORNER, 1.6, 0.0, 2 * np.pi, by=By("symbol", step, "1"))
+    return e, circle
+
+
 @pytest.mark.parametrize(
     ("radius", "aside", "verdict", "said"),
     [
@@ -672,14 +680,44 @@ def test_an_end_that_goes_on_paler_is_under_adhesive_tape(dark, to, short):
 def test_the_circle_of_a_joint_is_told_by_its_outer_edge(radius, aside, verdict, said):
     """Within it lines end and a dot stands; three of its sides are left free by them."""
     ways = 12 * np.exp(1j * np.array([0.2, 1.4, 1.6, 3.3]))
-    circle = np.exp(2j * np.pi * np.arange(61) / 60)
-    joint = Element(9, VIEW, "", "circle", CORNER + 1.6 * circle, "main", CORNER, 1.6, 0.0, 2 * np.pi)
+    e, circle = joint()
     ink = paper()
     for w in ways:
         draw(ink, CORNER, CORNER + w)
     for a, b in pairwise(CORNER + aside + (radius or 0) * circle) if radius else ():
         draw(ink, a, b)
-    found, _ = trace([*(line(k, CORNER, CORNER + w) for k, w in enumerate(ways)), joint], ink)
+    found, _ = trace([*(line(k, CORNER, CORNER + w) for k, w in enumerate(ways)), e], ink)
     f = judge(found[-1], 0.25, 0.15)
     assert f.verdict == verdict
     assert not said or f"radius {said}" in f.what
+
+
+@pytest.mark.parametrize(
+    ("radius", "aside", "growth"), [(1.6, 0, 0), (1.6, 0.25j, 0), (2.3, 0, 0.7), (2.3, 0.1, 0.7), (1.4, 0, -0.2)]
+)
+@pytest.mark.parametrize("free", [0, 4])  # sides that no line leaves to
+def test_the_edge_of_a_joint_is_seen_between_lines_that_leave_it_closely(free, radius, aside, growth):
+    """What its line among theirs was measured to be is no matter then."""
+    e, circle = joint()
+    ways = 8 * np.exp(2j * np.pi * (np.arange(8 - free) + 0.3) / 8)
+    ink, owners = paper(), Owners(ROWS, COLUMNS)
+    for k, w in enumerate(ways):
+        draw(ink, CORNER, CORNER + w, "thin")
+        owners.add(line(k + 1, CORNER, CORNER + w, "thin"), np.array([CORNER, CORNER + w]))
+    for a, b in pairwise(CORNER + aside + radius * circle):
+        draw(ink, a, b)
+    t = Trace(e, "measured", shift=0.45j, deviation=0.45, at=e.points, free=0.3)
+    (found,) = with_edges([t], ink, owners, np.zeros_like(ink))
+    assert (found.growth, abs(found.shift - aside)) == (pytest.approx(growth, abs=0.1), pytest.approx(0, abs=0.1))
+    f = judge(found, 0.25, 0.15)
+    assert (f.verdict, "radius 0.7" in f.what) == (("amber", True) if growth > 0.4 else ("green", False))
+
+
+@pytest.mark.parametrize(
+    ("step", "free", "said"), [("positions/A", 1.0, "amber"), ("positions/A", 0.5, "green"), ("", 1.0, "green")]
+)
+def test_a_small_circle_a_little_off_is_told_where_no_others_are_and_a_construction_hangs_on_it(step, free, said):
+    e, _ = joint(step)
+    for off, verdict in ((0.5, said), (0.9, "red")):
+        t = Trace(e, "measured", shift=off + 0j, deviation=off, at=e.points + off, free=free)
+        assert judge(t, 0.25, 0.15).verdict == verdict

@@ -12,6 +12,7 @@ import numpy as np
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.findings import Finding, millimetres, of_radius, shifted, turned
 from tmm_sheets.compare.photo.black_and_white import Eaten, may_be_eaten, whole
+from tmm_sheets.compare.photo.joints import joint
 from tmm_sheets.compare.photo.torn import HALF
 from tmm_sheets.compare.photo.traces import Trace, open_line
 from tmm_sheets.compare.report import verdict
@@ -28,7 +29,8 @@ TINY = 8.0
 """mm; a closed outline of no more to each side is judged by where it is: its sides, each off by a pencil, give it a turn and a size
 that say nothing unless they are off by twice as much."""
 FORM_ROLES = frozenset({"frame", "table"})
-"""Rules of tables and of the form: no construction hangs on them, so doubt about them is not told."""
+"""Rules of tables and of the form: no construction hangs on them, nor on a circle about a designation, so doubt about them is not
+told."""
 SHORT = 12.0
 """mm; a helper line of no more, each end off by a pencil, is turned as well: it is off for sure only by twice as much."""
 SOFT_TOLERANCE = 0.15  # mm added in a picture that is not sharp
@@ -183,15 +185,18 @@ def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFindi
 
 def _loosely_judged(e: Element) -> bool:
     """Whether an element is told to be off only when it is so for sure."""
-    return e.role in FORM_ROLES or (e.kind == "line" and e.style in LOOSE_STYLES and e.length <= SHORT)
+    about_letters = e.kind == "circle" and not e.step and e.radius <= TINY
+    return e.role in FORM_ROLES or about_letters or (e.kind == "line" and e.style in LOOSE_STYLES and e.length <= SHORT)
 
 
 def _crowded(t: Trace, tolerance: float) -> bool:
-    """Whether a line seems off in its place for the ink of others that run near most of it; a small outline by any ink there."""
-    thin = t.element.kind == "line" and t.element.style in LOOSE_STYLES
-    if t.element.kind == "circle" or t.free >= (CROWDED_THIN if thin else CROWDED) or t.deviation <= tolerance:
+    """Whether a line or a joint seems off in its place for the ink of others near most of it; a small outline by any ink there."""
+    e = t.element
+    thin = e.kind == "line" and e.style in LOOSE_STYLES
+    long = e.kind == "circle" and not joint(e)
+    if long or t.free >= (CROWDED_THIN if thin else CROWDED) or t.deviation <= tolerance:
         return False
-    return t.deviation <= 2 * tolerance or _tiny(t.element)
+    return t.deviation <= 2 * tolerance or _tiny(e)
 
 
 def _tiny(e: Element) -> bool:
