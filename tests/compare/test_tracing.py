@@ -9,11 +9,12 @@ import pytest
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.photo import arrow_heads
+from tmm_sheets.compare.photo import arrow_heads, tracing
 from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.own_place import strips
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.traces import Trace
 from tmm_sheets.compare.photo.tracing import trace
@@ -721,3 +722,30 @@ def test_a_small_circle_a_little_off_is_told_where_no_others_are_and_a_construct
     for off, verdict in ((0.5, said), (0.9, "red")):
         t = Trace(e, "measured", shift=off + 0j, deviation=off, at=e.points + off, free=free)
         assert judge(t, 0.25, 0.15).verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("end", "dotted", "usual", "status"),
+    [
+        (CORNER, True, 100, "measured"),
+        (CORNER - 1.5, True, 100, "measured"),  # it stops short, but hardly
+        (CORNER - 7, True, 100, "covered"),
+        (CORNER + 5j, True, 100, "covered"),
+        (CORNER - 7, False, 100, "measured"),  # a helper line ends anywhere
+        (CORNER - 7, True, 250, "measured"),  # black and white eats thin lines
+    ],
+)
+def test_a_line_that_others_cover_must_be_seen_to_the_dot_where_it_ends(end, dotted, usual, status):
+    """Another line runs along most of it, and was taken for it."""
+    begin = CORNER - 18
+    e, along = line(1, begin, CORNER, "construction"), line(2, begin - 5, CORNER - 5 + 0.2j, "construction")
+    ink, owners = paper(), Owners(ROWS, COLUMNS)
+    for one, to in ((e, end), (along, along.points[1])):
+        owners.add(one, one.points)
+        draw(ink, one.points[0], to, one.style)
+    (strip,) = strips([e], ink, owners, np.zeros((1, 1), bool))
+    alone = tracing._alone(strip, np.array([CORNER] if dotted else [], complex))
+    traces = [Trace(one, "measured", at=one.points, darkness=usual, covered=1.0) for one in (e, along)]
+    nothing = np.zeros_like(ink)
+    found = tracing._doubted(traces, {} if alone is None else {1: alone}, ink, nothing, nothing, owners, 10)
+    assert [t.status for t in found] == [status, "measured"]
