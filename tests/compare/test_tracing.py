@@ -610,6 +610,29 @@ def test_of_two_dots_the_one_is_meant_whose_line_leads_to_the_spot(drawn, meant)
     assert found == {meant: -2j if meant == 1 else -4j}
 
 
+@pytest.mark.parametrize(("astray", "meant"), [((), {1}), ((1,), {1}), ((2,), {2}), ((1, 2), {1}), ((3,), {1})])
+def test_of_two_dots_the_one_is_meant_whose_line_is_not_in_its_place(astray, meant):
+    rods = [np.array([CORNER - 25 + k * 2j, CORNER + k * 2j]) for k in range(3)]
+    ink, nothing = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
+    draw(ink, CORNER - 2.2j, CORNER - 1.8j, "main", 230)
+    some, lost = [dot(1, CORNER, 0.5), dot(2, CORNER + 2j, 0.5)], [rods[k - 1] for k in astray]
+    found = displaced_dots(some, rods, nothing, nothing, ink, nothing, np.zeros((1, 1), bool), 180, lost)
+    assert {t.element.number for t in found} == meant
+
+
+@pytest.mark.parametrize("barred", [True, False])
+def test_a_bar_over_a_letter_is_no_dot(barred):
+    """As wide as it is long it is, blurred; its letter is known to have one."""
+    ink, nothing = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
+    draw(ink, CORNER + 3.7 + 3j, CORNER + 4.3 + 3j, "main", 230)
+    corners = CORNER + 3 - 2j + np.array([0, 2, 2 + 4j, 4j])
+    letter = Element(2, VIEW, "G", "text", corners, "text", text="G", height=4.0, marks=(Text(corners[0], "G", 4.0),),
+                     pieces=(CORNER + np.array([3.5 + 3j, 4.5 + 3j]),) if barred else ())  # fmt: skip
+    bars = tracing._bars([letter], ink)
+    found = displaced_dots([dot(1, CORNER)], [], nothing, bars, ink, nothing, np.zeros((1, 1), bool), 180, bars=bars)
+    assert bool(found) != barred
+
+
 @pytest.mark.parametrize("over", [0.5, 1.2, 2.0])
 def test_the_end_of_a_line_that_was_drawn_over_is_no_dot(over):
     """Nor where it is dark as a spot, behind a paler place, as grains of a sensor make it."""

@@ -34,12 +34,12 @@ from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.line_ends import with_ends
 from tmm_sheets.compare.photo.one_stroke import others_in_stroke
 from tmm_sheets.compare.photo.own_place import Strip, in_place, strips, uncovered
-from tmm_sheets.compare.photo.profiles import pixels, sample
+from tmm_sheets.compare.photo.profiles import SCALE, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
 from tmm_sheets.compare.photo.stations import LEAST, expected_ink, measurable, stations
 from tmm_sheets.compare.photo.torn import in_pieces, torn_widths
 from tmm_sheets.compare.photo.traces import ExtraInk, Status, Trace
-from tmm_sheets.compare.photo.wiping import ROOM, fill, paint, wipe_found, wipe_small
+from tmm_sheets.compare.photo.wiping import ROOM, fill, fixed, paint, wipe_found, wipe_small
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Points, Text
 from tmm_sheets.drawing.styles import line_type
@@ -65,6 +65,7 @@ AWAY = 1.0
 """mm from its place beyond which a line that was not seen there is elsewhere."""
 CLOSE = 0.9  # mm by which a line drawn by hand and photographed is wider than its own width
 BESIDE = 0.9  # mm about lines whose ink is theirs
+BAR = 1.5  # mm about lettering within which its bars are
 
 
 def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> tuple[list[Trace], list[ExtraInk]]:
@@ -290,8 +291,28 @@ def _dots(small: Sequence[Element], found: Sequence[Trace], ink: Any, words: Any
         where = t.element.points if t.at is None else t.at
         paint(taken, t.element, where, CLOSE)
         paint(lines, t.element, where, 0)
-    rods = [t.element.points for t in found if t.element.kind == "line"]
-    return displaced_dots(dots, rods, lines, taken, ink, words, hidden, max(usual.values()))
+    straight = [t for t in found if t.element.kind == "line"]
+    rods, astray = [t.element.points for t in straight], [t.element.points for t in straight if _astray(t)]
+    return displaced_dots(dots, rods, lines, taken, ink, words, hidden, max(usual.values()), astray, _bars(small, ink))
+
+
+def _astray(t: Trace) -> bool:
+    """Whether a line is not in its place."""
+    return t.status in ("missing", "covered", "beside") or (t.status == "measured" and t.deviation > AWAY)
+
+
+def _bars(small: Sequence[Element], ink: Any) -> Any:
+    """A picture of the bars over letters, which lie near them all along as their leaders do not, 255 there."""
+    import cv2
+
+    out = np.zeros_like(ink)
+    for e in small:
+        box = grown(e.points, BAR) if e.kind == "text" and len(e.pieces) else None
+        for p in e.pieces if box is not None else ():
+            inside = (p.real > box.real.min()) & (p.real < box.real.max()) & (p.imag > box.imag.min()) & (p.imag < box.imag.max())
+            if inside.all():
+                cv2.polylines(out, [fixed(p)], False, 255, round(2 * CLOSE * SCALE), cv2.LINE_8, 4)
+    return out
 
 
 def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
