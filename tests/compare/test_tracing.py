@@ -181,9 +181,12 @@ SLIDER = np.array([-3 - 2j, 3 - 2j, 3 + 2j, -3 + 2j, -3 - 2j]) + 300 + 300j
     ("circle", 0.4, 0.6, "amber"),
 ])
 def test_what_is_a_little_off_among_others_is_not_judged(kind, free, off, verdict):
-    """Its ink cannot be told from the edge of theirs; what is far off can, but for a small outline, which any ink is near."""
+    """Its ink cannot be told from the edge of theirs; what is far off can, but for a small outline, which any ink is near.
+
+    A large circle is seen between them.
+    """
     z = SLIDER if kind == "curve" else 300 + 300j + np.array([0, 40])
-    e = Element(1, VIEW, "", kind, z, "thin", radius=2.0)
+    e = Element(1, VIEW, "", kind, z, "thin", radius=20.0)
     f = judge(Trace(e, "measured", 1j * off, deviation=off, at=z + 1j * off, free=free), 0.25, 0.15)
     assert f.verdict == verdict
     assert f.unknown == (verdict == "green" and off > 0.4)

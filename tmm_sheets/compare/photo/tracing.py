@@ -307,8 +307,10 @@ def _bars(small: Sequence[Element], ink: Any) -> Any:
 
     out = np.zeros_like(ink)
     for e in small:
-        box = grown(e.points, BAR) if e.kind == "text" and len(e.pieces) else None
-        for p in e.pieces if box is not None else ():
+        if e.kind != "text" or not e.pieces:
+            continue
+        box = grown(e.points, BAR)
+        for p in e.pieces:
             inside = (p.real > box.real.min()) & (p.real < box.real.max()) & (p.imag > box.imag.min()) & (p.imag < box.imag.max())
             if inside.all():
                 cv2.polylines(out, [fixed(p)], False, 255, round(2 * CLOSE * SCALE), cv2.LINE_8, 4)
