@@ -165,11 +165,35 @@ def test_thin_lines_drawn_over_are_a_remark_and_none_in_a_soft_picture():
     ("curve", "curve", -1.7, "green"), ("curve", "curve", -4.0, "amber"),
     ("axis", "centre", -3.5, "green"), ("axis", "centre", 3.5, "amber"), ("axis", "centre", -7.0, "amber"),
     ("axis", "thin", -3.5, "amber"), ("axis", "hidden", -3.5, "green"), ("axis", "hidden", -5.0, "amber"),
+    ("construction", "thin", -1.6, "green"), ("construction", "thin", -1.9, "amber"), ("construction", "thin", 2.4, "green"),
+    ("construction", "thin", 2.7, "amber"), ("construction", "hidden", -3.0, "green"), ("construction", "hidden", -3.4, "amber"),
 ])
 def test_how_far_a_line_may_end_from_its_end(role, style, off, verdict):
     """Guides, supports and curves end where the hand stopped, dashed lines in a gap; links and vectors end in points."""
     e = line(1, 240 + 300j, 300 + 300j, style, role)
     assert judge(Trace(e, "measured", ends=(0.0, off), at=e.points), 0.25, 0.15).verdict == verdict
+
+
+@pytest.mark.parametrize(("off", "end", "what"), [
+    (0.0, -3.0, "3.0 mm too short at its end"), (0.6, -3.0, "3.0 mm too short at its end"),
+    (0.0, 3.0, "3.0 mm too long at its end"),
+    (0.6, 0.0, "a little aside, no more than its kind may be"), (0.6, np.nan, "a little aside, no more than its kind may be"),
+])
+def test_a_short_line_may_be_turned_a_little_but_not_end_elsewhere(off, end, what):
+    e = line(1, 290 + 300j, 300 + 300j, "thin", "construction")
+    assert judge(Trace(e, "measured", turn=off / 5, deviation=off, ends=(0.0, end), at=e.points), 0.25, 0.15).what == what
+
+
+@pytest.mark.parametrize(("gap", "short"), [(1.6, True), (0.0, False)])
+def test_an_ordinate_that_stops_before_its_curve_is_short(gap, short):
+    """What is at its end is the curve."""
+    end, slope = 300 + 300j, 9 * np.exp(0.75j)
+    known = [line(1, end - 40j, end, "thin", "construction"), line(2, end - slope, end + slope, "curve", "curve")]
+    ink = paper()
+    draw(ink, end - 40j, end - (1.4 + gap) * 1j if gap else end, "thin")
+    draw(ink, end - slope, end + slope, "curve")
+    f = judge(trace(known, ink)[0][0], 0.25, 0.15)
+    assert ("too short at its end" in f.what) == short
 
 
 SLIDER = np.array([-3 - 2j, 3 - 2j, 3 + 2j, -3 + 2j, -3 - 2j]) + 300 + 300j

@@ -24,7 +24,9 @@ LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "t
 """Lines whose ends mean nothing exact: by hand they are overdrawn."""
 LOOSE_ROLES = frozenset({"symbol", "curve"})
 """So are the lines of guides and supports, and curves: no end of theirs is a point of a construction."""
-LOOSE = 2.5  # mm by which those may be too long or too short; a dashed one shorter by a gap
+LOOSE, SCARCELY = 2.5, 1.7
+"""mm by which those may be too long or too short, a dashed one shorter by a gap; and a line of a construction, which is drawn to a
+point, a curve or another line and not seldom beyond it, too short."""
 TINY = 8.0
 """mm; a closed outline of no more to each side is judged by where it is: its sides, each off by a pencil, give it a turn and a size
 that say nothing unless they are off by twice as much."""
@@ -146,15 +148,18 @@ def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFindi
     e, tolerance = t.element, tolerance_of(pencil, uncertainty, soft)
     middle = complex(e.points[len(e.points) // 2]) if e.kind != "line" else complex(e.points.mean())
     if t.status == "measured":
-        deviations = [_displacement(t, tolerance, middle), *_ends(t, pencil, tolerance, soft)]
+        ends = [*_ends(t, pencil, tolerance, soft)]
+        deviations = [_displacement(t, tolerance, middle), *ends]
         if _crowded(t, tolerance):
             del deviations[0]
             if all(d.share <= 1 for d in deviations):
                 return PhotoFinding(e, "green", 0.0, tell(TOO_NEAR), middle, replace(t, status="dense"), tolerance)
         elif _tiny(e):
             deviations = _of_tiny(t, tolerance, deviations[0])
+        if _loosely_judged(e) and deviations[0].share <= 2 and any(d.share > 1 for d in ends):
+            deviations = ends  # how a short line is turned is no matter, where it ends is
         worst = max(deviations, key=lambda d: d.share)
-        if 1 < worst.share <= 2 and _loosely_judged(e):
+        if 1 < worst.share <= 2 and _loosely_judged(e) and (e.role in FORM_ROLES or worst not in ends):
             said = tell("a little aside, no more than its kind may be")
             return PhotoFinding(e, "green", worst.off, said, worst.place, t, tolerance)
         said = "; ".join(d.said for d in deviations if d.said)
@@ -236,7 +241,8 @@ def _ends(t: Trace, pencil: float, tolerance: float, soft: bool) -> Iterator[_De
         if not np.isfinite(end) or (e.style in LOOSE_STYLES and soft):
             continue
         # 0.2 mm: the steps in which ends are seen. By hand a dashed line ends in a gap as well as in a dash.
-        allowed = LOOSE + (gap if end < 0 else 0.0) if loose else tolerance + pencil + 0.2
+        drawn_to = SCARCELY if e.role == "construction" else LOOSE
+        allowed = (LOOSE if end > 0 else drawn_to + gap) if loose else tolerance + pencil + 0.2
         said = tell(_END[k, bool(end > 0)]).format(by=millimetres(end)) if abs(end) > allowed else ""
         off = min(abs(end), 2 * allowed) if loose else abs(end)  # a thin line drawn over is never more than a remark
         yield _Deviation(off, allowed, complex(at), said)
