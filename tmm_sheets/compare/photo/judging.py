@@ -23,7 +23,7 @@ LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "t
 """Lines whose ends mean nothing exact: by hand they are overdrawn."""
 LOOSE_ROLES = frozenset({"symbol", "curve"})
 """So are the lines of guides and supports, and curves: no end of theirs is a point of a construction."""
-LOOSE = 2.5  # mm by which those may be too long or too short; a dashed one shorter by a gap
+LOOSE = 2.5  # mm by which those may be too long or too short; a dashed one shorter by its last dash
 TINY = 8.0
 """mm; a closed outline of no more to each side is judged by where it is: its sides, each off by a pencil, give it a turn and a size
 that say nothing unless they are off by twice as much."""
@@ -225,13 +225,13 @@ _END = {
 def _ends(t: Trace, pencil: float, tolerance: float, soft: bool) -> Iterator[_Deviation]:
     """How far the ends that could be seen are off."""
     e, loose = t.element, loose_ends(t.element)
-    gap = -min(line_type(e.style).pattern, default=0.0)
+    dash = sum(map(abs, line_type(e.style).pattern))
     for k, at in ((0, e.points[0]), (1, e.points[-1])):
         end = t.ends[k]
         if not np.isfinite(end) or (e.style in LOOSE_STYLES and soft):
             continue
-        # 0.2 mm: the steps in which ends are seen. By hand a dashed line ends in a gap as well as in a dash.
-        allowed = LOOSE + (gap if end < 0 else 0.0) if loose else tolerance + pencil + 0.2
+        # 0.2 mm: the steps in which ends are seen. By hand a dashed line may end a dash and its gap before.
+        allowed = LOOSE + (dash if end < 0 else 0.0) if loose else tolerance + pencil + 0.2
         said = tell(_END[k, bool(end > 0)]).format(by=millimetres(end)) if abs(end) > allowed else ""
         off = min(abs(end), 2 * allowed) if loose else abs(end)  # a thin line drawn over is never more than a remark
         yield _Deviation(off, allowed, complex(at), said)

@@ -32,6 +32,7 @@ from tmm_sheets.compare.photo.ink_levels import ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.line_ends import with_ends
+from tmm_sheets.compare.photo.meeting_ends import without_joins
 from tmm_sheets.compare.photo.one_stroke import others_in_stroke
 from tmm_sheets.compare.photo.own_place import in_place, strips, uncovered
 from tmm_sheets.compare.photo.profiles import pixels, sample
@@ -114,7 +115,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     words = _places_of_lettering(elements, ink)
     found = with_edges(found, ink, owners, words)
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
-    ended = with_ends(open_lines, ink, owners, words, pale)
+    ended = without_joins(with_ends(open_lines, ink, owners, words, pale), elements)
     ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
     lines = {t.element.number: t for t in (*found, *ended)}
     headed = exchanged(with_heads(list(lines.values()), ink, owners, words, hidden), ink, owners, words, hidden)
