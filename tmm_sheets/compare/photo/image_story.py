@@ -75,6 +75,8 @@ def said(p: Place) -> str:
         return _of_ink(p)
     first, *rest = p.findings
     words = [first.what]
+    if first.trace.status == "missing" and not first.trace.pieces and p.ink and first.element.kind != "text":
+        words = [tell("not in its place")]
     either = [f for f in rest if may_be_either(first, f)]
     if others := _named(either, first):
         words.append(tell("it may be instead: {elements}").format(elements=others))

@@ -33,6 +33,7 @@ from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.line_ends import with_ends
 from tmm_sheets.compare.photo.meeting_ends import without_joins
+from tmm_sheets.compare.photo.one_owner import with_owners
 from tmm_sheets.compare.photo.one_stroke import others_in_stroke
 from tmm_sheets.compare.photo.own_place import in_place, strips, uncovered
 from tmm_sheets.compare.photo.profiles import pixels, sample
@@ -40,6 +41,7 @@ from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
 from tmm_sheets.compare.photo.stations import LEAST, expected_ink, measurable, stations
 from tmm_sheets.compare.photo.torn import in_pieces, torn_widths
 from tmm_sheets.compare.photo.traces import ExtraInk, Status, Trace
+from tmm_sheets.compare.photo.twins import with_twins
 from tmm_sheets.compare.photo.wiping import ROOM, fill, paint, wipe_found, wipe_small
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Text
@@ -109,8 +111,9 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         covers = cv2.resize(hidden.astype(np.uint8), ink.shape[::-1], interpolation=cv2.INTER_NEAREST) * np.uint8(255)
         left[covers > 0] = 0
     left[wiped > 0] = 0
-    found += _displaced(absent, ink, left, wiped, owners, pale)
+    found = with_twins(found + _displaced(absent, ink, left, wiped, owners, pale))
     found = _doubted(found, alone, ink, left, wiped, owners, pale)
+    before = {t.element.number: t for t in found}
     found = _beside_strokes(found, small, ink, owners, pale)
     words = _places_of_lettering(elements, ink)
     found = with_edges(found, ink, owners, words)
@@ -119,6 +122,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
     lines = {t.element.number: t for t in (*found, *ended)}
     headed = exchanged(with_heads(list(lines.values()), ink, owners, words, hidden), ink, owners, words, hidden)
+    headed = with_owners(headed, before)
     out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
     unseen = [t for t in out.values() if t.status in ("absent lettering", "part of lettering")
               or (t.status == "lettering" and t.covered < GAPPY)]  # fmt: skip
