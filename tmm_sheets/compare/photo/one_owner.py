@@ -12,12 +12,13 @@ from dataclasses import replace
 import numpy as np
 
 from tmm_sheets.compare.photo.displacement import FAR
+from tmm_sheets.compare.photo.one_stroke import ASTRAY
 from tmm_sheets.compare.photo.traces import Trace
 
 SAME = 0.7
 """mm within which ends of lines are one point, and lines one stroke."""
-STAYS, MOVED = 1.0, 1.0
-"""mm from ink within which an end of its line stays, and beyond which an end has moved."""
+MOVED, MORE = 1.0, 2.0
+"""mm from its place beyond which an end has moved, and by how many times more than the other, which stays (see ``ASTRAY``)."""
 ASKEW = 0.5
 """Sine of the angle by which a line that was drawn with one end elsewhere is askew at most."""
 ACROSS = 0.2
@@ -38,11 +39,11 @@ def with_owners(traces: Sequence[Trace], before: Mapping[int, Trace]) -> list[Tr
         if f.status != "beside" or f.at is None:
             continue
         near = [t for t in lines if t.element.view is f.element.view]
-        twins = [t for t in near if _one_stroke(t, f)]
-        if any(_headless(t) for t in twins) or any(_moved_end(t, f, moved) is not None for t in twins):
+        own = [t for t in near if t.element.name == f.element.name and _one_stroke(t, f)]  # a vector and its helper line
+        if any(_headless(t) or _moved_end(t, f, moved) is not None for t in own):
             continue
-        sound = any(t.head == "there" for t in twins)
-        owners = [(t, end) for t in near if t not in twins
+        sound = any(t.head == "there" for t in own)
+        owners = [(t, end) for t in near if t not in own
                   and (end := _moved_end(t, f, moved, always=sound and _headless(t))) is not None]
         if not owners or not all(_one_stroke(t, owners[0][0]) for t, _ in owners):
             continue
@@ -83,7 +84,8 @@ def _moved_end(t: Trace, f: Trace, moved: Sequence[Trace], always: bool = False)
         return None
     for end in (0, 1):
         off = abs(float(away[end]))
-        if abs(away[1 - end]) <= STAYS and MOVED < off <= min(FAR, ASKEW * t.element.length):
+        stays = abs(float(away[1 - end]))
+        if stays <= min(ASTRAY, off / MORE) and MOVED < off <= min(FAR, ASKEW * t.element.length):
             if always or any(_to_ink(g, complex(z[end]), a, b) for g in moved if g.element.view is t.element.view):
                 return end
     return None
