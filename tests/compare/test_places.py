@@ -244,3 +244,19 @@ def test_letters_that_are_not_seen_beside_what_is_hidden_are_hidden_too(away, st
     mask[400:, 105 + away : 140 + away] = True
     (found,), _ = trace([e], np.zeros((round(594 * SCALE), round(841 * SCALE)), np.uint8), mask)
     assert found.status == status
+
+
+@pytest.mark.parametrize(("extra", "said"), [
+    ([], "missing"), ([ink(2 + 3j, 48 + 3j)], "not in its place; ink that is not on the sheet lies beside it"),
+    ([ink(25 + 20j, 25 + 60j)], "missing")])
+def test_what_is_not_in_its_place_and_may_lie_beside_is_not_called_missing(extra, said):
+    first = places([line(1, 0, 50, status="missing")], extra)[0]
+    assert first.verdict == "red"
+    assert image_story.said(first) == said
+
+
+@pytest.mark.parametrize(("role", "covered", "verdict"), [("link", 0.5, "amber"), ("table", 0.5, "green"), ("table", 0.1, "amber")])
+def test_a_line_of_which_half_is_seen_may_have_been_left_out_and_a_rule_of_the_form_is_there(role, covered, verdict):
+    e = Element(1, PLAN, "a", "line", np.array([0, 50], complex), "main", by=By(role, "", ""))
+    f = judge(Trace(e, "missing", covered=covered, pieces=True), 0.25, 0.15)
+    assert (f.verdict, "left out" in f.what) == (verdict, verdict == "amber" and covered > 0.4)

@@ -85,9 +85,10 @@ def _moved_end(t: Trace, f: Trace, moved: Sequence[Trace], always: bool = False)
     for end in (0, 1):
         off = abs(float(away[end]))
         stays = abs(float(away[1 - end]))
-        if stays <= min(ASTRAY, off / MORE) and MOVED < off <= min(FAR, ASKEW * t.element.length):
-            if always or any(_to_ink(g, complex(z[end]), a, b) for g in moved if g.element.view is t.element.view):
-                return end
+        likely = stays <= min(ASTRAY, off / MORE) and MOVED < off <= min(FAR, ASKEW * t.element.length)
+        some = [g for g in moved if g.element.view is t.element.view] if likely else []
+        if likely and (always or any(_to_ink(g, complex(z[end]), a, b) for g in some)):
+            return end
     return None
 
 

@@ -125,8 +125,7 @@ def one_place(f: PhotoFinding, g: PhotoFinding) -> bool:
     if a.view is not b.view or "text" in (a.kind, b.kind):
         return False
     near = np.abs(_off(f)[:, None] - _off(g)).min() < ONE
-    off = "beside" in (f.trace.status, g.trace.status) or all(h.trace.deviation > h.tolerance for h in (f, g))
-    return bool(near) or (off and _one_stroke(f, g))
+    return bool(near) or ("beside" in (f.trace.status, g.trace.status) and _one_stroke(f, g))
 
 
 def may_be_either(f: PhotoFinding, g: PhotoFinding) -> bool:

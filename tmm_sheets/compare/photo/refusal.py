@@ -34,6 +34,9 @@ FLAT_OR_PLACED = marked(
     "lay the sheet flat, weights on its corners, and photograph from straight above; "
     "if a view was drawn in another place, give --views FILE"
 )
+PRESS = marked(
+    "press the sheet flat, under glass or with weights along its edges, nothing beneath it, and photograph from straight above"
+)
 _HIDDEN = (
     marked("the lower side of the frame is hidden or was not drawn"),
     marked("the right side of the frame is hidden or was not drawn"),
@@ -75,10 +78,9 @@ def _reasons(grey: Any, found: Rectified) -> Iterator[tuple[str, str]]:
             elif not bent and (int((check.sides >= SIDE).sum()) < SIDES or len(check.lost) or len(check.adrift)):
                 yield tell(_HIDDEN[k]), tell("take away what covers the frame, or fold it back, and photograph again")
     if bent:
-        off = tell("most of the frame can be followed, but parts of it lie {by} mm off: the paper is not flat (waves, folds that do "
-                   "not lie down), or something else was taken for the frame")
-        yield off.format(by=millimetres(check.rim)), tell(
-            "press the sheet flat, under glass or with weights along its edges, nothing beneath it, and photograph from straight above")
+        off = tell("most of the frame can be followed, but parts of it lie {by} mm off: the paper is not flat (waves, folds that "
+                   "do not lie down), or something else was taken for the frame")
+        yield off.format(by=millimetres(check.rim)), tell(PRESS)
     if float(np.median(grey)) < DARK:
         yield tell("there is too little light"), tell("more light, from a window or two lamps, without the flash")
     if _patterned(grey, found.map):

@@ -34,7 +34,8 @@ def _along(t: Trace, g: Trace) -> Trace | None:
     begin, end = other.points[[0, -1]]
     way = end - begin
     place = (e.points - begin) / way
-    if np.abs(place.imag).max() * abs(way) > SAME or min(place.real.max(), 1) - max(place.real.min(), 0) < MOSTLY * np.ptp(place.real):
+    together = min(place.real.max(), 1) - max(place.real.min(), 0)
+    if np.abs(place.imag).max() * abs(way) > SAME or together < MOSTLY * np.ptp(place.real):
         return None
     at = g.at[0] + place.real * (g.at[-1] - g.at[0])
     off = at - e.points
