@@ -260,3 +260,27 @@ def test_a_line_of_which_half_is_seen_may_have_been_left_out_and_a_rule_of_the_f
     e = Element(1, PLAN, "a", "line", np.array([0, 50], complex), "main", by=By(role, "", ""))
     f = judge(Trace(e, "missing", covered=covered, pieces=True), 0.25, 0.15)
     assert (f.verdict, "left out" in f.what) == (verdict, verdict == "amber" and covered > 0.4)
+
+
+STROKE = ink(10 + 1.6j, 49 + 7.84j)
+
+
+def named(*others, stroke=STROKE):
+    (place,) = (p for p in places(others, [stroke]) if not p.findings)
+    return image_story.said(place).partition("; ")[2]
+
+
+@pytest.mark.parametrize(("others", "said"), [
+    ([], ""), ([line(1, 0, 50)], ""),  # its own ink is in its place
+    ([line(1, 0, 50, status="shared")], "it may be line a1, drawn elsewhere"),
+    ([line(1, 0, 50), line(2, -30, 90)], "it may be line a1, drawn elsewhere"),  # under a longer one
+    ([line(1, 0, 50), line(2, 30, 90)], ""), ([line(1, 0, 50, status="shared"), line(2, 0, 51 + 1j, status="dense")], ""),
+    ([line(1, 0, 80, status="shared")], ""), ([line(1, 0, 50j, status="shared")], ""),  # longer, another way
+    ([line(1, 20j, 50 + 20j, status="shared")], ""),  # neither end stays
+])
+def test_ink_is_called_by_the_one_line_that_may_have_been_drawn_there(others, said):
+    assert named(*others) == said
+
+
+def test_ink_that_is_no_stroke_has_no_name():
+    assert named(line(1, 0, 50, status="shared"), stroke=ink(10 + 2j, 30 + 9j, 49 + 8j)) == ""

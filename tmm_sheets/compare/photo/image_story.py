@@ -102,7 +102,10 @@ def _of_ink(p: Place) -> str:
     """Where ink is that belongs to nothing, and how much."""
     where = tell("{width} x {height} mm about x = {x}, y = {y}")
     middle = p.box.centre
-    return where.format(width=f"{p.box.width:.0f}", height=f"{p.box.height:.0f}", x=f"{middle.real:.0f}", y=f"{middle.imag:.0f}")
+    words = where.format(width=f"{p.box.width:.0f}", height=f"{p.box.height:.0f}", x=f"{middle.real:.0f}", y=f"{middle.imag:.0f}")
+    if not p.likely:
+        return words
+    return f"{words}; " + tell("it may be {element}, drawn elsewhere").format(element=called(p.likely[0].element))
 
 
 def shown(p: Place) -> tuple[Points, ...]:

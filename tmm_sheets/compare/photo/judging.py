@@ -144,6 +144,8 @@ def _with_head(f: PhotoFinding) -> PhotoFinding:
 def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFinding:
     """Judge what was found of a line or of lettering, heads aside."""
     e, tolerance = t.element, tolerance_of(pencil, uncertainty, soft)
+    if t.status == "measured" and t.deviation > tolerance and not loose_ends(e) and all(by > LOOSE for by in t.ends):
+        t = Trace(e, "missing")  # what lies there and goes on at both ends is another line
     middle = complex(e.points[len(e.points) // 2]) if e.kind != "line" else complex(e.points.mean())
     if t.status == "measured":
         deviations = [_displacement(t, tolerance, middle), *_ends(t, pencil, tolerance, soft)]
