@@ -274,7 +274,9 @@ def named(*others, stroke=STROKE):
     ([], ""), ([line(1, 0, 50)], ""),  # its own ink is in its place
     ([line(1, 0, 50, status="shared")], "it may be line a1, drawn elsewhere"),
     ([line(1, 0, 50), line(2, -30, 90)], "it may be line a1, drawn elsewhere"),  # under a longer one
-    ([line(1, 0, 50), line(2, 30, 90)], ""), ([line(1, 0, 50, status="shared"), line(2, 0, 51 + 1j, status="dense")], ""),
+    ([line(1, 0, 50), line(2, 30, 90)], ""),
+    ([line(1, 0, 50, status="shared"), line(2, 0, 51 + 1j, status="dense")], "it may be line a1 or line a2, drawn elsewhere"),
+    ([line(k, 0, 49 + k + 1j, status="dense") for k in range(3)], ""),
     ([line(1, 0, 80, status="shared")], ""), ([line(1, 0, 50j, status="shared")], ""),  # longer, another way
     ([line(1, 20j, 50 + 20j, status="shared")], ""),  # neither end stays
 ])

@@ -18,7 +18,7 @@ from tmm_sheets.compare.photo.places import Place, may_be_either
 from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.story import Mistake, Photo, Picture
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.words import tell
+from tmm_sheets.words import either, tell
 
 SHOWN = 10
 """Most findings of a view that are told in words beside its picture; the table has all."""
@@ -105,7 +105,8 @@ def _of_ink(p: Place) -> str:
     words = where.format(width=f"{p.box.width:.0f}", height=f"{p.box.height:.0f}", x=f"{middle.real:.0f}", y=f"{middle.imag:.0f}")
     if not p.likely:
         return words
-    return f"{words}; " + tell("it may be {element}, drawn elsewhere").format(element=called(p.likely[0].element))
+    names = list(dict.fromkeys(called(f.element) for f in p.likely))
+    return f"{words}; " + tell("it may be {element}, drawn elsewhere").format(element=either(names))
 
 
 def shown(p: Place) -> tuple[Points, ...]:

@@ -43,6 +43,8 @@ LEAST_RADIUS, OTHER, ROUND = 4.0, (0.8, 6.0), 0.5
 TURN, PART = 90.0, 5.0
 """Degrees of a circle that ink must take, counted by parts."""
 STEP = 1.0
+EITHER = 2
+"""Most lines of which one may have been drawn where there is ink for them to be named."""
 UNDER = 0.7
 """Least share of a line that lies under others for the ink in its place to be no sign of it."""
 PIVOT, AS_LONG, SWUNG = 1.0, 2.5, (1.0, 8.0)
@@ -223,7 +225,7 @@ def _way(points: Points) -> complex:
 
 
 def _likely(findings: Sequence[PhotoFinding], ink: Sequence[ExtraInk]) -> tuple[PhotoFinding, ...]:
-    """The line that may have been drawn askew where there is a straight stroke of ink, where that is one only.
+    """The line that may have been drawn askew where there is a straight stroke of ink, where that is one of few.
 
     Near the end that stays others hide its ink. Its own place must be one where it cannot be told from others.
     """
@@ -234,7 +236,7 @@ def _likely(findings: Sequence[PhotoFinding], ink: Sequence[ExtraInk]) -> tuple[
     ends = z[[along.argmin(), along.argmax()]]
     lines = [f for f in findings if f.element.kind == "line" and len(f.element.points) == 2]
     some = [f for f in lines if _askew(f.element.points, ends, way) and _not_sure(f, lines)]
-    return tuple(some) if len({(f.element.view, f.element.name, f.element.position) for f in some}) == 1 else ()
+    return tuple(some) if len({(f.element.view, f.element.name, f.element.position) for f in some}) <= EITHER else ()
 
 
 def _not_sure(f: PhotoFinding, lines: Sequence[PhotoFinding]) -> bool:
