@@ -163,13 +163,14 @@ def test_thin_lines_drawn_over_are_a_remark_and_none_in_a_soft_picture():
     ("link", "main", -1.3, "amber"), ("vector", "vector", -1.3, "amber"), ("link", "main", -4.0, "red"),
     ("symbol", "main", -1.3, "green"), ("symbol", "main", 1.3, "green"), ("symbol", "main", -4.0, "amber"),
     ("curve", "curve", -1.7, "green"), ("curve", "curve", -4.0, "amber"),
-    ("axis", "centre", -3.5, "green"), ("axis", "centre", 3.5, "amber"), ("axis", "centre", -7.0, "amber"),
-    ("axis", "thin", -3.5, "amber"), ("axis", "hidden", -3.5, "green"), ("axis", "hidden", -5.0, "amber"),
+    ("axis", "centre", -3.5, "green"), ("axis", "centre", 3.5, "amber"), ("axis", "centre", -7.0, "green"),
+    ("axis", "centre", 7.0, "amber"),
+    ("axis", "thin", -3.5, "amber"), ("axis", "hidden", -3.5, "green"), ("axis", "hidden", -8.5, "amber"),
     ("construction", "thin", -1.6, "green"), ("construction", "thin", -1.9, "amber"), ("construction", "thin", 2.4, "green"),
-    ("construction", "thin", 2.7, "amber"), ("construction", "hidden", -3.0, "green"), ("construction", "hidden", -3.4, "amber"),
+    ("construction", "thin", 2.7, "amber"), ("construction", "hidden", -3.0, "green"), ("construction", "hidden", -8.5, "amber"),
 ])
 def test_how_far_a_line_may_end_from_its_end(role, style, off, verdict):
-    """Guides, supports and curves end where the hand stopped, dashed lines in a gap; links and vectors end in points."""
+    """Guides, supports and curves end where the hand stopped, dashed lines a dash before; links and vectors end in points."""
     e = line(1, 240 + 300j, 300 + 300j, style, role)
     assert judge(Trace(e, "measured", ends=(0.0, off), at=e.points), 0.25, 0.15).verdict == verdict
 

@@ -25,7 +25,7 @@ LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "t
 LOOSE_ROLES = frozenset({"symbol", "curve"})
 """So are the lines of guides and supports, and curves: no end of theirs is a point of a construction."""
 LOOSE, SCARCELY = 2.5, 1.7
-"""mm by which those may be too long or too short, a dashed one shorter by a gap; and a line of a construction, which is drawn to a
+"""mm by which those may be too long or too short, a dashed one shorter by its last dash; and a line of a construction, which is drawn to a
 point, a curve or another line and not seldom beyond it, too short."""
 TINY = 8.0
 """mm; a closed outline of no more to each side is judged by where it is: its sides, each off by a pencil, give it a turn and a size
@@ -118,7 +118,9 @@ def _in_pieces(f: PhotoFinding) -> PhotoFinding:
         return f
     if f.trace.status == "missing":
         half = f.trace.covered >= HALF
-        what = (tell("ink in parts of its place only: it lies elsewhere, or pieces of it are seen") if half else
+        if half and f.element.role in FORM_ROLES:
+            return replace(f, verdict="green", deviation=0.0, what=tell("only pieces of it are seen"))
+        what = (tell("ink in parts of its place only: it was left out, lies elsewhere, or pieces of it are seen") if half else
                 tell("not seen; lines as thin as it are in pieces in this picture"))
     else:
         pieces = tell("only pieces of it are seen")
@@ -146,6 +148,8 @@ def _with_head(f: PhotoFinding) -> PhotoFinding:
 def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFinding:
     """Judge what was found of a line or of lettering, heads aside."""
     e, tolerance = t.element, tolerance_of(pencil, uncertainty, soft)
+    if t.status == "measured" and t.deviation > tolerance and not loose_ends(e) and all(by > LOOSE for by in t.ends):
+        t = Trace(e, "missing")  # what lies there and goes on at both ends is another line
     middle = complex(e.points[len(e.points) // 2]) if e.kind != "line" else complex(e.points.mean())
     if t.status == "measured":
         ends = [*_ends(t, pencil, tolerance, soft)]
@@ -235,14 +239,14 @@ _END = {
 def _ends(t: Trace, pencil: float, tolerance: float, soft: bool) -> Iterator[_Deviation]:
     """How far the ends that could be seen are off."""
     e, loose = t.element, loose_ends(t.element)
-    gap = -min(line_type(e.style).pattern, default=0.0)
+    dash = sum(map(abs, line_type(e.style).pattern))
     for k, at in ((0, e.points[0]), (1, e.points[-1])):
         end = t.ends[k]
         if not np.isfinite(end) or (e.style in LOOSE_STYLES and soft):
             continue
-        # 0.2 mm: the steps in which ends are seen. By hand a dashed line ends in a gap as well as in a dash.
+        # 0.2 mm: the steps in which ends are seen. By hand a dashed line may end a dash and its gap before.
         drawn_to = SCARCELY if e.role == "construction" else LOOSE
-        allowed = (LOOSE if end > 0 else drawn_to + gap) if loose else tolerance + pencil + 0.2
+        allowed = (LOOSE if end > 0 else drawn_to + dash) if loose else tolerance + pencil + 0.2
         said = tell(_END[k, bool(end > 0)]).format(by=millimetres(end)) if abs(end) > allowed else ""
         off = min(abs(end), 2 * allowed) if loose else abs(end)  # a thin line drawn over is never more than a remark
         yield _Deviation(off, allowed, complex(at), said)

@@ -32,6 +32,8 @@ from tmm_sheets.compare.photo.ink_levels import ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.line_ends import with_ends
+from tmm_sheets.compare.photo.meeting_ends import without_joins
+from tmm_sheets.compare.photo.one_owner import with_owners
 from tmm_sheets.compare.photo.one_stroke import others_in_stroke
 from tmm_sheets.compare.photo.own_place import Strip, in_place, strips, uncovered
 from tmm_sheets.compare.photo.profiles import SCALE, pixels, sample
@@ -39,6 +41,7 @@ from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
 from tmm_sheets.compare.photo.stations import LEAST, expected_ink, measurable, stations
 from tmm_sheets.compare.photo.torn import in_pieces, torn_widths
 from tmm_sheets.compare.photo.traces import ExtraInk, Status, Trace
+from tmm_sheets.compare.photo.twins import with_twins
 from tmm_sheets.compare.photo.wiping import ROOM, fill, fixed, paint, wipe_found, wipe_small
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Points, Text
@@ -113,16 +116,18 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         covers = cv2.resize(hidden.astype(np.uint8), ink.shape[::-1], interpolation=cv2.INTER_NEAREST) * np.uint8(255)
         left[covers > 0] = 0
     left[wiped > 0] = 0
-    found += _displaced(absent, ink, left, wiped, owners, pale)
+    found = with_twins(found + _displaced(absent, ink, left, wiped, owners, pale))
     found = _doubted(found, alone, ink, left, wiped, owners, pale)
+    before = {t.element.number: t for t in found}
     found = _beside_strokes(found, small, ink, owners, pale)
     words = _places_of_lettering(elements, ink)
     found = with_edges(found, ink, owners, words)
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
-    ended = with_ends(open_lines, ink, owners, words, pale)
+    ended = without_joins(with_ends(open_lines, ink, owners, words, pale), elements)
     ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
     lines = {t.element.number: t for t in (*found, *ended)}
     headed = exchanged(with_heads(list(lines.values()), ink, owners, words, hidden), ink, owners, words, hidden)
+    headed = with_owners(headed, before)
     out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
     unseen = [t for t in out.values() if t.status in ("absent lettering", "part of lettering")
               or (t.status == "lettering" and t.covered < GAPPY)]  # fmt: skip
