@@ -22,6 +22,8 @@ from tmm_sheets.words import marked, tell
 
 STATIONS = 240  # along each side
 WIDE = 2.0  # mm to both sides of the frame in which its blur is seen
+BROAD = 21
+"""Samples across a line, a tenth of a millimetre apart: wider than any of the frame is in a picture that is sharp enough."""
 WANTED = marked(
     "the whole frame must be in the picture, flat and sharp, on a background that is not as light as the paper; the title block is "
     "form 1 or 2a of GOST 2.104 in the lower right corner"
@@ -123,8 +125,9 @@ def _seek(grey: Grey, m: Map, width: float, least: int = 2) -> tuple[Seen, Float
     inside = (at.real >= 0) & (at.imag >= 0) & (at.real <= grey.shape[1] - 1) & (at.imag <= grey.shape[0] - 1)
     profile = _local_ink(grey, at, inside)
     shown = inside[:, inside.shape[1] // 2]
-    centre = offsets[follow(profile.reshape(4, STATIONS, -1), 3)].ravel()
-    o, strength = peaks(profile, offsets, centre, 0.5, 0.8)
+    lines = _narrow(profile)
+    centre = offsets[follow(lines.reshape(4, STATIONS, -1), 3)].ravel()
+    o, strength = peaks(lines, offsets, centre, 0.5, 0.8)
     use = (strength > 0.4 * np.median(strength[shown] if shown.any() else strength)) & (strength > 0)
     hidden = np.flatnonzero(np.bincount(side[use], minlength=4) < STATIONS / 4)
     if 4 - len(hidden) < least:
@@ -149,3 +152,10 @@ def _local_ink(grey: Any, at: Points, inside: Any) -> Floats:
     g = np.where(inside, g, np.where(inside, g, 0).max(1, keepdims=True))
     paper = np.maximum(np.percentile(g, 70, axis=1), 1.0)
     return np.asarray(np.where(inside, np.clip(1 - g / paper[:, None], 0, 1), 0))
+
+
+def _narrow(profile: Floats) -> Floats:
+    """What of profiles may be lines, which have paper on both sides: not the ground beside the paper, nor its edge."""
+    import cv2
+
+    return np.asarray(cv2.morphologyEx(profile, cv2.MORPH_TOPHAT, np.ones((1, BROAD), np.uint8), borderType=cv2.BORDER_REPLICATE))
