@@ -18,7 +18,8 @@ TURN = np.exp(2j * np.pi * np.arange(24) / 24)
 
 
 def ring(radius, centre=100 + 300j, fills=()):
-    return Element(9, VIEW, "A", "circle", centre + radius * TURN, "main", centre=centre, radius=radius, fills=fills)
+    return Element(9, VIEW, "A", "circle", centre + radius * TURN, "main", centre=centre, radius=radius, fills=fills,
+                   by=By("symbol", "positions/A", ""))
 
 
 JOINT, AWAY, WHEEL, DOT = ring(1.6), ring(1.6, 104 + 300j), ring(20.0), ring(0.5, fills=(100 + 300j + 0.5 * TURN,))

@@ -25,8 +25,8 @@ LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "t
 LOOSE_ROLES = frozenset({"symbol", "curve"})
 """So are the lines of guides and supports, and curves: no end of theirs is a point of a construction."""
 LOOSE, SCARCELY = 2.5, 1.7
-"""mm by which those may be too long or too short, a dashed one shorter by its last dash; and a line of a construction, which is drawn to a
-point, a curve or another line and not seldom beyond it, too short."""
+"""mm by which those may be too long or too short, a dashed one shorter by its last dash; and by which a line of a construction may
+be too short, which is drawn to a point, a curve or another line and not seldom beyond it."""
 TINY = 8.0
 """mm; a closed outline of no more to each side is judged by where it is: its sides, each off by a pencil, give it a turn and a size
 that say nothing unless they are off by twice as much."""
