@@ -300,3 +300,56 @@ def test_of_a_vector_drawn_elsewhere_no_head_is_missed_in_its_place(deviation, s
     e = arrow(1, 300 + 300j, 340 + 300j)
     t = Trace(e, "measured", shift=1j * deviation, deviation=deviation, at=e.points + 1j * deviation, head="absent")
     assert judge(t, 0.25, 0.15).what == said
+
+
+SOUND = [arrow(k, A + 20j * k, B + 20j * k) for k in (11, 12, 13)]
+"""Vectors elsewhere, by which it is known how dark a vector is."""
+THEIRS = [(e.points[1], BACK[1]) for e in SOUND]
+
+
+@pytest.mark.parametrize("share", [0.0, 0.4, 0.6])
+@pytest.mark.parametrize(("drawn", "head"), [((), "left out"), (("vector",), "there")])
+def test_a_vector_left_out_is_known_though_a_shorter_one_covers_part_of_it(share, drawn, head):
+    e, helper, shorter = arrow(1, A, B), line(2, A, B + 5 * WAY, "thin"), arrow(3, A, A + share * (B - A)) if share else SOUND[0]
+    lines = [helper, shorter, *SOUND, *(line(1, A, B, style) for style in drawn)]
+    at = [(shorter.points[1], BACK[1]), *THEIRS, *([BACK] if drawn else [])]
+    assert heads([e, helper, shorter, *SOUND], lines, at)[0].head == head
+
+
+@pytest.mark.parametrize(("by", "status"), [(0.3j, "measured"), (3j, "missing")])
+def test_a_thin_line_elsewhere_is_not_the_vector_that_was_left_out(by, status):
+    e, there = arrow(1, A, B), line(2, A + by * WAY, B + by * WAY, "thin")
+    ink, owners = paper(), Owners(ROWS, COLUMNS)
+    for k in (e, *SOUND):
+        owners.add(k, k.points)
+    for k in (there, *SOUND):
+        draw(ink, *k.points, k.style)
+    for place, way in THEIRS:
+        fill_head(ink, place, way)
+    traces = [Trace(e, "measured", deviation=abs(by), at=there.points), *(Trace(k, "measured", at=k.points) for k in SOUND)]
+    assert with_heads(traces, ink, owners, np.zeros_like(ink), np.zeros((594, 841), bool))[0].status == status
+
+
+@pytest.mark.parametrize(("aside", "head"), [(1.1, "unknown"), (6.0, "absent")])
+def test_a_head_is_not_missed_where_another_vector_hides_one_side(aside, head):
+    """It may lie a little aside, on that side."""
+    e, other = arrow(1, A, B), arrow(2, B + aside * 1j * WAY, A + aside * 1j * WAY)
+    assert heads([e, other], [e, other], [(other.points[1], BACK[1] + np.pi)])[0].head == head
+
+
+@pytest.mark.parametrize(("ends", "head"), [((0, 0), "absent"), ((0, 3j), "unknown"), ((3j, 0), "absent")])
+def test_the_head_of_a_vector_whose_point_was_moved_stands_there(ends, head):
+    """A line from elsewhere that ends at its tip was found to end aside."""
+    e, other = arrow(1, A, B), line(2, B + 20j, B)
+    ink, owners = paper(), Owners(ROWS, COLUMNS)
+    for k in (e, other):
+        owners.add(k, k.points)
+        draw(ink, *(k.points + (np.array(ends) if k is other else 0)), k.style)
+    traces = [Trace(e, "measured", at=e.points), Trace(other, "measured", at=other.points + np.array(ends))]
+    assert with_heads(traces, ink, owners, np.zeros_like(ink), np.zeros((594, 841), bool))[0].head == head
+
+
+@pytest.mark.parametrize(("off", "head"), [(0.0, "absent"), (0.7, "unknown")])
+def test_a_head_is_not_missed_on_a_line_found_by_the_ink_of_another(off, head):
+    e, drawn = arrow(1, A, B), line(2, A + off * 1j * WAY, B + off * 1j * WAY)
+    assert heads([e], [drawn])[0].head == head

@@ -66,6 +66,17 @@ def test_a_doubtful_fit_is_refused_with_the_reason_and_the_attempt():
     assert "too little light" in str(dark)
 
 
+@pytest.mark.parametrize(("rim", "weight", "bent"), [(2.8, 1.0, True), (0.9, 1.0, False), (2.8, 0.0, False)])
+def test_a_frame_that_is_seen_but_bent_is_not_called_hidden(rim, weight, bent):
+    found = rectified()
+    check = replace(found.check, match=0.45, sides=np.array([0.04, 0.23, 0.25, 0.12]), rim=rim, adrift=np.array([71 + 54j]))
+    sides = found.sides._replace(weight=weight * np.ones(len(found.sides.weight)))
+    why = refusal(grey(), replace(found, check=check, sides=sides), known(), Path("photo.jpg"), N)
+    said = f"{why} {why.hint}"
+    assert ("the paper is not flat" in said) == ("press the sheet flat" in said) == bent
+    assert ("is hidden or was not drawn" in said) == ("take away what covers" in said) == (not bent)
+
+
 def test_labels_that_stand_elsewhere_are_missed_in_their_places():
     found = rectified()
     label = next(e for e in known() if e.kind == "text" and e.view.n and e.height >= 5 and len(e.text) > 12)

@@ -55,3 +55,16 @@ def test_what_is_not_seen_there_is_hidden(trace, hidden):
     assert taken([trace], [after]) == ([trace.element.middle] if hidden else [])
     assert without_taken([], places) == []
     assert taken([], []) == []
+
+
+@pytest.mark.parametrize(("ends", "shown"), [
+    ((-3.0, 0.0), (np.nan, 0.0)), ((0.0, -3.0), (0.0, -3.0)),  # its end is in even light
+    ((-0.8, 0.0), (-0.8, 0.0)), ((3.0, 0.0), (3.0, 0.0)), ((np.nan, -3.0), (np.nan, -3.0)), ((-3.0, -3.0), (np.nan, -3.0)),
+])
+def test_an_end_that_the_light_took_is_unknown_and_told_by_its_place(ends, shown):
+    uneven = uneven_places(picture(255, 380, 420), FLAT)
+    e = Element(2, VIEW, "", "line", np.array([410 + 200j, 450 + 200j]), "thin")
+    before = [Trace(e, "measured", ends=ends)]
+    after = without_taken(before, uneven)
+    assert after[0].ends == pytest.approx(shown, nan_ok=True)
+    assert taken(before, after) == ([] if after[0] is before[0] else [410 + 200j])

@@ -244,3 +244,45 @@ def test_letters_that_are_not_seen_beside_what_is_hidden_are_hidden_too(away, st
     mask[400:, 105 + away : 140 + away] = True
     (found,), _ = trace([e], np.zeros((round(594 * SCALE), round(841 * SCALE)), np.uint8), mask)
     assert found.status == status
+
+
+@pytest.mark.parametrize(("extra", "said"), [
+    ([], "missing"), ([ink(2 + 3j, 48 + 3j)], "not in its place; ink that is not on the sheet lies beside it"),
+    ([ink(25 + 20j, 25 + 60j)], "missing")])
+def test_what_is_not_in_its_place_and_may_lie_beside_is_not_called_missing(extra, said):
+    first = places([line(1, 0, 50, status="missing")], extra)[0]
+    assert first.verdict == "red"
+    assert image_story.said(first) == said
+
+
+@pytest.mark.parametrize(("role", "covered", "verdict"), [("link", 0.5, "amber"), ("table", 0.5, "green"), ("table", 0.1, "amber")])
+def test_a_line_of_which_half_is_seen_may_have_been_left_out_and_a_rule_of_the_form_is_there(role, covered, verdict):
+    e = Element(1, PLAN, "a", "line", np.array([0, 50], complex), "main", by=By(role, "", ""))
+    f = judge(Trace(e, "missing", covered=covered, pieces=True), 0.25, 0.15)
+    assert (f.verdict, "left out" in f.what) == (verdict, verdict == "amber" and covered > 0.4)
+
+
+STROKE = ink(10 + 1.6j, 49 + 7.84j)
+
+
+def named(*others, stroke=STROKE):
+    (place,) = (p for p in places(others, [stroke]) if not p.findings)
+    return image_story.said(place).partition("; ")[2]
+
+
+@pytest.mark.parametrize(("others", "said"), [
+    ([], ""), ([line(1, 0, 50)], ""),  # its own ink is in its place
+    ([line(1, 0, 50, status="shared")], "it may be line a1, drawn elsewhere"),
+    ([line(1, 0, 50), line(2, -30, 90)], "it may be line a1, drawn elsewhere"),  # under a longer one
+    ([line(1, 0, 50), line(2, 30, 90)], ""),
+    ([line(1, 0, 50, status="shared"), line(2, 0, 51 + 1j, status="dense")], "it may be line a1 or line a2, drawn elsewhere"),
+    ([line(k, 0, 49 + k + 1j, status="dense") for k in range(3)], ""),
+    ([line(1, 0, 80, status="shared")], ""), ([line(1, 0, 50j, status="shared")], ""),  # longer, another way
+    ([line(1, 20j, 50 + 20j, status="shared")], ""),  # neither end stays
+])
+def test_ink_is_called_by_the_one_line_that_may_have_been_drawn_there(others, said):
+    assert named(*others) == said
+
+
+def test_ink_that_is_no_stroke_has_no_name():
+    assert named(line(1, 0, 50, status="shared"), stroke=ink(10 + 2j, 30 + 9j, 49 + 8j)) == ""

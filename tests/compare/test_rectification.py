@@ -16,8 +16,8 @@ from tmm_sheets.compare.photo.fit_check import FitCheck
 from tmm_sheets.compare.photo.frame_fit import FrameFit, initial_map, sides_near
 from tmm_sheets.compare.photo.frame_search import FoundFrame
 from tmm_sheets.compare.photo.frame_sides import FrameGuess, follow_sides, inked, side_moved_to_ink
-from tmm_sheets.compare.photo.map_fit import FOCUS, Seen, camera_foot, fit_map, fit_waves
-from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, PAPER, RELIEF, Map, heights, homography
+from tmm_sheets.compare.photo.map_fit import FOCUS, Seen, camera_foot, camera_height, fit_map, fit_waves
+from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, PAPER, RELIEF, Map, drawn_in, heights, homography, spline
 from tmm_sheets.compare.photo.surface import fit_surface
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
@@ -112,6 +112,39 @@ def test_waves_are_followed_from_a_frame_alone_and_by_no_single_line(tall):
     assert np.abs(true.to_sheet(place(GRID)) - wrong.to_sheet(place(GRID))).max() < 0.3
 
 
+@pytest.mark.parametrize(("across", "along"), [(0.0, 0.0), (8.0, 0.0), (0.0, -8.0), (6.0, 6.0)])
+def test_waved_paper_keeps_its_length(across, along):
+    """Its places are drawn in by what the way up and down is longer, wherever the height is counted from."""
+    def slope(t):
+        return np.cos(t / 60) / 60
+
+    t = np.linspace(0, 1, 400)
+    x, y = FRAME.x0 + FRAME.width * t, FRAME.y0 + FRAME.height * t
+    node = [np.linspace(-1, n + 1, n + 3) / n for n in (14, 20)]  # a spline's coefficients are nearly what it is there
+    surface = 50 + across * np.sin(FRAME.width * node[1] / 60)[None, :] + along * np.sin(FRAME.height * node[0] / 60)[:, None]
+    aside = drawn_in(surface / 1.25, 1.25)
+    for one, p, size, height in ((aside[0], x + 300j, FRAME.width, across), (aside[1], 400 + 1j * y, FRAME.height, along)):
+        lost = np.cumsum((0.93 * height * slope(size * t)) ** 2 / 2) * size * (t[1] - t[0])
+        found = spline(p, one)
+        assert np.abs(found - found[0] + lost).max() < 0.1 + 0.1 * lost[-1]
+        assert found.std() <= 1e-9 or height
+
+
+@pytest.mark.parametrize("off", [0.0, 2.5, -2.5])
+def test_the_edge_of_the_paper_is_no_side_of_its_frame(off):
+    scale, ground = 3.0, 20.0
+    grey = np.full((round((PAPER.height + 2 * ground) * scale), round((PAPER.width + 2 * ground) * scale)), 50, np.uint8)
+    cv2.rectangle(grey, (60, 60), (60 + round(PAPER.width * scale), 60 + round(PAPER.height * scale)), 210, -1)
+    at = np.conj(CORNERS - PAPER.y1 * 1j) * scale + ground * scale * (1 + 1j)
+    cv2.rectangle(grey, *((round(z.real), round(z.imag)) for z in at[[3, 1]]), 120, 2)
+    out = np.array([-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j])
+    m = Map(0j, 1000.0, homography((at + off * scale * np.conj(out)) / 1000, CORNERS))
+    seen = sides_near(grey, m, 3.0)
+    true = Map(0j, 1000.0, homography(at / 1000, CORNERS)).to_sheet(seen.picture)
+    assert seen.weight.all()
+    assert np.abs(np.real(np.conj(seen.normals) * (true - seen.sheet)))[8:-8].max() < 0.6
+
+
 def test_the_foot_of_the_camera_is_told_by_the_perspective():
     # Seen through a lens of the usual focal length from (500, 200), 1000 mm above the sheet, towards its middle.
     eye, middle = np.array([500.0, 200.0, 1000.0]), np.array([FRAME.centre.real, FRAME.centre.imag, 0.0])
@@ -124,6 +157,7 @@ def test_the_foot_of_the_camera_is_told_by_the_perspective():
     foot, error = camera_foot(m)
     assert abs(foot - (500 + 200j)) < 1e-6
     assert error < 100
+    assert abs(camera_height(m) - 1000) < 1e-6
 
 
 @pytest.mark.parametrize(("turn", "margin", "anywhere"), [(0.0, 0.0, True), (1.5, 0.0, False), (0.0, 30.0, False)])

@@ -9,10 +9,12 @@ import pytest
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.photo import arrow_heads
+from tmm_sheets.compare.photo import arrow_heads, tracing
 from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.own_place import strips
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.traces import Trace
 from tmm_sheets.compare.photo.tracing import trace
@@ -161,13 +163,38 @@ def test_thin_lines_drawn_over_are_a_remark_and_none_in_a_soft_picture():
     ("link", "main", -1.3, "amber"), ("vector", "vector", -1.3, "amber"), ("link", "main", -4.0, "red"),
     ("symbol", "main", -1.3, "green"), ("symbol", "main", 1.3, "green"), ("symbol", "main", -4.0, "amber"),
     ("curve", "curve", -1.7, "green"), ("curve", "curve", -4.0, "amber"),
-    ("axis", "centre", -3.5, "green"), ("axis", "centre", 3.5, "amber"), ("axis", "centre", -7.0, "amber"),
-    ("axis", "thin", -3.5, "amber"), ("axis", "hidden", -3.5, "green"), ("axis", "hidden", -5.0, "amber"),
+    ("axis", "centre", -3.5, "green"), ("axis", "centre", 3.5, "amber"), ("axis", "centre", -7.0, "green"),
+    ("axis", "centre", 7.0, "amber"),
+    ("axis", "thin", -3.5, "amber"), ("axis", "hidden", -3.5, "green"), ("axis", "hidden", -8.5, "amber"),
+    ("construction", "thin", -1.6, "green"), ("construction", "thin", -1.9, "amber"), ("construction", "thin", 2.4, "green"),
+    ("construction", "thin", 2.7, "amber"), ("construction", "hidden", -3.0, "green"), ("construction", "hidden", -8.5, "amber"),
 ])
 def test_how_far_a_line_may_end_from_its_end(role, style, off, verdict):
-    """Guides, supports and curves end where the hand stopped, dashed lines in a gap; links and vectors end in points."""
+    """Guides, supports and curves end where the hand stopped, dashed lines a dash before; links and vectors end in points."""
     e = line(1, 240 + 300j, 300 + 300j, style, role)
     assert judge(Trace(e, "measured", ends=(0.0, off), at=e.points), 0.25, 0.15).verdict == verdict
+
+
+@pytest.mark.parametrize(("off", "end", "what"), [
+    (0.0, -3.0, "3.0 mm too short at its end"), (0.6, -3.0, "3.0 mm too short at its end"),
+    (0.0, 3.0, "3.0 mm too long at its end"),
+    (0.6, 0.0, "a little aside, no more than its kind may be"), (0.6, np.nan, "a little aside, no more than its kind may be"),
+])
+def test_a_short_line_may_be_turned_a_little_but_not_end_elsewhere(off, end, what):
+    e = line(1, 290 + 300j, 300 + 300j, "thin", "construction")
+    assert judge(Trace(e, "measured", turn=off / 5, deviation=off, ends=(0.0, end), at=e.points), 0.25, 0.15).what == what
+
+
+@pytest.mark.parametrize(("gap", "short"), [(1.6, True), (0.0, False)])
+def test_an_ordinate_that_stops_before_its_curve_is_short(gap, short):
+    """What is at its end is the curve."""
+    end, slope = 300 + 300j, 9 * np.exp(0.75j)
+    known = [line(1, end - 40j, end, "thin", "construction"), line(2, end - slope, end + slope, "curve", "curve")]
+    ink = paper()
+    draw(ink, end - 40j, end - (1.4 + gap) * 1j if gap else end, "thin")
+    draw(ink, end - slope, end + slope, "curve")
+    f = judge(trace(known, ink)[0][0], 0.25, 0.15)
+    assert ("too short at its end" in f.what) == short
 
 
 SLIDER = np.array([-3 - 2j, 3 - 2j, 3 + 2j, -3 + 2j, -3 - 2j]) + 300 + 300j
@@ -179,9 +206,12 @@ SLIDER = np.array([-3 - 2j, 3 - 2j, 3 + 2j, -3 + 2j, -3 - 2j]) + 300 + 300j
     ("circle", 0.4, 0.6, "amber"),
 ])
 def test_what_is_a_little_off_among_others_is_not_judged(kind, free, off, verdict):
-    """Its ink cannot be told from the edge of theirs; what is far off can, but for a small outline, which any ink is near."""
+    """Its ink cannot be told from the edge of theirs; what is far off can, but for a small outline, which any ink is near.
+
+    A large circle is seen between them.
+    """
     z = SLIDER if kind == "curve" else 300 + 300j + np.array([0, 40])
-    e = Element(1, VIEW, "", kind, z, "thin", radius=2.0)
+    e = Element(1, VIEW, "", kind, z, "thin", radius=20.0)
     f = judge(Trace(e, "measured", 1j * off, deviation=off, at=z + 1j * off, free=free), 0.25, 0.15)
     assert f.verdict == verdict
     assert f.unknown == (verdict == "green" and off > 0.4)
@@ -608,6 +638,29 @@ def test_of_two_dots_the_one_is_meant_whose_line_leads_to_the_spot(drawn, meant)
     assert found == {meant: -2j if meant == 1 else -4j}
 
 
+@pytest.mark.parametrize(("astray", "meant"), [((), {1}), ((1,), {1}), ((2,), {2}), ((1, 2), {1}), ((3,), {1})])
+def test_of_two_dots_the_one_is_meant_whose_line_is_not_in_its_place(astray, meant):
+    rods = [np.array([CORNER - 25 + k * 2j, CORNER + k * 2j]) for k in range(3)]
+    ink, nothing = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
+    draw(ink, CORNER - 2.2j, CORNER - 1.8j, "main", 230)
+    some, lost = [dot(1, CORNER, 0.5), dot(2, CORNER + 2j, 0.5)], [rods[k - 1] for k in astray]
+    found = displaced_dots(some, rods, nothing, nothing, ink, nothing, np.zeros((1, 1), bool), 180, lost)
+    assert {t.element.number for t in found} == meant
+
+
+@pytest.mark.parametrize("barred", [True, False])
+def test_a_bar_over_a_letter_is_no_dot(barred):
+    """As wide as it is long it is, blurred; its letter is known to have one."""
+    ink, nothing = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
+    draw(ink, CORNER + 3.7 + 3j, CORNER + 4.3 + 3j, "main", 230)
+    corners = CORNER + 3 - 2j + np.array([0, 2, 2 + 4j, 4j])
+    letter = Element(2, VIEW, "G", "text", corners, "text", text="G", height=4.0, marks=(Text(corners[0], "G", 4.0),),
+                     pieces=(CORNER + np.array([3.5 + 3j, 4.5 + 3j]),) if barred else ())  # fmt: skip
+    bars = tracing._bars([letter], ink)
+    found = displaced_dots([dot(1, CORNER)], [], nothing, bars, ink, nothing, np.zeros((1, 1), bool), 180, bars=bars)
+    assert bool(found) != barred
+
+
 @pytest.mark.parametrize("over", [0.5, 1.2, 2.0])
 def test_the_end_of_a_line_that_was_drawn_over_is_no_dot(over):
     """Nor where it is dark as a spot, behind a paler place, as grains of a sensor make it."""
@@ -657,6 +710,13 @@ def test_an_end_that_goes_on_paler_is_under_adhesive_tape(dark, to, short):
     assert ("too short at its end" in f.what) == short
 
 
+def joint(step="positions/A"):
+    """The circle of a joint of 1.6 mm, and the directions of its points."""
+    circle = np.exp(2j * np.pi * np.arange(61) / 60)
+    e = Element(9, VIEW, "", "circle", CORNER + 1.6 * circle, "main", CORNER, 1.6, 0.0, 2 * np.pi, by=By("symbol", step, "1"))
+    return e, circle
+
+
 @pytest.mark.parametrize(
     ("radius", "aside", "verdict", "said"),
     [
@@ -672,14 +732,71 @@ def test_an_end_that_goes_on_paler_is_under_adhesive_tape(dark, to, short):
 def test_the_circle_of_a_joint_is_told_by_its_outer_edge(radius, aside, verdict, said):
     """Within it lines end and a dot stands; three of its sides are left free by them."""
     ways = 12 * np.exp(1j * np.array([0.2, 1.4, 1.6, 3.3]))
-    circle = np.exp(2j * np.pi * np.arange(61) / 60)
-    joint = Element(9, VIEW, "", "circle", CORNER + 1.6 * circle, "main", CORNER, 1.6, 0.0, 2 * np.pi)
+    e, circle = joint()
     ink = paper()
     for w in ways:
         draw(ink, CORNER, CORNER + w)
     for a, b in pairwise(CORNER + aside + (radius or 0) * circle) if radius else ():
         draw(ink, a, b)
-    found, _ = trace([*(line(k, CORNER, CORNER + w) for k, w in enumerate(ways)), joint], ink)
+    found, _ = trace([*(line(k, CORNER, CORNER + w) for k, w in enumerate(ways)), e], ink)
     f = judge(found[-1], 0.25, 0.15)
     assert f.verdict == verdict
     assert not said or f"radius {said}" in f.what
+
+
+@pytest.mark.parametrize(
+    ("radius", "aside", "growth"), [(1.6, 0, 0), (1.6, 0.25j, 0), (2.3, 0, 0.7), (2.3, 0.1, 0.7), (1.4, 0, -0.2)]
+)
+@pytest.mark.parametrize("free", [0, 4])  # sides that no line leaves to
+def test_the_edge_of_a_joint_is_seen_between_lines_that_leave_it_closely(free, radius, aside, growth):
+    """What its line among theirs was measured to be is no matter then."""
+    e, circle = joint()
+    ways = 8 * np.exp(2j * np.pi * (np.arange(8 - free) + 0.3) / 8)
+    ink, owners = paper(), Owners(ROWS, COLUMNS)
+    for k, w in enumerate(ways):
+        draw(ink, CORNER, CORNER + w, "thin")
+        owners.add(line(k + 1, CORNER, CORNER + w, "thin"), np.array([CORNER, CORNER + w]))
+    for a, b in pairwise(CORNER + aside + radius * circle):
+        draw(ink, a, b)
+    t = Trace(e, "measured", shift=0.45j, deviation=0.45, at=e.points, free=0.3)
+    (found,) = with_edges([t], ink, owners, np.zeros_like(ink))
+    assert (found.growth, abs(found.shift - aside)) == (pytest.approx(growth, abs=0.1), pytest.approx(0, abs=0.1))
+    f = judge(found, 0.25, 0.15)
+    assert (f.verdict, "radius 0.7" in f.what) == (("amber", True) if growth > 0.4 else ("green", False))
+
+
+@pytest.mark.parametrize(
+    ("step", "free", "said"), [("positions/A", 1.0, "amber"), ("positions/A", 0.5, "green"), ("", 1.0, "green")]
+)
+def test_a_small_circle_a_little_off_is_told_where_no_others_are_and_a_construction_hangs_on_it(step, free, said):
+    e, _ = joint(step)
+    for off, verdict in ((0.5, said), (0.9, "red")):
+        t = Trace(e, "measured", shift=off + 0j, deviation=off, at=e.points + off, free=free)
+        assert judge(t, 0.25, 0.15).verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("end", "dotted", "usual", "status"),
+    [
+        (CORNER, True, 100, "measured"),
+        (CORNER - 1.5, True, 100, "measured"),  # it stops short, but hardly
+        (CORNER - 7, True, 100, "covered"),
+        (CORNER + 5j, True, 100, "covered"),
+        (CORNER - 7, False, 100, "measured"),  # a helper line ends anywhere
+        (CORNER - 7, True, 250, "measured"),  # black and white eats thin lines
+    ],
+)
+def test_a_line_that_others_cover_must_be_seen_to_the_dot_where_it_ends(end, dotted, usual, status):
+    """Another line runs along most of it, and was taken for it."""
+    begin = CORNER - 18
+    e, along = line(1, begin, CORNER, "construction"), line(2, begin - 5, CORNER - 5 + 0.2j, "construction")
+    ink, owners = paper(), Owners(ROWS, COLUMNS)
+    for one, to in ((e, end), (along, along.points[1])):
+        owners.add(one, one.points)
+        draw(ink, one.points[0], to, one.style)
+    (strip,) = strips([e], ink, owners, np.zeros((1, 1), bool))
+    alone = tracing._alone(strip, np.array([CORNER] if dotted else [], complex))
+    traces = [Trace(one, "measured", at=one.points, darkness=usual, covered=1.0) for one in (e, along)]
+    nothing = np.zeros_like(ink)
+    found = tracing._doubted(traces, {} if alone is None else {1: alone}, ink, nothing, nothing, owners, 10)
+    assert [t.status for t in found] == [status, "measured"]

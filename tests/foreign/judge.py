@@ -37,6 +37,8 @@ ABOUT = 1.5
 """mm about the lines of the drawing within which their ink is."""
 SLIDES = 0.03
 """A piece that lies better than a millimetre off by no more than this is held by nothing."""
+COVERED = 0.5
+"""A piece of which less of the lines shows, in relation to the whole sheet, is covered."""
 GRAIN = 0.3
 """Paper is paler than this, lines are darker."""
 FOUND = ("red", "amber", "ink")
@@ -143,23 +145,25 @@ def _ink(grey: NDArray[np.uint8]) -> NDArray[np.float32]:
 
 
 def offsets(believed: NDArray[np.uint8], true: NDArray[np.uint8], inside: NDArray[np.bool_],
-            drawn: NDArray[np.bool_] | None = None) -> tuple[Floats, Floats, float]:
+            drawn: NDArray[np.bool_] | None = None, lines: NDArray[np.bool_] | None = None) -> tuple[Floats, Floats, float]:
     """Where the program looks for pieces of the sheet that are all in the picture: its edge is no line.
 
-    A piece is told by what was `drawn`, if that is known: the edge of what lies on the sheet is no line either.
+    A piece is told by what was `drawn`, if that is known: the edge of what lies on the sheet is no line either. Where most of its
+    `lines` do not show in the picture something else lies on it, a dog-ear's back, say: that is no piece of the sheet.
 
     Returns places (n, 2) mm, how far from there the program has what belongs there (n, 2) mm, and the share of pieces found again.
     """
     ours, theirs = _ink(true), _ink(believed)
     of_pencil = ours if drawn is None else np.where(drawn, ours, np.float32(0))
     half, reach = int(WINDOW * DENSITY / 2), int(REACH * DENSITY)
+    shows = _shows(ours, lines)
     places, apart, tried = [], [], 0
     for y in np.arange(WINDOW / 2 + REACH, SIZE[1] - WINDOW / 2 - REACH, GRID):
         for x in np.arange(WINDOW / 2 + REACH, SIZE[0] - WINDOW / 2 - REACH, GRID):
             column, row = int(x * DENSITY), int((SIZE[1] - y) * DENSITY)
             piece = ours[row - half : row + half, column - half : column + half]
             if not inside[row - half : row + half, column - half : column + half].all() or not _tells(
-                    of_pencil[row - half : row + half, column - half : column + half]):
+                    of_pencil[row - half : row + half, column - half : column + half]) or not shows[row, column]:
                 continue
             tried += 1
             field_ = theirs[row - half - reach : row + half + reach, column - half - reach : column + half + reach]
@@ -171,6 +175,18 @@ def offsets(believed: NDArray[np.uint8], true: NDArray[np.uint8], inside: NDArra
                 dx, dy = np.array(at) - reach + _rest(found, piece)
                 apart.append([dx / DENSITY, -dy / DENSITY])
     return np.array(places).reshape(-1, 2), np.array(apart).reshape(-1, 2), len(places) / max(tried, 1)
+
+
+def _shows(ink: NDArray[np.float32], lines: NDArray[np.bool_] | None) -> NDArray[np.bool_]:
+    """Whether pieces about each place of the picture, as the truth rectifies it, show at least COVERED as much of the lines that
+    were drawn there as it shows of all.
+    """
+    if lines is None:
+        return np.ones(ink.shape, bool)
+    size = (int(WINDOW * DENSITY),) * 2
+    seen = (cv2.dilate(ink, np.ones((5, 5), np.uint8)) > GRAIN) & lines
+    there, all_ = (cv2.blur(some.astype(np.float32), size) for some in (seen, lines))
+    return np.asarray(there >= COVERED * all_ * seen.sum() / max(int(lines.sum()), 1), np.bool_)
 
 
 def _best(score: NDArray[np.float32], reach: int) -> tuple[float, tuple[int, int]]:
@@ -358,13 +374,13 @@ def judge(picture: Path, drawings: Path, keep: Path | None = None) -> Outcome:
     return outcome
 
 
-def _drawn(marks: list[Mark], truth: dict[str, Any]) -> NDArray[np.bool_]:
+def _drawn(marks: list[Mark], truth: dict[str, Any], about: float = ABOUT) -> NDArray[np.bool_]:
     """Where lines were drawn, right or wrong, and as far about them as wrong ones may lie, DENSITY pixels a millimetre."""
     out = np.zeros((round(SIZE[1] * DENSITY), round(SIZE[0] * DENSITY)), np.uint8)
     wrong = [np.array(line) for mistake in truth["mistakes"] for line in mistake["lines"]]
     for path in [*wrong, *(path for mark in marks for path in mark.paths())]:
         pixels = np.stack((path[:, 0], SIZE[1] - path[:, 1]), axis=1) * DENSITY
-        cv2.polylines(out, [pixels.round().astype(np.int32)], False, 1, round(2 * ABOUT * DENSITY))
+        cv2.polylines(out, [pixels.round().astype(np.int32)], False, 1, max(round(2 * about * DENSITY), 1))
     return out > 0
 
 
@@ -374,7 +390,7 @@ def _measure(outcome: Outcome, picture: Path, truth: dict[str, Any], marks: list
     if believed is None:
         outcome.state, outcome.reason = "broken", "there is no overlay with the photograph"
         return
-    places, apart, share = offsets(believed, *_rectified(picture, truth), _drawn(marks, truth))
+    places, apart, share = offsets(believed, *_rectified(picture, truth), _drawn(marks, truth), _drawn(marks, truth, 0.0))
     if len(places) < 10 or share < 0.5:
         outcome.state, outcome.reason = "wrong fit", f"only {share:.0%} of the pieces within {REACH:g} mm of their places"
         return

@@ -62,6 +62,22 @@ def test_what_is_not_of_the_drawing_is_no_piece_of_it() -> None:
         (400, 5), (400, 8), (101, 150), (104, 150))] == [True, False, True, False]
 
 
+def test_a_piece_that_something_covers_is_not_asked() -> None:
+    """The edges of what lies there cross lines of the drawing, which do not show; a map that is wrong beside it is still told."""
+    true = np.full((round(judge.SIZE[1] * judge.DENSITY), round(judge.SIZE[0] * judge.DENSITY)), 200, np.uint8)
+    true[::40] = true[:, ::40] = 0
+    lines, everywhere = true == 0, np.ones(true.shape, bool)
+    covered = true.copy()
+    covered[-225:, :225] = 180
+    covered[-225:-223, :225] = covered[-225:, 223:225] = covered[-100:-98, :100] = 90
+    places, _, _ = judge.offsets(covered, covered, everywhere, everywhere, lines)
+    half, edge = judge.WINDOW / 2, 225 / judge.DENSITY
+    assert len(places) > 100
+    assert not (places + half < edge).all(1).any()
+    assert (places - half < edge).all(1).any()  # what is covered in part is asked
+    assert judge._shows(judge._ink(true), lines).all()
+
+
 def test_a_line_that_ends_at_the_edge_of_a_cover_tells_nothing_along_itself() -> None:
     cv2 = pytest.importorskip("cv2")
     score = np.zeros((43, 43), np.float32)

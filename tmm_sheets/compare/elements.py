@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import ceil, pi
 from types import MappingProxyType
 from typing import Literal
@@ -100,7 +101,7 @@ class Element:
     marks: tuple[Mark, ...] = field(default=(), repr=False)
     by: Trace | None = None
 
-    @property
+    @cached_property
     def length(self) -> float:
         """Length of the centre line, mm."""
         return float(np.abs(np.diff(self.points)).sum())
@@ -125,7 +126,7 @@ class Element:
         """Whether it has an arrow head."""
         return bool(self.fills) and self.kind in ("line", "arc")
 
-    @property
+    @cached_property
     def middle(self) -> complex:
         """The middle of its bounding rectangle, mm."""
         return Box.around(self.points).centre

@@ -24,6 +24,7 @@ from tmm_sheets.compare.photo.hidden import Mask, at
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
+from tmm_sheets.compare.photo.thin_strokes import thin_vectors, vector
 from tmm_sheets.compare.photo.traces import Head, Trace
 from tmm_sheets.drawing.styles import line_type
 
@@ -66,9 +67,12 @@ SCANT, HALF = 0.1, 0.5
 """Part of a head up to which what is seen of a side of it says nothing, and part that a whole side of it is."""
 WRITTEN = 0.85
 """How alike ink must be to a whole head where letters may stand."""
-BARE, LITTLE, HARDLY_LIKE, OPEN, EACH = 0.2, 0.2, 0.6, 0.45, 0.15
+BARE, LITTLE, HARDLY_LIKE, OPEN, EACH = 0.2, 0.2, 0.6, 0.45, 0.1
 """Share up to which there is no head in its place, share and likeness from which on there may be one a little off or smaller, and
-least part of it that must be seen in its place for it to be missed, of all of it or of each of its sides."""
+least part of it that must be seen in its place for it to be missed, of all of it and of each of its sides."""
+AWAY = 1.0
+"""mm off its place from which on the line that was found for a vector that was left out is no helper line of its, and from which on
+a line's end is elsewhere, and a head with it."""
 UNLIKE = 0.5
 """Likeness up to which ink in the place of a head that is on one side of the line only is another's that runs past it."""
 NOTHING, SCARCELY = 0.1, 0.3
@@ -81,10 +85,13 @@ TOGETHER = 1.5
 """mm between tips up to which two heads on one line cannot be told from each other."""
 BESIDE_LINE = 0.4
 """Share of a side of a head from which on it is one beside the line, as a line that is not quite where it was found has it."""
-THIN, ENOUGH, NEAREST, PALE = 0.65, 3, 9, 2.0
-"""Ink across a line without a head, as a share of what vectors with heads have, up to which it is a helper line and the vector was
-left out; least number of those, and of how many about it the middle one is taken: where the picture is small, all lines are paler;
-how much darker than such a line a head would be."""
+ENOUGH, NEAREST = 3, 9
+"""Least number of vectors with heads that tell how much ink is usual across a line, and of how many about it the middle one is
+taken: where the picture is small, all lines are paler."""
+CENTRED, STROKE, NEARLY, BROADER = 0.45, 0.95, 0.95, 1.35
+"""mm from the middle of a line within which its stroke is darkest, or it is another line's; mm to either side that are its stroke;
+how dark it must be there by its darkest; how much more ink than is usual there may be across it: broader strokes are those of
+several vectors, and hide their heads."""
 LINED, MOSTLY = 0.9, 0.6
 """Least share of the way to the tip on which the line must be seen for its head to be missed, and where it is at the other end."""
 
@@ -126,6 +133,11 @@ class _End:
     def across(self) -> float:
         """How much ink the line has across it."""
         return float((self.own - self.own.min()).sum())
+
+    @property
+    def centred(self) -> bool:
+        """Whether the stroke is darkest where the line is, or it was found by another's ink."""
+        return bool(self.own[np.abs(ASIDE) <= CENTRED].max() >= NEARLY * self.own[np.abs(ASIDE) <= STROKE].max())
 
     def likeness(self, shifts: Floats, sizes: Sequence[tuple[float, float]]) -> Iterator[_Likeness]:
         """The likeness to heads of some sizes that lie some mm farther back."""
@@ -182,10 +194,10 @@ class _End:
         """The likeness of either side to that of a head in its place."""
         return [next(replace(self, known=self.known & side).likeness(NEAR, SIZES)) for side in (ASIDE < 0, ASIDE > 0)]
 
-    def bare(self, pale: float = 1.0) -> bool:
-        """Whether nothing of a head that is ``pale`` times as dark is in its place, as far as that is seen."""
+    def bare(self) -> bool:
+        """Whether nothing of a head is in its place, as far as that is seen."""
         here = next(self.likeness(NEAR, SIZES))
-        return here.part > SCANT and (here.share <= BARE * pale or (here.alike <= UNLIKE and self.one_sided()))
+        return here.part > SCANT and (here.share <= BARE or (here.alike <= UNLIKE and self.one_sided()))
 
     def one_sided(self) -> bool:
         """Whether all of the place of a head is seen, and ink is there to one side of the line only."""
@@ -198,24 +210,25 @@ class _End:
         here = next(self.likeness(NEAR, SIZES))
         return here.part >= WHOLE and here.share <= share and here.alike <= UNLIKE
 
-    def headless(self, pale: float = 1.0) -> bool:
+    def headless(self) -> bool:
         """Whether the line goes on to its tip and has no head in its place, nor a little off it, nor a small one.
 
         Letters may add ink to paper, and take none away.
         """
-        return self._headless(pale) or self.written()._headless(pale)
+        return self._headless() or self.written()._headless()
 
-    def _headless(self, pale: float) -> bool:
-        if self.lined < LINED or not self.bare(pale):
+    def _headless(self) -> bool:
+        if self.lined < LINED or not self.bare():
             return False
         sides = self.sides()
-        if sum(s.part for s in sides) < OPEN and min(s.part for s in sides) < EACH:
+        # A head may lie a little aside, on the side that others hide.
+        if sum(s.part for s in sides) < OPEN or min(s.part for s in sides) < EACH:
             return False
-        if any(s.part >= EACH and s.share >= BESIDE_LINE * pale and s.alike >= HARDLY_LIKE for s in sides):
+        if any(s.part >= EACH and s.share >= BESIDE_LINE and s.alike >= HARDLY_LIKE for s in sides):
             return False
         looked = chain(self.likeness(NEAR, SIZES), self.likeness(FARTHER, SIZES[:1]))
         seen = WHOLE if self.empty() else SEEN
-        return self.one_sided() or not any(h.part >= seen and h.share >= LITTLE * pale and h.alike >= HARDLY_LIKE for h in looked)
+        return self.one_sided() or not any(h.part >= seen and h.share >= LITTLE and h.alike >= HARDLY_LIKE for h in looked)
 
 
 @dataclass(frozen=True)
@@ -336,13 +349,22 @@ def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hi
     paper = _Paper(ink, owners, words, hidden, [(complex(f[0]), complex(f[1:].mean())) for t in traces for f in t.element.fills])
     found = {k: _head(t, paper) for k, t in enumerate(traces) if _wanted(t)}
     usual = [end for head, end in found.values() if head == "there" and end is not None and not end.lies_on]
+    thin = thin_vectors(traces, ink, hidden)
+    seen = [traces[k].element for k, (head, _) in found.items() if head == "there"]
     out = list(traces)
     for k, (head, end) in found.items():
-        thin = THIN * _across_about(traces[k].element, usual)
-        left_out = end is not None and end.across < thin and (head == "absent" or (head == "unknown" and end.headless(PALE)))
-        out[k] = replace(traces[k], head="left out" if left_out else head)
+        t = traces[k]
+        shares = any(_together(t.element, e, -1) for e in seen if e is not t.element)
+        broad = end is not None and end.across > BROADER * _across_about(t.element, usual) > 0
+        if t.element.number in thin and (head != "there" or shares):
+            # What lies elsewhere is a thin line of its own.
+            out[k] = replace(t, head="left out") if t.deviation <= AWAY else Trace(t.element, "missing")
+        else:
+            elsewhere = head == "absent" and (broad or shares or _moved_tip(t.element, traces))
+            out[k] = replace(t, head="unknown" if elsewhere else head)
     told = [t.element for t in out if t.head == "reversed"]
-    return [replace(t, head="unknown") if t.head == "doubled" and any(_one_stroke(t.element, e) for e in told) else t for t in out]
+    doubted = {t.element.number for t in out if t.head == "doubled" and any(_together(t.element, e, 0) for e in told)}
+    return [replace(t, head="unknown") if t.element.number in doubted else t for t in out]
 
 
 def _across_about(e: Element, ends: Sequence[_End]) -> float:
@@ -353,11 +375,18 @@ def _across_about(e: Element, ends: Sequence[_End]) -> float:
     return float(np.median([end.across for end in about[:NEAREST]]))
 
 
-def _one_stroke(e: Element, other: Element) -> bool:
-    """Whether two vectors leave one point in one direction: a head at their beginning may be either's."""
+def _moved_tip(e: Element, traces: Sequence[Trace]) -> bool:
+    """Whether another line that ends at the tip of a vector was found to end elsewhere: the point was moved, the head with it."""
+    lines = (t for t in traces if t.at is not None and t.element is not e and t.element.kind == "line")
+    ends = (pair for t in lines if t.at is not None for pair in zip(t.element.points[[0, -1]], t.at[[0, -1]], strict=True))
+    return any(abs(ought - e.points[-1]) < TOGETHER and abs(there - ought) > AWAY for ought, there in ends)
+
+
+def _together(e: Element, other: Element, end: int) -> bool:
+    """Whether two vectors of one direction have this end, 0 or -1, in one place: a head there may be either's."""
     ways = [v.points[-1] - v.points[0] for v in (e, other)]
     alike = (ways[0] / ways[1]).real / abs(ways[0] / ways[1]) > ON_LINE
-    return bool(alike and abs(e.points[0] - other.points[0]) < TOGETHER)
+    return bool(alike and abs(e.points[end] - other.points[end]) < TOGETHER)
 
 
 def exchanged(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hidden: Mask) -> list[Trace]:
@@ -400,9 +429,7 @@ def _runs_under(e: Element, vector: Element) -> bool:
 def _wanted(t: Trace) -> bool:
     """Whether it is a vector that was found, long enough for its head to be told from it."""
     e = t.element
-    if t.status not in ("measured", "shared") or t.at is None or e.style != "vector" or e.kind != "line" or len(e.fills) != 1:
-        return False
-    return bool(_length(e) >= LEAST and e.length > _length(e) + SHORTEST and abs(e.fills[0][0] - e.points[-1]) < 0.1)
+    return bool(vector(t) and _length(e) >= LEAST and e.length > _length(e) + SHORTEST and abs(e.fills[0][0] - e.points[-1]) < 0.1)
 
 
 def _length(e: Element) -> float:
@@ -423,7 +450,7 @@ def _head(t: Trace, paper: _Paper) -> tuple[Head, _End | None]:
     beyond = [0.0 if np.isnan(by) else by for by in t.ends]
     begin, tip = complex(t.at[0] - way * beyond[0]), complex(t.at[1] + way * beyond[1])
     here = paper.end(t.element, tip, begin)
-    if here is None:
+    if here is None or not here.centred:
         return "unknown", None
     alone = not paper.shares_tip(t.element, way)
     has = here.has_head() and not here.empty()

@@ -4,15 +4,15 @@ A dot is too small to be measured among lines, but one in a wrong place is a rou
 has none: about it the picture is taken for lines and a dot, each as dark as fits best. A spot alone is no displaced dot where the
 dot is seen in its place; where lines cross, a small one shows no more than they do, and the spot is taken for it. A large dot is
 known even upon a letter: it is wider than any stroke. One upon a line is a bump: all over as dark as a dot where nothing as wide is
-drawn, and it ends all round, which a head or strokes that meet do not. Of several dots that may be meant it is the one whose line
-leads to the spot, or the one least seen in its place.
+drawn, and it ends all round, which a head or strokes that meet do not. Of several dots that may be meant it is one whose line is
+not in its place either, the one whose line leads to the spot, or the one least seen in its place.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from math import isnan, nan
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -73,6 +73,7 @@ RAYS = np.exp(2j * np.pi * np.arange(16) / 16) * np.linspace(0, ALONE, 6)[:, Non
 
 def displaced_dots(
     some: Sequence[Element], rods: Sequence[Points], lines: Any, taken: Any, ink: Any, words: Any, hidden: Mask, usual: float,
+    astray: Sequence[Points] = (), bars: Any = None,
 ) -> list[Trace]:
     """Traces of dots that stand beside their places.
 
@@ -94,8 +95,14 @@ def displaced_dots(
         Where the sheet does not show.
     usual
         How dark lines usually are.
+    astray
+        Both ends of those lines of ``rods`` that are not in their places.
+    bars
+        A picture of the bars over letters, 255 there: as wide as a dot where they are blurred.
     """
-    found: dict[complex, list[tuple[bool, float, float, Element]]] = {}
+    found: dict[complex, list[_Meant]] = {}
+    lost = np.array([z for ends in astray for z in ends], complex)
+    unclear = words if bars is None else np.maximum(words, bars)
     begins, ends = np.array([(z, w) for a, b in rods for z, w in ((a, b), (b, a))], complex).reshape(-1, 2).T
     for e in some:
         least = usual * (SMALL_DARK if e.radius < SMALL else DARK)
@@ -106,27 +113,40 @@ def displaced_dots(
         if e.radius >= LARGE and not len(spots) and not sample(words, pixels(e.points)).any():
             spots = _thick(e, taken, ink, usual)
         if e.radius >= SMALL and not len(spots) and usual < NO_GREY:
-            spots = _bumps(e, some, lines, ink, words, usual)
+            spots = _bumps(e, some, lines, ink, unclear, usual)
         spots = spots[~at(spots, hidden)]
         if len(spots):
             spot = complex(spots[np.abs(spots - e.centre).argmin()])
             its = begins[np.abs(ends - e.centre) <= ASIDE]
             leads = any(_leads(z, spot, e.radius, ink, FAINT * usual) for z in its)
             spot = next((z for z in found if abs(z - spot) < ASIDE), spot)  # seen from another dot
-            found.setdefault(spot, []).append((not leads, UNKNOWN if isnan(there) else there / usual, abs(spot - e.centre), e))
+            at_home = not (np.abs(lost - e.centre) <= ASIDE).any()
+            seen = UNKNOWN if isnan(there) else there / usual
+            found.setdefault(spot, []).append(_Meant(at_home, not leads, seen, abs(spot - e.centre), e))
     return [Trace(e, "beside", spot - e.centre, deviation=abs(spot - e.centre), at=np.asarray(e.points + spot - e.centre))
             for spot, those in found.items() for e in _meant(those)]
 
 
-def _meant(those: Sequence[tuple[bool, float, float, Element]]) -> list[Element]:
-    """Whose a spot is: of dots whose line leads there, if it does, the one least seen in its place, and of such the nearest.
+class _Meant(NamedTuple):
+    """A dot that a spot may be: whether its lines are in their places and none leads to the spot, how dark it is in its place."""
+
+    at_home: bool
+    not_led: bool
+    seen: float
+    away: float
+    dot: Element
+
+
+def _meant(those: Sequence[_Meant]) -> list[Element]:
+    """Whose a spot is: of dots whose line is astray, if one's is, and leads there, if one does, the one least seen in its place,
+    and of such the nearest.
 
     Several, where nothing tells one from another.
     """
-    leads, seen, _, _ = min(those, key=lambda t: t[:2])
-    those = [t for t in those if t[0] == leads and t[1] <= seen + AS_SEEN]
-    nearest = min(t[2] for t in those)
-    return [t[3] for t in those if t[2] <= nearest + AS_NEAR]
+    at_home, not_led, seen, _, _ = min(those, key=lambda t: t[:3])
+    those = [t for t in those if (t.at_home, t.not_led) == (at_home, not_led) and t.seen <= seen + AS_SEEN]
+    nearest = min(t.away for t in those)
+    return [t.dot for t in those if t.away <= nearest + AS_NEAR]
 
 
 def _spots(e: Element, rods: tuple[Points, Points], taken: Any, ink: Any, words: Any, faint: float, least: float) -> Points:

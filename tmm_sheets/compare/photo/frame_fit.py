@@ -22,6 +22,9 @@ from tmm_sheets.words import marked, tell
 
 STATIONS = 240  # along each side
 WIDE = 2.0  # mm to both sides of the frame in which its blur is seen
+BROAD, BESIDE = 21, 10
+"""Samples, a tenth of a millimetre apart: wider than any line of the frame is in a picture that is sharp enough; and how many more
+are looked at beyond either end of a profile."""
 WANTED = marked(
     "the whole frame must be in the picture, flat and sharp, on a background that is not as light as the paper; the title block is "
     "form 1 or 2a of GOST 2.104 in the lower right corner"
@@ -108,8 +111,9 @@ def sides_near(grey: Grey, m: Map, width: float) -> Seen:
     return _seek(grey, m, width)[0]
 
 
-def _offsets(width: float) -> Floats:
-    return np.arange(-width, width + 0.05, 0.1)
+def _offsets(width: float, more: int = 0) -> Floats:
+    steps = round(10 * width) + more
+    return np.arange(-steps, steps + 1) / 10
 
 
 def _seek(grey: Grey, m: Map, width: float, least: int = 2) -> tuple[Seen, Floats, Floats]:
@@ -119,12 +123,13 @@ def _seek(grey: Grey, m: Map, width: float, least: int = 2) -> tuple[Seen, Float
     """
     p, n, side = _side_points()
     offsets = _offsets(width)
-    at = m.to_picture(p[:, None] + n[:, None] * offsets)
+    at = m.to_picture(p[:, None] + n[:, None] * _offsets(width, BESIDE))
     inside = (at.real >= 0) & (at.imag >= 0) & (at.real <= grey.shape[1] - 1) & (at.imag <= grey.shape[0] - 1)
-    profile = _local_ink(grey, at, inside)
+    wide = _local_ink(grey, at, inside)
     shown = inside[:, inside.shape[1] // 2]
-    centre = offsets[follow(profile.reshape(4, STATIONS, -1), 3)].ravel()
-    o, strength = peaks(profile, offsets, centre, 0.5, 0.8)
+    profile, lines = (some[:, BESIDE:-BESIDE] for some in (wide, _narrow(wide)))
+    centre = offsets[follow(lines.reshape(4, STATIONS, -1), 3)].ravel()
+    o, strength = peaks(lines, offsets, centre, 0.5, 0.8)
     use = (strength > 0.4 * np.median(strength[shown] if shown.any() else strength)) & (strength > 0)
     hidden = np.flatnonzero(np.bincount(side[use], minlength=4) < STATIONS / 4)
     if 4 - len(hidden) < least:
@@ -149,3 +154,11 @@ def _local_ink(grey: Any, at: Points, inside: Any) -> Floats:
     g = np.where(inside, g, np.where(inside, g, 0).max(1, keepdims=True))
     paper = np.maximum(np.percentile(g, 70, axis=1), 1.0)
     return np.asarray(np.where(inside, np.clip(1 - g / paper[:, None], 0, 1), 0))
+
+
+def _narrow(profile: Floats) -> Floats:
+    """What of profiles may be lines, which have paper on both sides: not the ground beside the paper, nor its edge."""
+    import cv2
+
+    padded = cv2.copyMakeBorder(profile, 0, 0, BROAD, BROAD, cv2.BORDER_REPLICATE)  # what is dark at the end goes on
+    return np.asarray(cv2.morphologyEx(padded, cv2.MORPH_TOPHAT, np.ones((1, BROAD), np.uint8))[:, BROAD:-BROAD])

@@ -18,7 +18,7 @@ from tmm_sheets.compare.photo.places import Place, may_be_either
 from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.story import Mistake, Photo, Picture
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.words import tell
+from tmm_sheets.words import either, tell
 
 SHOWN = 10
 """Most findings of a view that are told in words beside its picture; the table has all."""
@@ -75,6 +75,8 @@ def said(p: Place) -> str:
         return _of_ink(p)
     first, *rest = p.findings
     words = [first.what]
+    if first.trace.status == "missing" and not first.trace.pieces and p.ink and first.element.kind != "text":
+        words = [tell("not in its place")]
     either = [f for f in rest if may_be_either(first, f)]
     if others := _named(either, first):
         words.append(tell("it may be instead: {elements}").format(elements=others))
@@ -100,7 +102,11 @@ def _of_ink(p: Place) -> str:
     """Where ink is that belongs to nothing, and how much."""
     where = tell("{width} x {height} mm about x = {x}, y = {y}")
     middle = p.box.centre
-    return where.format(width=f"{p.box.width:.0f}", height=f"{p.box.height:.0f}", x=f"{middle.real:.0f}", y=f"{middle.imag:.0f}")
+    words = where.format(width=f"{p.box.width:.0f}", height=f"{p.box.height:.0f}", x=f"{middle.real:.0f}", y=f"{middle.imag:.0f}")
+    if not p.likely:
+        return words
+    names = list(dict.fromkeys(called(f.element) for f in p.likely))
+    return f"{words}; " + tell("it may be {element}, drawn elsewhere").format(element=either(names))
 
 
 def shown(p: Place) -> tuple[Points, ...]:

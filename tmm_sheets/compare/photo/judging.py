@@ -12,6 +12,7 @@ import numpy as np
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.findings import Finding, millimetres, of_radius, shifted, turned
 from tmm_sheets.compare.photo.black_and_white import Eaten, may_be_eaten, whole
+from tmm_sheets.compare.photo.joints import joint
 from tmm_sheets.compare.photo.torn import HALF
 from tmm_sheets.compare.photo.traces import Trace, open_line
 from tmm_sheets.compare.report import verdict
@@ -23,12 +24,15 @@ LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "t
 """Lines whose ends mean nothing exact: by hand they are overdrawn."""
 LOOSE_ROLES = frozenset({"symbol", "curve"})
 """So are the lines of guides and supports, and curves: no end of theirs is a point of a construction."""
-LOOSE = 2.5  # mm by which those may be too long or too short; a dashed one shorter by a gap
+LOOSE, SCARCELY = 2.5, 1.7
+"""mm by which those may be too long or too short, a dashed one shorter by its last dash; and by which a line of a construction may
+be too short, which is drawn to a point, a curve or another line and not seldom beyond it."""
 TINY = 8.0
 """mm; a closed outline of no more to each side is judged by where it is: its sides, each off by a pencil, give it a turn and a size
 that say nothing unless they are off by twice as much."""
 FORM_ROLES = frozenset({"frame", "table"})
-"""Rules of tables and of the form: no construction hangs on them, so doubt about them is not told."""
+"""Rules of tables and of the form: no construction hangs on them, nor on a circle about a designation, so doubt about them is not
+told."""
 SHORT = 12.0
 """mm; a helper line of no more, each end off by a pencil, is turned as well: it is off for sure only by twice as much."""
 SOFT_TOLERANCE = 0.15  # mm added in a picture that is not sharp
@@ -114,7 +118,9 @@ def _in_pieces(f: PhotoFinding) -> PhotoFinding:
         return f
     if f.trace.status == "missing":
         half = f.trace.covered >= HALF
-        what = (tell("ink in parts of its place only: it lies elsewhere, or pieces of it are seen") if half else
+        if half and f.element.role in FORM_ROLES:
+            return replace(f, verdict="green", deviation=0.0, what=tell("only pieces of it are seen"))
+        what = (tell("ink in parts of its place only: it was left out, lies elsewhere, or pieces of it are seen") if half else
                 tell("not seen; lines as thin as it are in pieces in this picture"))
     else:
         pieces = tell("only pieces of it are seen")
@@ -142,17 +148,22 @@ def _with_head(f: PhotoFinding) -> PhotoFinding:
 def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFinding:
     """Judge what was found of a line or of lettering, heads aside."""
     e, tolerance = t.element, tolerance_of(pencil, uncertainty, soft)
+    if t.status == "measured" and t.deviation > tolerance and not loose_ends(e) and all(by > LOOSE for by in t.ends):
+        t = Trace(e, "missing")  # what lies there and goes on at both ends is another line
     middle = complex(e.points[len(e.points) // 2]) if e.kind != "line" else complex(e.points.mean())
     if t.status == "measured":
-        deviations = [_displacement(t, tolerance, middle), *_ends(t, pencil, tolerance, soft)]
+        ends = [*_ends(t, pencil, tolerance, soft)]
+        deviations = [_displacement(t, tolerance, middle), *ends]
         if _crowded(t, tolerance):
             del deviations[0]
             if all(d.share <= 1 for d in deviations):
                 return PhotoFinding(e, "green", 0.0, tell(TOO_NEAR), middle, replace(t, status="dense"), tolerance)
         elif _tiny(e):
             deviations = _of_tiny(t, tolerance, deviations[0])
+        if _loosely_judged(e) and deviations[0].share <= 2 and any(d.share > 1 for d in ends):
+            deviations = ends  # how a short line is turned is no matter, where it ends is
         worst = max(deviations, key=lambda d: d.share)
-        if 1 < worst.share <= 2 and _loosely_judged(e):
+        if 1 < worst.share <= 2 and _loosely_judged(e) and (e.role in FORM_ROLES or worst not in ends):
             said = tell("a little aside, no more than its kind may be")
             return PhotoFinding(e, "green", worst.off, said, worst.place, t, tolerance)
         said = "; ".join(d.said for d in deviations if d.said)
@@ -183,15 +194,18 @@ def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFindi
 
 def _loosely_judged(e: Element) -> bool:
     """Whether an element is told to be off only when it is so for sure."""
-    return e.role in FORM_ROLES or (e.kind == "line" and e.style in LOOSE_STYLES and e.length <= SHORT)
+    about_letters = e.kind == "circle" and not e.step and e.radius <= TINY
+    return e.role in FORM_ROLES or about_letters or (e.kind == "line" and e.style in LOOSE_STYLES and e.length <= SHORT)
 
 
 def _crowded(t: Trace, tolerance: float) -> bool:
-    """Whether a line seems off in its place for the ink of others that run near most of it; a small outline by any ink there."""
-    thin = t.element.kind == "line" and t.element.style in LOOSE_STYLES
-    if t.element.kind == "circle" or t.free >= (CROWDED_THIN if thin else CROWDED) or t.deviation <= tolerance:
+    """Whether a line or a joint seems off in its place for the ink of others near most of it; a small outline by any ink there."""
+    e = t.element
+    thin = e.kind == "line" and e.style in LOOSE_STYLES
+    long = e.kind == "circle" and not joint(e)
+    if long or t.free >= (CROWDED_THIN if thin else CROWDED) or t.deviation <= tolerance:
         return False
-    return t.deviation <= 2 * tolerance or _tiny(t.element)
+    return t.deviation <= 2 * tolerance or _tiny(e)
 
 
 def _tiny(e: Element) -> bool:
@@ -225,13 +239,14 @@ _END = {
 def _ends(t: Trace, pencil: float, tolerance: float, soft: bool) -> Iterator[_Deviation]:
     """How far the ends that could be seen are off."""
     e, loose = t.element, loose_ends(t.element)
-    gap = -min(line_type(e.style).pattern, default=0.0)
+    dash = sum(map(abs, line_type(e.style).pattern))
     for k, at in ((0, e.points[0]), (1, e.points[-1])):
         end = t.ends[k]
         if not np.isfinite(end) or (e.style in LOOSE_STYLES and soft):
             continue
-        # 0.2 mm: the steps in which ends are seen. By hand a dashed line ends in a gap as well as in a dash.
-        allowed = LOOSE + (gap if end < 0 else 0.0) if loose else tolerance + pencil + 0.2
+        # 0.2 mm: the steps in which ends are seen. By hand a dashed line may end a dash and its gap before.
+        drawn_to = SCARCELY if e.role == "construction" else LOOSE
+        allowed = (LOOSE if end > 0 else drawn_to + dash) if loose else tolerance + pencil + 0.2
         said = tell(_END[k, bool(end > 0)]).format(by=millimetres(end)) if abs(end) > allowed else ""
         off = min(abs(end), 2 * allowed) if loose else abs(end)  # a thin line drawn over is never more than a remark
         yield _Deviation(off, allowed, complex(at), said)

@@ -6,6 +6,7 @@ What is not seen there may have been drawn. A line whose paper is washed out is 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,10 +20,14 @@ from tmm_sheets.drawing.marks import Points
 
 ABOUT, STEEP = 7, 0.9
 """mm within which a shadow begins, and brightness of its dark side as a share of the other up to which its edge is steep."""
+STEP = 0.5
+"""mm between places of an end."""
 TAKEN = 0.3
 """Share of an element's place in such light from which on nothing is told of what is not seen of it."""
 APART = 50.0
 """mm from which on two places are told of."""
+CUT = 1.0
+"""mm by which a line seems too short from which on it is asked whether the light has taken the rest."""
 LETTERING = ("absent lettering", "part of lettering")
 
 
@@ -41,17 +46,38 @@ def uneven_places(grey: Any, m: Map) -> Mask:
 
 
 def without_taken(traces: Sequence[Trace], uneven: Mask) -> list[Trace]:
-    """The traces; what is not seen, or only in part, where the light takes it away is hidden."""
-    return [Trace(t.element, "hidden") if _doubtful(t) and at(_places(t.element), uneven).mean() >= TAKEN else t for t in traces]
+    """The traces; what is not seen, or only in part, where the light takes it away is hidden, and so is the end of a line."""
+    return [Trace(t.element, "hidden") if _doubtful(t) and at(_places(t.element), uneven).mean() >= TAKEN else
+            _with_ends_shown(t, uneven) for t in traces]
+
+
+def _with_ends_shown(t: Trace, uneven: Mask) -> Trace:
+    """A trace; where the light has taken what a line is too short by, its end is unknown."""
+    rests = [k for k, by in enumerate(t.ends) if by < -CUT and at(_rest(t, k), uneven).mean() >= TAKEN]
+    begin, end = (np.nan if k in rests else by for k, by in enumerate(t.ends))
+    return replace(t, ends=(begin, end)) if rests else t
+
+
+def _rest(t: Trace, k: int) -> Points:
+    """Places of a line that are not seen at its beginning or its end."""
+    line, by = sampled(t.element.points if k == 0 else t.element.points[::-1], STEP)[0], -t.ends[k]
+    return np.asarray(line[: max(round(by / STEP), 1)])
 
 
 def taken(before: Sequence[Trace], after: Sequence[Trace]) -> list[complex]:
     """About where the light took something of the sheet, mm; nothing where it took nothing."""
     places: list[complex] = []
-    for middle in (t.element.middle for s, t in zip(before, after, strict=True) if s is not t):
+    for middle in (_where(s, t) for s, t in zip(before, after, strict=True) if s is not t):
         if all(abs(middle - z) > APART for z in places):
             places.append(middle)
     return places
+
+
+def _where(before: Trace, after: Trace) -> complex:
+    """About where the light took something of an element: all of it, or an end."""
+    if after.status == "hidden":
+        return after.element.middle
+    return complex(after.element.points[0 if np.isfinite(before.ends[0]) and not np.isfinite(after.ends[0]) else -1])
 
 
 def _doubtful(t: Trace) -> bool:

@@ -29,8 +29,9 @@ ASIDE = np.linspace(-0.3, 0.3, 5)  # mm to either side where its ink may be
 BESIDE = np.linspace(-0.7, 0.7, 13)  # mm to either side where another's ink may come from; less than a pixel apart
 GAP, PATTERN_GAP, BEYOND_GAP = 1.6, 3.5, 0.3
 """mm of bare paper a solid and a dashed line may have along their way, and any line beyond its end, where letters stand near."""
-LIFTED, RESTS = 2.6, 1.2
-"""mm of bare paper a lifted pencil may leave near an end, and least mm of ink, its own or another's, from there to the end."""
+LIFTED, RESTS, DRAWN_TO = 2.6, 1.2, 1.8
+"""mm of bare paper a lifted pencil may leave near an end, and least mm of ink, its own or another's, from there to the end; of a
+line of a construction: nearer to its end there is the line or curve that it was to be drawn to."""
 RESUMED = 4
 """Places in a row with its own ink by which a line goes on after a wider gap than is usual."""
 CLEAR, CLEARER = 0.5, 0.6
@@ -135,7 +136,8 @@ def _end(way: _Way, across: Any, hidden: Any, crowded: Any, level: float) -> flo
         weak = own[extent[1] + 2 : int((t < 0).sum())]
         paler = pale[rest].sum() >= max(PALER / STEP, MOST * (~hidden[rest]).sum())
         faded = way.element.style in LOOSE_STYLES and crowded[rest].sum() > 0.5 * len(crowded[rest]) > 0
-        return float("nan") if (len(weak) and weak.mean() > 0.3) or faded or paler or _lifted(dark[rest]) else most - shown
+        lifted = _lifted(dark[rest], DRAWN_TO if way.element.role == "construction" else RESTS)
+        return float("nan") if (len(weak) and weak.mean() > 0.3) or faded or paler or lifted else most - shown
     beyond = least - shown
     seen = own[(t > pen + BLUR) & (t <= least)]
     if beyond > 0 and len(seen) and seen.sum() * STEP >= min(SEEN, beyond) and seen.mean() > SHARE:
@@ -143,10 +145,13 @@ def _end(way: _Way, across: Any, hidden: Any, crowded: Any, level: float) -> flo
     return float("nan") if most - min(least, 0.0) > VAGUE else 0.0
 
 
-def _lifted(rest: Any) -> bool:
-    """Whether between where a line stops and its proper end there is one gap, as by a lifted pencil, and then ink all the way."""
+def _lifted(rest: Any, least: float) -> bool:
+    """Whether between where a line stops and its proper end there is one gap, as by a lifted pencil, and then ink all the way.
+
+    There must be at ``least`` so many mm of that.
+    """
     bare = int(np.argmax(rest)) if rest.any() else len(rest)
-    return bool(bare * STEP <= LIFTED and (len(rest) - bare) * STEP >= RESTS and rest[bare:].all())
+    return bool(bare * STEP <= LIFTED and (len(rest) - bare) * STEP >= least and rest[bare:].all())
 
 
 def _ink_along(way: _Way, across: Any, hidden: Any, level: float) -> tuple[Any, Any, Any]:

@@ -189,6 +189,17 @@ def camera_foot(m: Map) -> tuple[complex, float]:
     aside = abs(complex(m.to_base(np.array([m.middle]))[0]) - PAPER.centre)
     if np.abs((sides + 45) % 90 - 45).max() < PARALLEL and aside < CENTRAL:
         return PAPER.centre, ANYWHERE
-    g = np.linalg.inv(m.matrix) / np.array([[FOCUS], [FOCUS], [1.0]])
-    first, second, away = (g / np.linalg.norm(g[:, 0])).T
+    first, second, away = _camera(m)
     return complex(-first @ away, -second @ away), FOOT
+
+
+def camera_height(m: Map) -> float:
+    """How far above the sheet the camera was by the size of the picture, mm."""
+    first, second, away = _camera(m)
+    return float(abs(np.cross(first, second) @ away))
+
+
+def _camera(m: Map) -> Floats:
+    """The directions of the sheet's axes, and its origin, mm, as the camera has them."""
+    g = np.linalg.inv(m.matrix) / np.array([[FOCUS], [FOCUS], [1.0]])
+    return np.asarray((g / np.linalg.norm(g[:, 0])).T)

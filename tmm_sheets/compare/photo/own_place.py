@@ -128,10 +128,10 @@ def in_place(strip: Strip, level: float) -> Trace | None:
 
 
 def uncovered(strip: Strip) -> Any:
-    """How dark an element's place is at those of its stations where no other line covers it or runs along it."""
+    """How dark an element's place is at each of its stations, nan where another line covers it or runs along it."""
     width = line_type(strip.element.style).width
     clear = np.where(strip.others, np.abs(OFFSETS), NEAR).min(1) > CLEAR + width / 2
-    return np.where(np.abs(OFFSETS) <= WITHIN, strip.profile, 0).max(1)[clear]
+    return np.where(clear, np.where(np.abs(OFFSETS) <= WITHIN, strip.profile, 0).max(1), np.nan)
 
 
 def _at_home(profile: Any, o: Floats) -> bool:

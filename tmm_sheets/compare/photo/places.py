@@ -43,6 +43,13 @@ LEAST_RADIUS, OTHER, ROUND = 4.0, (0.8, 6.0), 0.5
 TURN, PART = 90.0, 5.0
 """Degrees of a circle that ink must take, counted by parts."""
 STEP = 1.0
+EITHER = 2
+"""Most lines of which one may have been drawn where there is ink for them to be named."""
+UNDER = 0.7
+"""Least share of a line that lies under others for the ink in its place to be no sign of it."""
+PIVOT, AS_LONG, SWUNG = 1.0, 2.5, (1.0, 8.0)
+"""mm from ink's straight line within which an end of a line stays that was drawn askew, by how much its length may be another, and
+how far its other end lies from where it belongs."""
 
 
 @dataclass(frozen=True)
@@ -55,12 +62,14 @@ class Place:
     findings : what is off there
     own : ink by which a finding's line was found
     ink : other ink there
+    likely : lines in strokes with others of which one may have been drawn where there is only ink
     """
 
     number: int
     findings: tuple[PhotoFinding, ...] = ()
     own: tuple[ExtraInk, ...] = ()
     ink: tuple[ExtraInk, ...] = ()
+    likely: tuple[PhotoFinding, ...] = ()
 
     @property
     def verdict(self) -> Verdict:
@@ -111,7 +120,8 @@ def places(findings: Sequence[PhotoFinding], extra: Sequence[ExtraInk]) -> list[
     rest = [x for x in alone if not any(x is y for _, some in circles for y in some)]
     ink = sorted(_pieces(rest), key=lambda some: -sum(x.length for x in some))
     out = [Place(0, tuple(g), tuple(mine), tuple(near)) for g, mine, near in zip(groups, own, beside, strict=True)]
-    out += [Place(0, (f,), tuple(some)) for f, some in circles] + [Place(0, ink=tuple(some)) for some in ink]
+    out += [Place(0, (f,), tuple(some)) for f, some in circles] + [Place(0, ink=tuple(some), likely=_likely(findings, some))
+                                                                         for some in ink]
     return [replace(p, number=k) for k, p in enumerate(out, 1)]
 
 
@@ -212,6 +222,48 @@ def _way(points: Points) -> complex:
     """The direction in which points lie."""
     _, way = np.linalg.eigh(np.cov(points.real, points.imag))
     return complex(way[0, 1], way[1, 1])
+
+
+def _likely(findings: Sequence[PhotoFinding], ink: Sequence[ExtraInk]) -> tuple[PhotoFinding, ...]:
+    """The line that may have been drawn askew where there is a straight stroke of ink, where that is one of few.
+
+    Near the end that stays others hide its ink. Its own place must be one where it cannot be told from others.
+    """
+    z = np.concatenate([x.points for x in ink])
+    if len(z) < 2 or np.std((z * np.conj(way := _way(z))).imag) > IN_LINE:
+        return ()
+    along = (z * np.conj(way)).real
+    ends = z[[along.argmin(), along.argmax()]]
+    lines = [f for f in findings if f.element.kind == "line" and len(f.element.points) == 2]
+    some = [f for f in lines if _askew(f.element.points, ends, way) and _not_sure(f, lines)]
+    return tuple(some) if len({(f.element.view, f.element.name, f.element.position) for f in some}) <= EITHER else ()
+
+
+def _not_sure(f: PhotoFinding, lines: Sequence[PhotoFinding]) -> bool:
+    """Whether it cannot be told that a line stands in its own place: the ink there may be that of others."""
+    if f.trace.status in ("dense", "shared", "covered") or f.trace.head in ("absent", "left out"):
+        return True
+    if f.trace.status != "measured" or f.verdict != "green":
+        return False
+    z = sampled(f.element.points, STEP)[0]
+    under = np.zeros(len(z), bool)
+    for g in lines:
+        if g is not f:
+            begin, end = g.element.points
+            share = (z - begin) / (end - begin)
+            under |= (np.abs(share.imag) * abs(end - begin) <= SAME) & (share.real >= 0) & (share.real <= 1)
+    return bool(under.mean() >= UNDER)
+
+
+def _askew(line: Points, ends: Points, way: complex) -> bool:
+    """Whether a straight stroke in the direction ``way`` may be a line with one end in its place."""
+    length = abs(line[-1] - line[0])
+    for stays, other in ((line[0], line[-1]), (line[-1], line[0])):
+        far = ends[np.abs(ends - stays).argmax()]
+        if (abs(((stays - far) * np.conj(way)).imag) <= PIVOT and abs(abs(far - stays) - length) <= AS_LONG
+                and SWUNG[0] < abs(far - other) <= SWUNG[1]):
+            return True
+    return False
 
 
 def _pieces(some: Sequence[ExtraInk]) -> list[list[ExtraInk]]:

@@ -73,6 +73,8 @@ WHOLE = 0.98
 """Share of a side's points in place below which the side is followed once more, near where the lines inside have it."""
 ABOUT = 1.5
 """How near that is, mm."""
+FAR = 3.0
+"""The same where a surface may be in part, mm; the edge of the paper is 5 mm from the frame."""
 NO_SIDES = Seen(np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, complex), np.zeros(0))
 CURVED = 0.8
 """Least share of lines in place from which on a surface is believed that only a frame led to."""
@@ -328,21 +330,26 @@ class _Attempts:
         level, m = line_level(ink), straight
         if right:
             sides = frame_fit.sides_near(self.grey, m, ABOUT)
-        for size, far in ROUGHLY:
-            seen = patches.patches(m, straight, ink, self.lines, COARSE, size)
-            count = len(seen.weight) // 2
-            # As much as a fifth of the frame's points, as in _by_patches; each patch as much as some points of lines.
-            own = sides._replace(weight=sides.weight * np.sqrt(0.4 * count / max(float(sides.weight.sum()), 1.0)))
-            m = fit_surface(m, own, SIDE, seen._replace(weight=2 * seen.weight), far)
         weight = weights(self.lines)
-        for reach, far in FINER:
-            sides = frame_fit.sides_near(self.grey, m, ABOUT)
-            own = sides._replace(weight=0.5 * sides.weight)
-            at = straight.to_sheet(m.to_picture(self.lines.points))
-            o, use, _ = inked(ink, self.lines, reach, level, at - self.lines.points, COARSE)
-            seen = Seen(straight.to_picture(at + self.lines.normals * o), self.lines.points, self.lines.normals, weight * use)
-            m = fit_surface(m, own, max(2 * far, 0.5), seen, far)
-        check = fit_check.check(m, straight, sides, ink, self.lines, level, COARSE)
+        for steps in (ROUGHLY, ROUGHLY[-1:]):
+            for size, far in steps:
+                seen = patches.patches(m, straight, ink, self.lines, COARSE, size)
+                count = len(seen.weight) // 2
+                # As much as a fifth of the frame's points, as in _by_patches; each patch as much as some points of lines.
+                own = sides._replace(weight=sides.weight * np.sqrt(0.4 * count / max(float(sides.weight.sum()), 1.0)))
+                m = fit_surface(m, own, SIDE, seen._replace(weight=2 * seen.weight), far)
+            for reach, far in FINER:
+                sides = frame_fit.sides_near(self.grey, m, max(reach, ABOUT))
+                own = sides._replace(weight=0.5 * sides.weight)
+                at = straight.to_sheet(m.to_picture(self.lines.points))
+                o, use, _ = inked(ink, self.lines, reach, level, at - self.lines.points, COARSE)
+                seen = Seen(straight.to_picture(at + self.lines.normals * o), self.lines.points, self.lines.normals, weight * use)
+                m = fit_surface(m, own, max(2 * far, 0.5), seen, far)
+            check = fit_check.check(m, straight, sides, ink, self.lines, level, COARSE)
+            if check.match < MATCH or (not len(check.astray) and float(check.sides.min()) > WHOLE):
+                break
+            # Where a corner was farther off than lines are sought, its patches know by now where it is.
+            sides = frame_fit.sides_near(self.grey, m, FAR)
         return attempt._replace(frame=attempt.frame._replace(sides=sides), map=m, check=check)
 
     def _by_patches(self, straight: Map, sides: Seen, ink: Any) -> Map:

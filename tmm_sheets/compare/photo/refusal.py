@@ -27,9 +27,15 @@ EDGE = 0.01
 """Share of the picture's longer side within which its edge is."""
 OUT = 0.2
 """Share of a side outside the picture from which on that is what is wrong with it."""
+BENT, FOLLOWED = 1.0, 0.5
+"""mm by which a part of the frame that is seen is off, and least share of the frame that could be followed, for its sides not to be
+hidden but out of reach of any map of paper."""
 FLAT_OR_PLACED = marked(
     "lay the sheet flat, weights on its corners, and photograph from straight above; "
     "if a view was drawn in another place, give --views FILE"
+)
+PRESS = marked(
+    "press the sheet flat, under glass or with weights along its edges, nothing beneath it, and photograph from straight above"
 )
 _HIDDEN = (
     marked("the lower side of the frame is hidden or was not drawn"),
@@ -64,13 +70,17 @@ def refusal(grey: Any, found: Rectified, known: Sequence[Element], path: Path, n
 
 def _reasons(grey: Any, found: Rectified) -> Iterator[tuple[str, str]]:
     """What is wrong, and what to do about it."""
-    check = found.check
+    check, bent = found.check, _bent(found)
     for k, share in enumerate(check.sides):
         if share < SIDE:
             if _outside(found.map, grey.shape, k) > OUT:
                 yield tell(_OUTSIDE[k]), tell("photograph the whole frame, with some of the ground around the paper")
-            elif int((check.sides >= SIDE).sum()) < SIDES or len(check.lost) or len(check.adrift):
+            elif not bent and (int((check.sides >= SIDE).sum()) < SIDES or len(check.lost) or len(check.adrift)):
                 yield tell(_HIDDEN[k]), tell("take away what covers the frame, or fold it back, and photograph again")
+    if bent:
+        off = tell("most of the frame can be followed, but parts of it lie {by} mm off: the paper is not flat (waves, folds that "
+                   "do not lie down), or something else was taken for the frame")
+        yield off.format(by=millimetres(check.rim)), tell(PRESS)
     if float(np.median(grey)) < DARK:
         yield tell("there is too little light"), tell("more light, from a window or two lamps, without the flash")
     if _patterned(grey, found.map):
@@ -79,7 +89,7 @@ def _reasons(grey: Any, found: Rectified) -> Iterator[tuple[str, str]]:
     if len(check.shifted):
         parts = tell("parts of the sheet lie {by} mm elsewhere, neighbours alike: {n}, circled in the overlay of the attempt")
         yield parts.format(by=millimetres(check.shift), n=len(check.shifted)), tell(FLAT_OR_PLACED)
-    elif len(check.adrift):
+    elif len(check.adrift) and not bent:
         loose = tell("nothing shows where the sheet ends there, and what is drawn nearby lies elsewhere, circled in the overlay "
                      "of the attempt")
         yield loose, tell("photograph the whole frame, with some of the ground around the paper")
@@ -87,9 +97,14 @@ def _reasons(grey: Any, found: Rectified) -> Iterator[tuple[str, str]]:
         places = tell("parts of the sheet whose lines are elsewhere: {n} of {all}, circled in the overlay of the attempt")
         flat = tell("lay the sheet flat, weights on its corners, and photograph from straight above")
         yield places.format(n=len(check.astray), all=check.judged), tell(FLAT_OR_PLACED) if check.framed else flat
-    else:
+    elif not bent:
         share = tell("only {share} % of its lines are where they belong")
         yield share.format(share=round(100 * check.match)), tell("photograph from straight above, sharp, in even light")
+
+
+def _bent(found: Rectified) -> bool:
+    """Whether the frame is seen, and no map of paper that lies down has it where it is."""
+    return found.check.rim > BENT and float((found.sides.weight > 0).mean()) >= FOLLOWED
 
 
 def _outside(m: Map, shape: tuple[int, ...], k: int) -> float:

@@ -46,6 +46,7 @@ class Map:
     waves : coefficients of the residual inside the frame, mm (see :func:`waves`)
     surface : B-spline of the height of paper that is not smooth, mm, instead of relief, sides and waves (see ``surface``)
     stretch : B-splines of what such paper is displaced by in x and in y, mm
+    drawn_in : the same of what it is drawn in by, for it keeps its length where it rises and falls (see ``drawn_in``)
     local : finer B-splines of what is displaced where the paper bulges (see ``bulges``), mm
     """
 
@@ -59,6 +60,7 @@ class Map:
     waves: Floats = field(default_factory=lambda: np.zeros(2 * WAVES**2))
     surface: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     stretch: Floats = field(default_factory=lambda: np.zeros((2, 0, 0)))
+    drawn_in: Floats = field(default_factory=lambda: np.zeros((2, 0, 0)))
     local: Floats = field(default_factory=lambda: np.zeros((2, 0, 0)))
 
     def to_base(self, q: Points) -> Points:
@@ -92,7 +94,7 @@ class Map:
 
     def _smooth(self, p: Points) -> Points:
         if self.surface.size:
-            along, up = (spline(p, part) for part in self.stretch)
+            along, up = (spline(p, one) + spline(p, other) for one, other in zip(self.stretch, self.drawn_in, strict=True))
             return np.asarray(along + 1j * up + spline(p, self.surface) * (p - self.foot) / AWAY)
         u, v = (p.real - FRAME.x0) / FRAME.width, (p.imag - FRAME.y0) / FRAME.height
         bottom, right, top, left = (
@@ -142,7 +144,7 @@ def _cubic(t: Floats, cells: int) -> tuple[Any, Floats]:
     return first, np.stack(((1 - t) ** 3, (3 * t - 6) * t**2 + 4, ((3 - 3 * t) * t + 3) * t + 1, t**3), -1) / 6
 
 
-def _nodes(p: Points, shape: tuple[int, int]) -> tuple[Any, Floats]:
+def spline_nodes(p: Points, shape: tuple[int, int]) -> tuple[Any, Floats]:
     """The sixteen coefficients of a spline that count at points of the sheet, and their weights, (..., 16)."""
     p = np.asarray(p)
     j, b = _cubic((p.imag - FRAME.y0) / FRAME.height, shape[0] - 3)
@@ -154,16 +156,40 @@ def _nodes(p: Points, shape: tuple[int, int]) -> tuple[Any, Floats]:
 
 def spline(p: Points, coefficients: Floats) -> Floats:
     """A cubic B-spline over the frame at points of the sheet."""
-    which, weight = _nodes(p, (coefficients.shape[0], coefficients.shape[1]))
+    which, weight = spline_nodes(p, (coefficients.shape[0], coefficients.shape[1]))
     return np.asarray((coefficients.ravel()[which] * weight).sum(-1))
 
 
 def spline_base(p: Points, shape: tuple[int, int]) -> Floats:
     """What each coefficient of such a spline brings at points of the sheet, (n, coefficients)."""
-    which, weight = _nodes(p, shape)
+    which, weight = spline_nodes(p, shape)
     base = np.zeros((len(p), shape[0] * shape[1]))
     np.put_along_axis(base, which, weight, 1)
     return base
+
+
+def drawn_in(surface: Floats, scale: float) -> Floats:
+    """By how much paper that rises and falls is shorter seen from above, mm: the coefficients of such splines for x and for y.
+
+    Paper keeps its length along every line; ``scale`` is that of the heights.
+    """
+    step = 8.0
+    bases = []
+    for size, cells in ((FRAME.height, surface.shape[0] - 3), (FRAME.width, surface.shape[1] - 3)):
+        t = np.linspace(0, 1, round(size / step) + 1)
+        first, weight = _cubic(t, cells)
+        base = np.zeros((len(t), cells + 3))
+        np.put_along_axis(base, first[:, None] + np.arange(4), weight, 1)
+        bases.append(base)
+    up, along = bases
+    height = scale * up @ surface @ along.T
+    out = []
+    for axis, size in ((1, FRAME.width), (0, FRAME.height)):
+        apart = size / (height.shape[axis] - 1)
+        lost = np.gradient(height, apart, axis=axis) ** 2 / 2 * apart
+        aside = np.cumsum(lost, axis) - lost / 2
+        out.append(np.linalg.pinv(up) @ (aside.mean(axis, keepdims=True) - aside) @ np.linalg.pinv(along).T)
+    return np.stack(out)
 
 
 def projected(matrix: Floats, p: Points) -> Points:

@@ -1,8 +1,8 @@
 """Paper that is not smooth: waves, creases, what lies beneath it.
 
 Its height is a cubic B-spline over the sheet, with a prior against bending, so that single lines do not lift it; where it is
-steep, it also is shorter, which a second, coarser spline takes up in the plane. Everything is fitted together with the homography,
-the lens and the camera's foot.
+steep, it also is shorter by as much as paper is that keeps its length, and what that leaves a coarser spline takes up in the plane.
+Everything is fitted together with the homography, the lens and the camera's foot.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.compare.photo.map_fit import LENS, Seen, camera_foot
-from tmm_sheets.compare.photo.sheet_map import AWAY, FRAME, Floats, Map, spline_base
+from tmm_sheets.compare.photo.map_fit import LENS, Seen, camera_foot, camera_height
+from tmm_sheets.compare.photo.sheet_map import AWAY, FRAME, Floats, Map, drawn_in, spline_nodes
 
 CELLS, STRETCHED = (20, 14), (8, 6)
 """Cells along the frame's width and height, of the height and of what is taken up in the plane."""
@@ -46,12 +46,19 @@ def fit_surface(m: Map, sides: Seen, loose: float, seen: Seen, far: float) -> Ma
     seen = Seen(*(np.concatenate(pair) for pair in zip(sides, seen, strict=True)))
     shape, flat = (CELLS[1] + 3, CELLS[0] + 3), (STRETCHED[1] + 3, STRETCHED[0] + 3)
     foot, error = camera_foot(m)
+    away = camera_height(m)
     if not m.surface.any():
-        m = replace(m, surface=np.zeros(shape), stretch=np.zeros((2, *flat)), foot=foot)
+        m = replace(m, surface=np.zeros(shape), stretch=np.zeros((2, *flat)), drawn_in=np.zeros((2, *shape)), foot=foot)
     m = replace(m, sides=np.zeros_like(m.sides), relief=np.zeros_like(m.relief), waves=np.zeros_like(m.waves))
     p, n = seen.sheet, np.conj(seen.normals)
-    height, plane = spline_base(p, shape), spline_base(p, flat)
-    count, few = height.shape[1], plane.shape[1]
+    here_of, height = spline_nodes(p, shape)
+    plane_of, plane = spline_nodes(p, flat)
+    count, few = shape[0] * shape[1], flat[0] * flat[1]
+    # Of some six hundred unknowns a point knows sixty: all points in one cell of both splines the same ones.
+    which = np.hstack((np.tile(np.arange(12), (len(p), 1)), 12 + here_of, 12 + count + plane_of, 12 + count + few + plane_of))
+    _, cell = np.unique(here_of[:, 0] * few + plane_of[:, 0], return_inverse=True)
+    order = np.argsort(cell, kind="stable")
+    cells = np.split(order, np.flatnonzero(np.diff(cell[order])) + 1)
     spacing = FRAME.width / CELLS[0]
     rough, uneven = _bending(shape) / (CURVED * spacing**2), _bending(flat) / LONG
     usual = np.concatenate((np.full(8, np.inf), LENS, (FREE * error, FREE * error), np.full(count, TALL), np.full(2 * few, LONG)))
@@ -68,8 +75,9 @@ def fit_surface(m: Map, sides: Seen, loose: float, seen: Seen, far: float) -> Ma
                                m.stretch.ravel()))
 
     def unpacked(x: Floats) -> Map:
+        risen = x[12 : 12 + count].reshape(shape)
         return replace(m, matrix=np.append(x[:8], 1.0).reshape(3, 3), bend=(float(x[8]), float(x[9])), foot=complex(x[10], x[11]),
-                       surface=x[12 : 12 + count].reshape(shape), stretch=x[12 + count :].reshape(2, *flat))
+                       surface=risen, stretch=x[12 + count :].reshape(2, *flat), drawn_in=drawn_in(risen, away / AWAY))
 
     def base(x: Floats) -> Floats:
         at = replace(m, matrix=np.append(x[:8], 1.0).reshape(3, 3), bend=(x[8], x[9])).to_base(seen.picture)
@@ -79,9 +87,11 @@ def fit_surface(m: Map, sides: Seen, loose: float, seen: Seen, far: float) -> Ma
     lever_less = np.hstack((-n.real[:, None] * plane, n.imag[:, None] * plane))
     for _ in range(STEPS):
         size = np.append(np.maximum(np.abs(x[:8]), 1e-2), (0.05, 0.05)) * 1e-4
-        here, lift = base(x), height @ x[12 : 12 + count]
+        here, lift = base(x), (height * x[12 + here_of]).sum(1)
         lever = np.real(n * (p - complex(x[10], x[11]))) / AWAY
-        r = here - np.real(n * p) - lift * lever + lever_less @ x[12 + count :]
+        aside = drawn_in(x[12 : 12 + count].reshape(shape), away / AWAY).reshape(2, -1)
+        shorter = [(height * part[here_of]).sum(1) for part in aside]
+        r = here - np.real(n * (p + shorter[0] + 1j * shorter[1])) - lift * lever + (lever_less * x[which[:, 28:]]).sum(1)
         jacobian = np.hstack((
             np.stack([(base(x[:10] + e) - here) / s for e, s in zip(np.diag(size), size, strict=True)], -1),
             np.stack((n.real * lift, -n.imag * lift), -1) / AWAY,
@@ -89,13 +99,17 @@ def fit_surface(m: Map, sides: Seen, loose: float, seen: Seen, far: float) -> Ma
             lever_less,
         ))  # fmt: skip
         w = seen.weight / (1 + (r / loosely) ** 2) / (POINT * np.minimum(loosely, SHARPLY))
-        weighted = jacobian * w[:, None]
-        square = weighted.T @ weighted + prior
+        weighted, wanted = jacobian * w[:, None], r * w
+        square, down = prior.copy(), -prior @ (x - middle)
+        for some in cells:
+            mine, part = which[some[0]], weighted[some]
+            square[mine[:, None], mine] += part.T @ part
+            down[mine] -= wanted[some] @ part
         scale = 1 / np.sqrt(np.maximum(np.diag(square), 1e-12))
         square = square * scale * scale[:, None]
-        change = scale * np.linalg.solve(square + 1e-9 * np.eye(len(x)), scale * (-(weighted.T @ (r * w)) - prior @ (x - middle)))
+        change = scale * np.linalg.solve(square + 1e-9 * np.eye(len(x)), scale * down)
         x = x + change
-        if float(np.abs(jacobian @ change).max()) < SETTLED:
+        if float(np.abs((jacobian * change[which]).sum(1)).max()) < SETTLED:
             break
     return unpacked(x)
 

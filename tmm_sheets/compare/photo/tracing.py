@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo import moved_labels
 from tmm_sheets.compare.photo.arrow_heads import exchanged, with_heads
 from tmm_sheets.compare.photo.displacement import beside, displaced, rather_elsewhere
-from tmm_sheets.compare.photo.dots import displaced_dots
+from tmm_sheets.compare.photo.dots import NO_GREY, displaced_dots
 from tmm_sheets.compare.photo.extra_ink import extra_ink, without_creases
 from tmm_sheets.compare.photo.forks import parted
 from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden, widened
@@ -32,16 +32,19 @@ from tmm_sheets.compare.photo.ink_levels import ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.line_ends import with_ends
+from tmm_sheets.compare.photo.meeting_ends import without_joins
+from tmm_sheets.compare.photo.one_owner import with_owners
 from tmm_sheets.compare.photo.one_stroke import others_in_stroke
-from tmm_sheets.compare.photo.own_place import in_place, strips, uncovered
-from tmm_sheets.compare.photo.profiles import pixels, sample
+from tmm_sheets.compare.photo.own_place import Strip, in_place, strips, uncovered
+from tmm_sheets.compare.photo.profiles import SCALE, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
 from tmm_sheets.compare.photo.stations import LEAST, expected_ink, measurable, stations
 from tmm_sheets.compare.photo.torn import in_pieces, torn_widths
 from tmm_sheets.compare.photo.traces import ExtraInk, Status, Trace
-from tmm_sheets.compare.photo.wiping import ROOM, fill, paint, wipe_found, wipe_small
+from tmm_sheets.compare.photo.twins import with_twins
+from tmm_sheets.compare.photo.wiping import ROOM, fill, fixed, paint, wipe_found, wipe_small
 from tmm_sheets.drawing.labels import text_box
-from tmm_sheets.drawing.marks import Text
+from tmm_sheets.drawing.marks import Points, Text
 from tmm_sheets.drawing.styles import line_type
 
 OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is not judged
@@ -58,10 +61,14 @@ PALE, GAPS = 0.6, 0.85
 COVERED, FAINT, BARE = 0.65, 0.3, 0.6
 """Share of a line that others cover or run along from which on what was taken for it may be theirs: where it is alone, darkness as
 a share of the usual up to which it is not seen, and share of such places from which on it was theirs."""
+PALER, TO_DOT, AT_DOT = 0.5, 2.5, 0.8
+"""The same darkness in the half of a line next to a dot at which it ends, least mm of that where it is alone, and mm from its end
+to the middle of the dot: other helper lines end anywhere, this one must be seen to its point, if lines are grey at all."""
 AWAY = 1.0
 """mm from its place beyond which a line that was not seen there is elsewhere."""
 CLOSE = 0.9  # mm by which a line drawn by hand and photographed is wider than its own width
 BESIDE = 0.9  # mm about lines whose ink is theirs
+BAR = 1.5  # mm about lettering within which its bars are
 
 
 def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> tuple[list[Trace], list[ExtraInk]]:
@@ -91,7 +98,8 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     out_of_sight = {e.number: Trace(e, "hidden") for e in elements if share_hidden(e, hidden) > OUT_OF_SIGHT}
     shown = [e for e in elements if e.number not in out_of_sight]
     small = [e for e in shown if not measurable(e)]
-    found, absent, alone = _in_their_places([e for e in shown if measurable(e)], ink, owners, pale, hidden)
+    dots = np.array([e.centre for e in small if e.kind == "circle" and e.fills], complex)
+    found, absent, alone = _in_their_places([e for e in shown if measurable(e)], dots, ink, owners, pale, hidden)
     wiped = np.zeros_like(ink)
     for e in small:
         wipe_small(wiped, e)
@@ -108,16 +116,18 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         covers = cv2.resize(hidden.astype(np.uint8), ink.shape[::-1], interpolation=cv2.INTER_NEAREST) * np.uint8(255)
         left[covers > 0] = 0
     left[wiped > 0] = 0
-    found += _displaced(absent, ink, left, wiped, owners, pale)
+    found = with_twins(found + _displaced(absent, ink, left, wiped, owners, pale))
     found = _doubted(found, alone, ink, left, wiped, owners, pale)
+    before = {t.element.number: t for t in found}
     found = _beside_strokes(found, small, ink, owners, pale)
     words = _places_of_lettering(elements, ink)
     found = with_edges(found, ink, owners, words)
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
-    ended = with_ends(open_lines, ink, owners, words, pale)
+    ended = without_joins(with_ends(open_lines, ink, owners, words, pale), elements)
     ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
     lines = {t.element.number: t for t in (*found, *ended)}
     headed = exchanged(with_heads(list(lines.values()), ink, owners, words, hidden), ink, owners, words, hidden)
+    headed = with_owners(headed, before)
     out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
     unseen = [t for t in out.values() if t.status in ("absent lettering", "part of lettering")
               or (t.status == "lettering" and t.covered < GAPPY)]  # fmt: skip
@@ -142,26 +152,49 @@ def _shown_ends(t: Trace, hidden: Mask) -> tuple[float, float]:
     return begin, end
 
 
+class _Alone(NamedTuple):
+    """How dark the place of a line is where no other covers it, and the share of the usual up to which it is not seen there."""
+
+    dark: Floats
+    faint: float
+
+
 def _in_their_places(
-    lines: Sequence[Element], ink: Any, owners: Owners, level: float, hidden: Mask,
-) -> tuple[list[Trace], list[Element], dict[int, Floats]]:
-    """Traces of the lines that are where they belong, the lines that are not, and how dark the places of the former are where no
-    other line covers them, by number.
+    lines: Sequence[Element], dots: Points, ink: Any, owners: Owners, level: float, hidden: Mask,
+) -> tuple[list[Trace], list[Element], dict[int, _Alone]]:
+    """Traces of the lines that are where they belong, the lines that are not, and the places of the former where they are alone, by
+    number, if those may show that others' ink was taken for theirs; ``dots`` are middles.
     """
     found: list[Trace] = []
     absent: list[Element] = []
-    alone: dict[int, Floats] = {}
+    alone: dict[int, _Alone] = {}
     for strip in strips(lines, ink, owners, hidden):
         t = in_place(strip, level)
         if t is None:
             absent.append(strip.element)
             continue
         found.append(t)
-        places = uncovered(strip)
-        share = len(places) / len(strip.profile)
-        if share * strip.element.length >= LEAST and share <= 1 - COVERED and expected_ink(strip.element) == 1.0:
+        places = _alone(strip, dots)
+        if places is not None and expected_ink(strip.element) == 1.0:
             alone[strip.element.number] = places
     return found, absent, alone
+
+
+def _alone(strip: Strip, dots: Points) -> _Alone | None:
+    """The places of a line that others cover or run along for the most part where none does; before a dot where it ends, a few."""
+    e, dark = strip.element, uncovered(strip)
+    step, shows = e.length / len(dark), ~np.isnan(dark)
+    share = float(shows.mean())
+    if share <= 1 - COVERED and share * e.length >= LEAST:
+        return _Alone(dark[shows], FAINT)
+    if e.kind != "line" or share > COVERED:
+        return None
+    half = len(dark) // 2
+    for end, part in ((e.points[0], slice(half)), (e.points[-1], slice(-half, None))):
+        before = dark[part][shows[part]]
+        if len(before) * step >= TO_DOT and (np.abs(dots - end) <= AT_DOT).any():
+            return _Alone(before, PALER)
+    return None
 
 
 def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owners: Owners, level: float) -> list[Trace]:
@@ -185,7 +218,7 @@ def _edge(t: Trace) -> bool:
 
 
 def _doubted(
-    found: Sequence[Trace], alone: Mapping[int, Floats], ink: Any, left: Any, wiped: Any, owners: Owners, level: float,
+    found: Sequence[Trace], alone: Mapping[int, _Alone], ink: Any, left: Any, wiped: Any, owners: Owners, level: float,
 ) -> list[Trace]:
     """The traces; those of lines paler than others of their kind, with gaps, or not seen where they are ``alone``, are looked for
     elsewhere once more.
@@ -195,7 +228,8 @@ def _doubted(
     for t in found:
         dark = usual.get(line_type(t.element.style).width, 0.0)
         places = alone.get(t.element.number)
-        covered = places is not None and bool((places <= FAINT * dark).mean() >= BARE)
+        tells = places is not None and (places.faint <= FAINT or dark < NO_GREY)
+        covered = tells and places is not None and bool((places.dark <= places.faint * dark).mean() >= BARE)
         if covered:
             t = replace(t, status="covered", covered=0.0, darkness=0.0)
         if covered or (t.darkness and (t.darkness < PALE * dark or t.covered < GAPS)):
@@ -262,8 +296,30 @@ def _dots(small: Sequence[Element], found: Sequence[Trace], ink: Any, words: Any
         where = t.element.points if t.at is None else t.at
         paint(taken, t.element, where, CLOSE)
         paint(lines, t.element, where, 0)
-    rods = [t.element.points for t in found if t.element.kind == "line"]
-    return displaced_dots(dots, rods, lines, taken, ink, words, hidden, max(usual.values()))
+    straight = [t for t in found if t.element.kind == "line"]
+    rods, astray = [t.element.points for t in straight], [t.element.points for t in straight if _astray(t)]
+    return displaced_dots(dots, rods, lines, taken, ink, words, hidden, max(usual.values()), astray, _bars(small, ink))
+
+
+def _astray(t: Trace) -> bool:
+    """Whether a line is not in its place."""
+    return t.status in ("missing", "covered", "beside") or (t.status == "measured" and t.deviation > AWAY)
+
+
+def _bars(small: Sequence[Element], ink: Any) -> Any:
+    """A picture of the bars over letters, which lie near them all along as their leaders do not, 255 there."""
+    import cv2
+
+    out = np.zeros_like(ink)
+    for e in small:
+        if e.kind != "text" or not e.pieces:
+            continue
+        box = grown(e.points, BAR)
+        for p in e.pieces:
+            inside = (p.real > box.real.min()) & (p.real < box.real.max()) & (p.imag > box.imag.min()) & (p.imag < box.imag.max())
+            if inside.all():
+                cv2.polylines(out, [fixed(p)], False, 255, round(2 * CLOSE * SCALE), cv2.LINE_8, 4)
+    return out
 
 
 def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
