@@ -5,8 +5,8 @@ A student takes most views of a sheet, leaves out construction lines, tables, di
 scale factor of the student's own in another place under a title in the student's own words, without a frame, in other units and
 scales. Half of the drawings are sound, in the others some lines are wrong; with ``--plans`` a whole plan is built on one wrong step
 and everything in it that depends on that step is drawn where it leads; with ``--slips`` something usual is done otherwise (one of
-:mod:`tests.compare.hypotheses`) and all plans of the sheet follow from it: is it named? A view counts as found where every point of
-it is; plans that are alike (twins) may be taken for one another.
+:mod:`tests.compare.hypotheses`) and all plans of the sheet follow from it, as the arrows of forces and couples at the mechanism do:
+is it named? A view counts as found where every point of it is; plans that are alike (twins) may be taken for one another.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def taken(known: KnownSheet, view: ElementView, rng: random.Random, letters: boo
                 out += [replace(e, text=said)] if (said := title(e.text, rng)) else []
             elif letters and e.step and len(e.text) < 4:
                 out.append(e)
-        elif e.role in MAIN:
+        elif e.role in MAIN or (letters and e.kind == "arc" and e.fills):  # couples and senses of rotation have their letters
             out.append(e)
     return out
 
@@ -232,11 +232,46 @@ def follows(found: Measurables, known: KnownSheet, drawn: Drawn, slip: Slip) -> 
     if max((far for _, far in new.values()), default=0.0) <= 4:
         return False
     drawn.slipped_to = at_steps
+    for v in drawn.places.keys() - new.keys():
+        _acted(drawn, known, v, plans, hand)
     for v, (moved_to, far) in new.items():
         if far > 0.3:
             _rebuilt(drawn, v, moved_to)
             drawn.built[v] = str(slip)
     return True
+
+
+def _acted(drawn: Drawn, known: KnownSheet, view: ElementView, plans, hand: Slipping) -> None:
+    """Draw the arrows at the mechanism as they were taken: of forces, and of what turns."""
+    for i, e in enumerate(drawn.elements):
+        if e.view != view or not e.fills or e.by is None or e.by.frame < 0 or (e.role != "vector" and e.kind != "arc"):
+            continue
+        frame, plan = known.sheet.frames[e.by.frame], plans.get(e.step.partition("/")[0])
+        label = frame.position or e.position
+        if frame.plan != "positions" or plan is None or label not in plan.labels:
+            continue
+        k = plan.labels.index(label)
+
+        def at(path, k=k):
+            step = next((s for p in plans.values() for s in p if s.path == path), None)
+            if step is None:
+                return 0j, 0j
+            return tuple(complex(x[k] if np.ndim(x) else x) for x in (np.asarray(step.value), np.asarray(hand.value(step))))
+
+        was, now = at(e.step)
+        if e.name.partition("(")[0].endswith("n"):  # a reaction without its tangential part
+            was, now = np.subtract((was, now), at(f"moments/{e.step.partition('/')[2]}τ"))
+        if e.kind == "arc":
+            if was.real * now.real < 0:
+                axis = np.exp(1j * (e.start + e.end))
+                drawn.elements[i] = replace(e, fills=tuple(e.centre + axis * np.conj(f - e.centre) for f in e.fills))
+                drawn.wrong[e.number] = "built"
+        elif min(abs(was), abs(now)) > 0 and abs(now / was / abs(now / was) - 1) > 0.01:
+            turn = now / was / abs(now / was)
+            tail = e.points[0]
+            drawn.elements[i] = replace(e, points=tail + turn * (e.points - tail), fills=tuple(tail + turn * (f - tail)
+                                                                                              for f in e.fills))
+            drawn.wrong[e.number] = "built"
 
 
 def replayed(plan, wrong: Step, k: int, way: complex) -> list[tuple[Step, complex, complex]]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tmm_sheets.compare.cad.cad_arrows import heads_in
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.line_fit import KnownLines
@@ -46,10 +47,19 @@ def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, mo
             wrong.setdefault(f.element.view, []).append(f.element)
     tips = np.unique(np.round(np.concatenate([s.points[[0, -1]] for s in space.strokes]), 2)) if space.strokes else np.zeros(0)
 
+    heads = heads_in(space)
+
     def seen(view: ElementView) -> Drawing:
         move = moves.get(view, Placing())
+
+        def headed(tip: complex, way: complex) -> bool:
+            there = complex(move(tip))
+            along = complex(move(tip + way)) - there
+            return heads.at(there, along / abs(along))
+
         return Drawing(lambda line: _inked(space.lines, move, line), lambda z: space.lines.nearest(np.asarray(move(z)), NEAR)[2],
-                       move.back(tips).tolist(), move.scale, lambda line: _goes_on(space.lines, move, line))
+                       move.back(tips).tolist(), move.scale, lambda line: _goes_on(space.lines, move, line),
+                       headed)
 
     return built_plan.built_otherwise(project, known, wrong, seen, made, absent, positions=True)
 
