@@ -14,7 +14,7 @@ from __future__ import annotations
 import argparse
 import random
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import cos, pi, sin
 from pathlib import Path
@@ -232,8 +232,9 @@ def follows(found: Measurables, known: KnownSheet, drawn: Drawn, slip: Slip) -> 
     if max((far for _, far in new.values()), default=0.0) <= 4:
         return False
     drawn.slipped_to = at_steps
+    steps = {s.path: s for plan in plans.values() for step in plan for s in step.ancestors()}
     for v in drawn.places.keys() - new.keys():
-        _acted(drawn, known, v, plans, hand)
+        _acted(drawn, known, v, steps, plans["positions"].labels, hand)
     for v, (moved_to, far) in new.items():
         if far > 0.3:
             _rebuilt(drawn, v, moved_to)
@@ -241,22 +242,22 @@ def follows(found: Measurables, known: KnownSheet, drawn: Drawn, slip: Slip) -> 
     return True
 
 
-def _acted(drawn: Drawn, known: KnownSheet, view: ElementView, plans, hand: Slipping) -> None:
+def _acted(drawn: Drawn, known: KnownSheet, view: ElementView, steps: Mapping[str, Step], labels: Sequence[str],
+           hand: Slipping) -> None:
     """Draw the arrows at the mechanism as they were taken: of forces, and of what turns."""
     for i, e in enumerate(drawn.elements):
         if e.view != view or not e.fills or e.by is None or e.by.frame < 0 or (e.role != "vector" and e.kind != "arc"):
             continue
-        frame, plan = known.sheet.frames[e.by.frame], plans.get(e.step.partition("/")[0])
+        frame = known.sheet.frames[e.by.frame]
         label = frame.position or e.position
-        if frame.plan != "positions" or plan is None or label not in plan.labels:
+        if frame.plan != "positions" or e.step not in steps or label not in labels:
             continue
-        k = plan.labels.index(label)
 
-        def at(path, k=k):
-            step = next((s for p in plans.values() for s in p if s.path == path), None)
-            if step is None:
+        def at(path: str, k: int = labels.index(label)) -> tuple[complex, complex]:
+            if path not in steps:
                 return 0j, 0j
-            return tuple(complex(x[k] if np.ndim(x) else x) for x in (np.asarray(step.value), np.asarray(hand.value(step))))
+            was, now = (complex(x[k] if x.ndim else x) for x in map(np.asarray, (steps[path].value, hand.value(steps[path]))))
+            return was, now
 
         was, now = at(e.step)
         if e.name.partition("(")[0].endswith("n"):  # a reaction without its tangential part

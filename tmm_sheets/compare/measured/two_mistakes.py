@@ -51,13 +51,15 @@ def _made_good(evidence: Evidence, i: int) -> Iterator[tuple[Hypothesis, Hypothe
         if not evidence.leaves_little(i, first):
             continue
         spoilt = sorted(evidence.replayed(first).spoils, key=lambda n: evidence.judged[n].order)
-        # What one mistake spoils at every position another one made at one of them does not mend.
-        if not spoilt or any(evidence.judged[n].entry.label != evidence.judged[i].entry.label for n in spoilt):
+        if not spoilt:
             continue
-        for second in mistakes_before(evidence, spoilt[0]):
-            if second.kind not in (first.kind, "neighbour") and second.step is not first.step and _leaves_little_of(
-                    evidence, spoilt, _both(first, second)):
-                yield first, second
+        everywhere = len({evidence.judged[n].entry.label for n in spoilt}) > 1
+        for h in mistakes_before(evidence, spoilt[0]):
+            second = h.at_every_position() if everywhere else h
+            if second is not None and second.kind not in (first.kind, "neighbour") and second.step is not first.step:
+                both = _both(first, second)
+                if _leaves_little_of(evidence, spoilt[:1], both) and _leaves_little_of(evidence, spoilt, both):
+                    yield first, second
 
 
 def _in_one_plan(evidence: Evidence, i: int) -> Iterator[tuple[Hypothesis, Hypothesis]]:
