@@ -56,7 +56,7 @@ def named(made, arrows):
 
     def seen(view):
         return Drawing(lambda line: cad_built._inked(theirs, Placing(), line), lambda z: z, [],
-                       headed=lambda tip, way: any(abs(tip - head) < 1 for head in heads))
+                       headed=lambda arrow: any(abs(arrow.fills[0][0] - head) < 1 for head in heads))
 
     absent = set(VIEWS.values()) - {POLYGON, SCHEME, VIEWS["Планы положений механизма"]}
     (found, _), = built_otherwise(PRESS, KNOWN, {POLYGON: list(drawn.vectors)}, seen, absent=absent).values()

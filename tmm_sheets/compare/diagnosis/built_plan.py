@@ -105,7 +105,7 @@ class Drawing:
     """A view of a drawing, by mm of our sheet: what share of a line has ink, which places, the ends of its lines; and its scale.
 
     ``goes_on`` tells whether ink goes on beyond the end of a line, the second of two points; in pencil lines that tells nothing.
-    ``headed`` tells whether an arrow head has its tip at a place and points in a direction.
+    ``headed`` tells whether an arrow has its head.
     """
 
     inked: Inked
@@ -113,7 +113,7 @@ class Drawing:
     tips: Sequence[complex]
     scale: float = 1.0
     goes_on: Callable[[Points], bool] = lambda line: False
-    headed: Callable[[complex, complex], bool] = lambda tip, way: False
+    headed: Callable[[Element], bool] = lambda arrow: False
 
 
 Taken = Callable[[_Mistake, Sequence[_Mistake]], int]
@@ -286,9 +286,7 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float,
 
 def _is_drawn(arrow: Element, drawing: Drawing) -> bool:
     """Whether an arrow is drawn: its head, and of a straight one its line."""
-    tip, back = complex(arrow.fills[0][0]), complex(arrow.fills[0].mean() - arrow.fills[0][0])
-    straight = arrow.kind == "line"
-    return drawing.headed(tip, -back / abs(back)) and not (straight and drawing.inked(arrow.points[[0, -1]]) < WHOLE)
+    return drawing.headed(arrow) and not (arrow.kind == "line" and drawing.inked(arrow.points[[0, -1]]) < WHOLE)
 
 
 def _best(found: Sequence[_Found], gain: Callable[[_Mistake], float]) -> list[tuple[float, _Found]]:
