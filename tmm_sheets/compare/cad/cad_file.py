@@ -48,6 +48,8 @@ DEEPEST = 20
 """Blocks within blocks."""
 STRETCHED = 1e-3
 """Share by which a block is higher, or lower, than it is wide without being called stretched."""
+MOST_NAMED = 3
+"""Blocks that are named in a note."""
 MOST_HATCH = 20_000
 """Lines of one hatching that are drawn."""
 NARROW = 0.62
@@ -258,7 +260,8 @@ class _DxfReader:
         if self.raised:
             found.append(tell("some of the drawing has heights (z): it is seen from above"))
         if self.stretched:
-            said = ", ".join(f"{name} (1 : {told(f'{times:.3g}')})" for name, times in self.stretched.items())
+            several = [f"{name} (1 : {told(f'{times:.3g}')})" for name, times in self.stretched.items()]
+            said = ", ".join([*several[:MOST_NAMED], *(["…"] if len(several) > MOST_NAMED else [])])
             found.append(tell("blocks drawn out of proportion, width : height: {blocks}").format(blocks=said))
         return found
 
