@@ -190,8 +190,8 @@ def _judged(path: Path, file: str, name: str, opened: Callable[[str], Project],
     except Exception as e:  # a defect that one file shows must not cost all others their rows
         if os.environ.get("TMM_SHEETS_TRACEBACK"):
             raise
-        said = tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}")
-        return Judgement(file, {"unjudged": 1}, refused=said)
+        why = tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}")
+        return Judgement(file, {"unjudged": 1}, refused=why)
     faults, mistakes = _faults(report.tree)
     return Judgement(file, faults, mistakes, report=report)
 
