@@ -5,8 +5,8 @@ A student takes most views of a sheet, leaves out construction lines, tables, di
 scale factor of the student's own in another place under a title in the student's own words, without a frame, in other units and
 scales. Half of the drawings are sound, in the others some lines are wrong; with ``--plans`` a whole plan is built on one wrong step
 and everything in it that depends on that step is drawn where it leads; with ``--slips`` something usual is done otherwise (one of
-:mod:`tests.compare.hypotheses`) and all plans of the sheet follow from it: is it named? A view counts as found where every point of
-it is; plans that are alike (twins) may be taken for one another.
+:mod:`tests.compare.hypotheses`) and all plans of the sheet follow from it, as the arrows of forces and couples at the mechanism do:
+is it named? A view counts as found where every point of it is; plans that are alike (twins) may be taken for one another.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from __future__ import annotations
 import argparse
 import random
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import cos, pi, sin
 from pathlib import Path
@@ -88,7 +88,7 @@ def taken(known: KnownSheet, view: ElementView, rng: random.Random, letters: boo
                 out += [replace(e, text=said)] if (said := title(e.text, rng)) else []
             elif letters and e.step and len(e.text) < 4:
                 out.append(e)
-        elif e.role in MAIN:
+        elif e.role in MAIN or (letters and e.kind == "arc" and e.fills):  # couples and senses of rotation have their letters
             out.append(e)
     return out
 
@@ -232,11 +232,47 @@ def follows(found: Measurables, known: KnownSheet, drawn: Drawn, slip: Slip) -> 
     if max((far for _, far in new.values()), default=0.0) <= 4:
         return False
     drawn.slipped_to = at_steps
+    steps = {s.path: s for plan in plans.values() for step in plan for s in step.ancestors()}
+    for v in drawn.places.keys() - new.keys():
+        _acted(drawn, known, v, steps, plans["positions"].labels, hand)
     for v, (moved_to, far) in new.items():
         if far > 0.3:
             _rebuilt(drawn, v, moved_to)
             drawn.built[v] = str(slip)
     return True
+
+
+def _acted(drawn: Drawn, known: KnownSheet, view: ElementView, steps: Mapping[str, Step], labels: Sequence[str],
+           hand: Slipping) -> None:
+    """Draw the arrows at the mechanism as they were taken: of forces, and of what turns."""
+    for i, e in enumerate(drawn.elements):
+        if e.view != view or not e.fills or e.by is None or e.by.frame < 0 or (e.role != "vector" and e.kind != "arc"):
+            continue
+        frame = known.sheet.frames[e.by.frame]
+        label = frame.position or e.position
+        if frame.plan != "positions" or e.step not in steps or label not in labels:
+            continue
+
+        def at(path: str, k: int = labels.index(label)) -> tuple[complex, complex]:
+            if path not in steps:
+                return 0j, 0j
+            was, now = (complex(x[k] if x.ndim else x) for x in map(np.asarray, (steps[path].value, hand.value(steps[path]))))
+            return was, now
+
+        was, now = at(e.step)
+        if e.name.partition("(")[0].endswith("n"):  # a reaction without its tangential part
+            was, now = np.subtract((was, now), at(f"moments/{e.step.partition('/')[2]}τ"))
+        if e.kind == "arc":
+            if was.real * now.real < 0:
+                axis = np.exp(1j * (e.start + e.end))
+                drawn.elements[i] = replace(e, fills=tuple(e.centre + axis * np.conj(f - e.centre) for f in e.fills))
+                drawn.wrong[e.number] = "built"
+        elif min(abs(was), abs(now)) > 0 and abs(now / was / abs(now / was) - 1) > 0.01:
+            turn = now / was / abs(now / was)
+            tail = e.points[0]
+            drawn.elements[i] = replace(e, points=tail + turn * (e.points - tail), fills=tuple(tail + turn * (f - tail)
+                                                                                              for f in e.fills))
+            drawn.wrong[e.number] = "built"
 
 
 def replayed(plan, wrong: Step, k: int, way: complex) -> list[tuple[Step, complex, complex]]:

@@ -133,6 +133,20 @@ def test_hidden_layers_do_not_count(path):
     assert ink.notes == ("left out, on layers that are off or frozen: 3 entities",)
 
 
+@pytest.mark.parametrize(("sizes", "said"), [
+    ((), None), ([(1, 1), (-2, 2), (0.5, -0.5)], None), ([(1, 1.5)], "B0 (1 : 1.5)"), ([(2, -1), (1, 1)], "B0 (1 : 0.5)"),
+    ([(1, 2)] * 5, "B0 (1 : 2), B1 (1 : 2), B2 (1 : 2), …")])
+def test_blocks_of_unequal_scales_are_told(path, sizes, said):
+    """They may be why nothing fits; mirrored ones are not."""
+    doc, msp = drawing()
+    msp.add_line((0, 0), (1, 0))
+    for i, (x, y) in enumerate(sizes):
+        doc.blocks.new(f"B{i}").add_line((0, 0), (1, 1))
+        msp.add_blockref(f"B{i}", (0, 0), dxfattribs={"xscale": x, "yscale": y})
+    notes = [note for note in cad_file.read(saved(doc, path)).notes if "proportion" in note]
+    assert notes == ([f"blocks drawn out of proportion, width : height: {said}"] if said else [])
+
+
 def test_damaged_files_are_read_as_far_as_they_go(path):
     doc, msp = drawing()
     msp.add_line((0, 0), (30, 40))

@@ -6,10 +6,11 @@ Hundreds of such students: ``python -m tests.compare.hypotheses``.
 import numpy as np
 import pytest
 
-from tests.compare.hypotheses import student
-from tests.compare.students import opened
+from tests.compare.hypotheses import Slip, Slipping, student
+from tests.compare.students import PENCIL, READING, opened
 from tmm_sheets.compare.diagnosis.hypotheses import hypotheses
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
+from tmm_sheets.compare.measured.chain import judge
 
 
 @pytest.fixture(scope="module")
@@ -71,6 +72,27 @@ def test_students_are_told_what_they_did(number, kinds):
     assert one is not None
     assert all(one.told(slip) for slip in one.slips), str(one)
     assert sum(j.starts for j in one.judged) == len(kinds), str(one)
+
+
+@pytest.mark.parametrize("wrong", [("intersection",), ("sense",), ("intersection", "sense")])
+def test_what_two_mistakes_leave_right_proves_of_neither_that_it_was_not_made(wrong):
+    """The other intersection turns ε2 round; turned round once more it is right."""
+    found = opened("press")
+    plans = {plan.name: plan for plan, _ in found.plans}
+    b, turning = plans["positions"]["B"], plans["accelerations"]["ε2"]
+    k = plans["positions"].labels.index("7")
+    slips = {
+        "intersection": Slip("intersection", "B", k, {b: lambda a, made, k: 2 * (a[2] + ((a[0] - a[2]) * np.conj(a[3])).real * a[3])
+                                                      - made[k]}),
+        "sense": Slip("sense", "ε2", k, {turning: lambda a, made, k: -made[k]}),
+    }
+    asked = {name: e for name, e in found.entries.items() if e.main and e.label == "7" and e.plan not in ("reduced", "lever")}
+    hand = Slipping(found, np.random.default_rng(1), tuple(slips[kind] for kind in wrong))
+    judged = judge(hand.filled(asked), found, PENCIL, READING)
+    told = [j.wrong[0] for j in judged if j.starts and j.wrong]
+    assert [(h.kind, h.step) for h in told] == [(kind, next(iter(slips[kind].ways))) for kind in wrong]
+    (sense,) = (j for j in judged if j.entry.id == "results/7/sense-epsilon2")
+    assert sense.verdict == ("green" if len(wrong) == 2 else "red")
 
 
 @pytest.mark.parametrize(("number", "words"), [(1, "row"), (0, "positions"), (10, "row after"), (2, "position after")])

@@ -108,6 +108,26 @@ def test_files_of_all_kinds(folder, tmp_path):
     assert "Шесть и семь, план.cdw: such a file is not compared" in report.text
 
 
+@pytest.mark.parametrize("error", [KeyError("layer"), OSError("no such device"), MemoryError(), RecursionError("too deep")])
+def test_a_file_that_breaks_the_program_spoils_no_table(folder, tmp_path, monkeypatch, error):
+    """It is told among what was not judged; who looks for the defect sees where it happened."""
+    def broken(project, sheet, path):
+        if "two" in path.name:
+            raise error
+        return drawing(project, sheet, path)
+
+    def report():
+        opened = type("P", (), {"variant": type("V", (), {"sheets": [1, 2]})()})()
+        return group.compare(folder, "own", lambda name: opened, {"drawing": broken}, scheme(tmp_path), lambda what: None)
+
+    found = {s["student"]: s for s in report().tree["students"]}
+    assert [found[n]["mark"] for n in ("Five", "One", "Two")] == [100, 76, None]
+    assert type(error).__name__ in found["Two"]["files"][0]["refused"]
+    monkeypatch.setenv("TMM_SHEETS_TRACEBACK", "1")
+    with pytest.raises(type(error)):
+        report()
+
+
 def test_the_wrong_student(folder, tmp_path):
     (folder / "projects.toml").write_text('"One" = "x"\n"Nobody" = "x"\n', encoding="utf-8")
     with pytest.raises(BadInput, match=r"projects.toml:2: Nobody: there is no such student"):

@@ -7,6 +7,7 @@ numbers, ``.jpg``, ``.png``, ``.pdf`` photographs, which say their sheet in thei
 
 from __future__ import annotations
 
+import os
 import re
 import tomllib
 from collections import Counter
@@ -186,6 +187,11 @@ def _judged(path: Path, file: str, name: str, opened: Callable[[str], Project],
         report = by_kind[kind](project, sheet, path)
     except (BadInput, CannotBuild) as e:
         return Judgement(file, {"unjudged": 1}, refused=re.sub(rf"^{re.escape(str(path))}:\s*", "", str(e), flags=re.MULTILINE))
+    except Exception as e:  # a defect that one file shows must not cost all others their rows
+        if os.environ.get("TMM_SHEETS_TRACEBACK"):
+            raise
+        why = tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}")
+        return Judgement(file, {"unjudged": 1}, refused=why)
     faults, mistakes = _faults(report.tree)
     return Judgement(file, faults, mistakes, report=report)
 

@@ -29,7 +29,7 @@ SEVERAL = 3
 CLEAR = 0.8
 """How far from every other element a point must be for its ink to prove anything, mm."""
 
-KINDS = frozenset({"construction", "symbol", "dimension", "table", "hatch", "frame", "axis", "point", "text"})
+KINDS = frozenset({"construction", "symbol", "arrow", "dimension", "table", "hatch", "frame", "axis", "point", "text"})
 """What may be left out."""
 
 
@@ -39,6 +39,8 @@ def kind_of(e: Element) -> str:
         return e.kind
     if e.kind == "circle" and e.fills and e.role != "construction":
         return "point"
+    if e.kind == "arc" and e.arrow and e.role == "symbol":
+        return "arrow"  # of a couple, or of how a link turns: no part of a hinge or support
     return e.role if e.role in KINDS else ""
 
 
@@ -47,6 +49,7 @@ def said(kind: str, n: int) -> str:
     words = {
         "construction": tell_n("{n} construction line", "{n} construction lines", n),
         "symbol": tell_n("{n} line of a symbol", "{n} lines of symbols", n),
+        "arrow": tell_n("{n} round arrow", "{n} round arrows", n),
         "dimension": tell_n("{n} line of a dimension", "{n} lines of dimensions", n),
         "table": tell_n("{n} line of a table", "{n} lines of a table", n),
         "hatch": tell_n("{n} hatching", "{n} hatchings", n),

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from tmm_sheets.compare.cad.cad_comparison import BEYOND, Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding
+from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.cad.misplaced import FARTHEST
 from tmm_sheets.compare.cad.overlaps import left, overlaps, pieces
@@ -42,12 +43,16 @@ SAME = 0.3
 
 
 @dataclass(frozen=True)
-class _Heads:
+class Heads:
     """Filled areas of the drawing that may be heads: their numbers, tips and directions."""
 
     area: npt.NDArray[np.int64]
     tip: Points
     way: Points
+
+    def at(self, tip: complex, way: complex) -> bool:
+        """Whether one has its tip at a place and points in a direction."""
+        return bool(((np.abs(self.tip - tip) < AT_TIP) & ((self.way * np.conj(way)).real > AHEAD)).any())
 
 
 @dataclass(frozen=True)
@@ -69,7 +74,7 @@ class _Arrow:
 
 def arrows(state: Comparison) -> None:
     """Check that arrows have their heads, at the right ends."""
-    heads = _heads(state)
+    heads = heads_in(state.space)
     wanted = list(_wanted(state))
     taken: dict[int, complex] = {}
     for off, arrow, k in _pairs(_in_place, wanted, heads):
@@ -105,18 +110,19 @@ def arrows(state: Comparison) -> None:
     state.used_areas.update(int(heads.area[k]) for k in taken)
 
 
-def _heads(state: Comparison) -> _Heads:
-    """The heads of the drawing: small filled areas, their tips farthest from their middles."""
+def heads_in(space: DrawingSpace) -> Heads:
+    """The heads of a drawing: small filled areas, their tips farthest from their middles."""
     area, tips, ways = [], [], []
-    for k, a in enumerate(state.space.areas):
+    for k, a in enumerate(space.areas):
         if a.solid and np.ptp(a.points.real) < LARGEST and np.ptp(a.points.imag) < LARGEST:
-            from_middle = a.points - complex(state.areas[k])
+            middle = complex(a.points.mean())
+            from_middle = a.points - middle
             far = complex(from_middle[np.abs(from_middle).argmax()])
             if abs(far) > POINTED * np.median(np.abs(from_middle)):
                 area.append(k)
-                tips.append(complex(state.areas[k]) + far)
+                tips.append(middle + far)
                 ways.append(far / abs(far))
-    return _Heads(np.array(area, dtype=np.int64), np.array(tips, dtype=complex), np.array(ways, dtype=complex))
+    return Heads(np.array(area, dtype=np.int64), np.array(tips, dtype=complex), np.array(ways, dtype=complex))
 
 
 def _wanted(state: Comparison) -> Iterator[_Arrow]:
@@ -142,7 +148,7 @@ def _found_at(middle: complex, z: complex, finding: CadFinding) -> complex:
     return complex(middle + (finding.shift or 0j) + half * longer * np.exp(1j * np.radians(finding.turn or 0.0)))
 
 
-def _pairs(off: Callable[[_Arrow, _Heads], npt.NDArray[np.float64]], wanted: list[_Arrow], heads: _Heads) -> Iterator[
+def _pairs(off: Callable[[_Arrow, Heads], npt.NDArray[np.float64]], wanted: list[_Arrow], heads: Heads) -> Iterator[
         tuple[float, _Arrow, int]]:
     """Arrows without a head and the heads that may be theirs, the nearest first."""
     found = [(float(d), i, int(k)) for i, arrow in enumerate(wanted) for d, k in _finite(off(arrow, heads))]
@@ -157,20 +163,20 @@ def _finite(off: npt.NDArray[np.float64]) -> Iterator[tuple[float, int]]:
         yield float(off[k]), k
 
 
-def _in_place(arrow: _Arrow, heads: _Heads) -> npt.NDArray[np.float64]:
+def _in_place(arrow: _Arrow, heads: Heads) -> npt.NDArray[np.float64]:
     """How far each head is off the tip; infinite for those that are not at the tip, or point elsewhere."""
     off = np.abs(heads.tip - arrow.tip)
     return np.where((off < AT_TIP) & ((heads.way * np.conj(arrow.way)).real > AHEAD), off, np.inf)
 
 
-def _backwards(arrow: _Arrow, heads: _Heads) -> npt.NDArray[np.float64]:
+def _backwards(arrow: _Arrow, heads: Heads) -> npt.NDArray[np.float64]:
     """The same for heads at the other end that point away from the tip."""
     off = np.abs(heads.tip - arrow.tail)
     there = (off < AT_TIP) & ((heads.way * np.conj(arrow.way)).real < -AHEAD)
     return np.where(there & arrow.alone, off, np.inf)
 
 
-def _elsewhere(arrow: _Arrow, heads: _Heads) -> npt.NDArray[np.float64]:
+def _elsewhere(arrow: _Arrow, heads: Heads) -> npt.NDArray[np.float64]:
     """The same for heads that point the right way from anywhere on the line, or a little beyond its end."""
     t = (heads.tip - arrow.tail) * np.conj(arrow.way)
     size = abs(arrow.tip - arrow.tail)
@@ -179,14 +185,14 @@ def _elsewhere(arrow: _Arrow, heads: _Heads) -> npt.NDArray[np.float64]:
     return np.where(there & (not arrow.curved), np.abs(heads.tip - arrow.tip), np.inf)
 
 
-def _aside(arrow: _Arrow, heads: _Heads) -> npt.NDArray[np.float64]:
+def _aside(arrow: _Arrow, heads: Heads) -> npt.NDArray[np.float64]:
     """The same for heads about the tip that point nearly the right way."""
     off = np.abs(heads.tip - arrow.tip)
     near = off < min(max(3.0, 0.35 * abs(arrow.tip - arrow.tail)), FARTHEST)
     return np.where(near & ((heads.way * np.conj(arrow.way)).real > AHEAD) & arrow.alone, off, np.inf)
 
 
-def _with_arc(arrow: _Arrow, heads: _Heads) -> npt.NDArray[np.float64]:
+def _with_arc(arrow: _Arrow, heads: Heads) -> npt.NDArray[np.float64]:
     """The same for heads about the tip of an arc that is drawn elsewhere: they go with it."""
     off = np.abs(heads.tip - arrow.tip)
     reach = 2 * AT_TIP + arrow.finding.deviation if arrow.curved and arrow.finding.verdict != "green" else 0.0

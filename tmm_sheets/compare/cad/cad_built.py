@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tmm_sheets.compare.cad.cad_arrows import Heads, heads_in
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.line_fit import KnownLines
@@ -46,10 +47,14 @@ def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, mo
             wrong.setdefault(f.element.view, []).append(f.element)
     tips = np.unique(np.round(np.concatenate([s.points[[0, -1]] for s in space.strokes]), 2)) if space.strokes else np.zeros(0)
 
+    heads = heads_in(space)
+
     def seen(view: ElementView) -> Drawing:
         move = moves.get(view, Placing())
+
         return Drawing(lambda line: _inked(space.lines, move, line), lambda z: space.lines.nearest(np.asarray(move(z)), NEAR)[2],
-                       move.back(tips).tolist(), move.scale, lambda line: _goes_on(space.lines, move, line))
+                       move.back(tips).tolist(), move.scale, lambda line: _goes_on(space.lines, move, line),
+                       lambda arrow: _headed(heads, move, arrow))
 
     return built_plan.built_otherwise(project, known, wrong, seen, made, absent, positions=True)
 
@@ -83,6 +88,14 @@ def _goes_on(theirs: KnownLines, move: Placing, line: Points) -> bool:
     along = (z[1] - z[0]) / abs(z[1] - z[0])
     _, unit, found = theirs.nearest(z[1] + along * np.linspace(*OVER), NEAR)
     return bool((found & (np.abs((unit * np.conj(along)).imag) < 0.1)).all())
+
+
+def _headed(heads: Heads, move: Placing, arrow: Element) -> bool:
+    """Whether an arrow has its head; which point of one round a hinge stays in place in another scale is up to who draws it."""
+    tip, back = complex(arrow.fills[0][0]), complex(arrow.fills[0].mean() - arrow.fills[0][0])
+    along = complex(move(tip) - move(tip + back))
+    kept = (arrow.middle, arrow.centre) if move.scaled and arrow.kind == "arc" else ()
+    return any(heads.at(complex(by(tip)), along / abs(along)) for by in (move, *map(move.unscaled, kept)))
 
 
 def _inked(theirs: KnownLines, move: Placing, line: Points) -> float:

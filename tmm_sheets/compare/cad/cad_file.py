@@ -27,6 +27,7 @@ from tmm_sheets.compare.numbering import numbered
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
 
 if TYPE_CHECKING:
@@ -45,6 +46,10 @@ MOST_PARTS, MOST_POINTS = 200_000, 4_000_000
 """Most primitives and points of a drawing with its blocks taken apart; a sheet with lettering in strokes has 30,000 and 200,000."""
 DEEPEST = 20
 """Blocks within blocks."""
+STRETCHED = 1e-3
+"""Share by which a block is higher, or lower, than it is wide without being called stretched."""
+MOST_NAMED = 3
+"""Blocks that are named in a note."""
 MOST_HATCH = 20_000
 """Lines of one hatching that are drawn."""
 NARROW = 0.62
@@ -240,6 +245,7 @@ class _DxfReader:
         self.nowhere = 0
         self.skipped = 0
         self.raised = False
+        self.stretched: dict[str, float] = {}
 
     def notes(self) -> list[str]:
         """What was left out."""
@@ -253,6 +259,10 @@ class _DxfReader:
             found.append(tell("left out, on layers that are off or frozen: {n} entities").format(n=self.skipped))
         if self.raised:
             found.append(tell("some of the drawing has heights (z): it is seen from above"))
+        if self.stretched:
+            several = [f"{name} (1 : {told(f'{times:.3g}')})" for name, times in self.stretched.items()]
+            said = ", ".join([*several[:MOST_NAMED], *(["…"] if len(several) > MOST_NAMED else [])])
+            found.append(tell("blocks drawn out of proportion, width : height: {blocks}").format(blocks=said))
         return found
 
     def count(self, parts: int = 0, points: int = 0) -> None:
@@ -380,6 +390,10 @@ class _DxfReader:
         if missing or (name and name in within) or len(within) > DEEPEST:  # blocks that hold one another
             self.unread[kind] += 1
             return
+        if kind == "INSERT":
+            across, up = abs(e.dxf.xscale), abs(e.dxf.yscale)
+            if min(across, up) > 0 and abs(up / across - 1) > STRETCHED:
+                self.stretched[e.dxf.name] = up / across
         if kind == "INSERT" and e.mcount > 1:
             inner = e.multi_insert()
         else:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from tmm_sheets.compare.diagnosis.acting import acting
 from tmm_sheets.compare.diagnosis.drawn_plan import DRAWN, SHOWS, DrawnPlan, PlanPoint, between, drawn_plan, drawn_positions
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, hypotheses
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, of_position, replay
@@ -104,6 +105,7 @@ class Drawing:
     """A view of a drawing, by mm of our sheet: what share of a line has ink, which places, the ends of its lines; and its scale.
 
     ``goes_on`` tells whether ink goes on beyond the end of a line, the second of two points; in pencil lines that tells nothing.
+    ``headed`` tells whether an arrow has its head.
     """
 
     inked: Inked
@@ -111,6 +113,11 @@ class Drawing:
     tips: Sequence[complex]
     scale: float = 1.0
     goes_on: Callable[[Points], bool] = lambda line: False
+    headed: Callable[[Element], bool] = lambda arrow: False
+
+
+Taken = Callable[[_Mistake, Sequence[_Mistake]], int]
+"""How many arrows at the mechanism are drawn as they were taken with a mistake, besides some others."""
 
 
 def errors_of(project: Project, known: KnownSheet) -> tuple[dict[str, Plan], Errors]:
@@ -156,8 +163,16 @@ def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementV
             return -np.inf
         return sum(weight[view] * (max(m, 0.0) if alone else m) for view, m in more.items())
 
+    arrows = [(one, drawing) for view in dict.fromkeys(e.view for e in known.elements) if view not in absent and view not in shown
+              for some in [acting(known, plans, view)] if some for drawing in [seen(view)] for one in some]
+
+    def taken(mistake: _Mistake, others: Sequence[_Mistake]) -> int:
+        """How many arrows at the mechanism are drawn as they were taken with a mistake."""
+        value = _replay(errors, (*others, mistake))
+        return sum(_is_drawn(one.taken(value), drawing) for one, drawing in arrows)
+
     order, out = list(plans), {}
-    alike: dict[int, tuple[Hypothesis, ...]] = {}
+    alike: dict[int, Sequence[Hypothesis]] = {}
     for view, drawn in sorted(shown.items(), key=lambda x: order.index(x[1].plan.name)):
         found = _explained(drawn, errors, drawings[view], share[view], before, gain) if view in wrong else None
         if found is not None:
@@ -168,15 +183,18 @@ def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementV
             numbers |= {e.number for e in drawn.vectors
                         if e.number in there and np.abs(there[e.number] - e.points[[0, -1]]).max() >= SHOWS}
             h = found.mistake.said
-            position = "" if isinstance(h, str) or h.at is None or not drawn.of_positions else drawn.plan.labels[h.at]
             share[view] = found.share
             if found.mistake not in before and not drawn.of_positions:
                 before.append(found.mistake)
+            explained = len(numbers & there.keys()), len(numbers)
+            if isinstance(h, str):
+                out[view] = BuiltPlan(h, *explained), found.points
+                continue
             if id(h) not in alike:
                 of = list(shown.values()) if found.mistake in before else [drawn]
-                alike[id(h)] = _alike(h, [m for m in before if m.said is not h], drawn, of, errors)
-            built = BuiltPlan(h, len(numbers & there.keys()), len(numbers), position, alike[id(h)])
-            out[view] = built, found.points
+                alike[id(h)] = _alike(h, [m for m in before if m.said is not h], drawn, of, errors, taken)
+            position = "" if h.at is None or not drawn.of_positions else drawn.plan.labels[h.at]
+            out[view] = BuiltPlan(alike[id(h)][0], *explained, position, tuple(alike[id(h)][1:])), found.points
     return out
 
 
@@ -212,21 +230,21 @@ def _replay(errors: Errors, mistakes: Iterable[_Mistake]) -> Callable[[Step], An
     return replay(errors, [c for m in mistakes for c in m.changes])
 
 
-def _alike(mistake: Hypothesis | str, others: Sequence[_Mistake], drawn: DrawnPlan, of: Sequence[DrawnPlan],
-           errors: Errors) -> tuple[Hypothesis, ...]:
-    """Other mistakes than one that was found in a plan that draw the same of it and ``of`` all: no drawing can tell them apart."""
-    if isinstance(mistake, str):
-        return ()
+def _alike(mistake: Hypothesis, others: Sequence[_Mistake], drawn: DrawnPlan, of: Sequence[DrawnPlan],
+           errors: Errors, taken: Taken) -> Sequence[Hypothesis]:
+    """A mistake that was found in a plan with others that draw the same of it and ``of`` all.
+
+    Only the arrows at the mechanism may tell them apart: those of which most were ``taken`` so. No drawing tells these apart.
+    """
     value = _replay(errors, [*others, _Mistake(mistake, mistake.changes)])
-    out: list[Hypothesis] = []
+    same = [mistake]
     for h in possible([drawn], errors):
-        if len(out) == TOLD - 1:
-            break
         if h.words != mistake.words or h.step is not mistake.step:
             other = _replay(errors, [*others, _Mistake(h, h.changes)])
             if all(np.allclose(plan.places(other), plan.places(value), 0, SAME, equal_nan=True) for plan in (drawn, *of)):
-                out.append(h)
-    return tuple(out)
+                same.append(h)
+    arrows = [taken(_Mistake(h, h.changes), others) for h in same]
+    return [h for h, n in zip(same, arrows, strict=True) if n == max(arrows)][:TOLD]
 
 
 def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float, before: Sequence[_Mistake],
@@ -264,6 +282,11 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float,
     off = [(_ink(drawn, drawing, f.points), f) for _, f in _best(tried(_points_off(drawn, drawing), before), more)]
     most, best = max(off, key=lambda x: x[0], default=(0, None))
     return best if most > _ink(drawn, drawing, drawn.points) + NEW_INK else None
+
+
+def _is_drawn(arrow: Element, drawing: Drawing) -> bool:
+    """Whether an arrow is drawn: its head, and of a straight one its line."""
+    return drawing.headed(arrow) and not (arrow.kind == "line" and drawing.inked(arrow.points[[0, -1]]) < WHOLE)
 
 
 def _best(found: Sequence[_Found], gain: Callable[[_Mistake], float]) -> list[tuple[float, _Found]]:

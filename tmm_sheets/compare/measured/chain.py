@@ -267,8 +267,9 @@ def _told(evidence: Evidence, start: Judged, found: Explanation, beyond: float) 
 def _shows(evidence: Evidence, start: Judged, found: Explanation) -> Judged | None:
     """The number that shows most of the second of two mistakes, where that was made if one does; None where none does."""
     by = np.where(np.isfinite(found.shares), np.abs(found.shares), 0.0) / evidence.tolerance
-    judged = evidence.judged
-    others = [i for i, j in enumerate(judged) if j.verdict == "red" and not j.starts and j.entry.label == start.entry.label]
+    judged, at = evidence.judged, found.wrong[0].at
+    label = start.entry.label if at is None else evidence.labels[at]
+    others = [i for i, j in enumerate(judged) if j.verdict == "red" and not j.starts and j.entry.label == label]
     best = max(others, key=lambda i: (evidence.proves(judged[i], found.wrong[0]) and by[i] > 1, float(by[i])), default=None)
     return judged[best] if best is not None and by[best] > 1 else None
 

@@ -47,7 +47,8 @@ class Explanation:
     score : how much of all deviations it explains
     wrong : discrete mistakes that are equally good, the first of them is told
     mistake : a displaced step where it is none of these
-    then : another discrete mistake in the same plan, without which this one explains nothing; shares when this one is known
+    then : another discrete mistake, without which this one explains nothing; shares when this one is known
+    spoils : numbers in order that it would spoil: it was not made, or another mistake made good what it does to them
     """
 
     changes: tuple[Change, ...]
@@ -58,6 +59,7 @@ class Explanation:
     mistake: Mistake | None = None
     then: Explanation | None = None
     drawn: tuple[tuple[str, float], ...] = ()
+    spoils: tuple[int, ...] = ()
 
 
 class Evidence:
@@ -183,16 +185,16 @@ class Evidence:
         doubt = CURVED * np.abs(shares)
         # With what cannot be drawn any more nothing is explained.
         known = np.isfinite(shares) & np.isfinite(self.allowed)
-        left = self.left[known] / self.allowed[known]
-        after = self.after(shares)[known] / np.hypot(self.allowed, doubt)[known]
+        with np.errstate(invalid="ignore"):
+            left, after = self.left / self.allowed, self.after(shares) / np.hypot(self.allowed, doubt)
         gain = loss(left) - loss(after)
         # Results are computed from lengths, whatever their senses: what a wrong sense does not spoil in them proves nothing.
-        proves = np.array([h.kind not in SENSES or self.proves(j, h) for j in self.judged])[known]
-        score = float(np.sum(np.where(proves, gain, np.maximum(gain, 0.0))))
+        proves = np.array([h.kind not in SENSES or self.proves(j, h) for j in self.judged])
+        score = float(np.sum(np.where(proves, gain, np.maximum(gain, 0.0))[known]))
         # However much it explains besides: what is in order was not spoilt.
-        if np.any(proves & (np.abs(left) <= 1) & (np.abs(after) > SPOILT)):
-            score = 0.0
-        return Explanation(h.changes, shares, np.where(np.isfinite(doubt), doubt, 0.0), score, drawn=h.drawn)
+        spoilt = np.flatnonzero(known & proves & (np.abs(left) <= 1) & (np.abs(after) > SPOILT))
+        return Explanation(h.changes, shares, np.where(np.isfinite(doubt), doubt, 0.0), 0.0 if len(spoilt) else score,
+                           drawn=h.drawn, spoils=tuple(spoilt.tolist()))
 
     @staticmethod
     def proves(j: Judged, h: Hypothesis) -> bool:

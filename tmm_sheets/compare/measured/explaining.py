@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from tmm_sheets.compare.measured.displaced_step import NEARLY, displaced_step
-from tmm_sheets.compare.measured.done_otherwise import done_otherwise
+from tmm_sheets.compare.measured.done_otherwise import ENOUGH, done_otherwise
 from tmm_sheets.compare.measured.evidence import Evidence, Explanation, loss
 from tmm_sheets.compare.measured.two_mistakes import two_mistakes
 
@@ -28,4 +28,8 @@ def explanation(evidence: Evidence, i: int) -> Explanation | None:
     off = displaced_step(evidence, i)
     best = off if done is None or (off is not None and off.score * NEARLY > done.score) else done
     both = two_mistakes(evidence, i)
-    return best if both is None or (best is not None and best.score > NEARLY * both.score) else both
+    if best is None or both is None:
+        return best or both
+    # A displacement that may be anything explains much of two mistakes; what it leaves is told by chance no more than one mistake.
+    enough = max(NEARLY * both.score, both.score - ENOUGH if best is off else 0.0)
+    return best if best.score > enough else both
