@@ -1,0 +1,31 @@
+"""Wheels at the edges of the engagement picture: the scale where both would be cut, and how circles without a radius are named."""
+
+import pytest
+
+from tests import project_files as files
+from tmm_sheets.sheets import gear
+from tmm_sheets.sheets.sheet import composed
+
+
+def pair(teeth, module):
+    return files.project({**files.GEAR, "gear.teeth": teeth, "gear.module": module}).gear
+
+
+@pytest.mark.parametrize(("teeth", "module", "width", "height", "scale"), [
+    ([12, 14], "6 mm", 393, 565, 2.5),  # both would be cut at 4:1, both are whole at 2.5:1 with teeth of 33 mm
+    ([14, 28], "3.5 mm", 393, 565, 4.0),  # only wheel 2 is cut
+    ([11, 11], "9 mm", 224, 428, 2.0),  # both are cut, but at 1:1 teeth would be 19 mm high
+    ([12, 14], "3 mm", 200, 330, 5.0),  # at 2.5:1 16 mm
+])
+def test_the_scale_where_both_wheels_would_be_cut(teeth, module, width, height, scale):
+    mu, broken = gear.picture(pair(teeth, module), width, height)
+    assert (1e-3 / mu.mu, broken) == (pytest.approx(scale), False)
+
+
+def test_circles_are_named_with_their_values_inside_the_picture():
+    """A wheel of 85 teeth broken between mesh and centre: its radii have no room, their circles have names and values."""
+    own = files.project({**files.GEAR, "project.sheets": ["gear"], "gear.teeth": [10, 85], "gear.module": "2.5 mm",
+                         "gear.shift": [0.45, 0.3]})
+    sheet = composed(own, 1)
+    assert {"r_{a2} = 109,40", "r_{w2} = 107,84", "r_2 = 106,25", "r_{b2} = 99,84", "r_{f2} = 103,88"} <= {g.text for g in sheet.groups}
+    assert sheet.leaving == ()
