@@ -27,5 +27,6 @@ def test_circles_are_named_with_their_values_inside_the_picture():
     own = files.project({**files.GEAR, "project.sheets": ["gear"], "gear.teeth": [10, 85], "gear.module": "2.5 mm",
                          "gear.shift": [0.45, 0.3]})
     sheet = composed(own, 1)
-    assert {"r_{a2} = 109,40", "r_{w2} = 107,84", "r_2 = 106,25", "r_{b2} = 99,84", "r_{f2} = 103,88"} <= {g.text for g in sheet.groups}
+    named = {"r_{a2} = 109,40", "r_{w2} = 107,84", "r_2 = 106,25", "r_{b2} = 99,84", "r_{f2} = 103,88"}
+    assert named <= {group.text for group in sheet.groups}
     assert sheet.leaving == ()
