@@ -511,7 +511,11 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     assert study.lever.balancing is not None
     force, sign = project.driver is not None, balancing_sign(project)
     kind = forces.force_size(k) if force else forces.moment_size(k)
-    kinetic, hung = (clean(abs(step.at(k)), kind) for step in (forces.balancing, study.lever.balancing)) if force else \
+    drives = 1.0
+    if project.driver is not None:  # signed along the line that drives the crank
+        along = project.driver.direction(project.mechanism.crank.sense)
+        drives = -1.0 if (complex(forces.balancing.at(k)) * along.conjugate()).real < 0 else 1.0
+    kinetic, hung = (clean(drives * abs(step.at(k)), kind) for step in (forces.balancing, study.lever.balancing)) if force else \
         (clean(float(study.balance[name].at(k)), kind) for name in ("M", "M_р"))
     unit = tr("N") if force else tr("N·m")
     difference = float(study.balance["Δ"].at(k)) if kinetic else 0.0
@@ -523,3 +527,6 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
             [tr("Difference, %"), number(difference, 2, 100.0)]]
     row, width = min(box.height / len(rows), 9.0), min(box.width, 210.0)
     canvas.table(complex(box.x0, box.y1), widened([width * 0.66, width * 0.34], rows, 3.5), rows, row, 3.5)
+    if force and kinetic < 0:
+        canvas.note(box, tr("{quantity} < 0: the mate holds the wheel back, in truth by the other flanks of its teeth").format(
+            quantity=sign))
