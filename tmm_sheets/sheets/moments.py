@@ -15,7 +15,6 @@ from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken, letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.mechanism.groups.force_plan import OPPOSITE_COUPLE
 from tmm_sheets.numbers import is_zero, number
 from tmm_sheets.sheets.kinetic_frames import arm_sign, balancing_sign, flat, normal_sign, on_lever
 from tmm_sheets.sheets.linkage import indexed
@@ -120,9 +119,10 @@ def _guided(project: Project, g: StructuralGroup) -> Iterator[str]:
 
 def _passed_on(project: Project, total: Step) -> Iterator[str]:
     """Couples in a sum that a stone passes on from its own loads, such as friction in its hinge: the scheme shows only these."""
-    k = project.force_index
+    k, own = project.force_index, [id(couple) for couple in project.study.forces.couples.values()]
     for couple in total.args[3::3]:
-        if isinstance(couple, Step) and couple.rule is OPPOSITE_COUPLE and (terms := list(_terms(project, couple.args[0].args[0]))):
+        if isinstance(couple, Step) and couple.args and id(couple.args[0]) in own and (
+                terms := list(_terms(project, couple.args[0].args[0]))):
             yield tr("{force} = {sum} = {value} N·m").format(
                 force=symbol(couple.symbol or couple.name).replace(BAR, ""), sum=_sum(terms),
                 value=number(float(couple.at(k)), 5, project.study.forces.moment_size(k)))

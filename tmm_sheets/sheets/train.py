@@ -9,7 +9,6 @@ from typing import Any
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import fitted, letter, size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.methods.gears.train_steps import is_wheel
 from tmm_sheets.numbers import number
 from tmm_sheets.sheets.gear_marks import ruled_table
 from tmm_sheets.sheets.planet_motion import at_equal_angles
@@ -50,7 +49,7 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     plan = train.kinematics
     rows: list[tuple[str, ...]] = [(tr("Link"), "z", "n")]
     for name in train.names:
-        teeth = str(int(plan[f"z{name}"].value)) if is_wheel(name) else "–"
+        teeth = str(int(plan[f"z{name}"].value)) if name in train.data.teeth else "–"
         n = number(float(plan[f"n{name}"].value))
         rows.append((f"{name} — {tr('given')}" if name in train.given else name, teeth, n))
     inner = canvas.title(box, tr("Wheels and speeds of rotation, rpm"))

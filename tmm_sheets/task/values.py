@@ -129,16 +129,16 @@ def _name(value: Any) -> str:
     return value
 
 
-def _primed(name: str) -> str:
-    """With the sign of a prime for an apostrophe: `"2'"` is wheel 2′, the second of a block."""
-    return name.replace("'", "′")
+def _member(name: str) -> str:
+    """Name in quotes."""
+    return name.replace("'", "′")  # wheel 2′ of a block, as it can be typed
 
 
 def _wheel(name: str) -> str:
     """Number of a wheel in quotes."""
-    if not re.fullmatch("[1-9][0-9]*′*", name):
+    if not re.fullmatch("[1-9][0-9]*′*", named := _member(name)):
         raise ValueError(tell('expected the number of a wheel in quotes, for example "1"'))
-    return name
+    return named
 
 
 def _carrier(name: str) -> str:
@@ -168,8 +168,8 @@ def _through(value: Any) -> str | tuple[float, float]:
 
 
 Name = Annotated[str, BeforeValidator(_name)]
-MemberName = Annotated[str, AfterValidator(_primed), BeforeValidator(_name)]
-WheelName = Annotated[MemberName, AfterValidator(_wheel)]
+MemberName = Annotated[str, AfterValidator(_member), BeforeValidator(_name)]
+WheelName = Annotated[str, AfterValidator(_wheel), BeforeValidator(_name)]
 CarrierName = Annotated[str, AfterValidator(_carrier), BeforeValidator(_name)]
 ForceDirection = Annotated[str | float, BeforeValidator(_direction)]
 GuidePoint = Annotated[str | tuple[float, float], BeforeValidator(_through)]

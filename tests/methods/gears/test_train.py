@@ -173,3 +173,18 @@ def test_passive_meshes_are_no_matter_of_the_formula():
     second = mesh("1", "4", "H"), mesh(ring="3", planet="4", carrier="H")
     twice = project(train({**teeth, "4": 30}, (*meshes, *second), {"1": 300, "3": 0}))
     assert mobility_lines(twice.train)[0].startswith("i_{1H} = ")
+
+
+def test_wheels_of_one_block_may_share_a_number():
+    """2 and 2' turn together: the speeds are those of the same train with other names, and 2' stands behind 2."""
+    def block(second):
+        return project({"train": {
+            "module": "2 mm", "teeth": {"1": 21, "2": 33, second: 17, "4": 71}, "speeds": {"1": "900 rpm", "4": "0 rpm"},
+            "shafts": [["2", second]],
+            "mesh": [{"sun": "1", "planet": "2", "carrier": "H"}, {"ring": "4", "planet": second, "carrier": "H"}]}}).train
+
+    primed, plain = block("2'"), block("3")
+    assert primed.names == ("1", "2", "2′", "4", "H")
+    assert [float(primed.kinematics[f"n{name}"].value) for name in primed.names] == [
+        float(plain.kinematics[f"n{name}"].value) for name in plain.names]
+    assert list(primed.results()["teeth"]) == ["1", "2", "2′", "4"]
