@@ -11,6 +11,7 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import needs, size_in
 from tmm_sheets.numbers import is_zero, number
+from tmm_sheets.sheets.linkage import drawn_points
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ def _quantities(project: Project) -> Iterator[tuple[str, str]]:
     for g in m.groups:
         lengths += [*g.lengths, g.offset, *getattr(g, "sides", ()), *(leg.length for leg in getattr(g, "legs", ()))]
     lengths += [p.distance for p in m.points]
-    for name, at in m.fixed.items():
+    for name, at in ((name, at) for name, at in m.fixed.items() if name in drawn_points(project.study.positions)):
         for axis, value in (("x", at.real), ("y", at.imag)):
             if not is_zero(value, float(m.crank.length)):
                 yield f"{axis}_{{{name}}}, {tr('m')}", number(value)
