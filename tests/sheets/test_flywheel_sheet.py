@@ -21,6 +21,7 @@ from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.chosen import flywheel
 from tmm_sheets.project import Project
+from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.flywheel import apart, constant_moment, force_graph
 from tmm_sheets.sheets.sheet import composed
@@ -284,3 +285,15 @@ def test_nothing_is_no_share_of_a_work_that_is_nothing():
     lettering = " ".join(m.text for m in composed(own, 1).drawing.marks if isinstance(m, Text))
     assert "%)" not in lettering.partition("по ординатам")[2].partition("График")[0]
     assert "по площади графика 0 Дж" in lettering or "по ординатам" not in lettering
+
+
+@pytest.mark.parametrize(("columns", "parts"), [(12, 1), (25, 2)])
+def test_a_table_of_many_positions_has_two_rows_of_them(columns, parts):
+    """Numbers that have no room beside one another go on below, under the numbers of their positions."""
+    canvas = Canvas()
+    rows = [["No.", *map(str, range(columns))], ["A", *(f"−{1000 + k}" for k in range(columns))]]
+    graphs.table(canvas, Box(0, 0, 190, 40), "Works", rows)
+    said = [mark for mark in canvas.marks if isinstance(mark, Text)]
+    assert sum(mark.text == "No." for mark in said) == parts
+    assert len({round(mark.at.imag, 3) for mark in said if mark.text.startswith("−1")}) == parts
+    assert max(mark.at.real for mark in said) < 190

@@ -16,7 +16,7 @@ from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
 from tmm_sheets.drawing.lettering import fitted, letter, size_for
 from tmm_sheets.drawing.marks import Box, Points
-from tmm_sheets.drawing.tables import widened
+from tmm_sheets.drawing.tables import needs, widened
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.frame import OVER
 from tmm_sheets.sheets.player import Stage, placed, play
@@ -398,8 +398,12 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     """S, S', S'' and the pressure angle in the numbered positions."""
     cam: Cam = project.cam
     second = _second_derivative(cam)
-    rows = [[tr("Position"), *cam.motion.law.labels], [in_degrees("φ"), *(fixed(v, 2) for v in np.degrees(cam.inversion.phi))],
-            *_diagram_rows(cam.motion, second), *_check_values(cam, second, options.get("angle", ANGLE))]
+    turned, values = np.degrees(cam.inversion.phi), [*_diagram_rows(cam.motion, second),
+                                                     *_check_values(cam, second, options.get("angle", ANGLE))]
+    for places in (2, 1):
+        rows = [[tr("Position"), *cam.motion.law.labels], [in_degrees("φ"), *(fixed(v, places) for v in turned)], *values]
+        if sum(needs(rows, 2.5)) <= box.width:
+            break
     first = 32.0 if len(second) > 1 else 26.0
     width = (box.width - first) / (len(rows[0]) - 1)
     row = min(box.height / len(rows), 8.0)

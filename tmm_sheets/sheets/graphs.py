@@ -13,7 +13,7 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, PlacedFrame
-from tmm_sheets.drawing.tables import size_in, widened
+from tmm_sheets.drawing.tables import INDICES, LEAST, needs, size_in, widened
 from tmm_sheets.drawing.title_block import TURNED
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
@@ -171,15 +171,24 @@ def row(name: str, values: Any) -> list[str]:
 
 
 def table(canvas: Canvas, box: Box, title: str, rows: list[list[str]]) -> None:
-    """Table with the quantities in the first column, under its title, as large as its place lets it be."""
+    """Table with the quantities in the first column, under its title, as large as its place lets it be.
+
+    Where the numbers of all positions have no room in one row, there are two, one under the other, each with its numbers.
+    """
     left = canvas.title(box.inset(0, 0, 0, 2), title)
+    half = len(rows[0]) // 2 + 1
+    in_two = sum(needs(rows, 2.5, LEAST)) > box.width and left.height / (2 * len(rows)) >= INDICES * 2.5
+    parts = [[line[:half] for line in rows], [[line[0], *line[half:]] for line in rows]] if in_two else [rows]
     first = max(letter(row[0], 3.5).width for row in rows) + 3.0
-    columns = len(rows[0]) - 1
-    high = min(left.height / len(rows), 11.0)
-    width = (box.width - first) / columns
-    wide = max(letter(cell, 3.5).width for line in rows for cell in line[1:]) <= width - 1
-    height = size_in(high) if wide else 2.5
-    canvas.table(complex(box.x0, left.y1), widened([first, *[width] * columns], rows, height), rows, high, height)
+    high = min(left.height / sum(map(len, parts)), 11.0)
+    top = left.y1
+    for part in parts:
+        columns = len(part[0]) - 1
+        width = (box.width - first) / (len(parts[0][0]) - 1)
+        wide = max(letter(cell, 3.5).width for line in part for cell in line[1:]) <= width - 1
+        height = size_in(high) if wide else 2.5
+        canvas.table(complex(box.x0, top), widened([first, *[width] * columns], part, height), part, high, height)
+        top -= high * len(part)
 
 
 def note(canvas: Canvas, room: Box, lines: Sequence[str], ink: Sequence[Any]) -> None:
