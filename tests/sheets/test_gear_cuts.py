@@ -3,6 +3,8 @@
 import pytest
 
 from tests import project_files as files
+from tmm_sheets import catalogue
+from tmm_sheets.project import Project
 from tmm_sheets.sheets import gear
 from tmm_sheets.sheets.sheet import composed
 
@@ -30,3 +32,10 @@ def test_circles_are_named_with_their_values_inside_the_picture():
     named = {"r_{a2} = 109,40", "r_{w2} = 107,84", "r_2 = 106,25", "r_{b2} = 99,84", "r_{f2} = 103,88"}
     assert named <= {group.text for group in sheet.groups}
     assert sheet.leaving == ()
+
+
+@pytest.mark.parametrize("cipher", ["09-ЭПС-695", "24-ЭПС-651"])
+def test_names_with_values_keep_inside_the_picture_beside_its_edge(cipher):
+    """Arcs cut by the left edge: a name as long as r_{a2} = 109,40 stood 20 mm beyond it."""
+    sheet = composed(Project(catalogue.read(f"transport/press@{cipher}")), 3)
+    assert (sheet.leaving, sheet.crowded) == ((), ())

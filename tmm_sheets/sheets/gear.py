@@ -225,7 +225,7 @@ class _GearPicture:
                 text = self.named(wheel, key, symbol)
                 if direction is None:
                     fan = self.away(wheel) * pi / 2 + FAN * (n - len(CIRCLES) // 2)
-                    self.name_on_arc(centre, radius, text, fan)
+                    self.name_on_arc(centre, radius, text, fan, right=n % 2 == 1)
                     continue
                 tip, first = centre + rect(radius, direction), len(self.canvas.marks)
                 pen = self.stage.pen(f"{key}{wheel.number}", "dimension")
@@ -256,13 +256,19 @@ class _GearPicture:
         return (ends[1] >= AXIS and place.contains(centre + self.mm(getattr(wheel, key)) * u)
                 and all(place.contains(z) and z.real < self.box.x1 - ROOM_OF_CENTRES for z in corners))
 
-    def name_on_arc(self, centre: complex, radius: float, name: str, direction: float) -> None:
-        """Name of a circle where its radius does not fit in: on the longest arc that is seen, of a whole circle in a direction."""
+    def name_on_arc(self, centre: complex, radius: float, name: str, direction: float, right: bool) -> None:
+        """Name of a circle where its radius does not fit in: on the longest arc that is seen, of a whole circle in a direction.
+
+        As far from the picture's left edge as the name is long, or from its right one and the dimension of the centres there.
+        """
         arcs = arcs_inside(self.box, centre, radius)
         if arcs:
             start, end = max(arcs, key=lambda arc: arc[1] - arc[0])
             whole = end - start > 2 * pi - 1e-6
-            out = rect(1, direction if whole else end - 0.05 * (end - start))  # beside the left edge, away from teeth
+            inset = (letter(name, 3.5).width + right * ROOM_OF_CENTRES) / radius
+            inset = min(max(0.05 * (end - start), inset), (end - start) / 2)
+            sides = sorted((start + inset, end - inset), key=lambda angle: cos(angle))
+            out = rect(1, direction if whole else sides[right])
             self.canvas.label(centre + radius * out, name, away=out if whole else -out)
 
     def directions(self, wheel: Any) -> list[float | None]:
