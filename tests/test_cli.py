@@ -472,9 +472,12 @@ def test_protocol_of_all_plans(capsys):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
-def test_standard_output_is_full():
+@pytest.mark.parametrize("unbuffered", ["", "1"])  # a full buffer fails when it is flushed, and once more at the end
+@pytest.mark.parametrize("arguments", [["solve", "lugansk/shaper", "--part", "gear"], ["--version"], ["list"]])
+def test_standard_output_is_full(arguments, unbuffered, monkeypatch):
+    monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
     with open("/dev/full", "w") as full:
-        done = command("solve", "lugansk/shaper", "--part", "gear", capture_output=False, stdout=full, stderr=subprocess.PIPE)
+        done = command(*arguments, capture_output=False, stdout=full, stderr=subprocess.PIPE)
     assert done.returncode == 2
     assert done.stderr == "output cannot be written: no space left on device\n"
 

@@ -59,9 +59,13 @@ def _flushed(status: int) -> int:
         from tmm_sheets.words import tell
 
         status = _say(tell("output cannot be written: {why}").format(why=reason_of(e)), BAD_INPUT)
-    # What is still buffered must not raise again while Python shuts down.
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    _drop_output()
     return status
+
+
+def _drop_output() -> None:
+    """What is still buffered must not raise again: at the last flush, or while Python shuts down."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def run(arguments: list[str]) -> int:
@@ -105,7 +109,10 @@ def _carried_out(arguments: list[str]) -> int:
         return BROKEN_PIPE  # main() quiets the buffer
     except OSError as e:
         why = reason_of(e)
-        return _say(f"{e.filename}: {why}" if e.filename else tell("output cannot be written: {why}").format(why=why), BAD_INPUT)
+        if e.filename:
+            return _say(f"{e.filename}: {why}", BAD_INPUT)
+        _drop_output()  # or the last flush would say it again
+        return _say(tell("output cannot be written: {why}").format(why=why), BAD_INPUT)
     except MemoryError:
         return _say(tell("not enough memory; ask for fewer positions"), CANNOT_BUILD)
     except Exception as e:
