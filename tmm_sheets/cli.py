@@ -153,8 +153,8 @@ def check(project: str, corrected: bool) -> None:
             click.echo(f"{opened.variant.project.name}: {line}", err=True)
         for line in (*map(str, opened.dead_positions), *summary.swing(opened)):
             click.echo(f"{opened.variant.project.name}: {line}", err=True)
-    if opened.variant.flywheel is not None and opened.flywheel.remark:
-        click.echo(f"{opened.variant.project.name}: {opened.flywheel.remark}", err=True)
+    for line in opened.flywheel.remarks if opened.variant.flywheel is not None else ():
+        click.echo(f"{opened.variant.project.name}: {line}", err=True)
     click.echo(tell("{project}: OK").format(project=opened.variant.project.name))
 
 

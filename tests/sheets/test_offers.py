@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -260,6 +261,26 @@ def test_a_hodograph_is_closed_and_balances_the_crank(name):
     others = sum(load.vector.value for load in p.study.forces.loads[crank.link] if load.vector is not step)
     assert np.abs(np.broadcast_to(step.value + others, (len(p.cycle.labels),))).max() < 1e-9 * size
     assert abs(course[0] - course[-1]) < 1e-3 * size
+
+
+def test_a_hodograph_numbers_the_positions_of_every_turn_where_their_force_ends():
+    """In the second turn of a four-stroke engine the force is another one."""
+    p = Project(read(str(Path(__file__).parents[1] / "projects" / "pump.toml")))
+    canvas = canvas_with()
+    hodograph.bearing(p, canvas, Box(100.0, 100.0, 260.0, 260.0), {})
+    _, step, _ = hodograph._reaction(p)
+    frame = canvas.frames[-1]
+    there = {label: frame.origin + complex(z) / frame.mu[0] for label, z in zip(p.cycle.labels, step.value, strict=True)}
+    said = {}
+    for label in canvas.labels:
+        if label.height == 2.5:
+            for part in label.text.split(", "):
+                first, _, last = part.partition("–")
+                run = p.cycle.labels[p.cycle.labels.index(first):p.cycle.labels.index(last or first) + 1]
+                said |= dict.fromkeys(run, label.anchor)
+    assert p.cycle.period > 7
+    assert sorted(said) == sorted(p.cycle.labels)
+    assert all(abs(at - there[label]) < 1.0 for label, at in said.items())
 
 
 @pytest.mark.parametrize("swings", [False, True])

@@ -23,7 +23,7 @@ def empty_cells(drawing: Drawing) -> float:
     """Share of the cells of the field in which nothing is drawn, 0 .. 1."""
     nx, ny = round(FIELD.width / CELL), round(FIELD.height / CELL)
     inked = np.zeros((nx, ny), bool)
-    z = np.concatenate((dense((mark for mark in drawing.marks if mark.of != FRAME), 4.0), *map(_over, TAKEN)))
+    z = np.concatenate((dense((mark for mark in drawing.marks if mark.of != FRAME), 4.0), *map(covering, TAKEN)))
     i = ((z.real - FIELD.x0) / FIELD.width * nx).astype(int)
     j = ((z.imag - FIELD.y0) / FIELD.height * ny).astype(int)
     there = (i >= 0) & (i < nx) & (j >= 0) & (j < ny)
@@ -65,6 +65,7 @@ def dense(marks: Iterable[Mark], step: float) -> Points:
     return np.asarray(np.repeat(begin, count) + t * np.repeat(z - begin, count))
 
 
-def _over(box: Box) -> Points:
+def covering(box: Box) -> Points:
+    """Points all over a box, 4 mm apart: what counts as filled."""
     x, y = np.meshgrid(np.arange(box.x0, box.x1, 4.0), np.arange(box.y0, box.y1, 4.0))
     return np.asarray((x + 1j * y).ravel())

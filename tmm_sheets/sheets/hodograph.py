@@ -68,14 +68,13 @@ def bearing(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
 
 
 def _numbers(project: Project, canvas: Canvas, ends: Points, middle: complex, traced: tuple[Step, int, str]) -> None:
-    """Dots at the positions with their numbers, those of one place together."""
+    """Dots at the positions with their numbers, those of one place together: in each turn the force is another one."""
     step, placed, name = traced
     there: dict[complex, list[int]] = {}
-    for n, (k, _) in enumerate(project.cycle.drawn):
-        z = complex(ends[k])
+    for n, z in enumerate(map(complex, ends)):
         same = next((other for other in there if abs(other - z) < 1.0), z)
         there.setdefault(same, []).append(n)
-    labels = [label for _, label in project.cycle.drawn]
+    labels = project.cycle.labels
     for z, numbers in there.items():
         with canvas.traced("point", step.path, labels[numbers[0]], placed, name):
             canvas.dot(z, 0.5)

@@ -270,8 +270,8 @@ def test_inertia_of_the_crank_and_the_rotor_is_taken_off():
 def test_no_flywheel_is_needed():
     p = changed({"link[1].inertia": "400 kg m2"})
     assert p.flywheel.wheel is None
-    assert p.flywheel.remark == ("no flywheel is needed: 400 kg m2 turn with the crank, 301.3 are enough "
-                                 "(295.2 in the limit of many positions)")
+    assert p.flywheel.remarks == ("no flywheel is needed: 400 kg m2 turn with the crank, 301.3 are enough "
+                                  "(295.2 in the limit of many positions)",)
 
 
 def test_rim_share_of_manual_001():

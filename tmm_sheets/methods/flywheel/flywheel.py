@@ -226,6 +226,14 @@ SLOPE_AT = taken("slope of the moment of inertia at the positions", "kg*m2", mar
 ORDINATE_AT = taken("ordinate of an interval", "mm", marked("Ordinate {name} = {value} mm."))
 EVEN = 1e-12
 """A change of energy that is none, in parts of the work."""
+BENT = 0.05
+"""An interval is halved when its ordinate in the middle tells its work wrongly by more, share of the range of the work."""
+COARSE = 0.05
+"""The ordinates in the middles are too few when they tell the work of the cycle wrongly by more, share of the work."""
+STEEP = 3.0
+"""A curve between two points that is nowhere steeper at its ends, in slopes of the chord, neither rises nor falls beyond them
+(F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17, 1980).
+"""
 JUMP = 1e-6
 """Ordinates of a graph on both sides of a border that differ by more, mm, are those of a jump."""
 BULGE = Rule("bulge of a curve", lambda y, a, b, share: y - ((1 - share) * a + share * b), ("number",) * 4, "number",
@@ -236,6 +244,9 @@ ON_DRAWN = Rule("ordinate of a drawn curve", lambda a, b, share, bulge: (1 - sha
                 unit="mm")
 BORDER_SLOPE = Rule("slope of an integral", lambda y, pole: y / pole, ("number", "length"), "number",
                     marked("Slope of the graph of work {name} = {value}."))
+STEEPEST = Rule("greatest slope of an integral", lambda y, pole, most: most * y / pole, ("number", "length", "number"), "number",
+                marked("Slope of the graph of work {name} = {value}, {2} times that of the chord: a steeper curve would leave the "
+                       "interval between its ends."))
 SLOPE_OF_CHORD = taken("slope at the border of an interval", "",
                        marked("Slope of the curve at the border of the interval {name} = {value}."))
 WORK_AT = taken("work of the cycle", "J", marked("Work of the cycle {name} = {value} J."))
@@ -355,12 +366,22 @@ class Flywheel(ABC):
 
     @cached_property
     def edges(self) -> Floats:
-        """Borders of the intervals: the positions and the jumps and kinks of the moment, rad."""
+        """Borders of the intervals: the positions, the jumps and kinks of the moment, and where it bends much, rad."""
         inside = [b for b in self.reduced.breaks if 0 < b < self.reduced.period]
         edges = np.unique(np.concatenate((self.reduced.phi, inside)))
         # A break that falls on a position up to rounding is that position.
         keep = np.concatenate(([True], np.diff(edges) > 1e-9 * self.reduced.period))
-        return np.asarray(edges[keep])
+        edges = edges[keep]
+        while len(bent := self._bent(edges)):
+            edges = np.sort(np.concatenate((edges, bent)))
+        return np.asarray(edges)
+
+    def _bent(self, edges: Floats) -> Floats:
+        """Middles of the intervals whose ordinate there tells the work wrongly by more than BENT, by Simpson's rule."""
+        middles, moment = (edges[:-1] + edges[1:]) / 2, self.reduced.moment
+        y, sides = moment(middles), moment(edges, 1)[:-1] + moment(edges, -1)[1:]
+        work = np.cumsum(np.diff(edges) * y)
+        return np.asarray(middles[np.diff(edges) * np.abs(2 * y - sides) / 6 > BENT * np.ptp(np.append(0.0, work))])
 
     @cached_property
     def at_positions(self) -> tuple[int, ...]:
@@ -621,9 +642,12 @@ class Flywheel(ABC):
                 plan.add(f"y{interval}", LAY_DOWN, y)
             else:
                 self._on_drawn(plan, f"y{interval}", y, left or right, right or left, 0.5)
-            for side, at, border in (("+", left, k), ("−", right, k + 1)):
-                plan.add(f"{side}{interval}", *((SLOPE_OF_CHORD, slopes[side], border) if at is None else
-                                                (BORDER_SLOPE, at, self.pole)))
+            chord = float(middles.value[k])
+            steep = np.array([slopes["+"].value[k], slopes["−"].value[k + 1]]) * self.pole * chord
+            for side, at, border, ahead in zip("+−", (left, right), (k, k + 1), steep, strict=True):
+                plan.add(f"{side}{interval}", *(
+                    (STEEPEST, plan[f"y{interval}"], self.pole, STEEP) if steep.min() >= 0 and ahead > STEEP * chord**2 > 0 else
+                    (SLOPE_OF_CHORD, slopes[side], border) if at is None else (BORDER_SLOPE, at, self.pole)))
         return plan
 
     def _drawn_at(self, plan: Plan, border: int, side: int) -> Step | None:
@@ -993,8 +1017,17 @@ class Flywheel(ABC):
         return Energy(r.moment, lambda phi: np.asarray(r.inertia(phi)) - r.crank_inertia, self.edges)
 
     @property
-    def remark(self) -> str:
-        """What is worth telling about the flywheel; nothing when one is needed, drawn and in the limit."""
+    def remarks(self) -> tuple[str, ...]:
+        """What is worth telling about the flywheel: that none is needed, that the ordinates are too few for the work."""
+        said = [self._needless]
+        if abs(self.work_error) > COARSE:
+            said.append(tell("the work of the cycle is {error:+.1%} off by the ordinates in the middles of the intervals, and the "
+                             "constant moment with it: take more positions").format(error=self.work_error))
+        return tuple(filter(None, said))
+
+    @property
+    def _needless(self) -> str:
+        """Whether a flywheel is needed; nothing when one is, drawn and in the limit."""
         if self.needed and self.J_flywheel_converged > 0:
             return ""
         if self.needed == (self.J_flywheel_converged > 0):

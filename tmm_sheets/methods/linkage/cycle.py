@@ -110,8 +110,8 @@ class Cycle:
         found = []
         for i, t in enumerate(self.turned):
             if t < 2 * np.pi - 1e-9:
-                same = np.flatnonzero(np.abs(np.exp(1j * self.turned) - np.exp(1j * t)) < 1e-9)
-                found.append((i, ", ".join(self.labels[j] for j in same)))
+                same = [self.labels[j] for j in np.flatnonzero(np.abs(np.exp(1j * self.turned) - np.exp(1j * t)) < 1e-9)]
+                found.append((i, ", ".join(sorted(same, key=int) if all(map(str.isdecimal, same)) else same)))
         return tuple(found)
 
     def world(self, turned: Any) -> Any:

@@ -470,9 +470,29 @@ def _slopes(x: Any, y: Any, closed: bool) -> tuple[Any, Any]:
     return (left[1:-1], right[1:-1]) if closed else (left, right)
 
 
+CORNER = 0.05
+"""A corner of a load diagram is a border of an interval when it lies so far off the chord of its neighbours, share of the greatest
+ordinate: where a load begins in the middle of an interval, the ordinate in the middle tells nothing of its work."""
+
+
 def jumps_of(table: Table) -> tuple[float, ...]:
     """Arguments where a diagram jumps: given twice with different values."""
     return tuple(a for (a, p), (b, q) in pairwise(zip(*table, strict=True)) if a == b and p != q)
+
+
+def corners_of(table: Table) -> tuple[float, ...]:
+    """Arguments of the inner points where a diagram of straight lines has a corner that shows: CORNER of its greatest ordinate.
+
+    A digitised curve of many points has none.
+    """
+    x, y = (np.asarray(v, dtype=float) for v in table)
+    if len(x) < 3:
+        return ()
+    inside = np.diff(x).astype(bool)
+    inside = inside[1:] & inside[:-1]  # a jump is no corner
+    chord = y[:-2] + (x[1:-1] - x[:-2]) / np.where(inside, x[2:] - x[:-2], 1.0) * (y[2:] - y[:-2])
+    shows = inside & (np.abs(y[1:-1] - chord) >= CORNER * np.abs(y).max())
+    return tuple(float(a) for a in x[1:-1][shows])
 
 
 @dataclass(frozen=True, eq=False)
@@ -568,7 +588,8 @@ def stroke_law(motion: OutputMotion, tables: Sequence[Table | None], signs: Sequ
             jumps.append(run.begin)
         table = tables[i]
         if table is not None:
-            fractions = (*jumps_of(table), *((0.0,) if motion.endless and table[1][0] != table[1][-1] else ()))
+            around = (0.0,) if motion.endless and table[1][0] != table[1][-1] else ()
+            fractions = (*jumps_of(table), *(() if smooth else corners_of(table)), *around)
             jumps += [at for fraction in fractions for at in motion.crossings(run, fraction)]
     return law, distinct((float(np.mod(t, motion.period)) for t in jumps), motion.period)
 

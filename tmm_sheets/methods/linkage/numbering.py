@@ -113,7 +113,8 @@ def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", t
                extra: Mapping[str, float] | None = None, output: str | None = None, working_sense: str | None = None) -> Cycle:
     """Cycle of equal parts from a given crank angle; ``positions`` in one turn, numbered on through all ``turns``.
 
-    ``zero`` is the label of the position at the beginning (manual 003 calls it 12: a second turn then begins with 24),
+    ``zero`` is the label of the position at the beginning; where that is the number of the positions of a turn (manual 003 begins
+    with 12, the end of the turn), it is the last number of all turns: 24, 1, 2 .. 11, 12, 13 ..
     ``extra`` further positions by label and angle turned (rad), sorted in among the others.
 
     Raises
@@ -122,8 +123,8 @@ def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", t
         when a further position has the label of another one.
     """
     count = positions * turns
-    late = positions if zero == str(positions) else 0
-    named = {(zero if i == 0 else str(i if i % positions else i + late)): (2 * np.pi / positions * i, i, 0.0) for i in range(count)}
+    first = str(count) if zero == str(positions) else zero
+    named = {first if i == 0 else str(i): (2 * np.pi / positions * i, i, 0.0) for i in range(count)}
     for label, angle in (extra or {}).items():
         if label in named:
             raise CannotBuild(tell("there is a position {label} already").format(label=label),
