@@ -275,7 +275,7 @@ def _readable(need: Need, size: float, forces: int, each: float) -> Need:
     Where only its width and height are measured, arrows round a small figure take the same place as round a large one. What
     is small beside its own forces and their arms, stones in a slot, is no larger at any factor that has room for these.
     """
-    if not forces or size < LINKS * max(need.span):
+    if not forces or not size > LINKS * max(need.span):
         return need
     coarsest = size / (each * forces)
     power = 10.0 ** floor(log10(coarsest))
