@@ -12,9 +12,10 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY, handy
 from tmm_sheets.drawing.marks import Arc, Text
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import friction, kinematic_frames, linkage
+from tmm_sheets.sheets import friction, kinematic_frames, kinetic_frames, linkage
 from tmm_sheets.sheets.arrangement import arrangement
-from tmm_sheets.sheets.composition import SHOWN, TITLE_BLOCK, _reaching, arranged
+from tmm_sheets.sheets.composition import OF_FORCE, SHOWN, TITLE_BLOCK, _reaching, arranged
+from tmm_sheets.sheets.frame import fit_frame
 from tmm_sheets.sheets.sheet import INSIDE, composed
 from tmm_sheets.sheets.solver import Need, Node, cut, joined, rounded_up, solve
 
@@ -280,6 +281,18 @@ def test_letters_that_take_the_place_ask_for_more_of_it():
     assert tight.least[1] == pytest.approx(40.0 + 54.0 + SHOWN)
     assert roomy.least[1] == pytest.approx(tight.least[1])
     assert tight.least[0] == roomy.least[0] == 60.0
+
+
+def test_a_scheme_has_room_for_its_forces_along_its_links():
+    """The two-armed rocker of 0.39 m with five forces, its upper arm that of a force alone: it stood 26 mm long on the sheet."""
+    project = Project(catalogue.read("sixbar/4:5"))
+    place = next(v.options["places"][0] for v in arranged(project, 1).views if v.options.get("group") == 2)
+    size, forces = kinetic_frames.crowd(project, project.mechanism.groups[0], project.force_index)
+    scheme = kinetic_frames.scheme(project, project.mechanism.groups[0], project.force_index)
+    scales = SimpleNamespace(scales={}, chosen=set())
+    frame = fit_frame(project, scales, "scheme", "", "", *scheme, place.inset(*kinetic_frames.SCHEME))
+    assert forces == 5
+    assert frame.scale.mm(size) > forces * OF_FORCE
 
 
 @pytest.mark.parametrize(("name", "count"), [("pump", 1), ("feeder", 2), ("planer", 3)])

@@ -119,6 +119,14 @@ def test_table_has_every_position():
     assert len([t for t in texts if t.strip("−").replace(",", "").isdigit()]) == 24 * 7 + 2  # the squares of two units
 
 
+@pytest.mark.parametrize(("of", "angle"), [("B", "θ"), ("2", "ψ")])
+def test_the_angle_of_a_rod_has_one_name(of, angle):
+    """Its inclination to the guide in the table, unless its diagram counts it from position 0."""
+    own = project(project_files.merged(project_files.SLIDER, project_files.EVEN), {"cycle.diagrams": [of]})
+    texts = [m.text for m in drawn(own, diagrams.motion_table, links=True).marks if isinstance(m, Text)]
+    assert [text for text in texts if text in ("ψ", "θ")] == [angle]
+
+
 def test_balancing_moment_has_two_ends_where_the_load_is_switched():
     """Task 8: just before the rocker's turning point M5 acts, just behind it does not; its power is zero there, M_ur joins."""
     project = Project(read("sixbar/8:1"))

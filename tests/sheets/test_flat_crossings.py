@@ -235,14 +235,16 @@ def test_what_two_links_give_in_all_plans_is_said_once(composed):
         assert told.count(f"так же {where}") == 1
 
 
-def test_another_angle_or_position_has_a_remark_of_its_own(project, composed, monkeypatch):
+def test_other_lines_have_a_remark_of_their_own_and_the_same_are_told_at_their_worst_position(project, composed, monkeypatch):
+    """Of one plan they may be worst in another position than of the next: that is one flat angle all the same."""
     plan = project.study.positions.plan
     (found,) = flat_crossings.find(project, plan, range(12), composed.scales)
-    others = [found, replace(found, angle=found.angle + 0.01), replace(found, worst=5), found]
+    others = [found, replace(found, sines=found.sines + 0.01), replace(found, worst=5, mm=2.6), found]
     monkeypatch.setattr(flat_crossings, "find", lambda *_: others)
     canvas = Canvas()
     flat_crossings.warn(project, canvas, Box(0, 0, 100, 100), plan)
-    assert [note.text.count("так же") for note in canvas.notes] == [1, 0, 0]
+    assert [note.text.count("так же") for note in canvas.notes] == [2, 0]
+    assert [note.text.count("(положение 5: 2,6 мм)") for note in canvas.notes] == [1, 0]
 
 
 def test_the_warning_stands_free_in_its_view(composed):

@@ -58,6 +58,19 @@ def test_forces_have_no_more_figures_than_can_be_believed(force, said):
     assert kinetics.newtons(force) == said
 
 
+def test_a_force_plan_comes_out_smaller_rather_than_with_small_letters_in_its_equation():
+    """The polygon of the press is all but a line as high as its place, the equation of eight forces has four lines."""
+    project, canvas = Project(read("transport/press@07-ЭПС-743")), Canvas()
+    fp, box = project.study.forces.plans["4–5"], Box(0.0, 0.0, 103.0, 169.0)
+    canvas.begin(box, "", "kinetics.group")
+    kinetics._force_plan(project, canvas, box, fp, project.force_index)
+    lowest = min(complex(canvas.frames[-1](complex(step.at(project.force_index)))).imag
+                 for step in fp.plan.steps.values() if step.rule.gives == "point")
+    under = [m for m in canvas.marks if isinstance(m, Text) and m.at.imag < lowest]
+    assert len({round(m.at.imag, 3) for m in under if m.height == 3.5}) == 4
+    assert not [m for m in under if "=" in m.text and m.height != 3.5]
+
+
 @pytest.mark.parametrize(("terms", "values", "width", "most", "lines", "height"), [
     (1, 1, 200.0, 3, 2, 3.5), (8, 4, 400.0, 3, 2, 3.5), (8, 1, 90.0, 3, 3, 3.5), (8, 4, 90.0, 4, 4, 3.5), (8, 1, 130.0, 2, 2, 2.5),
     (8, 0, 400.0, 3, 1, 3.5), (12, 4, 30.0, 3, 3, 2.5),

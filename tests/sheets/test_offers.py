@@ -15,7 +15,19 @@ from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.drawing.marks import Polyline
 from tmm_sheets.numbers import number
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import diagrams, given_data, hodograph, kinetics, linkage, moments, offers, position_tables, reducer, train
+from tmm_sheets.sheets import (
+    diagrams,
+    given_data,
+    hodograph,
+    kinematics,
+    kinetics,
+    linkage,
+    moments,
+    offers,
+    position_tables,
+    reducer,
+    train,
+)
 from tmm_sheets.sheets.sheet import _code, composed
 
 FIELD = Box(20.0, 5.0, 836.0, 589.0)
@@ -337,3 +349,10 @@ def test_the_table_of_given_sizes_holds_what_the_task_gives(name, lengths):
     for size, cells, row in given_data._forms(project):
         assert size[1] == pytest.approx(8.0 + row * len(cells))
         assert sum(cell != "" for line in cells[1:] for cell in line) == 2 * len(rows)
+
+
+@pytest.mark.parametrize(("name", "least"), [("lugansk/shaper", 60.0), ("screen", 140.0), ("tests/projects/sieve.toml", None)])
+def test_a_second_acceleration_plan_is_offered_where_its_letters_can_be_read(name, least):
+    """Of a group of class III only large, of one with most points beside the pole not at all."""
+    sizes = kinematics.second_accelerations_sizes(Project(read(name)), Canvas(), {})
+    assert (min(high for _, high in sizes) > least) if least else not sizes

@@ -2,9 +2,11 @@
 
 import pytest
 
+from tests import project_files as files
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.marks import Arc
 from tmm_sheets.project import Project
+from tmm_sheets.sheets import kinematic_frames, linkage
 from tmm_sheets.sheets.sheet import composed
 
 YOKE = """
@@ -79,3 +81,12 @@ def test_a_ram_has_a_hinge_where_a_rod_hangs_on_it(tmp_path, rod, hinged):
     circles = [m for m in composed(project, 1).drawing.marks
                if isinstance(m, Arc) and m.style == "main" and m.by is not None and m.by.step == step.path]
     assert bool(circles) is hinged
+
+
+def test_a_ram_on_an_upright_guide_has_room_for_its_body():
+    """In its lowest position it stood over the title of the view below."""
+    project = files.project(files.from_file("sixbar/10:3"), {"cycle.force_position": "12", "project.sheets": ["sixbar_1"]})
+    points, offsets = kinematic_frames.positions_reach(project)
+    ram = complex(project.study.positions.points["B5"].at(project.force_index))
+    assert min(d.imag for z, d in zip(points, offsets, strict=True) if abs(z.imag - ram.imag) < 1e-9) <= -linkage.RAM
+    assert not composed(project, 1).leaving

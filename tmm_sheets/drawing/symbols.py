@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from cmath import phase
 from collections.abc import Iterable
 from itertools import pairwise
+from math import copysign, pi
 
 from tmm_sheets.drawing.canvas import Canvas, in_role
 
@@ -98,14 +100,15 @@ def centre_of_mass(canvas: Canvas, at: complex, radius: float = 1.6, style: str 
 _QUARTER = ((1.0, 0.0), (0.9239, 0.3827), (0.7071, 0.7071), (0.3827, 0.9239), (0.0, 1.0))
 
 
+def half_arrow(radius: float) -> float:
+    """Half the angle of a curved arrow of that radius, mm, in rad."""
+    return min(0.35 * pi, 9.0 / radius)
+
+
 @in_role("symbol")
 def rotation_arrow(canvas: Canvas, about: complex, radius: float, towards: complex, sense: float, text: str) -> None:
     """Curved arrow of an angular velocity or acceleration round ``about``, open towards the label's direction."""
-    from cmath import phase
-    from math import copysign, pi
-
-    middle = phase(towards)
-    half = min(0.35 * pi, 9.0 / radius)
+    middle, half = phase(towards), half_arrow(radius)
     s = copysign(1.0, sense)
     canvas.arc_arrow(about, radius, middle - s * half, middle + s * half, "axis")
     canvas.label(about + radius * towards / abs(towards), text, towards, gap=1.2)

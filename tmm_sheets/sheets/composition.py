@@ -9,18 +9,19 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from importlib import import_module
-from math import ceil, inf
+from math import ceil, floor, inf, log10
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tmm_sheets.box import Box
+from tmm_sheets.construction.scale import HANDY
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets import false_positions, kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.arrangement import Arrangement, View, arrangement
-from tmm_sheets.sheets.frame import needed, standard
+from tmm_sheets.sheets.frame import extent, needed, standard
 from tmm_sheets.sheets.solver import GAP, Need, Node, cut, joined, rounded_up, solve
 from tmm_sheets.words import tell, tell_n
 
@@ -262,9 +263,25 @@ def _group(project: Project, view: View) -> Node | None:
         return _fixed(view.box)
     g = tuple(reversed(project.mechanism.groups))[nth - 1]
     box, share = view.box, float(view.options.get("scheme", 0.45))
-    need = _reaching(box, *kinetic_frames.scheme(project, g, k), kinetic_frames.SCHEME, (92.0, 80.0))
+    need = _readable(_reaching(box, *kinetic_frames.scheme(project, g, k), kinetic_frames.SCHEME, (92.0, 80.0)),
+                     *kinetic_frames.crowd(project, g, k), OF_FORCE)
     plans = [_force_plan(project, forces.plans[of], k) for of in g.kind.force_plans(g)]
     return _parted(box, share, need, plans)
+
+
+def _readable(need: Need, size: float, forces: int, each: float) -> Need:
+    """Need of a figure of such a size, in its unit, that has room along it for so many forces, ``each`` of a length, mm.
+
+    Where only its width and height are measured, arrows round a small figure take the same place as round a large one. What
+    is small beside its own forces and their arms, stones in a slot, is no larger at any factor that has room for these.
+    """
+    if not forces or not size > LINKS * max(need.span):
+        return need
+    coarsest = size / (each * forces)
+    power = 10.0 ** floor(log10(coarsest))
+    mu = power * max(factor for factor in HANDY if factor * power <= coarsest * (1 + 1e-9))
+    wide, high = (max(least, span / mu + beside) for least, span, beside in zip(need.least, need.span, need.around, strict=True))
+    return replace(need, least=(wide, high))
 
 
 def _parted(box: Box, share: float, scheme: Need, plans: list[Need]) -> Node:
@@ -293,6 +310,12 @@ def _force_plan(project: Project, fp: Any, k: int) -> Need:
 
 ORDINATES = 4.0
 """Distance of two ordinates that can be read, mm."""
+LINKS = 0.4
+"""Size of links in that of their whole scheme, below which they are not what its scale factor is for."""
+OF_FORCE = 6.0
+"""Length of a group's links that each force on its scheme needs, mm."""
+ON_LEVER = 5.0
+"""The same of Zhukovsky's lever, mm: its forces stand all round."""
 OF_VALUE = 24.0
 """Room of one force with its value in the line under a force plan, mm, about."""
 
@@ -310,7 +333,9 @@ def _lever(project: Project, view: View) -> Node:
     k = project.force_index
     reach = kinetic_frames.lever_scheme(project, k, kinetic_frames.on_lever(project, k))
     # Every force and its arm hangs on it: no view has more labels.
-    return _leaf(view.box, _reaching(view.box, *reach, kinetic_frames.LEVER, (112.0, 100.0)), 3)
+    need = _reaching(view.box, *reach, kinetic_frames.LEVER, (112.0, 100.0))
+    points = extent([complex(step.at(k)) for step in project.study.lever.points.values()])
+    return _leaf(view.box, _readable(need, max(points.width, points.height), len(kinetic_frames.on_lever(project, k)), ON_LEVER), 3)
 
 
 def _rows(project: Project, view: View, count: int, head: float, row: tuple[float, float], widths: tuple[float, float]) -> Node:

@@ -137,14 +137,15 @@ def _motion_rows(labels: Iterable[tuple[int, str]], every: list[tuple[str, str, 
 def _of_bars(project: Project, known: Collection[str]) -> list[tuple[str, str, Any]]:
     """Angle, angular velocity and acceleration of every bar but the crank at the positions, without those that are ``known``.
 
-    A rocker's angle is counted from position 0, a rod's is its inclination to the guide of its other end (manual 001, table I).
+    A rocker's angle is counted from position 0, a rod's is its inclination to the guide of its other end (manual 001, table I)
+    unless its diagrams are drawn: they have the other, and one angle needs no second name.
     """
     m, motion = project.mechanism, project.motion
     guides = {g.links[0]: g.guides[-1] for g in m.groups if g.kind.number == 2}
     found = []
     for shape in (shape for shape in shapes(project.study.positions)[1:] if shape.bar):
         angle, omega, epsilon = motion.link(shape.link).at_positions
-        if shape.link in guides:
+        if shape.link in guides and angle.symbol not in known:
             angle = motion.inclination(shape.link, guides[shape.link])
         for step, unit in ((angle, tr("rad")), (omega, tr("s^{−1}")), (epsilon, tr("s^{−2}"))):
             if step.symbol not in known:

@@ -14,6 +14,7 @@ from math import asin, degrees
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tmm_sheets.construction import condition, rules
 from tmm_sheets.numbers import fixed
@@ -45,8 +46,8 @@ class Flat:
 
     ``worst`` is where it is told: the position of the force analysis if that is among them, the worst else; ``mm`` its error
     there, None where it is no smaller than half of the plan: the pencil does not find it at all. ``angle`` is that between the
-    lines, rad. ``better`` is the nearest position of the same stroke where every crossing is steep, with this one's error there,
-    None when there is none.
+    lines, rad, ``sines`` that of the angle at every position. ``better`` is the nearest position of the same stroke where every
+    crossing is steep, with this one's error there, None when there is none.
     """
 
     plan: Plan
@@ -57,6 +58,11 @@ class Flat:
     angle: float
     better: int | None
     better_mm: float
+    sines: NDArray[Any]
+
+    def same_lines(self, other: Flat) -> bool:
+        """Whether both are crossings of the same two lines: these meet under one angle in every position."""
+        return np.allclose(self.sines, other.sines, atol=1e-6)
 
 
 def find(project: Project, plan: Plan, drawn: Iterable[int], scales: dict[str, Any]) -> list[Flat]:
@@ -78,7 +84,7 @@ def find(project: Project, plan: Plan, drawn: Iterable[int], scales: dict[str, A
             # Lines that meet steeper, but are longer, may gain nothing.
             better = _better(project, worst, [k for k in range(len(mm)) if hopeless or mm[k] < GAIN * mm[worst]])
             found.append(Flat(plan, plan[name], bad, worst, None if hopeless else float(mm[worst]), asin(1 / float(steep[worst])),
-                              better, float("nan") if better is None else float(mm[better])))
+                              better, float("nan") if better is None else float(mm[better]), np.nan_to_num(1 / steep)))
     return found
 
 
@@ -135,12 +141,12 @@ def warn(project: Project, canvas: Canvas, box: Box, plan: Plan, drawn: Iterable
     The same two links meet in all plans under one angle: the note of the first of them names the others.
     """
     for flat in find(project, plan, [project.force_index] if drawn is None else drawn, canvas.scales):
-        about = _drawn(project, flat.worst), round(flat.angle, 4)
-        n = next((n for n, note in enumerate(canvas.notes) if note.about == about), None)
+        n = next((n for n, note in enumerate(canvas.notes) if note.about is not None and flat.same_lines(note.about)), None)
         if n is None:
-            canvas.note(box, said(project, flat), about=about)
+            canvas.note(box, said(project, flat), about=flat)
         else:
-            canvas.notes[n] = replace(canvas.notes[n], text=f"{canvas.notes[n].text}; {likewise(project, flat)}")
+            again = likewise(project, flat, _drawn(project, canvas.notes[n].about.worst))
+            canvas.notes[n] = replace(canvas.notes[n], text=f"{canvas.notes[n].text}; {again}")
 
 
 _LIKEWISE = {
@@ -153,12 +159,14 @@ _LIKEWISE = {
 """What is said of a further point that the same lines give."""
 
 
-def likewise(project: Project, flat: Flat) -> str:
-    """What the note of another plan says of this one, lettering markup."""
+def likewise(project: Project, flat: Flat, at: int) -> str:
+    """What the note of another plan, told of position ``at``, says of this one, lettering markup."""
     from tmm_sheets.sheets import linkage
 
     kind, links = _kind(project, flat)
     error = tr("not at all") if flat.mm is None else tr("{value} mm").format(value=fixed(flat.mm, 1))
+    if _drawn(project, flat.worst) != at:
+        error = f"{tr('position {label}').format(label=_labels(project)[flat.worst])}: {error}"
     return tr(_LIKEWISE[kind]).format(name=linkage.indexed(flat.step.name), links="–".join(links), error=error)
 
 

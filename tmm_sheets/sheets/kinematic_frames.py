@@ -120,6 +120,12 @@ def positions_reach(project: Project) -> tuple[Any, Any]:
         for offset in (wide, -wide, 8.0j, -11.0j if name in m.fixed else -9.0j):
             z.append(at)
             d.append(np.full(len(at), offset))
+    for g in (g for g in m.groups if g.kind.ram(g)):
+        # Its body and the guide beside it lie along the guide, whichever way that runs.
+        point, guide = next((point, guide) for point, guide in g.kind.guided(g) if point == g.inner)
+        body = (linkage.RAM + 5.0) * complex(pos.guide_directions[guide].at(project.force_index))
+        z.append(np.full(2, complex(pos.points[point].at(project.force_index))))
+        d.append(np.array([body, -body]))
     for end in (end for ends in linkage.free_ends(pos).values() for end in ends if end is not None):
         z.append(np.ravel(end))
         d.append(np.full(len(np.ravel(end)), 1j))

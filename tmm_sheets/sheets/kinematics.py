@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterator
+from itertools import pairwise
 from math import degrees, pi
 from typing import TYPE_CHECKING, Any
 
@@ -27,7 +28,7 @@ from tmm_sheets.sheets.player import Stage, play, stage
 from tmm_sheets.words import tr, tr_in
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Segment
+    from tmm_sheets.construction.plan import Plan, Segment
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.methods.linkage.positions import Positions
@@ -243,22 +244,62 @@ def _rotations(project: Project, s: Stage) -> None:
         radius = min(radius, kinematic_frames.SWING_ARROW)
     away, crank = linkage.clear_of_crank(s, pos), study.velocities.omega[c.link]
     symbols.rotation_arrow(s.pen(crank, "symbol"), pivot, radius, away, c.omega, f"ω_{c.link}")
-    for shape in linkage.shapes(pos):
+    shapes = linkage.shapes(pos)
+    bars = {shape.link: _along_bar(s, pos, shape) for shape in shapes}
+    taken = [_along_arrow((pivot, radius, away))]
+    for shape in shapes:
         link = shape.link
         w, eps = (of[link] for of in (study.velocities.omega, study.accelerations.epsilon))
         if not shape.bar or link == c.link or abs(w.at(k)) < 1e-9 * c.speed:
             continue
-        base, tip = (s.at(pos.points[name]) for name in shape.ends)
-        u = (tip - base) / abs(tip - base)
-        places = [(base, 20.0, u), (base, 28.0, u)]
-        if shape.bar[0] not in m.fixed:
-            # On a moving link: one arrow on each side of it, outwards first.
-            n = 1j * u if (np.conj(1j * u) * (base - pivot)).real > 0 else -1j * u
-            middle = base + 0.38 * (tip - base)
-            places = [(middle, 6.0, n), (middle, 6.0, -n)]
+        places = _free_arrows(shape, s, pos, np.concatenate([*taken, *(bar for name, bar in bars.items() if name != link)]))
         for step, sign, place, least in ((w, "ω", places[0], 0.0), (eps, "ε", places[1], 1e-9 * c.speed**2)):
             if abs(step.at(k)) > least:
                 symbols.rotation_arrow(s.pen(step, "symbol"), *place, float(step.at(k)), f"{sign}_{link}")
+                taken.append(_along_arrow(place))
+
+
+_Arrow = tuple[complex, float, complex]
+"""Arrow of a rotation: what it goes round, mm, its radius, mm, and the direction of its middle."""
+CLEAR = 3.0
+"""Distance of an arrow of rotation from other links and arrows that is enough, mm."""
+
+
+def _along_bar(s: Stage, pos: Positions, shape: linkage.Shape) -> Any:
+    """Points along the line of a link, a millimetre apart."""
+    z = [s.at(pos.points[name]) for name in (linkage.along_bar(s, pos, shape) if shape.bar else (str(shape.block),))]
+    return np.concatenate([z, *(np.linspace(a, b, 2 + int(abs(b - a))) for a, b in pairwise(z))])
+
+
+def _along_arrow(arrow: _Arrow) -> Any:
+    """Points along an arrow of rotation and under its sign."""
+    about, radius, towards = arrow
+    u = towards / abs(towards)
+    half = symbols.half_arrow(radius)
+    return about + u * np.append(radius * np.exp(1j * np.linspace(-half, half, 12)), radius + np.array([2.0, 4.0]))
+
+
+def _free_arrows(shape: linkage.Shape, s: Stage, pos: Positions, busy: Any) -> tuple[_Arrow, _Arrow]:
+    """Arrows of velocity and acceleration of a bar: the first places clear of ``busy`` points, or the clearest.
+
+    Those of a rocker go round its pivot, those of a link that moves stand on each side of it, outwards first.
+    """
+    base, tip = (s.at(pos.points[name]) for name in shape.ends)
+    u = (tip - base) / abs(tip - base)
+    if shape.bar[0] in pos.mechanism.fixed:
+        longest = max(28.0, 0.9 * abs(tip - base))
+        places = [((base, r, u), (base, r + 8.0, u)) for r in (20.0, 28.0, 36.0, 44.0, 52.0, 60.0) if r + 8.0 <= longest]
+    else:
+        pivot = s.at(pos.mechanism.crank.pivot)
+        n = 1j * u if (np.conj(1j * u) * (base - pivot)).real > 0 else -1j * u
+        middles = [base + t * (tip - base) for t in (0.38, 0.5, 0.28, 0.62, 0.72, 0.2)]
+        places = [((middle, 6.0, n), (middle, 6.0, -n)) for middle in middles]
+
+    def room(arrows: tuple[_Arrow, _Arrow]) -> float:
+        at = np.concatenate([_along_arrow(arrow) for arrow in arrows])
+        return min(CLEAR, float(np.abs(at[:, None] - busy).min()))
+
+    return max(places, key=room)
 
 
 def _strokes(project: Project, s: Stage) -> None:
@@ -339,7 +380,10 @@ def _free_share(canvas: Canvas, centre: complex, arcs: list[_Arc], own: _Arc, te
 
 
 def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
-    """Force over the path: the path marks carried over onto the abscissa, ordinates over every mark."""
+    """Force over the path: the path marks carried over onto the abscissa, ordinates over every mark.
+
+    A stroke too short for that on the plans has an abscissa of its own, enlarged.
+    """
     cycle, canvas = project.cycle, s.canvas
     strokes, force = cycle.strokes, kinematic_frames.graph_force(project)
     assert strokes is not None
@@ -349,44 +393,69 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
     y0 = box.y0 + 5.0
     scale = pick(project, canvas, "force-graph", "μ_F", tr("N/mm"), top / (box.height - 18.0))
     high = y0 + top / scale.mu
-    a, b = s.frame(strokes.origin), s.frame(strokes.origin + strokes.path * strokes.length)
+    a, b = (s.frame(strokes.origin + strokes.path * t).real for t in (0.0, strokes.length))
     way = linkage.indexed(strokes.output) if strokes.output[0] == "S" else f"S_{{{strokes.output}}}"
     ways = tr("{quantity}, m").format(quantity=way)
-    load, back = f"loads/{force.name}", a.real > b.real  # the way is counted from where the stroke begins
+    load, back = f"loads/{force.name}", a > b  # the way is counted from where the stroke begins
     u = -1 if back else 1
     inward, outward = _SIDES[::u]
-    edge = box.x0 if back else box.x1
-    tip = _nearer(a.real, b.real + 14.0 * u, edge - u * (1.5 + letter(ways, 3.5).width))
-    graph = canvas.placed("loads", "", complex(a.real, y0), (s.frame.mu[0], scale.mu), pi * back, back)
+    rear, edge = (box.x0, box.x1)[::u]
+    room = edge - u * (1.5 + letter(ways, 3.5).width)
+    enlarged = _enlargement(abs(b - a))
+    start = a if enlarged == 1 else _nearer(rear, (a + b - enlarged * (b - a)) / 2, room - 14.0 * u - enlarged * (b - a))
+
+    def along(x: Any) -> Any:
+        return start + enlarged * (x - a)
+
+    tip = _nearer(start, along(b) + 14.0 * u, room)
+    graph = canvas.placed("loads", "", complex(start, y0), (s.frame.mu[0] / enlarged, scale.mu), pi * back, back)
     pen = canvas.tracing("axis", load, "", graph)
-    pen.arrow(complex(a.real, y0), complex(a.real, high + 9.0), "axis", 3.5)
-    pen.arrow(complex(a.real, y0), complex(tip, y0), "axis", 3.5)
-    pen.text(complex(a.real - 2.0 * u, high + 5.0), tr("{quantity}, N").format(quantity=linkage.indexed(force.name)), 3.5, inward)
+    pen.arrow(complex(start, y0), complex(start, high + 9.0), "axis", 3.5)
+    pen.arrow(complex(start, y0), complex(tip, y0), "axis", 3.5)
+    pen.text(complex(start - 2.0 * u, high + 5.0), tr("{quantity}, N").format(quantity=linkage.indexed(force.name)), 3.5, inward)
     pen.text(complex(tip + 1.5 * u, y0 - 1.2), ways, 3.5, outward)
     # Beside the end of the graph, or above it where there is no room.
-    beside, room = b.real + 3.0 * u, edge - u * letter(str(scale), 3.5).width
-    canvas.text(complex(_nearer(a.real, beside, room), high + (0.0 if (room - beside) * u >= 0 else 2.5)), str(scale), 3.5, outward)
+    said = [str(scale)] if enlarged == 1 else [str(scale), str(Scale("μ_S", s.frame.mu[0] / enlarged, tr("m/mm")))]
+    beside, room = along(b) + 3.0 * u, edge - u * max(letter(text, 3.5).width for text in said)
+    for n, text in enumerate(said):
+        lower = 6.25 * n if (room - beside) * u >= 0 else 6.25 * (n - len(said) + 1) - 2.5
+        canvas.text(complex(_nearer(start, beside, room), high - lower), text, 3.5, outward)
     acting = np.flatnonzero(magnitude > 0)
     path = project.study_at(turned, tuple("" for _ in turned)).positions.points[strokes.output]
-    xs = np.real(s.frame(path.value))
+    xs = along(np.real(s.frame(path.value)))
     curve = xs[acting] + 1j * (y0 + magnitude[acting] / scale.mu)
     outline = [complex(curve[0].real, y0), *curve, complex(curve[-1].real, y0)]
     canvas.tracing("curve", load, "", graph).polyline(outline, "curve")
     count = project.variant.cycle.working if project.variant.cycle else None
-    lettered: list[float] = []
+    lettered: list[tuple[float, float]] = []
     for i, label in cycle.drawn:
         here = s.position(i)
         z = here.at(strokes.output)
         acts = max(float(force.magnitude(cycle.turned[i], side)) for side in (-1, 1))
         if not acts > 0 and i not in (0, count):
             continue
-        foot, head = complex(z.real, y0), complex(z.real, y0 + acts / scale.mu)
-        here.pen(strokes.output, "construction").line(z, foot if below else head, "thin")
-        if below:
+        x = along(z.real)
+        foot, head = complex(x, y0), complex(x, y0 + acts / scale.mu)
+        if enlarged == 1:
+            here.pen(strokes.output, "construction").line(z, foot if below else head, "thin")
+        if below or enlarged > 1:
             canvas.tracing("curve", load, here.label, graph).line(foot, head, "thin")
-        if all(abs(z.real - x) > 4.5 for x in lettered):
-            lettered.append(z.real)
-            canvas.text(complex(z.real + 0.8, y0 + 1.0), label, 2.5)
+        # Of a position of several turns its first number where all have no room.
+        for text in dict.fromkeys((label, cycle.labels[i])):
+            width = max(3.7, letter(text, 2.5).width) + 0.8
+            if all(x > begin + wide or begin > x + width for begin, wide in lettered):
+                lettered.append((x, width))
+                canvas.text(complex(x + 0.8, y0 + 1.0), text, 2.5)
+                break
+
+
+READABLE = 40.0
+"""Length of a stroke on the plans, mm, below which its graph of forces has an abscissa of its own."""
+
+
+def _enlargement(stroke: float) -> float:
+    """How many times as long as on the plans, where it is so many mm, a stroke is under its graph (GOST 2.302)."""
+    return 1.0 if stroke >= READABLE else next((t for t in (2.0, 2.5, 4.0, 5.0, 10.0, 20.0, 40.0) if t * stroke >= READABLE), 50.0)
 
 
 _SIDES: tuple[Align, Align] = ("right", "left")
@@ -516,8 +585,9 @@ def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[
 
 
 def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the second acceleration plan can do with, mm."""
-    real = kinematic_frames.plan_extent(project.study.accelerations.plan, kinematic_frames.other_stroke(project))
+    """Places that the second acceleration plan can do with, mm; none in which its vectors and their signs would crowd."""
+    plan, i = project.study.accelerations.plan, kinematic_frames.other_stroke(project)
+    real = kinematic_frames.plan_extent(plan, i)
     left, below, right, above = kinematic_frames.ACCELERATIONS
     longest = max(real.width, real.height)
     if not longest > 0:
@@ -525,8 +595,20 @@ def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[s
     # Wide enough for a title as the other plans have it, if there is room.
     titled = letter(kinematic_frames.title_of_accelerations(project, kinematic_frames.other_stroke(project)), 5.0).width + 0.1
     places = [(size * real.width / longest + left + right + 12.0, size * real.height / longest + below + above + 10.0)
-              for size in (120.0, 100.0, 80.0)]
+              for size in (120.0, 100.0, 80.0) if _crowd(plan, i, handy(longest / size)) <= TOGETHER_READ]
     return [(max(wide, least), high) for least in (titled, 76.0) for wide, high in places]
+
+
+TOGETHER_READ, ABOUT = 12, 12.0
+"""So many letters and signs of a plan can be read that stand within so many mm of one of them."""
+
+
+def _crowd(plan: Plan, i: int, mu: float) -> int:
+    """Most letters of points and signs of vectors that a plan would have about one of them at a scale factor."""
+    ends = [(complex(seg.tail.at(i)) / mu, complex(seg.head.at(i)) / mu) for seg in plan.segments]
+    points = np.array(list(kinematic_frames.plan_points(plan, i).values())) / mu
+    at = np.array([*points[[same[0] for same in together(points, 0.5)]], *((a + b) / 2 for a, b in ends if abs(b - a) >= SHORTEST)])
+    return int((np.abs(at[:, None] - at) <= ABOUT).sum(axis=1).max())
 
 
 def second_accelerations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

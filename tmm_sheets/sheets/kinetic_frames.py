@@ -192,6 +192,14 @@ def scheme(project: Project, g: StructuralGroup, k: int, share: float = 1.0) -> 
     return loaded([*points, *(force.at for force in shown)], shown, about, armed=with_arms(project, g, shown), share=share)
 
 
+def crowd(project: Project, g: StructuralGroup, k: int) -> tuple[float, int]:
+    """Size of a group from hinge to hinge, m, and how many forces crowd along it on its scheme."""
+    pos = project.study.positions
+    hinges, _ = scheme_points(project, g, [shape for shape in linkage.shapes(pos) if shape.link in g.links])
+    real = extent([complex(pos.points[name].at(k)) for name in hinges])
+    return max(real.width, real.height), len(outer_forces(project, g, k)[0])
+
+
 def share_of_arrows(project: Project, g: StructuralGroup, k: int, box: Box) -> float:
     """Share of the usual length of the arrows on a group's scheme: whole ones would leave the group nothing of a low place."""
     needs, sizes = [], []

@@ -305,16 +305,14 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     if not sides:
         _fitted(canvas, canvas.title(box, fp.plan.title).centre, tr("There are no forces in this position"), 3.5, box.width - 4.0)
         return
-    frame = fit_frame(project, canvas, fp.plan.name, "μ_F", tr("N/mm"), list(points.values()), [0j] * len(points), inside,
-                      finest(fp, k))
-    canvas.title(box, fp.plan.title, str(frame.scale))
-    flat_crossings.warn(project, canvas, box, fp.plan)
     extra = [seg for seg in fp.plan.segments if not any(seg.symbol == side[0] for side in fp.sides)]
     asked = [side[:3] for side in sides if side[3]] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
     found = [tr("{quantity} = {value} N").format(quantity=sign.replace(BAR, ""),
                                                  value=newtons(clean(fp.plan.length(tail, head).at(k), size)))
              for sign, tail, head in asked]
-    frame, lines, height = _over_equation(frame, list(points.values()), inside, box, (terms(sides), found))
+    frame, lines, height = _over_equation(project, canvas, box, fp, (terms(sides), found))
+    canvas.title(box, fp.plan.title, str(frame.scale))
+    flat_crossings.warn(project, canvas, box, fp.plan)
     s = stage(canvas, fp.plan, k, frame)
     tiny = _draw_sides(s, sides, inside.centre)
     for seg in extra:
@@ -331,20 +329,41 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
         canvas.text(complex(box.centre.real, low + 3.0 + LINE * k), line, height, "centre")
 
 
-def _over_equation(frame: Frame, points: Sequence[complex], inside: Box, box: Box,
+def _over_equation(project: Project, canvas: Canvas, box: Box, fp: ForcePlan,
                    texts: tuple[list[str], list[str]]) -> tuple[Frame, list[str], float]:
     """A force polygon's frame, the lines of its equation and values, and their height.
 
-    Where there is room over the polygon it goes up rather than that they stand in smaller letters than those of its neighbours.
+    Where there is room over the polygon it goes up rather than that they stand in smaller letters than those of its neighbours;
+    where there is none it comes out a little smaller.
     """
-    ends = [complex(frame(z)).imag for z in points]
-    least, most = (max(LINES, int((min(ends) + lift - ROOM - box.y0) / LINE)) for lift in (0.0, max(inside.y1 - max(ends), 0.0)))
-    lines, height = equation(*texts, box.width - 4.0, least)
-    higher, larger = equation(*texts, box.width - 4.0, most)
-    if larger <= height:
-        return frame, lines, height
-    lift = ROOM + LINE * len(higher) - (min(ends) - box.y0)
-    return replace(frame, origin=frame.origin + 1j * max(lift, 0.0)), higher, larger
+    k, points, name = project.force_index, list(polygon(fp, project.force_index)[0].values()), fp.plan.name
+
+    def placed(lines: int) -> tuple[Frame, list[str], float]:
+        left, below, right, above = AROUND
+        inside = box.inset(left, below + LINE * (lines - LINES), right, above)
+        frame = fit_frame(project, canvas, name, "μ_F", tr("N/mm"), points, [0j] * len(points), inside, finest(fp, k))
+        ends = [complex(frame(z)).imag for z in points]
+        lifts = 0.0, max(inside.y1 - max(ends), 0.0)
+        least, most = (max(LINES, int((min(ends) + lift - ROOM - box.y0) / LINE)) for lift in lifts)
+        found, height = equation(*texts, box.width - 4.0, least)
+        higher, larger = equation(*texts, box.width - 4.0, most)
+        if larger <= height:
+            return frame, found, height
+        lift = ROOM + LINE * len(higher) - (min(ends) - box.y0)
+        return replace(frame, origin=frame.origin + 1j * max(lift, 0.0)), higher, larger
+
+    first = placed(LINES)
+    lines, large = equation(*texts, box.width - 4.0, 2 * LINES)
+    if large > first[2] and name not in project.variant.scales:
+        smaller = placed(len(lines) + 1)
+        if smaller[2] == large and smaller[0].scale.mu < SMALLER * first[0].scale.mu:
+            return smaller
+        canvas.scales[name] = first[0].scale
+    return first
+
+
+SMALLER = 1.6
+"""So many times the scale factor of a force plan may be that its equation stands in letters as high as the others."""
 
 
 def heads_apart(sides: Sequence[tuple[complex, complex]]) -> list[float | None]:
