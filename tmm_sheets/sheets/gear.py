@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.scale import Scale, fit
+from tmm_sheets.construction.scale import STANDARD, Scale, fit
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import arcs_inside
 from tmm_sheets.drawing.lettering import fitted, letter
@@ -86,17 +86,22 @@ def picture(gear: Any, width: float, height: float) -> tuple[Scale, bool]:
     one, two = gear.wheels
     if gear.internal or two.teeth < GREATER * one.teeth or whole.mm(tooth) >= LEGIBLE:
         return whole, False
-    left, right, below, above = _broken_extent(gear)
-    larger = standard((left + right, width - 6.0 - 2 * BESIDE), (below + above, height - 16.0 - HUB - 2 * UNDER))
-    return (larger, True) if larger.mu < whole.mu else (whole, False)
+    for real, drawn in reversed(STANDARD):
+        larger = Scale(whole.symbol, real / drawn * 1e-3, whole.unit)
+        left, right, below, above = (length / larger.mu for length in _broken_extent(gear, larger))
+        if left + right <= width - 6.0 - 2 * BESIDE and below + above <= height - 16.0 - HUB - 2 * UNDER:
+            return (larger, True) if larger.mu < whole.mu else (whole, False)
+    return whole, False
 
 
-def _broken_extent(gear: Any) -> tuple[float, float, float, float]:
-    """What is to be seen about the pole of a pair whose wheel 2 is broken, m: the side of its foot N2, the other, below, above."""
-    one, _ = gear.wheels
-    foot = complex(gear.engagement["N2"].value)
-    reach = 1.25 * abs(foot.real)  # divisions go on beyond the foot
-    return max(reach, one.ra), one.ra, max(1.25 * abs(foot.imag), one.ra - one.rw), one.rw + one.ra
+def _broken_extent(gear: Any, scale: Scale) -> tuple[float, float, float, float]:
+    """What is to be seen about the pole of a pair whose wheel 2 is broken, m: the side of its foot N2, the other, below, above.
+
+    The divisions go on beyond the foot, as far as they do with this scale.
+    """
+    one, two = gear.wheels
+    last = complex(gear.engagement["N2"].value) * gear.divisions(two, scale)[-1] / gear.parts(two, scale)
+    return max(abs(last.real), one.ra), one.ra, max(abs(last.imag), one.ra - one.rw), one.rw + one.ra
 
 
 class _GearPicture:
@@ -132,7 +137,7 @@ class _GearPicture:
 
     def pole_of_broken(self) -> complex:
         """Place of the pole of a broken pair: what its divisions need at the side of N2, the rest is left over and under it."""
-        left, right, below, above = (length / self.mu.mu for length in _broken_extent(self.gear))
+        left, right, below, above = (length / self.mu.mu for length in _broken_extent(self.gear, self.mu))
         if self.gear.engagement["N2"].value.real > 0:
             left, right = right, left
         spare = self.box.width - left - right, self.box.height - HUB - below - above

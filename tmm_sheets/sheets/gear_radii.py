@@ -181,7 +181,7 @@ class _Radii:
             tip, end = self.centre + rect(at_arc, angle), self.centre + rect(rings[way < 0], angle) + further * u
             side = sense if u.real >= 0 else -sense
             x0, x1 = sorted((end.real, end.real + side * (laid.width + 1.0)))
-            box = Box(x0, end.imag, x1, end.imag + SHELF + laid.descent + HEIGHT)
+            box = Box(x0 - SHELF, end.imag, x1 + SHELF, end.imag + SHELF + laid.descent + HEIGHT)
             if not (place.contains(complex(x0, box.y0)) and place.contains(complex(x1, box.y1))) or drawn.meets(box.inset(-CLEAR)):
                 continue
             if drawn.strong(tip + CLEAR * u, end) or drawn.over(tip, end):
