@@ -454,7 +454,7 @@ def spring(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     top, low = float(max(force.max(), inertia.max())), float(min(inertia.min(), 0.0))
     lines = _spring_lines(spring, law.symbol == "S")
     text = max(letter(line, 3.5).width for line in lines) + 16.0
-    beside = box.width > 1.7 * box.height
+    beside = _lines_beside(box.width, box.height)
     area = box.inset(14, 8, text + 12, 32) if beside else box.inset(14, 14 + 7.0 * len(lines), 20, 32)
     d = OverAngle.fitted(area, law.fall.end, (low, top), ("μ_F", tr("N/mm")))
     canvas.title(box, tr("Closing spring"), f"{d.tall},  {d.across}")
@@ -477,6 +477,17 @@ def spring(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
         lines_of_text(canvas, box, lines)
         return
     canvas.lines(complex(box.x1 - text + 12.0, box.y1 - 34.0), lines, 8.0)
+
+
+def _lines_beside(width: float, height: float) -> bool:
+    """Whether the lines about the spring stand beside its graph in such a place, not under it."""
+    return width > 1.7 * height
+
+
+def spring_height(cam: Cam, width: float, height: float) -> float:
+    """Height of the graph of the spring in a place of this size, mm."""
+    assert cam.spring is not None
+    return height - (40.0 if _lines_beside(width, height) else 46.0 + 7.0 * len(_spring_lines(cam.spring, True)))
 
 
 def _spring_lines(spring: Spring, straight: bool) -> list[str]:
