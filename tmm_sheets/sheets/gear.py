@@ -253,19 +253,23 @@ class _GearPicture:
         half = complex(laid.width, 5.0 + laid.descent) / 2
 
         def tried(turn: float, beyond: float) -> tuple[complex, complex, bool]:
+            """End of the leader, middle of the letter at that end, whether there is room for both."""
             way = inwards * rect(1, radians(turn))
             along = (np.conj(way) * foot).real
             end = self.pole - (along + max((root - beyond) ** 2 - (abs(foot) ** 2 - along**2), 0.0) ** 0.5) * way
-            # The letter's nearest side or corner is at the leader's end.
             at = end + way * (0.5 + min(half.real / max(abs(way.real), 1e-9), half.imag / max(abs(way.imag), 1e-9)))
             box = Box(at.real - half.real, at.imag - half.imag, at.real + half.real, at.imag + half.imag).inset(-0.5)
-            return end, way, not ink.meets(box) and not ink.strong(self.pole + 2.0 * way, end)
+            start = self.pole + 2.0 * way
+            return end, at, not (ink.meets(box) or ink.strong(start, end) or ink.over(start, end))
 
         turns = sorted(np.arange(-60.0, 61.0, 4.0), key=abs)
-        places = [tried(turn, beyond) for beyond in np.arange(1.5, 16.0, 0.5) for turn in turns]
-        end, way, _ = next((p for p in places if p[2]), places[0])
+        places = [tried(turn, beyond) for beyond in np.arange(1.5, 26.0, 0.5) for turn in turns]
+        end, at, free = next((p for p in places if p[2]), places[0])
         self.stage.line("Pw", self.pole, end, "thin", "text")
-        self.canvas.label(end, "P_w", away=way, height=5, gap=0.5, leader=False, thin=KEPT_OFF)
+        if free:
+            self.stage.pen("Pw", "text").put(laid, at - half + 1j * laid.descent, 0.0, "P_w")
+        else:
+            self.canvas.label(end, "P_w", away=inwards, height=5, gap=0.5, leader=False, thin=KEPT_OFF)
 
     def dimension_of_centres(self) -> None:
         """Centre distance at the edge of the picture, lettered where no circle crosses it, as near to the middle as can be."""

@@ -131,7 +131,8 @@ class _Radii:
         beside = [a for a in degree if pi - busy <= a < pi - ENGAGED * wheel.tau]
         near = CLOSE / (self.outer - letter(longest, HEIGHT).width / 2)
         for key in sorted(self.tips, key=lambda key: -self.tips[key]):
-            if (wide := self.apart(key, angles, found)) and max(wide.values()) >= least:
+            wide = {a: gap for a, gap in self.apart(key, angles, found).items() if self.legible(key, a)}
+            if wide and max(wide.values()) >= least:
                 at = max(wide, key=lambda a: wide[a])
                 found[key] = at, self.begin(at)
             elif tight := {a: gap for a, gap in self.apart(key, beside, found).items() if gap >= near and self.clear(key, a)}:
@@ -162,11 +163,14 @@ class _Radii:
 
     def clear(self, key: str, direction: float) -> bool:
         """Whether nothing but this wheel's circles is met by a radius that begins with its name."""
+        ends = sorted((self.outer, self.tips[key]))
+        return self.legible(key, direction) and not self.drawn.meets(Box(ends[0], -CLEAR, ends[1], CLEAR), self.centre, direction)
+
+    def legible(self, key: str, direction: float) -> bool:
+        """Whether nothing is drawn where the name of a radius would stand."""
         width, up = letter(self.texts[key], HEIGHT).width, 1 if cos(direction) >= -1e-9 else -1
         low, high = sorted((-up * CLEAR, up * (OVER + HEIGHT + CLEAR)))
-        name = Box(self.outer - width - INSIDE, low, self.outer + CLEAR, high)
-        ends = sorted((self.outer, self.tips[key]))
-        return not any(self.drawn.meets(box, self.centre, direction) for box in (name, Box(ends[0], -CLEAR, ends[1], CLEAR)))
+        return not self.drawn.meets(Box(self.outer - width - INSIDE, low, self.outer + CLEAR, high), self.centre, direction)
 
     def on_shelf(self, key: str, drawn: Drawn) -> bool:
         """Radius of a circle without room for its name: an arrow from outside all circles or inside them, the name on a shelf."""
@@ -176,7 +180,7 @@ class _Radii:
         far = {float(a): abs(phase(rect(1, a - self.far))) for arc in arcs_inside(place, self.centre, at_arc)
                for a in np.arange(*arc, radians(1.5))}
         angles = sorted((a for a in far if far[a] < pi - ENGAGED * self.wheel.tau), key=lambda a: far[a])
-        for further, angle, way, sense in product(np.arange(2.0, 22.0, 2.0), angles, (1, -1), (1, -1)):
+        for further, angle, way, sense in product(np.arange(2.0, 44.0, 2.0), angles, (1, -1), (1, -1)):
             u = way * rect(1, angle)
             tip, end = self.centre + rect(at_arc, angle), self.centre + rect(rings[way < 0], angle) + further * u
             side = sense if u.real >= 0 else -sense
@@ -185,6 +189,8 @@ class _Radii:
             if not (place.contains(complex(x0, box.y0)) and place.contains(complex(x1, box.y1))) or drawn.meets(box.inset(-CLEAR)):
                 continue
             if drawn.strong(tip + CLEAR * u, end) or drawn.over(tip, end):
+                continue
+            if enters(tip, end - tip, x0, end.imag + SHELF, x1, box.y1):  # over its own name
                 continue
             first, pen = len(self.canvas.marks), self.picture.stage.pen(f"{key}{self.wheel.number}", "dimension")
             pen.line(tip + HEAD * u, end, "thin")
