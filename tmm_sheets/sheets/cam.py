@@ -323,6 +323,10 @@ class OverAngle:
 # --- pressure angle -------------------------------------------------------------------------------------------------
 
 
+NAMED = 6.0
+"""Distance of a curve from a level, mm, from which on the name of the level stands clear of it."""
+NUMBERED = 5.0
+"""Distance of ordinates of the pressure angle from which on all of them are numbered, mm."""
 PRESSURE = 10.0, 8.0, 18.0, 30.0
 """Room about the graph of the pressure angle at the left, below, at the right and above, mm."""
 
@@ -330,13 +334,13 @@ PRESSURE = 10.0, 8.0, 18.0, 30.0
 def ordinates_apart(cam: Cam, width: float) -> float:
     """How far the nearest two ordinates of the pressure angle stand apart in a place so wide, mm."""
     steps = np.diff(cam.law.positions)
-    across = handy(360.0 / max(width - PRESSURE[0] - PRESSURE[2], 1.0))
+    across = handy(degrees(cam.law.fall.end) / max(width - PRESSURE[0] - PRESSURE[2], 1.0))
     return degrees(float(steps[steps > 1e-9].min())) / across
 
 
 @for_cams
 def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Pressure angle over a turn of the cam, measured at the finished profile, with the permitted value."""
+    """Pressure angle over rise and fall, measured at the finished profile, with the permitted value; after them it rests."""
     cam: RollerCam = project.cam
     dense, inv, letter_of = cam.dense, cam.inversion, options.get("angle", ANGLE)
     found = dense.angles.value
@@ -344,28 +348,38 @@ def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     room = box.inset(*PRESSURE)
     # Higher than wide it shows no more: what is left is in one piece under it.
     box, room = (place.inset(0, max(room.height - room.width, 0.0), 0, 0) for place in (box, room))
-    d = OverAngle.fitted(room, 2 * pi, (low, high), (f"μ_{letter_of}", tr("deg/mm")), 8.0,
+    d = OverAngle.fitted(room, cam.law.fall.end, (low, high), (f"μ_{letter_of}", tr("deg/mm")), 8.0,
                         radians(1.0))
     canvas.title(box, tr("Pressure angle"), f"{d.tall},  {d.across}")
     course, marked = d.placed(canvas, dense.plan), d.placed(canvas, inv.plan)
     d.axes(course, dense.angles, (9.0, 9.0), in_degrees(letter_of), 5.5)
     canvas.label(d.o + d.length + 5, in_degrees("φ"), -1j, 3.5, 1.5, leader=False)
+    curve = course.frame((dense.phi + 1j * found)[dense.phi <= cam.law.fall.end + 1e-9])
     for side in (1, -1):
         level = course.frame(1j * side * cam.alpha)
         course.line((*cam.zone.borders, cam.zone.apex)[0], level, level + d.length, "hidden", "axis")
         name = f"[{letter_of}] = {number(degrees(cam.alpha))}°" if side > 0 else f"−[{letter_of}]"
-        canvas.label(level + 5 / 6 * d.length, name, 1j * side, 3.5, 0.8, leader=False)
-    course.curve(dense.angles, course.frame(dense.phi + 1j * found))
+        canvas.label(level + _clear_of(curve, level, side, letter(name, 3.5).width), name, 1j * side, 3.5, 0.8, leader=False)
+    course.curve(dense.angles, curve)
     _exceeded(d, canvas, cam, letter_of)
     at, values = course.frame(inv.phi), inv.angles.value
     for k in range(len(at)):
         marked.position(k).line(inv.angles, at[k], course.frame(inv.phi[k] + 1j * values[k]), "thin")
-    n = cam.law.parts
-    for k in (0, n // 2, n, n + 1, n + 1 + n // 2, 2 * n + 1):
+    n, kept = cam.law.parts, distinct(inv.plan.labels, at.real)
+    some = kept if ordinates_apart(cam, box.width) >= NUMBERED else (0, n // 2, n, n + 1, n + 1 + n // 2, 2 * n + 1)
+    for k in some:
         if k != n + 1 or abs(at[n + 1] - at[n]) > 4:
             canvas.label(complex(at[k]), inv.plan.labels[k], -1j if values[k] > 0 else 1j, 2.5, 0.6, leader=False)
     if cam.data.limit == "rise":
         centred(canvas, box, 3.0, tr("With force closure the angle is limited on the rise only"))
+
+
+def _clear_of(curve: Points, level: complex, side: int, wide: float) -> float:
+    """Where along a level its name, so wide, stands clear of a curve and its ordinates, the farther to the right the better, mm."""
+    inside = side * (level.imag - curve.imag)
+    along, reach = curve.real - level.real, wide / 2 + 1.0
+    middles = np.arange(along[-1] - reach, reach, -2.0)
+    return float(max(middles, key=lambda x: min(inside[np.abs(along - x) <= reach].min(), NAMED), default=along[-1] / 2))
 
 
 def _exceeded(d: OverAngle, canvas: Canvas, cam: RollerCam, letter_of: str) -> None:
@@ -454,7 +468,7 @@ def spring(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     top, low = float(max(force.max(), inertia.max())), float(min(inertia.min(), 0.0))
     lines = _spring_lines(spring, law.symbol == "S")
     text = max(letter(line, 3.5).width for line in lines) + 16.0
-    beside = box.width > 1.7 * box.height
+    beside = _lines_beside(box.width, box.height)
     area = box.inset(14, 8, text + 12, 32) if beside else box.inset(14, 14 + 7.0 * len(lines), 20, 32)
     d = OverAngle.fitted(area, law.fall.end, (low, top), ("μ_F", tr("N/mm")))
     canvas.title(box, tr("Closing spring"), f"{d.tall},  {d.across}")
@@ -477,6 +491,17 @@ def spring(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
         lines_of_text(canvas, box, lines)
         return
     canvas.lines(complex(box.x1 - text + 12.0, box.y1 - 34.0), lines, 8.0)
+
+
+def _lines_beside(width: float, height: float) -> bool:
+    """Whether the lines about the spring stand beside its graph in such a place, not under it."""
+    return width > 1.7 * height
+
+
+def spring_height(cam: Cam, width: float, height: float) -> float:
+    """Height of the graph of the spring in a place of this size, mm."""
+    assert cam.spring is not None
+    return height - (40.0 if _lines_beside(width, height) else 46.0 + 7.0 * len(_spring_lines(cam.spring, True)))
 
 
 def _spring_lines(spring: Spring, straight: bool) -> list[str]:

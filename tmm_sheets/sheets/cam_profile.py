@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
 CROWDED = 3.0
 """Distance of two marks of the path, mm, below which their numbers cannot stand beside one another."""
-EDGE = 3.0
-"""Room left free at both sides of the place, mm."""
+EDGE, FOOT = 3.0, 4.0
+"""Room left free at both sides of the place and at its foot, mm."""
 ROLLER = 8.0, 34.0, 8.0, 24.0
 """Room round the figure for the roller's radius at the left, below (what follows from it), right and above, mm."""
 
@@ -38,11 +38,7 @@ ROLLER = 8.0, 34.0, 8.0, 24.0
 def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Centre profile by inversion with all follower lines and arcs, roller circles, working profile, follower."""
     cam: Cam = project.cam
-    room = Box(box.x0 + EDGE, box.y0 + 4, box.x1 - EDGE, box.y1 - 24)
-    picture = _ProfilePicture(cam, room)
-    if not picture.corner(_table_size(cam)):
-        # No free corner: the figure leaves the foot of its place to the table.
-        picture = _ProfilePicture(cam, Box(room.x0, room.y0 + _table_size(cam)[1] + 6, room.x1, room.y1))
+    picture = _pictured(cam, box)
     canvas.scales[cam.inversion.plan.name] = picture.scale
     canvas.title(box, tr("Construction of the cam profile"), f"{ratio(picture.scale)}   {picture.scale}")
     inv, at = cam.inversion, picture.at
@@ -70,8 +66,16 @@ def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     {"tappet": _rod, "rocker": _rocker, "flat": _flat}[picture.kind](s, picture)
     _phase_angles(s, picture)
     size = _table_size(cam)
-    corner = picture.corner(size) or complex(room.x0, room.y0 + size[1])
+    corner = picture.corner(size) or complex(box.x0 + EDGE, box.y0 + FOOT + size[1])
     canvas.table(corner, _widths(cam), _given(cam, options.get("angle", ANGLE)), _ROW, 3.5)
+
+
+def _pictured(cam: Cam, box: Box) -> _ProfilePicture:
+    """The figure in a place, which leaves the foot of it to the table of sizes where that has no free corner."""
+    room = Box(box.x0 + EDGE, box.y0 + FOOT, box.x1 - EDGE, box.y1 - 24)
+    picture = _ProfilePicture(cam, room)
+    size = _table_size(cam)
+    return picture if picture.corner(size) else _ProfilePicture(cam, room._replace(y0=room.y0 + size[1] + 6))
 
 
 HOLE = 30.0
@@ -108,14 +112,23 @@ def margin(cam: Cam) -> float:
     return 7.0 if cam.kind == "rocker" else 0.0
 
 
-def figure_sizes(cam: Cam) -> list[tuple[float, float, float]]:
-    """Width and height of the figure, m, in every direction it may be turned to, and what stands over and under it, mm."""
+def figure_sizes(cam: Cam) -> list[tuple[float, float]]:
+    """Width and height of the figure, m, in every direction it may be turned to."""
     points, guide, turns = _figure(cam)
-    beside = 28.0 + _table_size(cam)[1] + 6.0  # heading and table
     if cam.kind == "rocker":
-        return [(float(np.ptp((points * turn).real)), float(np.ptp((points * turn).imag)), beside + 14.0) for turn in turns]
-    height = max(float(np.ptp(points.imag)), guide - float(points.imag.min()))
-    return [(float(np.ptp(points.real)), height, beside + GUIDE)]
+        return [(float(np.ptp((points * turn).real)), float(np.ptp((points * turn).imag))) for turn in turns]
+    return [(float(np.ptp(points.real)), max(float(np.ptp(points.imag)), guide - float(points.imag.min())))]
+
+
+def over(cam: Cam) -> tuple[float, float]:
+    """What stands over and under the figure, mm: the heading alone, where the table has a free corner, and with the table."""
+    heading = 28.0 + (14.0 if cam.kind == "rocker" else GUIDE)
+    return heading, heading + _table_size(cam)[1] + 6.0
+
+
+def largest(cam: Cam, width: float, height: float) -> Scale:
+    """Scale to which the figure is drawn in a place of this size, mm."""
+    return _pictured(cam, Box(0.0, 0.0, width, height)).scale
 
 
 class _ProfilePicture:

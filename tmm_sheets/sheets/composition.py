@@ -6,6 +6,7 @@ What each kind of view needs is told from the points of its plans; nothing is dr
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from importlib import import_module
@@ -316,6 +317,8 @@ OF_FORCE = 6.0
 """Length of a group's links that each force on its scheme needs, mm."""
 ON_LEVER = 5.0
 """The same of Zhukovsky's lever, mm: its forces stand all round."""
+GRAPH = 45.0
+"""Height of a graph that can be read, mm."""
 OF_VALUE = 24.0
 """Room of one force with its value in the line under a force plan, mm, about."""
 
@@ -443,6 +446,16 @@ def _pressure(project: Project, view: View) -> Node | None:
     return _leaf(view.box, Need(least=(120.0, 80.0), drawn=drawn))
 
 
+def _spring(project: Project, view: View) -> Node | None:
+    """A graph with its lines beside it or under it, where they leave it the height to be read."""
+    from tmm_sheets.sheets import cam
+
+    def drawn(width: float, height: float) -> float:
+        return 0.6 * width * height * min(max(cam.spring_height(project.cam, width, height) / GRAPH, 0.05), 1.0)
+
+    return _leaf(view.box, Need(least=(0.8 * view.box.width, 80.0), drawn=drawn))
+
+
 def _of_cam(project: Project, view: View) -> bool:
     """Whether a view is meant for this kind of cam."""
     traits = project.cam.traits
@@ -452,19 +465,28 @@ def _of_cam(project: Project, view: View) -> bool:
 def _profile(project: Project, view: View) -> Node | None:
     from tmm_sheets.sheets import cam_profile
 
-    sizes = cam_profile.figure_sizes(project.cam)
-    beside = 2 * (cam_profile.EDGE + cam_profile.margin(project.cam))
+    cam = project.cam
+    sizes = cam_profile.figure_sizes(cam)
+    beside = 2 * (cam_profile.EDGE + cam_profile.margin(cam))
+
+    def fitted(width: int, height: int, over: float) -> Scale | None:
+        found = None
+        for w, h in sizes:
+            with suppress(CannotBuild):
+                scale = standard((w, width - beside), (h, height - over))
+                found = scale if found is None or scale.mu < found.mu else found
+        return found
 
     @cache
     def in_place(width: int, height: int) -> float:
-        most = 1.0
-        for w, h, over in sizes:
-            try:
-                mu = standard((w, width - beside), (h, height - over)).mu
-            except CannotBuild:
-                continue
-            most = max(most, (w / mu + beside) * (h / mu + over))
-        return most
+        alone, with_table = cam_profile.over(cam)
+        scale, larger, over = fitted(width, height, with_table), fitted(width, height, alone), with_table
+        if scale is None:
+            return 1.0
+        if larger is not None and larger.mu < scale.mu and cam_profile.largest(cam, width, height).mu < scale.mu:
+            scale, over = larger, alone
+        shown = [(w / scale.mu + beside, h / scale.mu + over) for w, h in sizes]
+        return max((w * h for w, h in shown if w <= width + 1e-6 and h <= height + 1e-6), default=1.0)
 
     return _leaf(view.box, Need(least=(180.0, 180.0), drawn=lambda w, h: in_place(int(w), int(h))))
 
@@ -484,7 +506,7 @@ def _roller(project: Project, view: View) -> Node | None:
             return 1.0
         return (w / mu + left + right) * (h / mu + below + above)
 
-    return _leaf(view.box, Need(least=(cam_profile.roller_width(cam), 120.0), drawn=lambda w, h: in_place(int(w), int(h))), 0.5)
+    return _leaf(view.box, Need(least=(cam_profile.roller_width(cam), 104.0), drawn=lambda w, h: in_place(int(w), int(h))), 0.5)
 
 
 def _of_gears(name: str) -> Callable[[Project, View], Node | None]:
@@ -503,7 +525,7 @@ NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
     "kinematics.velocity_tables": _velocity_tables, "kinetics.group": _group, "kinetics.crank": _crank,
     "kinetics.lever": _lever, "kinetics.results": _results, "diagrams.motion": _motion, "diagrams.motion_table": _motion_table,
     "cam_profile.profile": _profile, "cam.pressure": _pressure,
-    "cam_profile.roller": _roller, "cam.spring": _cam((0.8, 0.8), 0.6), "cam_zone.of_tappet": _cam((0.88, 0.8), 0.6),
+    "cam_profile.roller": _roller, "cam.spring": _spring, "cam_zone.of_tappet": _cam((0.88, 0.8), 0.6),
     "cam_zone.of_rocker": _cam((0.9, 0.8), 0.6),
     "cam_zone.sum_graph": _cam((0.9, 0.8), 0.6),
     "cam_zone.plate": _cam((0.9, 0.8), 0.6),

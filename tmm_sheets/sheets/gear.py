@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from cmath import phase, rect
-from itertools import pairwise
-from math import cos, degrees, pi, radians, sin
+from math import degrees, pi, radians
 from typing import Any
 
 import numpy as np
 
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.scale import Scale, fit
+from tmm_sheets.construction.scale import STANDARD, Scale, fit
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import arcs_inside
 from tmm_sheets.drawing.lettering import fitted, letter
-from tmm_sheets.drawing.marks import Box, Dimension
+from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
+from tmm_sheets.sheets import gear_radii
 from tmm_sheets.sheets.frame import Frame, proportion, ratio, standard
-from tmm_sheets.sheets.gear_marks import CIRCLES, Window, gap, hatch_between, ruled_table
+from tmm_sheets.sheets.gear_marks import CIRCLES, KEPT_OFF, Window, gap, hatch_between, ruled_table
 from tmm_sheets.sheets.player import Stage, placed, play, stage
 from tmm_sheets.words import tr
 
@@ -29,16 +29,6 @@ DIMENSION = 8.0
 """Distance of the dimension lines of the teeth from the root circle, mm."""
 DIVISION = 10.0
 """Room beyond the last division of an involute for its number, mm."""
-RADII = 7.0
-"""Distance of radii from each other where they are named, mm."""
-ROOM_OF_CENTRES = 21.0
-"""Width at the picture's right edge that the dimension of the centre distance takes with its lettering, mm."""
-AXIS = 8.0
-"""Room about a wheel's axis that the names of radii leave free, mm: they would meet there."""
-FAN = radians(25)
-"""Between the names of whole circles whose radii have no room."""
-LEVEL = radians(7)
-"""Angle that radii keep from the level centre line."""
 PITCHES, MOST = 1.25, 1.5
 """Pitches that the view of the meshing zone must show at least, and those it shows at most."""
 LEGIBLE, GREATER = 25.0, 4.0
@@ -62,13 +52,14 @@ def engagement(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
     picture = _GearPicture(project.gear, canvas, box)
     picture.circles()
     picture.line_of_action()
-    picture.radii()
     for wheel in picture.gear.wheels:
         picture.unrolling(wheel)
         picture.teeth(wheel)
         picture.overlap(wheel)
         picture.dimensions(wheel)
         picture.rotation(wheel)
+    picture.pole_letter()
+    gear_radii.draw(picture)
 
 
 def picture_room(gear: Any, width: float, height: float) -> float:
@@ -95,17 +86,22 @@ def picture(gear: Any, width: float, height: float) -> tuple[Scale, bool]:
     one, two = gear.wheels
     if gear.internal or two.teeth < GREATER * one.teeth or whole.mm(tooth) >= LEGIBLE:
         return whole, False
-    left, right, below, above = _broken_extent(gear)
-    larger = standard((left + right, width - 6.0 - 2 * BESIDE), (below + above, height - 16.0 - HUB - 2 * UNDER))
-    return (larger, True) if larger.mu < whole.mu else (whole, False)
+    for real, drawn in reversed(STANDARD):
+        larger = Scale(whole.symbol, real / drawn * 1e-3, whole.unit)
+        left, right, below, above = (length / larger.mu for length in _broken_extent(gear, larger))
+        if left + right <= width - 6.0 - 2 * BESIDE and below + above <= height - 16.0 - HUB - 2 * UNDER:
+            return (larger, True) if larger.mu < whole.mu else (whole, False)
+    return whole, False
 
 
-def _broken_extent(gear: Any) -> tuple[float, float, float, float]:
-    """What is to be seen about the pole of a pair whose wheel 2 is broken, m: the side of its foot N2, the other, below, above."""
-    one, _ = gear.wheels
-    foot = complex(gear.engagement["N2"].value)
-    reach = 1.25 * abs(foot.real)  # divisions go on beyond the foot
-    return max(reach, one.ra), one.ra, max(1.25 * abs(foot.imag), one.ra - one.rw), one.rw + one.ra
+def _broken_extent(gear: Any, scale: Scale) -> tuple[float, float, float, float]:
+    """What is to be seen about the pole of a pair whose wheel 2 is broken, m: the side of its foot N2, the other, below, above.
+
+    The divisions go on beyond the foot, as far as they do with this scale.
+    """
+    one, two = gear.wheels
+    last = complex(gear.engagement["N2"].value) * gear.divisions(two, scale)[-1] / gear.parts(two, scale)
+    return max(abs(last.real), one.ra), one.ra, max(abs(last.imag), one.ra - one.rw), one.rw + one.ra
 
 
 class _GearPicture:
@@ -115,7 +111,7 @@ class _GearPicture:
     """
 
     def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
-        self.gear, self.canvas = gear, canvas
+        self.gear, self.canvas, self.first = gear, canvas, len(canvas.marks)
         self.mu, self.broken = picture(gear, box.width, box.height)
         for name in ("engagement", "involute-1", "involute-2", "tooth-1", "tooth-2"):
             canvas.scales[f"gear-{name}"] = self.mu
@@ -141,7 +137,7 @@ class _GearPicture:
 
     def pole_of_broken(self) -> complex:
         """Place of the pole of a broken pair: what its divisions need at the side of N2, the rest is left over and under it."""
-        left, right, below, above = (length / self.mu.mu for length in _broken_extent(self.gear))
+        left, right, below, above = (length / self.mu.mu for length in _broken_extent(self.gear, self.mu))
         if self.gear.engagement["N2"].value.real > 0:
             left, right = right, left
         spare = self.box.width - left - right, self.box.height - HUB - below - above
@@ -216,88 +212,6 @@ class _GearPicture:
             self.stage.pen(f"O{wheel.number}", "symbol").circle(at, 2.0, "main")
             self.canvas.label(at, f"O_{wheel.number}", away=complex(1, self.away(wheel)), height=5, gap=3)
 
-    def radii(self) -> None:
-        """Radii of the circles as arrows from the centre, where the picture has most room."""
-        for wheel in self.gear.wheels:
-            centre = self.of(f"O{wheel.number}")
-            for n, ((key, symbol, _), direction) in enumerate(zip(CIRCLES, self.directions(wheel), strict=True)):
-                radius = self.mm(getattr(wheel, key))
-                text = self.named(wheel, key, symbol)
-                if direction is None:
-                    fan = self.away(wheel) * pi / 2 + FAN * (n - len(CIRCLES) // 2)
-                    self.name_on_arc(centre, radius, text, fan, right=n % 2 == 1)
-                    continue
-                tip, first = centre + rect(radius, direction), len(self.canvas.marks)
-                pen = self.stage.pen(f"{key}{wheel.number}", "dimension")
-                # Of a broken wheel in what is seen of it.
-                begin = 2.0 if self.centre(wheel) == centre else (self.box.y0 - centre.imag) / sin(direction)
-                pen.line(centre + rect(begin, direction), tip - rect(2.5, direction), "thin")
-                pen.arrow_head(tip, rect(1, direction))
-                laid = letter(text, 3.5)
-                outer = self.mm(min(wheel.ra, wheel.rf)) - 4
-                back = cos(direction) < -1e-9
-                start = outer if back else outer - laid.width
-                turned = direction + pi if back else direction
-                self.canvas.put(laid, centre + rect(start, direction) + rect(1.2, turned + pi / 2), turned)
-                middle = centre + rect(outer - laid.width / 2, direction) + rect(1.2 + 1.75, turned + pi / 2)
-                self.canvas.dimensions.append(Dimension("radius", first, len(self.canvas.marks), centre, tip, tip, text, middle))
-
-    def named(self, wheel: Any, key: str, symbol: str) -> str:
-        """Name of a radius and its value, mm."""
-        return f"{symbol % wheel.number} = {fixed(getattr(wheel, key) * 1e3, 2)}"
-
-    def seen(self, wheel: Any, key: str, text: str, direction: float) -> bool:
-        """Whether a radius of a wheel has its tip in the picture, and its lettering clear of the dimension of the centres too."""
-        centre, place = self.of(f"O{wheel.number}"), self.box.inset(3)
-        outer, u = self.mm(min(wheel.ra, wheel.rf)) - 4, rect(1, direction)
-        beside = 1j * u if cos(direction) >= -1e-9 else -1j * u
-        ends = (outer, outer - letter(text, 3.5).width)
-        corners = [centre + along * u + up * beside for along in ends for up in (1.2, 1.2 + 3.5)]
-        return (ends[1] >= AXIS and place.contains(centre + self.mm(getattr(wheel, key)) * u)
-                and all(place.contains(z) and z.real < self.box.x1 - ROOM_OF_CENTRES for z in corners))
-
-    def name_on_arc(self, centre: complex, radius: float, name: str, direction: float, right: bool) -> None:
-        """Name of a circle where its radius does not fit in: on the longest arc that is seen, of a whole circle in a direction.
-
-        As far from the picture's left edge as the name is long, or from its right one and the dimension of the centres there.
-        """
-        arcs = arcs_inside(self.box, centre, radius)
-        if arcs:
-            start, end = max(arcs, key=lambda arc: arc[1] - arc[0])
-            whole = end - start > 2 * pi - 1e-6
-            inset = (letter(name, 3.5).width + right * ROOM_OF_CENTRES) / radius
-            inset = min(max(0.05 * (end - start), inset), (end - start) / 2)
-            sides = sorted((start + inset, end - inset), key=lambda angle: cos(angle))
-            out = rect(1, direction if whole else sides[right])
-            self.canvas.label(centre + radius * out, name, away=out if whole else -out)
-
-    def directions(self, wheel: Any) -> list[float | None]:
-        """Directions in which a wheel's circles lie inside the picture, away from the teeth in mesh; None without room.
-
-        Three on one side and two on the other where the largest circle is seen there; else each circle where it has room itself.
-        """
-        far = self.away(wheel) * pi / 2
-        busy = max(2.2 * wheel.tau, radians(15)) + radians(14)
-        angles = [a for a in np.radians(np.arange(14.0, 180.0 - degrees(busy), 1.0)) if abs(a - pi / 2) > LEVEL]
-        # The radii are named beside one another a little inside the root circle, of a ring inside the tip circle.
-        least = RADII / (0.7 * self.mm(wheel.rf))
-        texts = {key: self.named(wheel, key, symbol) for key, symbol, _ in CIRCLES}
-        largest, longest = max(texts, key=lambda key: getattr(wheel, key)), max(texts.values(), key=len)
-        chosen: list[float | None] = []
-        for side, count in ((1, 3), (-1, 2)):
-            free = [far + side * a for a in angles if self.seen(wheel, largest, longest, far + side * a)]
-            some = [free[round((k + 0.5) / count * (len(free) - 1))] for k in range(count)] if free else []
-            chosen += some if all(abs(a - b) >= least for a, b in pairwise(some)) else []
-        if len(chosen) == len(CIRCLES):
-            return chosen
-        found: dict[str, float] = {}
-        for key in sorted((key for key, _, _ in CIRCLES), key=lambda key: -getattr(wheel, key)):
-            free = [a for a in (far + side * a for side in (1, -1) for a in angles) if self.seen(wheel, key, texts[key], a)]
-            apart = {a: min((abs(a - other) for other in found.values()), default=pi) for a in free}
-            if apart and max(apart.values()) >= least:
-                found[key] = max(apart, key=lambda a: apart[a])
-        return [found.get(key) for key, _, _ in CIRCLES]
-
     def line_of_action(self) -> None:
         c, s = self.canvas, self.stage
         n1, n2, a, b, pole = (self.of(k) for k in ("N1", "N2", "A", "B", "Pw"))
@@ -311,9 +225,8 @@ class _GearPicture:
         s.line("B", a, b, "main", "curve")
         for name, point in (("A", a), ("B", b)):
             s.dot(name, 0.9, "main")
-            c.label(point, name, away=1j * u, height=5, gap=1.5)
+            c.label(point, name, away=1j * u, height=5, gap=1.5, thin=2.0)
         s.dot("Pw", 0.9, "main")
-        self.pole_letter(u)
         for i, foot in ((1, n1), (2, n2)):
             centre = self.of(f"O{i}")
             away = (foot - centre) / abs(foot - centre)
@@ -332,19 +245,31 @@ class _GearPicture:
         angle_beside(pen, o1, phase(n1 - o1), -pi / 2, self.mm(self.gear.wheels[0].rb) * 0.45, alpha)
         self.dimension_of_centres()
 
-    def pole_letter(self, action: complex) -> None:
-        """Letter of the pole beyond the root circle of wheel 1, its leader on the free side of the line of centres."""
+    def pole_letter(self) -> None:
+        """Letter of the pole beyond the root circle of wheel 1 where nothing is drawn, its leader clear of flanks."""
         foot = self.pole - self.of("O1")
-        centres = -foot / abs(foot)
-        # The profile at the pole is square to the line of action; a little beyond its mirror image in the line of centres
-        # nothing but circles is met.
-        profile = 1j * action if (np.conj(1j * action) * centres).real > 0 else -1j * action
-        way = centres * rect(1, 1.35 * phase(centres / profile))
-        along = (np.conj(way) * foot).real
-        inside = max((self.mm(self.gear.wheels[0].rf) - 1.5) ** 2 - (abs(foot) ** 2 - along**2), 0.0)
-        end = self.pole - (along + inside**0.5) * way
+        inwards, ink = -foot / abs(foot), gear_radii.Drawn(self.canvas, self.first)
+        laid, root = letter("P_w", 5.0), self.mm(self.gear.wheels[0].rf)
+        half = complex(laid.width, 5.0 + laid.descent) / 2
+
+        def tried(turn: float, beyond: float) -> tuple[complex, complex, bool]:
+            """End of the leader, middle of the letter at that end, whether there is room for both."""
+            way = inwards * rect(1, radians(turn))
+            along = (np.conj(way) * foot).real
+            end = self.pole - (along + max((root - beyond) ** 2 - (abs(foot) ** 2 - along**2), 0.0) ** 0.5) * way
+            at = end + way * (0.5 + min(half.real / max(abs(way.real), 1e-9), half.imag / max(abs(way.imag), 1e-9)))
+            box = Box(at.real - half.real, at.imag - half.imag, at.real + half.real, at.imag + half.imag).inset(-0.5)
+            start = self.pole + 2.0 * way
+            return end, at, not (ink.meets(box) or ink.strong(start, end) or ink.over(start, end))
+
+        turns = sorted(np.arange(-60.0, 61.0, 4.0), key=abs)
+        places = [tried(turn, beyond) for beyond in np.arange(1.5, 26.0, 0.5) for turn in turns]
+        end, at, free = next((p for p in places if p[2]), places[0])
         self.stage.line("Pw", self.pole, end, "thin", "text")
-        self.canvas.label(end, "P_w", away=way, height=5, gap=0.5, leader=False)
+        if free:
+            self.stage.pen("Pw", "text").put(laid, at - half + 1j * laid.descent, 0.0, "P_w")
+        else:
+            self.canvas.label(end, "P_w", away=inwards, height=5, gap=0.5, leader=False, thin=KEPT_OFF)
 
     def dimension_of_centres(self) -> None:
         """Centre distance at the edge of the picture, lettered where no circle crosses it, as near to the middle as can be."""

@@ -20,7 +20,8 @@ CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "
            ("rf", "r_{f%d}", "thin"))
 """Circles of a wheel: attribute, symbol, line type."""
 
-
+KEPT_OFF = 4.0
+"""So many times more than other lettering do letters and names of circles in the mesh keep off thin lines."""
 KINKS, OVER = 120.0, 3.0
 """Distance of the kinks of a break line, and how far it runs beyond what it cuts, mm."""
 
