@@ -185,6 +185,21 @@ def test_a_map_is_adrift_that_is_right_but_beside_the_unseen_side():
     assert not len(fit_check._adrift(line, p.imag > 552, np.ones(30, bool), np.array([1.0, 1.0, 0.2, 1.0])))
 
 
+def test_what_a_former_fit_bent_is_not_gone_on_from():
+    """Where only level lines are near, nothing would bend the paper back; a pencil's errors bend it but little."""
+    place, (columns, rows) = projection(Camera(curl=2.0, k1=-0.02, tilt=0.5, azimuth=4.0), 841.0, 594.0)
+    rng = np.random.default_rng(5)
+    frame, seen = sides(place), lines(place, rng)
+    drawn = place(seen.sheet + np.repeat(rng.normal(0, 0.15, 150), 20) * seen.normals)
+    level = seen.normals.real < 0.5
+    seen = seen._replace(picture=drawn, weight=(level | (seen.sheet.imag < 400)).astype(float))
+    straight = initial_map(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
+    bent = replace(straight, relief=2 * np.sign(rng.normal(size=len(straight.relief))), foot=straight.foot + 200j)
+    once, again = (fit_map(m, frame, seen, RELIEF, 0.4)[0].to_sheet(place(GRID)) for m in (straight, bent))
+    assert np.abs(once - again).max() < 0.01
+    assert np.abs(again - GRID).max() < 0.4
+
+
 def test_one_wrong_line_does_not_draw_the_map():
     place, (columns, rows) = projection(Camera(curl=3.0), 841.0, 594.0)
     frame, seen = sides(place), lines(place, np.random.default_rng(2))

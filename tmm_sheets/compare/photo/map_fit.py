@@ -10,7 +10,7 @@ import numpy as np
 from tmm_sheets.compare.photo.sheet_map import AWAY, CORNERS, DEGREE, FRAME, PAPER, WAVES, Floats, Map, heights, projected, waves
 from tmm_sheets.drawing.marks import Points
 
-USUAL = 0.005
+USUAL = 0.015
 """Weight of the priors below: as many mm off at every point cost as much as one parameter off by its usual size."""
 LENS = np.array([0.05, 0.03])
 """Usual distortion coefficients."""
@@ -125,9 +125,10 @@ def _fit_base(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:
     z = heights(seen.sheet, degree)
     first = np.concatenate(((m.matrix / m.matrix[2, 2]).ravel()[:8], m.bend))
     size = np.append(np.maximum(np.abs(first[:8]), 1e-2), (0.05, 0.05)) * 1e-4
-    x = np.concatenate((first, m.relief[active], (m.foot.real, m.foot.imag)))
     # Paper does not bend the way a lens does: weak priors keep either from imitating the other.
     foot, error = camera_foot(m)
+    # From flat paper: what a former fit has bent to suit wrong places is seldom bent back.
+    x = np.concatenate((first, np.zeros(active.sum()), (foot.real, foot.imag)))
     usual = np.concatenate((np.full(8, np.inf), LENS, [HEIGHT[int(d)] for d in DEGREE[active]], (error, error)))
     middle = np.concatenate((np.zeros(10 + active.sum()), (foot.real, foot.imag)))
     prior = USUAL / usual * np.sqrt((seen.weight**2).sum())
