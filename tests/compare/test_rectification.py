@@ -16,7 +16,7 @@ from tmm_sheets.compare.photo.fit_check import FitCheck
 from tmm_sheets.compare.photo.frame_fit import FrameFit, initial_map, sides_near
 from tmm_sheets.compare.photo.frame_search import FoundFrame
 from tmm_sheets.compare.photo.frame_sides import FrameGuess, follow_sides, inked, side_moved_to_ink
-from tmm_sheets.compare.photo.map_fit import FOCUS, Seen, camera_foot, camera_height, fit_map, fit_waves
+from tmm_sheets.compare.photo.map_fit import FOCUS, Seen, camera_foot, camera_height, fit_map, fit_waves, lens_and_homography
 from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, PAPER, RELIEF, Map, drawn_in, heights, homography, spline
 from tmm_sheets.compare.photo.surface import fit_surface
 from tmm_sheets.project import Project
@@ -183,6 +183,35 @@ def test_a_map_is_adrift_that_is_right_but_beside_the_unseen_side():
     good = p.imag < 570
     assert len(fit_check._adrift(line, good, np.ones(30, bool), np.array([1.0, 1.0, 0.2, 1.0]))) == 1
     assert not len(fit_check._adrift(line, p.imag > 552, np.ones(30, bool), np.array([1.0, 1.0, 0.2, 1.0])))
+
+
+def test_what_a_former_fit_bent_is_not_gone_on_from():
+    """Where only level lines are near, nothing would bend the paper back; a pencil's errors bend it but little."""
+    place, (columns, rows) = projection(Camera(curl=2.0, k1=-0.02, tilt=0.5, azimuth=4.0), 841.0, 594.0)
+    rng = np.random.default_rng(5)
+    frame, seen = sides(place), lines(place, rng)
+    drawn = place(seen.sheet + np.repeat(rng.normal(0, 0.15, 150), 20) * seen.normals)
+    level = seen.normals.real < 0.5
+    seen = seen._replace(picture=drawn, weight=(level | (seen.sheet.imag < 400)).astype(float))
+    straight = initial_map(place(CORNERS), [frame.picture[k * 120 : (k + 1) * 120] for k in range(4)], (rows, columns))
+    bent = replace(straight, relief=2 * np.sign(rng.normal(size=len(straight.relief))), foot=straight.foot + 200j)
+    once, again = (fit_map(m, frame, seen, RELIEF, 0.4)[0].to_sheet(place(GRID)) for m in (straight, bent))
+    assert np.abs(once - again).max() < 0.01
+    assert np.abs(again - GRID).max() < 0.4
+
+
+def test_how_each_parameter_of_homography_and_lens_moves_a_point():
+    place, (columns, rows) = projection(Camera(curl=0.0, tilt=0.3, azimuth=1.0), 841.0, 594.0)
+    m = initial_map(place(CORNERS), [place(np.linspace(a, b, 50)) for a, b in pairwise([*CORNERS, CORNERS[0]])], (rows, columns))
+    q, n = (place(GRID) - m.middle) / m.reach, np.exp(1j * np.arange(len(GRID)))
+    x = np.concatenate(((m.matrix / m.matrix[2, 2]).ravel()[:8], (-0.04, 0.01)))
+    here, slopes = lens_and_homography(x, q, n)
+    bent = replace(m, matrix=m.matrix / m.matrix[2, 2], bend=(-0.04, 0.01))
+    assert np.abs(here - np.real(n * bent.to_base(place(GRID)))).max() < 1e-9
+    for k, step in enumerate(1e-6 * np.maximum(np.abs(x), 0.01)):
+        by = np.eye(10)[k] * step
+        over = (lens_and_homography(x + by, q, n)[0] - lens_and_homography(x - by, q, n)[0]) / (2 * step)
+        assert np.abs(over - slopes[:, k]).max() < 1e-4 * np.abs(over).max()
 
 
 def test_one_wrong_line_does_not_draw_the_map():

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.compare.photo.frame_fit import STATIONS
-from tmm_sheets.compare.photo.frame_sides import PLACES, FrameGuess, robust_curve
+from tmm_sheets.compare.photo.frame_sides import PLACES, FrameGuess, robust_curves
 from tmm_sheets.compare.photo.profiles import sample
 from tmm_sheets.compare.photo.sheet_map import CORNERS, PAPER, Floats, chords, homography, projected
 from tmm_sheets.drawing.marks import Points
@@ -131,5 +131,5 @@ def _bends(mask: Any, corners: Points) -> Floats:
         first = offsets[hit.argmax(1)]
         seen = hit.any(1) & ~hit[:, 0]
         if seen.sum() > STATIONS / 3:
-            out[k] = np.polynomial.chebyshev.chebval(2 * t - 1, robust_curve(t[seen], first[seen], 4))
+            out[k] = np.polynomial.chebyshev.chebval(2 * t - 1, robust_curves(t[seen], first[seen][None], 4)[0])
     return out

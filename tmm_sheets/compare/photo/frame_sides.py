@@ -32,14 +32,15 @@ class FrameGuess(NamedTuple):
     """Orientations the frame may have: quarter turns, plus 4 when mirrored."""
 
 
-def robust_curve(t: Floats, y: Floats, degree: int) -> Floats:
-    """Chebyshev coefficients of a curve through most of some points, t from 0 to 1."""
+def robust_curves(t: Floats, y: Floats, degree: int) -> Floats:
+    """Chebyshev coefficients of curves through most of some points, (curves, coefficients); t from 0 to 1, y (curves, points)."""
     base = np.polynomial.chebyshev.chebvander(2 * t - 1, degree)
-    w = np.ones(len(t))
-    c: Floats = np.zeros(degree + 1)
+    w = np.ones(y.shape)
+    c: Floats = np.zeros((len(y), degree + 1))
     for k in range(12):
-        c = np.linalg.lstsq(base * w[:, None], y * w, rcond=None)[0]
-        r = np.abs(y - base @ c)
+        weighted = base.T * w[:, None] ** 2
+        c = np.linalg.solve(weighted @ base, weighted @ y[..., None])[..., 0]
+        r = np.abs(y - c @ base.T)
         w = 1 / (1 + (r / (2.0 if k < 6 else 1.0)) ** 2)
     return np.asarray(c)
 
@@ -63,12 +64,12 @@ def follow_sides(ink: Any, guess: FrameGuess) -> tuple[Points, Points]:
         offsets = np.arange(-width, width + 0.25, 0.5)
         at = base + n * centre
         table = sample(ink, (at[..., None] + n[..., None] * offsets).reshape(4 * STATIONS, -1)).reshape(4, STATIONS, -1)
-        curves = [robust_curve(t, y, degree) for y in centre + offsets[follow(table)]]
-        centre = np.stack([np.polynomial.chebyshev.chebval(2 * t - 1, c) for c in curves])
+        curves = robust_curves(t, centre + offsets[follow(table)], degree)
+        centre = curves @ np.polynomial.chebyshev.chebvander(2 * t - 1, degree).T
     return base + n * centre, _corners(a[:, 0], chord[:, 0], n[:, 0], curves)
 
 
-def _corners(start: Points, chord: Points, normals: Points, curves: list[Floats]) -> Points:
+def _corners(start: Points, chord: Points, normals: Points, curves: Floats) -> Points:
     """Where the tangents at the ends of consecutive sides meet."""
     ends = []
     for a, u, n, curve in zip(start, chord, normals, curves, strict=True):

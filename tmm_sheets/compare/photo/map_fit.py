@@ -10,7 +10,7 @@ import numpy as np
 from tmm_sheets.compare.photo.sheet_map import AWAY, CORNERS, DEGREE, FRAME, PAPER, WAVES, Floats, Map, heights, projected, waves
 from tmm_sheets.drawing.marks import Points
 
-USUAL = 0.005
+USUAL = 0.015
 """Weight of the priors below: as many mm off at every point cost as much as one parameter off by its usual size."""
 LENS = np.array([0.05, 0.03])
 """Usual distortion coefficients."""
@@ -125,31 +125,29 @@ def _fit_base(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:
     z = heights(seen.sheet, degree)
     first = np.concatenate(((m.matrix / m.matrix[2, 2]).ravel()[:8], m.bend))
     size = np.append(np.maximum(np.abs(first[:8]), 1e-2), (0.05, 0.05)) * 1e-4
-    x = np.concatenate((first, m.relief[active], (m.foot.real, m.foot.imag)))
     # Paper does not bend the way a lens does: weak priors keep either from imitating the other.
     foot, error = camera_foot(m)
+    # From flat paper: what a former fit has bent to suit wrong places is seldom bent back.
+    x = np.concatenate((first, np.zeros(active.sum()), (foot.real, foot.imag)))
     usual = np.concatenate((np.full(8, np.inf), LENS, [HEIGHT[int(d)] for d in DEGREE[active]], (error, error)))
     middle = np.concatenate((np.zeros(10 + active.sum()), (foot.real, foot.imag)))
     prior = USUAL / usual * np.sqrt((seen.weight**2).sum())
-    n = np.conj(seen.normals)
-
-    def base(x: Floats) -> Floats:
-        at = replace(m, matrix=np.append(x[:8], 1.0).reshape(3, 3), bend=(x[8], x[9])).to_base(seen.picture)
-        return np.asarray(np.real(n * at))
+    q, n = (seen.picture - m.middle) / m.reach, np.conj(seen.normals)
 
     def residual(x: Floats) -> tuple[Floats, Floats, Floats]:
-        here, height = base(x), np.einsum("nk,k->n", z, x[10:-2])
-        return here, height, here - np.real(n * (seen.sheet + height * (seen.sheet - complex(*x[-2:])) / AWAY))
+        here, slopes = lens_and_homography(x[:10], q, n)
+        height = np.einsum("nk,k->n", z, x[10:-2])
+        return slopes, height, here - np.real(n * (seen.sheet + height * (seen.sheet - complex(*x[-2:])) / AWAY))
 
     def cost(x: Floats, r: Floats, far: float | Floats) -> float:
         return float((seen.weight**2 * r**2 / (1 + (r / far) ** 2)).sum() + ((prior * (x - middle)) ** 2).sum())
 
-    here, height, r = residual(x)
+    slopes, height, r = residual(x)
     damping = 1e-9
     for _ in range(STEPS):
         away = seen.sheet - complex(*x[-2:])
         jacobian = np.hstack((
-            np.stack([(base(x[:10] + e) - here) / s for e, s in zip(np.diag(size), size, strict=True)], -1),
+            slopes,
             -np.real(n * away)[:, None] * z / AWAY,
             np.stack((n.real * height, -n.imag * height), -1) / AWAY,
         ))  # fmt: skip
@@ -164,7 +162,7 @@ def _fit_base(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:
         before = cost(x, r, far)
         while damping < 10:
             change = np.linalg.solve(square + damping * np.eye(len(x)), down) / norm
-            here, height, r = residual(x + change)
+            slopes, height, r = residual(x + change)
             if cost(x + change, r, far) < before:
                 break
             damping *= 30
@@ -177,6 +175,22 @@ def _fit_base(m: Map, seen: Seen, degree: int, loose: Floats | None) -> Map:
     relief[active] = x[10:-2]
     matrix = np.append(x[:8], 1.0).reshape(3, 3)
     return replace(m, matrix=matrix, bend=(float(x[8]), float(x[9])), relief=relief, foot=complex(*x[-2:]))
+
+
+def lens_and_homography(x: Floats, q: Points, n: Points) -> tuple[Floats, Floats]:
+    """Where they take points of a normalized picture, along normals, mm, and by how much each parameter moves that, (n, 10).
+
+    ``x`` are the homography's eight and the lens's two parameters, ``n`` the conjugates of the normals.
+    """
+    r2 = np.abs(q) ** 2
+    u = q * (1 + x[8] * r2 + x[9] * r2**2)
+    w = x[6] * u.real + x[7] * u.imag + 1
+    p = (complex(x[0], x[3]) * u.real + complex(x[1], x[4]) * u.imag + complex(x[2], x[5])) / w
+    share = np.stack((u.real, u.imag, np.ones(len(q)))) / w
+    along, up = ((complex(x[k], x[3 + k]) - x[6 + k] * p) / w for k in (0, 1))
+    bent = np.real(n * (along * q.real + up * q.imag)) * np.stack((r2, r2**2))
+    here = np.real(n * p)
+    return here, np.concatenate((n.real * share, -n.imag * share, -here * share[:2], bent)).T
 
 
 def camera_foot(m: Map) -> tuple[complex, float]:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.compare.photo.map_fit import LENS, Seen, camera_foot, camera_height
+from tmm_sheets.compare.photo.map_fit import LENS, Seen, camera_foot, camera_height, lens_and_homography
 from tmm_sheets.compare.photo.sheet_map import AWAY, FRAME, Floats, Map, drawn_in, spline_nodes
 
 CELLS, STRETCHED = (20, 14), (8, 6)
@@ -50,7 +50,7 @@ def fit_surface(m: Map, sides: Seen, loose: float, seen: Seen, far: float) -> Ma
     if not m.surface.any():
         m = replace(m, surface=np.zeros(shape), stretch=np.zeros((2, *flat)), drawn_in=np.zeros((2, *shape)), foot=foot)
     m = replace(m, sides=np.zeros_like(m.sides), relief=np.zeros_like(m.relief), waves=np.zeros_like(m.waves))
-    p, n = seen.sheet, np.conj(seen.normals)
+    p, n, q = seen.sheet, np.conj(seen.normals), (seen.picture - m.middle) / m.reach
     here_of, height = spline_nodes(p, shape)
     plane_of, plane = spline_nodes(p, flat)
     count, few = shape[0] * shape[1], flat[0] * flat[1]
@@ -79,21 +79,16 @@ def fit_surface(m: Map, sides: Seen, loose: float, seen: Seen, far: float) -> Ma
         return replace(m, matrix=np.append(x[:8], 1.0).reshape(3, 3), bend=(float(x[8]), float(x[9])), foot=complex(x[10], x[11]),
                        surface=risen, stretch=x[12 + count :].reshape(2, *flat), drawn_in=drawn_in(risen, away / AWAY))
 
-    def base(x: Floats) -> Floats:
-        at = replace(m, matrix=np.append(x[:8], 1.0).reshape(3, 3), bend=(x[8], x[9])).to_base(seen.picture)
-        return np.asarray(np.real(n * at))
-
     x = packed(m)
     lever_less = np.hstack((-n.real[:, None] * plane, n.imag[:, None] * plane))
     for _ in range(STEPS):
-        size = np.append(np.maximum(np.abs(x[:8]), 1e-2), (0.05, 0.05)) * 1e-4
-        here, lift = base(x), (height * x[12 + here_of]).sum(1)
+        (here, slopes), lift = lens_and_homography(x[:10], q, n), (height * x[12 + here_of]).sum(1)
         lever = np.real(n * (p - complex(x[10], x[11]))) / AWAY
         aside = drawn_in(x[12 : 12 + count].reshape(shape), away / AWAY).reshape(2, -1)
         shorter = [(height * part[here_of]).sum(1) for part in aside]
         r = here - np.real(n * (p + shorter[0] + 1j * shorter[1])) - lift * lever + (lever_less * x[which[:, 28:]]).sum(1)
         jacobian = np.hstack((
-            np.stack([(base(x[:10] + e) - here) / s for e, s in zip(np.diag(size), size, strict=True)], -1),
+            slopes,
             np.stack((n.real * lift, -n.imag * lift), -1) / AWAY,
             -lever[:, None] * height,
             lever_less,
