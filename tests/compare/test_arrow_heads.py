@@ -353,3 +353,27 @@ def test_the_head_of_a_vector_whose_point_was_moved_stands_there(ends, head):
 def test_a_head_is_not_missed_on_a_line_found_by_the_ink_of_another(off, head):
     e, drawn = arrow(1, A, B), line(2, A + off * 1j * WAY, B + off * 1j * WAY)
     assert heads([e], [drawn])[0].head == head
+
+
+def test_a_head_is_known_on_a_stroke_that_was_found_a_little_aside():
+    """In a black-and-white picture all edges are upright, and as dark as the middle."""
+    off = 0.3j * WAY
+    e = arrow(1, A, B)
+    assert heads([e], [arrow(1, A + off, B + off)], [(BACK[0] + off, BACK[1])])[0].head == "there"
+    assert heads([e], [arrow(1, A + off, B + off)], [(OTHER[0] + off, OTHER[1])])[0].head == "reversed"
+
+
+@pytest.mark.parametrize("off", [0.15, -0.15])
+def test_a_force_found_aside_of_the_middle_of_its_link_is_missed(off):
+    """Others whose heads are seen, thinner than the link, do not make its stroke a broad one."""
+    link = line(2, A - 2 * WAY + off * 1j * WAY, B + 30 * WAY + off * 1j * WAY, "main")
+    sound = [arrow(k, 360 + (280 + 10 * k) * 1j, 390 + (280 + 10 * k) * 1j) for k in (3, 4, 5)]
+    known = [arrow(1, A, B), link, *sound]
+    found = heads(known, known, [(complex(e.points[1]), 0.0) for e in sound])
+    assert [t.head for t in found] == ["absent", "unknown", *["there"] * 3]
+
+
+def test_a_head_is_missed_by_what_the_line_is_near_it():
+    """A hand presses more here than there."""
+    e = arrow(1, A, B)
+    assert heads([e], [e, line(1, A + 0.6 * (B - A), B, "main")], [])[0].head == "absent"

@@ -49,10 +49,13 @@ BESIDE = 0.22
 """mm from the edge of the line beyond which nothing of others may be: what runs along under it, a helper line, is no matter."""
 BROAD = 0.8
 """Width of a line as a share of that of a head from which on it may hide the head."""
-ALL_ALONG, THICKEST = 0.9, 0.5
-"""Least share of a line along which a thicker one, a link, must run under it to be taken for its own ink, and mm to either side."""
+ALL_ALONG, THICKER, THICKEST = 0.9, 0.2, 0.5
+"""Least share of a line along which a thicker one, a link, must run under it to be taken for its own ink, mm by which it is thicker
+at least, in steps of pixels, and half of how thick it is at most."""
 ALONG = 0.3
 """Least share of a line along which others must run under it for their ink to be part of its own."""
+NEXT = 15.0
+"""mm of a line behind its head by which its own ink is known: a hand presses here more than there, and wavers."""
 SOME = 6
 """Least number of places along a line by which its ink is known."""
 FAINT = 0.12
@@ -65,6 +68,8 @@ SURELY, VERY_LIKE, ALONE = 0.5, 0.85, 0.75
 """Both for a head at the other end, where none is expected; likeness of one that is seen as a whole where no others begin."""
 SCANT, HALF = 0.1, 0.5
 """Part of a head up to which what is seen of a side of it says nothing, and part that a whole side of it is."""
+SIDE = WHOLE * HALF
+"""Least part of a head that must be seen of one side for that to be known as a whole."""
 WRITTEN = 0.85
 """How alike ink must be to a whole head where letters may stand."""
 BARE, LITTLE, HARDLY_LIKE, OPEN, EACH = 0.2, 0.2, 0.6, 0.45, 0.1
@@ -117,6 +122,7 @@ class _End:
     grown : mm by which the line is wider than it was drawn
     lined : share of the way to the tip on which the line is seen
     lies_on : whether it lies on a thicker line
+    aside : mm from where the line was found to the middle of its stroke
     """
 
     element: Element
@@ -128,6 +134,7 @@ class _End:
     grown: float
     lined: float
     lies_on: bool
+    aside: float
 
     @property
     def across(self) -> float:
@@ -152,7 +159,7 @@ class _End:
 
         e, length = self.element, long * _length(self.element)
         half = wide * _half_width(e) * self.back / length + self.grown / 2
-        inside = (np.abs(ASIDE) <= half[:, None]) & ((self.back >= 0) & (self.back <= length))[:, None]
+        inside = (np.abs(ASIDE - self.aside) <= half[:, None]) & ((self.back >= 0) & (self.back <= length))[:, None]
         # As blurred as a line is.
         full = cv2.GaussianBlur(inside.astype(np.float32), (7, 5), sigmaX=0.2 / ACROSS, sigmaY=0.2 / STEP)
         return np.clip(self.own[MIDDLE].max() * full - self.own, 0, None)
@@ -188,11 +195,15 @@ class _End:
         left, right = (s.part for s in self.sides())
         if min(left, right) > SCANT or max(left, right) < SEEN:
             return self
-        return replace(self, known=self.known & (ASIDE < 0 if left > right else ASIDE > 0))
+        return self._only(-1 if left > right else 1)
 
     def sides(self) -> list[_Likeness]:
         """The likeness of either side to that of a head in its place."""
-        return [next(replace(self, known=self.known & side).likeness(NEAR, SIZES)) for side in (ASIDE < 0, ASIDE > 0)]
+        return [next(self._only(side).likeness(NEAR, SIZES)) for side in (-1, 1)]
+
+    def _only(self, side: int) -> _End:
+        """It, seen to one side of its stroke, -1 or 1, alone."""
+        return replace(self, known=self.known & (side * (ASIDE - self.aside) > 0))
 
     def bare(self) -> bool:
         """Whether nothing of a head is in its place, as far as that is seen."""
@@ -203,7 +214,7 @@ class _End:
         """Whether all of the place of a head is seen, and ink is there to one side of the line only."""
         sides = self.sides()
         least, most = sorted(s.share for s in sides)
-        return min(s.part for s in sides) >= WHOLE * HALF and least <= NOTHING and most > BARE
+        return min(s.part for s in sides) >= SIDE and least <= NOTHING and most > BARE
 
     def empty(self, share: float = BARE) -> bool:
         """Whether all of the place of a head is seen, and nothing like one is there: a head a little off would reach into it."""
@@ -247,13 +258,15 @@ class _Paper:
         """What there is about an end of a line; None where nothing can be told."""
         length, head = abs(other - tip), _length(e)
         way = (other - tip) / length
-        shaft = np.linspace(head + SHAFT, max(length - head - SHAFT, head + SHAFT + 0.5 * SHORTEST), 60)
+        far = max(length - head - SHAFT, head + SHAFT + 0.5 * SHORTEST)
+        shaft = np.linspace(head + SHAFT, min(far, head + SHAFT + NEXT), 60)
         ink, others, letters, hidden = self._beside(e, tip, way, shaft)
         pen = line_type(e.style).width / 2
-        half = max(pen, _run_under(others))
+        left, right = _run_under(others, pen)
         # In steps of pixels a line that lies under all of it shows beside it here and there.
         covered = bool(others[:, MIDDLE].any(1).mean() > ALL_ALONG)
-        close = np.abs(ASIDE) <= half + BESIDE + covered * ACROSS
+        about = BESIDE + covered * ACROSS
+        close = np.abs(ASIDE - (right - left) / 2) <= (left + right) / 2 + about
         under = close & ((others.mean(0) > ALONG) | covered)
         free = ~_widened(others & ~close)
         own = _usual(ink, free & ~hidden & ~letters)
@@ -266,14 +279,17 @@ class _Paper:
         dark = own[MIDDLE].max()
         inked = own - own.min() > 0.5 * (dark - own.min())
         wide = ACROSS * float(inked.sum())
-        left, right = (ASIDE[side & ~inked] for side in (ASIDE < 0, ASIDE >= 0))
+        low = float(ASIDE[~inked & (ASIDE < 0)].max(initial=-np.inf))
+        high = float(ASIDE[~inked & (ASIDE >= 0)].min(initial=np.inf))
         # With paper to both sides, or it is others' ink that begins there.
-        if len(left) and len(right) and right.min() - left.max() - ACROSS >= BROAD * 2 * _half_width(e):
+        if np.isfinite(high - low) and high - low - ACROSS >= BROAD * 2 * _half_width(e):
             return None
-        before = (back >= 2 * STEP) & (back <= head + 2 * SHAFT)
-        lined = float((ink[before][:, MIDDLE].max(1) > 0.5 * dark).mean())
+        aside = (low + high) / 2
+        way_to_tip = (back >= 2 * STEP) & (back <= head + 2 * SHAFT)
+        lined = float((ink[way_to_tip][:, MIDDLE].max(1) > 0.5 * dark).mean())
         legible = ~_widened(others & ~under) & ~hidden
-        return _End(e, back, ink - own, legible & ~letters, legible, own, max(0.0, wide - 2 * half), lined, half > pen)
+        return _End(e, back, ink - own, legible & ~letters, legible, own, max(0.0, wide - left - right), lined,
+                    max(left, right) > pen, aside if abs(aside) <= CENTRED else 0.0)
 
     def _beside(self, e: Element, tip: complex, way: complex, back: Floats) -> tuple[Any, Any, Any, Any]:
         """Ink across a line ``back`` mm from its tip, where others are, where letters may stand, and where it is hidden."""
@@ -302,10 +318,13 @@ class _Paper:
         return bool(self.owners.others(e.number, places).any())
 
 
-def _run_under(others: Any) -> float:
-    """How far to either side of a line others lie under all of it, mm."""
-    missing = np.abs(ASIDE)[others.mean(0) < ALL_ALONG].min(initial=np.inf)
-    return float(missing - 1.5 * ACROSS) if missing <= THICKEST + 1.5 * ACROSS else 0.0
+def _run_under(others: Any, pen: float) -> tuple[float, float]:
+    """How far to its left and right a thicker line lies under all of a line, mm, or its own width, ``pen`` to either side: it may
+    lie aside of the middle of a link.
+    """
+    bare = others.mean(0) < ALL_ALONG
+    left, right = (float(np.abs(ASIDE[bare & side]).min(initial=np.inf)) - 1.5 * ACROSS for side in (ASIDE <= 0, ASIDE >= 0))
+    return (max(left, pen), max(right, pen)) if 2 * pen + THICKER < left + right <= 2 * THICKEST else (pen, pen)
 
 
 def _widened(others: Any) -> Any:
@@ -355,7 +374,7 @@ def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hi
     for k, (head, end) in found.items():
         t = traces[k]
         shares = any(_together(t.element, e, -1) for e in seen if e is not t.element)
-        broad = end is not None and end.across > BROADER * _across_about(t.element, usual) > 0
+        broad = end is not None and not end.lies_on and end.across > BROADER * _across_about(t.element, usual) > 0
         if t.element.number in thin and (head != "there" or shares):
             # What lies elsewhere is a thin line of its own.
             out[k] = replace(t, head="left out") if t.deviation <= AWAY else Trace(t.element, "missing")
@@ -473,6 +492,6 @@ def _head(t: Trace, paper: _Paper) -> tuple[Head, _End | None]:
     # Where nothing can be told of the tip, others must not have theirs at the other end: it might be drawn a little beside.
     if here.lined >= LINED and not paper.others_begin(t.element, begin, way) and there.has_head(SURELY, ALONE, WHOLE):
         return "reversed", here
-    if whole or (not alone and seen >= HALF and there.better_seen().has_head(SURELY, VERY_LIKE, HALF)):
+    if whole or (not alone and seen >= SIDE and there.better_seen().has_head(SURELY, VERY_LIKE, SIDE)):
         return "doubled", here
     return ("there" if has else "absent" if here.headless() else "unknown"), here
