@@ -800,3 +800,37 @@ def test_a_line_that_others_cover_must_be_seen_to_the_dot_where_it_ends(end, dot
     nothing = np.zeros_like(ink)
     found = tracing._doubted(traces, {} if alone is None else {1: alone}, ink, nothing, nothing, owners, 10)
     assert [t.status for t in found] == [status, "measured"]
+
+
+@pytest.mark.parametrize(("dark", "status"), [(20, "covered"), (60, "measured")])
+def test_a_line_whose_place_is_far_paler_than_its_kind_is_not_there(dark, status):
+    """Ends of a hatching stand in its place."""
+    known = [line(k, 200 + 10j * k, 260 + 10j * k) for k in range(3)]
+    traces = [Trace(e, "measured", at=e.points, darkness=d, covered=1.0) for e, d in zip(known, (dark, 100, 100), strict=True)]
+    nothing, owners = np.zeros((ROWS, COLUMNS), np.uint8), Owners(ROWS, COLUMNS)
+    found = tracing._doubted(traces, {}, nothing, nothing, nothing, owners, 10)
+    assert [t.status for t in found] == [status, "measured", "measured"]
+
+
+@pytest.mark.parametrize(("by", "verdict"), [(0, "green"), (2.8, "amber")])
+def test_a_vector_that_was_drawn_into_the_stroke_beside_is_not_seen_in_its_place(by, verdict):
+    """From where they are near each other the edge of that stroke is in its place."""
+    pole, tip, other = 200 + 200j, 221 + 208j, 232 + 209j
+    known = [line(1, pole, other, "vector"), line(2, pole, tip, "vector")]
+    way = (tip - pole) / abs(tip - pole)
+    found, _ = traced(known, [(pole, other, "vector"), (pole, tip - by * 1j * way, "vector")])
+    assert [judge(t, 0.25, 0.15).verdict for t in found] == ["green", verdict]
+
+
+@pytest.mark.parametrize(("short", "said"), [(0.0, ""), (3.0, "too short at its end")])
+def test_a_line_that_others_hide_up_to_bare_paper_before_its_end_is_short(short, said):
+    known = [
+        line(1, CORNER - 40, CORNER, "construction", "construction"),
+        line(2, CORNER - 16 - 0.5j, CORNER - 3.5 + 0.3j, "construction"),
+        line(3, CORNER - 5j, CORNER + 5j, "construction"),
+    ]
+    drawn = [(e.points[0], e.points[1] - (short if e.number == 1 else 0), e.style) for e in known]
+    found, _ = traced(known, drawn)
+    f = judge(found[0], 0.25, 0.15)
+    assert f.verdict == ("amber" if said else "green")
+    assert said in f.what

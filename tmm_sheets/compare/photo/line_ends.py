@@ -170,7 +170,10 @@ def _ink_along(way: _Way, across: Any, hidden: Any, level: float) -> tuple[Any, 
 
 
 def _extent(way: _Way, dark: Any, own: Any) -> tuple[int, int] | None:
-    """Indices of the last ink that is surely the line's own, and of the last ink before bare paper; None without ink of its own."""
+    """Indices of the last ink that is surely the line's own, the first place if none is, and of the last ink before bare paper.
+
+    None without ink.
+    """
     patterned = bool(line_type(way.element.style).pattern)
     gap, torn = (PATTERN_GAP, PATTERN_GAP) if patterned else (GAP, TORN)
     low, last, inside = -1, 0, int((way.t <= 0.3).sum())
@@ -182,8 +185,8 @@ def _extent(way: _Way, dark: Any, own: Any) -> tuple[int, int] | None:
         last = i
         if own[i]:
             low = i
-    if low < 0:
-        return None
+    if low < 0:  # others hide all of it, and may go on no farther than it does
+        return (0, last) if dark[last] else None
     high = low
     for i in (np.flatnonzero(dark[low:]) + low).tolist():
         if (i - high) * STEP > torn + 1e-9:

@@ -128,9 +128,11 @@ def in_place(strip: Strip, level: float) -> Trace | None:
 
 
 def uncovered(strip: Strip) -> Any:
-    """How dark an element's place is at each of its stations, nan where another line covers it or runs along it."""
+    """How dark an element's place is at each of its stations, nan where its head or another line covers it or one runs along."""
     width = line_type(strip.element.style).width
     clear = np.where(strip.others, np.abs(OFFSETS), NEAR).min(1) > CLEAR + width / 2
+    for head in strip.element.fills:
+        clear &= np.abs(strip.stations.points - head.mean()) > np.abs(head - head.mean()).max()
     return np.where(clear, np.where(np.abs(OFFSETS) <= WITHIN, strip.profile, 0).max(1), np.nan)
 
 

@@ -172,20 +172,22 @@ def _in_their_places(
         t = in_place(strip, level)
         if t is None:
             absent.append(strip.element)
-            continue
-        found.append(t)
-        places = _alone(strip, dots)
+        else:
+            found.append(t)
+        places = _alone(strip, dots, t is not None)
         if places is not None and expected_ink(strip.element) == 1.0:
             alone[strip.element.number] = places
     return found, absent, alone
 
 
-def _alone(strip: Strip, dots: Points) -> _Alone | None:
-    """The places of a line that others cover or run along for the most part where none does; before a dot where it ends, a few."""
+def _alone(strip: Strip, dots: Points, found: bool = True) -> _Alone | None:
+    """The places of a line that others cover or run along for the most part, or that was not found, where none does; before a dot
+    where it ends, a few.
+    """
     e, dark = strip.element, uncovered(strip)
     step, shows = e.length / len(dark), ~np.isnan(dark)
     share = float(shows.mean())
-    if share <= 1 - COVERED and share * e.length >= LEAST:
+    if (share <= 1 - COVERED or (not found and e.kind == "line")) and share * e.length >= LEAST:
         return _Alone(dark[shows], FAINT)
     if e.kind != "line" or share > COVERED:
         return None
@@ -229,7 +231,9 @@ def _doubted(
         dark = usual.get(line_type(t.element.style).width, 0.0)
         places = alone.get(t.element.number)
         tells = places is not None and (places.faint <= FAINT or dark < NO_GREY)
+        tells &= t.status != "missing" and t.deviation <= AWAY
         covered = tells and places is not None and bool((places.dark <= places.faint * dark).mean() >= BARE)
+        covered |= t.element.kind == "line" and 0 < t.darkness <= FAINT * dark  # ends of a hatching in its place
         if covered:
             t = replace(t, status="covered", covered=0.0, darkness=0.0)
         if covered or (t.darkness and (t.darkness < PALE * dark or t.covered < GAPS)):
