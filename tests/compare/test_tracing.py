@@ -9,7 +9,7 @@ import pytest
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.photo import arrow_heads, tracing
+from tmm_sheets.compare.photo import arrow_heads, displacement, tracing
 from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.joints import with_edges
@@ -834,3 +834,14 @@ def test_a_line_that_others_hide_up_to_bare_paper_before_its_end_is_short(short,
     f = judge(found[0], 0.25, 0.15)
     assert f.verdict == ("amber" if said else "green")
     assert said in f.what
+
+
+@pytest.mark.parametrize(("begin", "end", "covered", "swung"), [
+    (0.3, 4j, 1.0, True),
+    (3j, 4j, 1.0, False),  # no end stays
+    (0, 1j, 1.0, False),  # hardly turned
+    (0.3, 4j, 0.9, False),
+])  # fmt: skip
+def test_a_line_of_which_little_is_seen_was_turned_about_an_end_that_stays(begin, end, covered, swung):
+    e = line(1, CORNER, CORNER + 40)
+    assert displacement._swung(Trace(e, "measured", covered=covered, at=e.points + np.array([begin, end]))) is swung

@@ -24,6 +24,9 @@ PLENTY = 40.0  # mm of a line by which it is known, however much of it is hidden
 WHOLE, DARKER, FULLER = 0.85, 1.25, 0.12
 """Least share of an element's ink elsewhere, and how much darker or more complete it must be there, for it not to be believed in
 its own place."""
+SURE, PIVOT, PALE = 0.95, 0.8, 0.6
+"""Of a line that was turned, little of which is seen: least share of its ink, mm by which the end is off about which it was turned,
+and its least darkness as a share of that of its place, where others are darker."""
 BETWEEN = 0.6
 """Darkness between a stroke and a line beside it, as a share of the line's, below which paper separates them."""
 RIDGE = 1.0  # mm beyond such a line within which there is paper again
@@ -95,10 +98,21 @@ def rather_elsewhere(t: Trace, s: Stations, left: Any, wiped: Any, ink: Any, own
         darker = _elsewhere(t.element, s, profile, unknown, offsets, DARKER * t.darkness)
         if darker is not None and darker.covered >= WHOLE:
             return darker
-    fuller = _elsewhere(t.element, s, profile, unknown, offsets, level)
-    if fuller is None or fuller.covered < max(WHOLE, t.covered + FULLER) or fuller.darkness < t.darkness / DARKER:
-        return None
-    return fuller
+    for least in (KNOWN, PARTED):
+        fuller = _elsewhere(t.element, s, profile, unknown, offsets, level, least)
+        if fuller is None or fuller.covered < max(WHOLE, t.covered + FULLER):
+            continue
+        if fuller.darkness >= t.darkness / DARKER if least == KNOWN else _swung(fuller) and fuller.darkness >= PALE * t.darkness:
+            return fuller
+    return None
+
+
+def _swung(t: Trace) -> bool:
+    """Whether a straight line that was found elsewhere has one end in its place: then little of it is enough to know it by."""
+    if t.element.kind != "line" or t.at is None or t.covered < SURE:
+        return False
+    off = np.abs(t.at - t.element.points)
+    return bool(off.min() <= PIVOT < off.max() / 2)
 
 
 def beside(t: Trace, s: Stations, ink: Any, lines: Any, taken: Any, owners: Owners, level: float) -> Trace | None:
