@@ -34,6 +34,7 @@ class Label:
     ``away`` is the preferred direction from the anchor (0 when any will do), ``gap`` the clear distance to it.
     with ``leader`` it may as well stand farther off with a leader line; without, only where nothing near is free.
     Lettering with a ``shelf`` stands on one, at the end of a leader that begins at this distance from the anchor.
+    It keeps off ``thin`` lines so many times more than usual.
     ``of``, ``part`` (its number) and ``by`` (the step it names) are those of the canvas when the label was asked for.
     """
 
@@ -47,6 +48,24 @@ class Label:
     part: int = -1
     by: Trace | None = None
     shelf: float = 0.0
+    thin: float = 1.0
+
+
+class AxisNumber(NamedTuple):
+    """The number of a position at the axis of a graph: its mark and its lettering, ``foot`` is the point of the axis it belongs to.
+
+    ``side`` is 1 where it was meant to stand over the axis, -1 under it; ``pitch`` the distance to its neighbours, mm. ``first`` is
+    that of the origin, which may stand beside the other axis.
+    """
+
+    mark: int
+    text: str
+    height: float
+    foot: complex
+    side: int
+    pitch: float
+    first: bool
+    part: int
 
 
 @dataclass(frozen=True)
@@ -126,7 +145,7 @@ class Canvas:
     ``parts`` and ``groups`` tell what the marks belong to and which of them are one thing, for whoever reads the sheet again;
     ``dimensions`` and ``forms`` which are dimensions and forms to be filled in, for programs that know such things;
     ``shortened`` are texts that were too long for their cell of a form. ``windows`` are the numbers of circles through which what
-    is inside is read.
+    is inside is read. ``numbers`` are those at axes, which make way for lines when all are drawn.
     """
 
     marks: list[Mark] = field(default_factory=list)
@@ -143,6 +162,7 @@ class Canvas:
     forms: list[Form] = field(default_factory=list)
     shortened: list[str] = field(default_factory=list)
     windows: set[int] = field(default_factory=set)
+    numbers: list[AxisNumber] = field(default_factory=list)
 
     def begin(self, box: Box, title: str = "", draw: str = "") -> None:
         """Begin a view, or a part of the present one when ``draw`` is left out: something that has a place of its own."""
@@ -284,6 +304,14 @@ class Canvas:
         self.put(laid, at + rect(1, angle) * shift, angle, markup)
         return laid
 
+    def number(self, foot: complex, at: complex, text: str, height: float, pitch: float, *, first: bool = False) -> None:
+        """Number of the point ``foot`` of a level axis, its left end at ``at``; see :class:`AxisNumber`."""
+        mark = len(self.marks)
+        self.text(at, text, height)
+        if len(self.marks) == mark + 1:
+            side = 1 if at.imag > foot.imag else -1
+            self.numbers.append(AxisNumber(mark, text, height, complex(foot), side, pitch, first, len(self.parts) - 1))
+
     def lines(self, at: complex, lines: Iterable[str], step: float, height: float = 3.5, align: Align = "left") -> None:
         """Lines of text one under another, ``step`` mm from baseline to baseline."""
         for i, line in enumerate(lines):
@@ -303,11 +331,12 @@ class Canvas:
         self._one("lettering", first, markup)
 
     def label(self, anchor: complex, markup: str, away: complex = 0j, height: float = 3.5, gap: float = 1.0,
-              leader: bool = True, shelf: float = 0.0) -> None:
+              leader: bool = True, shelf: float = 0.0, thin: float = 1.0) -> None:
         """Ask for lettering near a point; see :class:`Label`."""
         if anchor == anchor:
             self.labels.append(
-                Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1, self.by, shelf))
+                Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1, self.by, shelf,
+                      thin))
 
     def note(self, box: Box, text: str, signs: Iterable[str] = (), about: Any = None) -> None:
         """Ask for a remark in words to the view in ``box``; see :class:`Note`."""
