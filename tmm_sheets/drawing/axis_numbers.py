@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from tmm_sheets.drawing.canvas import SMALLEST, AxisNumber, Canvas
 from tmm_sheets.drawing.labels import text_box
@@ -24,8 +25,8 @@ TOUCH, CLEAR = 0.1, 0.4
 """Distance from the edge of a line below which a number is struck, and which it is given when it is set again, mm."""
 WORD, ROWS = 1.5, 0.6
 """Distance of other lettering on the level of a number, and above or below it, mm."""
-OFF = np.arange(1.5, 10.0, 0.5)
-"""Distances from the axis that are tried, mm."""
+OFF, CLOSER = np.arange(1.5, 10.0, 0.5), np.arange(1.2, 10.0, 0.1)
+"""Distances from the axis that are tried, and those for a number between lines that leave it no more room than it needs, mm."""
 BESIDE = 0.9
 """Distance of a number from the ordinate it stands beside, mm."""
 ASIDE, ACROSS, ALIKE, SMALL = 0.35, 2.5, 3.0, 4.0
@@ -126,24 +127,23 @@ def clear(canvas: Canvas) -> None:
 
 def _set_row(sheet: _Sheet, row: Sequence[AxisNumber]) -> None:
     """Set the struck numbers of one axis again: the more of them a level suits the better it is."""
-    every = {number: list(_places(number)) for number in row}
-    free = {number: [place for place in places if not sheet.struck(place.box, CLEAR)] for number, places in every.items()}
+    for number in row:
+        sheet.written[number.mark] = np.nan
+    free = {number: _free(sheet, number) for number in row}
     suits: dict[Level, int] = defaultdict(int)
     for places in free.values():
         for level in {place.level for place in places}:
             suits[level] += 1
-    for number in row:
-        sheet.written[number.mark] = np.nan
-    level: Level | None = None
+    before: Level | None = None
     for number in sorted(row, key=lambda number: number.foot.real):
         if not sheet.ill(number):  # it was too near one that has gone
             sheet.move(number, None)
             continue
-        cost = {place: place.cost - ALIKE * (suits[place.level] / len(row) + (place.level == level)) for place in free[number]}
+        cost = {place: place.cost - ALIKE * (suits[place.level] / len(row) + (place.level == before)) for place in free[number]}
         apart = (place for place in sorted(cost, key=lambda place: cost[place]) if not sheet.crowded(number, place.box))
-        place = next(apart, None) or min(every[number], key=lambda place: (sheet.wrong(number, place), place.cost))
+        place = next(apart, None) or min(_places(number, OFF), key=lambda place: (sheet.wrong(number, place), place.cost))
         sheet.move(number, place)
-        level = place.level
+        before = place.level
 
 
 class Plain:
@@ -172,7 +172,16 @@ def _apart(box: Box, other: Box) -> bool:
     return other.x0 > box.x1 + WORD or other.x1 < box.x0 - WORD or other.y0 > box.y1 + ROWS or other.y1 < box.y0 - ROWS
 
 
-def _places(number: AxisNumber) -> Iterator[_Place]:
+def _free(sheet: _Sheet, number: AxisNumber) -> list[_Place]:
+    """Places of a number that no line comes near, or where there is none those that no line enters."""
+    for off, apart in ((OFF, CLEAR), (CLOSER, TOUCH)):
+        found = [place for place in _places(number, off) if not sheet.struck(place.box, apart)]
+        if any(not sheet.crowded(number, place.box) for place in found):
+            return found
+    return found
+
+
+def _places(number: AxisNumber, distances: npt.NDArray[np.float64]) -> Iterator[_Place]:
     """Places about the foot of a number on its axis; beside it only where it is not read as its neighbour's."""
     for height in dict.fromkeys((number.height, SMALLEST)):
         wide = _figures(number, 0j, height).width
@@ -180,7 +189,7 @@ def _places(number: AxisNumber) -> Iterator[_Place]:
         shifts = [x for x in shifts if abs(x + wide / 2) < number.pitch / 2] if not number.first else \
             [*shifts, *(-wide - far for far in (1.5, 2.5, 4.0))]
         for x in shifts:
-            for off in map(float, OFF):
+            for off in map(float, distances):
                 for side in (-1, 1):
                     corner = complex(x, off if side > 0 else -off - height)
                     cost = off - float(OFF[0]) + ASIDE * abs(x + wide / 2) + ACROSS * (side != number.side)

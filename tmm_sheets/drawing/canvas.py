@@ -34,7 +34,6 @@ class Label:
     ``away`` is the preferred direction from the anchor (0 when any will do), ``gap`` the clear distance to it.
     with ``leader`` it may as well stand farther off with a leader line; without, only where nothing near is free.
     Lettering with a ``shelf`` stands on one, at the end of a leader that begins at this distance from the anchor.
-    It keeps off ``thin`` lines so many times more than usual.
     ``of``, ``part`` (its number) and ``by`` (the step it names) are those of the canvas when the label was asked for.
     """
 
@@ -48,7 +47,6 @@ class Label:
     part: int = -1
     by: Trace | None = None
     shelf: float = 0.0
-    thin: float = 1.0
 
 
 class AxisNumber(NamedTuple):
@@ -331,12 +329,11 @@ class Canvas:
         self._one("lettering", first, markup)
 
     def label(self, anchor: complex, markup: str, away: complex = 0j, height: float = 3.5, gap: float = 1.0,
-              leader: bool = True, shelf: float = 0.0, thin: float = 1.0) -> None:
+              leader: bool = True, shelf: float = 0.0) -> None:
         """Ask for lettering near a point; see :class:`Label`."""
         if anchor == anchor:
             self.labels.append(
-                Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1, self.by, shelf,
-                      thin))
+                Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1, self.by, shelf))
 
     def note(self, box: Box, text: str, signs: Iterable[str] = (), about: Any = None) -> None:
         """Ask for a remark in words to the view in ``box``; see :class:`Note`."""

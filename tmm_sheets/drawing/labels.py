@@ -281,7 +281,7 @@ class _Places:
         sides = np.array([centres.real - w / 2, centres.imag - h / 2, centres.real + w / 2, centres.imag + h / 2])
         x0, y0, x1, y1 = sides + _MARGIN
         self.run_on = _beside(sides, grid.written, WORD * label.height)
-        cost = cost + label.thin * LIGHT * grid.under(grid.light, sides) + RUN_ON * self.run_on
+        cost = cost + LIGHT * grid.under(grid.light, sides) + RUN_ON * self.run_on
         self._strayed = np.zeros(len(cost), bool)
         if 0 <= label.part < len(grid.views) and (view := grid.views[label.part]).contains(label.anchor):
             beyond = np.maximum.reduce([view.x0 - x0, view.y0 - y0, x1 - view.x1, y1 - view.y1])

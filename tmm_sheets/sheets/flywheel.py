@@ -47,9 +47,6 @@ CROWD = 4
 """So many intervals between two positions on an average are drawn, with their rays, as they are."""
 FELT = 0.02
 """Error of the work by ordinates from which on the sheet tells what it does to the flywheel beside it."""
-LONE, OFF, LED = 2.5, 5.0, 0.3
-"""Of a number that cannot stand plainly at its point of the ordinate axis: distance of the point from others from which on it has a
-leader, how long that is at least and how far from the point it begins, mm."""
 _BELOW = 7.0  # room of position numbers beside an axis
 _UNDER = 8.0  # room of the letter b under the energy-mass diagram
 
@@ -269,22 +266,14 @@ def _rays(s: Stage, fw: Flywheel, intervals: list[str]) -> None:
     for name in heights:
         play(s, [f"m{name.removesuffix(fw.mark)}", name])
     play(s, ["P"], "axis")
-    labelled: list[float] = []
     every = list(heights)
     shown = [[every[i] for i in same] for same in together(list(heights.values()), 1e-6)]
     shown.sort(key=lambda names: -abs(heights[names[0]]))
     play(s, [f"P{names[0]}" for names in shown])
     plain = Plain(s.canvas)
     for names in shown:
-        at, text, y = s.at(names[0]), ", ".join(names), heights[names[0]]
-        if plain.set(s.pen(names[0], "text"), at, text):
-            labelled.append(y)
-            continue
-        # Points of the ordinate axis that nearly coincide cannot all be lettered; the rays tell them apart.
-        lone = all(abs(y - other) >= LONE for other in heights.values() if other != y)
-        if lone and all(abs(y - other) >= 4.5 for other in labelled):
-            labelled.append(y)
-            s.pen(names[0], "text").label(at, text, -1 - 0.6j if y < 0 else -1 + 0.6j, 2.5, OFF, shelf=LED, thin=6.0)
+        # Points of the ordinate axis that nearly coincide cannot all be numbered; the rays tell them apart.
+        plain.set(s.pen(names[0], "text"), s.at(names[0]), ", ".join(names))
 
 
 def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
