@@ -29,9 +29,9 @@ OFF, CLOSER = np.arange(1.5, 10.0, 0.5), np.arange(1.2, 10.0, 0.1)
 """Distances from the axis that are tried, and those for a number between lines that leave it no more room than it needs, mm."""
 BESIDE = 0.9
 """Distance of a number from the ordinate it stands beside, mm."""
-ASIDE, ACROSS, ALIKE, SMALL = 0.35, 2.5, 3.0, 4.0
+ASIDE, ACROSS, ALIKE, SMALL, STRAY = 0.35, 2.5, 3.0, 4.0, 12.0
 """What it costs to stand a millimetre beside the ordinate, on the other side of the axis, on a level of one's own, in the smallest
-letters, all in millimetres of distance from the axis."""
+letters, nearer to a neighbour's point than to one's own, all in millimetres of distance from the axis."""
 RIGHT_AT, FOREIGN = 0.5, 0.9
 """Distance of a number from the line it names, and the least one of any other line, mm."""
 HEAVY = 10
@@ -182,17 +182,16 @@ def _free(sheet: _Sheet, number: AxisNumber) -> list[_Place]:
 
 
 def _places(number: AxisNumber, distances: npt.NDArray[np.float64]) -> Iterator[_Place]:
-    """Places about the foot of a number on its axis; beside it only where it is not read as its neighbour's."""
+    """Places about the foot of a number on its axis."""
     for height in dict.fromkeys((number.height, SMALLEST)):
         wide = _figures(number, 0j, height).width
         shifts = [-wide / 2, BESIDE, -wide - BESIDE]
-        shifts = [x for x in shifts if abs(x + wide / 2) < number.pitch / 2] if not number.first else \
-            [*shifts, *(-wide - far for far in (1.5, 2.5, 4.0))]
-        for x in shifts:
+        for x in [*shifts, *(-wide - far for far in (1.5, 2.5, 4.0))] if number.first else shifts:
+            stray = STRAY * (abs(x + wide / 2) >= number.pitch / 2 and not number.first)
             for off in map(float, distances):
                 for side in (-1, 1):
                     corner = complex(x, off if side > 0 else -off - height)
-                    cost = off - float(OFF[0]) + ASIDE * abs(x + wide / 2) + ACROSS * (side != number.side)
+                    cost = off - float(OFF[0]) + ASIDE * abs(x + wide / 2) + ACROSS * (side != number.side) + stray
                     yield _Place(corner, (side * off, height), cost + SMALL * (height < number.height),
                                  _figures(number, number.foot + corner, height))
 
