@@ -192,7 +192,7 @@ def test_follower_lines_are_tangents_on_paper():
 def test_motion_shows_rays_chords_and_numbers():
     data = PROJECTS["manual 000"]
     canvas = drawn("cam.motion", data)
-    asked = [label.text for label in canvas.labels]
+    asked = [*(label.text for label in canvas.labels), *(m.text for m in canvas.marks if isinstance(m, Text))]
     for number in data.cam.law.labels:
         # Numbers stand at each of the three diagrams.
         assert asked.count(number) >= 3

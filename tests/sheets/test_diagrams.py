@@ -9,6 +9,7 @@ from tests import project_files
 from tests.project_files import from_file, project
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
+from tmm_sheets.drawing import axis_numbers
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Line, Polyline, Text
@@ -174,7 +175,10 @@ def test_two_numbers_said_to_differ_can_be_told_apart(values, said):
     [np.array([-5 - 9j, 105 + 9j])]], ids=["none", "along the axis", "one", "two", "flat"])  # fmt: skip
 def test_numbers_of_positions_keep_off_the_curves_and_each_other(curves):
     canvas, x = Canvas(), np.array([0.0, 10.0, 20.0, 36.0, 40.0, 52.0, 60.0, 100.0])
-    graphs.numbers(canvas, graphs.Graph(0j), x, [str(k + 9) for k in range(len(x))], np.where(x < 50, 1.0, -1.0), curves)
+    graphs.numbers(canvas, graphs.Graph(0j), x, [str(k + 9) for k in range(len(x))], np.where(x < 50, 1.0, -1.0))
+    for curve in curves:
+        canvas.polyline(curve)
+    axis_numbers.clear(canvas)
     texts = [m for m in canvas.marks if isinstance(m, Text)]
     assert len(texts) == len(x)
     boxes = [Box.around(text_box(m)) for m in texts]

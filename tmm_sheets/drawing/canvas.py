@@ -51,6 +51,23 @@ class Label:
     thin: float = 1.0
 
 
+class AxisNumber(NamedTuple):
+    """The number of a position at the axis of a graph: its mark and its lettering, ``foot`` is the point of the axis it belongs to.
+
+    ``side`` is 1 where it was meant to stand over the axis, -1 under it; ``pitch`` the distance to its neighbours, mm. ``first`` is
+    that of the origin, which may stand beside the other axis.
+    """
+
+    mark: int
+    text: str
+    height: float
+    foot: complex
+    side: int
+    pitch: float
+    first: bool
+    part: int
+
+
 @dataclass(frozen=True)
 class Note:
     """A remark to a view in words; the sheet finds it a free place, in ``box`` or near it, when all labels are set.
@@ -128,7 +145,7 @@ class Canvas:
     ``parts`` and ``groups`` tell what the marks belong to and which of them are one thing, for whoever reads the sheet again;
     ``dimensions`` and ``forms`` which are dimensions and forms to be filled in, for programs that know such things;
     ``shortened`` are texts that were too long for their cell of a form. ``windows`` are the numbers of circles through which what
-    is inside is read.
+    is inside is read. ``numbers`` are those at axes, which make way for lines when all are drawn.
     """
 
     marks: list[Mark] = field(default_factory=list)
@@ -145,6 +162,7 @@ class Canvas:
     forms: list[Form] = field(default_factory=list)
     shortened: list[str] = field(default_factory=list)
     windows: set[int] = field(default_factory=set)
+    numbers: list[AxisNumber] = field(default_factory=list)
 
     def begin(self, box: Box, title: str = "", draw: str = "") -> None:
         """Begin a view, or a part of the present one when ``draw`` is left out: something that has a place of its own."""
@@ -285,6 +303,14 @@ class Canvas:
         shift = {"left": 0.0, "centre": -laid.width / 2, "right": -laid.width}[align]
         self.put(laid, at + rect(1, angle) * shift, angle, markup)
         return laid
+
+    def number(self, foot: complex, at: complex, text: str, height: float, pitch: float, *, first: bool = False) -> None:
+        """Number of the point ``foot`` of a level axis, its left end at ``at``; see :class:`AxisNumber`."""
+        mark = len(self.marks)
+        self.text(at, text, height)
+        if len(self.marks) == mark + 1:
+            side = 1 if at.imag > foot.imag else -1
+            self.numbers.append(AxisNumber(mark, text, height, complex(foot), side, pitch, first, len(self.parts) - 1))
 
     def lines(self, at: complex, lines: Iterable[str], step: float, height: float = 3.5, align: Align = "left") -> None:
         """Lines of text one under another, ``step`` mm from baseline to baseline."""

@@ -77,7 +77,7 @@ class Ink:
         """Segments that may be within ``reach`` of a point: ``a``, ``b``, number of the mark, strength; those of leaders last."""
         here = self.near(Box(p.real, p.imag, p.real, p.imag), reach)
         a, b = self._leaders
-        near = _distance(a, b, p) <= reach
+        near = distance(a, b, p) <= reach
         n = int(near.sum())
         return (np.concatenate((self.a[here], a[near])), np.concatenate((self.b[here], b[near])),
                 np.concatenate((self.of[here], np.full(n, self.drawn))), np.concatenate((self.strong[here], np.zeros(n, bool))))
@@ -136,7 +136,7 @@ class Round:
         d = self.b - self.a
         parallel = np.abs((d * np.conj(along)).imag) < PARALLEL * np.abs(d) * abs(along)
         apart = np.minimum(_to_line(self.a, start, end), _to_line(self.b, start, end))
-        beside = np.minimum(apart, np.minimum(_distance(self.a, self.b, start + 0.5 * along), _distance(self.a, self.b, end)))
+        beside = np.minimum(apart, np.minimum(distance(self.a, self.b, start + 0.5 * along), distance(self.a, self.b, end)))
         crossed = (self.strong | self.leaders) & ~self.own
         crosses = crossing(self.a[crossed], self.b[crossed], start, end)
         return int((parallel & (beside < BESIDE)).sum() + crosses.sum() + (LED - 1) * (crosses & self.leaders[crossed]).sum())
@@ -158,7 +158,7 @@ def _vector(ink: Ink, here: Round, label: Label) -> tuple[complex, complex] | No
         mark = ink.marks[number]
         if (isinstance(mark, Line) and mark.by is not None and mark.by.role in roles and abs(mark.b - mark.a) > LONG
                 and min(abs(mark.a - label.anchor), abs(mark.b - label.anchor)) > 2 * AT
-                and _distance(np.array([mark.a]), np.array([mark.b]), label.anchor)[0] <= 2 * AT):
+                and distance(np.array([mark.a]), np.array([mark.b]), label.anchor)[0] <= 2 * AT):
             return mark.a, mark.b
     return None
 
@@ -175,17 +175,17 @@ def _own(ink: Ink, here: Round, label: Label) -> Flags:
         return found
     about = np.maximum(np.abs(here.a - label.anchor), np.abs(here.b - label.anchor)) <= label.gap + SYMBOL
     # The leader of another label names nothing by itself, even if it comes from the same point.
-    return np.asarray((found | about | (_distance(here.a, here.b, label.anchor) <= AT)) & (here.of < ink.drawn))
+    return np.asarray((found | about | (distance(here.a, here.b, label.anchor) <= AT)) & (here.of < ink.drawn))
 
 
 def _at_end(ink: Ink, here: Round, lines: Flags, anchor: complex) -> bool:
     """Whether the anchor is where one of these lines ends, or on none of them."""
-    on = lines & (_distance(here.a, here.b, anchor) <= 2 * AT)
+    on = lines & (distance(here.a, here.b, anchor) <= 2 * AT)
     ends = [flat(ink.marks[number])[[0, -1]] for number in np.unique(here.of[on])]
     return not ends or bool(np.abs(np.array(ends) - anchor).min() <= 2 * AT)
 
 
-def _distance(a: Any, b: Any, p: complex) -> Floats:
+def distance(a: Any, b: Any, p: complex) -> Floats:
     """Distances of a point to segments."""
     d = b - a
     length2 = np.maximum(np.abs(d) ** 2, 1e-18)

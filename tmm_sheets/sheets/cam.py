@@ -213,12 +213,14 @@ def _ordinates(s: Stage, m: FollowerMotion, steps: list[Step]) -> None:
     """Ordinates of the numbered positions, their numbers on the other side of the axis."""
     points = np.array([complex(step.value) for step in steps])
     kept = distinct(m.law.labels, points.real)
-    narrow = min(np.diff(points.real[kept]), default=10.0) < 6.0
+    pitch = float(min(np.diff(points.real[kept]), default=10.0))
+    height = 2.5 if pitch < 6.0 else 3.5
     for k in kept:
         at = s.frame(points[k].real)
         s.line(steps[k], at, s.at(steps[k]), "thin")
-        side = -1j if points[k].imag > -1e-6 else 1j
-        s.canvas.label(at, m.law.labels[k], side, 2.5 if narrow else 3.5, 0.7, leader=False)
+        width = letter(m.law.labels[k], height).width
+        shift = -width / 2 + (-1j * (1.3 + height) if points[k].imag > -1e-6 else 1.3j)
+        s.canvas.number(complex(at), complex(at + shift), m.law.labels[k], height, pitch, first=k == 0)
 
 
 def _auxiliary_circle(s: Stage, m: FollowerMotion) -> None:

@@ -57,7 +57,9 @@ def _forms(law: PositionFunction) -> Iterator[tuple[tuple[float, float], list[li
         rise, fall = ([line for text in lines for line in _broken(text, most, height)] for lines in _phases(law))
         for columns in ([rise + fall], [rise, fall]):
             width = sum(_width(lines, height) for lines in columns) + APART * (len(columns) - 1)
-            yield (width + 6.0, 12.0 + step * max(map(len, columns))), columns, height, step
+            for titled in (5.0, 3.5):
+                title = letter(tr("Law of motion in formulas"), titled).width
+                yield (max(width, title) + 6.0, 12.0 + step * max(map(len, columns))), columns, height, step
 
 
 def _broken(text: str, most: float, height: float) -> list[str]:

@@ -296,30 +296,19 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQ
             y = o + 1j * scale.mm(level[1])
             canvas.line(y, y + length, "axis")
             canvas.label(y + 0.9 * length, f"{level[0]} = {enough(level[1], 1, greatest)} {q.unit}", 1j, 3.5, 0.8)
-        _numbers(project, canvas, o, angle.mm(project.cycle.turned), length, q, drawn)
+        _numbers(project, canvas, o, angle.mm(project.cycle.turned), length, q)
     for c in q.curves if len(q.curves) > 1 else ():
         peak = int(np.argmax(np.abs(c.values)))
         canvas.label(complex(at(c.turned[peak] + 1j * c.values[peak])), c.symbol, 1j * np.sign(c.values[peak]), 3.5, 0.8)
 
 
-def _numbers(project: Project, canvas: Canvas, o: complex, x: Any, length: float, q: DiagramQuantity, curves: list[Any]) -> None:
+def _numbers(project: Project, canvas: Canvas, o: complex, x: Any, length: float, q: DiagramQuantity) -> None:
     """Numbers of the positions at the axis, on the side where the first graph is not, and of the one that closes the turn."""
     pitch = length / len(project.cycle.labels)
     height = 3.5 if pitch >= letter("00", 3.5).width + 2.0 else 2.5
-    ink = np.concatenate(curves)
     first = q.curves[0]
     for xi, label, y in zip([*x, length], project.cycle.ends, [*first.at, first.at[0]], strict=False):
-        at = o + xi
+        at, width = o + xi, letter(label, height).width
         canvas.line(at - 0.8j, at + 0.8j, "axis")
-        width = letter(label, height).width
-        if xi == 0:
-            canvas.text(at - 2.0 - height / 2 * 1j, label, height, "right")
-            continue
-        for side in (-1, 1) if y > 0 else (1, -1):
-            low = at - width / 2 + (1.3j if side > 0 else -1j * (1.3 + height))
-            beside = (ink.real > low.real - 0.8) & (ink.real < low.real + width + 1.2)
-            if not (beside & (ink.imag > low.imag - 0.8) & (ink.imag < low.imag + height + 0.8)).any():
-                canvas.text(low, label, height)
-                break
-        else:
-            canvas.label(at, label, -1j, height, 1.0, leader=False)
+        shift = complex(-2.0 - width, -height / 2) if xi == 0 else -width / 2 + (1.3j if y <= 0 else -1j * (1.3 + height))
+        canvas.number(at, at + shift, label, height, pitch, first=bool(xi == 0))

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from tmm_sheets.construction.scale import times
+from tmm_sheets.drawing.axis_numbers import Plain
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
@@ -202,7 +203,7 @@ def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     points = fw.moment_plan["M"].value
     # Where the curve runs along the axis its numbers stand on the side the graph leaves free.
     body = line.imag[int(np.argmax(np.abs(line.imag)))]
-    axes(fw, of, "M", g, low, high, tr("M, N·m"), np.where(np.abs(points.imag) < 1.0, body, points.imag), [line])
+    axes(fw, of, "M", g, low, high, tr("M, N·m"), np.where(np.abs(points.imag) < 1.0, body, points.imag))
     uprights(of, "M")
     pole = plan["P"].value
     rays = stage(canvas, plan, None, g.place())
@@ -227,15 +228,11 @@ def _clear_of(line: Any, level: float, length: float) -> complex:
     return next((z for z, way in zip(places, ways, strict=True) if way > CLEAR), places[int(np.argmax(ways))])
 
 
-def axes(fw: Flywheel, of: Stage, step: Step | str, g: graphs.Graph, low: float, high: float, ordinate: str, side: Any,
-         curves: Sequence[Any] = ()) -> None:
-    """Axes of the graph of a step over the cycle, and the numbers of the positions beneath where ``side`` is positive.
-
-    They keep clear of the ``curves`` that the graph has, mm of it.
-    """
+def axes(fw: Flywheel, of: Stage, step: Step | str, g: graphs.Graph, low: float, high: float, ordinate: str, side: Any) -> None:
+    """Axes of the graph of a step over the cycle, and the numbers of the positions beneath where ``side`` is positive."""
     angle, r, pen = fw.scales.angle, fw.reduced, of.pen(step, "axis")
     graphs.axes(pen, g, angle.mm(r.period), low, high, ordinate)
-    graphs.numbers(pen, g, angle.mm(r.phi), fw.labels, side, [g(curve) for curve in curves])
+    graphs.numbers(pen, g, angle.mm(r.phi), fw.labels, side)
 
 
 def _down_to_axis(line: Any) -> Any:
@@ -269,15 +266,14 @@ def _rays(s: Stage, fw: Flywheel, intervals: list[str]) -> None:
     for name in heights:
         play(s, [f"m{name.removesuffix(fw.mark)}", name])
     play(s, ["P"], "axis")
-    labelled: list[float] = []
     every = list(heights)
     shown = [[every[i] for i in same] for same in together(list(heights.values()), 1e-6)]
-    for y, names in sorted(((heights[names[0]], names) for names in shown), key=lambda item: -abs(item[0])):
-        play(s, [f"P{names[0]}"])
-        # Points of the ordinate axis that nearly coincide cannot all be lettered; the rays tell them apart.
-        if all(abs(y - other) >= 4.5 for other in labelled):
-            labelled.append(y)
-            s.letters(names[0], ", ".join(names), -1 - 0.6j if y < 0 else -1 + 0.6j)
+    shown.sort(key=lambda names: -abs(heights[names[0]]))
+    play(s, [f"P{names[0]}" for names in shown])
+    plain = Plain(s.canvas)
+    for names in shown:
+        # Points of the ordinate axis that nearly coincide cannot all be numbered; the rays tell them apart.
+        plain.set(s.pen(names[0], "text"), s.at(names[0]), ", ".join(names))
 
 
 def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -303,7 +299,7 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         heights = (0.0, ends[k].imag, x * end.imag / end.real)
         uprights.append(np.linspace(complex(x, min(heights)), complex(x, max(heights)), 50))
         canvas.tracing("construction", fw.total_plan["ΣA"].path, label).line(g(uprights[-1][0]), g(uprights[-1][-1]), "thin")
-    axes(fw, of, "A(φ)", g, low, high, tr("A, J"), np.zeros(len(fw.labels)), [curve])
+    axes(fw, of, "A(φ)", g, low, high, tr("A, J"), np.zeros(len(fw.labels)))
     k = len(curve) // 2
     canvas.label(g(curve[k]), f"A_{varying}", -1 - 1j if curve[k].imag < 0 else -1 + 1j, height=5)
     canvas.label(g(end / 2), f"A_{constant}", -1 + 1j if end.imag > 0 else -1 - 1j, height=5)
@@ -341,8 +337,7 @@ def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None
     of = stage(canvas, fw.total_plan, None, g.place())
     of.curve("points", g(s.angle.mm(fw.samples) + 1j * ordinates))
     uprights(of, "points")
-    axes(fw, of, "points", g, low, high, tr("ΔE, J"), fw.total_plan["points"].value.imag,
-         [s.angle.mm(fw.samples) + 1j * ordinates])
+    axes(fw, of, "points", g, low, high, tr("ΔE, J"), fw.total_plan["points"].value.imag)
 
 
 def _enlarged(ratio: float) -> str:

@@ -24,8 +24,6 @@ OVER = 8.0
 """How far an axis runs beyond its graph, mm."""
 HEAD = 9.0
 """Room of a heading on one line, mm."""
-WORD = 1.5
-"""Distance, mm, from which on two numbers on one level are not read as one."""
 _LEFT, _RIGHT = 24.0, 12.0
 """Room beside an angle axis for the sign of the ordinate and for the arrow, mm."""
 
@@ -108,40 +106,23 @@ def turned_angle(canvas: Canvas, tip: complex) -> None:
     canvas.label(tip - 5.0, tr("{symbol}, rad").format(symbol="φ_1"), -1j, 3.5, 1.5, leader=False)
 
 
-def numbers(canvas: Canvas, g: Graph, x: Any, labels: Sequence[str], heights: Any, curves: Sequence[Any] = ()) -> None:
-    """Numbers of the positions along the angle axis, on the side where the graph is not, nor any of the ``curves`` of the sheet."""
-    busy = np.concatenate([dense(curve) for curve in curves]) if len(curves) else np.empty(0)
-    choices = []
-    for abscissa, name, height in zip(x, labels, heights, strict=True):
+def numbers(canvas: Canvas, g: Graph, x: Any, labels: Sequence[str], heights: Any) -> None:
+    """Numbers of the positions along the angle axis, on the side where the graph is not.
+
+    What else is drawn they make way for, see :mod:`~tmm_sheets.drawing.axis_numbers`.
+    """
+    gaps = np.concatenate(([np.inf], np.diff(x), [np.inf]))
+    for abscissa, name, height, pitch in zip(x, labels, heights, np.minimum(gaps[1:], gaps[:-1]), strict=True):
         at, width = complex(g(abscissa)), letter(name, 3.5).width
         canvas.line(at - 0.8j, at + 0.8j, "axis")
-        if abscissa == 0:
-            canvas.text(at - 1.5 - 5.0j, name, 3.5, "right")
-            continue
-        under, over = [-width / 2 - 5.0j, 1.2 - 5.0j, -width - 1.2 - 5.0j], [1.2 + 1.3j, -width - 1.2 + 1.3j]
-        places = [at + shift for shift in (under + over if height > 1e-9 else over + under)]
-        choices.append((name, width, places, [place for place in places if not _meets(busy, place, width)]))
-    set_: list[tuple[complex, float]] = []
-    # Those that stand where they are looked for first: the others make way.
-    for name, width, places, free in sorted(choices, key=lambda choice: choice[2][0] not in choice[3]):
-        apart = (place for place in free if not any(abs(place.imag - other.imag) < 4.0 and
-                                                    other.real - width - WORD < place.real < other.real + wide + WORD
-                                                    for other, wide in set_))
-        place = next(apart, places[0])
-        set_.append((place, width))
-        canvas.text(place, name, 3.5)
+        shift = complex(-1.5 - width, -5.0) if abscissa == 0 else -width / 2 - 5.0j if height > 1e-9 else 1.2 + 1.3j
+        canvas.number(at, at + shift, name, 3.5, float(pitch), first=bool(abscissa == 0))
 
 
 def dense(curve: Any) -> Any:
     """Points along a curve, no farther apart than a third of a millimetre."""
     way = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(curve)))))
     return np.interp(np.arange(0.0, way[-1], 0.3), way, curve) if way[-1] > 0 else curve
-
-
-def _meets(points: Any, corner: complex, width: float) -> bool:
-    """Whether points lie on letters of 3.5 mm with that lower left corner."""
-    z = points - corner
-    return bool(((z.real > -0.3) & (z.real < width + 0.8) & (z.imag > -0.3) & (z.imag < 3.8)).any())
 
 
 def ranged(labels: list[str]) -> str:

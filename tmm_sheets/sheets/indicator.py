@@ -92,7 +92,7 @@ def reach(project: Project) -> tuple[list[complex], list[complex]]:
     shown = indicators(project)
     high = height(project, shown) if shown else 0.0
     for n, one in enumerate(shown):
-        # Over the ordinate axis of the first one the scale factor is written, from side to side.
+        # Over the ordinate axis the scale factor is written, from side to side; that of another one within its length.
         beyond = 28.0 if n == 0 and abs(one.side.real) > 0.5 else 10.0
         at = np.ravel(project.study.positions.points[str(one.force.point)].value)
         for p in (at[np.argmin((at * np.conj(one.along)).real)], at[np.argmax((at * np.conj(one.along)).real)]):
@@ -138,8 +138,8 @@ def draw(project: Project, s: Stage) -> None:
             canvas.arrow(outer, outer + one.side * (top + 9.0), "axis", 3.0)
         away = one.along * (1 if outer == high else -1)
         canvas.label(outer + one.side * (top + 4.0), one.text, away, 3.5, 1.2, leader=False)
-        if one is shown[0]:
-            canvas.label(outer + one.side * (top + 4.0) + 7.0 * away, str(scale), away, 3.5, 1.2)
+        out = top + 4.0 if one is shown[0] else 0.4 * top
+        canvas.label(outer + one.side * out + 7.0 * away, str(scale), away, 3.5, 1.2)
         marks = s.frame(np.asarray(s.plan[name].value))
         for mark in np.unique(np.round(marks, 6)):
             here = np.flatnonzero(np.abs(marks - mark) < 1e-5)

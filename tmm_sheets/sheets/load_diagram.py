@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import size_for
+from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import graphs
@@ -101,6 +101,7 @@ def _size(of: tuple[float, str]) -> tuple[float, str]:
 def _positions(project: Project, canvas: Canvas, shown: list[Applied], at: Frame, frame: int) -> None:
     """Numbers of the positions under the axis, and ordinates of the largest load over those inside the turn."""
     cycle = project.cycle
+    pitch = abs(complex(at(cycle.period) - at(0.0))) / len(cycle.labels)
     for k, (number, angle) in enumerate(zip(cycle.ends, (*cycle.turned, cycle.period), strict=False)):
         label = cycle.labels[k % len(cycle.labels)]
         value, largest = max(((float(np.ravel(f.shown(angle, side))[0]), f.name) for f in shown for side in (-1, 1)), key=_size)
@@ -110,4 +111,4 @@ def _positions(project: Project, canvas: Canvas, shown: list[Applied], at: Frame
                 canvas.line(foot, complex(at(angle + 1j * value)), "thin")
         with canvas.traced("axis", f"loads/{largest}", label, frame):
             canvas.line(foot - 1j, foot, "thin")
-            canvas.text(foot - 5.0j, number, 2.5, "centre")
+            canvas.number(foot, foot - letter(number, 2.5).width / 2 - 5.0j, number, 2.5, pitch, first=angle == 0)

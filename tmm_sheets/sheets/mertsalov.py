@@ -154,8 +154,7 @@ def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         below, above = (g(complex(p.real, f(0.0, p.imag, top))) for f in (min, max))
         canvas.tracing("construction", plan["T_I"].path, label).line(below, above, "thin")
     ordinate = tr("{quantity}, J").format(quantity=f"{change}, {first}")
-    flywheel.axes(fw, of, "points", g, low, high, ordinate, np.where(upper > 1e-6, 1.0, -1.0),
-                  [x + 1j * total, x + 1j * own])
+    flywheel.axes(fw, of, "points", g, low, high, ordinate, np.where(upper > 1e-6, 1.0, -1.0))
     for name, end in (("max", "a"), ("min", "b")):
         # The tangent runs on beyond the point where it touches.
         of.line(f"M_{name}", of.at(end), of.at(f"M_{name}") + 10)

@@ -13,7 +13,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import fitted
+from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import widened
 from tmm_sheets.numbers import fixed, number
@@ -34,8 +34,8 @@ NAME = 30.0
 """Room for a link's speed of rotation on its plan, mm."""
 OVER = 34.0
 """Room over and under the views with their title, mm."""
-CLEAR = 7.5
-"""Least distance of the scale factor over the uppermost line of the picture of velocities, mm: letters stand at its end."""
+AXIS, CLEAR, APART = 6.0, 1.2, 8.0
+"""How far the line of zero velocity runs beyond the picture, distances of the scale factor over it and from the other one, mm."""
 ROW = 12.0
 """Greatest height of a row of the tables, mm."""
 LARGE = 16.0
@@ -146,11 +146,16 @@ class SchemeViews:
         laid = fitted(str(mu), self.picture.width, 5.0)
         bottom, top = (f([v.imag for v in ends.values()]) for f in (min, max))
         # Over the picture, and clear of the scale factor under the title of the views.
-        level = max(min(self.picture.y1 - 8.0, self.y(top) + 12.0), self.y(top) + CLEAR)
-        c.put(laid, complex((self.picture.x0 + self.picture.x1 - laid.width) / 2, level), 0.0, str(mu))
+        level = max(min(self.picture.y1 - 8.0, self.y(top) + 12.0), self.y(top) + AXIS + CLEAR + laid.descent)
+        x = (self.picture.x0 + self.picture.x1 - laid.width) / 2
+        if level + laid.ascent > self.box.y1:  # on the level of that one: beside it
+            half = letter(ratio(self.mu), 5.0).width / 2 + APART
+            x = min(x, self.box.centre.real - half - laid.width) if x + laid.width / 2 < self.box.centre.real else \
+                max(x, self.box.centre.real + half)
+        c.put(laid, complex(x, level), 0.0, str(mu))
 
         s = placed(c, plan, complex(zero, self.axis), (mu.mu, self.mu.mu))
-        s.line("O", complex(zero, self.y(bottom) - 6), complex(zero, self.y(top) + 6), "axis", "axis")
+        s.line("O", complex(zero, self.y(bottom) - AXIS), complex(zero, self.y(top) + AXIS), "axis", "axis")
         self.heights(s, [name for name in ends if name[0].isupper()])
         self.vectors(s, {name: value for name, value in ends.items() if name[0].islower()})
         self.lines(s)

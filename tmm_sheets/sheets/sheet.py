@@ -14,6 +14,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from tmm_sheets.box import Box
+from tmm_sheets.drawing import axis_numbers
 from tmm_sheets.drawing.canvas import Canvas, MarkGroup, Part
 from tmm_sheets.drawing.labels import Crowded, Shortened, place
 from tmm_sheets.drawing.lettering import letter
@@ -154,6 +155,7 @@ def composed(project: Project, n: int) -> Composed:
         from tmm_sheets.sheets import offers
 
         offers.draw(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, DESIGNATION))
+    axis_numbers.clear(canvas)
     canvas.begin(INSIDE, "", "labels")
     crowded: list[Crowded] = [Shortened(text, TITLE_BLOCK.centre) for text in dict.fromkeys(canvas.shortened)]
     crowded += place(canvas, INSIDE)

@@ -1,0 +1,107 @@
+"""Numbers at axes make way for lines that are drawn after them."""
+
+import numpy as np
+import pytest
+
+from tmm_sheets.drawing import axis_numbers
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.marks import Text
+from tmm_sheets.drawing.owners import Ink, enters
+
+PITCH = 12.0
+
+
+def graph(*lines, labels="0123456", height=3.5):
+    """A level axis with its numbers under it, and what is drawn after them."""
+    canvas = Canvas()
+    canvas.line(0j, 90 + 0j, "axis")
+    canvas.line(-40j, 40j, "axis")
+    for k, name in enumerate(labels):
+        at = complex(PITCH * k)
+        canvas.line(at - 0.8j, at + 0.8j, "axis")
+        canvas.number(at, at + (complex(-4.5, -5) if k == 0 else complex(-1.2, -5)), name, height, PITCH, first=k == 0)
+    for a, b, *style in lines:
+        canvas.line(a, b, *style)
+    return canvas
+
+
+def texts(canvas):
+    return {m.text: m for m in canvas.marks if isinstance(m, Text)}
+
+
+def struck(canvas):
+    ink, found = Ink(canvas.marks), []
+    for name, mark in texts(canvas).items():
+        z = text_box(mark)
+        if enters(ink.a, ink.b - ink.a, z.real.min(), mark.at.imag, z.real.max(), z.imag.max()).any():
+            found.append(name)
+    return found
+
+
+def test_what_stands_clear_stays():
+    canvas = graph((-20j, 90 - 20j))
+    before = list(canvas.marks)
+    axis_numbers.clear(canvas)
+    assert canvas.marks == before
+
+
+@pytest.mark.parametrize("lines", [
+    [(-3j, 90 - 3j)],                                             # a projecting line under the axis
+    [(-3j, 90 - 3j), (3j, 90 + 3j)],                              # one on either side
+    [(-3j, 90 - 3j), (4j, 90 + 4j, "axis"), (0j, 90 - 30j, "curve")],
+    [(PITCH * k + 30j, PITCH * k - 30j) for k in range(7)],       # ordinates to both sides
+    [(-1j * y, 90 - 1j * y) for y in (2, 4, 6, 8)] + [(-3j + 60, 3j + 84, "curve")],
+])  # fmt: skip
+def test_numbers_make_way_for_lines(lines):
+    canvas = graph(*lines)
+    assert struck(canvas)
+    axis_numbers.clear(canvas)
+    assert not struck(canvas)
+
+
+def test_numbers_of_one_axis_stay_on_one_level():
+    canvas = graph((-3j, 90 - 3j))
+    axis_numbers.clear(canvas)
+    levels = {m.at.imag for name, m in texts(canvas).items() if name != "0"}
+    assert len(levels) == 1
+
+
+def test_a_number_stays_nearest_to_its_own_position():
+    canvas = graph(*[(PITCH * k + 30j, PITCH * k - 30j) for k in range(7)])
+    axis_numbers.clear(canvas)
+    for name, mark in texts(canvas).items():
+        z = text_box(mark)
+        middle = (z.real.min() + z.real.max()) / 2
+        assert int(np.argmin(np.abs(PITCH * np.arange(7) - middle))) == int(name)
+
+
+def test_numbers_keep_clear_of_other_lettering():
+    canvas = graph((-3j, 90 - 3j))
+    canvas.text(30 + 1.5j, "H = 40", 3.5)
+    axis_numbers.clear(canvas)
+    boxes = [text_box(m) for m in canvas.marks if isinstance(m, Text)]
+    for i, a in enumerate(boxes):
+        for b in boxes[:i]:
+            assert a.real.max() < b.real.min() or b.real.max() < a.real.min() or a.imag.max() < b.imag.min() \
+                or b.imag.max() < a.imag.min()
+
+
+def test_a_number_of_the_ordinate_axis_stands_right_at_its_lines():
+    """The line it names passes within a millimetre, others keep farther; of two lines close together neither is told apart."""
+    canvas = Canvas()
+    canvas.line(-40j, 40j, "axis")
+    for y in (5.0, 12.0, 12.6, 30.0):
+        canvas.line(1j * y, 50 + 1j * y)
+    plain = axis_numbers.Plain(canvas)
+    assert plain.set(canvas, 5j, "1′")
+    assert plain.set(canvas, 30j, "4′")
+    mark = texts(canvas)["1′"]
+    assert 5 < mark.at.imag < 6
+    assert not plain.set(canvas, 12j, "2′") or texts(canvas)["2′"].at.imag < 12
+    assert not struck(canvas)
+    crowd = Canvas()
+    crowd.line(-40j, 40j, "axis")
+    for y in np.arange(0.0, 12.0, 1.5):
+        crowd.line(1j * y - 50, 50 + 1j * y)
+    assert not axis_numbers.Plain(crowd).set(crowd, 6j, "5′")

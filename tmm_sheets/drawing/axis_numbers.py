@@ -1,0 +1,205 @@
+"""Numbers of positions at the axes of graphs stand clear of every line of the sheet.
+
+A graph sets its numbers before it is known what else will run there: curves, ordinates, projecting lines, a line of the mean, lines
+of other views. When all is drawn those that a line runs through are set again: on the other side of the axis, beside the ordinate,
+or a little farther from the axis, numbers of one axis on one level where they can.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.drawing.canvas import SMALLEST, AxisNumber, Canvas
+from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Box, Fill, Text
+from tmm_sheets.drawing.owners import AT, STRONG, Ink, distance, enters
+from tmm_sheets.drawing.styles import line_type
+
+TOUCH, CLEAR = 0.1, 0.4
+"""Distance from the edge of a line below which a number is struck, and which it is given when it is set again, mm."""
+WORD, ROWS = 1.5, 0.6
+"""Distance of other lettering on the level of a number, and above or below it, mm."""
+OFF, CLOSER = np.arange(1.5, 10.0, 0.5), np.arange(1.2, 10.0, 0.1)
+"""Distances from the axis that are tried, and those for a number between lines that leave it no more room than it needs, mm."""
+BESIDE = 0.9
+"""Distance of a number from the ordinate it stands beside, mm."""
+ASIDE, ACROSS, ALIKE, SMALL, STRAY = 0.35, 2.5, 3.0, 4.0, 12.0
+"""What it costs to stand a millimetre beside the ordinate, on the other side of the axis, on a level of one's own, in the smallest
+letters, nearer to a neighbour's point than to one's own, all in millimetres of distance from the axis."""
+RIGHT_AT, FOREIGN = 0.5, 0.9
+"""Distance of a number from the line it names, and the least one of any other line, mm."""
+HEAVY = 10
+"""A strong line through a number, where nothing is clear, is as bad as so many thin ones."""
+
+Level = tuple[float, float]
+"""Distance from the axis, negative under it, and height of the letters, mm."""
+
+
+class _Place(NamedTuple):
+    """A place for a number: lower left corner from its foot, level, cost, what it would be in."""
+
+    corner: complex
+    level: Level
+    cost: float
+    box: Box
+
+
+class _Sheet:
+    """What is drawn: lines with half their widths, lettering as rectangles (x0, y0, x1, y1; shape (n, 4)) by its marks."""
+
+    def __init__(self, canvas: Canvas) -> None:
+        self.canvas = canvas
+        self.ink = Ink(canvas.marks)
+        self.half = np.array([0.0 if isinstance(m, Fill | Text) else line_type(m.style).width / 2 for m in canvas.marks])
+        self.weight = np.where([getattr(m, "style", "") in STRONG for m in canvas.marks], HEAVY, 1)
+        self.written = np.full((len(canvas.marks), 4), np.nan)
+        for n, mark in enumerate(canvas.marks):
+            if isinstance(mark, Text):
+                self._write(n, mark)
+
+    def _write(self, n: int, mark: Text) -> None:
+        z = text_box(mark)
+        self.written[n] = z.real.min(), z.imag.min(), z.real.max(), z.imag.max()
+
+    def struck(self, box: Box, apart: float) -> int:
+        """How many lines come nearer than ``apart`` to a rectangle; strong ones count more."""
+        near = self.ink.near(box, 2.0)
+        away = apart + self.half[self.ink.of[near]]
+        a, b = self.ink.a[near], self.ink.b[near]
+        met = near[enters(a, b - a, box.x0 - away, box.y0 - away, box.x1 + away, box.y1 + away)]
+        return int(self.weight[np.unique(self.ink.of[met])].sum())
+
+    def plainly(self, box: Box, at: complex) -> bool:
+        """Whether no line but those through a point comes near a rectangle beside it, nor runs through it, nor other lettering."""
+        near = self.ink.near(box, 3.0)
+        a, b, half = self.ink.a[near], self.ink.b[near], self.half[self.ink.of[near]]
+        away = half + np.where(distance(a, b, at) <= AT, TOUCH, FOREIGN)
+        x0, y0, x1, y1 = self.written.T
+        free = not ((x0 < box.x1 + ROWS) & (x1 > box.x0 - ROWS) & (y0 < box.y1 + ROWS) & (y1 > box.y0 - ROWS)).any()
+        return free and not enters(a, b - a, box.x0 - away, box.y0 - away, box.x1 + away, box.y1 + away).any()
+
+    def crowded(self, number: AxisNumber, box: Box) -> bool:
+        """Whether other lettering stands too near to a rectangle."""
+        x0, y0, x1, y1 = self.written.T
+        beside = (x0 < box.x1 + WORD) & (x1 > box.x0 - WORD) & (y0 < box.y1 + ROWS) & (y1 > box.y0 - ROWS)
+        beside[number.mark] = False
+        return bool(beside.any())
+
+    def wrong(self, number: AxisNumber, place: _Place) -> int:
+        """How much is wrong with a place that is not clear."""
+        return self.struck(place.box, TOUCH) + HEAVY * self.crowded(number, place.box)
+
+    def ill(self, number: AxisNumber) -> bool:
+        """Whether a number had better stand elsewhere."""
+        mark = self.canvas.marks[number.mark]
+        box = _figures(number, mark.at, mark.height) if isinstance(mark, Text) else None
+        return box is not None and (bool(self.struck(box, TOUCH)) or self.crowded(number, box))
+
+    def move(self, number: AxisNumber, place: _Place | None) -> None:
+        """Set a number in a place, or where it was."""
+        mark = self.canvas.marks[number.mark]
+        if isinstance(mark, Text):
+            if place is not None:
+                mark = mark._replace(at=number.foot + place.corner, height=place.level[1])
+                self.canvas.marks[number.mark] = mark
+            self._write(number.mark, mark)
+
+
+def clear(canvas: Canvas) -> None:
+    """Set those numbers again that lines run through, the numbers of each axis together."""
+    if not canvas.numbers:
+        return
+    sheet = _Sheet(canvas)
+    rows: dict[tuple[int, float], list[AxisNumber]] = defaultdict(list)
+    for number in canvas.numbers:
+        if sheet.ill(number):
+            rows[number.part, round(number.foot.imag, 3)].append(number)
+    for row in rows.values():
+        _set_row(sheet, row)
+    canvas.numbers.clear()
+
+
+def _set_row(sheet: _Sheet, row: Sequence[AxisNumber]) -> None:
+    """Set the struck numbers of one axis again: the more of them a level suits the better it is."""
+    for number in row:
+        sheet.written[number.mark] = np.nan
+    free = {number: _free(sheet, number) for number in row}
+    suits: dict[Level, int] = defaultdict(int)
+    for places in free.values():
+        for level in {place.level for place in places}:
+            suits[level] += 1
+    before: Level | None = None
+    for number in sorted(row, key=lambda number: number.foot.real):
+        if not sheet.ill(number):  # it was too near one that has gone
+            sheet.move(number, None)
+            continue
+        cost = {place: place.cost - ALIKE * (suits[place.level] / len(row) + (place.level == before)) for place in free[number]}
+        apart = (place for place in sorted(cost, key=lambda place: cost[place]) if not sheet.crowded(number, place.box))
+        place = next(apart, None) or min(_places(number, OFF), key=lambda place: (sheet.wrong(number, place), place.cost))
+        sheet.move(number, place)
+        before = place.level
+
+
+class Plain:
+    """What is drawn about the points of an upright axis with lines to both sides: each has its number right at its lines."""
+
+    def __init__(self, canvas: Canvas) -> None:
+        self._sheet = _Sheet(canvas)
+        self._set: list[Box] = []
+
+    def set(self, pen: Canvas, at: complex, text: str) -> bool:
+        """Set the number of a point over or under its lines, to the right or left, if it is nobody else's there."""
+        for height in (3.5, SMALLEST):
+            wide = _wide(text, height)
+            for x in (BESIDE, -wide - BESIDE):
+                for y in (RIGHT_AT, -height - RIGHT_AT):
+                    p = at + complex(x, y)
+                    box = Box(p.real, p.imag, p.real + wide, p.imag + height)
+                    if self._sheet.plainly(box, at) and all(_apart(box, other) for other in self._set):
+                        pen.text(p, text, height)
+                        self._set.append(box)
+                        return True
+        return False
+
+
+def _apart(box: Box, other: Box) -> bool:
+    return other.x0 > box.x1 + WORD or other.x1 < box.x0 - WORD or other.y0 > box.y1 + ROWS or other.y1 < box.y0 - ROWS
+
+
+def _free(sheet: _Sheet, number: AxisNumber) -> list[_Place]:
+    """Places of a number that no line comes near, or where there is none those that no line enters."""
+    for off, apart in ((OFF, CLEAR), (CLOSER, TOUCH)):
+        found = [place for place in _places(number, off) if not sheet.struck(place.box, apart)]
+        if any(not sheet.crowded(number, place.box) for place in found):
+            return found
+    return found
+
+
+def _places(number: AxisNumber, distances: npt.NDArray[np.float64]) -> Iterator[_Place]:
+    """Places about the foot of a number on its axis."""
+    for height in dict.fromkeys((number.height, SMALLEST)):
+        wide = _figures(number, 0j, height).width
+        shifts = [-wide / 2, BESIDE, -wide - BESIDE]
+        for x in [*shifts, *(-wide - far for far in (1.5, 2.5, 4.0))] if number.first else shifts:
+            stray = STRAY * (abs(x + wide / 2) >= number.pitch / 2 and not number.first)
+            for off in map(float, distances):
+                for side in (-1, 1):
+                    corner = complex(x, off if side > 0 else -off - height)
+                    cost = off - float(OFF[0]) + ASIDE * abs(x + wide / 2) + ACROSS * (side != number.side) + stray
+                    yield _Place(corner, (side * off, height), cost + SMALL * (height < number.height),
+                                 _figures(number, number.foot + corner, height))
+
+
+def _figures(number: AxisNumber, at: complex, height: float) -> Box:
+    """Rectangle of the figures of a number with that left end of its base line."""
+    return Box(at.real, at.imag, at.real + _wide(number.text, height), at.imag + height)
+
+
+def _wide(text: str, height: float) -> float:
+    return letter(text, height).width + 0.15 * height
