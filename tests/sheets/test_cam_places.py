@@ -7,7 +7,7 @@ import pytest
 
 from tmm_sheets import catalogue
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import cam, cam_profile
+from tmm_sheets.sheets import cam, cam_profile, cam_zone
 from tmm_sheets.sheets.composition import arranged
 
 RING = str(Path(__file__).parents[1] / "projects" / "ring.toml")
@@ -48,3 +48,10 @@ def test_the_name_of_a_level_stands_where_the_curve_is_farther_off():
     curve = x + 1j * np.where(x > 60.0, -20.0, 0.0)  # dips below the level -10 beyond 60
     assert cam._clear_of(curve, -10j, -1, 8.0) < 56.0
     assert cam._clear_of(curve, 10j, 1, 8.0) > 90.0
+
+
+def test_the_zone_of_a_tappet_is_as_high_as_its_numbers_need():
+    """Seventeen numbers stood on a curve of 20 mm while the profile, at 1:1 in any case, left its place empty."""
+    follower, boxes = places("transport/diesel@26-Т-804")
+    box = boxes["cam_zone.of_tappet"]
+    assert cam_zone.stroke_in(follower, True, box.width, box.height) == pytest.approx(25.0)

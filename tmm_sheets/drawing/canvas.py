@@ -416,14 +416,19 @@ class Canvas:
     @in_role("dimension")
     def angle_mark(self, vertex: complex, start: float, end: float, radius: float, markup: str, height: float = 3.5,
                    share: float = 0.5) -> None:
-        """Dimension arc of an angle from ``start`` to ``end`` (rad, counter-clockwise), its sign at ``share`` of it."""
+        """Dimension arc of an angle from ``start`` to ``end`` (rad, counter-clockwise), its sign at ``share`` of it.
+
+        Where two heads have no room between the sides of the angle they stand outside, on the arc drawn on (GOST 2.307).
+        """
         first = len(self.marks)
-        self.arc(vertex, radius, start, end, "thin")
+        outside = (end - start) * radius <= 8
+        beyond = 7.0 / radius if outside else 0.0
+        self.arc(vertex, radius, start - beyond, end + beyond, "thin")
         for tip, sense in ((start, 1), (end, -1)):
-            if (end - start) * radius > 8:
-                u = rect(1, tip + sense * (pi / 2 + 1.5 / radius))
-                p = vertex + rect(radius, tip)
-                self.fill((p, p + 3 * u + 0.5j * u, p + 3 * u - 0.5j * u), "thin")
+            way = -sense if outside else sense
+            u = rect(1, tip + way * (pi / 2 + 1.5 / radius))
+            p = vertex + rect(radius, tip)
+            self.fill((p, p + 3 * u + 0.5j * u, p + 3 * u - 0.5j * u), "thin")
         self._one("arrow", first)
         mid = rect(1, start + share * (end - start))
         self.label(vertex + radius * mid, markup, mid, height)

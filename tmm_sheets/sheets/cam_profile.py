@@ -54,9 +54,11 @@ def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
         if k == 0 and picture.roller > 8:
             # On the side from which the cam turns: the arcs of the inversion lie on the other.
             tip = rect(picture.roller, picture.first - cam.right * pi / 3)
-            here.pen("F", "dimension").arrow(centre, centre + tip, "thin", 3.0)
-            canvas.label(centre + 0.6 * tip, f"r_p = {number(cam.roller * 1e3)}",  # type: ignore[attr-defined]
-                         1j * tip * -cam.right, 3.5, 0.6)
+            # The value stands outside: within are the numbers of the arcs.
+            pen, out = here.pen("F", "dimension"), centre + tip * (1 + 5.0 / picture.roller)
+            pen.arrow(centre, centre + tip, "thin", 3.0)
+            pen.line(centre + tip, out, "thin")
+            canvas.label(out, f"r_p = {number(cam.roller * 1e3)}", tip, 3.5, 0.6)  # type: ignore[attr-defined]
         here.dot(inv.centres, 0.6, "main")
         if k:
             canvas.label(centre, label, centre - picture.origin, 3.5, 0.8)

@@ -28,6 +28,49 @@ NORMAL = 6.0
 """Length of the strokes along the velocity of a rocker's roller, mm."""
 
 
+TAPPET = 10.0, 27.0, 10.0, 34.0
+"""Room round the zone of a tappet: at the left, below for the lines that follow, at the right, above for the title, mm."""
+
+
+def _beyond(z: Zone, rays: bool) -> Any:
+    """What of S(S') lies beyond the permitted angle, m; none where no rays are drawn."""
+    return z.tips(z.beyond).value if rays and z.beyond is not None else z.curve.value[:0]
+
+
+def _touches(z: Zone) -> list[tuple[complex, float]]:
+    """Points where the tangents touch S(S'), m, and the sides on which they do."""
+    return [(complex(t.value), z.right * side) for t, side in zip(z.touching, (1.0, -1.0), strict=True)]
+
+
+def _tops(z: Zone, apex: complex, stroke: float) -> list[complex]:
+    """Upper ends of the tangents, m."""
+    return [apex + (min(t.imag + 0.25 * stroke, 1.05 * stroke) - apex.imag) * complex(side * tan(z.alpha), 1.0)
+            for t, side in _touches(z)]
+
+
+def fitted_tappet(cam: TappetCam, rays: bool, width: float, height: float) -> tuple[float, float, list[float]]:
+    """Scale factor of a tappet's zone in so much room, mm; depth (m, negative) to which it is drawn; abscissae of its ink, m.
+
+    The finest scale factor counts, then the deepest zone.
+    """
+    z, stroke, slope = cam.zone, cam.law.stroke, tan(cam.zone.alpha)
+    axis, apex = complex(z.apex.value), complex(z.plan["V"].value if "V" in z.plan else z.apex.value)
+    ink = [*z.curve.value.real, *_beyond(z, rays).real, *(t.real for t in _tops(z, apex, stroke)), 0.0]
+
+    def fitted(share: float) -> tuple[float, float, list[float]]:
+        depth = share * (stroke + z.s0) * min(1.0, 0.6 / slope) + max((apex - axis).imag, 0.0)
+        xs = [*ink, apex.real - depth * slope, apex.real + depth * slope]
+        return handy(max(float(np.ptp(xs)) / width, (stroke - apex.imag + depth) / height)), -depth, xs
+
+    return min(fitted(share) for share in (0.3, 0.22, 0.15))
+
+
+def stroke_in(cam: TappetCam, rays: bool, width: float, height: float) -> float:
+    """Height, mm, that the stroke has on the zone of a tappet in a place of so many mm."""
+    left, below, right, above = TAPPET
+    return cam.law.stroke / fitted_tappet(cam, rays, width - left - right, height - below - above)[0]
+
+
 @for_cams
 def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """S(S') with the tangents under the permitted pressure angle, the allowed zone and the main dimensions."""
@@ -37,19 +80,9 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     curve, axis, apex = z.curve.value, complex(z.apex.value), complex(z.plan["V"].value if "V" in z.plan else z.apex.value)
     stroke = cam.law.stroke
     letter_of, rays = options.get("angle", ANGLE), bool(options.get("rays"))
-    beyond = z.tips(z.beyond).value if rays and z.beyond is not None else curve[:0]
-    touches = [(complex(t.value), z.right * side) for t, side in zip(z.touching, (1.0, -1.0), strict=True)]
-    tops = [apex + (min(t.imag + 0.25 * stroke, 1.05 * stroke) - apex.imag) * complex(side * slope, 1.0) for t, side in touches]
-    room = box.inset(10, 27, 10, 34)
-
-    def fitted(share: float) -> tuple[float, float, list[float]]:
-        """Scale factor, the depth (m, negative) to which the zone is drawn, below the axis a share of the figure; abscissae, m."""
-        depth = share * (stroke + z.s0) * min(1.0, 0.6 / slope) + max((apex - axis).imag, 0.0)
-        xs = [*curve.real, *beyond.real, *(t.real for t in tops), apex.real - depth * slope, apex.real + depth * slope, 0.0]
-        return handy(max(float(np.ptp(xs)) / room.width, (stroke - apex.imag + depth) / room.height)), -depth, xs
-
-    # The finest scale factor counts, then the deepest zone.
-    mu, lowest, xs = min(fitted(share) for share in (0.3, 0.22, 0.15))
+    beyond, touches, tops = _beyond(z, rays), _touches(z), _tops(z, apex, stroke)
+    room = box.inset(*TAPPET)
+    mu, lowest, xs = fitted_tappet(cam, rays, room.width, room.height)
     depth = -lowest
     low = apex - 1j * depth
     scale = Scale("μ_S", mu, tr("m/mm"))

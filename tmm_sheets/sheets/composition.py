@@ -317,6 +317,8 @@ OF_FORCE = 6.0
 """Length of a group's links that each force on its scheme needs, mm."""
 ON_LEVER = 5.0
 """The same of Zhukovsky's lever, mm: its forces stand all round."""
+NUMBERED = 30.0
+"""Height of a curve on which all positions are numbered, mm."""
 GRAPH = 45.0
 """Height of a graph that can be read, mm."""
 OF_VALUE = 24.0
@@ -436,6 +438,21 @@ def _cam(least: tuple[float, float], share: float) -> Callable[[Project, View], 
     return node
 
 
+def _tappet_zone(project: Project, view: View) -> Node | None:
+    """A curve S(S′) with the numbers of all positions on it, which must be so high that they can be read."""
+    from tmm_sheets.sheets import cam_zone
+
+    cam: Any = project.cam  # one with a tappet: others have no such view
+    rays = bool(view.options.get("rays"))
+
+    @cache
+    def in_place(width: int, height: int) -> float:
+        return 0.6 * width * height * min(cam_zone.stroke_in(cam, rays, width, height) / NUMBERED, 1.0)
+
+    need = Need(least=(0.88 * view.box.width, 0.8 * view.box.height), drawn=lambda w, h: in_place(int(w), int(h)))
+    return _leaf(view.box, need)
+
+
 def _pressure(project: Project, view: View) -> Node | None:
     """A graph over the whole turn: beyond its width more height is of no use, and its ordinates are to stand apart."""
     from tmm_sheets.sheets import cam
@@ -525,7 +542,7 @@ NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
     "kinematics.velocity_tables": _velocity_tables, "kinetics.group": _group, "kinetics.crank": _crank,
     "kinetics.lever": _lever, "kinetics.results": _results, "diagrams.motion": _motion, "diagrams.motion_table": _motion_table,
     "cam_profile.profile": _profile, "cam.pressure": _pressure,
-    "cam_profile.roller": _roller, "cam.spring": _spring, "cam_zone.of_tappet": _cam((0.88, 0.8), 0.6),
+    "cam_profile.roller": _roller, "cam.spring": _spring, "cam_zone.of_tappet": _tappet_zone,
     "cam_zone.of_rocker": _cam((0.9, 0.8), 0.6),
     "cam_zone.sum_graph": _cam((0.9, 0.8), 0.6),
     "cam_zone.plate": _cam((0.9, 0.8), 0.6),
