@@ -245,7 +245,9 @@ def _accelerations(project: Project, view: View) -> Node:
     left, below, right, above = kinematic_frames.ACCELERATIONS
     around = left + right, below + above
     title = letter(kinematic_frames.title_of_accelerations(project, project.force_index), 5.0).width
-    return _leaf(view.box, Need((real.width, real.height), around, (max(88.0, title + 1.0), 80.0)), 0.8)
+    need = Need((real.width, real.height), around, (max(88.0, title + 1.0), 80.0))
+    points = sum(step.rule.gives == "point" for step in project.study.accelerations.plan.steps.values())
+    return _leaf(view.box, _readable(need, max(real.width, real.height), points, OF_POINT), 0.8)
 
 
 def _false_positions(project: Project, view: View) -> Node | None:
@@ -315,6 +317,8 @@ LINKS = 0.4
 """Size of links in that of their whole scheme, below which they are not what its scale factor is for."""
 OF_FORCE = 6.0
 """Length of a group's links that each force on its scheme needs, mm."""
+OF_POINT = 5.0
+"""The same of a plan of accelerations, mm, for each of its points: letters of the points and of the vectors between them."""
 ON_LEVER = 5.0
 """The same of Zhukovsky's lever, mm: its forces stand all round."""
 NUMBERED = 30.0
