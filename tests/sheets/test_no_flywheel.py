@@ -80,8 +80,8 @@ def test_just_above_and_below_zero(name, side, step):
         assert f.J_flywheel_converged == pytest.approx(limit, abs=2e-8)
         assert f.needed == (drawn > 0)
         assert (f.wheel is None) == (drawn < 0)
-        assert ("construction" in f.remark) == (drawn * limit < 0)
-        assert bool(f.remark) == (drawn < 0 or limit < 0)
+        assert ("construction" in "".join(f.remarks)) == (drawn * limit < 0)
+        assert bool(f.remarks) == (drawn < 0 or limit < 0)
 
 
 def test_needed_in_the_limit_means_too_uneven_without():

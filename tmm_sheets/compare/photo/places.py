@@ -311,7 +311,8 @@ def _about(f: PhotoFinding, ink: Sequence[ExtraInk]) -> tuple[PhotoFinding, list
     for radius, _ in some:
         mine = [x for r, x in some if abs(r - radius) <= ROUND]
         points = np.concatenate([x.points for x in mine]) - e.centre
-        turn = PART * len(np.unique(np.angle(points, deg=True) % 360 // PART))
+        angles = np.round(np.angle(points, deg=True) % 360, 6)
+        turn = PART * len(np.unique(angles[angles % PART > 0] // PART))  # an end on the border of a part takes none of it
         if turn >= max(TURN, most + PART):
             most, best = turn, (mine, float(np.median(np.abs(points))), complex(points[0]))
     if best is None:
