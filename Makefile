@@ -30,9 +30,10 @@ wheel-test: $(VENV)/.tested  ## build the wheel, install it elsewhere, draw a pr
 gallery: $(VENV)/.tested  ## every shipped project, small, on contact sheets in out/gallery
 	$(BIN)/python -m tests.gallery
 
-gallery-check: gallery  ## the same; fails when a sheet cannot be drawn, a label finds no free place or reads as something else
+gallery-check: gallery  ## the same; fails when a sheet cannot be drawn, a label finds no free place or reads as something else, a sheet is filled unevenly
 	for language in ru uk en; do $(BIN)/python -m tests.labels --lang $$language || exit 1; done
 	$(BIN)/python -m tests.labels --ciphers 60
+	$(BIN)/python -m tests.evenness
 
 gold: $(VENV)/.tested  ## accept the display lists as they are drawn now (look at the sheets first)
 	$(BIN)/python -m tests.sheets.gold

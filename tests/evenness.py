@@ -22,7 +22,7 @@ from tests.gallery import names
 from tests.labels import drawn_lots
 from tmm_sheets import catalogue
 from tmm_sheets.drawing import evenness
-from tmm_sheets.drawing.marks import Drawing, Line
+from tmm_sheets.drawing.marks import Drawing, Fill, Line, Mark
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 
@@ -66,6 +66,12 @@ def gap(drawing: Drawing, step: float = 2.0) -> tuple[float, float] | None:
     return None
 
 
+def _length(arrow: tuple[Mark, ...]) -> float:
+    """Length of an arrow from its beginning to its tip, mm; 0.0 for a head alone."""
+    lines, heads = ([m for m in arrow if isinstance(m, kind)] for kind in (Line, Fill))
+    return max((abs(complex(head.points[0]) - line.a) for line in lines for head in heads), default=0.0)
+
+
 def measured(name: str) -> list[Sheet | str]:
     """The sheets of a project, or why one cannot be built."""
     found: list[Sheet | str] = []
@@ -80,8 +86,8 @@ def measured(name: str) -> list[Sheet | str]:
             found.append(f"{name} {n}: {type(e).__name__}: {e}")
             continue
         titles = {part.title for part in sheet.parts if part.draw == "kinematics.position_plans"}
-        vectors = [abs(m.b - m.a) for m in sheet.drawing.marks
-                   if isinstance(m, Line) and m.style == "vector" and m.of.startswith("velocity plan")]
+        vectors = [_length(arrow) for g in sheet.groups if g.kind == "arrow" and (arrow := sheet.drawing.marks[g.first : g.end])
+                   and arrow[0].of.startswith("velocity plan")]
         found.append(Sheet(f"{name} {n}", kind, evenness.empty_cells(sheet.drawing), gap(sheet.drawing),
                            [share for title, share in evenness.fills(sheet.drawing) if title in titles],
                            [max(vectors)] if vectors else []))

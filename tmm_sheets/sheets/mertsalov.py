@@ -163,7 +163,7 @@ def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     of.pen("ab", "dimension").dimension(of.at("b"), of.at("a"), 9.0, f"|ab| = {fixed(fw.ab_mm, 2)}")
     axis, length, pen = speed.at("O"), s.angle.mm(fw.reduced.period), speed.pen("O", "axis")
     pen.line(axis - 5, axis + length + graphs.OVER, "centre")
-    pen.label(axis + length - 4, tr("ω_{1m}"), 1j, height=3.5)
+    pen.label(axis + length - 10, tr("ω_{1m}"), 1j, height=3.5)
     k = int(np.argmax(total))
     canvas.label(g(x[k] + 1j * total[k]), change, 1 + 1j, height=5)
     k = int(np.argmax(np.abs(np.gradient(own))))
