@@ -1,7 +1,9 @@
 """What a view uses of its place: never more than all of it."""
 
+import numpy as np
 import pytest
 
+from tests.evenness import gap
 from tmm_sheets.box import Box
 from tmm_sheets.drawing import evenness
 from tmm_sheets.drawing.marks import Arc, Drawing, Line, View
@@ -22,3 +24,10 @@ def test_the_circle_of_a_detail_has_no_place_of_its_own():
     marks = Line(100 + 100j, 200 + 200j, "main"), Arc(150 + 150j, 2.0, 0.0, 6.28, "thin")
     drawing = Drawing(841.0, 594.0, "", marks, views=(View("plan", PLACE, ((0, 1),)), View("mark", PLACE, ((1, 2),))))
     assert [name for name, _ in evenness.fills(drawing)] == ["plan"]
+
+
+@pytest.mark.parametrize(("pitch", "found"), [(110.0, False), (130.0, True), (400.0, True)])
+def test_a_gap_is_an_empty_rectangle_upright_or_lying(pitch, found):
+    """Level lines so far apart over the whole field leave 160 x 120 mm between them, or do not."""
+    lines = [Line(20.0 + 1j * y, 836.0 + 1j * y, "thin") for y in np.arange(5.0, 590.0, pitch)]
+    assert (gap(Drawing(841.0, 594.0, "", tuple(lines))) is not None) is found
