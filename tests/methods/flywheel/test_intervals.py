@@ -69,3 +69,14 @@ def test_too_few_positions_for_the_work_are_told():
     (line,) = of["lugansk/engine"].remarks
     assert "-8.4%" in line
     assert "more positions" in line
+
+
+@pytest.mark.parametrize("load", [{"direction": "90 deg", "value": "100 N"}, {"direction": "180 deg", "value": "100 N"}],
+                         ids=["across the motion", "the same both ways"])
+def test_where_the_cycle_does_no_work_nothing_is_a_share_of_it(load):
+    """What rounding leaves of a moment asks for no further ordinates, and tells no error of a work that is none."""
+    force = {"force": [{"name": "F3", "link": "3", "point": "B", **load}]}
+    flywheel = files.project(files.SLIDER, files.WORKING, force, files.MASS, files.MOMENT, files.FLYWHEEL).flywheel
+    assert len(flywheel.edges) == 13
+    assert flywheel.work_error == 0
+    assert not any("work of the cycle" in line for line in flywheel.remarks)

@@ -6,6 +6,7 @@ from math import acos, asin, degrees, pi, radians, sqrt
 import numpy as np
 import pytest
 
+from tests import project_files as files
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import RPR, RRP, RRR
@@ -106,7 +107,7 @@ def test_further_positions_are_sorted_in_over_two_turns(shaper):
     assert cycle.labels[:3] == ("0", "1′", "1")
     assert len(cycle.labels) == 18
     assert (np.diff(cycle.turned) > 0).all()
-    with pytest.raises(CannotBuild, match="there is a position 3 already"):
+    with pytest.raises(CannotBuild, match=r"there is a position \d already"):
         even_cycle(shaper.mechanism, 0.0, 8, extra={"3": 0.1})
 
 
@@ -187,3 +188,19 @@ def test_root_to_the_last_bit():
 ], ids=["one", "from naught", "from the last", "no number", "turned", "taken"])  # fmt: skip
 def test_number_that_closes_the_turn(labels, closing):
     assert closed(labels) == (*labels, closing)
+
+
+@pytest.mark.parametrize(("cycle", "labels"), [
+    ({"zero": "0"}, ("0", "1", "2", "3")), ({"zero": "4"}, ("4", "1", "2", "3")), ({"zero": "a"}, ("a", "1", "2", "3")),
+    ({"zero": "4", "turns": 2}, ("8", *map(str, range(1, 8)))), ({"zero": "8", "turns": 2}, ("8", *map(str, range(1, 8)))),
+    ({"zero": "3"}, None), ({"zero": "5", "turns": 2}, None), ({"zero": "4", "end": "90 deg"}, None),
+], ids=["naught", "last", "letter", "last of a turn", "last of all",
+        "a middle one", "of the second turn", "end of a swing"])  # fmt: skip
+def test_the_first_position_is_none_of_the_others(cycle, labels):
+    """One of the same name was dropped in silence, and its plans with it."""
+    made = files.project(files.SLIDER, {"cycle": {"start": "0 deg", "positions": 4, **cycle}})
+    if labels is None:
+        with pytest.raises(CannotBuild, match=r"there is a position \d already"):
+            _ = made.cycle
+    else:
+        assert made.cycle.labels == labels

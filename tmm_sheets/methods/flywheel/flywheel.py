@@ -39,6 +39,7 @@ from tmm_sheets.methods.integration import (
     integrate,
 )
 from tmm_sheets.methods.linkage.cycle import closed
+from tmm_sheets.numbers import is_zero
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
@@ -380,8 +381,15 @@ class Flywheel(ABC):
         """Middles of the intervals whose ordinate there tells the work wrongly by more than BENT, by Simpson's rule."""
         middles, moment = (edges[:-1] + edges[1:]) / 2, self.reduced.moment
         y, sides = moment(middles), moment(edges, 1)[:-1] + moment(edges, -1)[1:]
-        work = np.cumsum(np.diff(edges) * y)
-        return np.asarray(middles[np.diff(edges) * np.abs(2 * y - sides) / 6 > BENT * np.ptp(np.append(0.0, work))])
+        span = float(np.ptp(np.append(0.0, np.cumsum(np.diff(edges) * y))))
+        if is_zero(span, self._kinetic):  # forces across the motion: what is left of their moment is rounding
+            return middles[:0]
+        return np.asarray(middles[np.diff(edges) * np.abs(2 * y - sides) / 6 > BENT * span])
+
+    @property
+    def _kinetic(self) -> float:
+        """The greatest kinetic energy of the moving links at the positions, J: what work is measured by where it is little."""
+        return float(np.max(self.reduced.numbered.inertia.value)) * self.reduced.omega1**2 / 2
 
     @cached_property
     def at_positions(self) -> tuple[int, ...]:
@@ -842,8 +850,12 @@ class Flywheel(ABC):
 
     @property
     def work_error(self) -> float:
-        """How much greater the work of the cycle is by the ordinates in the middles than by the area, in parts of the area."""
-        return float(self.total_plan["δA"].value) / 100 if self.work_converged[-1] else 0.0
+        """How much greater the work of the cycle is by the ordinates in the middles than by the area, in parts of the area.
+
+        0.0 where there is none: what comes back to where it was, or is nothing beside the energy of the links.
+        """
+        none = is_zero(float(self.work_converged[-1]), max(float(np.abs(self.work).max()), self._kinetic))
+        return 0.0 if none else float(self.total_plan["δA"].value) / 100
 
     @property
     def M_constant(self) -> float:

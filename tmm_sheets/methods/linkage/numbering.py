@@ -109,6 +109,13 @@ def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle
     return Cycle(labels, turned.value, float(start.value), sense, 2 * np.pi * turns, strokes, dead.plan, plan)
 
 
+def _check_first(label: str, last: int) -> None:
+    """The first position is none of the others, which are numbered from 1 to ``last``."""
+    if label in map(str, range(1, last + 1)):
+        raise CannotBuild(tell("there is a position {label} already").format(label=label),
+                          tell('give the first position a name that no other has, such as zero = "0"'))
+
+
 def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", turns: int = 1,
                extra: Mapping[str, float] | None = None, output: str | None = None, working_sense: str | None = None) -> Cycle:
     """Cycle of equal parts from a given crank angle; ``positions`` in one turn, numbered on through all ``turns``.
@@ -120,10 +127,11 @@ def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", t
     Raises
     ------
     CannotBuild
-        when a further position has the label of another one.
+        when the first position, or a further one, has the label of another.
     """
     count = positions * turns
     first = str(count) if zero == str(positions) else zero
+    _check_first(first, count - 1)
     named = {first if i == 0 else str(i): (2 * np.pi / positions * i, i, 0.0) for i in range(count)}
     for label, angle in (extra or {}).items():
         if label in named:
@@ -161,6 +169,7 @@ def swing_cycle(m: Mechanism, start: float, end: float, positions: int, *, zero:
     if not swing > 1e-9:
         raise CannotBuild(tell("the crank swings from one angle to the same"),
                           tell("give another end, or leave end out for a whole turn"))
+    _check_first(zero, positions)
     named = {zero if i == 0 else str(i): (swing / positions * i, float(i), 0.0) for i in range(positions + 1)}
     for label, angle in (extra or {}).items():
         if label in named:
