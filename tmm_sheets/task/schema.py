@@ -276,7 +276,7 @@ class CycleTable(Table):
     force_position: Name | None = None
     """label of the position of the force analysis, drawn thick; left out: position 0"""
     zero: Name = "0"
-    """label of position 0"""
+    """label of position 0, no other's; the number of positions of a turn stands for the last of all `turns`"""
     turns: Count = 1
     """turns of the crank in a cycle: after so many everything repeats"""
     extra: dict[Name, Angle] = {}
