@@ -297,3 +297,13 @@ def test_a_table_of_many_positions_has_two_rows_of_them(columns, parts):
     assert sum(mark.text == "No." for mark in said) == parts
     assert len({round(mark.at.imag, 3) for mark in said if mark.text.startswith("−1")}) == parts
     assert max(mark.at.real for mark in said) < 190
+
+
+def test_what_the_work_is_off_by_is_said_outside_a_graph_that_is_full():
+    """It was left out where the error was the worst."""
+    canvas = Canvas()
+    full = np.linspace(0, 100, 200)[:, None] + 1j * np.linspace(0, 40, 80)
+    assert not graphs.note(canvas, Box(0.0, 0.0, 100.0, 40.0), ["A(24) = 84.08 J"], [full])
+    assert not canvas.marks
+    assert graphs.note(canvas, Box(0.0, 0.0, 100.0, 40.0), ["A(24) = 84.08 J"], [np.linspace(0, 100, 200) + 0j])
+    assert canvas.marks

@@ -20,8 +20,9 @@ import numpy as np
 from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing.axis_numbers import Plain
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
+from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.lettering import letter, size_for
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.marks import Box, Text
 from tmm_sheets.drawing.notes import wrapped
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import decimals_for, enough, fixed, is_zero, number
@@ -316,8 +317,10 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     if not nothing and abs(fw.work_error) >= FELT and (fw.given or fw.needed) and abs(fw.difference_percent) < 100:
         far = tr("δ by them: {difference} % from n → ∞") if fw.given else tr("J_{{f}} by them: {difference} % from n → ∞")
         note += (far.format(difference=f"{'+' if fw.difference_percent > 0 else ''}{fixed(fw.difference_percent, 2)}"),)
-    graphs.note(canvas, Box(g.origin.real, g.origin.imag + low, g.origin.real + end.real, g.origin.imag + high), note,
-                [g(z) for z in (curve, np.linspace(0, end, 50), np.linspace(0, end.real, 50) + 0j, *uprights[1:])])
+    inside = Box(g.origin.real, g.origin.imag + low, g.origin.real + end.real, g.origin.imag + high)
+    ink = [g(z) for z in (curve, np.linspace(0, end, 50), np.linspace(0, end.real, 50) + 0j, *uprights[1:])]
+    if not graphs.note(canvas, inside, note, ink):
+        canvas.note(box, "; ".join((" ".join(note[:2]), *note[2:])))
 
 
 def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
@@ -409,8 +412,11 @@ def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> Non
             above = complex(above.real, title.y1 + 1.5)
         here.line("points", above, below)
         here.dot("points", 0.7, "main")
+    touched = [plan[f"T_{name}"].value for name in ("max", "min")]
     for near in together(points[:-1], 1.0):
-        away = points[near[0]] - middle
+        # The number of a point beside that of a tangent, which has none, stands on the other side.
+        aside = [points[near[0]] - t for t in touched if 0.5 < abs(points[near[0]] - t) < BESIDE]
+        away = min(aside, key=abs, default=points[near[0]] - middle)
         of.position(near[0]).letters("points", ", ".join(fw.labels[k] for k in near), away / abs(away))
     reach = curve.real.max() + graphs.OVER
     low, high = _energy_range(fw)
@@ -819,26 +825,33 @@ def _segment(canvas: Canvas, g: graphs.Graph, b: complex, a: complex, levels: li
     canvas.line(p, q, "thin")
     for tip, u in ((p, 1j), (q, -1j)):
         canvas.fill((tip, tip + 3.5 * u + 0.6, tip + 3.5 * u - 0.6), "thin")
-    low, top = _widest(b.imag, a.imag, levels)
+    low, top = _gaps(b.imag, a.imag, levels)[0]
     if top - low > letter(text, 3.5).width + 2:
         canvas.text(complex(g(x + 0.5j * (low + top))) - 1, text, 3.5, "centre", pi / 2)
         return
-    # Too near each other for it along the line, the projection lines may leave room beside it, clear of the axis' own lettering.
-    low, top = _widest(b.imag, a.imag, [*levels, *AXIS])
-    middle = complex(g(x + 0.5j * (low + top)))
-    if top - low > 6.0:
-        canvas.text(middle - 1.5 - 1.2j, text, 3.5, "right")
-    else:
-        canvas.label(middle, text, -1)
+    # Too near each other for it along the line, the projection lines may leave room beside it, clear of the axis' own lettering
+    # and of the graph that ends there.
+    ink = dense([mark for mark in canvas.marks if not isinstance(mark, Text) and mark.style == "curve"], 1.0)
+    half = complex(letter(text, 3.5).width / 2 + 1.0, 2.5)
+    for low, top in _gaps(b.imag, a.imag, [*levels, *AXIS]):
+        end = complex(g(x + 0.5j * (low + top))) - 1.5
+        off = ink - (end - half.real)
+        if top - low > 6.0 and not ((np.abs(off.real) < half.real) & (np.abs(off.imag) < half.imag)).any():
+            canvas.text(end - 1.2j, text, 3.5, "right")
+            return
+    canvas.label(complex(g(x + 0.5j * (a + b).imag)), text, -1)
 
 
+BESIDE = 4.0
+"""How near to the point of a tangent the number of another point could be taken for its own, mm."""
 AXIS = -8.0, 6.0
 """Heights under and over an axis that its numbers and its sign take, mm."""
 
 
-def _widest(low: float, top: float, levels: list[float]) -> tuple[float, float]:
-    """The widest gap between the levels from the lowest to the highest."""
-    return max(pairwise(sorted({low, top, *(v for v in levels if low < v < top)})), key=lambda gap: gap[1] - gap[0])
+def _gaps(low: float, top: float, levels: list[float]) -> list[tuple[float, float]]:
+    """Gaps between the levels from the lowest to the highest, the widest first."""
+    gaps = pairwise(sorted({low, top, *(v for v in levels if low < v < top)}))
+    return sorted(gaps, key=lambda gap: gap[0] - gap[1])
 
 
 @in_role("symbol")

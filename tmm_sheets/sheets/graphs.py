@@ -172,10 +172,10 @@ def table(canvas: Canvas, box: Box, title: str, rows: list[list[str]]) -> None:
         top -= high * len(part)
 
 
-def note(canvas: Canvas, room: Box, lines: Sequence[str], ink: Sequence[Any]) -> None:
+def note(canvas: Canvas, room: Box, lines: Sequence[str], ink: Sequence[Any]) -> bool:
     """Short lines of text in the part of a graph that its curves (points close together) leave free the widest.
 
-    Numbers and letters at the curves need some room as well; smaller letters where there is little.
+    Numbers and letters at the curves need some room as well; smaller letters where there is little. False where there is none.
     """
     points = np.concatenate([np.ravel(z) for z in ink])
     for height in (3.5, 2.5):
@@ -190,4 +190,5 @@ def note(canvas: Canvas, room: Box, lines: Sequence[str], ink: Sequence[Any]) ->
         if free[row, column] >= 6.0:
             for i, line in enumerate(lines):
                 canvas.text(complex(x[column, 0], y[row, 0]) + 1j * (high - (i + 1) * 1.7 * height + 0.35 * height), line, height)
-            return
+            return True
+    return False

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan, Segment
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.model import Mechanism
+    from tmm_sheets.methods.linkage.cycle import Cycle
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
 
@@ -387,11 +388,11 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
     cycle, canvas = project.cycle, s.canvas
     strokes, force = cycle.strokes, kinematic_frames.graph_force(project)
     assert strokes is not None
-    turned = kinematic_frames.stroke_angles(strokes, force)
-    magnitude = np.asarray(force.magnitude(turned, 0))
-    top = float(magnitude.max())
-    y0 = box.y0 + 5.0
-    scale = pick(project, canvas, "force-graph", "μ_F", tr("N/mm"), top / (box.height - 18.0))
+    tried = [(turned, np.asarray(force.shown(turned, 0))) for turned in kinematic_frames.stroke_angles(force)]
+    diagrams = [(turned, values) for turned, values in tried if np.any(values)]
+    top, low = (of(0.0, *(float(of(values)) for _, values in diagrams)) for of in (max, min))
+    scale = pick(project, canvas, "force-graph", "μ_F", tr("N/mm"), (top - low) / (box.height - 18.0))
+    y0 = box.y0 + 5.0 - low / scale.mu
     high = y0 + top / scale.mu
     a, b = (s.frame(strokes.origin + strokes.path * t).real for t in (0.0, strokes.length))
     way = linkage.indexed(strokes.output) if strokes.output[0] == "S" else f"S_{{{strokes.output}}}"
@@ -410,7 +411,7 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
     tip = _nearer(start, along(b) + 14.0 * u, room)
     graph = canvas.placed("loads", "", complex(start, y0), (s.frame.mu[0] / enlarged, scale.mu), pi * back, back)
     pen = canvas.tracing("axis", load, "", graph)
-    pen.arrow(complex(start, y0), complex(start, high + 9.0), "axis", 3.5)
+    pen.arrow(complex(start, y0 + low / scale.mu), complex(start, high + 9.0), "axis", 3.5)
     pen.arrow(complex(start, y0), complex(tip, y0), "axis", 3.5)
     pen.text(complex(start - 2.0 * u, high + 5.0), tr("{quantity}, N").format(quantity=linkage.indexed(force.name)), 3.5, inward)
     pen.text(complex(tip + 1.5 * u, y0 - 1.2), ways, 3.5, outward)
@@ -420,33 +421,70 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
     for n, text in enumerate(said):
         lower = 6.25 * n if (room - beside) * u >= 0 else 6.25 * (n - len(said) + 1) - 2.5
         canvas.text(complex(_nearer(start, beside, room), high - lower), text, 3.5, outward)
-    acting = np.flatnonzero(magnitude > 0)
-    path = project.study_at(turned, tuple("" for _ in turned)).positions.points[strokes.output]
-    xs = along(np.real(s.frame(path.value)))
-    curve = xs[acting] + 1j * (y0 + magnitude[acting] / scale.mu)
-    outline = [complex(curve[0].real, y0), *curve, complex(curve[-1].real, y0)]
-    canvas.tracing("curve", load, "", graph).polyline(outline, "curve")
+    drawn = [_over_way(project, s, along, diagram, y0, scale.mu) for diagram in diagrams]
+    for line, turned in drawn:
+        canvas.tracing("curve", load, "", graph).polyline(line, "curve")
+        if len(drawn) > 1 and (held := _held(cycle, turned)):
+            off = np.abs(line.imag - y0)
+            level = np.flatnonzero(off > off.max() - 1e-6)
+            highest = line[level[len(level) // 2]]
+            canvas.label(complex(highest), held, 1j if highest.imag > y0 else -1j, 2.5, 1.5)
+    outlines = np.concatenate([line for line, _ in drawn])
     count = project.variant.cycle.working if project.variant.cycle else None
-    lettered: list[tuple[float, float]] = []
+    lettered: list[tuple[complex, complex]] = []
     for i, label in cycle.drawn:
         here = s.position(i)
         z = here.at(strokes.output)
-        acts = max(float(force.magnitude(cycle.turned[i], side)) for side in (-1, 1))
-        if not acts > 0 and i not in (0, count):
+        acts = [float(np.ravel(force.shown(cycle.turned[i] + turn, side))[0]) for turn in np.arange(0, cycle.period, 2 * pi)
+                for side in (-1, 1)]
+        if not any(acts) and i not in (0, count):
             continue
         x = along(z.real)
-        foot, head = complex(x, y0), complex(x, y0 + acts / scale.mu)
+        foot, head = complex(x, y0), complex(x, y0 + max(acts, key=abs) / scale.mu)
         if enlarged == 1:
-            here.pen(strokes.output, "construction").line(z, foot if below else head, "thin")
-        if below or enlarged > 1:
+            here.pen(strokes.output, "construction").line(z, foot if below or head.imag < y0 else head, "thin")
+        if below or enlarged > 1 or head.imag < y0:
             canvas.tracing("curve", load, here.label, graph).line(foot, head, "thin")
         # Of a position of several turns its first number where all have no room.
         for text in dict.fromkeys((label, cycle.labels[i])):
-            width = max(3.7, letter(text, 2.5).width) + 0.8
-            if all(x > begin + wide or begin > x + width for begin, wide in lettered):
-                lettered.append((x, width))
-                canvas.text(complex(x + 0.8, y0 + 1.0), text, 2.5)
+            size = complex(max(3.7, letter(text, 2.5).width), 2.5)
+            corners = [complex(x + off, y0 + level) for off in (0.8, -0.4 - size.real) for level in (1.0, -3.5)]
+            free = [at for at in corners if not any(_overlap(at, size, *other) for other in lettered)]
+            if free:
+                lettered.append((min(free, key=lambda at: _struck(outlines, at, size)), size))
+                canvas.text(lettered[-1][0], text, 2.5)
                 break
+
+
+def _overlap(at: complex, size: complex, other: complex, of_size: complex) -> bool:
+    """Whether two numbers, by their lower left corners and sizes, mm, are less than 0.8 mm apart."""
+    off, low, high = other - at, -of_size - 0.8 - 0.8j, size + 0.8 + 0.8j
+    return low.real < off.real < high.real and low.imag < off.imag < high.imag
+
+
+def _struck(lines: Any, at: complex, size: complex) -> int:
+    """How many points of lines run through a number or nearer to it than 0.4 mm."""
+    off = lines - (at + size / 2)
+    return int(np.count_nonzero((np.abs(off.real) < size.real / 2 + 0.4) & (np.abs(off.imag) < size.imag / 2 + 0.4)))
+
+
+def _over_way(project: Project, s: Stage, along: Any, diagram: tuple[Any, Any], y0: float, mu: float) -> tuple[Any, Any]:
+    """A diagram of a force over the path, from the axis and back to it, mm, and the angles where it acts, rad."""
+    turned, values = diagram
+    strokes = project.cycle.strokes
+    assert strokes is not None
+    acting = np.flatnonzero(values)
+    path = project.study_at(turned, tuple("" for _ in turned)).positions.points[strokes.output]
+    xs = along(np.real(s.frame(path.value)))
+    curve = xs[acting] + 1j * (y0 + values[acting] / mu)
+    return np.array([complex(curve[0].real, y0), *curve, complex(curve[-1].real, y0)]), turned[acting]
+
+
+def _held(cycle: Cycle, turned: Any) -> str:
+    """First and last of the positions that lie within a stretch of angles, rad: "9…11"."""
+    into = np.mod(np.asarray(cycle.turned) - turned[0], cycle.period)
+    inside = sorted((float(t), label) for t, label in zip(into, cycle.labels, strict=True) if t <= turned[-1] - turned[0])
+    return "…".join(dict.fromkeys(label for _, label in (*inside[:1], *inside[-1:])))
 
 
 READABLE = 40.0

@@ -275,7 +275,8 @@ def _moment(of: Givens, plan: Plan, i: int, m: MomentTable, mechanism: Mechanism
     laws, signs = _by_run(motion, m.stroke, tables, against, m.name)
     signs = [s * (fixed if fixed is not None else sense) for s in signs]
     law, jumps = stroke_law(motion, laws, signs, m.curve == "smooth")
-    return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion, _diagrams(of, plan, m, tables, None, (), "moment", i))
+    return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion, _diagrams(of, plan, m, tables, None, (), "moment", i),
+                   sign=None if fixed is None else GivenNumber(fixed, f"moment[{i}].direction"))
 
 
 def _by_run(motion: OutputMotion, stroke: str, tables: Sequence[Table | None], against: float | None, name: str) -> tuple[

@@ -271,7 +271,7 @@ class Applied:
     """A technological force (N, along the unit vector ``toward`` at ``point``) or, without a point, a moment (N m).
 
     ``law(turned, side)`` is its signed value; moments count counter-clockwise. ``jumps`` are the angles where it is not smooth.
-    ``sign`` is that of a constant moment of a fixed direction.
+    ``sign`` is that of a moment of a fixed direction.
     """
 
     name: str
@@ -350,8 +350,16 @@ class Applied:
         return any(min(d.table[1]) < 0 < max(d.table[1]) for d in self.diagrams)
 
     def shown(self, turned: Any, side: int = 0) -> Any:
-        """Values as a graph shows them, N or N m: without their sign, unless one diagram has both signs."""
-        return self.law(turned, side) if self.changes_sign else self.magnitude(turned, side)
+        """Values as a graph shows them, N or N m: without their sign, unless one diagram has both signs.
+
+        Then as the diagram has them: a resistance is positive, whichever way what it resists moves. Moments of a fixed direction
+        are positive counter-clockwise.
+        """
+        if not self.changes_sign:
+            return self.magnitude(turned, side)
+        if not isinstance(self.law, StrokeLaw):
+            return self.law(turned, side)
+        return self.law.ordinates(turned, side) * (1.0 if self.sign is None else self.sign.value)
 
 
 FORCE = Rule("given force", lambda value, u: value * u, ("number", "direction"), "force", marked("Force {name} = {value}."),
@@ -539,6 +547,13 @@ class StrokeLaw:
 
     def __call__(self, turned: Any, side: int = 0) -> Any:
         """Signed values at angles turned."""
+        return self._values(turned, side, self.signs)
+
+    def ordinates(self, turned: Any, side: int = 0) -> Any:
+        """Ordinates of the diagrams at angles turned, 0 where none acts."""
+        return self._values(turned, side, (1.0,) * len(self.signs))
+
+    def _values(self, turned: Any, side: int, signs: Sequence[float]) -> Any:
         t, motion = np.asarray(turned, dtype=float), self.motion
         i = self.run(t, side)
         x = motion.fraction(t) if self.over_way else np.zeros(t.shape)
@@ -546,7 +561,7 @@ class StrokeLaw:
         for n, (run, curve) in enumerate(zip(motion.runs, self.curves, strict=True)):
             if curve is not None:
                 ahead = (side or 1) * run.sense * motion.way
-                value = np.where(i == n, self.signs[n] * curve(self._at(x, ahead), ahead), value)
+                value = np.where(i == n, signs[n] * curve(self._at(x, ahead), ahead), value)
         return value
 
     def _at(self, x: Any, ahead: int) -> Any:
