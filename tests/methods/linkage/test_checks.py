@@ -295,3 +295,12 @@ def test_quick(shaper):
         check_assembly(shaper.mechanism, shaper.cycle)
         times.append(perf_counter() - start)
     assert min(times) < 0.005
+
+
+def test_strokes_where_a_group_comes_to_its_dead_position():
+    """"It never turns back", it said of a parallelogram, and advised an angle that was given."""
+    parallelogram = {"points.C": ["0.4 m", "0 m"], "group[1].lengths": ["0.4 m", "0.1 m"],
+                     "cycle": {"start": "30 deg", "positions": 12, "output": "B", "working_sense": "+x"}}
+    with pytest.raises(CannotBuild, match=r"group 2-3 is stretched or folded at crank angles 0\.0, 180\.0 deg") as told:
+        _ = project_files.project(project_files.FOUR_BAR, parallelogram).cycle
+    assert "strokes of B" in told.value.hint

@@ -35,7 +35,7 @@ class DeadPosition:
     angles: tuple[float, ...]
 
     def __str__(self) -> str:
-        angles = ", ".join(f"{round(angle, 1) % 360:.1f}" for angle in self.angles)
+        angles = ", ".join(f"{angle:.1f}" for angle in sorted(round(angle, 1) % 360 for angle in self.angles))
         return tell_n(
             "group {group} is stretched or folded at crank angle {angles} deg and can go on from there in two ways: it is drawn "
             "on the same side all round, where its links turn back at once; change a length, or let the crank swing",
@@ -44,9 +44,16 @@ class DeadPosition:
             len(self.angles)).format(group=self.group, angles=angles)
 
 
-def check_turn(mechanism: Mechanism) -> None:
-    """Assemble the mechanism all round the turn, before its positions are numbered; see :func:`check_assembly`."""
-    check_assembly(mechanism, Cycle((), np.empty(0), 0.0, mechanism.crank.sense, 2 * np.pi, None, None))
+def check_turn(mechanism: Mechanism, moving: str = "") -> None:
+    """Assemble the mechanism all round the turn, before its positions are numbered; see :func:`check_assembly`.
+
+    Asked for what is ``moving`` and has no speed at some angle, a group that comes to its dead position is refused as well.
+    """
+    passed = check_assembly(mechanism, Cycle((), np.empty(0), 0.0, mechanism.crank.sense, 2 * np.pi, None, None))
+    if moving and passed:
+        raise CannotBuild("\n".join(map(str, passed)),
+                          tell("the strokes of {moving} cannot be found: it has no speed there; change a length, or tell nothing "
+                               "of strokes (output, working_sense, stroke)").format(moving=moving))
 
 
 def check_assembly(mechanism: Mechanism, cycle: Cycle) -> tuple[DeadPosition, ...]:

@@ -168,6 +168,8 @@ def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, know
 
     the_output = known is not None and known.output == point and abs(known.path - sense) < 1e-9
     runs = known.runs if known is not None and the_output else tuple(runs_of(speed))
+    if not runs:
+        check_turn(m, point)
     ways = along(np.array([r.begin for r in runs])) if runs else np.zeros(1)
     low, high = float(ways.min()), float(ways.max())
     if not high - low > 1e-9 * m.crank.length:
@@ -198,6 +200,7 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
 
     runs = runs_of(speed)
     if not runs:
+        check_turn(m, link)
         _refuse(m, tell("link {link} does not turn all the time").format(link=link))
     # The angle from the whole turn: more than 180 degrees would not show in the angles of the reversals alone.
     turned = np.unique(np.append(np.linspace(0.0, TURN, SWEEP + 1), [r.begin for r in runs]))

@@ -229,7 +229,7 @@ def _dead_of(m: Mechanism, output: str, axis: complex) -> DeadPoints:
 
     runs = runs_of(along)
     if len(runs) < 2:
-        check_turn(m)  # names the group that does not assemble, and by how much
+        check_turn(m, "" if runs else output)  # names the group that does not assemble, and by how much
         raise CannotBuild(tell("point {output} has no dead positions: it never turns back").format(output=output),
                           tell('give the crank angle of position 0 instead: start = "90 deg"'))
     turned = np.array([r.begin for r in runs])
