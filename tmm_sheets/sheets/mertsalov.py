@@ -91,7 +91,8 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         canvas.label(g(x[k] + 1j * part[k]), name if len(parts) <= NAMED else str(n), -1 if k else 1 - 1j, 3.5)
     if len(parts) > NAMED:
         legend = ";  ".join(f"{n} – {name}" for n, (name, *_) in enumerate(parts, 1))
-        canvas.text(complex((box.x0 + box.x1) / 2, box.y1 - 13.0), legend, size_for([legend], box.width, 3.5), "centre")
+        beside = options["axis"] + 4.0  # the sign of the axis may reach up to it
+        canvas.text(complex((beside + box.x1) / 2, box.y1 - 13.0), legend, size_for([legend], box.x1 - beside, 3.5), "centre")
     flywheel.uprights(of, "points")
     ordinate = tr("{quantity}, kg·m^2").format(quantity=sign)
     flywheel.axes(fw, of, "points", g, 0.0, float(curve.max()), ordinate, np.ones(len(fw.labels)))
