@@ -192,6 +192,14 @@ def scheme(project: Project, g: StructuralGroup, k: int, share: float = 1.0) -> 
     return loaded([*points, *(force.at for force in shown)], shown, about, armed=with_arms(project, g, shown), share=share)
 
 
+def places_of_groups(box: Box, count: int, columns: int, gap: float) -> list[Box]:
+    """Equal parts of a place for so many groups, the farthest first: down each of the columns in turn, ``gap`` mm apart."""
+    rows = -(-count // max(columns, 1))
+    wide, high = (box.width + gap) / columns, (box.height + gap) / max(rows, 1)
+    corners = [(box.x0 + (i // rows) * wide, box.y1 - (i % rows) * high) for i in range(count)]
+    return [Box(x, y - high + gap, x + wide - gap, y) for x, y in corners]
+
+
 def crowd(project: Project, g: StructuralGroup, k: int) -> tuple[float, int]:
     """Size of a group from hinge to hinge, m, and how many forces crowd along it on its scheme."""
     pos = project.study.positions

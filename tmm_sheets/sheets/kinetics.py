@@ -45,6 +45,7 @@ from tmm_sheets.sheets.kinetic_frames import (
     on_crank,
     on_lever,
     outer_forces,
+    places_of_groups,
     polygon,
     scheme,
     scheme_points,
@@ -79,22 +80,17 @@ STACKED = 90.0
 
 
 def groups(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """All Assur groups of a mechanism, the farthest on top, in equal parts of the place.
+    """All Assur groups of a mechanism, the farthest on top, in equal parts of the place, in so many ``columns``.
 
     ``scheme`` is the share of the width for the loaded schemes, one number or one for each group.
     """
-    count = len(project.mechanism.groups)
-    if not count:
-        return
     shares = options.get("scheme", 0.42)
-    height = (box.height - GAP * (count - 1)) / count
-    for i in range(count):
+    for i, place in enumerate(places_of_groups(box, len(project.mechanism.groups), int(options.get("columns", 1)), GAP)):
         if "groups" in options:
             group(project, canvas, box, {"group": i + 1, "places": options["groups"][i]})
             continue
-        top = box.y1 - i * (height + GAP)
         share = shares[min(i, len(shares) - 1)] if isinstance(shares, list) else shares
-        group(project, canvas, Box(box.x0, top - height, box.x1, top), {"group": i + 1, "scheme": share})
+        group(project, canvas, place, {"group": i + 1, "scheme": share})
 
 
 def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
