@@ -71,6 +71,8 @@ ALONG, SAME = 0.05, 0.01
 BAR = "\u0305"
 GAP = 4.0
 """Distance of groups that share a place, mm."""
+KEPT_OFF = 4.0
+"""How many times more than usual the letter of an arm keeps off thin lines: it would be struck by its own arm or the next one."""
 ROOM = 6.0
 """Room for labels between a force polygon and its equation, mm."""
 LINE, LINES = 6.25, 3
@@ -281,7 +283,8 @@ def draw_arms(s: Stage, about: complex, shown: Sequence[Shown], points: Iterable
         first = centre + _covered(foot - centre, [f - centre for f in feet]) * (foot - centre)
         places = [first + t * (foot - first) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
         at = max(places, key=lambda z: min(6.0, *(abs(z - q) for q in busy)))
-        pen.label(at, " = ".join(dict.fromkeys([arm_sign(force.symbol), *same])), 1j * (foot - centre), 2.5, 0.8)
+        text = " = ".join(dict.fromkeys([arm_sign(force.symbol), *same]))
+        pen.label(at, text, 1j * (foot - centre), 2.5, 0.8, thin=KEPT_OFF)
         busy.append(at)
 
 
