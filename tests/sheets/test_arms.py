@@ -153,8 +153,8 @@ def test_an_arm_does_not_strike_its_own_letter():
         sheet = composed(Project(read("sixbar/7:1")), 1)
     arms = [(label, box) for label, box in kept if label.text.startswith("h_")]
     assert len(arms) > 10
-    own = {mark.by.name: mark for mark in sheet.drawing.marks if isinstance(mark, Line) and mark.by and mark.by.role == "construction"
-           and mark.by.name.startswith("h")}
+    own = {mark.by.name: mark for mark in sheet.drawing.marks
+           if isinstance(mark, Line) and mark.by and mark.by.role == "construction" and mark.by.name.startswith("h")}
     for label, box in arms:
         line = own[label.by.name]
         assert not owners.enters(line.a, line.b - line.a, box.x0 + 0.2, box.y0 + 0.2, box.x1 - 0.2, box.y1 - 0.2), label.text

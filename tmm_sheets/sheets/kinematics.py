@@ -623,6 +623,52 @@ def second_accelerations(project: Project, canvas: Canvas, box: Box, options: di
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
 
 
+SMALL = 30.0
+"""Size of the analysed velocity plan among the others, mm, below which it is shown once more, enlarged."""
+ENLARGED = (2.0, 2.5, 4.0, 5.0, 10.0)
+"""Enlargements (GOST 2.302)."""
+
+
+def enlarged_velocities_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the analysed velocity plan, enlarged, can do with, mm; none where it can be read among the others.
+
+    All plans have one scale factor, that of the largest; one next to a dead position leaves the others small.
+    """
+    plan, k = project.study.velocities.plan, project.force_index
+    real = kinematic_frames.plan_extent(plan, k)
+    drawn = max(real.width, real.height) / canvas.scales["velocities"].mu if "velocities" in canvas.scales else 0.0
+    if not SHORTEST < drawn < SMALL or f"velocity plan {project.cycle.labels[k]}" not in {mark.of for mark in canvas.marks}:
+        return []
+    around = kinematic_frames.MARGIN, kinematic_frames.HEAD + TITLED
+    longest, sizes = max(real.width, real.height), list[tuple[float, float]]()
+    for times_as_large in reversed([t for t in ENLARGED if 2 * SMALL <= t * drawn <= kinematic_frames.LONGEST] or ENLARGED[:1]):
+        size = times_as_large * drawn
+        sizes.append((max(size * real.width / longest + around[0], 90.0), size * real.height / longest + around[1]))
+    return sizes
+
+
+TITLED = 22.0
+"""Height of the title of a velocity plan with its scale factor, mm."""
+
+
+def enlarged_velocities(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The velocity plan of the analysed position enlarged, with the signs of its vectors."""
+    plan, k, plain = project.study.velocities.plan, project.force_index, canvas.scales["velocities"]
+    real = kinematic_frames.plan_extent(plan, k)
+    inside = box.inset(kinematic_frames.MARGIN / 2, kinematic_frames.HEAD / 2, kinematic_frames.MARGIN / 2,
+                       TITLED + kinematic_frames.HEAD / 2)
+    need = max(real.width / inside.width, real.height / inside.height)
+    larger = max(t for t in ENLARGED if t * need <= plain.mu * (1 + 1e-6))
+    scale = Scale(plain.symbol, float(f"{plain.mu / larger:.6g}"), plain.unit)
+    said = tr("{scale} (enlarged {times})").format(scale=scale, times=times(larger))
+    canvas.title(box, tr("Velocity polygon, position {label}").format(label=project.cycle.labels[k]),
+                 said if letter(said, 5.0).width <= box.width - 2.0 else str(scale))
+    frame = Frame(scale, inside.centre - scale.mm(real.centre))
+    tiny = _draw_plan(stage(canvas, plan, k, frame), "p", symbols_at=True)
+    if tiny:
+        canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
+
+
 COLUMNS = 7
 """So many columns the table of lengths has in about half of the place; with more it shares the width with that of speeds."""
 COLUMN = 12.5
