@@ -133,8 +133,7 @@ def _guide_line(pos: Positions, s: Stage, name: str, room: Box) -> None:
 def _position_numbers(project: Project, s: Stage) -> None:
     """Position numbers at the crank pin and the hinges, and as marks on the paths of the sliders."""
     pos, m = project.study.positions, project.mechanism
-    # A point on a fixed guide has its marks there; one that slides on a moving link has a path like any hinge.
-    sliding = {point: guide for g in m.groups for point, guide in g.kind.guided(g) if m.guides[guide].link == m.frame}
+    sliding = on_fixed_guides(m)
     for name in dict.fromkeys(_hinges(m, sliding)):
         z = np.asarray(s.frame(pos.points[name].value))
         _hinge_numbers(project, s, name, s.at(m.crank.pivot) if name == m.crank.pin else z.mean() - 40j)
@@ -145,7 +144,7 @@ def _position_numbers(project: Project, s: Stage) -> None:
         if on.count(guide) > 1:
             _shared_path(project, s, name, n * (1 if name == next(p for p, g in sliding.items() if g == guide) else -1))
         else:
-            _own_path(project, s, name, n, u)
+            own_path(project, s, name, n)
 
 
 def _hinges(m: Mechanism, sliding: Container[str]) -> Iterator[str]:
@@ -176,26 +175,36 @@ def _path_mark(s: Stage, name: str, n: complex) -> None:
     s.pen(name, "point").line(s.at(name) - 2.0 * n, s.at(name) + 2.0 * n, "axis")
 
 
-def _own_path(project: Project, s: Stage, name: str, n: complex, u: complex) -> None:
-    """Marks of the only slider on a path along ``u``: numbers of the working stroke on side ``n`` of it, of the idle one on the
-    other.
-    """
+def on_fixed_guides(m: Mechanism) -> dict[str, str]:
+    """Points that slide on fixed guides, with these: one that slides on a moving link has a path like any hinge."""
+    return {point: guide for g in m.groups for point, guide in g.kind.guided(g) if m.guides[guide].link == m.frame}
+
+
+def own_path(project: Project, s: Stage, name: str, n: complex) -> None:
+    """Marks of the only slider on a path: numbers of the working stroke on side ``n`` of it, of the idle one on the other."""
     cycle = project.cycle
     z = np.asarray(s.frame(project.study.positions.points[name].value))
-    speed = (np.asarray(project.study.velocities.points[name].value) * np.conj(u)).real
-    working = speed[np.argmax(np.abs(speed))] if cycle.strokes is None else (cycle.strokes.path * np.conj(u)).real
     for i, _ in cycle.drawn:
         _path_mark(s.position(i), name, n)
     marks = [i for i, _ in cycle.drawn if i != s.k]
-    ahead = speed * (np.sign(working) or 1.0) > -1e-9 * np.abs(speed).max()
-    for side, there in ((n, [i for i in marks if ahead[i]]), (-n, [i for i in marks if not ahead[i]])):
-        for crowd in _crowds(there, z):
+    for side, there in zip((n, -n), by_stroke(project, name, marks), strict=True):
+        for crowd in crowds(there, z):
             at = complex(sum(z[i] for i in crowd)) / len(crowd)
             said = graphs.ranged([cycle.labels[i] for i in crowd])
             s.position(crowd[0]).letters(name, said, side, 2.5, 0.6, at + 2.0 * side, False)
 
 
-def _crowds(marks: list[int], z: Any) -> list[list[int]]:
+def by_stroke(project: Project, name: str, marks: list[int]) -> tuple[list[int], list[int]]:
+    """Positions of a slider in which it goes the way of the working stroke, and the others."""
+    cycle, pos = project.cycle, project.study.positions
+    u = complex(pos.guide_directions[on_fixed_guides(pos.mechanism)[name]].at(0))
+    speed = (np.asarray(project.study.velocities.points[name].value) * np.conj(u)).real
+    working = speed[np.argmax(np.abs(speed))] if cycle.strokes is None else (cycle.strokes.path * np.conj(u)).real
+    ahead = speed * (np.sign(working) or 1.0) > -1e-9 * np.abs(speed).max()
+    return [i for i in marks if ahead[i]], [i for i in marks if not ahead[i]]
+
+
+def crowds(marks: list[int], z: Any) -> list[list[int]]:
     """Marks in turn along a path, those that stand too close for numbers of their own together."""
     found: list[list[int]] = []
     for i in marks:
