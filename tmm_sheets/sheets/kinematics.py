@@ -28,7 +28,7 @@ from tmm_sheets.sheets.player import Stage, play, stage
 from tmm_sheets.words import tr, tr_in
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan, Segment
+    from tmm_sheets.construction.plan import Segment
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.methods.linkage.positions import Positions
@@ -604,20 +604,9 @@ def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[s
     # Wide enough for a title as the other plans have it, if there is room.
     titled = letter(kinematic_frames.title_of_accelerations(project, kinematic_frames.other_stroke(project)), 5.0).width + 0.1
     places = [(size * real.width / longest + left + right + 12.0, size * real.height / longest + below + above + 10.0)
-              for size in (120.0, 100.0, 80.0) if _crowd(plan, i, handy(longest / size)) <= TOGETHER_READ]
+              for size in (120.0, 100.0, 80.0)
+              if kinematic_frames.crowd(plan, i, handy(longest / size)) <= kinematic_frames.TOGETHER_READ]
     return [(max(wide, least), high) for least in (titled, 76.0) for wide, high in places]
-
-
-TOGETHER_READ, ABOUT = 12, 12.0
-"""So many letters and signs of a plan can be read that stand within so many mm of one of them."""
-
-
-def _crowd(plan: Plan, i: int, mu: float) -> int:
-    """Most letters of points and signs of vectors that a plan would have about one of them at a scale factor."""
-    ends = [(complex(seg.tail.at(i)) / mu, complex(seg.head.at(i)) / mu) for seg in plan.segments]
-    points = np.array(list(kinematic_frames.plan_points(plan, i).values())) / mu
-    at = np.array([*points[[same[0] for same in together(points, 0.5)]], *((a + b) / 2 for a, b in ends if abs(b - a) >= SHORTEST)])
-    return int((np.abs(at[:, None] - at) <= ABOUT).sum(axis=1).max())
 
 
 def second_accelerations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
