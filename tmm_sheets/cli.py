@@ -147,9 +147,10 @@ def check(project: str, corrected: bool) -> None:
     composition.check(opened)
     if opened.variant.crank is not None:
         from tmm_sheets import summary
-        from tmm_sheets.sheets import flat_crossings
+        from tmm_sheets.sheets import flat_crossings, legibility
 
-        for line in (*composition.left_out(opened, range(1, len(opened.sheets) + 1)), *flat_crossings.lines(opened)):
+        every = range(1, len(opened.sheets) + 1)
+        for line in (*composition.left_out(opened, every), *legibility.crowded(opened, every), *flat_crossings.lines(opened)):
             click.echo(f"{opened.variant.project.name}: {line}", err=True)
         for line in (*map(str, opened.dead_positions), *summary.swing(opened)):
             click.echo(f"{opened.variant.project.name}: {line}", err=True)

@@ -7,7 +7,7 @@ import pytest
 
 from tests import project_files
 from tmm_sheets.catalogue import read
-from tmm_sheets.drawing import owners
+from tmm_sheets.drawing import labels, owners
 from tmm_sheets.drawing.marks import Line, Trace
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import friction, kinetic_frames, kinetics, linkage, moments
@@ -137,3 +137,24 @@ def test_the_equation_of_a_guides_reaction_gives_its_couple_and_its_arm(name, li
         assert found == pytest.approx(float(value.replace(",", ".")), rel=2e-3)
         truth = forces.couples["F50"] if line.startswith("M") else forces.arms["h50"]
         assert found == pytest.approx(abs(float(truth.at(k))), rel=2e-3)
+
+
+def test_an_arm_does_not_strike_its_own_letter():
+    """Small letters beside slanting thin lines: they keep off these, under a leader if need be."""
+    kept = []
+    original = labels._draw
+
+    def keeping(canvas, label, box):
+        kept.append((label, box))
+        original(canvas, label, box)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(labels, "_draw", keeping)
+        sheet = composed(Project(read("sixbar/7:1")), 1)
+    arms = [(label, box) for label, box in kept if label.text.startswith("h_")]
+    assert len(arms) > 10
+    own = {mark.by.name: mark for mark in sheet.drawing.marks
+           if isinstance(mark, Line) and mark.by and mark.by.role == "construction" and mark.by.name.startswith("h")}
+    for label, box in arms:
+        line = own[label.by.name]
+        assert not owners.enters(line.a, line.b - line.a, box.x0 + 0.2, box.y0 + 0.2, box.x1 - 0.2, box.y1 - 0.2), label.text

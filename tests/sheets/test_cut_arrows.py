@@ -1,5 +1,7 @@
 """Arrows of a loaded scheme are cut where they would leave the group nothing of its place, and nowhere else."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import kinetic_frames
+from tmm_sheets.sheets.frame import fit_frame
 
 
 @pytest.fixture(scope="module")
@@ -33,3 +36,16 @@ def test_cut_arrows_keep_their_directions_and_their_order(conveyor):
         assert one == other
         assert np.angle(b / a) == pytest.approx(0, abs=1e-9)
         assert abs(b) < abs(a)
+
+
+def test_arrows_are_shortened_for_the_next_finer_scale_factor_of_a_small_group():
+    """Whole ones need 0.01026 m/mm of the crusher's place, and the series goes on with 0.015: links of 47 mm instead of 70."""
+    project = Project(read("transport/crusher@31-СДМ-246"))
+    group, k, place = project.mechanism.groups[0], project.force_index, Box(0.0, 0.0, 105.0, 110.0)
+    found = kinetic_frames.share_of_arrows(project, group, k, place)
+    assert found == kinetic_frames.SHORTER
+    scales = [fit_frame(project, SimpleNamespace(scales={}, chosen=set()), "scheme", "", "",
+                        *kinetic_frames.scheme(project, group, k, share), place).scale.mu for share in (1.0, found)]
+    assert scales == [0.015, 0.01]
+    assert kinetic_frames.share_of_arrows(project, group, k, Box(0.0, 0.0, 105.0, 150.0)) == 1.0  # nothing is won
+    assert kinetic_frames.share_of_arrows(project, group, k, Box(0.0, 0.0, 400.0, 400.0)) == 1.0  # it is large

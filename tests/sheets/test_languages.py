@@ -19,7 +19,7 @@ KINDS = {
     "sixbar_1": ("sixbar/1:1", 1), "sixbar_2": ("sixbar/1:1", 2), "transport_1": ("transport/diesel@01-Т-27", 1),
     "transport_1_press": ("transport/press@05-ЭПС-123", 1), "transport_1_crusher": ("transport/crusher@12-СДМ-1908", 1),
     "kinematics_forces_wide": ("tests/projects/conveyor.toml", 1),
-    "kinematics": ("tests/projects/planer.toml", 1),
+    "forces": ("tests/sheets/chain.toml", 2), "kinematics": ("tests/projects/planer.toml", 1),
 }  # fmt: skip
 """A project and a sheet of it for each kind of sheet; the last is drawn in another arrangement than its file says."""
 STANDARD = {*SIZES, *(index_size(size) for size in SIZES), *(index_size(index_size(size)) for size in SIZES)}

@@ -444,11 +444,13 @@ def _placed(grid: Grid, ink: owners.Ink, label: Label, w: float, h: float, aroun
     here = owners.Round(ink, label, 2 * (NEAR + label.gap) + w)
     k = places.read(here)
     if k is None or places.run_on[k] or _led(label, Box(*places.sides[:, k])):
+        # Lettering that keeps off thin lines had better have a leader than stand over some.
+        most = np.inf if label.thin <= 1.0 or k is None else float(places.cost[k]) + places.ill(here, k)
         for anchor in here.along():
             moved = replace(label, anchor=anchor)
             others = _Places(grid, moved, w, h, around)
             there = others.read(owners.Round(ink, moved, 2 * (NEAR + label.gap) + w), leaders=False)
-            if there is not None and not others.run_on[there]:
+            if there is not None and not others.run_on[there] and others.cost[there] < most:
                 return moved, Box(*others.sides[:, there]), True
     return label, Box(*places.sides[:, places.least() if k is None else k]), bool(len(places.free))
 

@@ -242,11 +242,11 @@ def _warnings(opened: Project, drawn: Mapping[int, Composed]) -> tuple[str, ...]
         for what in (*composed.leaving, *composed.crowded)
     ]
     if drawn and opened.variant.crank is not None:
-        from tmm_sheets.sheets import composition
+        from tmm_sheets.sheets import composition, legibility
 
         with suppress(CannotBuild):  # what does not assemble is told by every sheet that shows a position
             told += map(str, opened.dead_positions)
-        told += composition.left_out(opened, drawn)
+        told += (*composition.left_out(opened, drawn), *legibility.crowded(opened, drawn))
     return tuple(told)
 
 

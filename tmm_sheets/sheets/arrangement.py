@@ -34,7 +34,7 @@ class View:
 
 NEEDS = {
     "kinematics": "positions", "false_positions": "positions", "diagrams": "positions", "given_position": "positions",
-    "given_data": "positions",
+    "given_data": "positions", "path_marks": "positions",
     "load_diagram": "positions", "synthesis": "positions", "kinetics": "forces", "moments": "forces", "friction": "forces",
     "details": "forces", "position_tables.accelerations": "positions", "position_tables.reactions": "forces",
     "diagrams.balancing": "forces", "diagrams.balancing_table": "forces",

@@ -100,7 +100,7 @@ class _Way:
 
     def solved(self) -> tuple[float, Arrangement] | None:
         """What its places cost and the arrangement with them; None where the boxes cannot be cut apart or what is fixed moves."""
-        columns = [joined(1, [node for _, node in parts], [1.0] * len(parts)) for parts in self.parts]
+        columns = [_in_columns(parts) for parts in self.parts]
         boxes = [_around([view.box for view, _ in parts]) for parts in self.parts]
         tree = cut([*boxes, TITLE_BLOCK], [*columns, _fixed(TITLE_BLOCK)])
         if tree is None:
@@ -118,6 +118,13 @@ class _Way:
             return None
         placed = replace(self.plan, views=tuple(_placed(view, node, found) for view, node in views))
         return tree.cost(room.width, room.height), placed
+
+
+def _in_columns(parts: list[tuple[View, Node]]) -> Node:
+    """The parts of a view one under another, in as many columns as their boxes begin at."""
+    lefts = dict.fromkeys(view.box.x0 for view, _ in parts)
+    columns = [[node for view, node in parts if view.box.x0 == x] for x in lefts]
+    return joined(0, [joined(1, nodes, [1.0] * len(nodes)) for nodes in columns], [1.0] * len(columns))
 
 
 def _name(view: View) -> tuple[str, Any]:
@@ -168,11 +175,9 @@ def _placed(view: View, node: Node, found: dict[int, Box]) -> View:
 def _parts(project: Project, view: View) -> list[tuple[View, Node]]:
     """Nodes of a view, which may stand for several one under another; none for one with nothing to draw."""
     if view.draw == "kinetics.groups":
-        count = len(project.mechanism.groups)
-        height = view.box.height / max(count, 1)
-        return [part for i in range(count) for part in _parts(project, View(
-            "kinetics.group", view.box._replace(y0=view.box.y1 - (i + 1) * height, y1=view.box.y1 - i * height),
-            {"scheme": 0.45, "group": i + 1}))]
+        places = kinetic_frames.places_of_groups(view.box, len(project.mechanism.groups), int(view.options.get("columns", 1)), 0.0)
+        return [part for i, place in enumerate(places) for part in _parts(project, View(
+            "kinetics.group", place, {"scheme": 0.45, "group": i + 1}))]
     if "cam" in view.needs and not _of_cam(project, view):
         return []
     if view.draw not in NEEDS:

@@ -14,7 +14,7 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.linkage.loads import StrokeLaw
 from tmm_sheets.sheets import indicator, linkage
-from tmm_sheets.sheets.frame import Frame, ScaleBook, extent, fit_frame, pick, raised
+from tmm_sheets.sheets.frame import SHORTEST, Frame, ScaleBook, extent, fit_frame, pick, raised, together
 from tmm_sheets.words import tell, tell_n, tr
 
 if TYPE_CHECKING:
@@ -291,3 +291,15 @@ def accelerations(project: Project, canvas: ScaleBook, box: Box) -> Frame:
     need = max(real.width / inside.width, real.height / inside.height)
     scale = pick(project, canvas, "accelerations", "μ_a", tr("(m/s²)/mm"), need)
     return Frame(scale, inside.centre - scale.mm(real.centre) + raised(inside, scale.mm(real.height)))
+
+
+TOGETHER_READ, ABOUT = 12, 12.0
+"""So many letters and signs of a plan can be read that stand within so many mm of one of them."""
+
+
+def crowd(plan: Plan, i: int, mu: float) -> int:
+    """Most letters of points and signs of vectors that a plan would have about one of them at a scale factor."""
+    ends = [(complex(seg.tail.at(i)) / mu, complex(seg.head.at(i)) / mu) for seg in plan.segments]
+    points = np.array(list(plan_points(plan, i).values())) / mu
+    at = np.array([*points[[same[0] for same in together(points, 0.5)]], *((a + b) / 2 for a, b in ends if abs(b - a) >= SHORTEST)])
+    return int((np.abs(at[:, None] - at) <= ABOUT).sum(axis=1).max())

@@ -28,7 +28,7 @@ from tmm_sheets.sheets.player import Stage, play, stage
 from tmm_sheets.words import tr, tr_in
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan, Segment
+    from tmm_sheets.construction.plan import Segment
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.methods.linkage.cycle import Cycle
@@ -134,8 +134,7 @@ def _guide_line(pos: Positions, s: Stage, name: str, room: Box) -> None:
 def _position_numbers(project: Project, s: Stage) -> None:
     """Position numbers at the crank pin and the hinges, and as marks on the paths of the sliders."""
     pos, m = project.study.positions, project.mechanism
-    # A point on a fixed guide has its marks there; one that slides on a moving link has a path like any hinge.
-    sliding = {point: guide for g in m.groups for point, guide in g.kind.guided(g) if m.guides[guide].link == m.frame}
+    sliding = on_fixed_guides(m)
     for name in dict.fromkeys(_hinges(m, sliding)):
         z = np.asarray(s.frame(pos.points[name].value))
         _hinge_numbers(project, s, name, s.at(m.crank.pivot) if name == m.crank.pin else z.mean() - 40j)
@@ -146,7 +145,7 @@ def _position_numbers(project: Project, s: Stage) -> None:
         if on.count(guide) > 1:
             _shared_path(project, s, name, n * (1 if name == next(p for p, g in sliding.items() if g == guide) else -1))
         else:
-            _own_path(project, s, name, n, u)
+            own_path(project, s, name, n)
 
 
 def _hinges(m: Mechanism, sliding: Container[str]) -> Iterator[str]:
@@ -177,26 +176,36 @@ def _path_mark(s: Stage, name: str, n: complex) -> None:
     s.pen(name, "point").line(s.at(name) - 2.0 * n, s.at(name) + 2.0 * n, "axis")
 
 
-def _own_path(project: Project, s: Stage, name: str, n: complex, u: complex) -> None:
-    """Marks of the only slider on a path along ``u``: numbers of the working stroke on side ``n`` of it, of the idle one on the
-    other.
-    """
+def on_fixed_guides(m: Mechanism) -> dict[str, str]:
+    """Points that slide on fixed guides, with these: one that slides on a moving link has a path like any hinge."""
+    return {point: guide for g in m.groups for point, guide in g.kind.guided(g) if m.guides[guide].link == m.frame}
+
+
+def own_path(project: Project, s: Stage, name: str, n: complex) -> None:
+    """Marks of the only slider on a path: numbers of the working stroke on side ``n`` of it, of the idle one on the other."""
     cycle = project.cycle
     z = np.asarray(s.frame(project.study.positions.points[name].value))
-    speed = (np.asarray(project.study.velocities.points[name].value) * np.conj(u)).real
-    working = speed[np.argmax(np.abs(speed))] if cycle.strokes is None else (cycle.strokes.path * np.conj(u)).real
     for i, _ in cycle.drawn:
         _path_mark(s.position(i), name, n)
     marks = [i for i, _ in cycle.drawn if i != s.k]
-    ahead = speed * (np.sign(working) or 1.0) > -1e-9 * np.abs(speed).max()
-    for side, there in ((n, [i for i in marks if ahead[i]]), (-n, [i for i in marks if not ahead[i]])):
-        for crowd in _crowds(there, z):
+    for side, there in zip((n, -n), by_stroke(project, name, marks), strict=True):
+        for crowd in crowds(there, z):
             at = complex(sum(z[i] for i in crowd)) / len(crowd)
             said = graphs.ranged([cycle.labels[i] for i in crowd])
             s.position(crowd[0]).letters(name, said, side, 2.5, 0.6, at + 2.0 * side, False)
 
 
-def _crowds(marks: list[int], z: Any) -> list[list[int]]:
+def by_stroke(project: Project, name: str, marks: list[int]) -> tuple[list[int], list[int]]:
+    """Positions of a slider in which it goes the way of the working stroke, and the others."""
+    cycle, pos = project.cycle, project.study.positions
+    u = complex(pos.guide_directions[on_fixed_guides(pos.mechanism)[name]].at(0))
+    speed = (np.asarray(project.study.velocities.points[name].value) * np.conj(u)).real
+    working = speed[np.argmax(np.abs(speed))] if cycle.strokes is None else (cycle.strokes.path * np.conj(u)).real
+    ahead = speed * (np.sign(working) or 1.0) > -1e-9 * np.abs(speed).max()
+    return [i for i in marks if ahead[i]], [i for i in marks if not ahead[i]]
+
+
+def crowds(marks: list[int], z: Any) -> list[list[int]]:
     """Marks in turn along a path, those that stand too close for numbers of their own together."""
     found: list[list[int]] = []
     for i in marks:
@@ -633,20 +642,9 @@ def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[s
     # Wide enough for a title as the other plans have it, if there is room.
     titled = letter(kinematic_frames.title_of_accelerations(project, kinematic_frames.other_stroke(project)), 5.0).width + 0.1
     places = [(size * real.width / longest + left + right + 12.0, size * real.height / longest + below + above + 10.0)
-              for size in (120.0, 100.0, 80.0) if _crowd(plan, i, handy(longest / size)) <= TOGETHER_READ]
+              for size in (120.0, 100.0, 80.0)
+              if kinematic_frames.crowd(plan, i, handy(longest / size)) <= kinematic_frames.TOGETHER_READ]
     return [(max(wide, least), high) for least in (titled, 76.0) for wide, high in places]
-
-
-TOGETHER_READ, ABOUT = 12, 12.0
-"""So many letters and signs of a plan can be read that stand within so many mm of one of them."""
-
-
-def _crowd(plan: Plan, i: int, mu: float) -> int:
-    """Most letters of points and signs of vectors that a plan would have about one of them at a scale factor."""
-    ends = [(complex(seg.tail.at(i)) / mu, complex(seg.head.at(i)) / mu) for seg in plan.segments]
-    points = np.array(list(kinematic_frames.plan_points(plan, i).values())) / mu
-    at = np.array([*points[[same[0] for same in together(points, 0.5)]], *((a + b) / 2 for a, b in ends if abs(b - a) >= SHORTEST)])
-    return int((np.abs(at[:, None] - at) <= ABOUT).sum(axis=1).max())
 
 
 def second_accelerations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -657,6 +655,52 @@ def second_accelerations(project: Project, canvas: Canvas, box: Box, options: di
     scale = Scale("μ_a", handy(max(real.width / inside.width, real.height / inside.height)), tr("(m/s²)/mm"))
     canvas.title(box, kinematic_frames.title_of_accelerations(project, k), str(scale))
     tiny = _draw_plan(stage(canvas, acc.plan, k, Frame(scale, inside.centre - scale.mm(real.centre))), "π", symbols_at=True)
+    if tiny:
+        canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
+
+
+SMALL = 30.0
+"""Size of the analysed velocity plan among the others, mm, below which it is shown once more, enlarged."""
+ENLARGED = (2.0, 2.5, 4.0, 5.0, 10.0)
+"""Enlargements (GOST 2.302)."""
+
+
+def enlarged_velocities_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the analysed velocity plan, enlarged, can do with, mm; none where it can be read among the others.
+
+    All plans have one scale factor, that of the largest; one next to a dead position leaves the others small.
+    """
+    plan, k = project.study.velocities.plan, project.force_index
+    real = kinematic_frames.plan_extent(plan, k)
+    drawn = max(real.width, real.height) / canvas.scales["velocities"].mu if "velocities" in canvas.scales else 0.0
+    if not SHORTEST < drawn < SMALL or f"velocity plan {project.cycle.labels[k]}" not in {mark.of for mark in canvas.marks}:
+        return []
+    around = kinematic_frames.MARGIN, kinematic_frames.HEAD + TITLED
+    longest, sizes = max(real.width, real.height), list[tuple[float, float]]()
+    for times_as_large in reversed([t for t in ENLARGED if 2 * SMALL <= t * drawn <= kinematic_frames.LONGEST] or ENLARGED[:1]):
+        size = times_as_large * drawn
+        sizes.append((max(size * real.width / longest + around[0], 90.0), size * real.height / longest + around[1]))
+    return sizes
+
+
+TITLED = 22.0
+"""Height of the title of a velocity plan with its scale factor, mm."""
+
+
+def enlarged_velocities(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The velocity plan of the analysed position enlarged, with the signs of its vectors."""
+    plan, k, plain = project.study.velocities.plan, project.force_index, canvas.scales["velocities"]
+    real = kinematic_frames.plan_extent(plan, k)
+    inside = box.inset(kinematic_frames.MARGIN / 2, kinematic_frames.HEAD / 2, kinematic_frames.MARGIN / 2,
+                       TITLED + kinematic_frames.HEAD / 2)
+    need = max(real.width / inside.width, real.height / inside.height)
+    larger = max(t for t in ENLARGED if t * need <= plain.mu * (1 + 1e-6))
+    scale = Scale(plain.symbol, float(f"{plain.mu / larger:.6g}"), plain.unit)
+    said = tr("{scale} (enlarged {times})").format(scale=scale, times=times(larger))
+    canvas.title(box, tr("Velocity polygon, position {label}").format(label=project.cycle.labels[k]),
+                 said if letter(said, 5.0).width <= box.width - 2.0 else str(scale))
+    frame = Frame(scale, inside.centre - scale.mm(real.centre))
+    tiny = _draw_plan(stage(canvas, plan, k, frame), "p", symbols_at=True)
     if tiny:
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
 

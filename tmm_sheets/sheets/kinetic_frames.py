@@ -12,6 +12,7 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import symbol
+from tmm_sheets.construction.scale import handy
 from tmm_sheets.numbers import is_zero
 from tmm_sheets.sheets import linkage
 from tmm_sheets.sheets.frame import extent, needed
@@ -33,6 +34,8 @@ LONG, SHORT = 26.0, 13.0
 """Longest and shortest force arrow on a loaded scheme, mm (schemes show directions, plans show magnitudes)."""
 LOW, CUT, GAIN = 40.0, 0.6, 1.2
 """Size of a group on its scheme, mm, below which its arrows are cut to a share if that makes it so many times as large."""
+WANTED, SHORTER = 100.0, 0.8
+"""Size of its links, mm, below which they are shortened to a share if its standard scale factor becomes so many times finer."""
 
 
 @dataclass(frozen=True)
@@ -192,6 +195,14 @@ def scheme(project: Project, g: StructuralGroup, k: int, share: float = 1.0) -> 
     return loaded([*points, *(force.at for force in shown)], shown, about, armed=with_arms(project, g, shown), share=share)
 
 
+def places_of_groups(box: Box, count: int, columns: int, gap: float) -> list[Box]:
+    """Equal parts of a place for so many groups, the farthest first: down each of the columns in turn, ``gap`` mm apart."""
+    rows = -(-count // max(columns, 1))
+    wide, high = (box.width + gap) / columns, (box.height + gap) / max(rows, 1)
+    corners = [(box.x0 + (i // rows) * wide, box.y1 - (i % rows) * high) for i in range(count)]
+    return [Box(x, y - high + gap, x + wide - gap, y) for x, y in corners]
+
+
 def crowd(project: Project, g: StructuralGroup, k: int) -> tuple[float, int]:
     """Size of a group from hinge to hinge, m, and how many forces crowd along it on its scheme."""
     pos = project.study.positions
@@ -201,13 +212,21 @@ def crowd(project: Project, g: StructuralGroup, k: int) -> tuple[float, int]:
 
 
 def share_of_arrows(project: Project, g: StructuralGroup, k: int, box: Box) -> float:
-    """Share of the usual length of the arrows on a group's scheme: whole ones would leave the group nothing of a low place."""
-    needs, sizes = [], []
-    for share in (1.0, CUT):
+    """Share of the usual length of the arrows on a group's scheme.
+
+    Whole ones would leave the group nothing of a low place, or cost a small one the next finer scale factor of the series.
+    """
+    needs, sizes = {}, {}
+    for share in (1.0, SHORTER, CUT):
         z, d = (np.asarray(of, complex) for of in scheme(project, g, k, share))
-        needs.append(max(needed(z.real, d.real, box.width), needed(z.imag, d.imag, box.height)))
-        sizes.append(max(np.ptp(z.real), np.ptp(z.imag)))
-    return CUT if needs[1] > 0 and sizes[0] < LOW * needs[0] and needs[0] > GAIN * needs[1] else 1.0
+        needs[share] = max(needed(z.real, d.real, box.width), needed(z.imag, d.imag, box.height))
+        sizes[share] = max(np.ptp(z.real), np.ptp(z.imag))
+    if not needs[CUT] > 0:
+        return 1.0
+    if sizes[1.0] < LOW * needs[1.0] and needs[1.0] > GAIN * needs[CUT]:
+        return CUT
+    whole, finer = handy(needs[1.0]), handy(needs[SHORTER])
+    return SHORTER if crowd(project, g, k)[0] < WANTED * whole and whole > GAIN * finer * (1 - 1e-9) else 1.0
 
 
 def on_crank(project: Project, k: int) -> list[Shown]:

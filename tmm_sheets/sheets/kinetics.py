@@ -45,6 +45,7 @@ from tmm_sheets.sheets.kinetic_frames import (
     on_crank,
     on_lever,
     outer_forces,
+    places_of_groups,
     polygon,
     scheme,
     scheme_points,
@@ -70,6 +71,8 @@ ALONG, SAME = 0.05, 0.01
 BAR = "\u0305"
 GAP = 4.0
 """Distance of groups that share a place, mm."""
+KEPT_OFF = 4.0
+"""How many times more than usual the letter of an arm keeps off thin lines: it would be struck by its own arm or the next one."""
 ROOM = 6.0
 """Room for labels between a force polygon and its equation, mm."""
 LINE, LINES = 6.25, 3
@@ -79,22 +82,17 @@ STACKED = 90.0
 
 
 def groups(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """All Assur groups of a mechanism, the farthest on top, in equal parts of the place.
+    """All Assur groups of a mechanism, the farthest on top, in equal parts of the place, in so many ``columns``.
 
     ``scheme`` is the share of the width for the loaded schemes, one number or one for each group.
     """
-    count = len(project.mechanism.groups)
-    if not count:
-        return
     shares = options.get("scheme", 0.42)
-    height = (box.height - GAP * (count - 1)) / count
-    for i in range(count):
+    for i, place in enumerate(places_of_groups(box, len(project.mechanism.groups), int(options.get("columns", 1)), GAP)):
         if "groups" in options:
             group(project, canvas, box, {"group": i + 1, "places": options["groups"][i]})
             continue
-        top = box.y1 - i * (height + GAP)
         share = shares[min(i, len(shares) - 1)] if isinstance(shares, list) else shares
-        group(project, canvas, Box(box.x0, top - height, box.x1, top), {"group": i + 1, "scheme": share})
+        group(project, canvas, place, {"group": i + 1, "scheme": share})
 
 
 def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -285,7 +283,8 @@ def draw_arms(s: Stage, about: complex, shown: Sequence[Shown], points: Iterable
         first = centre + _covered(foot - centre, [f - centre for f in feet]) * (foot - centre)
         places = [first + t * (foot - first) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
         at = max(places, key=lambda z: min(6.0, *(abs(z - q) for q in busy)))
-        pen.label(at, " = ".join(dict.fromkeys([arm_sign(force.symbol), *same])), 1j * (foot - centre), 2.5, 0.8)
+        text = " = ".join(dict.fromkeys([arm_sign(force.symbol), *same]))
+        pen.label(at, text, 1j * (foot - centre), 2.5, 0.8, thin=KEPT_OFF)
         busy.append(at)
 
 

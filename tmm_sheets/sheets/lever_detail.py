@@ -88,7 +88,8 @@ def crowd(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     _enlarged(canvas, found, at, middle, half, of)
     canvas.labels[:] = [label for label in canvas.labels if label not in found.labels]
     for label in found.labels:
-        of(label.by).label(at(label.anchor), label.text, label.away, max(label.height, LETTERS), label.gap, label.leader)
+        of(label.by).label(at(label.anchor), label.text, label.away, max(label.height, LETTERS), label.gap, label.leader,
+                            thin=label.thin)
     with canvas.as_role("symbol"):
         mark(canvas, found.part, found.centre, half / times, name, -1 + 1j)
 

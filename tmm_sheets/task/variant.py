@@ -136,8 +136,10 @@ class Variant(Table):
     @property
     def _called_for(self) -> tuple[str, ...]:
         gears = "_".join(name for name in ("gear", "reducer") if getattr(self, name) is not None)
+        together = self.loaded and len(self.group) < ROOM_OF_GROUPS
         called = {
-            "kinematics_forces_wide" if self.loaded else "kinematics": self.crank is not None,
+            "kinematics_forces_wide" if together else "kinematics": self.crank is not None,
+            "forces": self.loaded and not together and self.crank is not None,
             "friction": self.friction is not None and self.loaded,
             self._flywheel_sheet: self.flywheel is not None,
             gears: bool(gears),
@@ -172,6 +174,8 @@ class Variant(Table):
 
 
 _SECTIONS = ("flywheel", "gear", "reducer", "train", "cam")
+ROOM_OF_GROUPS = 4
+"""So many Assur groups have no room on one sheet beside the kinematics: their forces get a sheet of their own."""
 
 # --- reading --------------------------------------------------------------------------------------------------------
 

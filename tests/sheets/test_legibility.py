@@ -1,0 +1,63 @@
+"""What a sheet cannot show at a readable size is told; many Assur groups have a sheet of their own."""
+
+import pytest
+
+from tests import project_files
+from tests.evenness import MOST
+from tmm_sheets.catalogue import read
+from tmm_sheets.drawing import evenness
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.project import Project
+from tmm_sheets.sheets import legibility
+from tmm_sheets.sheets.composition import arranged
+from tmm_sheets.sheets.kinetic_frames import places_of_groups
+from tmm_sheets.sheets.sheet import composed
+
+CHAIN = "tests/sheets/chain.toml"
+
+
+def on_sheets(*names):
+    return project_files.project(project_files.from_file(CHAIN), {"project.sheets": list(names)})
+
+
+def test_four_groups_beside_the_kinematics_are_told_to_be_too_small():
+    said, _ = legibility.crowded(on_sheets("kinematics_forces_wide"), [1])
+    assert "29" in said
+    assert 'sheets = ["kinematics", "forces"]' in said
+
+
+def test_four_groups_call_for_a_sheet_of_their_own_and_can_be_read_there():
+    project = Project(read(CHAIN))
+    assert project.sheets == ("kinematics", "forces", "flywheel")
+    assert not list(legibility.crowded(project, [2, 3]))
+    sheet = composed(project, 2)
+    assert not sheet.leaving
+    assert not sheet.crowded
+    assert evenness.empty_cells(sheet.drawing) < MOST
+    lefts = {view.box.x0 for view in arranged(project, 2).views if view.draw == "kinetics.group"}
+    assert len(lefts) == 2
+
+
+def test_an_acceleration_plan_with_too_many_letters_together_is_told():
+    (said,) = legibility.crowded(Project(read(CHAIN)), [1])
+    assert "14" in said
+    assert "force_position" in said
+
+
+def test_fewer_groups_stay_beside_the_kinematics():
+    three = project_files.project(project_files.from_file("tests/projects/planer.toml"), {"project.sheets": None})
+    assert three.sheets[0] == "kinematics_forces_wide"
+    assert not list(legibility.crowded(three, [1]))
+
+
+@pytest.mark.parametrize(("count", "columns", "corners"), [
+    (0, 2, []),
+    (1, 1, [(0, 60)]),
+    (2, 1, [(0, 60), (0, 28)]),
+    (3, 2, [(0, 60), (0, 28), (52, 60)]),
+    (4, 2, [(0, 60), (0, 28), (52, 60), (52, 28)]),
+])  # fmt: skip
+def test_groups_stand_down_each_column_in_turn(count, columns, corners):
+    places = places_of_groups(Box(0, 0, 100, 60), count, columns, 4.0)
+    assert [(place.x0, place.y1) for place in places] == corners
+    assert all(Box(0, 0, 100, 60).contains(complex(place.x1, place.y0)) for place in places)
