@@ -79,6 +79,16 @@ def extra_ink(left: Any, level: float, words: Any, wiped: Any = None, dark: floa
     return sorted(smooth, key=lambda q: -q.length)
 
 
+def straight_ink(left: Any, level: float, words: Any, wiped: Any) -> list[ExtraInk]:
+    """Straight strokes of leftover ink inside the frame, whole or in pieces, to either side of a line each by itself.
+
+    The parameters are those of :func:`extra_ink`.
+    """
+    out = _without_creases(_regions(left, level, straight=True, join=1))
+    out += [x for x in _strokes(left, wiped, words, level) if all(_in_common(x, y) <= 0.5 * x.length for y in out)]
+    return out
+
+
 def without_creases(left: Any, ink: Any, level: float) -> Any:
     """What is left of a rectified sheet without creases that run upright or level from side to side of it.
 
@@ -133,8 +143,8 @@ def _without_creases(some: list[ExtraInk]) -> list[ExtraInk]:
     return out
 
 
-def _regions(left: Any, level: float, straight: bool) -> list[ExtraInk]:
-    """Regions of ink, all that are large enough, or only straight strokes."""
+def _regions(left: Any, level: float, straight: bool, join: int = JOIN) -> list[ExtraInk]:
+    """Regions of ink, all that are large enough, or only straight strokes; gaps narrower than ``join`` coarse pixels are closed."""
     import cv2
 
     dark = (left > level).astype(np.uint8)
@@ -147,7 +157,7 @@ def _regions(left: Any, level: float, straight: bool) -> list[ExtraInk]:
     amount = cv2.resize(inside * np.uint8(COARSE**2), None, fx=1 / COARSE, fy=1 / COARSE, interpolation=cv2.INTER_AREA)
     scale = SCALE / COARSE
     # Rejoin pieces of a line that was cut by wiping.
-    joined = cv2.morphologyEx((amount > 0).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((JOIN, JOIN), np.uint8))
+    joined = cv2.morphologyEx((amount > 0).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((join, join), np.uint8))
     _, labels, stats, middles = cv2.connectedComponentsWithStats(joined, connectivity=8)
     area = np.bincount(labels[amount > 0], weights=amount[amount > 0], minlength=len(stats))
     out = []
