@@ -79,13 +79,13 @@ def extra_ink(left: Any, level: float, words: Any, wiped: Any = None, dark: floa
     return sorted(smooth, key=lambda q: -q.length)
 
 
-def straight_ink(left: Any, level: float, words: Any, wiped: Any) -> list[ExtraInk]:
+def straight_ink(left: Any, level: float, words: Any, wiped: Any, least: float) -> list[ExtraInk]:
     """Straight strokes of leftover ink inside the frame, whole or in pieces, to either side of a line each by itself.
 
-    The parameters are those of :func:`extra_ink`.
+    ``least`` is their extent, mm; the other parameters are those of :func:`extra_ink`.
     """
-    out = _without_creases(_regions(left, level, straight=True, join=1))
-    out += [x for x in _strokes(left, wiped, words, level) if all(_in_common(x, y) <= 0.5 * x.length for y in out)]
+    out = _without_creases(_regions(left, level, straight=True, join=1, least=least))
+    out += [x for x in _strokes(left, wiped, words, level, least) if all(_in_common(x, y) <= 0.5 * x.length for y in out)]
     return out
 
 
@@ -143,7 +143,7 @@ def _without_creases(some: list[ExtraInk]) -> list[ExtraInk]:
     return out
 
 
-def _regions(left: Any, level: float, straight: bool, join: int = JOIN) -> list[ExtraInk]:
+def _regions(left: Any, level: float, straight: bool, join: int = JOIN, least: float = EXTRA) -> list[ExtraInk]:
     """Regions of ink, all that are large enough, or only straight strokes; gaps narrower than ``join`` coarse pixels are closed."""
     import cv2
 
@@ -163,7 +163,7 @@ def _regions(left: Any, level: float, straight: bool, join: int = JOIN) -> list[
     out = []
     for i in range(1, len(stats)):
         w, h = stats[i, cv2.CC_STAT_WIDTH] / scale, stats[i, cv2.CC_STAT_HEIGHT] / scale
-        if hypot(w, h) < EXTRA or area[i] < LEAST_WIDTH * EXTRA * SCALE**2:
+        if hypot(w, h) < least or area[i] < LEAST_WIDTH * least * SCALE**2:
             continue
         if straight and _across(labels, stats[i], i) > STRAIGHT * scale:
             continue
@@ -176,7 +176,7 @@ def _regions(left: Any, level: float, straight: bool, join: int = JOIN) -> list[
     return out
 
 
-def _strokes(left: Any, wiped: Any, words: Any, level: float) -> list[ExtraInk]:
+def _strokes(left: Any, wiped: Any, words: Any, level: float, least: float = EXTRA) -> list[ExtraInk]:
     """Strokes in pieces, each shorter than a region that is reported, that are not all edges of letters."""
     import cv2
 
@@ -202,7 +202,7 @@ def _strokes(left: Any, wiped: Any, words: Any, level: float) -> list[ExtraInk]:
     for z in groups:
         width, height = np.ptp(z.real), np.ptp(z.imag)
         free = sample(words, pixels((z[::2] + z[1::2]) / 2), nearest=True) == 0
-        if hypot(width, height) >= EXTRA and np.abs(z[1::2] - z[::2]).sum() >= INK and free.any():
+        if hypot(width, height) >= least and np.abs(z[1::2] - z[::2]).sum() >= INK and free.any():
             middle = complex((z.real.min() + z.real.max()) / 2, (z.imag.min() + z.imag.max()) / 2)
             points = np.concatenate([np.linspace(a, b, ALONG) for a, b in z.reshape(-1, 2)])
             out.append(ExtraInk(middle, float(width), float(height), hypot(width, height), points))

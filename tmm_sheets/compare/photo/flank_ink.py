@@ -13,7 +13,7 @@ import numpy as np
 
 from tmm_sheets.compare.photo.extra_ink import straight_ink
 from tmm_sheets.compare.photo.profiles import SCALE
-from tmm_sheets.compare.photo.stations import measurable
+from tmm_sheets.compare.photo.stations import LEAST, measurable
 from tmm_sheets.compare.photo.traces import ExtraInk, Trace
 from tmm_sheets.compare.photo.wiping import fixed, paint, wipe_small
 
@@ -25,6 +25,8 @@ HEAD = 0.8
 DARK = 0.45
 """Darkness as a share of that usual for thick lines from which on there is ink: blur is paler, and so is what was rubbed out."""
 
+PIXEL = 1 / SCALE
+"""mm by which the place where a line was found must differ from its own for both to be painted."""
 MEETS = 1.0
 """mm within which pieces of ink are of one stroke: less than two lines beside each other are apart."""
 
@@ -57,10 +59,11 @@ def flank_ink(
         if not measurable(e):
             wipe_small(known, e)
             continue
-        for points in (e.points,) if t.at is None else (e.points, t.at):
-            paint(known, e, points, 2 * ROOM)
+        paint(known, e, e.points, 2 * ROOM)
+        if t.at is not None and t.deviation > PIXEL:
+            paint(known, e, t.at, 2 * ROOM)
         for head in e.fills:
             cv2.polylines(known, [fixed(head)], True, 255, round(2 * HEAD * SCALE), cv2.LINE_8, 4)
-    beside = straight_ink(np.where(known > 0, np.uint8(0), ink), DARK * usual, words, known)
+    beside = straight_ink(np.where(known > 0, np.uint8(0), ink), DARK * usual, words, known, LEAST)
     told = np.concatenate([x.points for x in extra]) if extra else np.zeros(0, complex)
     return [x for x in beside if np.abs(x.points[:, None] - told).min(initial=np.inf) > MEETS]
