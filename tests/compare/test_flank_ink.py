@@ -32,11 +32,12 @@ def beside(known, ink, extra=(), hidden=()):
     covers = np.zeros_like(ink)
     for rows, columns in hidden:
         covers[rows, columns] = 255
-    return flank_ink([Trace(e, "measured", at=e.points) for e in known], extra, ink, covers, np.zeros_like(ink), DARK)
+    return flank_ink([Trace(e, "measured", at=e.points) for e in known], extra, ink, covers, np.zeros_like(ink), 0.3 * DARK)
 
 
 @pytest.mark.parametrize(("begin", "end", "seen"), [
-    (0, 0, False), (0, 0.3, False), (0, 0.5, False), (0.4, 0.4, False), (0, 0.8, True), (0, 1.4, True), (0, -1.4, True), (1.3, 0, True),
+    (0, 0, False), (0, 0.3, False), (0, 0.5, False), (0.4, 0.4, False), (0, 0.8, True), (0, 1.4, True),
+    (0, -1.4, True), (1.3, 0, True),
     (-0.9, -0.9, True), (0, 2.5, True),
 ])  # fmt: skip
 def test_a_line_that_leaves_its_stroke_at_a_small_angle_is_ink_beside_it(begin, end, seen):
@@ -49,9 +50,15 @@ def test_a_line_that_leaves_its_stroke_at_a_small_angle_is_ink_beside_it(begin, 
 
 def test_it_is_told_where_all_lines_of_the_stroke_seem_in_their_places():
     known = KNOWN[1:]  # as coarse as a photograph
-    traces, extra = trace(known, cv2.GaussianBlur(picture(known, [(A, B + 1.4j, "vector")]), (0, 0), 1.5))
+    traces, extra = trace(known, cv2.GaussianBlur(picture(known, [(A, B + 0.9j, "vector")]), (0, 0), 1.0))
     assert [t.deviation < 0.3 for t in traces] == [True, True]
     assert len(extra) == 1
+
+
+def test_in_a_black_and_white_picture_it_says_nothing():
+    ink = np.where(picture(KNOWN, [(A, B + 0.9j, "vector")]) > DARK // 2, np.uint8(255), np.uint8(0))
+    assert len(beside(KNOWN, ink)) == 1
+    assert trace(KNOWN[1:], ink)[1] == []
 
 
 def test_beside_lines_in_their_places_there_is_none():
@@ -65,14 +72,14 @@ def test_ink_to_both_sides_is_two_strokes():
 
 
 def test_a_stroke_that_lines_cut_to_pieces_is_one():
-    known = [*KNOWN, *(line(k, 250 + 5 * k + 290j, 250 + 5 * k + 310j, "vector") for k in (6, 7))]
+    known = [*KNOWN, *(line(k, 250 + 5 * k + 290j, 250 + 5 * k + 310j, "vector") for k in (4, 5, 6, 7))]
     found = beside(known, picture(known, [(A, B + 1.5j, "vector")]))
     assert len(found) == 1
     assert found[0].width > 10
 
 
 def test_what_was_rubbed_out_is_no_ink_beside_a_stroke():
-    assert beside(KNOWN, picture(KNOWN, [(A, B + 1.4j, "vector")], dark=60)) == []
+    assert beside(KNOWN, picture(KNOWN, [(A, B + 1.4j, "vector")], dark=45)) == []
 
 
 @pytest.mark.parametrize("up", [0.2, 0.6, 1.0])

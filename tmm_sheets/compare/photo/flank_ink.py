@@ -17,14 +17,11 @@ from tmm_sheets.compare.photo.stations import LEAST, measurable
 from tmm_sheets.compare.photo.traces import ExtraInk, Trace
 from tmm_sheets.compare.photo.wiping import fixed, paint, wipe_small
 
-ROOM = 0.45
-"""mm to either side of a line that are its own: a hand is off by 0.25 (see ``judging``), blur of 0.25 has a fifth of a stroke's
-darkness 0.2 beyond its edge."""
+ROOM = 0.6
+"""mm to either side of a line that are its own: a hand is off by 0.25 and the map by 0.15 (see ``judging``), and blur reaches 0.2
+beyond an edge."""
 HEAD = 0.8
 """mm about a head that are its own: what is not measured is set by eye."""
-DARK = 0.45
-"""Darkness as a share of that usual for thick lines from which on there is ink: blur is paler, and so is what was rubbed out."""
-
 PIXEL = 1 / SCALE
 """mm by which the place where a line was found must differ from its own for both to be painted."""
 MEETS = 1.0
@@ -32,7 +29,12 @@ MEETS = 1.0
 
 
 def flank_ink(
-    traces: Iterable[Trace], extra: Sequence[ExtraInk], ink: Any, covers: Any, words: Any, usual: float,
+    traces: Iterable[Trace],
+    extra: Sequence[ExtraInk],
+    ink: Any,
+    covers: Any,
+    words: Any,
+    level: float,
 ) -> list[ExtraInk]:
     """Straight strokes beside lines.
 
@@ -48,8 +50,8 @@ def flank_ink(
         Where it does not show the sheet, 255 there.
     words
         Where a hand may have written, 255 there.
-    usual
-        How dark thick lines usually are.
+    level
+        Darkness of such a stroke at least: what was rubbed out is paler.
     """
     import cv2
 
@@ -64,6 +66,6 @@ def flank_ink(
             paint(known, e, t.at, 2 * ROOM)
         for head in e.fills:
             cv2.polylines(known, [fixed(head)], True, 255, round(2 * HEAD * SCALE), cv2.LINE_8, 4)
-    beside = straight_ink(np.where(known > 0, np.uint8(0), ink), DARK * usual, words, known, LEAST)
+    beside = straight_ink(np.where(known > 0, np.uint8(0), ink), level, words, known, LEAST)
     told = np.concatenate([x.points for x in extra]) if extra else np.zeros(0, complex)
     return [x for x in beside if np.abs(x.points[:, None] - told).min(initial=np.inf) > MEETS]
