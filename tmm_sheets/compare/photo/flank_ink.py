@@ -45,7 +45,7 @@ def flank_ink(
     extra
         Ink that was found to belong to none: what meets it is more of it.
     ink
-        The rectified picture.
+        The rectified picture, without creases.
     covers
         Where it does not show the sheet, 255 there.
     words
