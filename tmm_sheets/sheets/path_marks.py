@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 VIEW = "kinematics.position_plans"
 TOGETHER = 4
 """So many marks that have no number of their own on the plans are a crowd."""
-TIMES = (5.0, 4.0, 2.5, 2.0)
+TIMES = (100.0, 50.0, 40.0, 20.0, 10.0, 5.0, 4.0, 2.5, 2.0)
 """Enlargements (GOST 2.302), the most welcome first."""
-LONGEST = 260.0
-"""Length of the path in the view, mm, beyond which it takes too much of a sheet."""
+SHORTEST, LONGEST = 60.0, 260.0
+"""Length of the path in the view, mm, below which its numbers crowd still, and beyond which it takes too much of a sheet."""
 BEYOND, BESIDE, HEAD = 10.0, 9.0, 16.0
 """Room beyond the ends of the path, beside it for the numbers, over it for the title, mm."""
 
@@ -35,7 +35,8 @@ def enlarged_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) ->
     if name is None:
         return []
     span, title = _span(project, canvas, name), letter(_title(name), 5.0).width
-    return [(max(times * span + 2 * BEYOND, title + 4.0), HEAD + 2 * BESIDE + 2.0) for times in TIMES if times * span <= LONGEST]
+    return [(max(times * span + 2 * BEYOND, title + 4.0), HEAD + 2 * BESIDE + 2.0) for times in TIMES
+            if SHORTEST <= times * span <= LONGEST]
 
 
 def enlarged(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -43,7 +44,8 @@ def enlarged(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]
     name = _crowded(project, canvas)
     assert name is not None
     pos, plain = project.study.positions, canvas.scales["positions"]
-    times = max(t for t in TIMES if t * _span(project, canvas, name) + 2 * BEYOND <= box.width + 1e-6)
+    span = _span(project, canvas, name)
+    times = next(t for t in TIMES if t * span <= LONGEST and t * span + 2 * BEYOND <= box.width + 1e-6)
     scale = Scale(plain.symbol, float(f"{plain.mu / times:.6g}"), plain.unit)
     _thin_out(project, canvas, name)
     canvas.title(box, _title(name), str(scale))
