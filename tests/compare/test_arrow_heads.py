@@ -284,7 +284,9 @@ def test_a_head_is_as_blurred_as_its_line(at, said, blur):
 
 
 @pytest.mark.parametrize("blur", [0.3, 0.4])
-@pytest.mark.parametrize("beside", [[line(5, A + 1j * WAY, A + (5 + 1j) * WAY)], [line(5, A - 1j * WAY, A + (5 - 1j) * WAY, "thin")]])
+@pytest.mark.parametrize(
+    "beside", [[line(5, A + 1j * WAY, A + (5 + 1j) * WAY)], [line(5, A - 1j * WAY, A + (5 - 1j) * WAY, "thin")]]
+)
 def test_ink_on_one_side_of_a_blurred_line_is_no_head(beside, blur):
     known = [arrow(k, A, B) for k in (1, 2, 3)]
     assert {t.head for t in heads(known, [known[0], *beside], [BACK], blur=blur)} == {"there"}

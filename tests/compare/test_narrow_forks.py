@@ -50,14 +50,17 @@ def test_a_line_turned_about_one_end_is_told_from_its_stroke(by, forward):
     assert abs(begin) < 0.5
 
 
-@pytest.mark.parametrize("drawn", [
-    [],  # no line was turned, two were drawn
-    [(A, B + 0.5j, "axis")],  # within a pencil's reach of the stroke
-    [(A + 1.6j, B + 1.6j, "axis")],  # it runs along, and leads to neither end
-    [(A, A + 15 + 1.2j, "axis")],  # it ends long before the line does
-    [(B - 2, B + 2.0j, "axis")],  # too short to be told from a stroke of a letter
-    [(A + 12 - 3j, A + 15 + 3j, "thin"), (A + 18 - 3j, A + 21 + 3j, "thin")],  # others cross
-])
+@pytest.mark.parametrize(
+    "drawn",
+    [
+        [],  # no line was turned, two were drawn
+        [(A, B + 0.5j, "axis")],  # within a pencil's reach of the stroke
+        [(A + 1.6j, B + 1.6j, "axis")],  # it runs along, and leads to neither end
+        [(A, A + 15 + 1.2j, "axis")],  # it ends long before the line does
+        [(B - 2, B + 2.0j, "axis")],  # too short to be told from a stroke of a letter
+        [(A + 12 - 3j, A + 15 + 3j, "thin"), (A + 18 - 3j, A + 21 + 3j, "thin")],  # others cross
+    ],
+)
 def test_other_ink_beside_a_stroke_is_no_line_that_parts_from_it(drawn):
     assert parting([*STROKE, *drawn]) is None
 
@@ -85,22 +88,22 @@ def test_ink_of_nobody_beside_a_stroke_is_seen_on_either_side():
     across = np.zeros((40, 61), np.uint8)
     across[:, 29:32] = 90
     others = np.zeros_like(across, bool)
-    assert not may_part(across, others, 20.0, 10.0)
+    assert not may_part(across, others, 20.0, 90.0)
     for column in (18, 42):
         beside = across.copy()
         beside[20:, column - 1 : column + 2] = 60
-        assert may_part(beside, others, 20.0, 10.0)
-        assert not may_part(beside, others, 5.0, 10.0)  # 2.5 mm of it
+        assert may_part(beside, others, 20.0, 90.0)
+        assert not may_part(beside, others, 5.0, 90.0)  # 2.5 mm of it
+        assert not may_part(beside, others, 20.0, 130.0)  # too pale to be like it
         others[:, column] = True
-        assert not may_part(beside, others, 20.0, 10.0)
+        assert not may_part(beside, others, 20.0, 90.0)
         others[:] = False
 
 
 @pytest.mark.parametrize(("by", "verdict"), [(0.0, "green"), (1.8, "amber"), (-1.8, "amber")])
 def test_a_line_that_was_measured_by_the_ink_of_others_is_told(by, verdict):
     """Two lines of one stroke each find its ink: the one that is elsewhere too, as if it were measured by itself."""
-    usual = [(250 + 1j * y, 290 + 1j * y, style) for y, style in
-             ((320, "axis"), (330, "axis"), (340, "vector"), (350, "vector"))]
+    usual = [(250 + 1j * y, 290 + 1j * y, style) for y, style in ((320, "axis"), (330, "axis"), (340, "vector"), (350, "vector"))]
     known = [line(k, *drawn) for k, drawn in enumerate([*STROKE, *usual], 1)]
     found, _ = trace(known, picture([(A, B + 1j * by, "axis"), (A, B, "vector"), *usual]))
     assert (found[0].status == "beside") == bool(by)

@@ -185,8 +185,8 @@ class _End:
         line = (np.abs(aside) <= pen / 2) & behind
         half = wide * _half_width(e) * self.back / length
         head = (np.abs(aside) <= half[:, None]) & behind & (self.back <= length)[:, None]
-        steps = {"sigmaX": blur / ACROSS, "sigmaY": blur / STEP}
-        with_head, without = (cv2.GaussianBlur(some.astype(np.float32), (0, 0), **steps) for some in (line | head, line))
+        with_head, without = (cv2.GaussianBlur(some.astype(np.float32), (0, 0), sigmaX=blur / ACROSS, sigmaY=blur / STEP)
+                              for some in (line | head, line))  # fmt: skip
         return dark * np.clip(with_head - without, 0, None)
 
     def _like(self, wanted: Any, length: float, shift: float) -> _Likeness:

@@ -100,15 +100,15 @@ def ridges(profile: Any, least: float) -> tuple[Any, Any]:
     return ridge, valley / np.maximum(outwards, 1)
 
 
-def may_part(profile: Any, others: Any, length: float, level: float) -> bool:
+def may_part(profile: Any, others: Any, length: float, dark: float) -> bool:
     """Whether a second ridge that is no other's shows beside a line of a ``length`` in mm, so much of it that it may be one.
 
-    ``others`` is where others are drawn in its ``profile``, ``level`` the darkness of ink.
+    ``others`` is where others are drawn in its ``profile``, ``dark`` how dark it is itself.
     """
     shows = ~_widened(others, CLOSE)
     middle = profile.shape[1] // 2
     sides = ((profile, shows), (profile[:, ::-1], shows[:, ::-1]))
-    return any((ridges(p, level)[0] & s[:, middle:]).any(1).mean() * length >= LEAST / 2 for p, s in sides)
+    return any((ridges(p, INKED * dark)[0] & s[:, middle:]).any(1).mean() * length >= LEAST / 2 for p, s in sides)
 
 
 def _widened(places: Any, steps: int) -> Any:

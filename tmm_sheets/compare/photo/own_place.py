@@ -122,7 +122,7 @@ def in_place(strip: Strip, level: float) -> Trace | None:
     if shrunk(e, t):
         return None
     if e.kind == "line" and t.deviation <= OFF and (others & own)[free].any(1).mean() >= ENOUGH:
-        t = replace(t, parts=may_part(profile, others, e.length, level))
+        t = replace(t, parts=may_part(profile, others, e.length, t.darkness))
     if e.kind == "curve":
         step = e.length / len(o)
         clear = use & (away > width / 2 + ASIDE) & ~_by_itself(s.points, step)
