@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
+from math import erf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -58,6 +59,8 @@ NEXT = 15.0
 """mm of a line behind its head by which its own ink is known: a hand presses here more than there, and wavers."""
 SOME = 6
 """Least number of places along a line by which its ink is known."""
+SHARP = 0.2
+"""mm of blur (standard deviation) that the sharpest picture has, straightened to pixels of a sixth of a millimetre."""
 FAINT = 0.12
 """Darkness as a share of the line's own up to which there is no ink."""
 SEEN, WHOLE = 0.3, 0.8
@@ -123,6 +126,7 @@ class _End:
     lined : share of the way to the tip on which the line is seen
     lies_on : whether it lies on a thicker line
     aside : mm from where the line was found to the middle of its stroke
+    soft : whether a head is held against it as blurred as the line itself is, see :meth:`softened`
     """
 
     element: Element
@@ -135,6 +139,7 @@ class _End:
     lined: float
     lies_on: bool
     aside: float
+    soft: bool = False
 
     @property
     def across(self) -> float:
@@ -157,12 +162,32 @@ class _End:
         """How much darker it would be by a head of a length and a width, as shares of those it has by the drawing."""
         import cv2
 
+        if self.soft:
+            return self._soft_head(long, wide)
         e, length = self.element, long * _length(self.element)
         half = wide * _half_width(e) * self.back / length + self.grown / 2
         inside = (np.abs(ASIDE - self.aside) <= half[:, None]) & ((self.back >= 0) & (self.back <= length))[:, None]
         # As blurred as a line is.
         full = cv2.GaussianBlur(inside.astype(np.float32), (7, 5), sigmaX=0.2 / ACROSS, sigmaY=0.2 / STEP)
         return np.clip(self.own[MIDDLE].max() * full - self.own, 0, None)
+
+    def _soft_head(self, long: float, wide: float) -> Any:
+        """The same in a picture of few pixels, where a line is broader and paler than its pencil by as much as all is blurred."""
+        import cv2
+
+        e, aside = self.element, ASIDE - self.aside
+        pen, length = line_type(e.style).width, long * _length(e)
+        own = self.own - self.own.min()
+        # Variances add up: that of a stroke with sharp edges, pen ** 2 / 12, and that of the blur.
+        blur = sqrt(max(float((own * aside**2).sum() / own.sum()) - pen**2 / 12, SHARP**2))
+        dark = float(own.max()) / erf(pen / (2 * sqrt(2) * blur))  # of a place broader than the blur
+        behind = (self.back >= 0)[:, None]
+        line = (np.abs(aside) <= pen / 2) & behind
+        half = wide * _half_width(e) * self.back / length
+        head = (np.abs(aside) <= half[:, None]) & behind & (self.back <= length)[:, None]
+        with_head, without = (cv2.GaussianBlur(some.astype(np.float32), (0, 0), sigmaX=blur / ACROSS, sigmaY=blur / STEP)
+                              for some in (line | head, line))  # fmt: skip
+        return dark * np.clip(with_head - without, 0, None)
 
     def _like(self, wanted: Any, length: float, shift: float) -> _Likeness:
         by = round(shift / STEP)
@@ -189,6 +214,15 @@ class _End:
     def written(self) -> _End:
         """It, if there are no letters."""
         return replace(self, known=self.legible)
+
+    def softened(self) -> _End:
+        """It, with heads as blurred as the line is: of less than four pixels a millimetre a sharper one is less like any head."""
+        return replace(self, soft=True)
+
+    def has_whole_head(self) -> bool:
+        """Whether all of the place of a head is seen, and one is there where none is expected."""
+        seen = next(self.likeness(NEAR, SIZES)).part >= WHOLE
+        return seen and (self.has_head(SURELY, VERY_LIKE, WHOLE) or self.softened().has_head(SURELY, VERY_LIKE, WHOLE))
 
     def better_seen(self) -> _End:
         """Only the side of it that is seen where others hide nearly all of the other: what is left of that is mostly their edge."""
@@ -481,7 +515,7 @@ def _head(t: Trace, paper: _Paper) -> tuple[Head, _End | None]:
     part = next(here.likeness(NEAR, SIZES)).part
     bare = here.bare() and (alone or part >= HALF)
     seen = next(there.likeness(NEAR, SIZES)).part
-    whole = seen >= WHOLE and there.has_head(SURELY, VERY_LIKE, WHOLE)
+    whole = there.has_whole_head()
     if whole and (bare or (alone and here.empty(SCARCELY))):
         return "reversed", here
     if has and alone:

@@ -11,6 +11,7 @@ import numpy as np
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.hidden import Mask, at
 from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.narrow_forks import may_part
 from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
 from tmm_sheets.compare.photo.stations import ENOUGH, STEP, Stations, expected_ink, fit, measured, shrunk, smoothed, stations
@@ -120,6 +121,8 @@ def in_place(strip: Strip, level: float) -> Trace | None:
                 free=float(free.mean()))
     if shrunk(e, t):
         return None
+    if e.kind == "line" and t.deviation <= OFF and (others & own)[free].any(1).mean() >= ENOUGH:
+        t = replace(t, parts=may_part(profile, others, e.length, t.darkness))
     if e.kind == "curve":
         step = e.length / len(o)
         clear = use & (away > width / 2 + ASIDE) & ~_by_itself(s.points, step)

@@ -44,6 +44,8 @@ class Trace:
     head : of an arrow: "there", "absent", "left out": absent, and its line is a thin one, "reversed": at its other end,
         "doubled": one is there, and others hide whether one is at its tip; "unknown" also when it has none or several
     free : share of it near which no other line is drawn, where it was measured in its place
+    parts : whether the ink by which it was measured in its place may be that of others in one stroke with it, and some of nobody's
+        runs beside: it may be that
     """
 
     element: Element
@@ -59,6 +61,7 @@ class Trace:
     head: Head = "unknown"
     pieces: bool = False
     free: float = 1.0
+    parts: bool = False
 
 
 class ExtraInk(NamedTuple):

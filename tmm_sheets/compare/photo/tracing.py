@@ -34,6 +34,7 @@ from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.line_ends import with_ends
 from tmm_sheets.compare.photo.meeting_ends import without_joins
+from tmm_sheets.compare.photo.narrow_forks import branch
 from tmm_sheets.compare.photo.one_owner import with_owners
 from tmm_sheets.compare.photo.one_stroke import others_in_stroke
 from tmm_sheets.compare.photo.own_place import Strip, in_place, strips, uncovered
@@ -277,12 +278,12 @@ def _beside_strokes(found: Sequence[Trace], small: Sequence[Element], ink: Any, 
     usual = _usual(found)
     moved: dict[int, Trace] = {}
     for t in found:
-        if t.status in ("shared", "dense") and t.element.kind == "line":
+        if t.element.kind == "line" and (t.status in ("shared", "dense") or t.parts):
             other = beside(t, stations(t.element, False), ink, lines, taken, owners, level)
             dark = usual.get(line_type(t.element.style).width, 0.0)
             # Paler lines were rubbed out, or are the edges of others.
             if other is None or other.darkness <= PALE * dark:
-                other = parted(t, ink, words, owners, dark) if dark else None
+                other = (parted(t, ink, words, owners, dark) or branch(t, ink, words, owners, dark)) if dark else None
             if other is not None:
                 moved[t.element.number] = other
     for number in others_in_stroke(list(moved.values()), ink, owners, words, level):
