@@ -144,8 +144,8 @@ class Canvas:
     are the names of those that a project file may set.
     ``parts`` and ``groups`` tell what the marks belong to and which of them are one thing, for whoever reads the sheet again;
     ``dimensions`` and ``forms`` which are dimensions and forms to be filled in, for programs that know such things;
-    ``shortened`` are texts that were too long for their cell of a form. ``windows`` are the numbers of circles through which what
-    is inside is read. ``numbers`` are those at axes, which make way for lines when all are drawn.
+    ``shortened`` are texts that were too long for their cell of a form, with what stands there. ``windows`` are the numbers of
+    circles through which what is inside is read. ``numbers`` are those at axes, which make way for lines when all are drawn.
     """
 
     marks: list[Mark] = field(default_factory=list)
@@ -160,7 +160,7 @@ class Canvas:
     notes: list[Note] = field(default_factory=list)
     dimensions: list[Dimension] = field(default_factory=list)
     forms: list[Form] = field(default_factory=list)
-    shortened: list[str] = field(default_factory=list)
+    shortened: dict[str, str] = field(default_factory=dict)
     windows: set[int] = field(default_factory=set)
     numbers: list[AxisNumber] = field(default_factory=list)
 
