@@ -179,4 +179,5 @@ pressure_angle = "20 deg"
 shift = "rule"
 ''', encoding="utf-8")
     assert run(["--lang", "en", "check", str(file)]) == 0
-    assert capsys.readouterr().err == ('own: the title block has no room for all of "Гончаренко В. О.": "Гончаренко" stands there\n')
+    assert capsys.readouterr().err == (
+        'own: the title block has no room for all of "Гончаренко В. О.": "Гончаренко" stands there\n')
