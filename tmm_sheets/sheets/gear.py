@@ -16,6 +16,7 @@ from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box, Line
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets import gear_radii
+from tmm_sheets.sheets.clear_dimensions import around, crossed
 from tmm_sheets.sheets.frame import Frame, proportion, ratio, standard
 from tmm_sheets.sheets.gear_marks import CIRCLES, KEPT_OFF, Window, gap, hatch_between, ruled_table
 from tmm_sheets.sheets.player import Stage, placed, play, stage
@@ -27,10 +28,8 @@ STRIP = 2.5
 """Depth of the hatched strip along the working part of a flank, mm."""
 DIMENSION = 8.0
 """Distance of the dimension lines of the teeth from the root circle, mm."""
-FURTHEST, CLEAR = 40.0, 0.4
-"""So much farther the dimension lines of the teeth stand at most where lines would run through their lettering; what is kept free
-round this, mm.
-"""
+FURTHEST = 40.0
+"""So much farther the dimension lines of the teeth stand at most where lines would run through their lettering, mm."""
 DIVISION = 10.0
 """Room beyond the last division of an involute for its number, mm."""
 PITCHES, MOST = 1.25, 1.5
@@ -408,16 +407,11 @@ class _GearPicture:
         Within a ring the tangents of its involute lie over the root circle of the pinion.
         """
         ink = gear_radii.Drawn(self.canvas, self.first, but=self.spokes)
-
-        def crossed(by: float) -> int:
-            at, along = lettered(a, b, by, text)
-            return ink.count(_around(text), at, phase(along))
-
-        return min((offset + further for further in np.arange(0.0, FURTHEST, 0.5)), key=crossed)
+        return min((offset + further for further in np.arange(0.0, FURTHEST, 0.5)), key=lambda by: crossed(ink, a, b, by, text))
 
     def interrupt(self, at: complex, along: complex, text: str) -> None:
         """Interrupt the radial lines that would run through lettering whose baseline has its middle there (GOST 2.307)."""
-        marks, place = self.canvas.marks, _around(text)
+        marks, place = self.canvas.marks, around(text)
         for n in [n for n in self.spokes if isinstance(marks[n], Line)]:
             line = cast(Line, marks[n])
             start, end = ((z - at) / along for z in (line.a, line.b))
@@ -439,12 +433,6 @@ class _GearPicture:
         self.canvas.tracing("symbol").arc_arrow(centre, 12, middle - sense * half, middle + sense * half)
         tip = rect(1, middle + sense * half)
         self.canvas.label(centre + 12 * tip, f"ω_{wheel.number}", away=tip, height=5)
-
-
-def _around(text: str) -> Box:
-    """What lettering of a dimension takes about the middle of its baseline, with some room, mm."""
-    laid = letter(text, 3.5)
-    return Box(-laid.width / 2, -laid.descent, laid.width / 2, laid.ascent).inset(-CLEAR)
 
 
 def angle_beside(canvas: Canvas, vertex: complex, start: float, end: float, radius: float, markup: str) -> None:
