@@ -141,10 +141,12 @@ def show(project: str, corrected: bool, as_file: bool, output: Path | None) -> N
 def check(project: str, corrected: bool) -> None:
     """Read and assemble PROJECT, tell what no pencil can draw; write nothing."""
     opened = _open(project, corrected)
-    from tmm_sheets.sheets import composition
+    from tmm_sheets.sheets import composition, sheet
 
     opened.check()
     composition.check(opened)
+    for line in sheet.shortened(opened):
+        click.echo(f"{opened.variant.project.name}: {line}", err=True)
     if opened.variant.crank is not None:
         from tmm_sheets import summary
         from tmm_sheets.sheets import flat_crossings, legibility

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from tmm_sheets import words
+from tmm_sheets.__main__ import run
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter, plain
 from tmm_sheets.drawing.marks import Line, Polyline, Text
@@ -146,3 +147,37 @@ def test_only_letter_heights_of_the_standard_and_none_unreadable(form, changes, 
         draw_frame(canvas, FILLED | changes, form, 1, 4)
     assert {m.height for m in canvas.marks if isinstance(m, Text)} <= {2.5, 3.5, 5.0, 7.0}
     assert set(canvas.shortened) == (set(LONG.values()) if changes and form == "1" else set())  # 2a has the designation only
+
+
+@pytest.mark.parametrize(("name", "short"), [
+    ("Иванов И. И.", "Иванов И. И."), ("Петренко А. И.", "Петренко А.И."), ("А. Б. Щербак", "А. Б. Щербак"),
+    ("Иванов Иван Иванович", "Иванов И.И."),
+    ("Mykhailo Kovalenko", "M. Kovalenko"), ("Гончаренко В. О.", "Гончаренко"), ("", ""),
+])
+def test_a_long_name_keeps_its_initials_or_tells_that_it_does_not(name, short):
+    canvas = Canvas()
+    draw_frame(canvas, FILLED | {"developed": name}, "1", 1, 4)
+    written = {m.text for m in canvas.marks if isinstance(m, Text)}
+    fits = letter(plain(short), 2.5).width <= 21.6 and "." in short
+    assert (short in written) == bool(short)
+    assert canvas.shortened == ({} if fits or not name else {name: short})
+
+
+def test_check_tells_what_the_title_block_leaves_out(tmp_path, capsys):
+    file = tmp_path / "own.toml"
+    file.write_text('''schema = 1
+[project]
+name = "own"
+title = "Own"
+[title_block]
+student = "Гончаренко В. О."
+supervisor = "Ли И. И."
+[gear]
+teeth = [14, 28]
+module = "5 mm"
+pressure_angle = "20 deg"
+shift = "rule"
+''', encoding="utf-8")
+    assert run(["--lang", "en", "check", str(file)]) == 0
+    assert capsys.readouterr().err == (
+        'own: the title block has no room for all of "Гончаренко В. О.": "Гончаренко" stands there\n')

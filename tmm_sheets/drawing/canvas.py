@@ -134,6 +134,24 @@ def in_role(role: Role) -> Callable[[Drawn], Drawn]:
     return made
 
 
+PAST = 2.0
+"""How far extension lines run beyond their dimension line, mm."""
+
+
+def lettered(a: complex, b: complex, offset: float, markup: str, height: float = 3.5,
+             share: float = 0.5) -> tuple[complex, complex]:
+    """Middle of the baseline of a dimension's lettering, and its direction."""
+    u = (b - a) / abs(b - a)
+    at, angle = a + offset * 1j * u + share * (b - a), phase(u)
+    out = offset
+    if angle > pi / 2 + 1e-6 or angle <= -pi / 2 + 1e-6:
+        u, out = -u, -offset
+    laid = letter(markup, height)
+    # Indices hang below the baseline: they must clear the dimension line too; what is wider the ends of the extension lines.
+    wide = laid.width > abs(b - a) - 1.0 and out > 0
+    return at + 1j * u * (laid.descent + (PAST + 0.5 if wide else 0.7)), u
+
+
 @dataclass
 class Canvas:
     """Collects the marks of a sheet.
@@ -144,8 +162,8 @@ class Canvas:
     are the names of those that a project file may set.
     ``parts`` and ``groups`` tell what the marks belong to and which of them are one thing, for whoever reads the sheet again;
     ``dimensions`` and ``forms`` which are dimensions and forms to be filled in, for programs that know such things;
-    ``shortened`` are texts that were too long for their cell of a form. ``windows`` are the numbers of circles through which what
-    is inside is read. ``numbers`` are those at axes, which make way for lines when all are drawn.
+    ``shortened`` are texts that were too long for their cell of a form, with what stands there. ``windows`` are the numbers of
+    circles through which what is inside is read. ``numbers`` are those at axes, which make way for lines when all are drawn.
     """
 
     marks: list[Mark] = field(default_factory=list)
@@ -160,7 +178,7 @@ class Canvas:
     notes: list[Note] = field(default_factory=list)
     dimensions: list[Dimension] = field(default_factory=list)
     forms: list[Form] = field(default_factory=list)
-    shortened: list[str] = field(default_factory=list)
+    shortened: dict[str, str] = field(default_factory=dict)
     windows: set[int] = field(default_factory=set)
     numbers: list[AxisNumber] = field(default_factory=list)
 
@@ -368,7 +386,7 @@ class Canvas:
         n = 1j * u
         p, q = a + offset * n, b + offset * n
         start = len(self.marks)
-        past = 2.0 if offset > 0 else -2.0
+        past = PAST if offset > 0 else -PAST
         self.line(a, p + past * n, "thin")
         self.line(b, q + past * n, "thin")
         first = len(self.marks)
@@ -381,12 +399,8 @@ class Canvas:
             if not inside:
                 self.line(tip, tip + 2 * size * w, "thin")
         self._one("arrow", first)
-        angle = phase(u)
-        if angle > pi / 2 + 1e-6 or angle <= -pi / 2 + 1e-6:
-            u, angle = -u, phase(-u)
-        # Indices hang below the baseline: they must clear the dimension line too.
-        base = p + share * (q - p) + 1j * u * (0.7 + letter(markup, height).descent)
-        self.text(base, markup, height, "centre", angle)
+        base, u = lettered(a, b, offset, markup, height, share)
+        self.text(base, markup, height, "centre", phase(u))
         self.dimensions.append(Dimension("linear", start, len(self.marks), a, b, p, markup, base + 1j * u * height / 2))
 
     @in_role("table")

@@ -80,10 +80,12 @@ class Crowded:
 
 @dataclass(frozen=True)
 class Shortened(Crowded):
-    """A text of the title block that was too long for its cell."""
+    """A text of the title block that was too long for its cell; what is ``left`` of it stands there."""
+
+    left: str
 
     def __str__(self) -> str:
-        return tell('the title block has no room for all of "{text}": shorten it').format(text=self.text)
+        return tell('the title block has no room for all of "{text}": "{left}" stands there').format(text=self.text, left=self.left)
 
 
 def text_box(mark: Text) -> Points:

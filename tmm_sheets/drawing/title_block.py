@@ -6,6 +6,7 @@ The forms are data: ``templates/title_blocks.json``.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from functools import cache
 from math import pi
@@ -29,7 +30,8 @@ DOTS, MOST = "...", 4
 PITCH = 1.7  # between lines of type B lettering, in letter heights
 SIDE, ENDS = 1.0, 1.25  # least distance of lettering to the lines at its sides, above and below, mm
 BESIDE = 0.5  # the same of the printed words, whose cells are as wide as the standard wants them
-NAME_WIDTH, NAME_HEIGHT = 23 - 2 * SIDE, 4.5
+NAME_SIDE = 0.7  # of names, which are long for their cell
+NAME_WIDTH, NAME_HEIGHT = 23 - 2 * NAME_SIDE, 4.5
 
 FIELDS = frozenset({
     "designation", "title", "project", "letter", "mass", "scale", "developed", "checked", "technical_control", "supervisor",
@@ -127,7 +129,10 @@ def _fill(canvas: Canvas, place: Box, cells: list[Any], fields: Mapping[str, str
             role = word
             _left(canvas, cell, _word(word or ("Head" if fields.get("supervisor") else "")))
         elif number == "11":
-            found += _lines(canvas, cell, {ROLES[role]: _surname(fields.get(ROLES[role], ""))}, names)
+            name = fields.get(ROLES[role], "")
+            found += _lines(canvas, cell, {ROLES[role]: (short := short_name(name))}, names, side=NAME_SIDE)
+            if short == _surname(name.split()) != name:  # its initials are left out
+                canvas.shortened[name] = short
         elif number == "13":
             found += _lines(canvas, cell, {f"{ROLES[role]}_date": ""}, (CAPTION,))
         elif number in values:
@@ -141,9 +146,25 @@ def _word(text: str) -> str:
     return tr_in("title block", text) if text else ""
 
 
-def _surname(name: str) -> str:
-    """A name; where it is too long for its cell, what GOST 2.104 asks for there: the surname without initials."""
-    return name if letter(plain(name), CAPTION).width <= NAME_WIDTH else max(name.split(), key=len, default="")
+PATRONYMIC = re.compile(r"(ич|вна|чна)$")
+"""End of a patronymic: where a name has one its surname stands first."""
+
+
+def short_name(name: str) -> str:
+    """A name as long as its cell has room for with the least letters.
+
+    Where it is too long first without spaces between its initials, then with first names as initials; at last what GOST 2.104 asks
+    for there, the surname alone.
+    """
+    words = name.split()
+    surname = _surname(words)
+    initials = "".join(word if word.endswith(".") else f"{word[0]}." for word in words if word != surname)
+    short = f"{surname} {initials}" if words[:1] == [surname] else f"{initials} {surname}"
+    return next((way for way in (name, short) if letter(plain(way), CAPTION).width <= NAME_WIDTH), surname)
+
+
+def _surname(words: list[str]) -> str:
+    return words[0] if words and PATRONYMIC.search(words[-1]) else max(words, key=len, default="")
 
 
 def _name_sizes(fields: Mapping[str, str]) -> tuple[float, ...]:
@@ -243,7 +264,8 @@ def _lines(canvas: Canvas, cell: Box, parts: Mapping[str, str], sizes: tuple[flo
     """
     room = cell.height - (2 * ENDS if cell.height > 5 else 0.5)
     size, wrapped = _fitted(parts, sizes, cell.width - 2 * side, room)
-    canvas.shortened += [parts[name] for name, lines in wrapped.items() if " ".join(lines) != " ".join(parts[name].split())]
+    canvas.shortened |= {parts[name]: " ".join(lines) for name, lines in wrapped.items()
+                         if " ".join(lines) != " ".join(parts[name].split())}
     sign, angle = (-1, pi) if turned else (1, 0.0)
     found = []
     count = sum(map(len, wrapped.values()))

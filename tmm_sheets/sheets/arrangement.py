@@ -40,7 +40,9 @@ NEEDS = {
     "diagrams.balancing": "forces", "diagrams.balancing_table": "forces",
     "flywheel": "flywheel", "crank_speed": "flywheel", "mertsalov": "flywheel", "gear": "gear",
     "gear_equations": "gear", "rack": "gear",
-    "reducer": "reducer", "reducer_equations": "reducer", "train": "train", "cam": "cam", "cam_zone": "cam", "cam_profile": "cam",
+    "reducer": "reducer", "reducer_equations": "reducer", "plan_checks.of_reducer": "reducer",
+    "plan_checks.mobility": "reducer", "plan_checks": "train", "train": "train", "cam": "cam", "cam_zone": "cam",
+    "cam_profile": "cam",
     "cam_law": "cam",
 }
 """Parts of the results that views need, by module or by view."""

@@ -16,6 +16,7 @@ from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import pivot
 from tmm_sheets.drawing.tables import LEAST, needs, size_in, widened
 from tmm_sheets.numbers import fixed, number
+from tmm_sheets.sheets import cam_scale
 from tmm_sheets.sheets.cam import ANGLE, for_cams, in_degrees, in_mm, lines_of_text, raised
 from tmm_sheets.sheets.frame import ratio, standard
 from tmm_sheets.sheets.player import Stage, placed, play
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_inversion import Inversion
     from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam
 
-CROWDED = 3.0
-"""Distance of two marks of the path, mm, below which their numbers cannot stand beside one another."""
 EDGE, FOOT = 3.0, 4.0
 """Room left free at both sides of the place and at its foot, mm."""
 ROLLER = 8.0, 34.0, 8.0, 24.0
@@ -38,7 +37,7 @@ ROLLER = 8.0, 34.0, 8.0, 24.0
 def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Centre profile by inversion with all follower lines and arcs, roller circles, working profile, follower."""
     cam: Cam = project.cam
-    picture = _pictured(cam, box)
+    picture, first = _pictured(cam, box), len(canvas.marks)
     canvas.scales[cam.inversion.plan.name] = picture.scale
     canvas.title(box, tr("Construction of the cam profile"), f"{ratio(picture.scale)}   {picture.scale}")
     inv, at = cam.inversion, picture.at
@@ -70,6 +69,7 @@ def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     size = _table_size(cam)
     corner = picture.corner(size) or complex(box.x0 + EDGE, box.y0 + FOOT + size[1])
     canvas.table(corner, _widths(cam), _given(cam, options.get("angle", ANGLE)), _ROW, 3.5)
+    _path(s, picture, first, Box(corner.real, corner.imag - size[1], corner.real + size[0], corner.imag))
 
 
 def _pictured(cam: Cam, box: Box) -> _ProfilePicture:
@@ -367,17 +367,26 @@ def _inverted(s: Stage, picture: _ProfilePicture) -> None:
 
 
 def _rod(s: Stage, picture: _ProfilePicture) -> None:
-    """Translating follower in position 0: roller, rod, guide, and the marks of its path."""
+    """Translating follower in position 0: roller, rod, guide."""
     inv = picture.cam.inversion
     _guided(s.position(0).pen(inv.axis, "symbol"), picture, s.position(0).at(inv.axis))
-    last, side = -10.0, 1.0
-    for k in range(len(inv.axis.value) // 2):
-        p = s.position(k).at(inv.axis)
-        s.position(k).line(inv.axis, p - 1.8, p + 1.8, "thin", "point")
-        # Marks that lie close together are numbered on both sides in turn.
-        side = -side if p.imag - last < 5.0 else -1.0
-        last = p.imag
-        s.canvas.label(p + 1.8 * side, inv.plan.labels[k], side + 0j, 3.5, 0.4)
+
+
+def _path(s: Stage, picture: _ProfilePicture, first: int, table: Box) -> None:
+    """Marks of the follower's path with the numbers of all positions, away from the arcs through them and from the table."""
+    inv, side = picture.cam.inversion, picture.cam.right
+    marks = [s.position(k).at(inv.axis) for k in range(len(inv.plan.labels))]
+    if picture.kind == "rocker":
+        a0 = s.at("A_0")
+        along = cam_scale.lengths(np.array(marks), a0)
+        arm, way = abs(marks[0] - a0), 1.0 if max(along) > -min(along) else -1.0
+        start = phase(marks[0] - a0)
+        cam_scale.number(s, inv.axis, first, [way * t for t in along], inv.plan.labels,
+                         lambda t, beside: a0 + rect(arm + beside, start + way * t / arm), 1.0, table, 15.0)
+        return
+    low = marks[0]
+    cam_scale.number(s, inv.axis, first, [(p - low).imag for p in marks], inv.plan.labels,
+                     lambda t, beside: low + complex(beside, t), side, table)
 
 
 def _guided(canvas: Canvas, picture: _ProfilePicture, low: complex) -> None:
@@ -411,13 +420,6 @@ def _rocker(s: Stage, picture: _ProfilePicture) -> None:
     first = phase(complex(marks[0] - a0))
     last = first + float(np.angle((marks[-1] - a0) / (marks[0] - a0)))
     s.pen(inv.axis, "construction").arc(a0, arm, min(first, last), max(first, last), "thin")
-    lettered = complex(marks[0])
-    for k, p in enumerate(marks):
-        u = (p - a0) / arm
-        s.position(k).line(inv.axis, complex(p - 1.8 * u), complex(p + 1.8 * u), "thin", "point")
-        if abs(p - lettered) > CROWDED:  # the first ones lie in the roller's axis
-            lettered = complex(p)
-            canvas.label(complex(p + 1.8 * u), inv.plan.labels[k], complex(u), 2.5, 0.4)
     u = (b0 - a0) / arm
     pivot(s.pen("A_0", "symbol"), a0, -1j if (b0 - a0).imag >= -1e-9 else 1j)
     pen = s.pen("B_0", "symbol")

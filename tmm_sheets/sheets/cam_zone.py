@@ -14,8 +14,10 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.symbols import bar, hinge
 from tmm_sheets.numbers import fixed, number
+from tmm_sheets.sheets import clear_dimensions
 from tmm_sheets.sheets.cam import ANGLE, OverAngle, centred, distinct, for_cams, lines_of_text, raised
 from tmm_sheets.sheets.frame import ratio, standard
+from tmm_sheets.sheets.gear_marks import KEPT_OFF
 from tmm_sheets.sheets.player import Stage, placed, play
 from tmm_sheets.words import tr
 
@@ -81,7 +83,7 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     stroke = cam.law.stroke
     letter_of, rays = options.get("angle", ANGLE), bool(options.get("rays"))
     beyond, touches, tops = _beyond(z, rays), _touches(z), _tops(z, apex, stroke)
-    room = box.inset(*TAPPET)
+    room, first = box.inset(*TAPPET), len(canvas.marks)
     mu, lowest, xs = fitted_tappet(cam, rays, room.width, room.height)
     depth = -lowest
     low = apex - 1j * depth
@@ -132,9 +134,12 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     radius = 0.5 * scale.mm(z.s0)
     canvas.angle_mark(v, pi / 2, pi / 2 + z.alpha, radius, f"[{letter_of}]")
     canvas.angle_mark(v, pi / 2 - z.alpha, pi / 2, radius, f"[{letter_of}]")
-    canvas.dimension(c, b, 9.0 * z.right, "S_0")
+    # Beside the lines that run along CB: the axis of the zone, r0 and the path of B.
+    sides = ((side * z.right * off, (b + side * z.right * off * 1j * (b - c) / abs(b - c)).real)
+             for off in np.arange(9.0, room.width, 1.5) for side in (1, -1))
+    clear_dimensions.dimension(canvas, first, c, b, [off for off, x in sides if room.x0 <= x <= room.x1], "S_0")
     if abs(o - c) > 6:
-        canvas.label((o + c) / 2, "e", -1j, 3.5, 0.8)
+        canvas.label((o + c) / 2, "e", -1j, 3.5, 0.8, thin=KEPT_OFF)
     canvas.label((o + b) / 2, "r_0", z.right * 1 + 0.6j, 3.5, 0.6)
     measured = [_measured(name, segment, abs(value), "μ_S", mu)
                 for name, segment, value in (("S_0", "CB", z.s0), ("e", "CO", z.e), ("r_0", "OB", z.r0))]

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from cmath import phase, rect
 from math import degrees, pi, radians
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import STANDARD, Scale, fit
-from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.clipping import arcs_inside
+from tmm_sheets.drawing.canvas import Canvas, lettered
+from tmm_sheets.drawing.clipping import arcs_inside, segment_inside
 from tmm_sheets.drawing.lettering import fitted, letter
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.marks import Box, Line
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets import gear_radii
+from tmm_sheets.sheets.clear_dimensions import around, crossed
 from tmm_sheets.sheets.frame import Frame, proportion, ratio, standard
 from tmm_sheets.sheets.gear_marks import CIRCLES, KEPT_OFF, Window, gap, hatch_between, ruled_table
 from tmm_sheets.sheets.player import Stage, placed, play, stage
@@ -27,6 +28,8 @@ STRIP = 2.5
 """Depth of the hatched strip along the working part of a flank, mm."""
 DIMENSION = 8.0
 """Distance of the dimension lines of the teeth from the root circle, mm."""
+FURTHEST = 40.0
+"""So much farther the dimension lines of the teeth stand at most where lines would run through their lettering, mm."""
 DIVISION = 10.0
 """Room beyond the last division of an involute for its number, mm."""
 PITCHES, MOST = 1.25, 1.5
@@ -56,8 +59,9 @@ def engagement(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
         picture.unrolling(wheel)
         picture.teeth(wheel)
         picture.overlap(wheel)
-        picture.dimensions(wheel)
         picture.rotation(wheel)
+    for wheel in picture.gear.wheels:
+        picture.dimensions(wheel)
     picture.pole_letter()
     gear_radii.draw(picture)
 
@@ -125,6 +129,8 @@ class _GearPicture:
             self.box = Box(*self.box[:3], min(self.box.y1, self.of("O2").imag + EDGE))
         if self.broken:
             self.hub, self.box = complex(self.pole.real, self.box.y0 + 0.55 * HUB), self.box._replace(y0=self.box.y0 + HUB)
+        self.spokes: list[int] = []
+        """Numbers of the marks of radial lines, which make way for the dimensions of the teeth."""
         self.window = Window(canvas, self.box.inset(3))  # room for the kinks of break lines
         self.mm = self.mu.mm
 
@@ -182,7 +188,11 @@ class _GearPicture:
 
     def spoke(self, wheel: Any, step: str, end: complex, style: str) -> None:
         """Line from a wheel's centre, interrupted where the dimensions of its teeth are written."""
-        centre = self.of(f"O{wheel.number}")
+        centre, first = self.of(f"O{wheel.number}"), len(self.canvas.marks)
+        self._spoke(wheel, step, centre, end, style)
+        self.spokes.extend(range(first, len(self.canvas.marks)))
+
+    def _spoke(self, wheel: Any, step: str, centre: complex, end: complex, style: str) -> None:
         u = (end - centre) / abs(end - centre)
         if wheel.ring:  # they are written beyond its root circle
             self.window.line(self.stage, step, centre, end, style)
@@ -231,6 +241,7 @@ class _GearPicture:
             centre = self.of(f"O{i}")
             away = (foot - centre) / abs(foot - centre)
             inward = (pole - foot) / abs(pole - foot)
+            self.spokes.append(len(c.marks))
             self.window.line(s, f"N{i}", centre, foot, "thin")
             corner = foot + 3 * inward - 3 * away
             s.line(f"N{i}", foot - 3 * away, corner, "thin", "symbol")
@@ -386,7 +397,31 @@ class _GearPicture:
         for a, b, text in ((e, f, f"s̅_{i} = {thickness}"), (p, q, f"p̅_{i} = {step}")):
             # the side of the centre is the left of a .. b
             a, b = (a, b) if side * (np.conj(b - a) * (centre - a)).imag > 0 else (b, a)
-            c.dimension(a, b, inside + DIMENSION, text)
+            offset = self.clear_of_lines(a, b, inside + DIMENSION, text)
+            c.dimension(a, b, offset, text)
+            self.interrupt(*lettered(a, b, offset, text), text)
+
+    def clear_of_lines(self, a: complex, b: complex, offset: float, text: str) -> float:
+        """Offset of a dimension, this or a greater one, at which no line runs through its lettering.
+
+        Within a ring the tangents of its involute lie over the root circle of the pinion.
+        """
+        ink = gear_radii.Drawn(self.canvas, self.first, but=self.spokes)
+        return min((offset + further for further in np.arange(0.0, FURTHEST, 0.5)), key=lambda by: crossed(ink, a, b, by, text))
+
+    def interrupt(self, at: complex, along: complex, text: str) -> None:
+        """Interrupt the radial lines that would run through lettering whose baseline has its middle there (GOST 2.307)."""
+        marks, place = self.canvas.marks, around(text)
+        for n in [n for n in self.spokes if isinstance(marks[n], Line)]:
+            line = cast(Line, marks[n])
+            start, end = ((z - at) / along for z in (line.a, line.b))
+            hidden = segment_inside(place, start, end)
+            if hidden is None:
+                continue
+            near, far = sorted((z * along + at for z in hidden), key=lambda z: abs(z - line.a))
+            marks[n] = line._replace(b=near)
+            self.spokes.append(len(marks))
+            marks.append(line._replace(a=far))
 
     def rotation(self, wheel: Any) -> None:
         """Arrow of the angular velocity."""

@@ -11,7 +11,7 @@ import numpy as np
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas, in_role
 from tmm_sheets.drawing.clipping import arcs_inside, chords, polyline_inside, segment_inside
-from tmm_sheets.drawing.lettering import fitted
+from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box, Role
 from tmm_sheets.drawing.tables import LEAST, needs
 from tmm_sheets.sheets.player import Stage
@@ -22,6 +22,8 @@ CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "
 
 KEPT_OFF = 4.0
 """So many times more than other lettering do letters and names of circles in the mesh keep off thin lines."""
+ROW, LARGE, LETTERS = 12.0, 16.0, 5.0
+"""Greatest height of a row of a table, mm; of one where there is room for letters as large as a title's, and these."""
 KINKS, OVER = 120.0, 3.0
 """Distance of the kinks of a break line, and how far it runs beyond what it cuts, mm."""
 
@@ -118,9 +120,15 @@ def ruled_table(canvas: Canvas, box: Box, rows: Sequence[tuple[str, ...]], width
 
     ``widths`` are the least ones of the columns of values.
     """
-    row = min(tallest, box.height / len(rows))
-    needed = needs([cells[1:] for cells in rows if len(cells) > len(widths)], 3.5, LEAST)
-    widths = [max(least, need + 2.0) for least, need in zip(widths, needed, strict=True)]
+    row, least = min(tallest, box.height / len(rows)), list(widths)
+
+    def columns(height: float) -> list[float]:
+        needed = needs([cells[1:] for cells in rows if len(cells) > len(least)], height, LEAST)
+        return [max(width, need + 2.0) for width, need in zip(least, needed, strict=True)]
+
+    wide = max(letter(cells[0], LETTERS).width for cells in rows) + 3.0 + sum(columns(LETTERS))
+    height = LETTERS if row >= LARGE and wide <= box.width else 3.5
+    row, widths = row if height > 3.5 else min(row, ROW), columns(height)
     edges = [box.x0, box.x1 - sum(widths)]
     for w in widths:
         edges.append(edges[-1] + w)
@@ -128,13 +136,13 @@ def ruled_table(canvas: Canvas, box: Box, rows: Sequence[tuple[str, ...]], width
     for i, cells in enumerate(rows):
         y = box.y1 - i * row
         canvas.line(complex(box.x0, y), complex(box.x1, y), "main" if i < 2 else "thin")
-        base = y - row / 2 - 1.75
+        base = y - (row + height) / 2
         for j, cell in enumerate(cells):
             if j == 0 and i:
-                canvas.put(fitted(cell, edges[1] - edges[0] - 3.0, 3.5), complex(edges[0] + 2, base), 0.0, cell)
+                canvas.put(fitted(cell, edges[1] - edges[0] - 3.0, height), complex(edges[0] + 2, base), 0.0, cell)
                 continue
             right = edges[-1] if j == len(cells) - 1 else edges[j + 1]
-            laid = fitted(cell, right - edges[j] - 1.0, 3.5)
+            laid = fitted(cell, right - edges[j] - 1.0, height)
             canvas.put(laid, complex((edges[j] + right - laid.width) / 2, base), 0.0, cell)
         for x in edges[1 : len(cells)]:
             canvas.line(complex(x, y), complex(x, y - row), "thin")

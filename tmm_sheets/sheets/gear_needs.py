@@ -7,7 +7,7 @@ from functools import cache
 from math import pi
 from typing import TYPE_CHECKING
 
-from tmm_sheets.sheets import gear, rack, reducer, train
+from tmm_sheets.sheets import gear, gear_marks, rack, reducer, train
 from tmm_sheets.sheets.frame import standard
 from tmm_sheets.sheets.solver import Need, Node
 
@@ -98,7 +98,7 @@ def speeds(project: Project, view: View) -> Node:
 
 def _table(view: View, rows: int, head: float = 16.0) -> Node:
     """A table of so many rows under its title, from the least height of a row to the greatest of use."""
-    need = Need(least=(150.0, head + 6.0 * rows), most=(190.0, head + reducer.ROW * rows), drawn=lambda w, h: w * h)
+    need = Need(least=(150.0, head + 6.0 * rows), most=(190.0, head + gear_marks.LARGE * rows), drawn=lambda w, h: w * h)
     return Node(need, area=need.least[0] * need.most[1])
 
 

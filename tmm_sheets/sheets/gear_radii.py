@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cmath import phase, rect
+from collections.abc import Collection
 from itertools import pairwise, product
 from math import cos, inf, pi, radians, sin
 from typing import Any
@@ -45,11 +46,14 @@ def draw(picture: Any) -> None:
 
 
 class Drawn:
-    """What a view has drawn since its ``first`` mark, but for circles about a point: its lines, and the sides of its lettering."""
+    """What a view has drawn since its ``first`` mark, but for circles about a point and some marks, by their numbers.
 
-    def __init__(self, canvas: Canvas, first: int, but: complex | None = None) -> None:
-        marks = canvas.marks[first:]
-        self.ink = Ink(m for m in marks if but is None or not (isinstance(m, Arc) and abs(m.centre - but) < 1e-6))
+    Its lines, and the sides of its lettering.
+    """
+
+    def __init__(self, canvas: Canvas, first: int, about: complex | None = None, but: Collection[int] = ()) -> None:
+        marks = [m for n, m in enumerate(canvas.marks) if n >= first and n not in but]
+        self.ink = Ink(m for m in marks if about is None or not (isinstance(m, Arc) and abs(m.centre - about) < 1e-6))
         corners = [text_box(m) for m in marks if isinstance(m, Text)]
         self.written = np.array([(z[k - 1], z[k]) for z in corners for k in range(len(z))]).reshape(-1, 2)
 
@@ -58,6 +62,13 @@ class Drawn:
         back = rect(1, -direction)
         return any(bool(enters((a - origin) * back, (b - a) * back, *box).any())
                    for a, b in ((self.ink.a, self.ink.b), self.written.T))
+
+    def count(self, box: Box, origin: complex, direction: float) -> int:
+        """How many lines are in such a rectangle, lettering as much as ten."""
+        back = rect(1, -direction)
+        lines, written = (int(enters((a - origin) * back, (b - a) * back, *box).sum())
+                          for a, b in ((self.ink.a, self.ink.b), self.written.T))
+        return lines + 10 * written
 
     def strong(self, a: complex, b: complex) -> bool:
         """Whether a line would cross the outlines of teeth or others as strong."""

@@ -39,7 +39,8 @@ FORCES = ("kinetics.group", "kinetics.groups", "kinetics.crank")
 """Views of a scheme with its force plans, which stand in columns of their own."""
 GIVEN = "given_data.links"
 """The table that belongs to no plan."""
-ANYWHERE = GIVEN, "cam_law.equations"
+ANYWHERE = (GIVEN, "cam_law.equations", "wheel_sizes.table", "planet_motion.ratios", "planet_motion.checks", "plan_checks.mobility",
+            "plan_checks.of_train", "plan_checks.of_reducer", "plan_checks.pairs")
 """Views that belong to no other: they go where most is empty."""
 LARGE = (160.0, 120.0), (150.0, 112.0)
 """An empty rectangle of these sides, upright or lying, is a gap, mm; the second where cells that its edges cut hide one."""

@@ -12,7 +12,8 @@ from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import widened
 from tmm_sheets.numbers import fixed, is_zero, number
-from tmm_sheets.sheets.reducer import LARGE, ROW, letters_in
+from tmm_sheets.sheets.gear_marks import LARGE, ROW
+from tmm_sheets.sheets.reducer import letters_in
 from tmm_sheets.words import tr
 
 SIZES = ((5.0, 5.0, 12.0), (5.0, 3.5, 10.0), (5.0, 3.5, 7.0), (3.5, 3.5, 7.0))
@@ -55,31 +56,32 @@ def _inverted(project: Any) -> Iterator[tuple[str, str, float, float]]:
 
 def checks_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the conditions of a train's planets can do with, mm; none without a carrier."""
-    return _sizes_of(tr("Conditions of the planets"), list(_checks(project.train)))
+    return sizes_of(tr("Conditions of the planets"), list(_checks(project.train)))
 
 
 def checks(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Common axis, assembly and neighbourhood of the planets of every carrier, in letters and in numbers."""
-    _written(canvas, box, tr("Conditions of the planets"), list(_checks(project.train)))
+    written(canvas, box, tr("Conditions of the planets"), list(_checks(project.train)))
 
 
 def ratios_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the ratios between the central wheels of a train can do with, mm; none where there are no two on a carrier."""
-    return _sizes_of(tr("Ratios of the inverted motion"), list(_ratios(project.train)))
+    return sizes_of(tr("Ratios of the inverted motion"), list(_ratios(project.train)))
 
 
 def ratios(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Ratios of central wheels with their carrier held, from the speeds and from the teeth."""
-    _written(canvas, box, tr("Ratios of the inverted motion"), list(_ratios(project.train)))
+    written(canvas, box, tr("Ratios of the inverted motion"), list(_ratios(project.train)))
 
 
-def _sizes_of(title: str, lines: list[str]) -> list[tuple[float, float]]:
+def sizes_of(title: str, lines: list[str]) -> list[tuple[float, float]]:
     """Places that lines under a title can do with, mm; none for no lines. The title is as large as others are, if it can be."""
     return [(max(letter(title, head).width, *(letter(line, height).width for line in lines)) + 6.0, 14.0 + step * len(lines))
             for head, height, step in SIZES] if lines else []
 
 
-def _written(canvas: Canvas, box: Box, title: str, lines: list[str]) -> None:
+def written(canvas: Canvas, box: Box, title: str, lines: list[str]) -> None:
+    """Lines under a title, with the largest letters that have room."""
     left = canvas.title(box, title)
     height = size_for(lines, box.width - 3.0, 5.0)
     step = min((left.y1 - box.y0) / len(lines), 12.0 if height > 3.5 else 10.0)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from cmath import rect
 from collections.abc import Mapping, Sequence
-from math import ceil, pi
-from typing import Any
+from math import ceil, pi, sin
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,10 +15,10 @@ from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import widened
+from tmm_sheets.drawing.tables import GAP, LEAST, needs, widened
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.frame import ratio, standard
-from tmm_sheets.sheets.gear_marks import ruled_table, spread
+from tmm_sheets.sheets.gear_marks import LARGE, LETTERS, ROW, ruled_table, spread
 from tmm_sheets.sheets.player import Stage, placed, play
 from tmm_sheets.words import tr
 
@@ -36,17 +36,20 @@ OVER = 34.0
 """Room over and under the views with their title, mm."""
 AXIS, CLEAR, APART = 6.0, 1.2, 8.0
 """How far the line of zero velocity runs beyond the picture, distances of the scale factor over it and from the other one, mm."""
-ROW = 12.0
-"""Greatest height of a row of the tables, mm."""
-LARGE = 16.0
-"""Height of a row where there is room for letters as large as a title's, mm."""
+STRETCHED = 1.8
+"""So many times wider the axial view may be drawn where there is room: only its heights are to scale."""
+BETWEEN = 12.0, 34.0
+"""Distance of the views of a scheme from the picture of velocities between them: least and greatest, mm."""
+OFFERED = 90.0
+"""Width from which room beside them is of use to other views, mm."""
 NARROWEST, WIDEST = 75.0, 100.0
 """Least width left for the picture of velocities and what its velocities may always take, mm."""
 
 
-def letters_in(row: float) -> tuple[float, float]:
-    """Height of the rows of a table that has room for rows so high, and of the letters in them, mm."""
-    return (LARGE, 5.0) if row >= LARGE else (min(row, ROW), 3.5)
+def letters_in(row: float, widths: Sequence[float] = (), rows: Sequence[Sequence[str]] = ()) -> tuple[float, float]:
+    """Height of the rows of a table that has room for rows so high, and of the letters in them, mm: the larger if they fit."""
+    wide = sum(needs(rows, LETTERS, LEAST + GAP)) if rows else 0.0
+    return (LARGE, LETTERS) if row >= LARGE and wide <= sum(widths) else (min(row, ROW), 3.5)
 
 
 def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -57,11 +60,20 @@ def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     views.draw()
 
 
+class Edge(NamedTuple):
+    """A wheel as it is drawn edge on: its number, its pitch diameter, m."""
+
+    number: str
+    diameter: float
+
+
 class SchemeViews:
     """Views on one main axis and the picture of velocities; heights in metres over the axis become millimetres of the sheet.
 
     They reach to ``top``, ``bottom`` and ``side`` (m), the axial view is ``width`` wide (mm); ``above`` is what else stands over
-    the picture, mm.
+    the picture, mm. Of the axial view ``column``, ``stub`` and ``face`` are the distance of wheels, the length of the shafts that
+    lead in and out and the width of a rim, mm; it is stretched along the axis where there is room. Satellites stand at both sides
+    of the axis, turned into its plane (GOST 2.703), so that each edge of a ring meshes with one.
     """
 
     reducer: Any
@@ -76,6 +88,7 @@ class SchemeViews:
     side: float
     width: float
     above = 0.0
+    column, stub, face = COLUMN, STUB, FACE
 
     def fitted(self, width: float, height: float) -> Scale:
         """The scale with which they fit a place with their title."""
@@ -93,9 +106,24 @@ class SchemeViews:
         spare = self.box.height - (self.top + self.bottom) / self.mu.mu
         self.axis = self.box.y0 + spare / 2 + self.bottom / self.mu.mu
         self.front = complex(self.box.x1 - 6 - self.side / self.mu.mu, self.axis)
-        left = self.box.x0 + self.width + 12
-        right = self.front.real - self.side / self.mu.mu - 12
-        self.picture = Box(left, self.box.y0, right, self.box.y1 - self.above)
+        room = self.front.real - self.side / self.mu.mu - self.box.x0
+        self.stretch((room - self.pictured() - 2 * BETWEEN[0]) / self.width)
+        between = max((room - self.width - self.pictured()) / 2, BETWEEN[0])
+        if (spare := 2 * (between - BETWEEN[1])) > OFFERED:  # what is left at the right is of use to others
+            self.front -= spare
+            between = BETWEEN[1]
+        left = self.box.x0 + self.width + between
+        self.picture = Box(left, self.box.y0, self.front.real - self.side / self.mu.mu - between, self.box.y1 - self.above)
+
+    def stretch(self, share: float) -> None:
+        """Draw the axial view so many times wider, as far as that looks well."""
+        share = min(max(share, 1.0), STRETCHED)
+        self.width, self.column, self.stub, self.face = (share * length for length in (self.width, COLUMN, STUB, FACE))
+
+    def pictured(self) -> float:
+        """Width of use to the picture of velocities, mm: lines less steep than 45 degrees are hard to draw others parallel to."""
+        heights = [complex(step.value).imag for step in self.reducer.velocities if step.rule.gives == "point"]
+        return max(WIDEST, float(self.mu.mm(max(heights) - min(heights)))) + 24.0
 
     def y(self, height: float) -> float:
         """Ordinate on the sheet of a height over the main axis."""
@@ -114,13 +142,39 @@ class SchemeViews:
             c.line(low, hub[0], "main")
             c.line(hub[1], high, "main")
             for end in hub:
-                c.line(end - FACE / 2, end + FACE / 2, "main")
+                c.line(end - self.face / 2, end + self.face / 2, "main")
         else:
             c.line(low, high, "main")
         for end in (low, high):
-            c.line(end - FACE / 2, end + FACE / 2, "main")
+            c.line(end - self.face / 2, end + self.face / 2, "main")
         at = high if label > 0 else low
-        c.label(at + FACE / 2, wheel.number, away=complex(1, label), height=5, gap=1.2)
+        c.label(at + self.face / 2, wheel.number, away=complex(1, label), height=5, gap=1.2)
+
+    def satellite(self, wheel: Any, x: float, height: float, label: int = 1) -> None:
+        """A wheel on a carrier, and the one at the other side of the main axis."""
+        self.wheel(wheel, x, height, label, free=True)
+        if self.opposite(wheel.number):
+            self.wheel(Edge("", wheel.diameter), x, -height, -label, free=True)
+
+    def opposite(self, satellite: str) -> bool:
+        """Whether a carrier has more satellites than one, so that another stands at the other side of the main axis."""
+        return True
+
+    def sides(self, satellite: str) -> tuple[int, ...]:
+        """Sides of the main axis at which a satellite is drawn: over it, under it."""
+        return (1, -1) if self.opposite(satellite) else (1,)
+
+    def held(self, x: float, radius: float, name: str) -> None:
+        """The edges of a ring that stands still, each held in the frame."""
+        c = self.canvas
+        for side in (1, -1):
+            rim = complex(x, self.y(side * radius))
+            out = rim + 6j * side
+            c.line(rim - self.face / 2, rim + self.face / 2, "main")
+            c.line(rim, out, "main")
+            c.line(out - 5, out + 5, "main")
+            c.hatch(out - 5, out + 5, side)
+        c.label(complex(x - self.face / 2, self.y(radius)), name, away=-1 + 0.3j, height=5, gap=1.2)
 
     def bearing(self, x: float, y: float) -> None:
         """A shaft's bearing in the frame: a hatched stroke on each side of it."""
@@ -136,9 +190,7 @@ class SchemeViews:
         c, plan = self.canvas, self.reducer.velocities
         ends = {step.name: complex(step.value) for step in plan if step.rule.gives == "point"}
         low, high = (f([v.real for v in ends.values()]) for f in (min, max))
-        # Lines that stand less steep than 45 degrees are hard to draw others parallel to.
-        steep = max(WIDEST, self.mu.mm(max(v.imag for v in ends.values()) - min(v.imag for v in ends.values())))
-        mu = Scale("μ_V", handy((high - low) / min(self.picture.width - 24, steep)), tr("(m/s)/mm"))
+        mu = Scale("μ_V", handy((high - low) / (min(self.picture.width, self.pictured()) - 24.0)), tr("(m/s)/mm"))
         c.scales[plan.name] = mu
         whole = mu.mm(high - low)
         zero = self.picture.x0 + (self.picture.width - whole) / 2 - mu.mm(low)
@@ -176,7 +228,7 @@ class SchemeViews:
             a, b = complex(s.frame(on[0])), complex(s.frame(on[-1]))
             s.pen(step, "axis").ray_line(a, b, "axis", over=5.0, before=0.0 if abs(on[0].real) < 1e-12 else 5.0)
             away = 1j * (b - a) * (-1 if (b - a).real > 0 else 1)
-            self.canvas.label(a + 0.62 * (b - a), _link(step.name), away=away, height=5, gap=1.2)
+            self.canvas.label(a + 0.62 * (b - a), link_name(step.name), away=away, height=5, gap=1.2)
 
     def heights(self, s: Stage, points: Sequence[str]) -> None:
         """Points of the scheme carried over to the line of zero velocity; those of one height have one line."""
@@ -185,7 +237,7 @@ class SchemeViews:
             names.setdefault(round(s.at(name).imag, 1), []).append(name)
         for group in names.values():
             end = s.at(group[0])
-            s.line(group[0], complex(self.box.x0 + STUB, end.imag), end, "construction", "axis")
+            s.line(group[0], complex(self.box.x0 + self.stub, end.imag), end, "construction", "axis")
             s.dot(group[0], 0.7, "main")
             letters = (name if len(name) == 1 else f"{name[0]}_{name[1:]}" for name in group)
             self.canvas.label(end, ", ".join(letters), away=-1 + 0.6j, height=3.5, gap=1.2)
@@ -204,7 +256,11 @@ class SchemeOfReducer(SchemeViews):
         self.offset = (one + two) * (1 if self.before else -1)
         self.top = max(self.reach, two + 2 * one if self.before else one)
         self.bottom = max(self.reach, two if self.before else one + 2 * two)
-        self.side = max(self.reach, one, two)
+        # Satellites stand all round, the first of them over the axis.
+        count = reducer.data.satellites
+        beside = stage.axis * max(abs(sin(2 * pi * k / count)) for k in range(count))
+        self.side = max(one, two, *(w.diameter / 2 for w in (stage.wheels[0], stage.wheels[3])),
+                        *(beside + w.diameter / 2 for w in stage.wheels[1:3]))
         self.width = self.columns() * COLUMN + 2 * STUB
 
     def columns(self) -> int:
@@ -230,8 +286,8 @@ class SchemeOfReducer(SchemeViews):
         other = self.y(self.offset)
         if self.before:
             one, two = self.pair
-            at = x + STUB
-            c.line(complex(x, other), complex(at + FACE, other), "main")
+            at = x + self.stub
+            c.line(complex(x, other), complex(at + self.face, other), "main")
             self.wheel(one, at, self.offset)
             self.wheel(two, at, 0.0, label=-1)
             self.bearing(x + 6, other)
@@ -240,46 +296,37 @@ class SchemeOfReducer(SchemeViews):
             self.bearing(at - 8, self.axis)
             x = at
         else:
-            c.line(complex(x, self.axis), complex(x + STUB, self.axis), "main")
+            c.line(complex(x, self.axis), complex(x + self.stub, self.axis), "main")
             self.bearing(x + 6, self.axis)
             self.arrow(complex(x, self.axis), tr("n_{in}"), -1)
-            x += STUB
+            x += self.stub
         for k, stage in enumerate(self.stages):
             x = self.stage(stage, x, first=k == 0)
         if self.before or not self.pair:
-            c.line(complex(x, self.axis), complex(x + STUB, self.axis), "main")
-            self.bearing(x + STUB - 6, self.axis)
-            self.arrow(complex(x + STUB, self.axis), tr("n_{out}"), 1)
+            c.line(complex(x, self.axis), complex(x + self.stub, self.axis), "main")
+            self.bearing(x + self.stub - 6, self.axis)
+            self.arrow(complex(x + self.stub, self.axis), tr("n_{out}"), 1)
             return
         one, two = self.pair
-        at = x + COLUMN * 0.6
-        c.line(complex(x, self.axis), complex(at + STUB, self.axis), "main")
-        self.bearing(at + STUB - 5, self.axis)
+        at = x + self.column * 0.6
+        c.line(complex(x, self.axis), complex(at + self.stub, self.axis), "main")
+        self.bearing(at + self.stub - 5, self.axis)
         self.wheel(one, at, 0.0)
         self.wheel(two, at, self.offset, label=-1)
-        c.line(complex(at - FACE, other), complex(at + STUB, other), "main")
-        self.bearing(at + STUB - 5, other)
-        self.arrow(complex(at + STUB, other), tr("n_{out}"), 1)
+        c.line(complex(at - self.face, other), complex(at + self.stub, other), "main")
+        self.bearing(at + self.stub - 5, other)
+        self.arrow(complex(at + self.stub, other), tr("n_{out}"), 1)
 
     def ring(self, wheel: Any, x: float) -> None:
-        """A ring that stands still, held in the frame; as the satellite is drawn once, its rim is drawn where they mesh alone.
-
-        Its other edge would be tied to nothing, far under all else.
-        """
-        c, rim = self.canvas, complex(x, self.y(wheel.diameter / 2))
-        out = rim + 6j
-        c.line(rim - FACE / 2, rim + FACE / 2, "main")
-        c.line(rim, out, "main")
-        c.line(out - 5, out + 5, "main")
-        c.hatch(out - 5, out + 5, 1)
-        c.label(rim - FACE / 2, wheel.number, away=-1 + 0.3j, height=5, gap=1.2)
+        """A ring that stands still: both its edges are held in the frame."""
+        self.held(x, wheel.diameter / 2, wheel.number)
 
     def bell(self, wheel: Any, x: float, web: float) -> None:
         """A ring that turns: its rims joined by a disc at ``web``."""
         c, r = self.canvas, wheel.diameter / 2
         for side in (1, -1):
             rim = complex(x, self.y(side * r))
-            c.line(rim + FACE / 2 * np.sign(x - web), complex(web, rim.imag), "main")
+            c.line(rim + self.face / 2 * np.sign(x - web), complex(web, rim.imag), "main")
         c.line(complex(web, self.y(-r)), complex(web, self.y(r)), "main")
         c.label(complex(x, self.y(r)), wheel.number, away=1j, height=5, gap=1.2)
 
@@ -296,11 +343,10 @@ class SchemeOfReducer(SchemeViews):
         """One planetary stage beginning at ``x``, where the driving shaft ends; gives the end of its output shaft."""
         c = self.canvas
         one, two, three, four = stage.wheels
-        height = self.y(stage.axis)
         if stage.driver == "carrier":
             self.arm(stage, x)
-            inner, outer = x + COLUMN, x + 2 * COLUMN  # the fixed pair 3-4 stands next to the carrier
-            c.line(complex(x, height), complex(outer + FACE, height), "main")
+            inner, outer = x + self.column, x + 2 * self.column  # the fixed pair 3-4 stands next to the carrier
+            self.axis_of_satellites(stage, x, outer + self.face)
             self.block(three, inner, two, outer, stage.axis)
             if stage.signs[1] > 0:
                 self.wheel(four, inner, 0.0, label=-1)
@@ -311,18 +357,18 @@ class SchemeOfReducer(SchemeViews):
                 self.wheel(one, outer, 0.0, label=-1)
                 out = outer
             else:
-                out = outer + FACE + 3
+                out = outer + self.face + 3
                 self.bell(one, outer, out)
-            c.line(complex(out, self.axis), complex(outer + COLUMN, self.axis), "main")
-            return outer + COLUMN
-        at = x if first and not self.before else x + COLUMN
+            c.line(complex(out, self.axis), complex(outer + self.column, self.axis), "main")
+            return outer + self.column
+        at = x if first and not self.before else x + self.column
         if at > x:
             c.line(complex(x, self.axis), complex(at, self.axis), "main")
         if stage.single:
-            self.wheel(two, at, stage.axis, free=True)
+            self.satellite(two, at, stage.axis)
             last = at
         else:
-            last = at + COLUMN
+            last = at + self.column
             self.block(two, at, three, last, stage.axis)
         if stage.driver == "sun":
             self.wheel(one, at, 0.0, label=-1)
@@ -330,23 +376,29 @@ class SchemeOfReducer(SchemeViews):
         else:
             self.wheel(one, at, 0.0, label=-1)
             self.ground(at, 1)
-            self.bell(four, at, at - FACE - 1)
-        out = last + COLUMN * (1.0 if stage.driver == "ring" else 0.75)
-        c.line(complex(at - FACE, height), complex(out, height), "main")
+            self.bell(four, at, at - self.face - 1)
+        out = last + self.column * (1.0 if stage.driver == "ring" else 0.75)
+        self.axis_of_satellites(stage, at - self.face, out)
         self.arm(stage, out)
         return out
 
+    def axis_of_satellites(self, stage: Any, x0: float, x1: float) -> None:
+        """The axle of the satellites, at both sides of the main axis."""
+        for side in (1, -1):
+            self.canvas.line(complex(x0, self.y(side * stage.axis)), complex(x1, self.y(side * stage.axis)), "main")
+
     def block(self, first: Any, x: float, second: Any, end: float, height: float) -> None:
         """Two satellites joined by a sleeve."""
-        self.wheel(first, x, height, free=True)
-        self.wheel(second, end, height, free=True)
-        for side in (-1, 1):
-            y = self.y(height) + side * HUB
-            self.canvas.line(complex(x, y), complex(end, y), "main")
+        self.satellite(first, x, height)
+        self.satellite(second, end, height)
+        for edge in (height, -height):
+            for side in (-1, 1):
+                y = self.y(edge) + side * HUB
+                self.canvas.line(complex(x, y), complex(end, y), "main")
 
     def arm(self, stage: Any, x: float) -> None:
-        """The carrier's arm from the main axis to the satellite's."""
-        self.canvas.line(complex(x, self.axis), complex(x, self.y(stage.axis)), "main")
+        """The carrier's arms from the main axis to those of the satellites."""
+        self.canvas.line(complex(x, self.y(-stage.axis)), complex(x, self.y(stage.axis)), "main")
         name = f"H_{stage.carrier[1:]}" if len(stage.carrier) > 1 else "H"
         self.canvas.label(complex(x, self.y(stage.axis / 2)), name, away=1, height=5, gap=1.2)
 
@@ -401,7 +453,7 @@ class SchemeOfReducer(SchemeViews):
             return str(wheel.number)
         return ", ".join(s.wheels[first.index(wheel)].number for s in self.stages)
 
-def _link(name: str) -> str:
+def link_name(name: str) -> str:
     """A link's name as it is written: carriers with an index, blocks of satellites with a dash."""
     return f"H_{name[1:]}" if name.startswith("H") and len(name) > 1 else name.replace("-", "–")
 
@@ -427,7 +479,9 @@ def plan_of_speeds(reducer: Any, canvas: Canvas, box: Box, part: str) -> None:
         scale=mu, distance=fixed(distance, 1)))
     canvas.scales[f"{part}-speeds"] = picture
     plan = reducer.speeds(distance * heights.mu)
-    zero = (inner.x0 + inner.x1) / 2 - mu.mm(low + high) / 2
+    spare = room - mu.mm(high - low)
+    # In the middle, or at the left where what is left at the right is then of use to others.
+    zero = inner.x0 + 15.0 + (spare / 2 if spare < OFFERED else 10.0) - mu.mm(low)
     y = inner.y1 - max(14.0, (inner.height - distance) * 0.5)
     s = placed(canvas, plan, complex(zero, y), (picture.mu, heights.mu))
     origin, pole = s.at("0"), s.at("P")
@@ -439,7 +493,7 @@ def plan_of_speeds(reducer: Any, canvas: Canvas, box: Box, part: str) -> None:
     for name, size, away, height in (("P", 0.9, -1j, 5.0), ("0", 0.8, -1 + 1j, 3.5)):
         s.dot(name, size, "main")
         canvas.label(s.at(name), name, away=away, height=height)
-    ends = [(s.at(step), step.name) for step in _ends_of_rays(plan)]
+    ends = [(s.at(step), step.name) for step in ends_of_rays(plan)]
     ends.sort(key=lambda pair: pair[0].real)
     places = spread([end.real for end, _ in ends], NAME)
     for i in range(len(places)):
@@ -450,10 +504,10 @@ def plan_of_speeds(reducer: Any, canvas: Canvas, box: Box, part: str) -> None:
         play(s, [link], "main")
         s.dot(link, 0.8, "main")
         s.line(link, end, complex(x, y + 7), "thin", "text")
-        canvas.text(complex(x, y + 9), f"n_{{{_link(link)}}} = {number(float(plan[f'n{link}'].value))}", 3.5, "centre")
+        canvas.text(complex(x, y + 9), f"n_{{{link_name(link)}}} = {number(float(plan[f'n{link}'].value))}", 3.5, "centre")
 
 
-def _ends_of_rays(plan: Plan) -> list[Step]:
+def ends_of_rays(plan: Plan) -> list[Step]:
     """Points of the plan of speeds that rays from its pole lead to, one for each link."""
     return [step for step in plan if step.name not in ("P", "0") and step.rule.gives == "point"]
 
@@ -478,8 +532,9 @@ def table_of_points(of: Any, canvas: Canvas, box: Box) -> None:
     """The same of a reducer or a train."""
     rows = rows_of_points(of, canvas)
     left = canvas.title(box, tr("Velocities of the points"))
-    widths = widened([0.16 * box.width, 0.28 * box.width, 0.28 * box.width, 0.28 * box.width], rows, 3.5)
-    canvas.table(complex(box.x0, left.y1), widths, rows, min(left.height / len(rows), ROW), 3.5)
+    shares = [0.16 * box.width, 0.28 * box.width, 0.28 * box.width, 0.28 * box.width]
+    row, height = letters_in(left.height / len(rows), shares, rows)
+    canvas.table(complex(box.x0, left.y1), widened(shares, rows, height), rows, row, height)
 
 
 def rows_of_points(of: Any, canvas: Canvas) -> list[list[str]]:
@@ -529,8 +584,8 @@ def _rows_of_links(of: Any, canvas: Canvas, part: str) -> list[list[str]]:
     plan = of.plans[f"{part}-speeds"]
     mu = canvas.scales[plan.name]
     rows = [[tr("Link"), tr("Segment of the plan, mm"), tr("n, rpm")]]
-    for end in _ends_of_rays(plan):
-        name = _link(end.name)
+    for end in ends_of_rays(plan):
+        name = link_name(end.name)
         measured = f"|0–{f'({name})' if '–' in name else name}| = {fixed(abs(mu.mm(complex(end.value).real)), 1)}"
         rows.append([name, measured, number(float(plan[f"n{end.name}"].value))])
     return rows
@@ -554,7 +609,8 @@ def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
         inner = Box(inner.x0, inner.y0, inner.x1, inner.y1 - 6.0)
     wide = [8.0, *([12.0] * len(names)), 20.0, 20.0, 18.0]
     widths = [w * box.width / sum(wide) for w in wide]
-    canvas.table(complex(box.x0, inner.y1), widths, rows, row=min(ROW, inner.height / len(rows)), height=3.5)
+    row, height = letters_in(inner.height / len(rows), widths, rows)
+    canvas.table(complex(box.x0, inner.y1), widened(widths, rows, height), rows, row, height)
 
 
 def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -584,7 +640,7 @@ def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
         names = "; ".join(f"d_{{{w.number}}}" for w in some)
         rows.append((tr("Pitch diameters {names}, mm").format(names=names), "; ".join(number(float(w.d.value)) for w in some)))
     inner = canvas.title(box, tr("Conditions and results of the reducer"))
-    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(r.warnings), box.x1, inner.y1), rows, (84.0,), ROW)
+    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(r.warnings), box.x1, inner.y1), rows, (84.0,), LARGE)
     for k, text in enumerate(r.warnings):
         said = f"{text[0].upper()}{text[1:]}."
         canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 5.5 - 6 * k), 0.0, said)

@@ -123,29 +123,13 @@ def compose(project: Project, n: int) -> Drawing:
 
 def composed(project: Project, n: int) -> Composed:
     """Draw sheet ``n`` and tell its scale factors and the labels that found no free place."""
-    sheets = project.variant.sheets
     plan = arranged(project, n)
     if {"positions", "flywheel"} & {view.needs for view in plan.views}:
         from tmm_sheets.sheets.kinematic_frames import check_number
 
         check_number(project)
     canvas = Canvas()
-    block = project.variant.title_block
-    canvas.of = "title block"
-    canvas.begin(Box(0.0, 0.0, WIDTH, HEIGHT), "", "title block")
-    fields = {
-        "designation": f"{of_file(block.designation)} {_code(project, n)}".strip(),
-        "title": tr(plan.title),
-        "project": of_file(project.variant.project.title),
-        "letter": of_file(block.letter),
-        "developed": block.student,
-        "checked": block.checker,
-        "supervisor": block.supervisor,
-        "institution": of_file(block.institution),
-        "group": of_file(block.group),
-    }
-    with canvas.as_role("frame"):
-        draw_frame(canvas, fields, block.form, block.first_sheet + n - 1, len(sheets))
+    fields = _framed(project, n, canvas)
     for view in plan.views:
         canvas.of = view.draw
         canvas.begin(view.box, "", view.draw)
@@ -157,7 +141,7 @@ def composed(project: Project, n: int) -> Composed:
         offers.draw(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, DESIGNATION))
     axis_numbers.clear(canvas)
     canvas.begin(INSIDE, "", "labels")
-    crowded: list[Crowded] = [Shortened(text, TITLE_BLOCK.centre) for text in dict.fromkeys(canvas.shortened)]
+    crowded: list[Crowded] = [Shortened(text, TITLE_BLOCK.centre, left) for text, left in canvas.shortened.items()]
     crowded += place(canvas, INSIDE)
     if canvas.notes:
         from tmm_sheets.drawing import notes
@@ -165,12 +149,43 @@ def composed(project: Project, n: int) -> Composed:
         crowded += notes.place(canvas, INSIDE)
     title = f"{fields['project']}. {fields['title']}"
     drawing = Drawing(
-        WIDTH, HEIGHT, title, tuple(canvas.marks), block.student or "tmm_sheets",
+        WIDTH, HEIGHT, title, tuple(canvas.marks), project.variant.title_block.student or "tmm_sheets",
         subject=" ".join(filter(None, (fields["designation"], fields["group"]))), keywords=", ".join(map(tr, KEYWORDS)),
         views=_views(canvas), dimensions=tuple(canvas.dimensions), forms=tuple(canvas.forms))
     left = places.leaving(canvas, INSIDE, TITLE_BLOCK)
     return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left),
                     tuple(canvas.frames))
+
+
+def _framed(project: Project, n: int, canvas: Canvas) -> dict[str, str]:
+    """Draw frame and title block of sheet ``n``; gives what is filled in."""
+    block = project.variant.title_block
+    canvas.of = "title block"
+    canvas.begin(Box(0.0, 0.0, WIDTH, HEIGHT), "", "title block")
+    fields = {
+        "designation": f"{of_file(block.designation)} {_code(project, n)}".strip(),
+        "title": tr(arrangement(project.sheets[n - 1]).fitted(project.parts).title),
+        "project": of_file(project.variant.project.title),
+        "letter": of_file(block.letter),
+        "developed": block.student,
+        "checked": block.checker,
+        "supervisor": block.supervisor,
+        "institution": of_file(block.institution),
+        "group": of_file(block.group),
+    }
+    with canvas.as_role("frame"):
+        draw_frame(canvas, fields, block.form, block.first_sheet + n - 1, len(project.variant.sheets))
+    return fields
+
+
+def shortened(project: Project) -> list[str]:
+    """What is too long for the title blocks of a project's sheets, for the command line; draws nothing else."""
+    found = dict[str, str]()
+    for n in range(1, len(project.sheets) + 1):
+        canvas = Canvas()
+        _framed(project, n, canvas)
+        found |= canvas.shortened
+    return [str(Shortened(text, TITLE_BLOCK.centre, left)) for text, left in found.items()]
 
 
 def _code(project: Project, n: int) -> str:

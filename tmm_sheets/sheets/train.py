@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from cmath import rect
-from math import cos, pi
+from itertools import product
+from math import cos, pi, sin
 from typing import Any
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import fitted, letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import number
-from tmm_sheets.sheets.gear_marks import ruled_table
+from tmm_sheets.sheets.gear_marks import LARGE, ruled_table
 from tmm_sheets.sheets.planet_motion import at_equal_angles
 from tmm_sheets.sheets.reducer import (
     COLUMN,
-    FACE,
     HUB,
-    ROW,
     STUB,
+    Edge,
     SchemeViews,
     plan_of_speeds,
     sizes_of_links,
@@ -53,7 +53,7 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
         n = number(float(plan[f"n{name}"].value))
         rows.append((f"{name} — {tr('given')}" if name in train.given else name, teeth, n))
     inner = canvas.title(box, tr("Wheels and speeds of rotation, rpm"))
-    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(train.warnings), box.x1, inner.y1), rows, (30.0, 40.0), ROW)
+    end = ruled_table(canvas, Box(box.x0, box.y0 + 7 * len(train.warnings), box.x1, inner.y1), rows, (30.0, 40.0), LARGE)
     for k, text in enumerate(train.warnings):
         said = f"{text[0].upper()}{text[1:]}."
         canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 5.5 - 6 * k), 0.0, said)
@@ -78,7 +78,7 @@ def sizes(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     """Pitch diameters and distances of axes in letters and in numbers."""
     lines = dimensions(project)
     left = canvas.title(box, tr("Dimensions of the train, mm"))
-    step = min(ROW, left.height / len(lines))
+    step = min(LARGE, left.height / len(lines))
     canvas.lines(complex(box.x0, left.y1 - 0.8 * step), lines, step, size_for(lines, box.width, 5.0 if step >= 9.0 else 3.5))
 
 
@@ -143,7 +143,7 @@ def willis(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     train = project.train
     lines = [line for m in train.meshes for line in _equation(train, m)]
     left = canvas.title(box, tr("Willis equations of the meshes (n in rpm)"))
-    step = min(left.height / len(lines), 14.0)
+    step = min(left.height / len(lines), LARGE)
     height = size_for(lines, box.width, 5.0 if step >= 9.0 else 3.5)
     canvas.lines(complex(box.x0, left.y1 - step), lines, step, height)
 
@@ -180,12 +180,15 @@ class SchemeOfTrain(SchemeViews):
         self.reducer = self.train = train
         ends = [(self.height(name) + side * train.radius(name, m)) for m in train.meshes
                 for name in (m.central, m.planet) for side in (1, -1)]
+        ends += [-self.height(m.planet) + side * train.radius(m.planet, m) for m in train.meshes
+                 if m.carrier and self.opposite(m.planet) for side in (1, -1)]
         # In the end view the planets of a carrier stand all round.
         ends += [self.height(m.planet) * cos(turn) + side * train.radius(m.planet, m) for m in train.meshes if m.carrier
                  for turn in self.turns(m) for side in (1, -1)]
         self.top, self.bottom = max(ends), -min(ends)
-        self.side = max(train.radius(m.central, m) for m in train.meshes)
-        self.side = max(self.side, *(train.distance(m) + train.radius(m.planet, m) for m in train.meshes if m.carrier), 0.0)
+        self.side = max(train.radius(name, m) for m in train.meshes for name in (m.central, m.planet))
+        self.side = max(self.side, *(train.distance(m) * abs(sin(turn)) + train.radius(m.planet, m)
+                                     for m in train.meshes if m.carrier for turn in self.turns(m)), 0.0)
         columns = len(train.meshes) + len({m.carrier for m in train.meshes if m.carrier})
         self.width = columns * COLUMN + 2 * STUB
 
@@ -193,6 +196,10 @@ class SchemeOfTrain(SchemeViews):
         """Height of a wheel's axis over the main one, m."""
         found = self.train.height(name)
         return float(found)
+
+    def opposite(self, satellite: str) -> bool:
+        """Whether more planets than one are on its carrier: another stands at the other side of the main axis."""
+        return any(len(self.turns(m)) > 1 for m in self.train.meshes if m.carrier and m.planet == satellite)
 
     def turns(self, m: Any) -> list[float]:
         """Angles of the planets of a mesh from the first, as many as can be put in at equal angles, rad."""
@@ -210,39 +217,42 @@ class SchemeOfTrain(SchemeViews):
         """Wheels, shafts and carriers edge on."""
         c, train = self.canvas, self.train
         c.line(complex(self.box.x0 + 1, self.axis), complex(self.box.x0 + self.width + 2, self.axis), "centre")
-        x = self.box.x0 + STUB
+        x = self.box.x0 + self.stub
         self.columns: dict[str, list[float]] = {}
         for carrier in dict.fromkeys(m.carrier for m in train.meshes):
             of = [m for m in train.meshes if m.carrier == carrier]
             if carrier:
                 self.arm(carrier, of[0], x)
-                x += COLUMN
+                x += self.column
             first = x
             for m in of:
                 self.central(m, x)
                 self.planet(m, x)
                 for name in (m.central, m.planet):
                     self.columns.setdefault(name, []).append(x)
-                x += COLUMN
+                x += self.column
             if carrier:
-                height = self.y(train.distance(of[0]))
-                c.line(complex(first - COLUMN, height), complex(x - COLUMN + FACE, height), "main")
+                for side in self.sides(of[0].planet):
+                    height = self.y(side * train.distance(of[0]))
+                    c.line(complex(first - self.column, height), complex(x - self.column + self.face, height), "main")
         self.joined()
 
     def joined(self) -> None:
         """Shafts and sleeves of what turns together: on the main axis a shaft, planets on a carrier by a sleeve."""
         for shaft in (*self.train.data.shafts, *([m.planet] for m in self.train.meshes)):
             columns = [x for name in shaft for x in self.columns.get(name, ())]
-            height = self.y(self.height(shaft[-1]))
-            free = any(m.carrier and m.planet in shaft for m in self.train.meshes)
-            for side in (-1, 1) if free else (0,):
-                if max(columns) > min(columns):
-                    self.canvas.line(complex(min(columns), height + side * HUB), complex(max(columns), height + side * HUB), "main")
+            planets = [m.planet for m in self.train.meshes if m.carrier and m.planet in shaft]
+            for edge in self.sides(planets[0]) if planets else (1,):
+                height = self.y(edge * self.height(shaft[-1]))
+                for side in (-1, 1) if planets else (0,):
+                    if max(columns) > min(columns):
+                        self.canvas.line(complex(min(columns), height + side * HUB), complex(max(columns), height + side * HUB),
+                                         "main")
         for name, columns in self.columns.items():
             for m in self.train.meshes:
                 if name == m.planet and len(columns) > 1:  # one wide wheel
-                    for side in (-1, 1):
-                        rim = self.y(self.height(name) + side * self.train.radius(name, m))
+                    for edge, side in product(self.sides(name), (-1, 1)):
+                        rim = self.y(edge * self.height(name) + side * self.train.radius(name, m))
                         self.canvas.line(complex(columns[0], rim), complex(columns[-1], rim), "main")
 
     def on_shaft(self, name: str) -> bool:
@@ -252,9 +262,10 @@ class SchemeOfTrain(SchemeViews):
     def planet(self, m: Any, x: float) -> None:
         """The planet of a mesh on its axis."""
         again = m.planet in self.columns
-        wheel = _Wheel("" if again else m.planet, 2 * self.train.radius(m.planet, m))
-        up = self.height(m.planet)
-        self.wheel(wheel, x, up, label=1 if up >= 0 else -1, free=bool(m.carrier))
+        diameter, up = 2 * self.train.radius(m.planet, m), self.height(m.planet)
+        for side in self.sides(m.planet) if m.carrier else (1,):
+            wheel = Edge("" if again or side < 0 else m.planet, diameter)
+            self.wheel(wheel, x, side * up, label=1 if side * up >= 0 else -1, free=bool(m.carrier))
         if not m.carrier:
             self.canvas.line(complex(x - SLEEVE, self.y(up)), complex(x + SLEEVE, self.y(up)), "main")
             self.bearing(x - SLEEVE, self.y(up))
@@ -265,40 +276,37 @@ class SchemeOfTrain(SchemeViews):
         if m.sign < 0:
             self.ring(m.central, r, x, stands)
             return
-        self.wheel(_Wheel(m.central, 2 * r), x, 0.0, label=-1, free=free)
+        self.wheel(Edge(m.central, 2 * r), x, 0.0, label=-1, free=free)
         if stands:
             for side in (-1, 1):
-                a, b = (complex(x + end * FACE / 2, self.axis + side * HUB) for end in (-1, 1))
+                a, b = (complex(x + end * self.face / 2, self.axis + side * HUB) for end in (-1, 1))
                 self.canvas.hatch(a, b, side, depth=2.0, step=2.0)
 
     def ring(self, name: str, r: float, x: float, stands: bool) -> None:
         """A ring: held in the frame where it meshes, or joined by a disc beside the planets to a sleeve about the main axis."""
-        c, web = self.canvas, x + FACE + 3
-        for side in (1,) if stands else (1, -1):
+        c, web = self.canvas, x + self.face + 3
+        if stands:
+            self.held(x, r, name)
+            return
+        for side in (1, -1):
             rim = complex(x, self.y(side * r))
-            c.line(rim - FACE / 2, rim + FACE / 2, "main")
-            if stands:
-                out = rim + 6j
-                c.line(rim, out, "main")
-                c.line(out - 5, out + 5, "main")
-                c.hatch(out - 5, out + 5, side)
-                continue
+            c.line(rim - self.face / 2, rim + self.face / 2, "main")
             hub = complex(web, self.axis + side * HUB)
-            c.line(rim + FACE / 2, complex(web, rim.imag), "main")
+            c.line(rim + self.face / 2, complex(web, rim.imag), "main")
             c.line(complex(web, rim.imag), hub, "main")
-            c.line(hub - FACE / 2, hub + FACE / 2, "main")
-        away = -1 + 0.3j if stands else -1 - 0.6j
-        c.label(complex(x - FACE / 2, self.y(r if stands else -r)), name, away=away, height=5, gap=1.2)
+            c.line(hub - self.face / 2, hub + self.face / 2, "main")
+        c.label(complex(x - self.face / 2, self.y(-r)), name, away=-1 - 0.6j, height=5, gap=1.2)
 
     def arm(self, carrier: str, m: Any, x: float) -> None:
         """The carrier's arm from the main axis to the planets'."""
         self.columns[carrier] = [x]
         c, top = self.canvas, self.y(self.train.distance(m))
-        c.line(complex(x - STUB, self.axis), complex(x, self.axis), "main")
-        c.line(complex(x, self.axis), complex(x, top), "main")
-        self.bearing(x - STUB / 2, self.axis)
+        c.line(complex(x - self.stub, self.axis), complex(x, self.axis), "main")
+        low = self.y(-self.train.distance(m)) if self.opposite(m.planet) else self.axis
+        c.line(complex(x, low), complex(x, top), "main")
+        self.bearing(x - self.stub / 2, self.axis)
         if self.train.stands(carrier):
-            c.hatch(complex(x - STUB, self.axis - 4), complex(x - STUB, self.axis + 4), 1, depth=2.0, step=2.0)
+            c.hatch(complex(x - self.stub, self.axis - 4), complex(x - self.stub, self.axis + 4), 1, depth=2.0, step=2.0)
         name = f"H_{carrier[1:]}" if len(carrier) > 1 else "H"
         c.label(complex(x, (self.axis + top) / 2), name, away=1, height=5, gap=1.2)
 
@@ -324,12 +332,3 @@ class SchemeOfTrain(SchemeViews):
         for k, (centre, radius, name) in enumerate({name: (centre, radius, name) for centre, radius, name in named}.values()):
             way = rect(1, pi / 2 - (0.55 + 0.35 * (k // 2)) if centre == o else -0.4 - 0.5 * (k // 2))
             c.label(centre + radius * way, name, away=way, height=3.5, gap=1.0)
-
-
-class _Wheel:
-    """A wheel as :meth:`SchemeViews.wheel` draws it: number, pitch diameter in m."""
-
-    def __init__(self, number: str, diameter: float) -> None:
-        self.number, self.diameter = number, diameter
-
-

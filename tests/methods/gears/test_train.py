@@ -1,5 +1,6 @@
 """Trains of gears against the equations of Willis solved in fractions, whatever link the speeds are given of."""
 
+import re
 from fractions import Fraction
 
 import pytest
@@ -103,6 +104,21 @@ def test_speeds_that_do_not_tell(case, speeds, message):
     teeth, meshes, _, shafts = CASES.get(case, alike)
     with pytest.raises(CannotBuild, match=message):
         _ = project(train(teeth, meshes, speeds, shafts)).train
+
+
+@pytest.mark.parametrize(("case", "speeds", "shafts", "way"), [
+    ("back shaft", {"1": 960}, (), '"0 rpm"; .* shafts = \\[\\["2", "3"\\]\\]'),
+    ("two stages and a pair", {"1": 1500, "3": 0, "6": 0}, (("H2", "7"),), 'shafts = \\[\\["H1", "4"\\]\\]'),
+    ("two stages and a pair", {"1": 1500, "3": 0, "6": 0}, (), 'shafts = \\[\\["H1", "4"\\], \\["H2", "7"\\]\\]'),
+    ("back shaft", {"1": 960, "4": 100}, (),
+     "where 4 or 3 turns with a wheel or a carrier of another mesh, both stand together in shafts"),
+    ("two inputs", {"1": 960, "3": 0, "H": 9}, (), "leave out"),
+])
+def test_wheels_that_turn_together_are_told_of_where_they_are_missing(case, speeds, shafts, way):
+    teeth, meshes, _, _ = CASES[case]
+    with pytest.raises(CannotBuild) as refused:
+        _ = project(train(teeth, meshes, speeds, shafts)).train
+    assert re.search(way, refused.value.hint)
 
 
 @pytest.mark.parametrize(("changes", "message"), [

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -148,11 +149,42 @@ def _check_speeds(train: Train) -> None:
         raise CannotBuild(tell("train: nothing can turn, the meshes lock one another"), tell("look at shafts and carriers"))
     if len(told) != free or len(train.given) != len(told):
         raise CannotBuild(tell("train: degrees of freedom: {free}; of so many links speeds are needed, given are {given}").format(
-            free=free, given=len(train.given)), tell('a link that is held has the speed "0 rpm"'))
+            free=free, given=len(train.given)), _way_out(train, len(told) < free))
     fixed = np.eye(len(links))[[links.index(name) for name in told]]
     if np.linalg.matrix_rank(np.vstack((rows, fixed))) < len(links):
         raise CannotBuild(tell("train: the speeds of {links} hang together and do not tell those of the others").format(
             links=", ".join(train.given)), tell("give the speed of another link"))
+
+
+def _way_out(train: Train, few: bool) -> str:
+    """What to try where too ``few`` speeds are given, or too many: links are held, or turn together though the file says it not."""
+    if not few:
+        return tell("leave out those that follow from the others")
+    held = tell('a link that is held has the speed "0 rpm"')
+    apart = _apart(train)
+    example = str(apart).replace("'", '"') if apart else '[["2", "3"]]'
+    together = tell("wheels and carriers that turn as one stand together in shafts, for example shafts = {example}").format(
+        example=example)
+    return f"{held}; {together}"
+
+
+def _apart(train: Train) -> list[list[str]]:
+    """Wheels and carriers that would join the parts of a train between which neither a mesh nor a shaft is, for example."""
+    parts: list[tuple[set[str], Mesh, Mesh]] = []
+    for m in train.meshes:
+        links, first = {train.link(name) for name in (m.central, m.planet, m.carrier) if name}, m
+        for part in [part for part in parts if part[0] & links]:
+            parts.remove(part)
+            links, first = links | part[0], part[1]
+        parts.append((links, first, m))
+    return [_joint(train, before[2], after[1]) for before, after in pairwise(parts)]
+
+
+def _joint(train: Train, before: Mesh, after: Mesh) -> list[str]:
+    """What may lead from one mesh to another: the shaft beside the main axis that two pairs have, else one on it."""
+    if not before.carrier and not after.carrier:
+        return [before.planet, after.planet]
+    return [before.carrier or before.central, after.central if after.central not in train.given else after.carrier or after.planet]
 
 
 def _sums(train: Train) -> dict[str, list[int]]:
@@ -195,9 +227,15 @@ def heights(train: Train) -> Iterator[tuple[str, float]]:
             found[central] = 0.0
         if found.get(central) != 0.0 or found.get(planet) == 0.0:
             raise CannotBuild(tell("train: wheel {wheel} of the pair {wheel}–{mate} is not on the main axis").format(
-                wheel=m.central, mate=m.planet), tell("write the wheel on the main axis as sun or ring, in the order of the train"))
+                wheel=m.central, mate=m.planet), _to_main_axis(m))
         found.setdefault(planet, apart * (1 if m is train.meshes[0] else -1))
     yield from found.items()
+
+
+def _to_main_axis(m: Mesh) -> str:
+    """What to try where neither wheel of a pair is known to be on the main axis."""
+    return tell("write the wheel on the main axis as sun or ring, in the order of the train; where {wheel} or {mate} turns with a "
+                "wheel or a carrier of another mesh, both stand together in shafts").format(wheel=m.central, mate=m.planet)
 
 
 def train(data: TrainTable) -> Train:

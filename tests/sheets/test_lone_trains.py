@@ -1,0 +1,99 @@
+"""Sheets of a reducer or a train alone: filled evenly, wheels drawn at both sides of the axis, numbers as they are measured."""
+
+from functools import cache
+
+import pytest
+
+from tests.evenness import gap
+from tests.project_files import project
+from tmm_sheets.drawing.evenness import empty_cells
+from tmm_sheets.drawing.marks import Line, Text
+from tmm_sheets.sheets import plan_checks, reducer, wheel_sizes
+from tmm_sheets.sheets import train as trains
+from tmm_sheets.sheets.sheet import composed
+
+REDUCER = {"simple": "none", "input_speed": "1450 rpm", "module": "3 mm", "satellites": 3}
+MESHES = [{"sun": "1", "planet": "2", "carrier": "H"}, {"ring": "3", "planet": "2", "carrier": "H"}]
+PROJECTS = {
+    "sun drives": {"reducer": REDUCER | {"scheme": "single row", "output_speed": "250 rpm"}},
+    "ring drives": {"reducer": REDUCER | {"scheme": "single row", "driver": "ring", "output_speed": "1000 rpm"}},
+    "two suns": {"reducer": REDUCER | {"scheme": "two external", "ratio": 60, "satellites": 2}},
+    "two rings": {"reducer": REDUCER | {"scheme": "two internal", "output_speed": "40 rpm", "satellites": 2}},
+    "blocks": {"reducer": REDUCER | {"scheme": "external-internal", "output_speed": "120 rpm"}},
+    "two stages": {"reducer": REDUCER | {"scheme": "single row", "stages": 2, "output_speed": "70 rpm"}},
+    "pair before": {"reducer": REDUCER | {"scheme": "single row", "simple": "before", "output_speed": "100 rpm",
+                                          "simple_module": "4 mm", "teeth": {"z1": 14}}},
+    "planetary train": {"train": {"module": "4 mm", "teeth": {"1": 20, "2": 40, "3": 100}, "mesh": MESHES,
+                                  "speeds": {"1": "960 rpm", "3": "0 rpm"}}},
+    "shafts": {"train": {"module": "4 mm", "teeth": {"1": 20, "2": 40, "3": 25, "4": 35}, "speeds": {"1": "960 rpm"},
+                         "shafts": [["2", "3"]], "mesh": [{"sun": "1", "planet": "2"}, {"sun": "4", "planet": "3"}]}},
+    "one ring": {"train": {"module": "4 mm", "teeth": {"1": 20, "2": 60}, "speeds": {"1": "960 rpm"},
+                           "mesh": [{"ring": "2", "planet": "1"}]}},
+}
+
+
+@cache
+def drawn(name):
+    own = project(PROJECTS[name])
+    return own, composed(own, 1)
+
+
+@pytest.mark.parametrize("name", [name for name in PROJECTS if name not in ("shafts", "one ring")])
+def test_a_sheet_of_gears_alone_is_filled(name):
+    _, sheet = drawn(name)
+    assert empty_cells(sheet.drawing) <= 0.18
+    assert gap(sheet.drawing) is None
+
+
+@pytest.mark.parametrize("name", PROJECTS)
+def test_views_keep_their_places(name):
+    _, sheet = drawn(name)
+    assert [str(left) for left in sheet.leaving] == []
+    assert [str(label) for label in sheet.crowded] == []
+
+
+@pytest.mark.parametrize("name", ["sun drives", "two rings", "planetary train"])
+def test_a_standing_ring_is_held_at_both_sides_of_the_axis_and_meshes_there(name):
+    own, _ = drawn(name)
+    canvas = reducer.Canvas()
+    is_train = "train" in PROJECTS[name]
+    views = trains.SchemeOfTrain(own.train) if is_train else reducer.SchemeOfReducer(own.reducer)
+    views.place(canvas, reducer.Box(24, 178, 642, 572), "scheme", "")
+    views.axial()
+    level = {round(m.a.imag - views.axis, 6) for m in canvas.marks if isinstance(m, Line) and abs((m.b - m.a).imag) < 1e-9}
+    ring = own.train.radius("3", own.train.meshes[1]) if is_train else own.reducer.stages[0].wheels[3].diameter / 2
+    assert {round(views.mu.mm(side * ring), 6) for side in (1, -1)} <= level  # rims of the ring and of the satellites
+    assert {round(views.mu.mm(side * ring) + 6 * side, 6) for side in (1, -1)} <= level  # where it is held
+
+
+def test_a_planet_alone_on_its_carrier_is_drawn_once():
+    own = project({"train": {"module": "2 mm", "teeth": {"1": 100, "2": 20, "3": 101}, "speeds": {"1": "0 rpm", "H": "60 rpm"},
+                             "mesh": [{"sun": "1", "planet": "2", "carrier": "H"}, {"sun": "3", "planet": "2", "carrier": "H"}]}})
+    assert trains.SchemeOfTrain(own.train).sides("2") == (1,)
+
+
+def test_wheels_as_wide_as_the_end_view_needs():
+    """A wheel beside the main axis that is the largest stood out of the view's place, over the tables."""
+    own, _ = drawn("shafts")
+    assert trains.SchemeOfTrain(own.train).side == pytest.approx(0.08)
+
+
+def test_sizes_of_wheels_without_shift():
+    own, _ = drawn("sun drives")
+    rows = [wheel_sizes._row(wheel) for wheel in wheel_sizes._wheels(own)]
+    sun, planet, ring = (int(w.teeth) for w in (own.reducer.stages[0].wheels[k] for k in (0, 1, 3)))
+    assert rows == [[name, str(z), *(f"{3 * (z + over):g}".replace(".", ",") for over in (0, tip, root))]
+                    for name, z, tip, root in (("1", sun, 2, -2.5), ("2", planet, 2, -2.5), ("3", ring, -2, 2.5))]
+
+
+def test_ratios_of_pairs_and_of_their_chain():
+    own, _ = drawn("shafts")
+    assert list(plan_checks._pairs(own.train)) == [
+        "i_{12} = n_{1}/n_{2} = −z_{2}/z_{1};  960/(−480) = −40/20 = −2",
+        "i_{34} = n_{3}/n_{4} = −z_{4}/z_{3};  −480/342,9 = −35/25 = −1,4", "i_{14} = i_{12}·i_{34} = 40·35/(20·25) = 2,8"]
+
+
+def test_a_measured_ratio_is_that_of_the_lengths_it_is_written_with():
+    _, sheet = drawn("shafts")
+    texts = "".join(m.text for m in sheet.drawing.marks if isinstance(m, Text) and m.of == "plan_checks.of_train")
+    assert "384,0/137,1 = 2,801" in texts

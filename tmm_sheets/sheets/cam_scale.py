@@ -1,0 +1,99 @@
+"""Numbers at the marks of a follower's path, in their order along it: spread, with leaders, where marks lie close."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import product
+
+import numpy as np
+
+from tmm_sheets.box import Box
+from tmm_sheets.construction.step import Step
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Points
+from tmm_sheets.sheets.gear_marks import spread
+from tmm_sheets.sheets.gear_radii import Drawn
+from tmm_sheets.sheets.player import Stage
+
+HEIGHT, BETWEEN, CLEAR = 2.5, 0.8, 0.4
+"""Height of the numbers, what is left between them and round them, mm."""
+MARK = 1.8
+"""Half the length of a mark, mm."""
+SAME = 0.05
+"""Marks nearer than this, mm, are one."""
+
+Path = Callable[[float, float], complex]
+"""A point of the sheet so far along the path from its lowest mark and so far beside it, mm."""
+
+
+def at_marks(along: Sequence[float], labels: Sequence[str]) -> list[tuple[int, float, str]]:
+    """Different marks in their order along the path: the first of their positions, where they are, the numbers of all of them."""
+    found: list[tuple[int, float, list[str]]] = []
+    for k in sorted(range(len(labels)), key=lambda k: (round(along[k] / SAME), k)):
+        if found and abs(along[k] - found[-1][1]) < SAME:
+            found[-1][2].append(labels[k])
+        else:
+            found.append((k, along[k], [labels[k]]))
+    return [(k, t, ", ".join(names)) for k, t, names in found]
+
+
+def number(s: Stage, step: Step, first: int, along: Sequence[float], labels: Sequence[str], path: Path, side: float,
+           closed: Box, furthest: float = 48.0) -> None:
+    """Marks across the path, and their numbers in a row beside it where the least is drawn: rather at ``side`` of it, 1 or -1.
+
+    What is drawn is seen from the mark ``first`` on. The row is no farther than ``furthest`` from the path, mm,
+    and nothing of it in the box ``closed`` to it.
+    """
+    marks = at_marks(along, labels)
+    for k, t, _ in marks:
+        s.position(k).line(step, path(t, -MARK), path(t, MARK), "thin", "point")
+    ink = Drawn(s.canvas, first)
+    ways = product(np.arange(MARK + 1.0, furthest, 2.0), (side, -side))
+    rows = (_row(ink, closed, marks, path, way, float(off)) for off, way in ways)
+    _, boxes, beside = min(rows, key=lambda row: row[0] + 0.5 * (row[2] != side))
+    for (k, t, text), box in zip(marks, boxes, strict=True):
+        pen, end, begin = s.position(k).pen(step, "text"), box.centre, path(t, beside * MARK)
+        way = (end - begin) / abs(end - begin)
+        reach = min(0.5 * box.width / max(abs(way.real), 1e-9), 0.5 * box.height / max(abs(way.imag), 1e-9)) + CLEAR
+        if abs(end - begin) > reach + 1.0:
+            pen.line(begin, end - reach * way, "thin")
+        laid = letter(text, HEIGHT)
+        pen.put(laid, complex(box.x0, box.y0 + laid.descent), 0.0, text)
+
+
+def _row(ink: Drawn, closed: Box, marks: Sequence[tuple[int, float, str]], path: Path, way: float,
+         off: float) -> tuple[float, list[Box], float]:
+    """A row at a side of the path: what it costs in lines crossed, places of the numbers, the side.
+
+    A number moves on along the path, with those behind it, past what is drawn where it would stand.
+    """
+    laid = [letter(text, HEIGHT) for *_, text in marks]
+    wide, high = max(each.width for each in laid), max(each.ascent + each.descent for each in laid)
+    middle = 0.5 * (marks[0][1] + marks[-1][1])
+    v = path(middle + 0.5, 0.0) - path(middle - 0.5, 0.0)
+    least = min((wide + BETWEEN) / max(abs(v.real), 1e-9), (high + BETWEEN) / max(abs(v.imag), 1e-9))
+    cost, before, boxes = 0.04 * off, -np.inf, list[Box]()
+    for (_, mark, _), wanted, each in zip(marks, spread([t for _, t, _ in marks], least), laid, strict=True):
+        half = complex(each.width, each.ascent + each.descent) / 2
+
+        def place(t: float, half: complex = half) -> Box:
+            u = path(t, way * off) - path(t, 0.0)
+            u /= abs(u)
+            at = path(t, way * off) + u * (abs(u.real) * half.real + abs(u.imag) * half.imag)
+            return Box((at - half).real, (at - half).imag, (at + half).real, (at + half).imag)
+
+        def met(box: Box) -> int:
+            over = min(box.x1, closed.x1) > max(box.x0, closed.x0) and min(box.y1, closed.y1) > max(box.y0, closed.y0)
+            return ink.count(box, 0j, 0.0) + 10 * over
+
+        begin = max(wanted, before + least)
+        tried = [(met(place(t).inset(-CLEAR)), t) for t in begin + np.arange(0.0, 8.0, 1.0)]
+        lines, before = next((found for found in tried if not found[0]), min(tried))
+        boxes.append(place(before))
+        cost += lines + 0.05 * abs(before - mark)
+    return cost, boxes, way
+
+
+def lengths(z: Points, centre: complex) -> list[float]:
+    """Lengths along an arc about a centre from the first of some points, with the sign of their direction."""
+    return [float(abs(z[0] - centre) * np.angle((p - centre) / (z[0] - centre))) for p in z]
