@@ -29,13 +29,13 @@ CIPHERS = ("00-T-111", "01-T-27", "05-T-384", "09-T-999")
 
 
 def names(patterns: list[str]) -> list[str]:
-    """Shipped projects that match, and files; a transport machine stands for its ciphers."""
+    """Shipped projects that match, files, and any other cipher by its name; a transport machine stands for its ciphers."""
     every = []
     for entry in catalogue.entries():
         transport = entry.name.startswith("transport/") and "@" not in entry.name
         every += [f"{entry.name}@{c}" for c in CIPHERS] if transport else [entry.name]
     found = [n for n in every if not patterns or any(fnmatch(n, p) for p in patterns)]
-    return found + [p for p in patterns if p.endswith(".toml")]
+    return found + [p for p in patterns if p.endswith(".toml") or ("@" in p and "*" not in p and p not in found)]
 
 
 def pictures(name: str) -> list[tuple[str, object, list[str]]]:

@@ -67,7 +67,7 @@ def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
     {"tappet": _rod, "rocker": _rocker, "flat": _flat}[picture.kind](s, picture)
     _phase_angles(s, picture)
     size = _table_size(cam)
-    corner = picture.corner(size) or complex(box.x0 + EDGE, box.y0 + FOOT + size[1])
+    corner = picture.corner(size) or complex(box.centre.real - size[0] / 2, box.y0 + FOOT + size[1])
     canvas.table(corner, _widths(cam), _given(cam, options.get("angle", ANGLE)), _ROW, 3.5)
     _path(s, picture, first, Box(corner.real, corner.imag - size[1], corner.real + size[0], corner.imag))
 
