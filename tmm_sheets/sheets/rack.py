@@ -32,7 +32,7 @@ OVER = 16.0 + NOTES
 NAMED = 36.0, 6.0, 12.0
 """Distance of the names of the rack's lines from the window's side, from one another, and the least from the side, mm."""
 CLEAR, SHELF, HEAD, TAIL = 0.8, 0.8, 2.5, 9.0
-"""What is kept free about the sizes of the rack, distance of a size from the shelf it stands on, arrow head, tail of a small size, mm."""
+"""What is kept free about sizes of the rack, distance of one from the shelf it stands on, arrow head, tail of a small size, mm."""
 USUAL, MOST = 1.6, 2.2
 """How far the window goes under the pole, in what must be seen there: without the wheel's centre, and with it at the most."""
 BELOW = 0.5
@@ -208,7 +208,8 @@ class _RackPicture:
         low, high = self.height(-rack.depth), self.height(-rack.addendum * m)
         gap(c, complex(x, low), complex(x, high), f"c^{{*}}m = {number(gear.clearance * m * 1e3, 3)}", -1, 1.5)
         if abs(rack.shift) * m / self.at.scale.mu > 0.3:
-            self.shift(c, *sorted((self.height(0.0), self.height(-rack.shift * m))), f"xm = {fixed(rack.shift * m * 1e3, 2)}")
+            low, high = sorted((self.height(0.0), self.height(-rack.shift * m)))
+            self.shift(c, low, high, f"xm = {fixed(rack.shift * m * 1e3, 2)}")
         laid = letter(f"p = {fixed(gear.p * 1e3, 2)}", 3.5)
         y = w.y1 - NOTES + 5.0
         half = gear.p / 2 / self.at.scale.mu
@@ -222,7 +223,7 @@ class _RackPicture:
             c.put(laid, (a + b) / 2 + complex(4, 1.0))
 
     def tip_radius(self, c: Canvas, tip: complex, touch: complex) -> None:
-        """Radius of the rack's tip, its name on a shelf in the body of the wheel: in the space of the teeth are the rack's flanks."""
+        """Radius of the rack's tip, its name on a shelf in the body of the wheel: between the teeth are the rack's flanks."""
         text, u = f"ρ_f = {fixed(self.rack.tip_radius * 1e3, 2)}", (touch - tip) / abs(touch - tip)
         laid, drawn = letter(text, 3.5), Drawn(c, self.first)
         c.dot(tip, 0.5, "thin")
