@@ -300,3 +300,22 @@ def test_points_lie_where_their_steps_are(name):
         assert mark.points.mean() == pytest.approx(complex(frame(value[min(k, len(value) - 1)])), abs=1e-9)
         checked += 1
     assert checked > 15
+
+
+@pytest.mark.parametrize("data", [cam_data(upper_dwell=0), flat_data(law="sine", upper_dwell=0)])
+def test_without_upper_dwell_positions_8_and_8_prime_are_one_in_the_tables(data):
+    own = project(lambda **_: data)
+    assert "8'" in own.cam.law.labels
+    for name in ("cam.table", "cam_profile.radii"):
+        canvas = Canvas()
+        view(name)(own, canvas, Box(0, 0, 300, 160), {})
+        assert "8" in texts(canvas)
+        assert "8'" not in texts(canvas)
+
+
+def test_nothing_is_drawn_over_what_follows_from_the_radius_of_curvature():
+    """The perpendiculars went on beyond M into the lines under the figure."""
+    canvas = drawn("cam_profile.roller", project(rise=180, upper_dwell=0, fall=180, stroke=40, limit="both", roller=None))
+    said = [text_box(mark) for mark in canvas.marks if isinstance(mark, Text)]
+    foot = max(z.imag.max() for z in said if z.imag.max() < min(mark.a.imag for mark in canvas.marks if isinstance(mark, Line)) + 9)
+    assert min(flat(mark, 1.0).imag.min() for mark in canvas.marks if isinstance(mark, Line)) > foot

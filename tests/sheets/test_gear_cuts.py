@@ -24,6 +24,28 @@ def test_the_scale_where_both_wheels_would_be_cut(teeth, module, width, height, 
     assert (1e-3 / mu.mu, broken) == (pytest.approx(scale), False)
 
 
+@pytest.mark.parametrize(("teeth", "module", "size", "drawn"), [
+    ([14, 39], "6 mm", (252, 379), (2.0, True)),  # at 1:1 teeth would be 13,5 mm high, the lettering of the mesh upon itself
+    ([14, 39], "6 mm", (216, 459), (1.0, False)),  # no room for it
+    ([17, 51], "4 mm", (252, 459), (2.0, False)),  # teeth of 18 mm
+    ([14, 27], "6 mm", (252, 379), (1.0, False)),  # less than twice the teeth
+])
+def test_low_teeth_break_a_wheel_of_twice_the_teeth(teeth, module, size, drawn):
+    mu, broken = gear.picture(pair(teeth, module), *size)
+    assert (1e-3 / mu.mu, broken) == drawn
+
+
+def test_the_place_is_made_wide_enough_for_larger_teeth():
+    """The tables of the reducer asked for a wider column: what is fixed in it would have moved, and all boxes stayed as written."""
+    own = files.project({**files.HEAD, "project.sheets": ["gear_reducer"], "gear": {
+        "teeth": "reducer", "shift": "rule", "pressure_angle": "20 deg"}, "reducer": {
+        "scheme": "single row", "simple": "after", "driver": "ring", "input_speed": "960 rpm", "ratio": 4, "teeth": {"z4": 14},
+        "module": "4 mm", "simple_module": "6 mm", "satellites": 4, "least_teeth": 13}})
+    sheet = composed(own, 1)
+    assert 1e-3 / sheet.scales["gear-engagement"].mu == pytest.approx(2.0)
+    assert (sheet.leaving, sheet.crowded) == ((), ())
+
+
 def test_circles_are_named_with_their_values_inside_the_picture():
     """A wheel of 85 teeth broken between mesh and centre: its radii have no room, their circles have names and values."""
     own = files.project({**files.GEAR, "project.sheets": ["gear"], "gear.teeth": [10, 85], "gear.module": "2.5 mm",

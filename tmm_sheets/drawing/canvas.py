@@ -429,9 +429,10 @@ class Canvas:
 
     @in_role("dimension")
     def angle_mark(self, vertex: complex, start: float, end: float, radius: float, markup: str, height: float = 3.5,
-                   share: float = 0.5) -> None:
+                   share: float = 0.5, thin: float = 1.0) -> None:
         """Dimension arc of an angle from ``start`` to ``end`` (rad, counter-clockwise), its sign at ``share`` of it.
 
+        The sign keeps ``thin`` times more than others off thin lines, its own arc among them.
         Where two heads have no room between the sides of the angle they stand outside, on the arc drawn on (GOST 2.307).
         """
         first = len(self.marks)
@@ -445,7 +446,7 @@ class Canvas:
             self.fill((p, p + 3 * u + 0.5j * u, p + 3 * u - 0.5j * u), "thin")
         self._one("arrow", first)
         mid = rect(1, start + share * (end - start))
-        self.label(vertex + radius * mid, markup, mid, height)
+        self.label(vertex + radius * mid, markup, mid, height, thin=thin)
 
 
 def _for_text(widths: Sequence[float], rows: Sequence[Sequence[str]]) -> list[float]:

@@ -59,7 +59,7 @@ def axes(s: Stage, step: Step | str, x: float, y: tuple[float, float], before: f
     pen.arrow(o, o + x, "axis", 3.0)
 
 
-def distinct(labels: tuple[str, ...], x: Points) -> list[int]:
+def distinct(labels: tuple[str, ...], x: Any) -> list[int]:
     """Positions to be numbered: where two fall together (no dwell between), the first."""
     return [k for k in range(len(labels)) if k == 0 or abs(x[k] - x[k - 1]) > 1e-9]
 
@@ -411,7 +411,7 @@ def _exceeded(d: OverAngle, canvas: Canvas, cam: RollerCam, letter_of: str) -> N
 
 @for_cams
 def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """S, S', S'' and the pressure angle in the numbered positions."""
+    """S, S', S'' and the pressure angle in the numbered positions; without upper dwell 8 and 8' are one."""
     cam: Cam = project.cam
     second = _second_derivative(cam)
     turned, values = np.degrees(cam.inversion.phi), [*_diagram_rows(cam.motion, second),
@@ -420,6 +420,8 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
         rows = [[tr("Position"), *cam.motion.law.labels], [in_degrees("φ"), *(fixed(v, places) for v in turned)], *values]
         if sum(needs(rows, 2.5)) <= box.width:
             break
+    kept = [0, *(k + 1 for k in distinct(cam.motion.law.labels, turned))]
+    rows = [[cells[k] for k in kept] for cells in rows]
     first = 32.0 if len(second) > 1 else 26.0
     width = (box.width - first) / (len(rows[0]) - 1)
     row = min(box.height / len(rows), 8.0)

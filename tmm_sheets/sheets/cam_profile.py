@@ -17,7 +17,7 @@ from tmm_sheets.drawing.symbols import pivot
 from tmm_sheets.drawing.tables import LEAST, needs, size_in, widened
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets import cam_scale
-from tmm_sheets.sheets.cam import ANGLE, for_cams, in_degrees, in_mm, lines_of_text, raised
+from tmm_sheets.sheets.cam import ANGLE, distinct, for_cams, in_degrees, in_mm, lines_of_text, raised
 from tmm_sheets.sheets.frame import ratio, standard
 from tmm_sheets.sheets.player import Stage, placed, play
 from tmm_sheets.words import tr
@@ -303,7 +303,7 @@ def _radii(cam: Cam) -> list[list[str]]:
     columns.append((in_mm("|OF|"), inv.plan.length(inv.plan["O"], inv.plan["F"]).value * 1e3, 2))
     rows = [[tr("No."), *(head for head, _, _ in columns)]]
     return rows + [[inv.plan.labels[k], *(fixed(float(values[k]), places) for _, values, places in columns)]
-                   for k in range(len(inv.plan.labels))]
+                   for k in distinct(inv.plan.labels, inv.phi)]
 
 
 def _circles(s: Stage, picture: _ProfilePicture) -> None:
@@ -518,8 +518,7 @@ def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     placed(canvas, beside.plan, complex(origin), scale.mu).curve(beside.centres, at(near))
     for (a, b), end in zip(pairwise(chords), "DG", strict=True):
         s.line(f"{end}_ρ", at(a), at(b), "thin")
-        s.pen("M", "construction").ray_line(at(centre), at((a + b) / 2), "construction", 6.0,
-                                               0.9 * abs(at(b) - at(a)) + 3.0)
+        s.pen("M", "construction").ray_line(at(centre), at((a + b) / 2), "construction", 0.9 * abs(at(b) - at(a)) + 3.0, 2.5)
         # Equal arcs about both ends meet on the perpendicular through the middle of the chord.
         for end_, other in ((at(a), at(b)), (at(b), at(a))):
             for side in (1, -1):
@@ -562,7 +561,7 @@ def _roller_lines(cam: RollerCam, mu: float) -> list[str]:
 def _sharpest(cam: RollerCam) -> tuple[Inversion, Points]:
     """Positions about the sharpest point of the centre profile, and the centres of the roller as far as they are drawn, m."""
     d, centre = (complex(cam.inversion.plan[name].value) for name in ("D_ρ", "M"))
-    beside = cam.at(float(cam.sharpest.three[1]) + np.linspace(-0.6, 0.6, 121))
+    beside = cam.at(float(cam.three[1]) + np.linspace(-0.6, 0.6, 121))
     course = beside.centres.value
     return beside, course[np.abs(course - d) < 0.75 * abs(centre - d)]
 

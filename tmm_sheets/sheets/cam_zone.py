@@ -171,7 +171,7 @@ def _rays(s: Stage, z: Zone, letter_of: str, axis: float | None = None) -> None:
         if z.beyond is not None and k > law.parts and min(abs(points[k] - points[[0, law.parts]])) * 1e9 > 1:
             here.dot(step, 0.5, "main")
             name, height = (law.labels[k], 3.5) if axis is not None else (f"{law.labels[k]}_D", 2.5)
-            canvas.label(here.at(step), name, complex(points[k] - middle), height, 0.8)
+            canvas.label(here.at(step), name, complex(points[k] - middle), height, 0.8, thin=CLEAR)
     if axis is not None:
         k = int(np.argmax(np.abs(np.angle(points[1:law.parts] - z.apex.value) - pi / 2))) + 1
         ray = float(np.angle(points[k] - z.apex.value))
@@ -185,6 +185,8 @@ def _measured(name: str, segment: str, value: float, scale: str, mu: float) -> s
         name=name, segment=segment, scale=scale, length=fixed(value / mu, 2), factor=number(mu), value=fixed(value * 1e3, 3))
 
 
+CLEAR = 4.0
+"""So many times more than other lettering do letters among the rays of a rocker's zone keep off thin lines."""
 DEEP = 0.9
 """Greatest depth to which the zone of a rocker is drawn, in lengths of its arm."""
 
@@ -201,16 +203,18 @@ def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     every = np.array([pivot, apex, 0j, *np.asarray(z.axis.value), *curve, *beyond])
     x0, x1, y1 = float(every.real.min()), float(every.real.max()), float(every.imag.max())
     measured = _rocker_lines(cam)
-    beside = box.width > 1.3 * box.height
     text = max(letter(line, 3.5).width for line in measured) + 14.0
-    room = box.inset(14, 8, text + 6, 30) if beside else box.inset(12, 10 + 7.0 * len(measured), 12, 30)
+    rooms = box.inset(14, 8, text + 6, 30), box.inset(12, 10 + 7.0 * len(measured), 12, 30)
 
-    def fitted(share: float) -> tuple[float, float]:
+    def fitted(room: Box, share: float) -> tuple[float, float]:
         """Scale factor, and the depth (m, negative) to which the zone is drawn: below the axis a share of the arm."""
         low = apex.imag - share * cam.arm
         return handy(max((x1 - x0) / room.width, (y1 - low) / room.height)), low
 
-    mu, low = min(fitted(share) for share in (0.4, 0.3, 0.2, 0.12))
+    # What is measured stands beside the figure in a wide place, unless the figure becomes larger over it.
+    at_side, over = (min(fitted(room, share) for share in (0.4, 0.3, 0.2, 0.12)) for room in rooms)
+    beside = box.width > 1.3 * box.height and at_side[0] <= over[0]
+    room, (mu, low) = (rooms[0], at_side) if beside else (rooms[1], over)
     low = min(low, max(y1 - mu * room.height, apex.imag - DEEP * cam.arm))  # what height is left shows more of the zone
     scale = Scale("μ_l", mu, tr("m/mm"))
     canvas.scales[z.plan.name] = scale
@@ -272,7 +276,7 @@ def _rocker_positions(s: Stage, cam: RockerCam) -> None:
         canvas.label(complex(at(starts[k])), labels[k], complex(starts[k] - pivot), 3.5, 0.8)
     for k in numbered:
         if abs(at(tips[k]) - at(starts[k])) > 6:
-            canvas.label(complex(at(tips[k])), f"{labels[k]}_D", complex(tips[k] - starts[k]), 2.5, 0.6)
+            canvas.label(complex(at(tips[k])), f"{labels[k]}_D", complex(tips[k] - starts[k]), 2.5, 0.6, thin=CLEAR)
 
 
 def _rocker_and_axis(s: Stage, cam: RockerCam, picture: Box, letter_of: str) -> None:

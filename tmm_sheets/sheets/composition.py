@@ -110,7 +110,11 @@ class _Way:
         whole = _around([view.box for view in arrangement(self.plan.name).views])
         room = Box(whole.x0, TITLE_BLOCK.y0, TITLE_BLOCK.x1, whole.y1)
         views = [part for parts in self.parts for part in parts]
+        fixed = {(view.box.x0, view.box.x1) for view, _ in views if view.draw not in NEEDS}
         for view, node in views:
+            # A table that asks for a wider column would move what is fixed there, and all borders would stay as written.
+            if node.need is not None and (view.box.x0, view.box.x1) in fixed:
+                node.need = replace(node.need, most=(min(node.need.most[0], view.box.width), node.need.most[1]))
             if node.need is not None and view.draw in NEEDS and _designated(view.box):
                 node.need = replace(node.need, covered=max(room.y1 - DESIGNATION.y0, 0.0))
         found = solve(tree, room)

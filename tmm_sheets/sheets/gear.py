@@ -34,8 +34,10 @@ DIVISION = 10.0
 """Room beyond the last division of an involute for its number, mm."""
 PITCHES, MOST = 1.25, 1.5
 """Pitches that the view of the meshing zone must show at least, and those it shows at most."""
-LEGIBLE, GREATER = 25.0, 4.0
-"""Height of a tooth on the picture, mm, below which a wheel 2 so many times greater is broken so that the scale can be larger."""
+BROKEN_BELOW = (25.0, 4.0), (16.0, 2.0)
+"""Height of a tooth on the picture, mm, below which a wheel 2 so many times greater is broken so that the scale can be larger: a
+tooth lower than 16 mm leaves no room for the lettering of the mesh, about 60 signs within three pitches.
+"""
 NEARLY, HALF, LEAST = 0.8, 0.5, 20.0
 """Shares of its scale that a picture gives up at most so that no wheel is cut at its edges: where it cuts one, and where it cuts
 both; height of a tooth that it keeps, mm.
@@ -88,7 +90,7 @@ def picture(gear: Any, width: float, height: float) -> tuple[Scale, bool]:
         if whole.mu < uncut.mu <= whole.mu / (HALF if cuts_both else NEARLY) and uncut.mm(tooth) >= LEAST:
             return uncut, False
     one, two = gear.wheels
-    if gear.internal or two.teeth < GREATER * one.teeth or whole.mm(tooth) >= LEGIBLE:
+    if gear.internal or not any(whole.mm(tooth) < low and two.teeth >= greater * one.teeth for low, greater in BROKEN_BELOW):
         return whole, False
     for real, drawn in reversed(STANDARD):
         larger = Scale(whole.symbol, real / drawn * 1e-3, whole.unit)

@@ -30,11 +30,16 @@ KINKS, OVER = 120.0, 3.0
 
 def gap(canvas: Canvas, a: complex, b: complex, text: str, away: complex, space: float) -> None:
     """A small upright distance, its arrows outside, lettering beside it."""
+    distance(canvas, a, b)
+    canvas.label((a + b) / 2, text, away=away, gap=space)
+
+
+def distance(canvas: Canvas, a: complex, b: complex) -> None:
+    """The arrows of a small upright distance."""
     for tip, way in ((a, 1j), (b, -1j)):
         canvas.arrow_head(tip, way, 2.5)
         canvas.line(tip, tip - 6 * way, "thin")
     canvas.line(a, b, "thin")
-    canvas.label((a + b) / 2, text, away=away, gap=space)
 
 
 class Window:

@@ -14,7 +14,8 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets.frame import Frame, ratio, standard
-from tmm_sheets.sheets.gear_marks import Window, gap
+from tmm_sheets.sheets.gear_marks import KEPT_OFF, Window, distance, gap
+from tmm_sheets.sheets.gear_radii import Drawn
 from tmm_sheets.sheets.player import Stage, stage
 from tmm_sheets.words import tr
 
@@ -28,6 +29,10 @@ NOTES = 24.0
 """Room over the rack for its pitch and the names of its lines, mm."""
 OVER = 16.0 + NOTES
 """Room over the rack with the title, mm."""
+NAMED = 36.0, 6.0, 12.0
+"""Distance of the names of the rack's lines from the window's side, from one another, and the least from the side, mm."""
+CLEAR, SHELF, HEAD, TAIL = 0.8, 0.8, 2.5, 9.0
+"""What is kept free about sizes of the rack, distance of one from the shelf it stands on, arrow head, tail of a small size, mm."""
 USUAL, MOST = 1.6, 2.2
 """How far the window goes under the pole, in what must be seen there: without the wheel's centre, and with it at the most."""
 BELOW = 0.5
@@ -66,7 +71,7 @@ class _RackPicture:
     """The surroundings of the pole P0 of the generating engagement, cut out of wheel and rack."""
 
     def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
-        self.gear, self.canvas = gear, canvas
+        self.gear, self.canvas, self.first = gear, canvas, len(canvas.marks)
         self.wheel = gear.pinion
         self.rack = self.wheel.rack
         top, bottom = extent(gear)
@@ -100,7 +105,6 @@ class _RackPicture:
     def lines(self) -> None:
         """Axis, rolling line, reference line, line of generation with its pole and limits."""
         c, w, rack, gear, s = self.canvas, self.window.box, self.rack, self.gear, self.stage
-        self.window.line(s, "O", complex(self.pole.real, w.y0), complex(self.pole.real, w.y1), "centre")
         if w.contains(s.at("O")):
             s.pen("O", "symbol").circle(s.at("O"), 2.0, "main")
             c.label(s.at("O"), f"O_{self.wheel.number}", away=1 - 1j, height=5, gap=3)
@@ -110,8 +114,13 @@ class _RackPicture:
         names = [(self.pole.imag, tr("pitch line of the rack")), (reference, tr("reference line of the rack"))]
         if abs(reference - self.pole.imag) < 0.3:
             names = [(reference, tr("reference and pitch line of the rack"))]
+        # Their names end before the axis; in a window too narrow for that the axis ends under them.
+        ends = [NAMED[1] * k + letter(text, 3.5).width + 2.0 for k, (_, text) in enumerate(names)]
+        first = max(min(NAMED[0], self.pole.real - w.x0 - max(ends) - 1.0), NAMED[2])
+        under = NAMED[1] * (len(names) + 0.5) if w.x0 + first + max(ends) > self.pole.real else 0.0
+        self.window.line(s, "O", complex(self.pole.real, w.y0), complex(self.pole.real, w.y1 - under), "centre")
         for k, (y, text) in enumerate(names):
-            at = complex(w.x0 + 36 + 6 * k, w.y1 - 6 - 6 * k)
+            at = complex(w.x0 + first, w.y1) + NAMED[1] * (k - (k + 1) * 1j)
             c.text(at + 1.0, text, 3.5)
             end = complex(at.real, y)
             pen = c.tracing("text")
@@ -130,7 +139,8 @@ class _RackPicture:
                 c.tracing("symbol").dot(point, 0.8)
                 c.label(point, name, away=way, height=5, gap=1.5)
         radius = min(0.42 * w.width, 60.0)
-        s.pen("flank", "dimension").angle_mark(self.pole, -rack.alpha, 0.0, radius, f"α = {degrees_and_minutes(rack.alpha)}")
+        s.pen("flank", "dimension").angle_mark(self.pole, -rack.alpha, 0.0, radius, f"α = {degrees_and_minutes(rack.alpha)}",
+                                            thin=KEPT_OFF)
 
     def positions(self) -> None:
         """Positions of the rack's flank relative to the wheel, and the points in which they touch the tooth."""
@@ -184,10 +194,7 @@ class _RackPicture:
         m = gear.m
         tip = complex(self.at(rack.placed(rack.tip_centre, 0.0)))
         touch = tip + rect(rack.tip_radius / self.at.scale.mu, -(rack.alpha + pi / 2) / 2)
-        c.dot(tip, 0.5, "thin")
-        c.line(tip, touch, "thin")
-        c.arrow_head(touch, (touch - tip) / abs(touch - tip), 2.5)
-        c.label(tip, f"ρ_f = {fixed(rack.tip_radius * 1e3, 2)}", away=-1 + 0.4j, gap=1.5)
+        self.tip_radius(c, tip, touch)
         x = w.x0 - 4.0
         for low, part in ((0.0, self.wheel.addendum), (-rack.addendum * m, rack.addendum)):
             a, b = complex(x, self.height(low)), complex(x, self.height(low + part * m))
@@ -198,14 +205,11 @@ class _RackPicture:
         for level in (-rack.addendum * m, -rack.depth, self.wheel.addendum * m):
             y = self.height(level)
             c.line(complex(x - 2, y), complex(w.x0 + 6, y), "thin")
-        gaps = [(-rack.depth, -rack.addendum * m, f"c^{{*}}m = {number(gear.clearance * m * 1e3, 3)}")]
+        low, high = self.height(-rack.depth), self.height(-rack.addendum * m)
+        gap(c, complex(x, low), complex(x, high), f"c^{{*}}m = {number(gear.clearance * m * 1e3, 3)}", -1, 1.5)
         if abs(rack.shift) * m / self.at.scale.mu > 0.3:
-            low, high = sorted((0.0, -rack.shift * m))
-            gaps.append((low, high, f"xm = {fixed(rack.shift * m * 1e3, 2)}"))
-        for k, (low, high, text) in enumerate(gaps):
-            at = x if k == 0 else w.x1 - 26
-            a, b = complex(at, self.height(low)), complex(at, self.height(high))
-            gap(c, a, b, text, -1, 1.5 if k == 0 else 2.5)
+            low, high = sorted((self.height(0.0), self.height(-rack.shift * m)))
+            self.shift(c, low, high, f"xm = {fixed(rack.shift * m * 1e3, 2)}")
         laid = letter(f"p = {fixed(gear.p * 1e3, 2)}", 3.5)
         y = w.y1 - NOTES + 5.0
         half = gear.p / 2 / self.at.scale.mu
@@ -217,3 +221,39 @@ class _RackPicture:
             for end in (a, b):
                 self.window.line(self.stage, "M", end + 2j, complex(end.real, self.height(0.0)), "thin", "dimension")
             c.put(laid, (a + b) / 2 + complex(4, 1.0))
+
+    def tip_radius(self, c: Canvas, tip: complex, touch: complex) -> None:
+        """Radius of the rack's tip, its name on a shelf in the body of the wheel: between the teeth are the rack's flanks."""
+        text, u = f"ρ_f = {fixed(self.rack.tip_radius * 1e3, 2)}", (touch - tip) / abs(touch - tip)
+        laid, drawn = letter(text, 3.5), Drawn(c, self.first)
+        c.dot(tip, 0.5, "thin")
+        c.arrow_head(touch, u, HEAD)
+        for further in np.arange(4.0, 60.0, 1.0):
+            end = touch + further * u
+            box = Box(end.real, end.imag + CLEAR, end.real + laid.width + 1.0, end.imag + SHELF + laid.descent + 3.5 + CLEAR)
+            if box.y0 < self.window.box.y0 + CLEAR or box.x1 > self.window.box.x1 - CLEAR:
+                break
+            if not drawn.meets(box):
+                c.line(tip, end, "thin")
+                c.line(end, end + laid.width + 1.0, "thin")
+                c.put(laid, end + complex(0.5, SHELF + laid.descent), 0.0, text)
+                return
+        c.line(tip, touch, "thin")
+        c.label(tip, text, away=-1 + 0.4j, gap=1.5)
+
+    def shift(self, c: Canvas, low: float, high: float, text: str) -> None:
+        """Distance of the rack's reference line from its pitch line, named beside a tail of its arrows where nothing else is."""
+        laid, drawn, w = letter(text, 3.5), Drawn(c, self.first), self.window.box
+        for x in np.arange(w.x1 - 8.0, self.pole.real + 8.0, -1.0):
+            arrows = Box(x - 1.0, high + CLEAR, x + 1.0, high + TAIL), Box(x - 1.0, low - TAIL, x + 1.0, low - CLEAR)
+            if any(map(drawn.meets, arrows)):
+                continue
+            for side, y in ((-1, high + 3.0), (1, high + 3.0), (-1, low - 6.5), (1, low - 6.5)):
+                left = x + 1.5 if side > 0 else x - 1.5 - laid.width
+                if not w.contains(complex(left, y)) or not w.contains(complex(left + laid.width, y)):
+                    continue
+                if not drawn.meets(Box(left, y - laid.descent, left + laid.width, y + 3.5).inset(-CLEAR)):
+                    distance(c, complex(x, low), complex(x, high))
+                    c.put(laid, complex(left, y), 0.0, text)
+                    return
+        gap(c, complex(w.x1 - 26, low), complex(w.x1 - 26, high), text, -1, 2.5)

@@ -13,7 +13,7 @@ from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data, sine_
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.methods.cams.cam_laws import LAWS, Phase, PositionFunction
-from tmm_sheets.methods.cams.cam_motion import MotionScales, motion, motion_scales
+from tmm_sheets.methods.cams.cam_motion import FAR, LEAST_POLE, SEEN, MotionScales, motion, motion_scales
 
 MANUAL = Path(__file__).parents[2] / "manuals" / "cam_example_1.csv"
 PLACE = (325.0, 490.0)
@@ -119,7 +119,7 @@ def test_printed_scale_factors_of_the_manual():
 
 def test_equal_scale_factors_have_equal_poles():
     """Flat follower: both pole distances are 1/mu_phi."""
-    for data in (flat_data(), flat_data(law="sine", rise=60, fall=60, stroke=30)):
+    for data in (flat_data(), flat_data(law="cosine", rise=100, fall=100, stroke=30)):
         law = law_of(data)
         sc = motion_scales(law, *PLACE, equal=True)
         assert sc.s.mu == sc.ds.mu == sc.dds.mu
@@ -128,6 +128,22 @@ def test_equal_scale_factors_have_equal_poles():
         left = sc.h1 if not m.circle else -min(s.value.real for s in m.circle.values())
         assert left + sc.phi.mm(law.fall.end) < PLACE[0]
         np.testing.assert_allclose(m.measured(m.s, sc.s), law.at_positions(Phase.s), rtol=0, atol=1e-12 * law.stroke)
+
+
+@pytest.mark.parametrize(("law", "rise", "fall", "stroke"), [("sine", 60, 75, 9), ("cosine", 100, 140, 30)])
+def test_three_diagrams_that_one_scale_factor_would_make_low_have_their_own(law, rise, fall, stroke):
+    """The auxiliary circle of S'' takes the width: S was 9 mm high in a place of 430, with two gaps of 120 mm."""
+    one = law_of(flat_data(law=law, rise=rise, fall=fall, stroke=stroke, upper_dwell=0))
+    sc = motion_scales(one, *PLACE, equal=True)
+    assert min(sc.h1, sc.h2) >= FAR
+    assert sc.s.mm(one.stroke) >= SEEN
+    assert 2 * sc.dds.mm(max(one.rise.amplitude, one.fall.amplitude)) + 2 * SEEN <= PLACE[1]
+
+
+def test_poles_keep_off_the_axis_for_a_short_rise():
+    """25 degrees of rise beside 200 of fall: the pole stood 2.5 mm from the axis for the sake of S' 206 mm high."""
+    sc = motion_scales(law_of(cam_data(law="constant", fall_law="sine", rise=25, upper_dwell=5, fall=200, stroke=8)), *PLACE)
+    assert min(sc.h1, sc.h2) >= LEAST_POLE
 
 
 def test_circle_only_for_the_phases_whose_law_has_one():

@@ -156,6 +156,14 @@ def test_smallest_radius_of_curvature(changes):
     assert c.rho_min * (1 - 1e-11) <= float(c.inversion.plan["ρ_min"].value) <= 1.02 * c.rho_min
 
 
+def test_three_points_stand_closer_where_curvature_changes_steeply():
+    """Fall and rise meet in the sharpest point: the usual three, 5.6 degrees apart and beside it, gave 33.7 for 27.7 mm."""
+    c = cam(cam_data(rise=180, upper_dwell=0, fall=180, stroke=40, limit="both", roller=None))
+    assert c.sharpest.phi == pytest.approx(0.0, abs=1e-9)
+    assert np.degrees(c.three - np.pi) % 360 == pytest.approx([180 - 2.8125, 180.0, 180 + 2.8125])
+    assert 1.0 < float(c.inversion.plan["ρ_min"].value) / c.rho_min < 1.05
+
+
 def test_three_points_lie_on_their_circle():
     plan = cam(cam_data()).inversion.plan
     radii = [abs(plan[f"{n}_ρ"].value - plan["M"].value) for n in "EDG"]

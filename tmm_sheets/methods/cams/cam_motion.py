@@ -38,6 +38,12 @@ BARE = 8.0
 """Width that axes need beyond the phases and the pole distance where there is no circle, mm."""
 LEAST_POLE = 7.0
 """Pole distance below which rays become too steep to draw well, mm."""
+SEEN = 40.0
+"""Height of S' and S that poles no nearer than this may cost, mm: short phases have higher graphs from nearer poles."""
+FAR = 10.5
+"""Pole distance that has room for two arrowheads within its dimension, mm."""
+FILLED = 0.6
+"""Share of the height below which three diagrams to one scale factor would be too low: then each has its own."""
 
 AMPLITUDE = Rule("amplitude by proportion", lambda a, phase, other: a * (phase / other) ** 2, ("length", "angle", "angle"),
                  "length", marked("From the proportion a_1/a_2 = φ_f²/φ_r² find the second amplitude {name} = {value}."))
@@ -125,11 +131,15 @@ def motion_scales(law: PositionFunction, width: float, height: float, equal: boo
     The phases take at most 0.68 of the width; the auxiliary circle of the law, where it has one, and the pole share the
     rest on their left. S'' takes at most 0.3 of the height; of the pairs of scale factors of S' and S the one that uses most
     of the rest is taken. With ``equal`` all three diagrams have one scale factor: both pole distances are 1/mu_phi (manual
-    000, 7 ex. 3).
+    000, 7 ex. 3), unless its auxiliary circle would leave much of the height bare.
     """
     shares = np.linspace(0, 1, 65)
     spans = float(np.abs(law.rise.ds(shares)).max() + np.abs(law.fall.ds(shares)).max()), law.stroke
-    return (_equal_scales if equal else _own_scales)(law, spans, width, height)
+    if equal:
+        found = _equal_scales(law, spans, width, height)
+        if (2 * max(law.rise.amplitude, law.fall.amplitude) + sum(spans)) / found.s.mu >= FILLED * height:
+            return found
+    return _own_scales(law, spans, width, height, FAR if equal else LEAST_POLE)
 
 
 def _finest(law: PositionFunction, width: float) -> float:
@@ -157,8 +167,8 @@ def _equal_scales(law: PositionFunction, spans: tuple[float, float], width: floa
     return MotionScales(phi, *(Scale(f"μ_{law.symbol}{primes}", mu, tr("m/mm")) for primes in ("''", "'", "")))
 
 
-def _own_scales(law: PositionFunction, spans: tuple[float, float], width: float, height: float) -> MotionScales:
-    """A scale factor for each diagram; ``spans``: what S' and S need, in their units."""
+def _own_scales(law: PositionFunction, spans: tuple[float, float], width: float, height: float, pole: float) -> MotionScales:
+    """A scale factor for each diagram; ``spans``: what S' and S need, in their units, ``pole``: pole distance asked for, mm."""
     finest = _finest(law, width)
     amplitude = max(law.rise.amplitude, law.fall.amplitude)
     beside, circle = _left_of_axis(law)
@@ -174,12 +184,14 @@ def _own_scales(law: PositionFunction, spans: tuple[float, float], width: float,
     nearest = min(LEAST_POLE, 0.12 * phi.mm(min(law.rise.angle, law.fall.angle)))
     fits = [p for p, (h1, h2) in zip(found, poles, strict=True) if h1 <= left - circle * dds.mm(amplitude) and h2 <= left - 6.0]
     good = [p for p, h in zip(found, poles, strict=True) if p in fits and min(h) >= nearest]
+    far = [p for p, h in zip(found, poles, strict=True)
+           if p in fits and min(h) >= pole and min(spans[0] / p[0], spans[1] / p[1]) >= SEEN]
 
     def filling(pair: tuple[float, float]) -> tuple[int, float]:
         high, low = spans[0] / pair[0], spans[1] / pair[1]
         return round(high + low), -abs(high - low)
 
-    ds, s = max(good or fits or found, key=filling)
+    ds, s = max(far or good or fits or found, key=filling)
     return MotionScales(phi, dds, Scale(f"μ_{law.symbol}'", ds, of), Scale(f"μ_{law.symbol}", s, unit))
 
 
