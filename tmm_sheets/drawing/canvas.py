@@ -21,6 +21,8 @@ SMALLEST = 2.5
 """Least height of letters, mm."""
 ARROW = (5.0, 0.85)
 """Length and half width of an arrow head, mm (GOST 2.307: about 20 degrees)."""
+KEPT_OFF = 4.0
+"""How many times more than other lettering do letters keep off thin lines that one of their own, or the next, would strike."""
 CLEAR = 0.4
 """Distance of a descending index from the rule under it, mm."""
 LOOSE = 0.25
@@ -446,7 +448,8 @@ class Canvas:
             self.fill((p, p + 3 * u + 0.5j * u, p + 3 * u - 0.5j * u), "thin")
         self._one("arrow", first)
         mid = rect(1, start + share * (end - start))
-        self.label(vertex + radius * mid, markup, mid, height, thin=thin)
+        # Beside outer heads it would stand over the arc drawn on.
+        self.label(vertex + radius * mid, markup, mid, height, thin=KEPT_OFF if outside else thin)
 
 
 def _for_text(widths: Sequence[float], rows: Sequence[Sequence[str]]) -> list[float]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction.scale import Scale, handy
-from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
+from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, hatch_polygon
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
@@ -17,7 +17,6 @@ from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets import clear_dimensions
 from tmm_sheets.sheets.cam import ANGLE, OverAngle, centred, distinct, for_cams, lines_of_text, raised
 from tmm_sheets.sheets.frame import ratio, standard
-from tmm_sheets.sheets.gear_marks import KEPT_OFF
 from tmm_sheets.sheets.player import Stage, placed, play
 from tmm_sheets.words import tr
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import STANDARD, Scale, fit
-from tmm_sheets.drawing.canvas import Canvas, lettered
+from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, lettered
 from tmm_sheets.drawing.clipping import arcs_inside, segment_inside
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box, Line
@@ -18,7 +18,7 @@ from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets import gear_radii
 from tmm_sheets.sheets.clear_dimensions import around, crossed
 from tmm_sheets.sheets.frame import Frame, proportion, ratio, standard
-from tmm_sheets.sheets.gear_marks import CIRCLES, KEPT_OFF, Window, gap, hatch_between, ruled_table
+from tmm_sheets.sheets.gear_marks import CIRCLES, Window, gap, hatch_between, ruled_table
 from tmm_sheets.sheets.player import Stage, placed, play, stage
 from tmm_sheets.words import tr
 

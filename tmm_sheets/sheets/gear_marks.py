@@ -20,8 +20,6 @@ CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "
            ("rf", "r_{f%d}", "thin"))
 """Circles of a wheel: attribute, symbol, line type."""
 
-KEPT_OFF = 4.0
-"""So many times more than other lettering do letters and names of circles in the mesh keep off thin lines."""
 ROW, LARGE, LETTERS = 12.0, 16.0, 5.0
 """Greatest height of a row of a table, mm; of one where there is room for letters as large as a title's, and these."""
 KINKS, OVER = 120.0, 3.0

@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas
 from tmm_sheets.drawing.clipping import arcs_inside
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Box, Dimension, Text
 from tmm_sheets.drawing.owners import Ink, crossing, enters
 from tmm_sheets.numbers import fixed
-from tmm_sheets.sheets.gear_marks import CIRCLES, KEPT_OFF
+from tmm_sheets.sheets.gear_marks import CIRCLES
 
 APART, CLOSE = 7.0, 5.8
 """Distance of radii from each other where they are named, and the least one between the teeth and the picture's edge, mm."""

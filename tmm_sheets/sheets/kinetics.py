@@ -12,7 +12,7 @@ import numpy as np
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing import symbols
-from tmm_sheets.drawing.canvas import ARROW, Align, Canvas
+from tmm_sheets.drawing.canvas import ARROW, KEPT_OFF, Align, Canvas
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.notes import TOGETHER, wrapped
@@ -71,8 +71,6 @@ ALONG, SAME = 0.05, 0.01
 BAR = "\u0305"
 GAP = 4.0
 """Distance of groups that share a place, mm."""
-KEPT_OFF = 4.0
-"""How many times more than usual the letter of an arm keeps off thin lines: it would be struck by its own arm or the next one."""
 ROOM = 6.0
 """Room for labels between a force polygon and its equation, mm."""
 LINE, LINES = 6.25, 3
