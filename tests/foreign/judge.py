@@ -282,7 +282,7 @@ def _sampled(path: Floats, step: float = 2.0) -> Floats:
 
 
 def changed(truth: dict[str, Any], marks: list[Mark]) -> list[float]:
-    """How much of each mistake shows, mm: lines that are gone or new, farther than HIDES from all others.
+    """How much of each mistake shows, mm: lines that are gone or new, farther than HIDES from all other ink.
 
     A line that was moved onto another, from where a twin of it stays, leaves the drawing as it should be.
     """
@@ -290,10 +290,19 @@ def changed(truth: dict[str, Any], marks: list[Mark]) -> list[float]:
     was = [[path for mark in mistake["wrong"] for path in named[mark["id"]].paths()] for mistake in truth["mistakes"]]
     now = [[np.array(line) for line in mistake["lines"][len(old) :]] for mistake, old in zip(truth["mistakes"], was, strict=True)]
     wrong = {mark["id"] for mistake in truth["mistakes"] for mark in mistake["wrong"]}
-    sound = [_sampled(path, 0.25) for mark in marks if mark.id not in wrong for path in mark.paths()]
+    sound = [_sampled(path, 0.25) for mark in marks if mark.id not in wrong for path in _inked(mark)]
     there = np.vstack([*sound, *(_sampled(path, 0.25) for paths in now for path in paths)])
     right = np.vstack([*sound, *(_sampled(path, 0.25) for paths in was for path in paths)])
     return [_alone(old, there) + _alone(new, right) for old, new in zip(was, now, strict=True)]
+
+
+def _inked(mark: Mark) -> list[Floats]:
+    """Lines that are nowhere farther than HIDES from ink of a mark: a head or a dot is filled, within it nothing shows."""
+    paths = list(mark.paths())
+    if mark.kind == "fill":
+        middle = mark.points.mean(axis=0)
+        paths += [middle + share * (path - middle) for path in mark.paths() for share in (0.7, 0.4, 0.1)]
+    return paths
 
 
 def _alone(paths: list[Floats], others: Floats) -> float:

@@ -266,8 +266,9 @@ class _End:
         if self.lined < LINED or not self.bare():
             return False
         sides = self.sides()
-        # A head may lie a little aside, on the side that others hide.
-        if sum(s.part for s in sides) < OPEN or min(s.part for s in sides) < EACH:
+        # A head may lie a little aside, on the side that others hide, but not so far that all of the other side is bare.
+        half = any(s.part >= SIDE and s.share <= NOTHING for s in sides)
+        if not half and (sum(s.part for s in sides) < OPEN or min(s.part for s in sides) < EACH):
             return False
         if any(s.part >= EACH and s.share >= BESIDE_LINE and s.alike >= HARDLY_LIKE for s in sides):
             return False
