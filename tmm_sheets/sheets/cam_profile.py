@@ -381,11 +381,11 @@ def _path(s: Stage, picture: _ProfilePicture, first: int, table: Box) -> None:
         along = cam_scale.lengths(np.array(marks), a0)
         arm, way = abs(marks[0] - a0), 1.0 if max(along) > -min(along) else -1.0
         start = phase(marks[0] - a0)
-        cam_scale.number(s, inv.axis, first, [way * t for t in along], inv.plan.labels,
+        cam_scale.numbered(s, inv.axis, first, [way * t for t in along], inv.plan.labels,
                          lambda t, beside: a0 + rect(arm + beside, start + way * t / arm), 1.0, table, 15.0)
         return
     low = marks[0]
-    cam_scale.number(s, inv.axis, first, [(p - low).imag for p in marks], inv.plan.labels,
+    cam_scale.numbered(s, inv.axis, first, [(p - low).imag for p in marks], inv.plan.labels,
                      lambda t, beside: low + complex(beside, t), side, table)
 
 

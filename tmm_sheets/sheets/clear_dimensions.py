@@ -7,8 +7,8 @@ from collections.abc import Iterable
 
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas, lettered
+from tmm_sheets.drawing.clear import Drawn
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.sheets.gear_radii import Drawn
 
 CLEAR = 0.4
 """What is kept free round lettering, mm."""

@@ -11,6 +11,7 @@ import numpy as np
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import STANDARD, Scale, fit
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, lettered
+from tmm_sheets.drawing.clear import Drawn
 from tmm_sheets.drawing.clipping import arcs_inside, segment_inside
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box, Line
@@ -261,7 +262,7 @@ class _GearPicture:
     def pole_letter(self) -> None:
         """Letter of the pole beyond the root circle of wheel 1 where nothing is drawn, its leader clear of flanks."""
         foot = self.pole - self.of("O1")
-        inwards, ink = -foot / abs(foot), gear_radii.Drawn(self.canvas, self.first)
+        inwards, ink = -foot / abs(foot), Drawn(self.canvas, self.first)
         laid, root = letter("P_w", 5.0), self.mm(self.gear.wheels[0].rf)
         half = complex(laid.width, 5.0 + laid.descent) / 2
 
@@ -408,7 +409,7 @@ class _GearPicture:
 
         Within a ring the tangents of its involute lie over the root circle of the pinion.
         """
-        ink = gear_radii.Drawn(self.canvas, self.first, but=self.spokes)
+        ink = Drawn(self.canvas, self.first, but=self.spokes)
         return min((offset + further for further in np.arange(0.0, FURTHEST, 0.5)), key=lambda by: crossed(ink, a, b, by, text))
 
     def interrupt(self, at: complex, along: complex, text: str) -> None:

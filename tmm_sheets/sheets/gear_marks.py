@@ -10,6 +10,7 @@ import numpy as np
 
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas, in_role
+from tmm_sheets.drawing.clear import spread
 from tmm_sheets.drawing.clipping import arcs_inside, chords, polyline_inside, segment_inside
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box, Role
@@ -153,19 +154,3 @@ def ruled_table(canvas: Canvas, box: Box, rows: Sequence[tuple[str, ...]], width
     for x in (box.x0, box.x1):
         canvas.line(complex(x, bottom), complex(x, box.y1), "main")
     return bottom
-
-
-def spread(heights: list[float], least: float) -> list[float]:
-    """Sorted heights moved apart to the least distance, as little as needed and about the same middle."""
-    out = list(heights)
-    for _ in range(200):
-        moved = False
-        for i in range(len(out) - 1):
-            short = least - (out[i + 1] - out[i])
-            if short > 1e-3:
-                out[i] -= short / 2
-                out[i + 1] += short / 2
-                moved = True
-        if not moved:
-            break
-    return out

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from cmath import phase, rect
-from collections.abc import Collection
 from itertools import pairwise, product
 from math import cos, inf, pi, radians, sin
 from typing import Any
 
 import numpy as np
 
-from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas
+from tmm_sheets.drawing.canvas import KEPT_OFF
+from tmm_sheets.drawing.clear import Drawn
 from tmm_sheets.drawing.clipping import arcs_inside
-from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Arc, Box, Dimension, Text
-from tmm_sheets.drawing.owners import Ink, crossing, enters
+from tmm_sheets.drawing.marks import Box, Dimension
+from tmm_sheets.drawing.owners import enters
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets.gear_marks import CIRCLES
 
@@ -43,40 +42,6 @@ def draw(picture: Any) -> None:
     """Radii of both wheels, when all else is on the picture."""
     for wheel in picture.gear.wheels:
         _Radii(picture, wheel).draw()
-
-
-class Drawn:
-    """What a view has drawn since its ``first`` mark, but for circles about a point and some marks, by their numbers.
-
-    Its lines, and the sides of its lettering.
-    """
-
-    def __init__(self, canvas: Canvas, first: int, about: complex | None = None, but: Collection[int] = ()) -> None:
-        marks = [m for n, m in enumerate(canvas.marks) if n >= first and n not in but]
-        self.ink = Ink(m for m in marks if about is None or not (isinstance(m, Arc) and abs(m.centre - about) < 1e-6))
-        corners = [text_box(m) for m in marks if isinstance(m, Text)]
-        self.written = np.array([(z[k - 1], z[k]) for z in corners for k in range(len(z))]).reshape(-1, 2)
-
-    def meets(self, box: Box, origin: complex = 0j, direction: float = 0.0) -> bool:
-        """Whether anything is in a rectangle of axes that are turned by an angle about a point, their origin."""
-        back = rect(1, -direction)
-        return any(bool(enters((a - origin) * back, (b - a) * back, *box).any())
-                   for a, b in ((self.ink.a, self.ink.b), self.written.T))
-
-    def count(self, box: Box, origin: complex, direction: float) -> int:
-        """How many lines are in such a rectangle, lettering as much as ten."""
-        back = rect(1, -direction)
-        lines, written = (int(enters((a - origin) * back, (b - a) * back, *box).sum())
-                          for a, b in ((self.ink.a, self.ink.b), self.written.T))
-        return lines + 10 * written
-
-    def strong(self, a: complex, b: complex) -> bool:
-        """Whether a line would cross the outlines of teeth or others as strong."""
-        return bool(crossing(self.ink.a[self.ink.strong], self.ink.b[self.ink.strong], a, b).any())
-
-    def over(self, a: complex, b: complex) -> bool:
-        """Whether a line would run over lettering."""
-        return bool(crossing(self.written[:, 0], self.written[:, 1], a, b).any())
 
 
 class _Radii:

@@ -12,15 +12,12 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.linkage.loads import StrokeLaw
 from tmm_sheets.sheets import indicator, linkage
 from tmm_sheets.sheets.frame import SHORTEST, Frame, ScaleBook, extent, fit_frame, pick, raised, together
 from tmm_sheets.words import tell, tell_n, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
-    from tmm_sheets.methods.linkage.loads import Applied
-    from tmm_sheets.methods.linkage.strokes import Run
     from tmm_sheets.project import Project
 
 GRAPH = 48.0
@@ -62,32 +59,7 @@ def graph_force(project: Project) -> Any:
     if strokes is None or abs(strokes.path.imag) > 1e-9:
         return None
     return next((f for f in project.applied if f.point == strokes.output and f.motion is not None
-                 and any(np.any(f.magnitude(turned, 0)) for turned in stroke_angles(f))), None)
-
-
-def stroke_angles(force: Applied) -> list[Any]:
-    """Angles at which a force that follows strokes is drawn over the way, rad: a row for each of its diagrams.
-
-    Each over the first stroke that its diagram is given for, a working one if it can be, both sides of its jumps among them.
-    """
-    law, motion = force.law, force.motion
-    assert isinstance(law, StrokeLaw)
-    assert motion is not None
-    acting = sorted(((run, table) for run, table in zip(motion.runs, law.tables, strict=True) if table is not None),
-                    key=lambda pair: (not pair[0].working, pair[0].begin))
-    of_table: dict[int, list[Run]] = {}
-    for run, table in acting:
-        of_stroke = of_table.setdefault(id(table), [run])
-        if run is not of_stroke[0] and run.stroke == of_stroke[0].stroke:
-            of_stroke.append(run)
-    return [_over(runs[0].begin, runs[-1].end, force.jumps, motion.period) for runs in of_table.values()]
-
-
-def _over(begin: float, end: float, jumps: tuple[float, ...], period: float) -> Any:
-    """Angles between two, rad, both sides of what jumps there among them."""
-    inner = [j for j in (begin + (j - begin) % period for j in jumps) if j < end]
-    nodes = [*np.linspace(begin, end, 241), *(j + s * 1e-9 for j in inner for s in (-1, 1))]
-    return np.sort(np.asarray(nodes)[(np.asarray(nodes) > begin) & (np.asarray(nodes) < end)])
+                 and any(np.any(f.magnitude(turned, 0)) for turned in f.over_way())), None)
 
 
 def graph_height(project: Project, options: dict[str, Any]) -> float:

@@ -397,7 +397,7 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
     cycle, canvas = project.cycle, s.canvas
     strokes, force = cycle.strokes, kinematic_frames.graph_force(project)
     assert strokes is not None
-    tried = [(turned, np.asarray(force.shown(turned, 0))) for turned in kinematic_frames.stroke_angles(force)]
+    tried = [(turned, np.asarray(force.shown(turned, 0))) for turned in force.over_way()]
     diagrams = [(turned, values) for turned, values in tried if np.any(values)]
     top, low = (of(0.0, *(float(of(values)) for _, values in diagrams)) for of in (max, min))
     scale = pick(project, canvas, "force-graph", "μ_F", tr("N/mm"), (top - low) / (box.height - 18.0))

@@ -10,12 +10,12 @@ import numpy as np
 
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas
+from tmm_sheets.drawing.clear import Drawn
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets.frame import Frame, ratio, standard
 from tmm_sheets.sheets.gear_marks import Window, distance, gap
-from tmm_sheets.sheets.gear_radii import Drawn
 from tmm_sheets.sheets.player import Stage, stage
 from tmm_sheets.words import tr
 

@@ -13,12 +13,13 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.clear import spread
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import GAP, LEAST, needs, widened
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.frame import ratio, standard
-from tmm_sheets.sheets.gear_marks import LARGE, LETTERS, ROW, ruled_table, spread
+from tmm_sheets.sheets.gear_marks import LARGE, LETTERS, ROW, ruled_table
 from tmm_sheets.sheets.player import Stage, placed, play
 from tmm_sheets.words import tr
 

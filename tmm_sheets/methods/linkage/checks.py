@@ -48,6 +48,11 @@ def check_turn(mechanism: Mechanism, moving: str = "") -> None:
     """Assemble the mechanism all round the turn, before its positions are numbered; see :func:`check_assembly`.
 
     Asked for what is ``moving`` and has no speed at some angle, a group that comes to its dead position is refused as well.
+
+    Raises
+    ------
+    CannotBuild
+        naming the groups that do not assemble, or come to a dead position.
     """
     passed = check_assembly(mechanism, Cycle((), np.empty(0), 0.0, mechanism.crank.sense, 2 * np.pi, None, None))
     if moving and passed:

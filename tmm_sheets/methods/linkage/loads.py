@@ -336,6 +336,23 @@ class Applied:
         """Absolute values, N or N m, in the shape of the angles ``turned``, rad."""
         return np.abs(self.law(turned, side))
 
+    def over_way(self) -> list[Floats]:
+        """Angles at which a force that follows strokes is drawn over the way, rad: a row for each of its diagrams.
+
+        Each over the first stroke that its diagram is given for, a working one if it can be, both sides of its jumps among them.
+        """
+        law, motion = self.law, self.motion
+        assert isinstance(law, StrokeLaw)
+        assert motion is not None
+        acting = sorted(((run, table) for run, table in zip(motion.runs, law.tables, strict=True) if table is not None),
+                        key=lambda pair: (not pair[0].working, pair[0].begin))
+        of_table: dict[int, list[Run]] = {}
+        for run, table in acting:
+            of_stroke = of_table.setdefault(id(table), [run])
+            if run is not of_stroke[0] and run.stroke == of_stroke[0].stroke:
+                of_stroke.append(run)
+        return [_between(runs[0].begin, runs[-1].end, self.jumps, motion.period) for runs in of_table.values()]
+
     def jump(self, turned: float) -> tuple[float, float, float] | None:
         """Values before and after an angle turned (rad) where they differ, and the one that counts there, N or N m.
 
@@ -363,6 +380,13 @@ class Applied:
         if not isinstance(self.law, StrokeLaw):
             return self.law(turned, side)
         return self.law.ordinates(turned, side) * (1.0 if self.sign is None else self.sign.value)
+
+
+def _between(begin: float, end: float, jumps: tuple[float, ...], period: float) -> Floats:
+    """Angles between two, rad, both sides of what jumps there among them."""
+    inner = [j for j in (begin + (j - begin) % period for j in jumps) if j < end]
+    nodes = np.sort([*np.linspace(begin, end, 241), *(j + s * 1e-9 for j in inner for s in (-1, 1))])
+    return np.asarray(nodes[(nodes > begin) & (nodes < end)])
 
 
 FORCE = Rule("given force", lambda value, u: value * u, ("number", "direction"), "force", marked("Force {name} = {value}."),
