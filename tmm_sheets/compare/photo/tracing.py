@@ -349,8 +349,8 @@ def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level:
     count, bars over letters among them, nor does a place that they fill.
     """
     out = {e.number: Trace(e, "small", covered=1.0) for e in small}
-    # What the form has outside its frame is cut off with the margin, and nobody's mistake.
-    words = [e for e in small if e.kind == "text" and FRAME.contains(e.middle)]
+    # What the form has outside its frame is cut off with the margin, and nobody's mistake; a dash is too little to be missed.
+    words = [e for e in small if e.kind == "text" and FRAME.contains(e.middle) and any(map(str.isalnum, e.text))]
     if not words:
         return out
     others = np.zeros_like(ink)
