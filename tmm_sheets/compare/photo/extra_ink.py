@@ -79,16 +79,6 @@ def extra_ink(left: Any, level: float, words: Any, wiped: Any = None, dark: floa
     return sorted(smooth, key=lambda q: -q.length)
 
 
-def straight_ink(left: Any, level: float, words: Any, wiped: Any, least: float) -> list[ExtraInk]:
-    """Straight strokes of leftover ink inside the frame, whole or in pieces, to either side of a line each by itself.
-
-    ``least`` is their extent, mm; the other parameters are those of :func:`extra_ink`.
-    """
-    out = _without_creases(_regions(left, level, straight=True, join=1, least=least))
-    out += [x for x in _strokes(left, wiped, words, level, least) if all(_in_common(x, y) <= 0.5 * x.length for y in out)]
-    return out
-
-
 def without_creases(left: Any, ink: Any, level: float) -> Any:
     """What is left of a rectified sheet without creases that run upright or level from side to side of it.
 
@@ -143,8 +133,8 @@ def _without_creases(some: list[ExtraInk]) -> list[ExtraInk]:
     return out
 
 
-def _regions(left: Any, level: float, straight: bool, join: int = JOIN, least: float = EXTRA) -> list[ExtraInk]:
-    """Regions of ink, all that are large enough, or only straight strokes; gaps narrower than ``join`` coarse pixels are closed."""
+def _regions(left: Any, level: float, straight: bool) -> list[ExtraInk]:
+    """Regions of ink, all that are large enough, or only straight strokes."""
     import cv2
 
     dark = (left > level).astype(np.uint8)
@@ -157,13 +147,13 @@ def _regions(left: Any, level: float, straight: bool, join: int = JOIN, least: f
     amount = cv2.resize(inside * np.uint8(COARSE**2), None, fx=1 / COARSE, fy=1 / COARSE, interpolation=cv2.INTER_AREA)
     scale = SCALE / COARSE
     # Rejoin pieces of a line that was cut by wiping.
-    joined = cv2.morphologyEx((amount > 0).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((join, join), np.uint8))
+    joined = cv2.morphologyEx((amount > 0).astype(np.uint8), cv2.MORPH_CLOSE, np.ones((JOIN, JOIN), np.uint8))
     _, labels, stats, middles = cv2.connectedComponentsWithStats(joined, connectivity=8)
     area = np.bincount(labels[amount > 0], weights=amount[amount > 0], minlength=len(stats))
     out = []
     for i in range(1, len(stats)):
         w, h = stats[i, cv2.CC_STAT_WIDTH] / scale, stats[i, cv2.CC_STAT_HEIGHT] / scale
-        if hypot(w, h) < least or area[i] < LEAST_WIDTH * least * SCALE**2:
+        if hypot(w, h) < EXTRA or area[i] < LEAST_WIDTH * EXTRA * SCALE**2:
             continue
         if straight and _across(labels, stats[i], i) > STRAIGHT * scale:
             continue
@@ -176,7 +166,7 @@ def _regions(left: Any, level: float, straight: bool, join: int = JOIN, least: f
     return out
 
 
-def _strokes(left: Any, wiped: Any, words: Any, level: float, least: float = EXTRA) -> list[ExtraInk]:
+def _strokes(left: Any, wiped: Any, words: Any, level: float) -> list[ExtraInk]:
     """Strokes in pieces, each shorter than a region that is reported, that are not all edges of letters."""
     import cv2
 
@@ -202,7 +192,7 @@ def _strokes(left: Any, wiped: Any, words: Any, level: float, least: float = EXT
     for z in groups:
         width, height = np.ptp(z.real), np.ptp(z.imag)
         free = sample(words, pixels((z[::2] + z[1::2]) / 2), nearest=True) == 0
-        if hypot(width, height) >= least and np.abs(z[1::2] - z[::2]).sum() >= INK and free.any():
+        if hypot(width, height) >= EXTRA and np.abs(z[1::2] - z[::2]).sum() >= INK and free.any():
             middle = complex((z.real.min() + z.real.max()) / 2, (z.imag.min() + z.imag.max()) / 2)
             points = np.concatenate([np.linspace(a, b, ALONG) for a, b in z.reshape(-1, 2)])
             out.append(ExtraInk(middle, float(width), float(height), hypot(width, height), points))

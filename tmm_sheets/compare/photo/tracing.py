@@ -26,7 +26,6 @@ from tmm_sheets.compare.photo.arrow_heads import exchanged, with_heads
 from tmm_sheets.compare.photo.displacement import beside, displaced, rather_elsewhere
 from tmm_sheets.compare.photo.dots import NO_GREY, displaced_dots
 from tmm_sheets.compare.photo.extra_ink import extra_ink, without_creases
-from tmm_sheets.compare.photo.flank_ink import flank_ink
 from tmm_sheets.compare.photo.forks import parted
 from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden, widened
 from tmm_sheets.compare.photo.ink_levels import ink_levels
@@ -142,15 +141,10 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     for e in elements:  # a hand may have written here
         if e.kind == "text":
             fill(words, grown(e.points, 0.8 * e.height + 1.0))
-    usual = _usual(found)
-    clear = without_creases(ink, ink, level)
-    extra = extra_ink(np.minimum(left, clear), level, words, wiped, PALE * min(usual.values(), default=0.0))
-    thick = max(usual.values(), default=NO_GREY)
-    if thick < NO_GREY:  # without grey what runs together at small angles is as dark as a line
-        extra += flank_ink(out.values(), extra, clear, covers, words, level, thick)
+    left = without_creases(left, ink, level)
     tears = torn_widths(found)
     out |= {t.element.number: replace(t, pieces=True) for t in out.values() if in_pieces(t, tears)}
-    return [out[e.number] for e in elements], sorted(extra, key=lambda x: -x.length)
+    return [out[e.number] for e in elements], extra_ink(left, level, words, wiped, PALE * min(_usual(found).values(), default=0.0))
 
 
 def _shown_ends(t: Trace, hidden: Mask) -> tuple[float, float]:
