@@ -473,7 +473,10 @@ def test_a_stroke_that_lines_cut_to_pieces_is_extra(end, seen):
     cross = [line(k + 3, 258 + 7 * k + 270j, 258 + 7 * k + 330j, "thin") for k in range(5)]
     known = [line(1, a, b, "thin"), line(2, a, b, "thin"), *cross]
     found, extra = traced(known, [(a, b, "thin"), (a, b + 1j * end, "thin"), *((*e.points, e.style) for e in cross)])
-    assert {judge(t, 0.25, 0.15).verdict for t in found} == {"green"}
+    # That it parts is a remark to the two, which cannot be told from each other; all others are in place.
+    verdicts = {t.element.number: judge(t, 0.25, 0.15).verdict for t in found}
+    assert {verdicts[e.number] for e in cross} == {"green"}
+    assert {verdicts[1], verdicts[2]} <= ({"green", "amber"} if seen else {"green"})
     assert bool(extra) == seen
     for x in extra:
         assert abs(x.middle - (275 + 300j + 1j * end * 25 / 40)) < 4
