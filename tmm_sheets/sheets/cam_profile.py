@@ -51,8 +51,8 @@ def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
         if picture.roller > 0:
             play(here, ["F"], "main" if k == 0 else "construction")
         if k == 0 and picture.roller > 8:
-            # On the side from which the cam turns: the arcs of the inversion lie on the other.
-            tip = rect(picture.roller, picture.first - cam.right * pi / 3)
+            # On the side from which the cam turns, the arcs of the inversion lie on the other; over it a rocker has its path.
+            tip = rect(picture.roller, picture.first - cam.right * (0.75 if cam.kind == "rocker" else 1 / 3) * pi)
             # The value stands outside: within are the numbers of the arcs.
             pen, out = here.pen("F", "dimension"), centre + tip * (1 + 5.0 / picture.roller)
             pen.arrow(centre, centre + tip, "thin", 3.0)
