@@ -93,3 +93,23 @@ def test_every_position_of_the_graph_has_its_number_beside_lines():
     for m in numbers:
         off = outline - m.at
         assert not ((off.real > 0) & (off.real < 1.6) & (off.imag > 0) & (off.imag < 2.5)).any()
+
+
+def test_diagrams_that_are_alike_are_one_curve():
+    table = [[0, "0 N"], [1, "1500 N"]]
+    changes = {"cycle.turns": 2, "force[0].value": None, "force[0].stroke": None, "force[0].tables": [table, [], table, []]}
+    project = files.project(STROKE, changes)
+    (_, force), = curves(project)
+    assert force.max() == pytest.approx(1500, rel=1e-3)
+    changes["force[0].tables"] = [table, [], table, [[0, "300 N"], [1, "300 N"]]]
+    project = files.project(STROKE, changes)
+    assert len(curves(project)) == 2
+    labels = project.cycle.labels
+    # Both strokes of the first curve are named at it.
+    assert f"{labels[1]}…{labels[5]}, {labels[13]}…{labels[17]}" in {g.text for g in composed(project, 1).groups}
+
+
+def test_a_force_on_the_way_back_alone_is_drawn_over_it():
+    (way, force), = curves(files.project(STROKE, {"force[0].stroke": "idle"}))
+    assert force.max() == pytest.approx(100)
+    assert np.ptp(way) == pytest.approx(files.project(STROKE).cycle.strokes.length, rel=0.02)

@@ -37,7 +37,7 @@ def at_marks(along: Sequence[float], labels: Sequence[str]) -> list[tuple[int, f
 
 
 def numbered(s: Stage, step: Step, first: int, along: Sequence[float], labels: Sequence[str], path: Path, side: float,
-           closed: Box, furthest: float = 48.0) -> None:
+             closed: Box, furthest: float = 48.0) -> None:
     """Marks across the path, and their numbers in a row beside it where the least is drawn: rather at ``side`` of it, 1 or -1.
 
     What is drawn is seen from the mark ``first`` on. The row is no farther than ``furthest`` from the path, mm,

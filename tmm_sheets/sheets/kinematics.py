@@ -431,16 +431,16 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
         lower = 6.25 * n if (room - beside) * u >= 0 else 6.25 * (n - len(said) + 1) - 2.5
         canvas.text(complex(_nearer(start, beside, room), high - lower), text, 3.5, outward)
     drawn = [_over_way(project, s, along, diagram, y0, scale.mu) for diagram in diagrams]
-    for line, turned in drawn:
+    for (line, turned), (tried_at, values) in zip(drawn, diagrams, strict=True):
         canvas.tracing("curve", load, "", graph).polyline(line, "curve")
-        if len(drawn) > 1 and (held := _held(cycle, turned)):
+        later = [turned + turn for turn in np.arange(0, cycle.period, 2 * pi) if np.allclose(force.shown(tried_at + turn), values)]
+        if len(drawn) > 1 and (held := ", ".join(filter(None, (_held(cycle, of_turn) for of_turn in later)))):
             off = np.abs(line.imag - y0)
             level = np.flatnonzero(off > off.max() - 1e-6)
             highest = line[level[len(level) // 2]]
             canvas.label(complex(highest), held, 1j if highest.imag > y0 else -1j, 2.5, 1.5)
-    outlines = np.concatenate([line for line, _ in drawn])
     count = project.variant.cycle.working if project.variant.cycle else None
-    lettered: list[tuple[complex, complex]] = []
+    feet: list[tuple[float, str, str]] = []
     for i, label in cycle.drawn:
         here = s.position(i)
         z = here.at(strokes.output)
@@ -454,27 +454,12 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
             here.pen(strokes.output, "construction").line(z, foot if below or head.imag < y0 else head, "thin")
         if below or enlarged > 1 or head.imag < y0:
             canvas.tracing("curve", load, here.label, graph).line(foot, head, "thin")
+        feet.append((x, label, cycle.labels[i]))
+    for x, label, least in feet:
+        pitch = min((abs(x - other) for other, *_ in feet if other != x), default=abs(b - a))
         # Of a position of several turns its first number where all have no room.
-        for text in dict.fromkeys((label, cycle.labels[i])):
-            size = complex(max(3.7, letter(text, 2.5).width), 2.5)
-            corners = [complex(x + off, y0 + level) for off in (0.8, -0.4 - size.real) for level in (1.0, -3.5)]
-            free = [at for at in corners if not any(_overlap(at, size, *other) for other in lettered)]
-            if free:
-                lettered.append((min(free, key=lambda at: _struck(outlines, at, size)), size))
-                canvas.text(lettered[-1][0], text, 2.5)
-                break
-
-
-def _overlap(at: complex, size: complex, other: complex, of_size: complex) -> bool:
-    """Whether two numbers, by their lower left corners and sizes, mm, are less than 0.8 mm apart."""
-    off, low, high = other - at, -of_size - 0.8 - 0.8j, size + 0.8 + 0.8j
-    return low.real < off.real < high.real and low.imag < off.imag < high.imag
-
-
-def _struck(lines: Any, at: complex, size: complex) -> int:
-    """How many points of lines run through a number or nearer to it than 0.4 mm."""
-    off = lines - (at + size / 2)
-    return int(np.count_nonzero((np.abs(off.real) < size.real / 2 + 0.4) & (np.abs(off.imag) < size.imag / 2 + 0.4)))
+        text = label if letter(label, 2.5).width + 1.6 < pitch else least
+        canvas.number(complex(x, y0), complex(x + 0.8, y0 + 1.0), text, 2.5, pitch)
 
 
 def _over_way(project: Project, s: Stage, along: Any, diagram: tuple[Any, Any], y0: float, mu: float) -> tuple[Any, Any]:

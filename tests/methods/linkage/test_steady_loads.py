@@ -9,6 +9,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from tests import project_files
 from tmm_sheets.project import Project
 from tmm_sheets.task import variant
 
@@ -72,3 +73,15 @@ def test_a_constant_over_the_angle(tmp_path):
     path.write_text(text, encoding="utf-8")
     project = Project(variant.read(path))
     assert project.study.loads[2]["Fc"].value == pytest.approx(40 * np.exp(-1j * np.pi / 6))
+
+
+@pytest.mark.parametrize(("direction", "sign"), [("clockwise", -1), ("counter-clockwise", 1), ("against motion", 1)])
+def test_signs_of_a_moment_that_turns_over_in_graphs(direction, sign):
+    """Of a fixed direction counter-clockwise is positive; against the motion it is as its table has it."""
+    moment = {"name": "M3", "link": "3", "direction": direction, "sense": "clockwise", "stroke": "working",
+              "table": [[0, "-10 N m"], [1, "30 N m"]]}
+    swing = {"moment": [moment], "cycle": {"start": "0 deg", "positions": 12}}
+    load, = project_files.project(project_files.FOUR_BAR, swing).applied
+    run = next(r for r in load.motion.runs if r.working)
+    turned = np.linspace(run.begin, run.end, 9)[1:-1]
+    assert load.shown(turned) == pytest.approx(sign * (-10 + 40 * load.motion.fraction(turned)))

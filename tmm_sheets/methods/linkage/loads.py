@@ -346,9 +346,9 @@ class Applied:
         assert motion is not None
         acting = sorted(((run, table) for run, table in zip(motion.runs, law.tables, strict=True) if table is not None),
                         key=lambda pair: (not pair[0].working, pair[0].begin))
-        of_table: dict[int, list[Run]] = {}
-        for run, table in acting:
-            of_stroke = of_table.setdefault(id(table), [run])
+        of_table: dict[tuple[tuple[float, ...], ...], list[Run]] = {}
+        for run, table in acting:  # two that are alike are one
+            of_stroke = of_table.setdefault((tuple(table[0]), tuple(table[1])), [run])
             if run is not of_stroke[0] and run.stroke == of_stroke[0].stroke:
                 of_stroke.append(run)
         return [_between(runs[0].begin, runs[-1].end, self.jumps, motion.period) for runs in of_table.values()]
@@ -379,7 +379,7 @@ class Applied:
             return self.magnitude(turned, side)
         if not isinstance(self.law, StrokeLaw):
             return self.law(turned, side)
-        return self.law.ordinates(turned, side) * (1.0 if self.sign is None else self.sign.value)
+        return self.law.ordinates(turned, side) * (1.0 if self.sign is None else float(self.sign))
 
 
 def _between(begin: float, end: float, jumps: tuple[float, ...], period: float) -> Floats:
