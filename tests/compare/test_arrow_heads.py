@@ -21,10 +21,10 @@ OTHER = A, float(np.angle(-WAY))
 """Where it is when the vector is drawn the other way."""
 
 
-def heads(known, drawn, at=(), letters=(), blur=0.0):
+def heads(known, drawn, at=(), letters=(), blur=0.0, grey=True):
     """What is found of the heads of vectors that were found in their places, when lines are drawn and heads stand ``at`` places.
 
-    The picture is blurred by so many mm, a standard deviation.
+    The picture is blurred by so many mm, a standard deviation, and may be black and white.
     """
     ink, words, owners = paper(), np.zeros((ROWS, COLUMNS), np.uint8), Owners(ROWS, COLUMNS)
     for e in known:
@@ -37,6 +37,8 @@ def heads(known, drawn, at=(), letters=(), blur=0.0):
         fill(words, np.array(corners))
     if blur:
         ink = cv2.GaussianBlur(ink, (0, 0), blur * SCALE)
+    if not grey:
+        ink = np.where(ink > ink.max() / 4, np.uint8(255), np.uint8(0))
     traces = [Trace(e, "measured", at=e.points) for e in known]
     return with_heads(traces, ink, owners, words, np.zeros((594, 841), bool))
 
@@ -166,6 +168,16 @@ def test_of_a_vector_left_out_its_helper_line_is_seen(others, said):
     f = judge(found[0], 0.25, 0.15)
     assert (f.verdict, f.what) == ("amber", said)
     assert [t.head for t in found[2:]] == ["there"] * others
+
+
+@pytest.mark.parametrize(("grey", "drawn", "head"), [
+    (True, "thin", "left out"), (False, "thin", "left out"), (True, "vector", "there"), (False, "vector", "there")])  # fmt: skip
+def test_in_black_and_white_a_helper_line_is_known_by_its_width_alone(grey, drawn, head):
+    e, sound = arrow(1, A, B), [arrow(k, A + 20j * k, B + 20j * k) for k in range(3, 7)]
+    stroke = line(2, A, B, drawn)
+    standing = sound if drawn == "thin" else [e, *sound]
+    found = heads([e, *sound], [stroke, *sound], [(s.points[1], BACK[1]) for s in standing], blur=0.12, grey=grey)
+    assert [t.head for t in found] == [head, *["there"] * len(sound)]
 
 
 @pytest.mark.parametrize(("positions", "short"), [(1, True), (24, False)])

@@ -18,6 +18,7 @@ from tmm_sheets.compare.photo.own_place import strips
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.traces import Trace
 from tmm_sheets.compare.photo.tracing import trace
+from tmm_sheets.compare.photo.wiping import fill
 from tmm_sheets.drawing.marks import Text
 from tmm_sheets.drawing.marks import Trace as By
 from tmm_sheets.drawing.styles import line_type
@@ -540,6 +541,15 @@ def stands(some, rods, ink, words, usual=180):
     nothing = np.zeros_like(ink)
     found = displaced_dots(some, rods, nothing, nothing, ink, words, np.zeros((1, 1), bool), usual)
     return {t.element.number: complex(np.round(t.shift, 0)) for t in found}
+
+
+@pytest.mark.parametrize(("usual", "wide", "found"), [
+    (180, 0.9, {1: 3j}), (180, 1.22, {}), (255, 1.22, {1: 3j}), (255, 1.6, {})])  # fmt: skip
+def test_a_dot_in_a_black_and_white_picture_may_be_swollen(usual, wide, found):
+    ink = paper()
+    corners = CORNER + 3j + wide / 2 * np.exp(2j * np.pi * np.arange(40) / 40)
+    fill(ink, corners, usual)
+    assert stands([dot(1, CORNER, 0.35)], [], ink, np.zeros_like(ink), usual) == found
 
 
 @pytest.mark.parametrize(

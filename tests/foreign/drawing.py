@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -151,6 +152,11 @@ def _run(*words: str) -> None:
 
 def read(project: str, sheet: int, folder: Path) -> list[Mark]:
     """The marks of a sheet, which is built into `folder` when first asked for."""
+    return list(_read(project, sheet, folder))
+
+
+@lru_cache(maxsize=12)  # a trial takes many pictures of few sheets
+def _read(project: str, sheet: int, folder: Path) -> tuple[Mark, ...]:
     place = folder / f"{project.replace('/', '-').replace(':', '-')}-{sheet}"
     if not (place / "record.json").exists():
         _run("build", project, "--sheet", str(sheet), "--format", "dxf", "--text", "strokes", "-o", str(place))
@@ -159,7 +165,7 @@ def read(project: str, sheet: int, folder: Path) -> list[Mark]:
     record = json.loads((place / "record.json").read_text(encoding="utf-8"))
     entries = next(entry for entry in record["sheets"] if entry["sheet"] == sheet)["marks"]
     marks = [_mark(entry) for entry in entries if entry["geometry"]]
-    return _with_letters(marks, _lettering(place / f"sheet{sheet}.dxf"))
+    return tuple(_with_letters(marks, _lettering(place / f"sheet{sheet}.dxf")))
 
 
 def dashes(path: Floats, style: str) -> list[Floats]:

@@ -18,6 +18,7 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.hidden import Mask, at
+from tmm_sheets.compare.photo.ink_levels import NO_GREY
 from tmm_sheets.compare.photo.profiles import SCALE, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import PAPER, Floats
 from tmm_sheets.compare.photo.traces import Trace
@@ -31,6 +32,8 @@ BLUR = 0.22
 """Standard deviation of a photograph's blur, mm."""
 SIZES = 0.45, 2.8
 """Area of a spot as a share of that of the dot."""
+SWOLLEN = 1.5
+"""How much larger than that a spot may be in a black and white picture, in which all that was half dark is black."""
 WIDER, ROUND, FULL = 1.0, 2.0, 0.6
 """mm by which a spot may be wider than the dot, how much longer than wide, and the least share of its rectangle that it fills."""
 ALONE, ROOM = 0.9, 2.5
@@ -57,8 +60,6 @@ lines', mm about its edge that are paler, and darkness of its middle: blur makes
 """
 LEADS, TOWARDS = 0.95, 0.4
 """Least share with ink of what a line has to a spot, and share of its way from which on that is no other's than its own."""
-NO_GREY = 245
-"""Darkness of lines in a black and white picture, which says nothing of how wide they are."""
 PENCIL, MEET = 0.3, 5
 """mm by which a dot drawn by hand may be larger or aside; pixels between lines that blur fills."""
 BUMP, OWN, SPREAD, WITHIN = 0.5, 0.1, 0.4, 0.75
@@ -162,11 +163,12 @@ def _spots(e: Element, rods: tuple[Points, Points], taken: Any, ink: Any, words:
     clear = cv2.erode(free, np.ones((TOUCHED, TOUCHED), np.uint8)) > 0
     _, labels, stats, middles = cv2.connectedComponentsWithStats(seen, connectivity=8)
     size, out = np.pi * e.radius**2 * SCALE**2, []
+    largest = SIZES[1] * (SWOLLEN if faint >= FAINT * NO_GREY else 1.0)
     for k in range(1, len(stats)):
         w, h, area = (int(n) for n in stats[k, 2:])
         z = complex((left + middles[k, 0] + 0.5) / SCALE, PAPER.y1 - (top + middles[k, 1] + 0.5) / SCALE)
         round_ = max(w, h) <= min(ROUND * min(w, h), (2 * e.radius + WIDER) * SCALE) and area > FULL * w * h
-        if (round_ and SIZES[0] * size < area < SIZES[1] * size and max(LEAST, e.radius + ASIDE) < abs(z - e.centre) < FAR
+        if (round_ and SIZES[0] * size < area < largest * size and max(LEAST, e.radius + ASIDE) < abs(z - e.centre) < FAR
                 and int(ink[here][labels == k].max()) > least and _alone(seen, stats[k])
                 and (e.radius >= SMALL or clear[round(middles[k, 1]), round(middles[k, 0])] or _aside(z, rods, ink))):  # fmt: skip
             out.append(z)

@@ -6,6 +6,9 @@ from typing import Any
 
 import numpy as np
 
+NO_GREY = 245
+"""Darkness of lines in a black and white picture, which says nothing of how wide they are."""
+
 
 def noise_level(ink: Any) -> float:
     """Darkness from which on a single pixel counts as ink: six standard deviations of bare paper."""

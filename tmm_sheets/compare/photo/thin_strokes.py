@@ -14,6 +14,7 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.hidden import Mask, at
+from tmm_sheets.compare.photo.ink_levels import NO_GREY
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.traces import Trace
@@ -29,7 +30,8 @@ OWN = np.abs(ASIDE) <= 0.75
 SPARED, LEAST, PIECE = 1.5, 2.4, 5
 """mm at its ends that dots hide, least mm of it that must be seen by itself, and places that are taken together."""
 NARROW, PALE = 0.62, 0.7
-"""Ink across it, and its darkness, as shares of those usual for the vectors about it, up to which it is a thin line."""
+"""Ink across it, and its darkness, as shares of those usual for the vectors about it, up to which it is a thin line; in a black and
+white picture all that is left of a line is black, and its width alone counts."""
 UNIFORM, MOSTLY = 0.75, 0.85
 """Ink across it up to which a piece of it is no vector's, and least share of it where that is so."""
 ENOUGH, NEAREST = 3, 9
@@ -95,4 +97,5 @@ def _thin(s: _Stroke, others: Sequence[_Stroke]) -> bool:
     about = sorted(others, key=lambda o: abs(o.element.middle - s.element.middle))[:NEAREST]
     usual, dark = float(np.median([o.usual for o in about])), float(np.median([o.dark for o in about]))
     uniform = (s.across <= UNIFORM * usual).mean() >= MOSTLY
-    return bool(s.usual <= NARROW * usual and s.dark <= PALE * dark and uniform)
+    pale = s.dark <= PALE * dark or dark >= NO_GREY
+    return bool(s.usual <= NARROW * usual and pale and uniform)

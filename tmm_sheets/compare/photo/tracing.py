@@ -24,11 +24,11 @@ from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo import moved_labels
 from tmm_sheets.compare.photo.arrow_heads import exchanged, with_heads
 from tmm_sheets.compare.photo.displacement import beside, displaced, rather_elsewhere
-from tmm_sheets.compare.photo.dots import NO_GREY, displaced_dots
+from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.extra_ink import extra_ink, without_creases
 from tmm_sheets.compare.photo.forks import parted
 from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden, widened
-from tmm_sheets.compare.photo.ink_levels import ink_levels
+from tmm_sheets.compare.photo.ink_levels import NO_GREY, ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.line_ends import with_ends
