@@ -6,11 +6,15 @@ from cmath import rect
 from collections.abc import Collection
 
 import numpy as np
+import numpy.typing as npt
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Arc, Box, Text
-from tmm_sheets.drawing.owners import Ink, crossing, enters
+from tmm_sheets.drawing.owners import Ink, crossing, enters, sides, within
+
+ROUNDING = 1e-6
+"""mm by which what is looked at may lie farther off."""
 
 
 class Drawn:
@@ -24,19 +28,26 @@ class Drawn:
         self.ink = Ink(m for m in marks if about is None or not (isinstance(m, Arc) and abs(m.centre - about) < 1e-6))
         corners = [text_box(m) for m in marks if isinstance(m, Text)]
         self.written = np.array([(z[k - 1], z[k]) for z in corners for k in range(len(z))]).reshape(-1, 2)
+        self._a, self._b = np.concatenate(((self.ink.a, self.ink.b), self.written.T), axis=1)
+        self._counts = np.repeat((1, 10), (len(self.ink.a), len(self.written)))
+        self._sides = sides(self._a, self._b)
 
     def meets(self, box: Box, origin: complex = 0j, direction: float = 0.0) -> bool:
         """Whether anything is in a rectangle of axes that are turned by an angle about a point, their origin."""
-        back = rect(1, -direction)
-        return any(bool(enters((a - origin) * back, (b - a) * back, *box).any())
-                   for a, b in ((self.ink.a, self.ink.b), self.written.T))
+        return bool(len(self._met(box, origin, direction)))
 
     def count(self, box: Box, origin: complex, direction: float) -> int:
         """How many lines are in such a rectangle, lettering as much as ten."""
-        back = rect(1, -direction)
-        lines, written = (int(enters((a - origin) * back, (b - a) * back, *box).sum())
-                          for a, b in ((self.ink.a, self.ink.b), self.written.T))
-        return lines + 10 * written
+        return int(self._counts[self._met(box, origin, direction)].sum())
+
+    def _met(self, box: Box, origin: complex, direction: float) -> npt.NDArray[np.intp]:
+        """Numbers of what is in such a rectangle; only what may be near it is looked at."""
+        way, p = rect(1, direction), box.centre
+        middle = origin + p * way
+        about = Box(middle.real, middle.imag, middle.real, middle.imag)
+        near = within(self._sides, about, abs(complex(box.x0, box.y0) - p) + ROUNDING)
+        a, b = ((z[near] - origin) * way.conjugate() for z in (self._a, self._b))
+        return np.asarray(near[enters(a, b - a, *box)])
 
     def strong(self, a: complex, b: complex) -> bool:
         """Whether a line would cross the outlines of teeth or others as strong."""

@@ -66,8 +66,7 @@ class Ink:
             if mark.by is not None and mark.by.step and mark.by.role != "text":
                 for key in (mark.by[1:4], mark.by[1:]):
                     self._steps.setdefault(key, []).append(number)
-        x, y = (np.stack((self.a.real, self.b.real)), np.stack((self.a.imag, self.b.imag)))
-        self.sides = np.array([x.min(axis=0), y.min(axis=0), x.max(axis=0), y.max(axis=0)])
+        self.sides = sides(self.a, self.b)
 
     def lead(self, a: Any, b: Any) -> None:
         """The leaders there are now, from ``a`` to ``b``."""
@@ -88,8 +87,19 @@ class Ink:
 
     def near(self, box: Box, reach: float) -> npt.NDArray[np.intp]:
         """Numbers of the segments that may be within ``reach`` of a rectangle."""
-        x0, y0, x1, y1 = self.sides
-        return np.flatnonzero((x0 <= box.x1 + reach) & (x1 >= box.x0 - reach) & (y0 <= box.y1 + reach) & (y1 >= box.y0 - reach))
+        return within(self.sides, box, reach)
+
+
+def sides(a: Any, b: Any) -> Floats:
+    """Left, lower, right and upper edges of segments, (4, n)."""
+    x, y = np.stack((a.real, b.real)), np.stack((a.imag, b.imag))
+    return np.array([x.min(axis=0), y.min(axis=0), x.max(axis=0), y.max(axis=0)])
+
+
+def within(edges: Floats, box: Box, reach: float) -> npt.NDArray[np.intp]:
+    """Numbers of those of some edges, (4, n), that may be within ``reach`` of a rectangle."""
+    x0, y0, x1, y1 = edges
+    return np.flatnonzero((x0 <= box.x1 + reach) & (x1 >= box.x0 - reach) & (y0 <= box.y1 + reach) & (y1 >= box.y0 - reach))
 
 
 def _thinned(points: Any) -> Any:

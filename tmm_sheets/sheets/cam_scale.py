@@ -85,9 +85,12 @@ def _row(ink: Drawn, closed: Box, marks: Sequence[tuple[int, float, str]], path:
             over = min(box.x1, closed.x1) > max(box.x0, closed.x0) and min(box.y1, closed.y1) > max(box.y0, closed.y0)
             return ink.count(box, 0j, 0.0) + 10 * over
 
-        begin = max(wanted, before + least)
-        tried = [(met(place(t).inset(-CLEAR)), t) for t in begin + np.arange(0.0, 8.0, 1.0)]
-        lines, before = next((found for found in tried if not found[0]), min(tried))
+        begin, tried = max(wanted, before + least), list[tuple[int, float]]()
+        for t in begin + np.arange(0.0, 8.0, 1.0):
+            tried.append((met(place(t).inset(-CLEAR)), t))
+            if not tried[-1][0]:
+                break
+        lines, before = min(tried)
         boxes.append(place(before))
         cost += lines + 0.05 * abs(before - mark)
     return cost, boxes, way

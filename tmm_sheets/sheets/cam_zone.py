@@ -49,19 +49,20 @@ def _tops(z: Zone, apex: complex, stroke: float) -> list[complex]:
             for t, side in _touches(z)]
 
 
-def fitted_tappet(cam: TappetCam, rays: bool, width: float, height: float) -> tuple[float, float, list[float]]:
-    """Scale factor of a tappet's zone in so much room, mm; depth (m, negative) to which it is drawn; abscissae of its ink, m.
+def fitted_tappet(cam: TappetCam, rays: bool, width: float, height: float) -> tuple[float, float, tuple[float, float]]:
+    """Scale factor of a tappet's zone in so much room, mm; depth (m, negative) to which it is drawn; edges of its ink, m.
 
     The finest scale factor counts, then the deepest zone.
     """
     z, stroke, slope = cam.zone, cam.law.stroke, tan(cam.zone.alpha)
     axis, apex = complex(z.apex.value), complex(z.plan["V"].value if "V" in z.plan else z.apex.value)
-    ink = [*z.curve.value.real, *_beyond(z, rays).real, *(t.real for t in _tops(z, apex, stroke)), 0.0]
+    ink = np.concatenate((z.curve.value.real, _beyond(z, rays).real, [t.real for t in _tops(z, apex, stroke)], [0.0]))
+    left, right = float(ink.min()), float(ink.max())
 
-    def fitted(share: float) -> tuple[float, float, list[float]]:
+    def fitted(share: float) -> tuple[float, float, tuple[float, float]]:
         depth = share * (stroke + z.s0) * min(1.0, 0.6 / slope) + max((apex - axis).imag, 0.0)
-        xs = [*ink, apex.real - depth * slope, apex.real + depth * slope]
-        return handy(max(float(np.ptp(xs)) / width, (stroke - apex.imag + depth) / height)), -depth, xs
+        edges = min(left, apex.real - depth * slope), max(right, apex.real + depth * slope)
+        return handy(max((edges[1] - edges[0]) / width, (stroke - apex.imag + depth) / height)), -depth, edges
 
     return min(fitted(share) for share in (0.3, 0.22, 0.15))
 
@@ -83,14 +84,14 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     letter_of, rays = options.get("angle", ANGLE), bool(options.get("rays"))
     beyond, touches, tops = _beyond(z, rays), _touches(z), _tops(z, apex, stroke)
     room, first = box.inset(*TAPPET), len(canvas.marks)
-    mu, lowest, xs = fitted_tappet(cam, rays, room.width, room.height)
+    mu, lowest, edges = fitted_tappet(cam, rays, room.width, room.height)
     depth = -lowest
     low = apex - 1j * depth
     scale = Scale("μ_S", mu, tr("m/mm"))
     box, room = raised(box, room, scale.mm(stroke - low.imag))
     canvas.scales[z.plan.name] = scale
     canvas.title(box, tr("Main dimensions of the cam"), tr("μ_S = μ_S' = {factor} m/mm").format(factor=number(scale.mu)))
-    origin = room.centre - scale.mm(complex((max(xs) + min(xs)) / 2, (stroke + low.imag) / 2))
+    origin = room.centre - scale.mm(complex(sum(edges) / 2, (stroke + low.imag) / 2))
 
     stage, smooth = placed(canvas, z.plan, origin, mu), placed(canvas, z.curve_plan, origin, mu)
     at = stage.frame

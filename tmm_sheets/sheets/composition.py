@@ -498,6 +498,7 @@ def _profile(project: Project, view: View) -> Node | None:
     cam = project.cam
     sizes = cam_profile.figure_sizes(cam)
     beside = 2 * (cam_profile.EDGE + cam_profile.margin(cam))
+    alone, with_table = cam_profile.over(cam)
 
     def fitted(width: int, height: int, over: float) -> Scale | None:
         found = None
@@ -509,7 +510,6 @@ def _profile(project: Project, view: View) -> Node | None:
 
     @cache
     def in_place(width: int, height: int) -> float:
-        alone, with_table = cam_profile.over(cam)
         scale, larger, over = fitted(width, height, with_table), fitted(width, height, alone), with_table
         if scale is None:
             return 1.0

@@ -277,8 +277,8 @@ class _GearPicture:
             return end, at, not (ink.meets(box) or ink.strong(start, end) or ink.over(start, end))
 
         turns = sorted(np.arange(-60.0, 61.0, 4.0), key=abs)
-        places = [tried(turn, beyond) for beyond in np.arange(1.5, 26.0, 0.5) for turn in turns]
-        end, at, free = next((p for p in places if p[2]), places[0])
+        places = (tried(turn, beyond) for beyond in np.arange(1.5, 26.0, 0.5) for turn in turns)
+        end, at, free = next((p for p in places if p[2]), None) or tried(turns[0], 1.5)
         self.stage.line("Pw", self.pole, end, "thin", "text")
         if free:
             self.stage.pen("Pw", "text").put(laid, at - half + 1j * laid.descent, 0.0, "P_w")

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
 Cells = NDArray[Any]
+Counts = NDArray[np.int32]
 
 CELL = 2.0
 """Side of the cells in which room is looked for, mm."""
@@ -107,9 +108,10 @@ def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float
     inked = _closed(inside, closed)
     inked |= _cells(canvas, range(len(canvas.parts)), inside, inked.shape)
     gaps = np.zeros(inked.shape, bool)
+    table = _summed(inked)
     for size in (sides, sides[::-1]):
         nx, ny = (int(np.ceil(length / CELL)) for length in size)
-        begins = _windows(inked, nx, ny) == 0
+        begins = _windows(table, nx, ny) == 0
         # How many of them have a corner here, with its sign: summed up, how many lie over a cell.
         count = np.zeros(np.add(inked.shape, 1), np.int64)
         for (i, j), sign in {(0, 0): 1, (nx, 0): -1, (0, ny): -1, (nx, ny): 1}.items():
@@ -118,21 +120,26 @@ def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float
     return gaps
 
 
-def _windows(taken: Cells, nx: int, ny: int) -> NDArray[np.int64]:
-    """How many cells are taken of each rectangle of so many cells, by its lower left one."""
-    table = np.zeros(np.add(taken.shape, 1), np.int64)
-    table[1:, 1:] = taken.cumsum(axis=0, dtype=np.int64).cumsum(axis=1)
+def _summed(taken: Cells) -> Counts:
+    """How many cells are taken of all to the left of and below each corner of the cells."""
+    table = np.zeros(np.add(taken.shape, 1), np.int32)
+    table[1:, 1:] = taken.cumsum(axis=0, dtype=np.int32).cumsum(axis=1, dtype=np.int32)
+    return table
+
+
+def _windows(table: Counts, nx: int, ny: int) -> Counts:
+    """How many cells are taken of each rectangle of so many cells, by its lower left one; of a table by :func:`_summed`."""
     return np.asarray(table[nx:, ny:] - table[:-nx, ny:] - table[nx:, :-ny] + table[:-nx, :-ny])
 
 
-def _free(taken: Cells, sizes: Sequence[tuple[float, float]]) -> Iterator[tuple[tuple[float, float], float, Cells]]:
+def _free(table: Counts, sizes: Sequence[tuple[float, float]]) -> Iterator[tuple[tuple[float, float], float, Cells]]:
     """The sizes with distances from all else, the widest first, and the lowest left cells of all places that have them."""
     for size in sizes:
         for apart in APART:
             nx, ny = (int(np.ceil((length + 2 * apart) / CELL)) for length in size)
-            if nx > taken.shape[0] or ny > taken.shape[1]:
+            if nx >= table.shape[0] or ny >= table.shape[1]:
                 continue
-            free = np.argwhere(_windows(taken, nx, ny) == 0)
+            free = np.argwhere(_windows(table, nx, ny) == 0)
             if len(free):
                 yield size, apart, free
 
@@ -142,7 +149,7 @@ def _place(taken: Cells, sizes: Sequence[tuple[float, float]], inside: Box, left
 
     With the edge ``left``, mm, where there is room for that size with it.
     """
-    for (width, height), apart, free in _free(taken, sizes):
+    for (width, height), apart, free in _free(_summed(taken), sizes):
         if left is not None and len(aligned := free[free[:, 0] == round((left - apart - inside.x0) / CELL)]):
             j = int(np.median(aligned[:, 1]))
             return Box(left, inside.y0 + j * CELL + apart, left + width, inside.y0 + j * CELL + apart + height)
@@ -155,8 +162,9 @@ def _place(taken: Cells, sizes: Sequence[tuple[float, float]], inside: Box, left
 
 def _near(taken: Cells, sizes: Sequence[tuple[float, float]], inside: Box, spot: complex, pictures: Sequence[Box]) -> Box | None:
     """The place nearest to a spot of the first picture, no nearer to the others, of the first size that has one in reach."""
+    table = _summed(taken)
     for reach in CLOSE:
-        for (width, height), apart, free in _free(taken, sizes):
+        for (width, height), apart, free in _free(table, sizes):
             corners = complex(inside.x0 + apart, inside.y0 + apart) + CELL * (free[:, 0] + 1j * free[:, 1])
             middles = corners + complex(width, height) / 2
             off = np.array([_off(middles, picture) for picture in pictures])

@@ -78,7 +78,8 @@ TOO_SMALL = 1e8
 class Node:
     """Several parts along x (``axis`` 0) or downwards (1) with ``gap`` between them, or a view.
 
-    Of a view: its ``need``, its number ``leaf``, the ``area`` that its arrangement means it to have.
+    Of a view: its ``need``, its number ``leaf``, the ``area`` that its arrangement means it to have, and what it fills of the
+    places in which it was ``tried``, and how much they are too small: half of them are tried again.
     """
 
     need: Need | None = None
@@ -88,6 +89,7 @@ class Node:
     children: list[Node] = field(default_factory=list)
     shares: list[float] = field(default_factory=list)
     gap: float = GAP
+    tried: dict[tuple[float, float], tuple[float, float]] = field(default_factory=dict)
 
     def every(self) -> Iterator[Node]:
         """The node and all below it."""
@@ -103,8 +105,11 @@ class Node:
     def cost(self, width: float, height: float) -> float:
         """What the places of its views cost: more, the less of what it is meant to have each of them fills."""
         if self.need is not None:
-            # The square: what is worst counts most.
-            return self.area * (self.area / self.need.ink(width, height)) ** 2 + TOO_SMALL * self.need.short(width, height)
+            place = width, height
+            if place not in self.tried:
+                self.tried[place] = self.need.ink(width, height), self.need.short(width, height)
+            ink, short = self.tried[place]
+            return self.area * (self.area / ink) ** 2 + TOO_SMALL * short  # the square: what is worst counts most
         return sum(self._of(child, size, width, height)
                    for child, size in zip(self.children, self.sizes(width, height), strict=True))
 
