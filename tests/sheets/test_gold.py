@@ -10,6 +10,13 @@ def test_display_list_is_the_accepted_one(project, n):
     assert not gold.difference(gold.load(project, n), gold.draw(project, n)), "look at the sheet; if it is right: make gold"
 
 
+@pytest.mark.parametrize(("project", "n"), [(p, n) for p, count in gold.PROJECTS.items() for n in range(1, count + 1)])
+def test_no_line_is_a_point(project, n):
+    """A line of centres interrupted for a number that reached beyond its end left a line of no length there."""
+    lines = [mark.numbers for mark in gold.load(project, n) if mark.kind == "Line"]
+    assert [ends for ends in lines if abs(ends[0] - ends[2]) + abs(ends[1] - ends[3]) < gold.TOLERANCE] == []
+
+
 def moved(marks, i, by):
     """The marks with the first number of one of them changed."""
     first, *rest = marks[i].numbers

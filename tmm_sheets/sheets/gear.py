@@ -31,6 +31,8 @@ DIMENSION = 8.0
 """Distance of the dimension lines of the teeth from the root circle, mm."""
 FURTHEST = 40.0
 """So much farther the dimension lines of the teeth stand at most where lines would run through their lettering, mm."""
+SLIVER = 1e-6
+"""mm of a line beside its lettering that are nothing but rounding."""
 DIVISION = 10.0
 """Room beyond the last division of an involute for its number, mm."""
 PITCHES, MOST = 1.25, 1.5
@@ -422,9 +424,12 @@ class _GearPicture:
             if hidden is None:
                 continue
             near, far = sorted((z * along + at for z in hidden), key=lambda z: abs(z - line.a))
-            marks[n] = line._replace(b=near)
-            self.spokes.append(len(marks))
-            marks.append(line._replace(a=far))
+            # Lettering that reaches beyond an end leaves one piece.
+            pieces = [piece for piece in (line._replace(b=near), line._replace(a=far)) if abs(piece.b - piece.a) > SLIVER]
+            marks[n] = pieces[0] if pieces else line
+            if len(pieces) > 1:
+                self.spokes.append(len(marks))
+                marks.append(pieces[1])
 
     def rotation(self, wheel: Any) -> None:
         """Arrow of the angular velocity."""
