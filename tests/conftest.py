@@ -14,7 +14,8 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 
 LONGEST = (
-    "output/test_batch", "compare/test_cad", "test_cli", "compare/test_languages", "compare/test_students", "test_docs",
+    "output/test_batch", "compare/test_cad", "test_cli", "methods/linkage/test_forces", "compare/test_languages",
+    "compare/test_students", "test_docs",
     "sheets/test_user_projects", "record/test_record", "compare/test_measured_manuals", "test_texts", "compare/test_image",
     "compare/test_doubtful_fits", "compare/test_own_layout", "methods/linkage/test_strokes", "sheets/test_languages",
     "sheets/test_no_flywheel", "sheets/test_places", "compare/test_measured", "sheets/test_plan_scales", "test_words_protocol",

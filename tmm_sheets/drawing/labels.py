@@ -289,13 +289,14 @@ class _Places:
             beyond = np.maximum.reduce([view.x0 - x0, view.y0 - y0, x1 - view.x1, y1 - view.y1])
             cost = cost + OUTSIDE * (beyond > 0)
             self._strayed = beyond > AWAY
-        p = grid.leaders
-        p = p[(p.real > x0.min()) & (p.real < x1.max()) & (p.imag > y0.min()) & (p.imag < y1.max())]
-        if len(p):
-            over = (p.real > x0[:, None]) & (p.real < x1[:, None]) & (p.imag > y0[:, None]) & (p.imag < y1[:, None])
-            cost = cost + COVERING * over.any(axis=1)
-        self.sides, self.cost = sides, cost
         free = np.flatnonzero(grid.free(sides))
+        if len(p := grid.leaders):
+            some = free if len(free) else np.arange(len(cost))  # what the others would cost nobody asks
+            x0, y0, x1, y1 = (side[some] for side in (x0, y0, x1, y1))
+            p = p[(p.real > x0.min()) & (p.real < x1.max()) & (p.imag > y0.min()) & (p.imag < y1.max())]
+            over = (p.real > x0[:, None]) & (p.real < x1[:, None]) & (p.imag > y0[:, None]) & (p.imag < y1[:, None])
+            cost[some] += COVERING * over.any(axis=1)
+        self.sides, self.cost = sides, cost
         self.free = free[np.argsort(self.cost[free], kind="stable")]
 
     def read(self, here: owners.Round, leaders: bool = True) -> int | None:
