@@ -424,9 +424,9 @@ class _GearPicture:
             if hidden is None:
                 continue
             near, far = sorted((z * along + at for z in hidden), key=lambda z: abs(z - line.a))
-            # Lettering that reaches beyond an end leaves one piece.
+            # Lettering that reaches beyond an end leaves one piece, one that reaches beyond both nothing to be seen.
             pieces = [piece for piece in (line._replace(b=near), line._replace(a=far)) if abs(piece.b - piece.a) > SLIVER]
-            marks[n] = pieces[0] if pieces else line
+            marks[n] = pieces[0] if pieces else line._replace(b=line.a)
             if len(pieces) > 1:
                 self.spokes.append(len(marks))
                 marks.append(pieces[1])
