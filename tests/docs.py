@@ -108,12 +108,13 @@ def restricted(base: Any, validators: tuple[Any, ...]) -> str:
             said.append(first_lower(inspect.getdoc(v.func).split("\n")[0].rstrip(".")))
         elif "word" in given:
             said.append(f'`"{given["word"]}"` or {given["quantity"].name if "quantity" in given else value(base)}')
-        elif "quantity" in given and not any(isinstance(o, AfterValidator) for o in validators):
-            said.append(given["quantity"].name)
         elif "wording" in given:
             said.append(without_article(given["wording"].removeprefix("expected ")))
+        elif "quantity" in given and not any(isinstance(o, AfterValidator) for o in validators):
+            said.append(given["quantity"].name)
         elif "least" in given:
             said.append(f"whole number, {given['least']} or more")
+    said = list(dict.fromkeys(said))
     return ", ".join(reversed(said[:1] if len(said) == 2 and said[1] == "name in quotes" else said))
 
 

@@ -7,7 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tmm_sheets.task import units
+from tests.project_files import EVEN, SLIDER, read
+from tmm_sheets.errors import BadInput
+from tmm_sheets.task import units, values
 from tmm_sheets.task.units import parse
 
 
@@ -92,3 +94,82 @@ def test_conversion_rounds_once(number):
         exact = number / Decimal(1000)
     assert parse(f"{number:f} mm", units.LENGTH) == float(exact)
     assert parse(f"{number:f} mm".replace(".", ","), units.LENGTH) == float(exact)
+
+
+COSINE = 6.123233995736766e-17
+"""What a program has for the cosine of a right angle, less than half a unit of the last digit of 1 from zero."""
+
+
+@pytest.mark.parametrize(
+    ("text", "quantity"),
+    [
+        ("-4.4e-16 rad", units.ANGLE),
+        (f"{40 * COSINE!r} mm", units.LENGTH),
+        ("3e-15 mm", units.LENGTH),
+        ("2e-13 N m", units.MOMENT),
+        (f"{40 * COSINE!r} kN", units.FORCE),
+        ("1e-13 kg", units.MASS),
+        ("-1e-13 t", units.MASS),
+        ("-1e-13 MPa", units.PRESSURE),
+        (-COSINE, units.NUMBER),
+        ("0 mm", units.LENGTH),
+    ],
+)
+def test_what_rounding_leaves_of_zero_is_zero(text, quantity):
+    assert str(values.parsed(text, quantity)) == "0.0"
+
+
+@pytest.mark.parametrize(("text", "quantity", "si"), [("1e-9 mm", units.LENGTH, 1e-12), ("1.1e-12 kN", units.FORCE, 1.1e-9),
+                                                      ("-1e-12 rad", units.ANGLE, -1e-12)])
+def test_what_is_small_and_no_rounding_stays(text, quantity, si):
+    assert values.parsed(text, quantity) == pytest.approx(si, rel=1e-15, abs=0)
+
+
+def test_a_file_of_a_program_is_the_file_of_a_person():
+    """Coordinates, angles, masses, loads and shares with rounding in them: the same numbers as without."""
+    by_hand = {"guide[1].direction": "0 deg", "points": {"O": ["0 mm", "0 mm"]}, "forces": {"gravity": "0 m/s2"},
+               "link": [{"name": "2", "mass": "0 kg"}, {"name": "3", "mass": "5 kg", "centre": "B", "inertia": "0 kg m2"}],
+               "moment": [{"name": "M1", "link": "1", "direction": "clockwise", "over": "angle",
+                           "table": [["0 deg", "0 N m"], ["180 deg", "90 N m"], ["180 deg", "20 N m"], ["360 deg", "0 N m"]]}],
+               "force": [{"name": "F3", "link": "3", "point": "B", "direction": "against motion", "sense": "-x",
+                          "from": 0, "to": 1, "table": [[0, "0 N"], [0.3, "10 N"], [0.3, "50 N"], [1, "0 N"]]}]}
+    by_program = {"guide[1].direction": "-4.4e-16 rad", "points": {"O": ["3e-15 mm", f"{40 * COSINE!r} mm"]},
+                  "forces": {"gravity": "-1e-16 m/s2"},
+                  "link": [{"name": "2", "mass": "-1e-13 kg"},
+                           {"name": "3", "mass": "5 kg", "centre": "B", "inertia": "1e-13 kg m2"}],
+                  "moment": [{"name": "M1", "link": "1", "direction": "clockwise", "over": "angle",
+                              "table": [["1e-15 deg", "2e-13 N m"], ["180 deg", "90 N m"], ["179.99999999999997 deg", "20 N m"],
+                                        ["360 deg", "-2e-14 N m"]]}],
+                  "force": [{"name": "F3", "link": "3", "point": "B", "direction": "against motion", "sense": "-x",
+                             "from": -1e-17, "to": 1.0000000000000002,
+                             "table": [[-COSINE, "1e-14 kN"], [0.3, "10 N"], [0.30000000000000004, "50 N"], [1, "0 N"]]}]}
+    hand, program = (read(SLIDER, EVEN, part) for part in (by_hand, by_program))
+    assert program.model_dump(exclude={"force", "moment"}) == hand.model_dump(exclude={"force", "moment"})
+    for a, b in zip((*hand.force, *hand.moment), (*program.force, *program.moment), strict=True):
+        assert b.diagrams() == a.diagrams()
+
+
+def test_a_cam_of_a_program_is_the_cam_of_a_person():
+    by_hand = {"cam": {"follower": "translating roller", "pressure_angle": "30 deg", "displacements": [
+        ["0 deg", "0 mm"], ["60 deg", "4 mm"], ["100 deg", "9 mm"], ["120 deg", "9 mm"], ["200 deg", "0 mm"], ["360 deg", "0 mm"]]}}
+    by_program = {"cam": {"follower": "translating roller", "pressure_angle": "30 deg", "displacements": [
+        ["-1e-15 deg", "2e-16 mm"], ["60 deg", "4 mm"], ["100 deg", "9 mm"], ["120 deg", "8.999999999999998 mm"],
+        ["200 deg", "-1e-15 mm"], ["360.00000000000006 deg", "3e-15 mm"]]}}
+    hand, program = (read(part).cam for part in (by_hand, by_program))
+    assert program.model_dump(exclude={"displacements"}) == hand.model_dump(exclude={"displacements"})
+    table = {"cam": {"follower": "translating roller", "law": "table", "rise": "100 deg", "fall": "70 deg", "stroke": "10 mm",
+                     "pressure_angle": "30 deg", "table": [[0, 1], [0.5, 1], [0.5, -1], [1, -1]]}}
+    rounded = [[1e-17, 1], [0.5, 1], [0.49999999999999994, -1], [0.9999999999999999, -1]]
+    assert read(table | {"cam": table["cam"] | {"table": rounded}}).cam.diagram("table") == read(table).cam.diagram("table")
+
+
+@pytest.mark.parametrize(("key", "value", "said"), [
+    ("crank.length", "1e-13 m", "of 1e-12 to 1e+12 in SI units, not '1e-13 m'; is the unit right?"),
+    ("crank.length", "-1e-13 m", "greater than zero"),
+    ("crank.length", "0 m", "greater than zero"),
+    ("crank.speed", "1e13 rpm", "is the unit right?"),
+])
+def test_where_nothing_is_no_answer(key, value, said):
+    with pytest.raises(BadInput) as e:
+        read(SLIDER, EVEN, {key: value})
+    assert said in str(e.value)

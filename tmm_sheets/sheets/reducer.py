@@ -21,6 +21,7 @@ from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.frame import ratio, standard
 from tmm_sheets.sheets.gear_marks import LARGE, LETTERS, ROW, ruled_table
 from tmm_sheets.sheets.player import Stage, placed, play
+from tmm_sheets.sheets.reducer_equations import unsigned
 from tmm_sheets.words import tr
 
 COLUMN = 19.0
@@ -621,7 +622,7 @@ def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
     rows: list[tuple[str, ...]] = [
         (tr("Quantity"), tr("Value")),
         (tr("Ratio asked for"), fixed(chosen["u_asked"], 3)),
-        *([(tr("Simple stage × planetary part"), f"{fixed(chosen['u_simple'], 3)} × {fixed(chosen['u_planetary'], 3)}")]
+        *([(tr("Simple stage × planetary part"), f"{fixed(chosen['u_simple'], 3)} × {unsigned(chosen['u_planetary'])}")]
           if r.simple else []),
         (tr("Ratio found; deviation"), f"{fixed(chosen['u'], 3)}; {fixed(chosen['u_deviation'] * 100, 2)} %"),
         (tr("Coaxiality, teeth"), f"{held['coaxiality_left']} = {held['coaxiality_right']}"),

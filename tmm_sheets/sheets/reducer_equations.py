@@ -30,6 +30,11 @@ def of_stage(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
 
 
+def unsigned(ratio: float) -> str:
+    """A ratio without its sign, as a factor of one that has none."""
+    return fixed(ratio, 3) if ratio > 0 else f"|{fixed(ratio, 3)}|"
+
+
 def _lines(r: Any) -> Iterator[str]:
     chosen, held = ({step.name: step.value for step in plan} for plan in (r.sets[0], r.conditions))
     stage = r.stages[0]
@@ -55,7 +60,7 @@ def _lines(r: Any) -> Iterator[str]:
     yield f"{ratio} = {letters} = {counted} = {fixed(chosen['u_stage'], 3)}"
     count = len(r.stages)
     parts = [f"|{ratio}|" + (f"^{{{count}}}" if count > 1 else "")]
-    values = [fixed(chosen["u_planetary"], 3)]
+    values = [unsigned(chosen["u_planetary"])]
     if r.simple:
         pinion, wheel = r.simple
         parts.append(f"z_{{{wheel.number}}}/z_{{{pinion.number}}}")

@@ -7,7 +7,7 @@ from math import isclose
 from typing import Any
 
 from tmm_sheets.task import units
-from tmm_sheets.task.values import diagram
+from tmm_sheets.task.values import diagram, levelled
 from tmm_sheets.words import tell
 
 LAW = "displacements"
@@ -29,6 +29,7 @@ def ordinates(cam: dict[str, Any]) -> tuple[list[float], list[float]]:
         raise ValueError(tell('expected displacements = [["0 deg", "0 mm"], ["30 deg", "4 mm"], ...]'))
     rocker = cam.get("follower") == "oscillating roller"
     phi, s = diagram(pairs, units.ANGLE, units.ANGLE if rocker else units.LENGTH)
+    s = levelled(s, max(map(abs, s), default=0.0))
     _check(phi, s)
     return phi, s
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -45,13 +46,17 @@ from tmm_sheets.task.values import (
     Torque,
     WheelName,
     diagram,
+    from_to,
     in_range,
     or_word,
+    phase_diagram,
     positive,
     si,
     whole,
 )
 from tmm_sheets.words import both, marked, tell
+
+_SHARE = marked("expected a number above 0, 1 at most")
 
 
 class Table(BaseModel):
@@ -271,7 +276,7 @@ class CycleTable(Table):
     """parts of the idle stroke"""
     division: Literal["nominal", "exact"] = "exact"
     """`nominal`: the strokes take the crank angles of K instead of those of the lengths"""
-    coefficient: Annotated[float, si(units.NUMBER), in_range(marked("expected K of 1 or more"), lambda x: x >= 1)] | None = None
+    coefficient: Annotated[float, si(units.NUMBER), from_to(1, inf, marked("expected K of 1 or more"))] | None = None
     """K, for `division = "nominal"`"""
     force_position: Name | None = None
     """label of the position of the force analysis, drawn thick; left out: position 0"""
@@ -494,7 +499,7 @@ class MotorTable(Table):
     """``[flywheel.motor]``: the motor to be checked and the gear train between it and the crank."""
 
     name: Name = Field(description=marked('type of the motor, for example "4А160М6"'))
-    power: Annotated[float, si(units.POWER), positive(marked("expected a power greater than zero"))] = Field(
+    power: Annotated[float, positive(units.POWER, marked("expected a power greater than zero"))] = Field(
         description=marked('power, for example "15 kW"')
     )
     synchronous: Speed = Field(description=marked('synchronous speed, for example "1000 rpm"'))
@@ -517,7 +522,7 @@ class FlywheelTable(Table):
         default=None, description=marked("permitted coefficient of non-uniformity, for example 0.025")
     )
     """the flywheel is found; this or `inertia`"""
-    inertia: Annotated[float, si(units.INERTIA), positive(marked("expected a moment of inertia greater than zero"))] | None = None
+    inertia: Annotated[float, positive(units.INERTIA, marked("expected a moment of inertia greater than zero"))] | None = None
     """of the flywheel that there is, about its axis: the coefficient of non-uniformity is found"""
     form: Literal["rim", "disc"] = "rim"
     """a rim with spokes, or a disc"""
@@ -525,9 +530,7 @@ class FlywheelTable(Table):
     """this and both ratios may be left out together with `inertia`: no sizes are found then"""
     width_ratio: InnerFraction | None = Field(default=None, description=marked("B/D, for example 0.2"))
     thickness_ratio: InnerFraction | None = Field(default=None, description=marked("H/D of a rim, for example 0.12"))
-    rim_share: Annotated[
-        float, si(units.NUMBER), in_range(marked("expected a number above 0, 1 at most"), lambda x: 0 < x <= 1)
-    ] = 1.0
+    rim_share: Annotated[float, positive(units.NUMBER, _SHARE), from_to(0, 1, _SHARE)] = 1.0
     """part of the moment of inertia that the rim has"""
     weights: bool = False
     """true: the reduced moment counts the weights of the links"""
@@ -641,7 +644,7 @@ class SynthesisTable(Table):
     """quick return: of the rocker's end, across the line of the pivots"""
     centre_distance: Length | None = None
     """quick return: between the pivots of crank and rocker"""
-    mean_velocity: Annotated[float, si(units.VELOCITY), positive(marked("expected a velocity greater than zero"))] | None = None
+    mean_velocity: Annotated[float, positive(units.VELOCITY, marked("expected a velocity greater than zero"))] | None = None
     """engine: of the piston"""
     rod_ratio: Annotated[float, si(units.NUMBER), in_range(marked("expected a ratio greater than 1"), lambda x: x > 1)] | None = (
         None
@@ -861,13 +864,13 @@ class CamTable(Table):
     """`force`: a spring, chosen when `speed` and the follower's mass or inertia are there; `geometric`: a second disc"""
     speed: Speed | None = Field(default=None, description=marked('speed of the cam, for example "300 rpm"'))
     """for the spring"""
-    follower_mass: Annotated[float, si(units.MASS), positive(marked("expected a mass greater than zero"))] | None = None
+    follower_mass: Annotated[float, positive(units.MASS, marked("expected a mass greater than zero"))] | None = None
     """of a translating or flat follower, for the spring"""
     follower_inertia: (
-        Annotated[float, si(units.INERTIA), positive(marked("expected a moment of inertia greater than zero"))] | None
+        Annotated[float, positive(units.INERTIA, marked("expected a moment of inertia greater than zero"))] | None
     ) = None
     """of a rocker about its pivot, for the spring"""
-    spring_factor: Annotated[float, si(units.NUMBER), in_range(marked("expected a number from 1 to 5"), lambda x: 1 <= x <= 5)] = (
+    spring_factor: Annotated[float, si(units.NUMBER), from_to(1, 5, marked("expected a number from 1 to 5"))] = (
         1.75
     )
     """largest force of the spring over the largest force of inertia"""
@@ -899,4 +902,4 @@ class CamTable(Table):
 
     def diagram(self, table: str) -> tuple[list[float], list[float]]:
         """Shares of the phase and relative accelerations of ``table`` or ``fall_table``."""
-        return diagram(getattr(self, table), units.NUMBER, units.NUMBER)
+        return phase_diagram(getattr(self, table))

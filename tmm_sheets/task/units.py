@@ -116,7 +116,12 @@ QUANTITIES = (
 
 
 def parse(value: Any, quantity: Quantity) -> float:
-    """SI value of a number written with its unit.
+    """SI value of a number written with its unit; see :func:`read`."""
+    return read(value, quantity)[0]
+
+
+def read(value: Any, quantity: Quantity) -> tuple[float, float]:
+    """SI value of a number written with its unit, and the number as it stands before the unit.
 
     Parameters
     ----------
@@ -140,7 +145,7 @@ def parse(value: Any, quantity: Quantity) -> float:
         if quantity is not NUMBER:
             raise Refused(tell("{expected} with its unit, not the bare number {given}; write for example {example}").format(
                 expected=expected, given=value, example=example))
-        return float(value)
+        return float(value), float(value)
     text = value.strip().replace("−", "-")
     match = _NUMBER.match(text)
     if match is None or len(text) > _LONGEST:
@@ -150,10 +155,11 @@ def parse(value: Any, quantity: Quantity) -> float:
     if factor is None:
         about = _about_unit(unit, text[match.end() :].strip(), quantity)
         raise Refused(tell("{expected}, not {given}; {about_unit}").format(expected=expected, given=repr(value), about_unit=about))
-    result = factor.si(match.group().replace(",", "."))
+    number = match.group().replace(",", ".")
+    result = factor.si(number)
     if not math.isfinite(result):
         raise Refused(tell(_NOT_FINITE).format(expected=expected, given=repr(value)))
-    return result
+    return result, float(number)
 
 
 def _about_unit(plain: str, written: str, quantity: Quantity) -> str:

@@ -17,21 +17,27 @@ from tmm_sheets.words import marked, tell
 
 LEAST, GREATEST = 1e-12, 1e12
 """Sizes of numbers in SI that any machine may have, zero besides: powers and products of what lies beyond are no numbers."""
+ROUNDING = 1e-12
+"""Numbers that programs write are rounded: less than this of its unit is zero, as near to a limit is the limit."""
 
 
 def parsed(value: Any, quantity: units.Quantity) -> float:
-    """A number with its unit in SI.
+    """A number with its unit in SI; zero for what rounding leaves of it, such as the 2.4e-15 mm of 40 mm cos 90 deg.
 
     Raises
     ------
     Refused
-        when it is no such number, or of no size that a machine has.
+        when it is no such number, or larger than a machine has any.
     """
-    found = units.parse(value, quantity)
-    if found and not LEAST <= abs(found) <= GREATEST:
-        raise units.Refused(tell("{expected} of {least:g} to {greatest:g} in SI units, not {given!r}; is the unit right?").format(
-            expected=tell(quantity.expected), least=LEAST, greatest=GREATEST, given=value))
-    return found
+    found, written = units.read(value, quantity)
+    if abs(found) > GREATEST:
+        raise _beyond(value, quantity)
+    return 0.0 if abs(found) < LEAST or abs(written) < ROUNDING else found
+
+
+def _beyond(value: Any, quantity: units.Quantity) -> units.Refused:
+    said = tell("{expected} of {least:g} to {greatest:g} in SI units, not {given!r}; is the unit right?")
+    return units.Refused(said.format(expected=tell(quantity.expected), least=LEAST, greatest=GREATEST, given=value))
 
 
 def si(quantity: units.Quantity) -> BeforeValidator:
@@ -79,9 +85,18 @@ def _even_parts(parts: int) -> int:
     return parts
 
 
-def positive(wording: str) -> AfterValidator:
-    """Refuses zero and less."""
-    return in_range(wording, lambda x: x > 0)
+def positive(quantity: units.Quantity, wording: str) -> BeforeValidator:
+    """Reads a quantity into SI that must be greater than zero, and more than rounding leaves of it."""
+
+    def check(value: Any) -> float:
+        found = parsed(value, quantity)
+        if not found and units.parse(value, quantity) > 0:
+            raise _beyond(value, quantity)
+        if not found > 0:
+            raise ValueError(tell(wording))
+        return found
+
+    return BeforeValidator(check)
 
 
 def not_negative(wording: str) -> AfterValidator:
@@ -89,19 +104,30 @@ def not_negative(wording: str) -> AfterValidator:
     return in_range(wording, lambda x: x >= 0)
 
 
+def from_to(low: float, high: float, wording: str) -> AfterValidator:
+    """Takes what lies between two limits, these included; what lies beyond by rounding is the limit."""
+
+    def check(value: float) -> float:
+        if not low - ROUNDING * abs(low) <= value <= high + ROUNDING * abs(high):
+            raise ValueError(tell(wording))
+        return min(max(value, low), high)
+
+    return AfterValidator(check)
+
+
 _ACUTE = in_range(
     marked("expected an angle between 0 and 90 deg, both excluded"), lambda x: 0 < x < units.parse("90 deg", units.ANGLE)
 )
-_PHASE = in_range(marked("expected an angle from 0 to 360 deg"), lambda x: 0 <= x <= units.parse("360 deg", units.ANGLE))
-_FRACTION = in_range(marked("expected a number from 0 to 1"), lambda x: 0 <= x <= 1)
+_PHASE = from_to(0, units.parse("360 deg", units.ANGLE), marked("expected an angle from 0 to 360 deg"))
+_FRACTION = from_to(0, 1, marked("expected a number from 0 to 1"))
 _INNER_FRACTION = in_range(marked("expected a number between 0 and 1, both excluded"), lambda x: 0 < x < 1)
 
 Coordinate = Annotated[float, si(units.LENGTH)]
-Length = Annotated[float, si(units.LENGTH), positive(marked("expected a length greater than zero"))]
+Length = Annotated[float, positive(units.LENGTH, marked("expected a length greater than zero"))]
 Angle = Annotated[float, si(units.ANGLE)]
 AcuteAngle = Annotated[float, si(units.ANGLE), _ACUTE]
 PhaseAngle = Annotated[float, si(units.ANGLE), _PHASE]
-Speed = Annotated[float, si(units.ANGULAR_VELOCITY), positive(marked("expected a speed of rotation greater than zero"))]
+Speed = Annotated[float, positive(units.ANGULAR_VELOCITY, marked("expected a speed of rotation greater than zero"))]
 SignedSpeed = Annotated[float, si(units.ANGULAR_VELOCITY)]
 CrankAcceleration = Annotated[float | Literal["flywheel"], si_or("flywheel", units.ANGULAR_ACCELERATION)]
 Start = Annotated[str | float, si_or("dead", units.ANGLE)]
@@ -109,9 +135,9 @@ Gravity = Annotated[float, si(units.ACCELERATION), not_negative(marked("expected
 Mass = Annotated[float, si(units.MASS), not_negative(marked("expected a mass of zero or more"))]
 Inertia = Annotated[float, si(units.INERTIA), not_negative(marked("expected a moment of inertia of zero or more"))]
 Newtons = Annotated[float, si(units.FORCE), not_negative(marked("expected a force of zero or more"))]
-Density = Annotated[float, si(units.DENSITY), positive(marked("expected a density greater than zero"))]
+Density = Annotated[float, positive(units.DENSITY, marked("expected a density greater than zero"))]
 Number = Annotated[float, si(units.NUMBER)]
-PositiveNumber = Annotated[float, si(units.NUMBER), positive(marked("expected a number greater than zero"))]
+PositiveNumber = Annotated[float, positive(units.NUMBER, marked("expected a number greater than zero"))]
 Fraction = Annotated[float, si(units.NUMBER), _FRACTION]
 InnerFraction = Annotated[float, si(units.NUMBER), _INNER_FRACTION]
 Teeth = Annotated[int, whole(4)]
@@ -190,6 +216,14 @@ Torque = Annotated[float, si(units.MOMENT), not_negative(marked("expected a mome
 Pressure = Annotated[float, si(units.PRESSURE)]
 
 
+def levelled(numbers: list[float], size: float) -> list[float]:
+    """Numbers that are the one before them but for rounding made equal to it; ``size`` is a usual size of them."""
+    found: list[float] = []
+    for x in numbers:
+        found.append(found[-1] if found and abs(x - found[-1]) < ROUNDING * max(size, abs(x)) else x)
+    return found
+
+
 def diagram(pairs: Sequence[tuple[Any, Any]], argument: units.Quantity, value: units.Quantity) -> tuple[list[float], list[float]]:
     """Arguments and values of a diagram in SI, n numbers each.
 
@@ -198,22 +232,35 @@ def diagram(pairs: Sequence[tuple[Any, Any]], argument: units.Quantity, value: u
     ValueError
         when a unit is wrong or the arguments do not rise.
     """
-    x = [parsed(p[0], argument) for p in pairs]
+    x = levelled([parsed(p[0], argument) for p in pairs], 1.0)
     y = [parsed(p[1], value) for p in pairs]
     if any(b < a for a, b in pairwise(x)):
         raise ValueError(tell("expected arguments that rise from pair to pair"))
     return x, y
 
 
-def _shares(pairs: Sequence[tuple[Any, Any]]) -> Sequence[tuple[Any, Any]]:
-    """Shares of the phase from 0 to 1."""
-    x, _ = diagram(pairs, units.NUMBER, units.NUMBER)
+def phase_diagram(pairs: Sequence[tuple[Any, Any]]) -> tuple[list[float], list[float]]:
+    """Shares of the phase from 0 to 1 and numbers over them, n each.
+
+    Raises
+    ------
+    ValueError
+        when the shares do not rise from 0 to 1.
+    """
+    x, y = diagram(pairs, units.NUMBER, units.NUMBER)
+    x = [1.0 if abs(share - 1) < ROUNDING else share for share in x]
     if len(x) < 2 or x[0] != 0 or x[-1] != 1:
         raise units.Refused(
             tell("expected shares of the phase from 0 to 1, not from {first:g} to {last:g}").format(first=x[0], last=x[-1])
             if x
             else tell("expected shares of the phase from 0 to 1, not an empty table")
         )
+    return x, y
+
+
+def _shares(pairs: Sequence[tuple[Any, Any]]) -> Sequence[tuple[Any, Any]]:
+    """Shares of the phase from 0 to 1."""
+    phase_diagram(pairs)
     return pairs
 
 

@@ -84,7 +84,28 @@ def test_speeds_of_the_graphs_are_exact(machine, c, over):
             assert value == pytest.approx(float(truth[name.split("-")[0]]) * n, rel=1e-11)
     last = (r.stages[-1].carrier if r.driver != "carrier" else "1") if r.data.simple == "before" else r.simple[1].number
     assert n / abs(r.links[last].value) == pytest.approx(r.chosen.ratio, rel=1e-13)
-    assert r.told("u_planetary") * r.told("u_simple") == pytest.approx(r.chosen.ratio, rel=1e-13)
+    assert abs(r.told("u_planetary")) * r.told("u_simple") == pytest.approx(r.chosen.ratio, rel=1e-13)
+    # the ratio of the planetary part is that of its shafts' speeds, with their sign
+    one, four = (r.stages[k].wheels[n].number for k, n in ((0, 0), (0, 3)))
+    enters = {"sun": one, "ring": four, "carrier": r.stages[0].carrier}[r.driver]
+    leaves = one if r.driver == "carrier" else r.stages[-1].carrier
+    assert r.told("u_planetary") == pytest.approx(float(truth[enters] / truth[leaves]), rel=1e-13)
+
+
+@pytest.mark.parametrize("simple", ["after", "none"])
+def test_the_sign_of_a_planetary_part_that_reverses(simple):
+    """Two internal pairs, z2 z4 > z1 z3: central wheel and carrier turn against each other; the whole has no sign."""
+    over = {"scheme": "two internal", "simple": simple, "satellites": 3, "input_speed": 1450 * pi / 30}
+    with_pair = {"ratio": 90.01, "pinion": ("z5", 18), "module": 0.003, "simple_module": 0.004}
+    alone = {"ratio": 59.71, "pinion": ("z1", 76), "module": 0.003, "simple_module": None}
+    got = numbers(reducer(cases.data(**(over | (with_pair if simple == "after" else alone)))).results())
+    z = [Fraction(got["teeth"][f"z{n}"]) for n in range(1, 5)]
+    ratio = 1 / (1 - z[1] * z[3] / (z[0] * z[2]))
+    assert ratio < 0
+    assert got["ratio_planetary"] == pytest.approx(float(ratio), rel=1e-11)
+    assert got["ratio_planetary"] == pytest.approx(got["speeds_rpm"]["nH"] / got["speeds_rpm"]["n1"], rel=1e-12)
+    assert got["ratio"] == pytest.approx(-float(ratio) * got.get("ratio_simple", 1.0), rel=1e-11)
+    assert got["deviation"] == pytest.approx(got["ratio"] / got["ratio_asked"] - 1, abs=1e-12)
 
 
 @pytest.mark.parametrize(("machine", "c", "over"), COLUMNS)

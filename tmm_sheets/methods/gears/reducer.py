@@ -204,6 +204,8 @@ class Reducer:
     def results(self) -> dict[str, Any]:
         """The ``reducer`` section of ``solve --json``: lengths in millimetres, speeds in 1/min, positive as the input's.
 
+        ``ratio_planetary`` has a sign, minus where the planetary part reverses; the ratios of the simple stage and of the whole,
+        asked for and found, have none.
         ``conditions``: difference of the sides of coaxiality, quotient of assembly, margin of neighbourhood in modules.
         """
         chosen, conditions = self.sets[0], self.conditions

@@ -56,12 +56,12 @@ STAGE_RATIO = {
     "carrier": _formula("ratio of a stage driven by the carrier", lambda i: planetary.stage_ratio(i, "carrier"), 1,
                         marked("Ratio from the carrier to the central wheel, 1/(1 − i): {name} = 1/(1 − {0}) = {value}.")),
 }
-PLANETARY_RATIO = _formula("ratio of the planetary stages", lambda u, stages: np.abs(u) ** stages, 2,
-                           marked("Ratio of the planetary part without its sign (stages: {1}): {name} = {value}."))
-RATIO = _formula("ratio of the reducer", lambda planetary, simple: planetary * simple, 2,
-                 marked("Ratio of the reducer: {name} = {0} × {1} = {value}."))
-SAME_RATIO = _formula("ratio without a simple stage", lambda u: u, 1,
-                      marked("There is no simple stage; ratio of the reducer: {name} = {0} = {value}."))
+PLANETARY_RATIO = _formula("ratio of the planetary stages", lambda u, stages: u**stages, 2,
+                           marked("Ratio of the planetary part with its sign (stages: {1}): {name} = {value}."))
+RATIO = _formula("ratio of the reducer", lambda planetary, simple: np.abs(planetary) * simple, 2,
+                 marked("Ratio of the reducer without its sign: {name} = |{0}| × {1} = {value}."))
+SAME_RATIO = _formula("ratio without a simple stage", np.abs, 1,
+                      marked("There is no simple stage; ratio of the reducer without its sign: {name} = |{0}| = {value}."))
 DEVIATION = _formula("deviation of the ratio", lambda u, asked: u / asked - 1, 2,
                      marked("Relative deviation from the ratio asked for: {name} = {0}/{1} − 1 = {value}."))
 PAIR_EFFICIENCY = _formula("efficiency of a pair", lambda eta: eta, 1, marked("Efficiency of one pair of wheels {name} = {value}."))
