@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1] / "tmm_sheets"
 MODULES = {".".join(p.relative_to(ROOT).with_suffix("").parts): p for p in ROOT.rglob("*.py")}
-NEUTRAL = "box errors files numbers resources progress spoken texts words __init__"
+NEUTRAL = "box errors files nearest numbers resources progress texts typed words __init__"
 METHODS = "methods.linkage methods.flywheel methods.gears methods.cams methods.integration"
 
 RULES = {
@@ -49,14 +49,16 @@ RULES = {
     "compare.diagnosis": ("compare construction drawing", "project"),
     "compare.diagnosis.hypotheses": ("compare.diagnosis construction methods.linkage", ""),
     "compare.diagnosis.replay": ("construction", ""),
-    "compare.measured": (f"compare construction drawing sheets {METHODS}", "project"),
+    "compare.measured": (f"catalogue compare construction drawing sheets {METHODS}", "project"),
     "compare.cad": ("backends compare construction drawing sheets", "project"),
     "compare.photo": ("compare drawing sheets", "project"),
     "bench": (f"backends catalogue construction drawing explain mechanism {METHODS} output project results sheets task", ""),
     "stress": ("construction mechanism methods.linkage", ""),
-    "cli": ("backends bench catalogue compare drawing explain note output project protocols record results sheets stress summary "
-            "task", ""),
-    "__main__": ("cli", ""),
+    "spoken": ("completion", ""),
+    "completion": ("catalogue drawing note output project protocols record results", ""),
+    "cli": ("backends bench catalogue compare drawing explain note output project protocols record results sheets "
+            "spoken stress summary task", ""),
+    "__main__": ("cli completion spoken", ""),
     **dict.fromkeys(NEUTRAL.split(), ("", "")),
 }
 """What each room may import besides itself and the neutral modules; a row holds for all below it that has none of its own."""

@@ -89,6 +89,11 @@ def _carried_out(arguments: list[str]) -> int:
     from tmm_sheets.errors import BadInput, CannotBuild, Stopped, reason_of
     from tmm_sheets.words import tell
 
+    asked = os.environ.get("_TMM_SHEETS_COMPLETE")
+    if asked:  # by a shell, see completion.py
+        from tmm_sheets import completion
+
+        return completion.answer(commands, asked)
     try:
         # Not commands.main(): that ends the program by itself and with other statuses on Ctrl-C and closed pipes.
         with commands.make_context("tmm-sheets", arguments) as context:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import tomllib
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tmm_sheets import resources
-from tmm_sheets.errors import BadInput
+from tmm_sheets import nearest, resources, typed
+from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.task import families
 from tmm_sheets.words import either, tell
 
@@ -60,29 +60,43 @@ def read(project: str, corrected: bool = False) -> Variant:
 
     family = families.of(project)
     if family is not None and not project.endswith(SUFFIX):
-        return family.read(project, corrected)
-    return variant.read(locate(project))
+        found = family.read(project, corrected)
+        return found.shipped_as(found.project.name)
+    if project in shipped():
+        return variant.read(_path(project)).shipped_as(project)
+    return variant.read(located(project))
 
 
-def locate(project: str) -> Path:
-    """Project file of a shipped name or path.
+def is_shipped(project: str) -> bool:
+    """Whether a project is meant by a shipped name, not by a path."""
+    return (families.of(project) is not None and not project.endswith(SUFFIX)) or project in shipped()
+
+
+def located(project: str) -> Path:
+    """The project file at a path.
 
     Raises
     ------
     BadInput
-        when it is neither, with the nearest shipped names.
+        when there is none, with the nearest shipped names and project files.
     """
-    names = shipped()
-    if project in names:
-        return _path(project)
     path = Path(project)
-    if path.exists() or project.endswith(SUFFIX):
+    if os.path.lexists(path):
         return path
-    near = get_close_matches(project, names, n=3)
-    raise BadInput(
-        tell('unknown project "{project}": neither a shipped name nor a file').format(project=project),
-        hint=tell("did you mean {near}?").format(near=either(near)) if near else tell("tmm-sheets list shows the shipped projects"),
-    )
+    near = nearest.near(project, (*map(str, files_beside(path)), *shipped()), 3)
+    listing = tell("{command} shows the shipped projects").format(command=typed.command("list"))
+    hint = tell("did you mean {near}?").format(near=either(near)) if near else listing
+    if project.endswith(SUFFIX):
+        raise BadInput(Problem(tell("no such file"), project, hint=hint))
+    raise BadInput(tell('unknown project "{project}": neither a shipped name nor a file').format(project=project), hint=hint)
+
+
+def files_beside(path: Path) -> list[Path]:
+    """Project files in the folder of a path, as they are typed from here."""
+    try:
+        return sorted(path.parent.glob(f"*{SUFFIX}"))
+    except OSError:
+        return []
 
 
 def _path(name: str) -> Path:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 import click
 
-from tmm_sheets import __version__, words
+from tmm_sheets import __version__, nearest, words
 from tmm_sheets.box import Box
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
-from tmm_sheets.spoken import Group, Option, option
+from tmm_sheets.spoken import Group, Option, argument, option
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -44,7 +44,9 @@ def _among(known: tuple[str, ...]) -> Callable[[click.Context, click.Parameter, 
         parts = tuple(dict.fromkeys(part.strip().lower() for part in value.split(",")))
         for part in parts:
             if part not in known:
-                raise click.BadParameter(tell("'{part}' is not one of {known}").format(part=part, known=', '.join(known)))
+                said = tell("'{part}' is not one of {known}").format(part=part, known=', '.join(known))
+                near = nearest.near(part, known)
+                raise click.BadParameter(f"{said}; " + tell("did you mean {near}?").format(near=near[0]) if near else said)
         return parts
 
     return split
@@ -74,7 +76,7 @@ def _plotter(context: click.Context, parameter: click.Parameter, value: str | No
         raise click.BadParameter(str(e)) from None
 
 
-PROJECT = click.argument("project")
+PROJECT = argument("project")
 CORRECTED = option("--corrected", is_flag=True, help="With the suggested values instead of suspected misprints.")
 
 
@@ -146,23 +148,23 @@ def check(project: str, corrected: bool) -> None:
     opened.check()
     composition.check(opened)
     for line in sheet.shortened(opened):
-        click.echo(f"{opened.variant.project.name}: {line}", err=True)
+        click.echo(f"{opened.variant.called}: {line}", err=True)
     if opened.variant.crank is not None:
         from tmm_sheets import summary
         from tmm_sheets.sheets import flat_crossings, legibility
 
         every = range(1, len(opened.sheets) + 1)
         for line in (*composition.left_out(opened, every), *legibility.crowded(opened, every), *flat_crossings.lines(opened)):
-            click.echo(f"{opened.variant.project.name}: {line}", err=True)
+            click.echo(f"{opened.variant.called}: {line}", err=True)
         for line in (*map(str, opened.dead_positions), *summary.swing(opened)):
-            click.echo(f"{opened.variant.project.name}: {line}", err=True)
+            click.echo(f"{opened.variant.called}: {line}", err=True)
     for line in opened.flywheel.remarks if opened.variant.flywheel is not None else ():
-        click.echo(f"{opened.variant.project.name}: {line}", err=True)
-    click.echo(tell("{project}: OK").format(project=opened.variant.project.name))
+        click.echo(f"{opened.variant.called}: {line}", err=True)
+    click.echo(tell("{project}: OK").format(project=opened.variant.called))
 
 
 @commands.command()
-@click.argument("projects", metavar="PROJECT...", nargs=-1)
+@argument("projects", metavar="PROJECT...", nargs=-1)
 @option("--all", "families", multiple=True, metavar="FAMILY",
               help="All shipped projects of a family, such as sixbar, or of all.")
 @option("--list", "lists", multiple=True, type=click.File("rb"), metavar="FILE",
@@ -256,11 +258,11 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool, w
     for path in paths:
         click.echo(path)
     for warning in warnings:
-        click.echo(f"{variant.project.name}: {warning}", err=True)
+        click.echo(f"{variant.called}: {warning}", err=True)
     unchanged = len(built.paths) - len(built.sizes)
     if unchanged:
         told = tell("{n} of {m} files unchanged (--force makes them again)").format(n=unchanged, m=len(built.paths))
-        click.echo(f"{variant.project.name}: {told}", err=True)
+        click.echo(f"{variant.called}: {told}", err=True)
     if explain:
         from tmm_sheets import explain as report
 
@@ -347,12 +349,13 @@ def solve(
 @commands.command()
 @PROJECT
 @CORRECTED
-@option("--plan", "name", metavar="NAME", help="Only this plan.")
-def protocol(project: str, corrected: bool, name: str | None) -> None:
+@option("--plan", "name", metavar="PLAN", help="Only this plan.")
+@option("--all", "everything", is_flag=True, help="Also plans that nobody draws: of searches, and between the positions.")
+def protocol(project: str, corrected: bool, name: str | None, everything: bool) -> None:
     """Say the construction steps of PROJECT as sentences, in the language of its sheets, with their millimetres."""
     from tmm_sheets import protocols
 
-    for line in protocols.lines(_open(project, corrected), name):
+    for line in protocols.lines(_open(project, corrected), name, everything):
         click.echo(line)
 
 
@@ -381,7 +384,7 @@ def record(project: str, corrected: bool, sheets: tuple[int, ...], target: str) 
 
 @commands.command()
 @PROJECT
-@click.argument("result")
+@argument("result")
 @CORRECTED
 def why(project: str, result: str, corrected: bool) -> None:
     """Tell the steps from the given numbers of PROJECT to a RESULT, a path of solve --json such as flywheel.J_flywheel."""
@@ -413,7 +416,7 @@ def note(project: str, corrected: bool, formats: tuple[str, ...], output: Path |
     for name in written.files:
         click.echo(folder / name)
     for problem in written.problems:
-        click.echo(f"{opened.variant.project.name}: {tell('left out: {problem}').format(problem=problem)}", err=True)
+        click.echo(f"{opened.variant.called}: {tell('left out: {problem}').format(problem=problem)}", err=True)
 
 
 def _window(context: click.Context, parameter: click.Parameter, value: str | None) -> Box | None:
@@ -429,7 +432,7 @@ def _window(context: click.Context, parameter: click.Parameter, value: str | Non
 
 
 @commands.command()
-@click.argument("project", metavar="PROJECT|FILE")
+@argument("project", metavar="PROJECT|FILE")
 @CORRECTED
 @option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
 @option("--plotter", "machine", metavar="NAME", callback=_plotter,
@@ -560,7 +563,7 @@ def _of_group(group: Path, opened: Project, corrected: bool, marks: Path | None,
 
         return image.compare(project, int(sheet or 1), path, None, pencil)
 
-    name = opened.variant.project.name
+    name = opened.variant.called
     return whole.compare(group, name, lambda other: opened if other == name else _open(other, corrected),
                          {"drawing": drawing, "numbers": numbers, "picture": picture}, scheme, say)
 
@@ -656,7 +659,7 @@ def compare(
         made |= {path: page(report, path.suffix.lower(), name, files.seen_from(path, folder)) for path in pages}
     files.write_all(made)
     for note in report.notes:
-        click.echo(f"{opened.variant.project.name}: {note}", err=True)
+        click.echo(f"{opened.variant.called}: {note}", err=True)
     click.echo(report.text, err=target == "-")
     if target == "-":
         click.echo(report.as_json())
@@ -754,7 +757,7 @@ def _folder(variant: Variant, output: Path | None) -> Path:
     """Folder of a project's files: the one asked for, or one of its own."""
     from tmm_sheets.output.building import folder_name
 
-    return output if output is not None else Path("out") / folder_name(variant.project.name)
+    return output if output is not None else Path("out") / folder_name(variant.stem)
 
 
 def _open(project: str, corrected: bool) -> Project:
@@ -771,5 +774,5 @@ def _read(project: str, corrected: bool) -> Variant:
 
     variant = catalogue.read(project, corrected)
     for warning in variant.warnings:
-        click.echo(f"{variant.project.name}: {warning}", err=True)
+        click.echo(f"{variant.called}: {warning}", err=True)
     return variant

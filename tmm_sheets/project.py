@@ -33,7 +33,8 @@ if TYPE_CHECKING:
 
 LINKAGE = ("positions", "velocities", "accelerations", "forces")
 """Parts of the results that the linkage has."""
-
+PARTS = (*LINKAGE, "flywheel", "gear", "reducer", "train", "cam")
+"""All parts of the results."""
 
 PLANNED = ("synthesis", "cycle", "driver", "applied", "study", "motion", "reduced", "flywheel", "reducer", "gear", "train", "cam")
 """Parts of a project that construct something, each with its ``plans``."""
@@ -57,7 +58,7 @@ class Project:
         parts: tuple[str, ...] = ()
         if v.crank is not None:
             parts += LINKAGE if v.loaded else LINKAGE[:3]
-        return parts + tuple(name for name in ("flywheel", "gear", "reducer", "train", "cam") if getattr(v, name) is not None)
+        return parts + tuple(name for name in PARTS[len(LINKAGE):] if getattr(v, name) is not None)
 
     @property
     def balancing(self) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from tmm_sheets import nearest
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.words import tell, tr
+from tmm_sheets.words import either, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -16,10 +16,11 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
 
-def lines(project: Project, name: str | None) -> Iterator[str]:
+def lines(project: Project, name: str | None, everything: bool = False) -> Iterator[str]:
     """Sentences of every plan on the sheets, or of one; each plan under its title and scale factor.
 
-    Plans of many positions are told for the position of the force analysis, the one drawn in full.
+    With ``everything`` also those of plans that nobody draws. Plans of many positions are told for the position of the force
+    analysis, the one drawn in full.
 
     Raises
     ------
@@ -28,24 +29,15 @@ def lines(project: Project, name: str | None) -> Iterator[str]:
     CannotBuild
         when sheets cannot be drawn: after what the others show, or at once when the plan asked for may be on one of these.
     """
-    found, problem = _drawn(project)
+    found, shown, problem = _drawn(project)
     if name is not None:
         if name not in found:
             if problem is not None:
                 raise problem
-            near = get_close_matches(name, found, n=1)
-            hint = (
-                tell('did you mean "{near}"?').format(near=near[0])
-                if near
-                else tell("its plans are {plans}").format(plans=", ".join(found))
-            )
-            raise BadInput(
-                tell('{project} has no plan "{plan}"').format(project=project.variant.project.name, plan=name), hint=hint
-            )
+            raise _unknown(project, name, found, shown, everything)
         found = {name: found[name]}
-    else:
-        # What lies between the numbered positions only smooths the curves, and what has "@" in its name nobody draws.
-        found = {key: drawn for key, drawn in found.items() if not key.endswith("-between") and "@" not in key}
+    elif not everything:
+        found = {key: drawn for key, drawn in found.items() if not _internal(key)}
     for i, (plan, scale) in enumerate(found.values()):
         if i:
             yield ""
@@ -54,19 +46,52 @@ def lines(project: Project, name: str | None) -> Iterator[str]:
         raise problem
 
 
-def _drawn(project: Project) -> tuple[dict[str, tuple[Plan, Scale | None]], CannotBuild | None]:
-    """Plans by name with the scale factors they were drawn with, in the order of the sheets, and which of these cannot be drawn."""
+def names(project: Project, everything: bool = False) -> list[tuple[str, str]]:
+    """Plans that the sheets show, each with its title; with ``everything`` all that there are."""
+    found, shown, _ = _drawn(project)
+    drawn = {plan for of_sheet in shown.values() for plan in of_sheet}
+    return [(name, plan.title) for name, (plan, _) in found.items() if everything or name in drawn]
+
+
+def _internal(name: str) -> bool:
+    """Whether a plan is not to be drawn: it only smooths a curve between the numbered positions, or serves a search ("@")."""
+    return name.endswith("-between") or "@" in name
+
+
+def _unknown(project: Project, name: str, found: Collection[str], shown: Mapping[int, Sequence[str]], everything: bool) -> BadInput:
+    """That there is no such plan, with those that may be meant, or those that are drawn, sheet by sheet."""
+    drawn = [plan for of_sheet in shown.values() for plan in of_sheet]
+    near = nearest.near(name, found if everything or _internal(name) else drawn, 6) or nearest.near(name, found, 6)
+    if near:
+        hint = tell("did you mean {near}?").format(near=either(near))
+    elif everything:
+        hint = tell("its plans are {plans}").format(plans=", ".join(found))
+    else:
+        of_sheet = tell("sheet {n}: {what}")
+        lines = [of_sheet.format(n=n, what=", ".join(plans)) for n, plans in shown.items()]
+        every = tell("plans that nobody draws, too: {command}").format(command=project.variant.command("protocol", "--all"))
+        hint = "\n    ".join([*lines, every])
+    return BadInput(tell('{project} has no plan "{plan}"').format(project=project.variant.called, plan=name), hint=hint)
+
+
+def _drawn(project: Project) -> tuple[dict[str, tuple[Plan, Scale | None]], dict[int, list[str]], CannotBuild | None]:
+    """Plans by name with the scale factors they are drawn with, in the order of construction; those that each sheet shows.
+
+    Also why some sheets cannot be drawn.
+    """
     from tmm_sheets.sheets import sheet
 
     scales: dict[str, Scale] = {}
-    attempt = sheet.attempt(project, range(1, len(project.variant.drawable()) + 1))
+    attempt = sheet.views(project)
     problem = attempt.problem()
     if problem is not None:
         _construct(project, problem)
-    for composed in attempt.drawn.values():
-        scales |= composed.scales
+    for canvas in attempt.drawn.values():
+        scales |= canvas.scales
     plans = [plan for of_part in project.plans.values() for plan in (of_part or {}).values()]
-    return {plan.name: (plan, scales.get(plan.name)) for plan in plans if plan.steps}, problem
+    found = {plan.name: (plan, scales.get(plan.name)) for plan in plans if plan.steps}
+    framed = {n: {frame.plan for frame in canvas.frames} for n, canvas in attempt.drawn.items()}
+    return found, {n: [name for name in found if name in there and not _internal(name)] for n, there in framed.items()}, problem
 
 
 def _construct(project: Project, problem: CannotBuild) -> None:

@@ -98,7 +98,7 @@ def _asked(project: Project, parts: Iterable[str] | None) -> tuple[str, ...]:
     for part in asked:
         if part not in there:
             raise BadInput(
-                tell('{project} has no part "{part}"').format(project=project.variant.project.name, part=part),
+                tell('{project} has no part "{part}"').format(project=project.variant.called, part=part),
                 hint=tell("it has {parts}").format(parts=", ".join(there)),
             )
     return asked

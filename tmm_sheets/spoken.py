@@ -8,13 +8,17 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from inspect import cleandoc
-from typing import Any
+from itertools import zip_longest
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from tmm_sheets import words
 from tmm_sheets.resources import template
 from tmm_sheets.words import LANGUAGES, marked, tell
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
 
 _LANG = marked("Language of sheets and messages.  [default: of sheets the project's, of messages the locale's]")
 
@@ -26,7 +30,7 @@ def chosen(arguments: Sequence[str]) -> Iterator[None]:
     A wrong word is left to the option itself. Afterwards click speaks as before; :mod:`contextvars` keep the rest.
     """
     asked = ""
-    for word, after in zip(arguments, (*arguments[1:], ""), strict=True):
+    for word, after in zip_longest(arguments, arguments[1:], fillvalue=""):
         if word == "--":
             break
         asked = after if word == "--lang" else word.removeprefix("--lang=") if word.startswith("--lang=") else asked
@@ -63,8 +67,23 @@ def _said(spoken: Any) -> Iterator[None]:
         spoken.help = kept
 
 
-class Option(click.Option):
-    """An option whose help is looked up when it is shown."""
+class _Offered(click.Parameter):
+    """A parameter whose words the Tab key offers, see :mod:`~tmm_sheets.completion`."""
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem[str]]:
+        """What may stand there."""
+        from tmm_sheets import completion
+
+        offered = completion.of(self)
+        return super().shell_complete(ctx, incomplete) if offered is None else offered(ctx, incomplete)
+
+
+class Argument(_Offered, click.Argument):
+    """An argument that the Tab key knows."""
+
+
+class Option(_Offered, click.Option):
+    """An option that the Tab key knows, whose help is looked up when it is shown."""
 
     def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
         """Name and help."""
@@ -91,6 +110,13 @@ class Command(click.Command):
         with _said(self):
             super().format_help_text(ctx, formatter)
 
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem[str]]:
+        """Names of options and commands that may come next, with their help in the reader's language."""
+        found = super().shell_complete(ctx, incomplete)
+        for item in found:
+            item.help = tell(cleandoc(item.help)).partition("  [")[0] if item.help else item.help
+        return found
+
     def get_short_help_str(self, limit: int = 45) -> str:
         """First sentence, for the list of commands."""
         with _said(self):
@@ -105,3 +131,5 @@ class Group(Command, click.Group):
 
 option = partial(click.option, cls=Option)
 """Decorator of commands: an option with help in the reader's language."""
+argument = partial(click.argument, cls=Argument)
+"""Decorator of commands: an argument."""

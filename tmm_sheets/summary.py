@@ -25,7 +25,7 @@ WIDEST = 40
 def text(variant: Variant) -> str:
     """Inputs, then links, pairs, mobility, groups and formula of structure; only what the project has."""
     heading = variant.project
-    lines = [f"{heading.name}: {', '.join(of_file(text, tell) for text in (heading.title, heading.variant) if text)}",
+    lines = [f"{variant.called}: {', '.join(of_file(text, tell) for text in (heading.title, heading.variant) if text)}",
              tell("sheets: {sheets}").format(sheets=", ".join(f"{i} {name}" for i, name in enumerate(variant.sheets, 1)))]
     lines += ["", tell("Inputs"), *_table(list(_inputs(variant)))]
     if variant.synthesis is not None:

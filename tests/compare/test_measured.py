@@ -12,12 +12,14 @@ import pytest
 from tests.compare.manual_tables import opened
 from tests.compare.students import PENCIL, READING, Hand, Plant
 from tests.compare.students import opened as measurables_of
+from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.displaced_step import covariance
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, read
 from tmm_sheets.compare.measured.measured_lengths import NAME
 from tmm_sheets.construction.step import value_at
+from tmm_sheets.project import Project
 
 FEW = ("positions", "velocities", "accelerations", "force-5", "force-2", "lever")
 
@@ -347,7 +349,7 @@ def test_nothing_written_is_no_tolerance(tmp_path, shaper):
     """A speed of 0 m/s is as exact as the drawing, not half a metre per second uncertain."""
     path = tmp_path / "m.csv"
     path.write_text("id;измерено\nresults/2/V_D;0\n", encoding="utf-8")
-    found = judged(shaper, read(path, "lugansk/shaper", shaper))[0]
+    found = judged(shaper, read(path, Project(catalogue.read("lugansk/shaper")), shaper))[0]
     assert found.tolerance < 0.05
     assert found.verdict == "red"
 

@@ -3,11 +3,14 @@
 import pytest
 
 from tests.compare.languages import to_reader
+from tmm_sheets import catalogue
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, plain
 from tmm_sheets.compare.measured.measured_file import read, template
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import BadInput
+from tmm_sheets.project import Project
 
+PRESS = Project(catalogue.read("press"))
 HEAD = "обозначение;план;положение;величина;шаги;единица;измерено"
 UNITS = {"velocities/1/pb": "mm", "velocities/2/pb": "mm", "velocities/2/pb3": "mm", "positions/2/angle-AB": "°",
          "results/2/V_B": "m/s", "results/2/omega3": "rad/s", "results/F21": "N", "results/1'/h50": "m"}
@@ -31,7 +34,7 @@ def filled(tmp_path, found):
     def filled(*lines, data=None, head=HEAD):
         path = tmp_path / "measured.csv"
         path.write_bytes(data if data is not None else "\n".join((head, *lines)).encode())
-        return read(path, "press", found)
+        return read(path, PRESS, found)
 
     return filled
 
@@ -61,10 +64,10 @@ def test_template_is_read_back(tmp_path, found):
     path = tmp_path / "m.csv"
     path.write_bytes(data)
     with pytest.raises(BadInput, match="nothing is filled in"):
-        read(path, "press", found)
+        read(path, PRESS, found)
     path.write_bytes(text.replace("pb;мм;", "pb;мм;30,5").replace("velocities/1/pb;Планы;;velocities/1/pb;;мм;",
                                                                  "velocities/1/pb;Планы;;velocities/1/pb;;мм;30,5").encode("utf-8-sig"))
-    result = read(path, "press", found)
+    result = read(path, PRESS, found)
     assert values(result) == {"velocities/1/pb": 30.5}
     assert result.notes == []
     assert result.factors == {"velocities": 0.02, "force-2–3": 20.0}
@@ -190,6 +193,6 @@ def test_many_problems_are_cut_short(filled):
 
 def test_missing_file(tmp_path, found):
     with pytest.raises(BadInput, match=r"--template writes"):
-        read(tmp_path / "none.csv", "press", found)
+        read(tmp_path / "none.csv", PRESS, found)
     with pytest.raises(BadInput, match="folder"):
-        read(tmp_path, "press", found)
+        read(tmp_path, PRESS, found)

@@ -14,6 +14,7 @@ from time import monotonic, sleep
 import pytest
 
 from tests.project_files import from_file, write
+from tmm_sheets import catalogue, typed
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput
 from tmm_sheets.output import batch, building
@@ -26,6 +27,7 @@ from tmm_sheets.sheets import sheet
 ROOT = Path(__file__).parents[2]
 CAM = from_file("lugansk/cam_flat")
 CAMS = ("lugansk/cam_flat", "lugansk/cam_rocker")
+HERE = "here"
 
 
 def contents(folder):
@@ -298,19 +300,53 @@ def test_archives(tmp_path, capsys):
     assert packed.read_bytes() == b"mine"
 
 
-def test_names_of_a_batch(tmp_path):
+def test_names_of_a_batch(tmp_path, monkeypatch):
     assert len(batch.chosen((), ("sixbar",), ())) == 50
     listed = ["# comment", "", "lugansk/engine", " transport/diesel@02-Т-27 ", "lugansk/cam_flat"]
     names = batch.chosen(("lugansk/engine",), ("press",), (listed,))
     assert names == ("lugansk/engine", "press", "transport/diesel@02-Т-27", "lugansk/cam_flat")
     assert set(batch.chosen((), ("all",), ())) > set(CAMS)
-    with pytest.raises(BadInput, match="shipped are loom, lugansk, press, screen, sixbar, transport"):
+    with pytest.raises(BadInput, match='did you mean "sixbar"'):
         batch.chosen((), ("sixbars",), ())
-    files = [tmp_path / "a.toml", tmp_path / "b.toml"]
-    for file in files:
-        file.write_text('[project]\nname = "mine"\n', encoding="utf-8")
-    with pytest.raises(BadInput, match='would both go into the folder "mine"'):
-        batch.chosen(tuple(map(str, files)), (), ())
+    with pytest.raises(BadInput, match="shipped are loom, lugansk, press, screen, sixbar, transport"):
+        batch.chosen((), ("nothing",), ())
+    monkeypatch.chdir(tmp_path)
+    assert batch.chosen(("b.toml", "a.toml", "./b.toml", str(tmp_path / "a.toml")), (), ()) == ("b.toml", "a.toml")
+
+
+@pytest.mark.parametrize(("files", "folders"), [
+    (["b.toml", "a.toml"], ["b", "a"]),
+    (["ivanov/my.toml", "petrov/my.toml", "other.toml"], ["ivanov-my", "petrov-my", "other"]),
+    (["x/ivanov/my.toml", "y/ivanov/my.toml", "petrov/my.toml"], ["x-ivanov-my", "y-ivanov-my", "petrov-my"]),
+    (["Ivanov.toml", "sub/ivanov.toml"], [f"{HERE}-Ivanov", "sub-ivanov"]),  # one folder on some systems
+    (["lugansk/shaper", "lugansk-shaper.toml"], ["", f"{HERE}-lugansk-shaper"]),
+    (["a/b-c.toml", "a-b/c.toml", "a-b-c.toml"], ["b-c", "c", "a-b-c"]),
+    (["a b/c.toml", "a-b/c.toml", "a&b/c.toml"], ["c", "c-2", "c-3"]),  # told apart by nothing but signs
+    (["Моя работа №1.toml", "...toml"], ["Моя-работа-1", "project"]),
+])  # fmt: skip
+def test_folders_of_files_are_called_after_them(files, folders, tmp_path, monkeypatch):
+    work = tmp_path / HERE
+    work.mkdir()
+    monkeypatch.chdir(work)
+    found = batch.folders(files)
+    assert [found.get(name, "") for name in files] == folders
+    assert len({folder.casefold() for folder in found.values()}) == len(found)
+
+
+def test_copies_of_one_task(tmp_path, monkeypatch, capsys):
+    """Twenty-five students took the same task and kept its name: each has a folder, called after the file."""
+    monkeypatch.chdir(tmp_path)
+    text = catalogue.read(CAMS[0]).text
+    names = [f"student{k:02d}" for k in range(25)]
+    for name in names:
+        (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
+    arguments = ["build", *(f"{name}.toml" for name in names), "--format", "svg", "-o", "out"]
+    assert run(arguments) == 0
+    assert "25 built; 25 files" in capsys.readouterr().out
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == names
+    assert len({(tmp_path / "out" / name / "sheet1.svg").read_bytes() for name in names}) == 1
+    assert run(["build", "student03.toml", "--format", "svg"]) == 0
+    assert "1 of 1 files unchanged" in capsys.readouterr().err  # of one project the folder is the same
 
 
 @pytest.mark.parametrize(
@@ -329,10 +365,10 @@ def test_wrong_usage(arguments, said, capsys):
 def test_a_killed_worker_costs_its_project_only_this_time(tmp_path, monkeypatch):
     """The kernel may kill a process for want of memory: told as failures, not waited for."""
 
-    def one(project, order, parent):
-        if project == "deadly":
+    def one(task, order, parent):
+        if task.project == "deadly":
             os.kill(os.getpid(), signal.SIGKILL)
-        return Outcome(project)
+        return Outcome(task.project)
 
     monkeypatch.setattr(batch, "one", one)
     found = {o.project: o.problem for o in batch.run(("a", "deadly", "b"), Order(), tmp_path, 2)}
@@ -515,7 +551,8 @@ def test_dask_cluster_of_two_workers(tmp_path):
 def test_dask_that_is_not_there(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "distributed", None)
     assert run(["build", *CAMS, "--dask", "tcp://127.0.0.1:9", "-o", str(tmp_path)]) == 2
-    assert "pip install 'tmm-sheets[cluster]'" in capsys.readouterr().err
+    assert typed.install("cluster") in capsys.readouterr().err
+    assert "distributed" in typed.install("cluster")
 
 
 def test_bar():

@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from mpmath import mp
 
+from tmm_sheets import typed
 from tmm_sheets.bench import truth
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
@@ -69,7 +70,7 @@ def _library(name: str) -> Any:
         return import_module(name)
     except ImportError as e:
         if e.name == name:
-            raise CannotBuild("not installed: pip install 'tmm-sheets[peers]'") from None
+            raise CannotBuild(f"not installed: {typed.install('peers')}") from None
         raise
 
 

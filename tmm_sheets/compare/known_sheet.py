@@ -44,5 +44,5 @@ def sheet_numbers(project: Project, asked: int | None) -> range:
     if not 1 <= asked <= count:
         said = tell_n("--sheet {asked}: {project} has {n} sheet", "--sheet {asked}: {project} has {n} sheets", count)
         hint = tell("--sheet 1 to --sheet {n}") if count > 1 else tell("give --sheet 1, or leave it out")
-        raise BadInput(said.format(asked=asked, project=project.variant.project.name, n=count), hint.format(n=count))
+        raise BadInput(said.format(asked=asked, project=project.variant.called, n=count), hint.format(n=count))
     return range(asked, asked + 1)

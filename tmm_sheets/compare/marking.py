@@ -25,12 +25,11 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from tmm_sheets import texts
+from tmm_sheets import nearest, texts
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.numbers import told
 from tmm_sheets.words import tell
@@ -134,7 +133,7 @@ class _Reading:
 
     def _known(self, table: Mapping[str, Any], keys: tuple[str, ...], where: str) -> None:
         for key in table.keys() - set(keys):
-            near = get_close_matches(key, keys, n=1)
+            near = nearest.near(key, keys)
             hint = (tell('did you mean "{key}"?').format(key=near[0]) if near else
                     tell("known are {keys}").format(keys=", ".join(keys)))
             self._wrong(f"{where}{key}", tell("is not known here"), hint)

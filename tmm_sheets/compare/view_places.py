@@ -18,12 +18,11 @@ import tomllib
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
-from tmm_sheets import texts
+from tmm_sheets import nearest, texts
 from tmm_sheets.compare.elements import ElementView
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.errors import BadInput, Problem
@@ -118,7 +117,7 @@ class _Table:
         view = _named(self.values.get("name"), views)
         if view is None:
             names = [v.name for v in views]
-            near = get_close_matches(str(self.values.get("name")), names, n=3, cutoff=0.4)
+            near = nearest.near(str(self.values.get("name")), names, 3, 0.4)
             self._wrong("name", tell('the sheet has no view "{view}"').format(view=self.values.get("name")),
                         tell("it has {views}").format(views=", ".join(f'"{n}"' for n in near or names)))
         return view

@@ -7,6 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from tmm_sheets import typed
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.note.alphabets import TYPST, spelt, string
 from tmm_sheets.note.document import (
@@ -28,9 +29,7 @@ from tmm_sheets.note.document import (
 )
 from tmm_sheets.note.heights import PAGE, height
 from tmm_sheets.resources import template
-from tmm_sheets.words import both, marked, tell
-
-MISSING = (marked("the note as PDF needs the package typst"), marked("install the extra: pip install 'tmm-sheets[note]'"))
+from tmm_sheets.words import both, tell
 
 
 def render(note: Note) -> tuple[bytes, dict[str, int]]:
@@ -46,7 +45,7 @@ def render(note: Note) -> tuple[bytes, dict[str, int]]:
     try:
         import typst
     except ImportError:
-        raise CannotBuild(*map(tell, MISSING)) from None
+        raise CannotBuild(tell("the note as PDF needs the package typst"), typed.install("note")) from None
     import json
 
     preamble = template("note/preamble.typ")

@@ -10,18 +10,20 @@ import multiprocessing
 import os
 import signal
 import threading
-import tomllib
+import unicodedata
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from contextvars import copy_context
 from dataclasses import dataclass
+from itertools import count as count_up
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from tmm_sheets import catalogue, files, texts, words
+from tmm_sheets import catalogue, files, nearest, typed, words
 from tmm_sheets.errors import BadInput, CannotBuild, Stopped, reason_of
 from tmm_sheets.output.building import Order, build, folder_name
 from tmm_sheets.words import tell
@@ -46,18 +48,26 @@ class Outcome:
     warnings: tuple[str, ...] = ()
 
 
-def one(project: str, order: Order, parent: Path) -> Outcome:
+class Task(NamedTuple):
+    """A project of a batch, as it was called, and its folder in that of the batch; empty for one called after the project."""
+
+    project: str
+    folder: str
+
+
+def one(task: Task, order: Order, parent: Path) -> Outcome:
     """Build one project into its folder below ``parent``; whatever goes wrong is told, not raised."""
-    return copy_context().run(_one, project, order, parent)  # the languages it sets are its own
+    return copy_context().run(_one, task, order, parent)  # the languages it sets are its own
 
 
-def _one(project: str, order: Order, parent: Path) -> Outcome:
+def _one(task: Task, order: Order, parent: Path) -> Outcome:
+    project = task.project
     warnings: tuple[str, ...] = ()
     words.set_reader(order.reader)
     try:
         variant = catalogue.read(project, order.corrected)
         warnings = tuple(variant.warnings)
-        built = build(variant, order, order.outlet(parent / folder_name(variant.project.name)))
+        built = build(variant, order, order.outlet(parent / (task.folder or folder_name(variant.stem))))
     except (BadInput, CannotBuild) as e:
         return Outcome(project, str(e), warnings=warnings)
     except MemoryError:
@@ -74,18 +84,18 @@ def _one(project: str, order: Order, parent: Path) -> Outcome:
     return Outcome(project, problem, made, len(built.paths) - made, sum(built.sizes.values()), warnings + built.warnings)
 
 
-def several(projects: Sequence[str], order: Order, parent: Path) -> list[Outcome]:
-    """Build some projects one after the other: the task of one worker."""
-    return [one(project, order, parent) for project in projects]
+def several(tasks: Sequence[Task], order: Order, parent: Path) -> list[Outcome]:
+    """Build some projects one after the other: the work of one worker."""
+    return [one(task, order, parent) for task in tasks]
 
 
 _ending = threading.Event()
 """In a process of the pool: no more projects are begun."""
 
 
-def _until_the_end(projects: Sequence[str], order: Order, parent: Path) -> list[Outcome]:
+def _until_the_end(tasks: Sequence[Task], order: Order, parent: Path) -> list[Outcome]:
     """The same in a process of the pool, up to the project in work when the batch is told to end."""
-    return [one(project, order, parent) for project in projects if not _ending.is_set()]
+    return [one(task, order, parent) for task in tasks if not _ending.is_set()]
 
 
 def _start(told: Connection) -> None:
@@ -113,8 +123,8 @@ def _end() -> None:
         os._exit(1)
 
 
-def _chunks(projects: Sequence[str], size: int) -> list[Sequence[str]]:
-    return [projects[k : k + size] for k in range(0, len(projects), size)]
+def _chunks(tasks: Sequence[Task], size: int) -> list[Sequence[Task]]:
+    return [tasks[k : k + size] for k in range(0, len(tasks), size)]
 
 
 def processors() -> int:
@@ -133,11 +143,12 @@ def run(projects: Sequence[str], order: Order, parent: Path, workers: int) -> It
         after the outcomes, when such a signal came.
     """
     workers = min(workers, len(projects))
+    works = _tasks(projects)
     if workers <= 1:
-        for project in projects:
-            yield one(project, order, parent)
+        for work in works:
+            yield one(work, order, parent)
         return
-    chunks = _chunks(projects, max(1, min(LARGEST_CHUNK, len(projects) // (workers * CHUNKS_EACH))))
+    chunks = _chunks(works, max(1, min(LARGEST_CHUNK, len(projects) // (workers * CHUNKS_EACH))))
     method = "fork" if "fork" in multiprocessing.get_all_start_methods() else None
     context = multiprocessing.get_context(method)
     told, end = context.Pipe(duplex=False)
@@ -150,7 +161,7 @@ def run(projects: Sequence[str], order: Order, parent: Path, workers: int) -> It
                 except BrokenProcessPool:
                     if not signals:  # they went to all processes then
                         why = tell("its process was killed, perhaps for want of memory: repeat the command with fewer --jobs")
-                        yield from (Outcome(project, why) for project in tasks[task])
+                        yield from (Outcome(work.project, why) for work in tasks[task])
         if signals:
             raise Stopped(signals[0])
 
@@ -190,7 +201,7 @@ def run_on_dask(projects: Sequence[str], order: Order, parent: Path, address: st
         from distributed import Client
         from distributed import as_completed as finished
     except ImportError:
-        raise BadInput(tell("--dask needs dask.distributed"), hint="pip install 'tmm-sheets[cluster]'") from None
+        raise BadInput(tell("--dask needs dask.distributed"), hint=typed.install("cluster")) from None
     try:
         client = Client(address, timeout=20)
     except (OSError, ValueError) as e:
@@ -198,15 +209,14 @@ def run_on_dask(projects: Sequence[str], order: Order, parent: Path, address: st
         raise BadInput(tell("no dask scheduler answers at {address}: {why}").format(address=address, why=e), hint=hint) from None
     with client:
         each = len(projects) // (max(len(client.scheduler_info()["workers"]), 1) * 4)
-        chunks = _chunks(projects, max(SMALLEST_DASK_CHUNK, min(LARGEST_DASK_CHUNK, each)))
+        chunks = _chunks(_tasks(projects), max(SMALLEST_DASK_CHUNK, min(LARGEST_DASK_CHUNK, each)))
         tasks = {client.submit(several, chunk, order, parent.absolute(), pure=False): chunk for chunk in chunks}
         for task in finished(tasks):
             try:
                 yield from task.result()
             except Exception as e:  # whatever a worker or the way to it died of
-                yield from (
-                    Outcome(project, tell("its worker was lost: {error}").format(error=type(e).__name__)) for project in tasks[task]
-                )
+                lost = tell("its worker was lost: {error}").format(error=type(e).__name__)
+                yield from (Outcome(work.project, lost) for work in tasks[task])
 
 
 def chosen(projects: Sequence[str], families: Sequence[str], lists: Sequence[Iterable[str]]) -> tuple[str, ...]:
@@ -215,7 +225,7 @@ def chosen(projects: Sequence[str], families: Sequence[str], lists: Sequence[Ite
     Raises
     ------
     BadInput
-        when a family is not known, or when two project files would go into the same folder.
+        when a family is not known.
     """
     names = list(projects)
     if families:
@@ -224,36 +234,54 @@ def chosen(projects: Sequence[str], families: Sequence[str], lists: Sequence[Ite
             found = [name for name in shipped if family == "all" or name == family or name.startswith(f"{family}/")]
             if not found:
                 known = dict.fromkeys(name.partition("/")[0] for name in shipped)
-                raise BadInput(
-                    tell('no family "{family}"').format(family=family),
-                    hint=tell("shipped are {known}; all takes every project").format(known=", ".join(known)),
-                )
+                near = nearest.near(family, known)
+                hint = tell('did you mean "{near}"?').format(near=near[0]) if near else tell(
+                    "shipped are {known}; all takes every project").format(known=", ".join(known))
+                raise BadInput(tell('no family "{family}"').format(family=family), hint=hint)
             names += found
     for lines in lists:
         names += (line.strip() for line in lines if line.strip() and not line.lstrip().startswith("#"))
-    names = list(dict.fromkeys(names))
-    _refuse_common_folders(names)
-    return tuple(names)
-
-
-def _refuse_common_folders(names: Iterable[str]) -> None:
-    taken: dict[str, str] = {}
+    once: dict[str, str] = {}
     for name in names:
-        inside = name
-        if name.endswith(catalogue.SUFFIX):
-            try:
-                inside = str(tomllib.loads(texts.decoded(Path(name).read_bytes()).text)["project"]["name"])
-            except (OSError, ValueError, KeyError, TypeError):
-                continue  # its own message comes when it is built
-        folder = folder_name(inside)
-        if folder in taken:
-            raise BadInput(
-                tell('{one} and {other} would both go into the folder "{folder}"').format(
-                    one=taken[folder], other=name, folder=folder
-                ),
-                hint=tell("give them different names in [project]"),
-            )
-        taken[folder] = name
+        once.setdefault(name if catalogue.is_shipped(name) else os.path.abspath(name), name)
+    return tuple(once.values())
+
+
+def folders(names: Iterable[str]) -> dict[str, str]:
+    """The name of its folder for every project file of a batch: the file's own, after as many folders as tell it from others.
+
+    Files whose paths do not tell them apart get numbers, in the order given. Shipped projects are called after themselves.
+    """
+    files = [name for name in names if not catalogue.is_shipped(name)]
+    parts = {name: (*Path(os.path.abspath(name)).parts[1:-1], Path(name).stem) for name in files}
+    taken = Counter(_alike(folder_name(name)) for name in names if name not in parts)
+    depth = dict.fromkeys(files, 1)
+    while True:
+        found = {name: folder_name("-".join(parts[name][-depth[name]:])) for name in files}
+        count = taken + Counter(map(_alike, found.values()))
+        longer = [name for name in files if count[_alike(found[name])] > 1 and depth[name] < len(parts[name])]
+        if not longer:
+            break
+        for name in longer:
+            depth[name] += 1
+    alike = [name for name in files if count[_alike(found[name])] > 1]
+    found |= {name: folder_name(parts[name][-1]) for name in alike}
+    used = {*taken, *(_alike(found[name]) for name in files if name not in alike)}
+    for name in alike:
+        numbered = (found[name] + (f"-{n}" if n > 1 else "") for n in count_up(1))
+        found[name] = next(folder for folder in numbered if _alike(folder) not in used)
+        used.add(_alike(found[name]))
+    return found
+
+
+def _alike(folder: str) -> str:
+    """What names of folders have in common that some systems take for the same."""
+    return unicodedata.normalize("NFC", folder).casefold()
+
+
+def _tasks(projects: Sequence[str]) -> list[Task]:
+    place = folders(projects)
+    return [Task(project, place.get(project, "")) for project in projects]
 
 
 def summary(done: Sequence[Outcome], parent: Path, seconds: float) -> str:

@@ -101,9 +101,9 @@ class Built:
     warnings: tuple[str, ...] = ()
 
 
-def folder_name(project: str) -> str:
-    """Name of a folder for a project."""
-    return re.sub(r"[^\w@.+=-]+", "-", project).strip("-.") or "project"
+def folder_name(stem: str) -> str:
+    """Name of a folder for what is called so, see :attr:`~tmm_sheets.task.variant.Variant.stem`."""
+    return re.sub(r"[^\w@.+=-]+", "-", stem).strip("-.") or "project"
 
 
 def _quiet(what: str) -> None:
@@ -307,6 +307,6 @@ def chosen(variant: Variant, sheets: tuple[int, ...]) -> list[int]:
     for n in sheets:
         if not 1 <= n <= count:
             refusal = tell("no sheet {n}: {project} has sheets 1 to {count}")
-            raise BadInput(refusal.format(n=n, project=variant.project.name, count=count),
+            raise BadInput(refusal.format(n=n, project=variant.called, count=count),
                            hint=", ".join(f"{i} {name}" for i, name in enumerate(variant.sheets, 1)))  # fmt: skip
     return sorted(set(sheets)) or list(range(1, count + 1))

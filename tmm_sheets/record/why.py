@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets import results
+from tmm_sheets import nearest, results
 from tmm_sheets.construction import protocol
 from tmm_sheets.construction.given import Given, GivenNumber, GivenPoint
 from tmm_sheets.construction.step import Step, Told, value_at
-from tmm_sheets.errors import BadInput
+from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.numbers import plain
 from tmm_sheets.record.book import Book, chain
 from tmm_sheets.record.recording import book_of, unit
@@ -43,10 +42,10 @@ def lines(project: Project, result: str) -> Iterator[str]:
     if part in _ABOUT:
         raise BadInput(
             tell("{result} has no step behind it: it is read, counted or chosen, not constructed").format(result=result),
-            hint=tell("{command} tells what was read, and what follows from it").format(command="tmm-sheets show"),
+            hint=tell("{command} tells what was read, and what follows from it").format(command=project.variant.command("show")),
         )
     if part not in project.parts:
-        raise _unknown(project, result, ())
+        raise _no_part(project, result, part)
     found = dict(leaves(results.told(project, [part])))
     if result not in found:
         raise _unknown(project, result, found)
@@ -66,15 +65,21 @@ def lines(project: Project, result: str) -> Iterator[str]:
     yield f"{result}{_of_part(told)} = {_shown(told, at, book)}"
 
 
+def _no_part(project: Project, result: str, part: str) -> BadInput:
+    """That a project has no such part; what was left out before the name of a result is found in the others."""
+    try:
+        known = [name for name, _ in leaves(results.told(project, None, refused={}))]
+    except CannotBuild:
+        known = []
+    near = nearest.near(result, (*known, *project.parts), 6)
+    hint = tell("did you mean {near}?").format(near=either(near)) if near else tell("it has {parts}").format(
+        parts=", ".join(project.parts))
+    return BadInput(tell('{project} has no part "{part}"').format(project=project.variant.called, part=part), hint=hint)
+
+
 def _unknown(project: Project, result: str, known: Any) -> BadInput:
-    name, names = project.variant.project.name, list(known)
-    if not names:
-        return BadInput(
-            tell('{project} has no part "{part}"').format(project=name, part=result.partition(".")[0]),
-            hint=tell("it has {parts}").format(parts=", ".join(project.parts)),
-        )
-    last = result.rpartition(".")[2]
-    near = get_close_matches(result, names, n=3, cutoff=0.5) or [n for n in names if n.rpartition(".")[2] == last][:3]
+    name, names = project.variant.called, list(known)
+    near = nearest.near(result, names, 6, 0.5)
     hint = tell("did you mean {near}?").format(near=either(near)) if near else tell("there are {names}").format(
         names=", ".join(names[:12]) + (" ..." if len(names) > 12 else ""))
     return BadInput(tell('{project} has no result "{result}"').format(project=name, result=result), hint=hint)

@@ -49,7 +49,8 @@ def check_number(project: Project) -> None:
         message = tell_n("{count} position of one turn cannot be told apart on a sheet, {most} at most",
                          "{count} positions of one turn cannot be told apart on a sheet, {most} at most", count).format(
                              count=count, most=MOST)
-        hint = tell("number fewer; solve --positions gives the numbers at any number of them")
+        hint = tell("number fewer; {command} gives the numbers at all of them").format(
+            command=project.variant.command("solve", "--positions", str(count)))
         raise CannotBuild(str(project.variant.problem(message, "cycle", "positions", hint=hint)))
 
 

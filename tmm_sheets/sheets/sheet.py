@@ -11,7 +11,7 @@ from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from tmm_sheets.box import Box
 from tmm_sheets.drawing import axis_numbers
@@ -78,11 +78,14 @@ def _drawer(arrangement: str, draw: str) -> Callable[..., None]:
     return found
 
 
-@dataclass
-class Attempt:
-    """Sheets by number that could be drawn, and by number and arrangement why others could not."""
+T = TypeVar("T")
 
-    drawn: dict[int, Composed] = field(default_factory=dict)
+
+@dataclass
+class Attempt(Generic[T]):
+    """What came of the sheets, by number, that could be drawn, and by number and arrangement why others could not."""
+
+    drawn: dict[int, T] = field(default_factory=dict)
     refused: dict[str, CannotBuild] = field(default_factory=dict)
 
     def problem(self, others: bool = False) -> CannotBuild | None:
@@ -90,19 +93,30 @@ class Attempt:
         return together(self.refused, "drawn", others or bool(self.drawn)) if self.refused else None
 
 
-def attempt(project: Project, numbers: Iterable[int], around: Callable[[int], AbstractContextManager[None]] = _plainly) -> Attempt:
+def attempt(project: Project, numbers: Iterable[int],
+            around: Callable[[int], AbstractContextManager[None]] = _plainly) -> Attempt[Composed]:
     """Draw sheets, each for itself and within ``around`` its number: one that cannot be drawn costs no other."""
-    found = Attempt()
+    return _attempt(project, numbers, around, composed)
+
+
+def views(project: Project) -> Attempt[Canvas]:
+    """The views of every sheet on a canvas, without the lettering that looks for its places."""
+    return _attempt(project, range(1, len(project.variant.drawable()) + 1), _plainly, lambda project, n: _viewed(project, n)[0])
+
+
+def _attempt(project: Project, numbers: Iterable[int], around: Callable[[int], AbstractContextManager[None]],
+             draw: Callable[[Project, int], T]) -> Attempt[T]:
+    found = Attempt[T]()
     for n in numbers:
         try:
             with around(n):
-                found.drawn[n] = composed(project, n)
+                found.drawn[n] = draw(project, n)
         except CannotBuild as e:
             found.refused[tell("sheet {n} ({name})").format(n=n, name=project.sheets[n - 1])] = e
     return found
 
 
-def every(project: Project, say: Callable[[str], None] = lambda _: None, numbers: Iterable[int] = ()) -> Attempt:
+def every(project: Project, say: Callable[[str], None] = lambda _: None, numbers: Iterable[int] = ()) -> Attempt[Composed]:
     """Draw sheets of a project, all unless told; CannotBuild when none of them can be drawn."""
     @contextmanager
     def told(n: int) -> Iterator[None]:
@@ -123,22 +137,7 @@ def compose(project: Project, n: int) -> Drawing:
 
 def composed(project: Project, n: int) -> Composed:
     """Draw sheet ``n`` and tell its scale factors and the labels that found no free place."""
-    plan = arranged(project, n)
-    if {"positions", "flywheel"} & {view.needs for view in plan.views}:
-        from tmm_sheets.sheets.kinematic_frames import check_number
-
-        check_number(project)
-    canvas = Canvas()
-    fields = _framed(project, n, canvas)
-    for view in plan.views:
-        canvas.of = view.draw
-        canvas.begin(view.box, "", view.draw)
-        _drawer(plan.name, view.draw)(project, canvas, view.box, view.options)
-    titles.lower(canvas)
-    if plan.offers:
-        from tmm_sheets.sheets import offers
-
-        offers.draw(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, DESIGNATION))
+    canvas, fields = _viewed(project, n)
     axis_numbers.clear(canvas)
     canvas.begin(INSIDE, "", "labels")
     crowded: list[Crowded] = [Shortened(text, TITLE_BLOCK.centre, left) for text, left in canvas.shortened.items()]
@@ -155,6 +154,27 @@ def composed(project: Project, n: int) -> Composed:
     left = places.leaving(canvas, INSIDE, TITLE_BLOCK)
     return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left),
                     tuple(canvas.frames))
+
+
+def _viewed(project: Project, n: int) -> tuple[Canvas, dict[str, str]]:
+    """The views of sheet ``n`` on a canvas, without the lettering that looks for its places; and what the title block says."""
+    plan = arranged(project, n)
+    if {"positions", "flywheel"} & {view.needs for view in plan.views}:
+        from tmm_sheets.sheets.kinematic_frames import check_number
+
+        check_number(project)
+    canvas = Canvas()
+    fields = _framed(project, n, canvas)
+    for view in plan.views:
+        canvas.of = view.draw
+        canvas.begin(view.box, "", view.draw)
+        _drawer(plan.name, view.draw)(project, canvas, view.box, view.options)
+    titles.lower(canvas)
+    if plan.offers:
+        from tmm_sheets.sheets import offers
+
+        offers.draw(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, DESIGNATION))
+    return canvas, fields
 
 
 def _framed(project: Project, n: int, canvas: Canvas) -> dict[str, str]:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import inf, isnan
 
+from tmm_sheets import typed
 from tmm_sheets.stress.cases import BOUNDS, CHUNK, Worst, memory, run_case
 from tmm_sheets.words import tell
 
@@ -56,4 +58,11 @@ def table(worst: dict[str, Worst], seed: int) -> str:
     for row in rows:
         cells = (f"{cell:{'>' if i in NUMBERS else '<'}{w}}" for i, (cell, w) in enumerate(zip(row, widths, strict=False)))
         lines.append("  ".join([*cells, row[6]]))
-    return "\n".join([*lines, tell("one case again: {command}").format(command=f"tmm-sheets stress --seed {seed} --case N")])
+    again = typed.command("stress", "--seed", str(seed), "--case", str(_nearest(worst)))
+    return "\n".join([*lines, tell("one case again: {command}").format(command=again)])
+
+
+def _nearest(worst: dict[str, Worst]) -> int:
+    """The case that is nearest to a bound, or farthest beyond it."""
+    shares = ((inf if isnan(w.value) else w.value / BOUNDS[name][0], w.case) for name, w in worst.items() if name != MEMORY)
+    return max(shares, default=(0.0, 0))[1]

@@ -11,7 +11,7 @@ from pydantic_core import ErrorDetails
 from tmm_sheets.task.schema import Table
 from tmm_sheets.task.toml_lines import KeyPath
 from tmm_sheets.task.units import Refused
-from tmm_sheets.task.values import nearest
+from tmm_sheets.task.values import meant
 from tmm_sheets.words import either, marked, tell
 
 
@@ -23,7 +23,7 @@ def said(error: ErrorDetails, whole: type[Table]) -> tuple[KeyPath, str, str]:
     if kind == "missing":
         return path, tell("missing; expected {what}").format(what=_description(whole, path)), ""
     if kind == "extra_forbidden":
-        near, known = nearest(str(path[-1]), _keys(whole, path[:-1]))
+        near, known = meant(str(path[-1]), _keys(whole, path[:-1]))
         return path, tell("unknown key"), near or tell("known here are {known}").format(known=known)
     if kind == "value_error":
         refusal = error["ctx"]["error"]
@@ -31,11 +31,11 @@ def said(error: ErrorDetails, whole: type[Table]) -> tuple[KeyPath, str, str]:
             return path, str(refusal), ""
         return path, tell("{expected}, not {given}").format(expected=refusal, given=_quoted(given)), ""
     if kind == "literal_error":
-        near, _ = nearest(str(given), [w.strip("'") for w in re.split(r", | or ", error["ctx"]["expected"])])
+        near, _ = meant(str(given), [w.strip("'") for w in re.split(r", | or ", error["ctx"]["expected"])])
         words = [f'"{w[1:-1]}"' if w[:1] == "'" else w for w in re.split(r", | or ", error["ctx"]["expected"])]
         return path, tell("expected {what}, not {given}").format(what=either(words), given=_quoted(given)), near
     if kind in ("tuple_type", "too_short", "too_long"):
-        return path, tell("expected {what}").format(what=_description(whole, path)), ""
+        return path, tell("expected {what}").format(what=_description(whole, path)), _commas(error)
     if kind in ("model_type", "model_attributes_type", "dict_type"):
         return path, tell("expected a table, not {given}").format(given=_quoted(given)), tell(
             "write it as [{table}] with a line for each key").format(table=path[0])
@@ -44,6 +44,15 @@ def said(error: ErrorDetails, whole: type[Table]) -> tuple[KeyPath, str, str]:
     if kind in ("bool_type", "bool_parsing"):
         return path, tell("expected true or false, not {given}").format(given=_quoted(given)), ""
     return path, f"{error['msg']}: {_quoted(given)}", ""
+
+
+def _commas(error: ErrorDetails) -> str:
+    """A hint where decimal commas made two numbers of each: ``[0,5, 0,3]``."""
+    given, most = error["input"], error.get("ctx", {}).get("max_length", 0)
+    if not isinstance(given, list) or len(given) != 2 * most or not all(type(n) is int for n in given):
+        return ""
+    meant = ", ".join(f"{whole}.{decimals}" for whole, decimals in zip(given[::2], given[1::2], strict=True))
+    return tell("write {what}").format(what=f"[{meant}]")
 
 
 _OF_PARSER = tuple((re.compile(re.escape(text).replace(r"\{what\}", "(?P<what>.*)")), text) for text in (

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from difflib import get_close_matches
 from typing import Any
 
+from tmm_sheets import nearest
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.task.toml_lines import KeyPath
 from tmm_sheets.words import marked, tell, tell_n
@@ -129,7 +129,7 @@ class _Names:
     def known(self, path: KeyPath, name: Any, among: set[str], refusal: str, **where: str) -> Iterator[Found]:
         if not isinstance(name, str) or name in among:
             return
-        near = get_close_matches(name, sorted(among), n=1)
+        near = nearest.near(name, sorted(among))
         yield (path, tell(refusal).format(name=name, **where), tell('did you mean "{near}"?').format(near=near[0]) if near else
                tell("known here are {known}").format(known=", ".join(sorted(among))) if among else tell("known here are none"))
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from difflib import get_close_matches
 from fractions import Fraction
 from types import MappingProxyType
 from typing import Any
 
+from tmm_sheets import nearest
 from tmm_sheets.words import marked, tell
 
 _NOT_THAT = marked("{expected}, not {given}; write for example {example}")
@@ -171,7 +171,7 @@ def _about_unit(plain: str, written: str, quantity: Quantity) -> str:
     if others:
         return tell("{unit} is a unit of {other}; write for example {example}").format(
             unit=repr(written), other=tell(others[0]), example=_quoted(quantity))
-    near = get_close_matches(plain, list(quantity.units), n=1)
+    near = nearest.near(plain, quantity.units)
     if near:
         return tell("unknown unit {unit}, did you mean {near}?").format(unit=repr(written), near=repr(near[0]))
     known = ", ".join(u for u in quantity.units if u.isascii())

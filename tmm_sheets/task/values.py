@@ -5,13 +5,12 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
-from difflib import get_close_matches
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, WrapValidator
 
-from tmm_sheets import resources
+from tmm_sheets import nearest, resources
 from tmm_sheets.task import units
 from tmm_sheets.words import marked, tell
 
@@ -287,7 +286,7 @@ def _known(name: str, names: Iterable[str], message: str) -> str:
     """A name that is one of those there are."""
     known = sorted(names)
     if name not in known:
-        near, listed = nearest(name, known)
+        near, listed = meant(name, known)
         raise units.Refused(message.format(name=name, hint=near or tell("known are {known}").format(known=listed)))
     return name
 
@@ -301,7 +300,7 @@ def or_word(word: str) -> WrapValidator:
     return WrapValidator(lambda value, read: value if value == word else read(value))
 
 
-def nearest(word: str, known: list[str]) -> tuple[str, str]:
+def meant(word: str, known: list[str]) -> tuple[str, str]:
     """A hint at the word that was meant, empty when none is near; all words that are known."""
-    near = get_close_matches(word, known, n=1)
+    near = nearest.near(word, known)
     return (tell('did you mean "{near}"?').format(near=near[0]) if near else "", ", ".join(known))

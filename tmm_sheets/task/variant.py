@@ -9,14 +9,16 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationError
 
-from tmm_sheets import texts
+from tmm_sheets import texts, typed, words
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
 from tmm_sheets.task import synthesis_refs, units
+from tmm_sheets.task.bare_values import BareValue, quoted
 from tmm_sheets.task.cam_keys import check_cam
 from tmm_sheets.task.letters import check_letters, freed
 from tmm_sheets.task.messages import of_parser, said
@@ -47,7 +49,7 @@ from tmm_sheets.task.schema import (
 )
 from tmm_sheets.task.toml_lines import KeyPath, TomlLines, scan
 from tmm_sheets.task.values import Coordinate, Name, PositiveNumber
-from tmm_sheets.words import marked, tell
+from tmm_sheets.words import either, marked, tell
 
 
 class Variant(Table):
@@ -89,6 +91,8 @@ class Variant(Table):
     _text: str = PrivateAttr(default="")
     _warnings: tuple[str, ...] = PrivateAttr(default=())
     _misprints: tuple[Misprint, ...] = PrivateAttr(default=())
+    _called: str = PrivateAttr(default="")
+    _shipped: bool = PrivateAttr(default=False)
 
     @property
     def text(self) -> str:
@@ -109,6 +113,28 @@ class Variant(Table):
     def file(self) -> str:
         """Path of the project file as the user named it."""
         return self._file
+
+    @property
+    def called(self) -> str:
+        """What the user calls the project: the name of a shipped one, the path of a file as it was typed."""
+        return self._called
+
+    @property
+    def stem(self) -> str:
+        """What folders of its files are called after: the name of a shipped one, that of a file without its ending."""
+        return self._called if self._shipped else Path(self._called).stem
+
+    def command(self, name: str, *arguments: str | Path) -> str:
+        """A command for this project as it is typed: what was asked of the project is asked again."""
+        asked = words.asked()
+        corrected = any(m.corrected for m in self._misprints)
+        return typed.command(name, self._called, *arguments, *(("--corrected",) if corrected else ()),
+                             *(("--lang", asked) if asked else ()))
+
+    def shipped_as(self, name: str) -> Variant:
+        """The same as a shipped project of that name."""
+        self._called, self._shipped = name, True
+        return self
 
     @property
     def sheets(self) -> tuple[str, ...]:
@@ -192,7 +218,8 @@ def read(path: Path | str) -> Variant:
     try:
         data = Path(path).read_bytes()
     except FileNotFoundError:
-        raise BadInput(Problem(tell("no such file"), file, hint=tell("tmm-sheets list shows the shipped projects"))) from None
+        raise BadInput(Problem(tell("no such file"), file, hint=tell("{command} shows the shipped projects").format(
+            command=typed.command("list")))) from None
     except IsADirectoryError:
         raise BadInput(Problem(tell("expected a project file, this is a folder"), file)) from None
     except OSError as e:
@@ -212,13 +239,14 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
     BadInput
         naming file, line and key of everything that is wrong.
     """
+    readable, bare = quoted(text)
     try:
-        data = tomllib.loads(text)
+        data = tomllib.loads(readable)
     except tomllib.TOMLDecodeError as e:
-        raise BadInput(_syntax(str(e), text, file)) from None
+        raise BadInput([*(_of_bare(one, file) for one in bare.values()), _syntax(str(e), readable, file)]) from None
     except RecursionError:
         raise BadInput(Problem(tell("lists or tables are nested too deeply"), file)) from None
-    lines = scan(text)
+    lines = scan(readable)
     data, found = _with_synthesis(_with_cycle(freed(data)), file)
     problems = [_problem(file, lines, *one) for one in found]
     variant = None
@@ -230,9 +258,12 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
     if variant is not None and variant.project.sheets is None and not variant.sheets:
         problems.append(_problem(file, lines, ("project",), tell("there is nothing to draw"),
                                  tell("add [crank] and [[group]] for a mechanism, [gear], [reducer], [train] or [cam]")))
+    if bare:
+        others = [p for p in problems if p.line not in bare]
+        problems = [*others, *(_of_bare(one, file, readable, lines) for one in bare.values())]
     if problems or variant is None:
         raise BadInput(sorted(dict.fromkeys(problems), key=lambda p: (p.line or 0, p.field)))
-    variant._file = file
+    variant._file = variant._called = file
     variant._lines = lines
     variant._data = data
     variant._text = text
@@ -266,6 +297,29 @@ def _with_synthesis(data: dict[str, Any], file: str) -> tuple[dict[str, Any], li
         return synthesis_refs.filled(data, Found(conditions, speed).lengths)
     except CannotBuild as e:
         return synthesis_refs.filled(data, None)[0], [(("synthesis",), str(e.args[0]).removeprefix("synthesis: "), e.hint)]
+
+
+def _of_bare(bare: BareValue, file: str, readable: str = "", lines: TomlLines | None = None) -> Problem:
+    """That a value stands without its quotes: what is to be written, tried out in the text that can be read."""
+    said = tell("not valid TOML: {value}").format(value=bare.value)
+    if lines is None:
+        return Problem(said, file, bare.line, hint=_write(bare.meant))
+    right, wrong = [], ""
+    for value in bare.meant:
+        try:
+            parse(bare.put(readable, value), file)
+        except BadInput as e:
+            here = [p for p in e.problems if p.line == bare.line]
+            wrong = wrong or (here[0].message if here else "")
+            right += [] if here else [value]
+        else:
+            right.append(value)
+    path = next((path for path, line in lines.lines.items() if line == bare.line and path), ())
+    return _problem(file, lines, path, said, _write(right) if right else wrong)
+
+
+def _write(values: Sequence[str]) -> str:
+    return tell("write {what}").format(what=either(values))
 
 
 def _syntax(message: str, text: str, file: str) -> Problem:

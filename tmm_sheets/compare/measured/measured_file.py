@@ -13,19 +13,21 @@ import io
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from itertools import groupby
 from math import isfinite
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from tmm_sheets import texts
+from tmm_sheets import nearest, texts, typed
 from tmm_sheets.compare.measured import measured_units as units
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, plain
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.numbers import told
 from tmm_sheets.words import decimal_sign, every, marked, reader, tell, tell_n
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
 
 Column = Literal["id", "plan", "position", "quantity", "steps", "unit", "measured", "factor"]
 COLUMNS: Mapping[Column, str] = {
@@ -126,9 +128,9 @@ def asked_for(found: Measurables, everything: bool = False) -> list[Measurable]:
 # --- reading ---------------------------------------------------------------------------------------------------------------
 
 
-def check(path: Path) -> None:
+def check(path: Path, project: Project) -> None:
     """Refuse a file that cannot be read, before any work is done for it."""
-    _bytes(path)
+    _bytes(path, project)
 
 
 class _Refused(Exception):
@@ -139,8 +141,8 @@ class _Refused(Exception):
         self.message, self.hint, self.column = message, hint, column
 
 
-def read(path: Path, project: str, found: Measurables) -> Filled:
-    """Read a filled file.
+def read(path: Path, project: Project, found: Measurables) -> Filled:
+    """Read a filled file of a project.
 
     Raises
     ------
@@ -149,9 +151,9 @@ def read(path: Path, project: str, found: Measurables) -> Filled:
     """
     name = str(path)
     filled = Filled()
-    text = _decoded(_bytes(path), name, filled.notes)
+    text = _decoded(_bytes(path, project), name, filled.notes)
     _check_project(text, name, project)
-    rows = _rows(text, name, filled.notes)
+    rows = _rows(text, name, filled.notes, project)
     table = _Table(name, found, filled, *_columns(rows, name, found, filled.notes))
     for row in rows[table.start:]:
         table.read(*row)
@@ -162,8 +164,12 @@ def read(path: Path, project: str, found: Measurables) -> Filled:
     return filled
 
 
-def _bytes(path: Path) -> bytes:
-    writes = tell("compare PROJECT --template writes a file to fill in")
+def _writes(project: Project) -> str:
+    return tell("{command} writes a file to fill in").format(command=project.variant.command("compare", "--template"))
+
+
+def _bytes(path: Path, project: Project) -> bytes:
+    writes = _writes(project)
     try:
         if path.is_dir():
             raise BadInput(Problem(tell("expected a CSV file, this is a folder"), str(path)))
@@ -192,26 +198,39 @@ def _decoded(data: bytes, name: str, notes: list[str]) -> str:
     return texts.cleaned(text)
 
 
-def _check_project(text: str, name: str, project: str) -> None:
+def _check_project(text: str, name: str, project: Project) -> None:
+    """Refuse the numbers of another project than the one they are compared with: right ones would be judged wrong."""
+    called = project.variant.called
     said = "|".join(re.escape(heading.partition("{")[0].strip()) for heading in every(OF_PROJECT))
     for number, line in enumerate(text.splitlines()[:10], 1):
         match = re.match(rf'\s*"?#\s*(?:{said})\s*([^;,\t"]+)', line)
-        if match and match[1].strip() != re.split(r'[;,\t"]', project)[0].strip():
-            other = match[1].strip()
-            said = tell("the file is of the project {other}, not of {project}").format(other=other, project=project)
-            raise BadInput(Problem(said, name, number, hint=f"tmm-sheets compare {other} --measured {name}"))
+        other = match[1].strip() if match else ""
+        if other and not _same_project(other, re.split(r'[;,\t"]', called)[0].strip()):
+            said = tell("the file is of the project {other}, not of {project}").format(other=other, project=called)
+            own = tell('write "{heading}" there, if its numbers are of that project').format(
+                heading=f"# {tell(OF_PROJECT).format(project=called)}")
+            from tmm_sheets import catalogue
+
+            known = catalogue.is_shipped(other) or Path(other).is_file()
+            hints = ([typed.command("compare", other, "--measured", name)] if known else []) + [own]
+            raise BadInput(Problem(said, name, number, hint="\n    ".join(hints)))
+
+
+def _same_project(one: str, other: str) -> bool:
+    """Whether two names are those of one project: files are where they are, seen from one folder or another."""
+    return one == other or (one.endswith(".toml") and re.split(r"[/\\]", one)[-1] == re.split(r"[/\\]", other)[-1])
 
 
 Row = tuple[int, list[str]]
 
 
-def _rows(text: str, name: str, notes: list[str]) -> list[Row]:
+def _rows(text: str, name: str, notes: list[str], project: Project) -> list[Row]:
     """Lines with their numbers, split at the separator they use; no empty ones, no remarks."""
     lines = [(i, line) for i, line in enumerate(text.splitlines(), 1)
              if line.strip(" ;,\t\"") and not line.lstrip(' "\t').startswith("#")]
     if not lines:
         raise BadInput(Problem(tell("no lines with numbers"), name,
-                               hint=tell("compare PROJECT --template writes a file to fill in")))
+                               hint=_writes(project)))
     head = lines[0][1]
     separator = max(";\t,", key=head.count)
     if head.count(separator) == 0:
@@ -272,7 +291,7 @@ def _columns(rows: list[Row], name: str, found: Measurables, notes: list[str]) -
 
 def _missing(heading: str, head: Sequence[str], name: str, number: int) -> Problem:
     """That a column is missing; it may be called nearly so, in any language."""
-    near = [other for one in every(heading) for other in get_close_matches(one, [h.lower() for h in head], n=1, cutoff=0.6)]
+    near = [other for one in every(heading) for other in nearest.near(one, [h.lower() for h in head])]
     hint = tell('did you mean "{near}"? rename it').format(near=near[0]) if near else tell("there are {headings}").format(
         headings=", ".join(filter(None, head)))
     said = tell('the column "{heading}" is missing').format(heading=tell(heading))
@@ -353,7 +372,7 @@ class _Table:
                 id=line.entry.id, before=told(f"{before.value:g}"), line=before.line, here=told(f"{line.value:g}"))
             self.problems.append(Problem(twice, self.name, line.line, self.title("measured"), tell("leave one of them")))
 
-    def refuse(self, rows: int, project: str) -> None:
+    def refuse(self, rows: int, project: Project) -> None:
         """Tell what is wrong with the whole, and what is remarkable.
 
         Raises
@@ -366,8 +385,8 @@ class _Table:
                                           "decimal marks")
                                      .format(file=self.name, points=self.points, commas=self.commas))
         if len(self.unknown) > SHOWN and len(self.unknown) > 0.5 * rows:
-            hint = tell("is the file of another project? this is {project}; compare {project} --template writes one").format(
-                project=project)
+            hint = tell("is the file of another project? this is {project}; {command} writes one").format(
+                project=project.variant.called, command=project.variant.command("compare", "--template"))
             said = tell("{n} of {rows} lines are about quantities this project does not have")
             said = said.format(n=len(self.unknown), rows=rows)
             raise BadInput(Problem(said, self.name, self.unknown[0].line, self.title("id"), hint))
@@ -383,7 +402,7 @@ def _factor(key: str, written: str, found: Measurables, filled: Filled, used: se
     known = {plain(scale): scale for scale in used}
     wanted = plain(key).partition("/")[2]
     if wanted not in known:
-        near = get_close_matches(wanted, sorted(known), n=1)
+        near = nearest.near(wanted, sorted(known))
         raise _Refused(tell("unknown scale factor {key}").format(key=key),
                        tell("did you mean {near}?").format(near=f"{FACTOR}/{near[0]}") if near else "", "id")
     filled.factors[known[wanted]] = _like(_positive(written), found.scales[known[wanted]])
@@ -420,7 +439,7 @@ def _known(key: str, found: Measurables) -> str:
 def _entry(key: str, found: Measurables, filled: Filled, name: str, number: int) -> Measurable:
     known = _known(key, found)
     if not known:
-        near = get_close_matches(key, list(found.entries), n=2, cutoff=0.6)
+        near = nearest.near(key, found.entries, 2)
         said = tell("did you mean {near} or {other}?") if len(near) > 1 else tell("did you mean {near}?")
         hint = said.format(near=near[0], other=near[-1]) if near else ""
         raise _Refused(tell("unknown quantity {key}").format(key=key), hint, "id")

@@ -43,31 +43,30 @@ def template(project: Project, folder: Path, everything: bool, say: Callable[[st
         raise BadInput(Problem(tell("is there already and may be filled in; nothing was written"), str(path),
                                hint=tell("rename it, or choose another folder with -o")))
     found = measurables(project, say)
-    name = project.variant.project.name
-    data = measured_file.template(name, found, everything)
+    called = project.variant.called
+    data = measured_file.template(called, found, everything)
     asked = measured_file.asked_for(found, everything)
     count = len(asked)
     said = tell_n("{project}: {n} quantity to measure or compute; fill in what you have, then",
                   "{project}: {n} quantities to measure or compute; fill in what you have, then", count)
-    lines = [said.format(project=name, n=count), f"    tmm-sheets compare {name} --measured {path}"]
+    lines = [said.format(project=called, n=count), f"    {project.variant.command('compare', '--measured', path)}"]
     if not everything:
         lines.append(tell("the main ones; --all asks for all {n}").format(n=len(found.entries)))
     rows = [{"id": e.id, "plan": e.plan, "position": e.label, "quantity": e.quantity, "unit": said_unit(e.unit)} for e in asked]
-    return Report("\n".join(lines), {"project": name, "quantities": rows}, {NAME: data}, tuple(found.notes))
+    return Report("\n".join(lines), {"project": project.variant.project.name, "quantities": rows}, {NAME: data}, tuple(found.notes))
 
 
 def compare(project: Project, path: Path, pencil: float, reading: float, say: Callable[[str], None]) -> Report:
     """Judge the numbers of a filled file."""
-    name = project.variant.project.name
-    measured_file.check(path)
+    measured_file.check(path, project)
     found = measurables(project, say)
-    filled = measured_file.read(path, name, found)
+    filled = measured_file.read(path, project, found)
     say(tell("errors"))
     judged = judge(filled, found, pencil, reading)
     notes = (*found.notes, *filled.notes)
-    title = tell("{project}: {file}").format(project=name, file=path.name)
+    title = tell("{project}: {file}").format(project=project.variant.called, file=path.name)
     pictures = PlanPictures(judged, found, found.errors(filled.factors, pencil, reading))
-    return Report(_text(judged, filled), _tree(name, judged, filled, pencil, reading), notes=notes,
+    return Report(_text(judged, filled), _tree(project.variant.project.name, judged, filled, pencil, reading), notes=notes,
                   story=_story(title, judged, filled, notes, pictures))
 
 

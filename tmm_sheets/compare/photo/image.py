@@ -199,7 +199,7 @@ def _other_sheet(project: Project, n: int, found: Rectified, path: Path, say: Ca
         _, _, match = rectification.refine(found.map, found.sides, found.ink, lines, found.level)
         if match > share:
             best, share = k, match
-    project_name, matched = project.variant.project.name, round(100 * found.match)
+    project_name, matched = project.variant.called, round(100 * found.match)
     if best != n and share > max(MATCH, found.match + CERTAIN):
         said = tell("{file} does not show sheet {n} but sheet {best} of {project}: only {matched} % of the lines of sheet {n} "
                     "are where "

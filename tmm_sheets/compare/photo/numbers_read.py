@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets import typed
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.profiles import SCALE, pixels
 from tmm_sheets.compare.photo.traces import Trace
@@ -57,7 +58,7 @@ def reader() -> Reader:
         With the command that installs it.
     """
     if find_spec("rapidocr") is None or find_spec("onnxruntime") is None:
-        raise BadInput(tell("reading numbers needs rapidocr, which is not installed"), hint='pip install "tmm-sheets[compare,ocr]"')
+        raise BadInput(tell("reading numbers needs rapidocr, which is not installed"), hint=typed.install("compare", "ocr"))
     from rapidocr import RapidOCR
 
     engine = RapidOCR(params={"Global.use_det": False, "Global.use_cls": False, "Global.log_level": "critical"})

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets import typed
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
@@ -35,7 +36,7 @@ PDF_DPI, MM = 200.0, 72 / 25.4
 SMALLER = marked("scan at 300 dpi in grey: A1 is 9930 x 7020 pixels then, more does not help")
 PNG, WITH_ALPHA = b"\x89PNG\r\n\x1a\n", (b"\4", b"\6")
 """Beginning of a PNG file, and its colour types with transparency."""
-SHOW = marked('expected a photograph or scan as JPG, PNG or PDF, for example "compare PROJECT --sheet 1 --image photo.jpg"')
+SHOW = marked("expected a photograph or scan as JPG, PNG or PDF")
 
 
 class Picture(NamedTuple):
@@ -54,7 +55,7 @@ def need_opencv() -> None:
         With the command that installs it.
     """
     if find_spec("cv2") is None:
-        raise BadInput(tell("comparing a photograph needs OpenCV, which is not installed"), hint="pip install tmm-sheets[compare]")
+        raise BadInput(tell("comparing a photograph needs OpenCV, which is not installed"), hint=typed.install("compare"))
 
 
 def read(path: Path) -> Picture:
@@ -178,7 +179,7 @@ def _page(data: bytes, path: Path) -> tuple[Grey, tuple[str, ...]]:
     """The first page of a PDF."""
     if find_spec("pypdfium2") is None:
         raise BadInput(tell("reading a PDF needs pypdfium2, which is not installed"),
-                       hint=tell("pip install tmm-sheets[compare], or save the page as PNG"))  # fmt: skip
+                       hint=tell("{command}, or save the page as PNG").format(command=typed.install("compare")))  # fmt: skip
     import pypdfium2
 
     try:

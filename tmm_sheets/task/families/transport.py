@@ -12,13 +12,12 @@ import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
-from difflib import get_close_matches
 from functools import cache
 from math import acos, cos, degrees, radians, sin
 from string import Template
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets import resources
+from tmm_sheets import nearest, resources
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.task.misprint import Misprint
 from tmm_sheets.words import marked, tell, tell_n
@@ -176,7 +175,7 @@ def project_file(name: str, corrected: bool = False) -> tuple[str, tuple[str, ..
     """
     machine, at, code = name.removeprefix("transport/").partition("@")
     if machine not in MACHINES:
-        near = get_close_matches(machine, MACHINES, n=1)
+        near = nearest.near(machine, MACHINES)
         raise BadInput(tell('unknown machine "{machine}" of manual 003').format(machine=machine),
                        hint=tell("did you mean {near}?").format(near=f"transport/{near[0]}") if near else
                        tell("known are {known}").format(known=", ".join(MACHINES)))
