@@ -264,12 +264,12 @@ def _study_of(project: Project, phi: tuple[float, ...] | None, positions: int | 
 
 
 def _cycle(project: Project, study: Study) -> dict[str, Any]:
-    crank = study.mechanism.crank
+    angle, crank = study.positions.angle, study.mechanism.crank.link
     return {
         "labels": list(study.labels),
-        "phi": study.positions.phi,
-        "omega1": crank.omega,
-        "epsilon1": crank.sense * crank.acceleration if study.running is None else study.accelerations.epsilon[crank.link].value,
+        "phi": Told(angle) if isinstance(angle, Step) else study.positions.phi,
+        "omega1": Told(study.velocities.omega[crank]),
+        "epsilon1": Told(study.accelerations.epsilon[crank]),
     }
 
 

@@ -71,6 +71,28 @@ def test_every_number_has_its_step(case):
     assert bare == []
 
 
+def test_the_cycle_has_its_steps(case):
+    """Angles, angular velocity and acceleration of the crank, as they follow from the keys of the file."""
+    project, record, solved = case
+    if project.variant.crank is None:
+        assert not [path for path in record["results"] if path.startswith("cycle")]
+        return
+    crank, cycle = project.variant.crank, project.variant.cycle
+    sense = 1 if crank.sense == "counter-clockwise" else -1
+    of = {name: record["results"][f"cycle.{name}"] for name in ("phi", "omega1", "epsilon1")}
+    assert told(of["omega1"], record) == sense * crank.speed == solved["cycle"]["omega1"]
+    if crank.angular_acceleration == "flywheel":
+        assert len(told(of["epsilon1"], record)) == len(solved["cycle"]["labels"])
+    else:
+        assert told(of["epsilon1"], record) == sense * crank.angular_acceleration
+    phi = told(of["phi"], record)
+    if cycle.positions is not None:
+        turned = np.exp(1j * (phi - cycle.start)) if isinstance(cycle.start, float) else np.exp(1j * (phi - phi[0]))
+        apart = np.exp(sense * 2j * np.pi / cycle.positions)
+        even = [k for k, label in enumerate(solved["cycle"]["labels"]) if label not in cycle.extra]
+        assert turned[even[1:]] / turned[even[:-1]] == pytest.approx(np.full(len(even) - 1, apart), rel=1e-12)
+
+
 def test_replay(case):
     """Values follow from the givens, the rules and the primitives: nothing else of the program is asked."""
     _, record, _ = case
@@ -134,7 +156,9 @@ def test_record_of_one_sheet(tmp_path, capsys):
     (["record", "lugansk/shaper"], 2, "--json"),
     (["why", "lugansk/shaper", "forces.arms.h5"], 2, "did you mean forces.arms.h50"),
     (["why", "lugansk/shaper", "flywhel.J_flywheel"], 2, "it has positions, velocities"),
-    (["why", "lugansk/shaper", "cycle.omega1"], 2, "not constructed"),
+    (["why", "lugansk/shaper", "structure.W"], 2, "not constructed"),
+    (["why", "lugansk/shaper", "cycle.omega"], 2, "did you mean cycle.omega1"),
+    (["why", "lugansk/cam_flat", "cycle.phi"], 2, 'has no part "cycle"'),
     (["why", "sixbar/1:1", "gear.z1"], 2, 'has no part "gear"'),
 ])
 def test_wrong_usage(arguments, status, said, capsys):
@@ -160,6 +184,16 @@ def test_why(capsys):
     assert names.index("crank.length") < names.index("positions/B") < names.index("velocities/b")
     (length,) = (line for line in lines if line.startswith("crank.length"))
     assert length.startswith("crank.length  l_{AB} = 0.08 m  given")
+
+
+@pytest.mark.parametrize(("result", "given", "value"), [("cycle.omega1", "crank.speed", "-7.53982 rad/s"),
+                                                          ("cycle.phi", "cycle.working", "rad, position 2")])
+def test_why_of_the_cycle(result, given, value, capsys):
+    assert run(["why", "lugansk/shaper", result]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert given in {line.split()[0] for line in lines}
+    assert lines[-1].startswith(f"{result} = ")
+    assert value in lines[-1]
 
 
 @pytest.mark.parametrize("numbers", [(1,), (1, 2)])

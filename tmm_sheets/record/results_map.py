@@ -7,7 +7,7 @@ from typing import Any
 
 from tmm_sheets.construction.step import Step, Told
 
-SECTIONS = ("positions", "velocities", "accelerations", "forces", "flywheel", "gear", "reducer", "train", "cam")
+SECTIONS = ("cycle", "positions", "velocities", "accelerations", "forces", "flywheel", "gear", "reducer", "train", "cam")
 """Parts of the results whose numbers are steps."""
 
 WITHOUT_STEPS = ("labels",)

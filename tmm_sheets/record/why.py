@@ -13,6 +13,7 @@ from tmm_sheets.construction.given import Given, GivenNumber, GivenPoint
 from tmm_sheets.construction.step import Step, Told, value_at
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.numbers import plain
+from tmm_sheets.project import LINKAGE
 from tmm_sheets.record.book import Book, chain
 from tmm_sheets.record.recording import book_of, unit
 from tmm_sheets.record.results_map import leaves
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
 
-_ABOUT = ("schema", "project", "variant", "structure", "cycle", "condition", "scales")
+_ABOUT = ("schema", "project", "variant", "structure", "condition", "scales")
 """Sections of the results that tell about the whole project: read, counted or chosen, not constructed."""
 
 
@@ -44,9 +45,10 @@ def lines(project: Project, result: str) -> Iterator[str]:
             tell("{result} has no step behind it: it is read, counted or chosen, not constructed").format(result=result),
             hint=tell("{command} tells what was read, and what follows from it").format(command=project.variant.command("show")),
         )
-    if part not in project.parts:
+    of = LINKAGE[0] if part == "cycle" else part
+    if of not in project.parts:
         raise _no_part(project, result, part)
-    found = dict(leaves(results.told(project, [part])))
+    found = dict(leaves(results.told(project, [of])))
     if result not in found:
         raise _unknown(project, result, found)
     told = found[result]
