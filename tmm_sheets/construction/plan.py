@@ -40,6 +40,12 @@ def asked_for(made: Iterable[Any]) -> dict[str, Plan]:
     return found
 
 
+def _same(step: Step, rule: Rule, args: tuple[Any, ...]) -> bool:
+    """True for a step that the rule makes of the same steps; numbers follow from these."""
+    made = [a for a in step.args if isinstance(a, Step)]
+    return step.rule is rule and made == [a for a in args if isinstance(a, Step)]
+
+
 class Plan:
     """A construction in drawing order: position plan, velocity plan, force plan, diagram, profile.
 
@@ -60,6 +66,9 @@ class Plan:
 
     ``asides`` are steps that no pencil makes: numbers that spare rounding (see :attr:`Rule.beyond_paper`). They are no part of the
     drawing order and are told by the record alone.
+
+    A plan's own names ("M", "p") are its own whatever a point or a force of the task is called: a step that is :meth:`named` after
+    the task gives way and takes a prime.
     """
 
     def __init__(self, name: str, title: str, unit: str, labels: tuple[str, ...] = ("",), pole: str | None = None,
@@ -74,22 +83,39 @@ class Plan:
         self.asides: dict[str, Step] = {}
         self.segments: list[Segment] = []
         self.reserved: frozenset[str] = frozenset()
+        self._of_task: set[str] = set()
         if search is not None:
             search.plans += 1
 
     def add(self, name: str, rule: Rule, *args: Any, say: str | None = None, symbol: str = "") -> Step:
-        """Record a step under a name that is unique in this plan and return it; nothing is computed."""
+        """Record a step under a name that is unique in this plan and return it; nothing is computed.
+
+        Raises
+        ------
+        ValueError
+            when the plan has a step of its own of that name.
+        """
         if name in self.steps:
-            raise ValueError(f"plan {self.name!r} has a step {name!r} already")
+            if name not in self._of_task:
+                raise ValueError(f"plan {self.name!r} has a step {name!r} already")
+            self._give_way(name)
         step = self._step(name, rule, args, say, symbol)
         self.steps[name] = step
         return step
 
     def aside(self, name: str, rule: Rule, *args: Any, symbol: str = "") -> Step:
-        """Record a number that no pencil knows, once under its name."""
+        """Record a number that no pencil knows, once; of others made of other steps the name takes a prime."""
+        while name in self.asides and not _same(self.asides[name], rule, args):
+            name += "′"
         if name not in self.asides:
             self.asides[name] = self._step(name, rule, args, None, symbol)
         return self.asides[name]
+
+    def once(self, name: str, rule: Rule, *args: Any, symbol: str = "") -> Step:
+        """Record a step once, whoever asks first; of others made of other steps the name takes a prime."""
+        while name in self.steps and not _same(self.steps[name], rule, args):
+            name += "′"
+        return self.steps[name] if name in self.steps else self.add(name, rule, *args, symbol=symbol)
 
     def length(self, tail: Step, head: Step) -> Step:
         """Length between two points as it is read off the plan, whoever asks first."""
@@ -116,6 +142,19 @@ class Plan:
         while name in self.steps or name in self.reserved:
             name += "′"
         return name
+
+    def named(self, name: str) -> str:
+        """Name for a step that is called after something of the task: free now, and given up when the plan needs it for its own."""
+        found = self.free(name)
+        self._of_task.add(found)
+        return found
+
+    def _give_way(self, name: str) -> None:
+        """Another name for a step that is called after the task, in its place in the order."""
+        self._of_task.remove(name)
+        other = self.named(name)
+        self.steps[name].__dict__["name"] = other
+        self.steps = {other if key == name else key: step for key, step in self.steps.items()}
 
     def vector(self, symbol: str, tail: Step, head: Step) -> None:
         """Record that ``tail`` .. ``head`` is drawn as the vector ``symbol``."""

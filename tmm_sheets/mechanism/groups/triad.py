@@ -283,8 +283,7 @@ class TriadKind(GroupKind):
         u = pos.directions[leg.link]
         if leg.form == "RR":
             return u
-        name = f"⟂{leg.guide or 'dir ' + leg.link}"
-        return pos.plan[name] if name in pos.plan else pos.plan.add(name, rules.TURN, u)
+        return pos.plan.once(f"⟂{leg.guide or 'dir ' + leg.link}", rules.TURN, u)
 
     # --- velocities and accelerations -------------------------------------------------------------------------------
 

@@ -12,7 +12,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
+from itertools import count, pairwise
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -204,6 +204,13 @@ def lettered(n: int) -> str:
         n, last = divmod(n - 1, 26)
         text = chr(ord("a") + last) + text
     return text
+
+
+def _fresh(number: str, taken: set[str]) -> str:
+    """The number with the first letters with which it is not taken; it is from now on."""
+    found = next(name for n in count() if (name := number + lettered(n)) not in taken)
+    taken.add(found)
+    return found
 
 
 @primitive("gather ordinates")
@@ -398,29 +405,34 @@ class Flywheel(ABC):
 
     @cached_property
     def _numbered(self) -> dict[int, str]:
-        """Index among the edges and number of each position that counts; 1′ is a further one between 0 and 1."""
-        return {k: name for k, name in zip(self.at_positions, self.labels, strict=True) if not name.endswith("′")}
+        """Index among the edges and number of each position that counts; 1′ is a further one between 0 and 1.
+
+        A name that begins with a letter stands in brackets: P, m1, c2 are points of the construction.
+        """
+        return {k: name if name[0].isdigit() else f"({name})" for k, name in zip(self.at_positions, self.labels, strict=True)
+                if not name.endswith(("′", "″"))}
 
     @cached_property
     def borders(self) -> tuple[str, ...]:
         """Names of the edges: numbers of the positions, letters after the last number for what lies between them."""
-        last, extra, result = "", 0, []
+        last, result, taken = "", [], set(self._numbered.values())
         for k in range(len(self.edges)):
-            last, extra = (self._numbered[k], 0) if k in self._numbered else (last, extra + 1)
-            result.append(last + lettered(extra))
+            last = self._numbered.get(k, last)
+            result.append(last if k in self._numbered else _fresh(last, taken))
         if result[0] == result[-1]:
-            result[0] = "0"  # position 12 is the first and the last point of the graph
+            result[0] = _fresh("0", taken)  # position 12 is the first and the last point of the graph
         return tuple(result)
 
     @cached_property
     def intervals(self) -> tuple[str, ...]:
         """Names of the intervals: the number of the position that ends them; the shorter parts get letters."""
-        result = [""] * (len(self.edges) - 1)
+        result, taken = [""] * (len(self.edges) - 1), set(self._numbered.values())
         widths = np.diff(self.edges)
         for (start, _), (end, name) in pairwise(self._numbered.items()):
-            by_width = sorted(range(start, end), key=lambda k: -round(float(widths[k]), 9))
-            for rank, k in enumerate(by_width):
-                result[k] = name + lettered(rank)
+            first, *others = sorted(range(start, end), key=lambda k: -round(float(widths[k]), 9))
+            result[first] = name
+            for k in others:
+                result[k] = _fresh(name, taken)
         return tuple(result)
 
     @property

@@ -211,8 +211,7 @@ class Kinetostatics:
 
     def across(self, name: str, u: Step, symbol: str = "") -> Step:
         """Direction across another, drawn once."""
-        label = f"⟂{name}"
-        return self.plan.steps[label] if label in self.plan else self.plan.add(label, rules.TURN, u, symbol=symbol)
+        return self.plan.once(f"⟂{name}", rules.TURN, u, symbol=symbol)
 
     def normal(self, j: str, other: str, name: str, u: Step, symbol: str = "") -> Step:
         """Direction of a sliding pair's reaction on link ``j``: across the guide, with friction deviated from there."""
@@ -426,7 +425,7 @@ def _crank(k: Kinetostatics, driver: GearForce | None) -> None:
         k.balancing = k.plan.add("Mур", OPPOSITE_COUPLE, total, symbol=tr("Mb"))
     else:
         at = contact_point(pos, driver)
-        k.balancing = k.plan.add(driver.name, DRIVING_FORCE, total, pivot, at, driver.line(c.sense))
+        k.balancing = k.plan.add(k.plan.named(driver.name), DRIVING_FORCE, total, pivot, at, driver.line(c.sense))
         load = Load(symbol(driver.name), c.link, at, k.balancing, "applied")
         k.loads[c.link].append(load)
         tail = plan.chain(n, tail, [load])

@@ -294,9 +294,10 @@ class Applied:
         ``side`` as in the law; ``mark`` goes behind the step's name.
         """
         values = self._magnitudes(plan, pos, turned, side, mark)
+        name = plan.named(f"{self.name}{mark}")
         if self.point is None:
-            return plan.add(f"{self.name}{mark}", MOMENT, values)
-        return plan.add(f"{self.name}{mark}", FORCE, values, self.toward if self.along is None else self.along)
+            return plan.add(name, MOMENT, values)
+        return plan.add(name, FORCE, values, self.toward if self.along is None else self.along)
 
     def _magnitudes(self, plan: Plan, pos: Positions, turned: Any, side: int, mark: str) -> Step:
         """Signed values, N or N m."""

@@ -73,7 +73,8 @@ class Motion:
     def __init__(self, study: Study, study_at: Callable[[Any, tuple[str, ...]], Study]) -> None:
         self.study = study
         self._study_at = study_at
-        self._known: dict[str, Output] = {}
+        self._points: dict[str, Output] = {}
+        self._links: dict[str, Output] = {}
         self.plan = Plan("motion", tr("Kinematic diagrams"), "m", study.labels)
 
     @property
@@ -90,8 +91,7 @@ class Motion:
     def inclination(self, link: str, guide: str) -> Step:
         """Inclination of a rod to the guide of its other end, rad, positive counter-clockwise, at the positions."""
         u, along = self.study.positions.directions[link], self.study.positions.guide_directions[guide]
-        name = f"θ_{link}"
-        return self.plan[name] if name in self.plan else self.plan.add(name, INCLINATION, u, along, symbol=f"θ_{{{link}}}")
+        return self.plan.once(f"θ_{link}", INCLINATION, u, along, symbol=f"θ_{{{link}}}")
 
     @cached_property
     def turned(self) -> Any:
@@ -115,24 +115,24 @@ class Motion:
         CannotBuild
             when the path is not straight.
         """
-        if name not in self._known:
+        if name not in self._points:
             p = np.asarray(self.between.positions.points[name].value)
             u = Given(_path(name, p - p[0]), f"path of {name}", "u", over="none",
                       choice="from position 0 to the farthest point, in the sense in which the motion begins")
-            self._known[name] = Output(*(_along(plan, study, name, u) for plan, study in self._both()))
-        return self._known[name]
+            self._points[name] = Output(*(_along(plan, study, name, u) for plan, study in self._both()))
+        return self._points[name]
 
     def link(self, name: str) -> Output:
         """Angle of a link from position 0 on, its angular velocity and acceleration, positive counter-clockwise."""
-        if name not in self._known:
+        if name not in self._links:
             angle = np.angle(np.broadcast_to(self.between.positions.directions[name].value, self.turned.shape))
             swept = np.unwrap(angle)
             at = self.study.turned
             here = np.angle(np.broadcast_to(self.study.positions.directions[name].value, at.shape))
             turns = (np.interp(at, self.turned, swept) - here, swept - angle)
-            self._known[name] = Output(*(_turning(plan, study, name, np.round(k / TURN))
+            self._links[name] = Output(*(_turning(plan, study, name, np.round(k / TURN))
                                          for (plan, study), k in zip(self._both(), turns, strict=True)))
-        return self._known[name]
+        return self._links[name]
 
     def _both(self) -> tuple[tuple[Plan, Study], tuple[Plan, Study]]:
         return (self.plan, self.study), (self._tried, self.between)
@@ -140,7 +140,7 @@ class Motion:
 
 def _along(plan: Plan, study: Study, name: str, u: Given) -> Three:
     p, v, a = (of.points[name] for of in (study.positions, study.velocities, study.accelerations))
-    start = plan.add(f"{name}₀", BEGINNING, p, 0)
+    start = plan.add(plan.named(f"{name}₀"), BEGINNING, p, 0)
     return (plan.add(f"S_{name}", WAY, p, start, u, symbol=f"S_{{{name}}}"),
             plan.add(f"V_{name}", VELOCITY, v, u, symbol=f"V_{{{name}}}"),
             plan.add(f"a_{name}", ACCELERATION, a, u, symbol=f"a_{{{name}}}"))
@@ -148,7 +148,7 @@ def _along(plan: Plan, study: Study, name: str, u: Given) -> Three:
 
 def _turning(plan: Plan, study: Study, name: str, turns: Any) -> Three:
     u, omega, epsilon = study.positions.directions[name], study.velocities.omega[name], study.accelerations.epsilon[name]
-    start = plan.add(f"{name}₀", FIRST, u, 0)
+    start = plan.add(plan.named(f"{name}₀"), FIRST, u, 0)
     whole = Given(turns, f"turns of link {name}", choice="whole turns, counted on from position 0")
     return (plan.add(f"ψ_{name}", ANGLE, u, start, whole, symbol=f"ψ_{{{name}}}"),
             plan.add(f"ω_{name}", OMEGA, omega, symbol=f"ω_{{{name}}}"),

@@ -129,7 +129,7 @@ def _fixed_guide(pos: Positions, guide: Guide) -> None:
     at = near_point(pos.mechanism, guide)
     point = pos.plan.add(pos.plan.free(f"{guide.name}₀"), *at, say=tr("Mark point {name} of the guide."))
     pos.guide_points[guide.name] = point
-    pos.guide_directions[guide.name] = pos.plan.add(pos.plan.free(guide.name), rules.UNDER, guide.direction,
+    pos.guide_directions[guide.name] = pos.plan.add(pos.plan.named(guide.name), rules.UNDER, guide.direction,
                                                     say=tr("Through {point} draw the guide {{name}}.").format(point=point.name))
 
 
@@ -156,7 +156,7 @@ def _line_on(pos: Positions, link: str, start: str, towards: str) -> Step:
 
 
 def _turned_by(pos: Positions, name: str, u: Step, angle: float) -> Step:
-    return u if angle == 0 else pos.plan.add(pos.plan.free(name), rules.TURNED_BY, u, angle)
+    return u if angle == 0 else pos.plan.add(pos.plan.named(name), rules.TURNED_BY, u, angle)
 
 
 def _further_points(pos: Positions, link: str) -> None:

@@ -109,8 +109,7 @@ class MotionPolygon:
     def perpendicular(self, p: str, q: str) -> Step:
         """Direction across the line of two points, drawn once."""
         ray = self.positions.direction(p, q)
-        name = f"⟂{ray.name}"
-        return self.plan[name] if name in self.plan else self.plan.add(name, rules.TURN, ray)
+        return self.plan.once(f"⟂{ray.name}", rules.TURN, ray)
 
     def turning(self, link: str, big_q: str, big_b: str, q: Step, b: Step) -> None:
         """Rate of turning of a link from the vectors ``q`` and ``b`` of two of its points."""
@@ -164,7 +163,7 @@ class Velocities(MotionPolygon):
 
 def plan_name(plan: Plan, point: str) -> str:
     """Name of a point on a plan: the small letter of the mechanism's, with a prime where the plan has that name already."""
-    return plan.free(point.lower())
+    return plan.named(point.lower())
 
 
 def velocity_plan(pos: Positions) -> Velocities:

@@ -84,10 +84,9 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
     def turned(v: Step) -> Step:
         if v is vel.pole:
             return pole
-        if v.name not in plan:
-            plan.add(v.name, TURNED, v)
-        result.points[v.name] = plan[v.name]
-        return plan[v.name]
+        if v.name not in result.points:
+            result.points[v.name] = plan.add(plan.named(v.name), TURNED, v)
+        return result.points[v.name]
 
     by_step = {id(step): vel.points[name] for name, step in pos.points.items()}
     terms: list[Step] = []
@@ -95,7 +94,7 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
     def hang(sign: str, at: Step, force: Step, name: str = "") -> None:
         if at is pole:
             return  # a force at a point at rest has no arm
-        arm = plan.add(f"h {name or sign}", rules.ARM, pole, at, force, symbol=f"h {sign}" if name else "")
+        arm = plan.add(plan.named(f"h {name or sign}"), rules.ARM, pole, at, force, symbol=f"h {sign}" if name else "")
         result.hung.append(Hung(sign, at, force, arm))
         terms.extend((at, force))
 
@@ -110,11 +109,11 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
             sign = couple.name.removeprefix("M")
             index = (couple.symbol or couple.name).removeprefix("M")
             letters, vector = tr("FM{index}").format(index=index), tr("F̅_{{M{index}}}").format(index=index)
-            f = plan.add(f"FМ{sign}", COUPLE_FORCE, couple, pos.points[big_x], pos.points[big_y], symbol=letters)
+            f = plan.add(plan.named(f"FМ{sign}"), COUPLE_FORCE, couple, pos.points[big_x], pos.points[big_y], symbol=letters)
             hang(vector, turned(y), f, f"F̅_{{М{sign}}}")
             if x is not vel.pole:
                 at = turned(x)
-                second = plan.add(f"FМ{sign}′", OPPOSITE_FORCE, f, symbol=f"{letters}′")
+                second = plan.add(plan.named(f"FМ{sign}′"), OPPOSITE_FORCE, f, symbol=f"{letters}′")
                 hang(f"{vector}′", at, second, f"F̅_{{М{sign}}}′")
     if driver is None:
         # A pure moment is balanced by a force across the crank at its pin: M = F l.
@@ -131,11 +130,11 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
     f_step = plan.add(letter, SIMILAR, vel.pole, vel.points[c.pin], pos.points[c.pivot], pos.points[c.pin], at)
     contact = plan.add(f"{letter}′", TURNED, f_step)
     result.line = driver.line(c.sense)
-    result.balancing = plan.add(driver.name, BALANCE, pole, contact, result.line, *terms)
-    force = plan.add(f"{driver.name} на рычаге", VECTOR_OF, result.balancing, result.line,
+    result.balancing = plan.add(plan.named(driver.name), BALANCE, pole, contact, result.line, *terms)
+    force = plan.add(plan.named(f"{driver.name} на рычаге"), VECTOR_OF, result.balancing, result.line,
                      symbol=tr("{force} on the lever").format(force=driver.name))
     result.contact = contact
-    arm = plan.add(f"h {driver.name}", rules.ARM, pole, contact, force)
+    arm = plan.add(plan.named(f"h {driver.name}"), rules.ARM, pole, contact, force)
     result.hung.append(Hung(symbol(driver.name), contact, force, arm))
     return result
 
