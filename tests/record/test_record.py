@@ -155,7 +155,7 @@ def test_record_of_one_sheet(tmp_path, capsys):
     (["record", "lugansk/shaper", "--sheet", "9", "--json", "-"], 2, "no sheet 9"),
     (["record", "lugansk/shaper"], 2, "--json"),
     (["why", "lugansk/shaper", "forces.arms.h5"], 2, "did you mean forces.arms.h50"),
-    (["why", "lugansk/shaper", "flywhel.J_flywheel"], 2, "it has positions, velocities"),
+    (["why", "lugansk/shaper", "flywhel.J_flywheel"], 2, "did you mean flywheel.J_flywheel"),
     (["why", "lugansk/shaper", "structure.W"], 2, "not constructed"),
     (["why", "lugansk/shaper", "cycle.omega"], 2, "did you mean cycle.omega1"),
     (["why", "lugansk/cam_flat", "cycle.phi"], 2, 'has no part "cycle"'),
