@@ -67,7 +67,8 @@ def started(command, status=0):
 
 
 @pytest.mark.parametrize("arguments", [
-    ["check", "nothing/like/it"], ["check", "no/such.toml"], ["why", "b.toml", "cycle.phi"], ["why", "my own.toml", "cycle.phi"],
+    ["check", "nothing/like/it"], ["check", "no/such.toml"], ["why", "b.toml", "structure.W"],
+    ["why", "my own.toml", "structure.W"],
     ["protocol", "b.toml", "--plan", "quite another"], ["protocol", "my own.toml", "--plan", "quite another", "--lang", "uk"],
     ["draw"], ["build", "--shet"], ["compare", "b.toml"], ["--nonsense"], ["solve", "b.toml", "--part", "x"],
 ])  # fmt: skip

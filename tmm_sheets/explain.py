@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from time import perf_counter
 from typing import TYPE_CHECKING
 
+from tmm_sheets.numbers import of_reader
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -49,7 +50,8 @@ def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch) ->
             ms = 1000 * sum(step.spent for step in done)
             worst = condition.worst(plan)
             told = "" if worst is None else tell("{condition:11.2f} in {step}").format(condition=worst[0], step=worst[1])
-            lines.append(f"  {plan.name:28}{len(steps):7}{len(done):11}{len(steps) - len(done):9}{ms:11.3f}{told}")
+            counts = f"{len(steps):7}{len(done):11}{len(steps) - len(done):9}"
+            lines.append(f"  {plan.name:28}{counts}{of_reader(f'{ms:.3f}'):>11}{told}")
     lines += _searches(project)
     lines += ["", *_evenness(drawings), "", "{:5}{:>8}".format(tell("sheet"), tell("marks"))]
     for n, drawing in drawings.items():
@@ -59,8 +61,8 @@ def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch) ->
     lines += ["", tell("imported: {modules}").format(modules=", ".join(name for name in HEAVY if name in sys.modules)),
               tell("of our own: {modules}").format(modules=", ".join(ours))]
     lines += ["", "{:26}{:>8}".format(tell("phase"), tell("ms"))]
-    lines += [f"{name:26}{1000 * seconds:8.1f}" for name, seconds in watch.phases.items()]
-    lines.append("{:26}{:8.1f}".format(tell("together"), 1000 * sum(watch.phases.values())))
+    lines += [f"{name:26}{of_reader(f'{1000 * seconds:.1f}'):>8}" for name, seconds in watch.phases.items()]
+    lines.append("{:26}{:>8}".format(tell("together"), of_reader(f"{1000 * sum(watch.phases.values()):.1f}")))
     return "\n".join(lines)
 
 
@@ -81,4 +83,4 @@ def _searches(project: Project) -> Iterator[str]:
     if project.searches:
         yield from ("", "{:30}{:>7}{:>11}{:>20}".format(tell("searches"), tell("plans"), tell("steps"), tell("ms")))
     for search in project.searches:
-        yield f"  {tell(search.purpose):28}{search.plans:7}{search.steps:11}{1000 * search.seconds:20.3f}"
+        yield f"  {tell(search.purpose):28}{search.plans:7}{search.steps:11}{of_reader(f'{1000 * search.seconds:.3f}'):>20}"

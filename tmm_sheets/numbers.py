@@ -131,3 +131,18 @@ def written(text: str, language: str = "") -> str:
 def told(text: str) -> str:
     """A computer's number as the reader of messages and reports writes it."""
     return written(text, reader())
+
+
+def of_reader(text: str) -> str:
+    """A computer's number with the decimal sign of the reader and its own minus, to be copied from a terminal."""
+    return text.replace(".", decimal_sign(reader()))
+
+
+def listed(x: float, digits: int = 6) -> str:
+    """A number of a listing in a terminal, see :func:`plain`."""
+    return of_reader(plain(x, digits))
+
+
+def in_a_row(texts: Iterable[str]) -> str:
+    """Numbers of a message one behind the other: semicolons between them where commas are within."""
+    return ("; " if decimal_sign(reader()) == "," else ", ").join(texts)

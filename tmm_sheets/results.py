@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.construction.step import Part, Step, Told
 from tmm_sheets.errors import BadInput, CannotBuild, together
-from tmm_sheets.numbers import Sizes, clean, plain
+from tmm_sheets.numbers import Sizes, clean, in_a_row, listed
 from tmm_sheets.project import LINKAGE
 from tmm_sheets.words import tell
 
@@ -220,12 +220,12 @@ def _short(value: Any) -> str:
         if value and isinstance(value[0], dict):
             return "; ".join(map(_short, value))
         inner = [_short(v) for v in (value if len(value) <= 24 else [*value[:12], "...", *value[-2:]])]
-        return f"({', '.join(inner)})" if value and isinstance(value[0], float) and len(value) == 2 else " ".join(inner)
+        return f"({in_a_row(inner)})" if value and isinstance(value[0], float) and len(value) == 2 else " ".join(inner)
     if isinstance(value, dict):
         return ", ".join(f"{k} {_short(v)}" for k, v in value.items())
     if value is None:
         return "-"
-    return plain(value) if isinstance(value, float) else str(value)
+    return listed(value) if isinstance(value, float) else str(value)
 
 
 # --- parts ----------------------------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from math import degrees
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.numbers import plain
+from tmm_sheets.numbers import in_a_row, listed, of_reader
 from tmm_sheets.words import of_file, tell
 
 if TYPE_CHECKING:
@@ -98,17 +98,17 @@ def _ways(variant: Variant, g: Any) -> str:
         way = Project(variant).way_of_assembly(g)
     except CannotBuild as e:
         return str(e)
-    angles = [f"{degrees(phase(u)) % 360:.1f}" for _, u in way.found]
+    angles = [of_reader(f"{degrees(phase(u)) % 360:.1f}") for _, u in way.found]
     if angles:
         angles[way.taken] = tell("{angle} (taken)").format(angle=angles[way.taken])
     return "\n" + tell("Ways of assembly of group {group} at crank angle {angle:g} deg: {side} at {ways} deg").format(
-        group=g.name, angle=degrees(g.when), side=g.legs[0].corner + g.legs[1].corner, ways=", ".join(angles) or "–")
+        group=g.name, angle=degrees(g.when), side=g.legs[0].corner + g.legs[1].corner, ways=in_a_row(angles) or "–")
 
 
 def _links(m: Mechanism) -> Iterator[tuple[str, str, str]]:
     for name, link in m.links.items():
-        mass = [tell("m = {mass} kg in {centre}").format(mass=plain(link.mass), centre=link.centre)] if link.mass else []
-        inertia = [tell("J = {inertia} kg m2").format(inertia=plain(link.inertia))] if link.inertia else []
+        mass = [tell("m = {mass} kg in {centre}").format(mass=listed(link.mass), centre=link.centre)] if link.mass else []
+        inertia = [tell("J = {inertia} kg m2").format(inertia=listed(link.inertia))] if link.inertia else []
         yield name, tell(link.title), ", ".join([" ".join(m.link_points(name)), *mass, *inertia])
 
 

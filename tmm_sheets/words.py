@@ -14,7 +14,9 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+from decimal import Decimal
 from functools import cache
+from string import Formatter
 
 from tmm_sheets.resources import template
 
@@ -23,6 +25,9 @@ LANGUAGES = ("ru", "uk", "en")
 SHEETS, MESSAGES = "ru", "en"
 """Language of sheets when neither project nor command tells one, and of messages when the locale names none of them."""
 DOMAIN = "tmm_sheets"
+
+_FRACTIONS = (float, Decimal)
+"""Numbers that may have a decimal sign."""
 
 _paper = ContextVar("paper", default=SHEETS)
 _reader = ContextVar("reader", default=MESSAGES)
@@ -105,6 +110,41 @@ def _first(asked: Sequence[str]) -> str:
     return MESSAGES
 
 
+class Text(str):
+    """A text of a catalogue: the numbers that are filled in are written as its language writes them.
+
+    This is the one place where a sentence gets its decimal comma: whoever says something fills in numbers as they are, and what
+    was put together elsewhere (what stands in a file or has to be typed) as texts.
+    """
+
+    __slots__ = ("language",)
+    language: str
+
+    def format(self, *args: object, **fields: object) -> str:
+        """The text with its fields filled in."""
+        if decimal_sign(self.language) == "." or not any(isinstance(value, _FRACTIONS) for value in (*args, *fields.values())):
+            return super().format(*args, **fields)
+        return _Written(self.language).vformat(self, args, fields)
+
+
+class _Written(Formatter):
+    """Fills in fractions with the decimal sign of a language."""
+
+    def __init__(self, language: str) -> None:
+        self.sign = decimal_sign(language)
+
+    def format_field(self, value: object, format_spec: str) -> str:
+        """One field."""
+        text = str(super().format_field(value, format_spec))
+        return text.replace(".", self.sign) if isinstance(value, _FRACTIONS) else text
+
+
+def _text(text: str, language: str) -> Text:
+    found = Text(text)
+    found.language = language
+    return found
+
+
 def marked(text: str) -> str:
     """The text itself, marked for the catalogues: what is defined once (a rule's wording) and said later."""
     return text
@@ -112,27 +152,27 @@ def marked(text: str) -> str:
 
 def tr(text: str) -> str:
     """The text as it stands on the paper; fields in braces stay for ``format``."""
-    return _catalogue(_paper.get()).gettext(text) if text else text
+    return _text(_catalogue(_paper.get()).gettext(text), _paper.get()) if text else text
 
 
 def tr_in(context: str, text: str) -> str:
     """The same of a text that other languages say differently elsewhere; ``context`` tells the translator where it stands."""
-    return _catalogue(_paper.get()).pgettext(context, text)
+    return _text(_catalogue(_paper.get()).pgettext(context, text), _paper.get())
 
 
 def tr_n(one: str, many: str, n: int) -> str:
     """The form that goes with ``n``, on the paper."""
-    return _catalogue(_paper.get()).ngettext(one, many, n)
+    return _text(_catalogue(_paper.get()).ngettext(one, many, n), _paper.get())
 
 
 def tell(text: str) -> str:
     """The text as the person at the machine reads it."""
-    return _catalogue(_reader.get()).gettext(text) if text else text
+    return _text(_catalogue(_reader.get()).gettext(text), _reader.get()) if text else text
 
 
 def tell_n(one: str, many: str, n: int) -> str:
     """The form that goes with ``n``, in a message."""
-    return _catalogue(_reader.get()).ngettext(one, many, n)
+    return _text(_catalogue(_reader.get()).ngettext(one, many, n), _reader.get())
 
 
 _FILLED = (marked("задание {task}, вариант {variant}"), marked("шифр {cipher}"), marked("ТММ.КП.{number}"))

@@ -12,7 +12,7 @@ from tmm_sheets.construction import protocol
 from tmm_sheets.construction.given import Given, GivenNumber, GivenPoint
 from tmm_sheets.construction.step import Step, Told, value_at
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.numbers import plain
+from tmm_sheets.numbers import in_a_row, listed
 from tmm_sheets.project import LINKAGE
 from tmm_sheets.record.book import Book, chain
 from tmm_sheets.record.recording import book_of, unit
@@ -161,9 +161,9 @@ def _number(value: Any, of_unit: str) -> str:
         n = int(np.shape(value)[0])
         return tell_n("{n} number", "{n} numbers", n).format(n=n)
     if isinstance(value, complex | np.complexfloating):
-        text = f"({plain(float(value.real))}, {plain(float(value.imag))})"
+        text = f"({in_a_row((listed(float(value.real)), listed(float(value.imag))))})"
     elif isinstance(value, int | float | np.number):
-        text = plain(float(value))
+        text = listed(float(value))
     else:
         text = tell("curve") if not isinstance(value, str) else value
     return f"{text} {of_unit}".rstrip()

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale, fit_standard, handy
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.numbers import number, plain
+from tmm_sheets.numbers import number, of_reader, plain
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
@@ -105,9 +105,9 @@ def pick(project: Project, canvas: ScaleBook, name: str, symbol: str, unit: str,
         shown = plain(ceil(least / digit * (1 - 1e-9)) * digit, 4)  # rounded down it would be refused once more
         raise CannotBuild(
             tell("scale factor {name} = {wanted:g}: the view does not fit in its place, it needs {least} or more").format(
-                name=name, wanted=wanted, least=shown),
-            tell("take {handy:g}, leave scales.{name} out of the project file, or make its place larger in "
-                 "templates/sheets").format(handy=handy(least), name=name))
+                name=name, wanted=wanted, least=of_reader(shown)),
+            tell("write {key}, leave it out of the project file, or make its place larger in templates/sheets").format(
+                key=f"scales.{name} = {handy(least):g}"))
     if wanted is None and not least > 0:
         raise CannotBuild(tell("plan {name}: there is nothing to draw, all its vectors are zero").format(name=name),
                           tell("give the links masses or add a [[force]], or leave this view out of the arrangement"))

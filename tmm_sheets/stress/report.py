@@ -6,6 +6,7 @@ from collections.abc import Callable
 from math import inf, isnan
 
 from tmm_sheets import typed
+from tmm_sheets.numbers import of_reader
 from tmm_sheets.stress.cases import BOUNDS, CHUNK, Worst, memory, run_case
 from tmm_sheets.words import tell
 
@@ -52,7 +53,7 @@ def table(worst: dict[str, Worst], seed: int) -> str:
         bound, share = BOUNDS[name]
         number = "-" if name == MEMORY else str(w.case)
         of = share if w.value <= bound else tell("EXCEEDED: {share}").format(share=share)
-        rows.append((name, str(w.cases), f"{w.value:.1e}", f"{bound:.0e}", number, w.scene, of))
+        rows.append((name, str(w.cases), of_reader(f"{w.value:.1e}"), f"{bound:.0e}", number, w.scene, of))
     widths = [max(len(row[i]) for row in rows) for i in range(6)]
     lines = []
     for row in rows:

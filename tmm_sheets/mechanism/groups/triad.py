@@ -28,6 +28,7 @@ from tmm_sheets.mechanism.groups import three_legs
 from tmm_sheets.mechanism.groups.hints import Leg, OuterReaction, Outline, SpecialPoint
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, lacking
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.numbers import in_a_row, of_reader
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
@@ -584,7 +585,7 @@ ALIKE = np.radians(0.01)
 def _ways(g: TriadGroup, way: Course) -> dict[str, Any]:
     """Ways of assembly for a message."""
     return {"group": "-".join(g.links), "side": g.legs[0].corner + g.legs[1].corner, "angle": np.degrees(g.when),
-            "told": np.degrees(g.near), "ways": ", ".join(f"{np.degrees(np.angle(u)) % 360:.1f}" for _, u in way.found)}
+            "told": np.degrees(g.near), "ways": in_a_row(of_reader(f"{np.degrees(np.angle(u)) % 360:.1f}") for _, u in way.found)}
 
 
 def _check(g: TriadGroup, way: Course) -> None:

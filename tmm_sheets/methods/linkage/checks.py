@@ -16,6 +16,7 @@ from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.strokes import Floats
+from tmm_sheets.numbers import in_a_row, of_reader
 from tmm_sheets.words import tell, tell_n
 
 ASSEMBLY = "assembly"
@@ -35,7 +36,7 @@ class DeadPosition:
     angles: tuple[float, ...]
 
     def __str__(self) -> str:
-        angles = ", ".join(f"{angle:.1f}" for angle in sorted(round(angle, 1) % 360 for angle in self.angles))
+        angles = in_a_row(of_reader(f"{angle:.1f}") for angle in sorted(round(angle, 1) % 360 for angle in self.angles))
         return tell_n(
             "group {group} is stretched or folded at crank angle {angles} deg and can go on from there in two ways: it is drawn "
             "on the same side all round, where its links turn back at once; change a length, or let the crank swing",
@@ -258,13 +259,13 @@ class _Search:
             first, last = self._degrees(a), self._degrees(b)
             if last < first:
                 first -= 360
-            single = f"{first:.1f}" == f"{last:.1f}"
-            texts.append(f"{np.mod(first, 360):.1f}" if single else f"{first:.1f}..{last:.1f}")
+            both = [of_reader(f"{angle:.1f}") for angle in (first, last)]
+            texts.append(of_reader(f"{np.mod(first, 360):.1f}") if both[0] == both[1] else "..".join(both))
         if len(texts) > 4:
             more = len(texts) - 3
             said = tell_n("{ranges}, {n} more range deg", "{ranges}, {n} more ranges deg", more)
-            return said.format(ranges=", ".join(texts[:3]), n=more)
-        return tell("{ranges} deg").format(ranges=", ".join(texts))
+            return said.format(ranges=in_a_row(texts[:3]), n=more)
+        return tell("{ranges} deg").format(ranges=in_a_row(texts))
 
     def _edges(self, inside: Any, outside: Any, i: int, mask: Any, halvings: int = 10) -> Floats:
         """Angles at the ends of ranges, halved until they are sharp to 0.001 degrees, or more often."""
