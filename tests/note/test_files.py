@@ -54,8 +54,8 @@ def test_shaper_is_as_long_as_the_manuals_want(project, note):
     pytest.importorskip("typst")
     from tmm_sheets.note import typst_writer
 
-    data, places = typst_writer.render(note)
-    assert 30 <= places["pages"] <= 45
+    data, places = typst_writer.render(typst_writer.placed(note))
+    assert 30 <= places["pages"] <= 48
     # Each has its page in the contents, of Word's file too: also the remarks on the manual, which have no number.
     assert len(places["headings"]) == sum(isinstance(b, Heading | Sheet) for b in note.blocks())
     assert data.startswith(b"%PDF")
@@ -84,6 +84,7 @@ def test_the_short_way_of_frames_has_three_pages_and_two(cam):
     note = composed(opened("lugansk/cam_rocker"))
     front = sorted(note.front, key=lambda b: not isinstance(b, Contents))  # as 003 has it
     note = replace(note, front=tuple(front), frame=replace(note.frame, short=True))
+    note = typst_writer.placed(note)
     data, places = typst_writer.render(note)
     assert [n for n, text in enumerate(pages(data), 1) if note.frame.words["doc"] in text] == [2, 3, 4, cam.pages - 1, cam.pages]
     word = docx.Document(io.BytesIO(docx_writer.render(composing.counted(note, places["pages"]), places)))
@@ -156,17 +157,6 @@ def test_a_wrong_template_is_told_with_its_line(monkeypatch):
 def test_the_command_waits_for_neither_package():
     code = "import sys, tmm_sheets.cli; sys.exit(any(m in sys.modules for m in ('typst', 'docx', 'numpy')))"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
-
-
-def test_a_figure_that_does_not_fit_goes_to_the_next_page_of_the_word_file():
-    from tmm_sheets.note.document import Figure, Heading, Paragraph
-    from tmm_sheets.note.heights import floated
-
-    head, text, short = Heading(1, "1", ""), Paragraph(("x" * 5000,)), Paragraph(("x" * 100,))
-    low, high = Figure("1", "", "", b"", 100, 20), Figure("2", "", "", b"", 100, 120)
-    assert list(floated([head, low, text])) == [head, low, text]
-    assert list(floated([head, text, high, low, short, text])) == [head, text, short, high, low, text]
-    assert list(floated([head, text, high, short, head, text])) == [head, text, short, high, head, text]
 
 
 @pytest.mark.parametrize(("right", "wrong", "told"), [

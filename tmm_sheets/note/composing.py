@@ -126,7 +126,7 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
     body += _appendices(sheets)
     told = [*(b for blocks in before.values() for b in blocks), *body]
     counts = {
-        "figures": sum(isinstance(b, Figure) for b in told),
+        "figures": sum(isinstance(b, Figure) and not b.further for b in told),
         "tables": sum(isinstance(b, Table) for b in told),
         "sources": len(numbering.cited),
         "sheets": len(sheets),
@@ -349,6 +349,8 @@ def _title_page(r: Reader) -> dict[str, Any]:
         "place": page["place"],
         "figure": said["figure"],
         "table": said["table"],
+        "continued": said["continued"],
+        "part": said["part"],
         "appendix": said["appendix"],
     }
 

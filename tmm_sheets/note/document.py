@@ -7,7 +7,7 @@ Text is a tuple of :data:`Inline`; numbers are nodes that know the step they com
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from tmm_sheets.note.formula import Node
@@ -104,11 +104,12 @@ WORD = 12
 
 @dataclass(frozen=True)
 class Table:
-    """A table under its number and title; the first row is its head."""
+    """A table under its number and title; the first row is its head. ``parts``: rows on each of its pages, none of a whole one."""
 
     number: str
     title: str
     rows: tuple[tuple[Text, ...], ...]
+    parts: tuple[int, ...] = ()
 
     @property
     def worded(self) -> bool:
@@ -118,7 +119,11 @@ class Table:
 
 @dataclass(frozen=True)
 class Figure:
-    """A picture with its caption; ``svg`` is its drawing, ``width`` and ``height`` mm on the page, ``turned`` by 90 degrees."""
+    """A picture with its caption; ``svg`` is its drawing, ``width`` and ``height`` mm on the page, ``turned`` by 90 degrees.
+
+    ``least``: how small it may be made, as a share of this size, and be read. ``part``: of a picture over several pages the first,
+    second ...; they have one number.
+    """
 
     number: str
     title: str
@@ -127,6 +132,22 @@ class Figure:
     width: float = 0.0
     height: float = 0.0
     turned: bool = False
+    least: float = 1.0
+    part: int = 0
+
+    @property
+    def further(self) -> bool:
+        """Whether it goes on with the figure before."""
+        return self.part > 1
+
+    @property
+    def high(self) -> float:
+        """Height of the picture as it stands on the page, mm."""
+        return self.width if self.turned else self.height
+
+    def sized(self, share: float) -> Figure:
+        """The same, smaller."""
+        return replace(self, width=self.width * share, height=self.height * share, least=self.least / share)
 
 
 @dataclass(frozen=True)

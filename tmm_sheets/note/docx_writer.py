@@ -6,11 +6,12 @@ import io
 import zipfile
 from collections.abc import Sequence
 from datetime import datetime
-from itertools import count
+from itertools import accumulate, count, pairwise
 from typing import Any
 from xml.sax.saxutils import escape
 
 from tmm_sheets.note.alphabets import characters, equation
+from tmm_sheets.note.arranging import sticky
 from tmm_sheets.note.document import (
     Block,
     Contents,
@@ -28,7 +29,6 @@ from tmm_sheets.note.document import (
     Where,
 )
 from tmm_sheets.note.formula import Node
-from tmm_sheets.note.heights import floated
 from tmm_sheets.note.typst_writer import rasters
 
 DPI = 220
@@ -75,6 +75,8 @@ class _Writer:
         self.words = note.frame.words | note.frame.fields
         self.pictures = rasters(note.blocks(), DPI)
         self.seen = 0
+        self.last: Any = None
+        """the last paragraph of the block that is written, where it may have to stay with the next"""
         self._styles()
         props = self.made.core_properties
         props.title, props.author, props.last_modified_by, props.comments = note.title, note.author, note.author, ""
@@ -131,17 +133,18 @@ class _Writer:
         self._title_page()
         if not isinstance(note.front[0], Contents):
             self._section(WD_SECTION.NEW_PAGE, "2a", first=True)
-        for b in note.front:
+        blocks = list(note.blocks())
+        for b, after in zip(blocks, [*blocks[1:], None], strict=True):
             if isinstance(b, Contents):
                 self._section(WD_SECTION.NEW_PAGE, "2")
                 self.block(b)
                 self._section(WD_SECTION.NEW_PAGE, "2a", first=True)
-            else:
-                self._framed(b)
-                self.block(b)
-        for b in floated(note.body):
+                continue
             self._framed(b)
+            self.last = None
             self.block(b)
+            if self.last is not None and after is not None and sticky(b, after):
+                self.last.paragraph_format.keep_with_next = True
         return self.made
 
     # --- pages
@@ -307,7 +310,7 @@ class _Writer:
     def _paragraph(self, b: Paragraph) -> None:
         from docx.enum.text import WD_ALIGN_PARAGRAPH
 
-        p = self.made.add_paragraph()
+        self.last = p = self.made.add_paragraph()
         p.alignment = {"centre": WD_ALIGN_PARAGRAPH.CENTER, "right": WD_ALIGN_PARAGRAPH.RIGHT}.get(
             b.look, WD_ALIGN_PARAGRAPH.JUSTIFY
         )
@@ -330,7 +333,8 @@ class _Writer:
         from docx.enum.text import WD_TAB_ALIGNMENT
 
         for i, node in enumerate(b.lines):
-            p = self.made.add_paragraph()
+            self.last = p = self.made.add_paragraph()
+            p.paragraph_format.keep_with_next = i < len(b.lines) - 1
             p.paragraph_format.tab_stops.add_tab_stop(self.mm(84), WD_TAB_ALIGNMENT.CENTER)
             p.paragraph_format.tab_stops.add_tab_stop(self.mm(175), WD_TAB_ALIGNMENT.RIGHT)
             p.paragraph_format.space_before = p.paragraph_format.space_after = self.pt(2)
@@ -352,7 +356,6 @@ class _Writer:
             self._text(p, (" – ", *row.meaning, f", {row.unit}{end}" if row.unit else end))
 
     def _table(self, b: Table) -> None:
-        from docx.enum.table import WD_TABLE_ALIGNMENT
         from docx.enum.text import WD_ALIGN_PARAGRAPH
 
         p = self.made.add_paragraph(style="Caption")
@@ -363,23 +366,37 @@ class _Writer:
         title = self.made.add_paragraph(b.title)
         title.alignment = WD_ALIGN_PARAGRAPH.CENTER
         title.paragraph_format.keep_with_next = True
-        columns = max(map(len, b.rows))
-        table = self.made.add_table(len(b.rows), columns, style="Table Grid")
+        ends = list(accumulate(b.parts or (len(b.rows) - 1,), initial=1))
+        for start, end in pairwise(ends):
+            if start > 1:
+                p = self.made.add_paragraph(self.note.title_page["continued"].format(n=b.number))
+                p.alignment = WD_ALIGN_PARAGRAPH.RIGHT
+                p.paragraph_format.page_break_before = p.paragraph_format.keep_with_next = True
+            self._grid(b, [b.rows[0], *b.rows[start:end]])
+        after = self.made.add_paragraph()
+        after.paragraph_format.line_spacing = self.pt(6)
+
+    def _grid(self, b: Table, rows: Sequence[Sequence[Text]]) -> None:
+        """Rows of a table, which stay on one page, in cells as wide as all its rows want them."""
+        from docx.enum.table import WD_TABLE_ALIGNMENT
+        from docx.enum.text import WD_ALIGN_PARAGRAPH
+
+        widths = widths_of(b)
+        table = self.made.add_table(len(rows), len(widths), style="Table Grid")
         table.alignment = WD_TABLE_ALIGNMENT.CENTER
-        size = 9 if columns > 8 else 10 if columns > 6 else 11
+        size = self.pt(9 if len(widths) > 8 else 10 if len(widths) > 6 else 11)
         table.autofit = False
-        for column, width in zip(table.columns, widths_of(b), strict=True):
+        for column, width in zip(table.columns, widths, strict=True):
             column.width = self.mm(width)
-        for i, (row, cells) in enumerate(zip(table.rows, b.rows, strict=True)):
+        for i, (row, cells) in enumerate(zip(table.rows, rows, strict=True)):
             for j, (cell, text) in enumerate(zip(row.cells, cells, strict=True)):
                 q = cell.paragraphs[0]
                 q.alignment = WD_ALIGN_PARAGRAPH.LEFT if b.worded and i and not j else WD_ALIGN_PARAGRAPH.CENTER
+                q.paragraph_format.keep_with_next = i < len(rows) - 1
                 self._text(q, text)
                 for run in q.runs:
-                    run.font.size = self.pt(size)
+                    run.font.size = size
         _repeat(table.rows[0])
-        after = self.made.add_paragraph()
-        after.paragraph_format.line_spacing = self.pt(6)
 
     def _numbered(self, p: Any, word: str, number: str, kind: str, title: str = "") -> None:
         """A caption: word, number of the section, and a counting field; the number is what references point to."""
@@ -402,7 +419,10 @@ class _Writer:
         p = self.made.add_paragraph(style="Caption")
         p.alignment = WD_ALIGN_PARAGRAPH.CENTER
         p.paragraph_format.space_after = self.pt(8)
-        self._numbered(p, self.note.title_page["figure"], b.number, "figure", b.title)
+        if b.further:
+            p.add_run(f"{self.note.title_page['figure']}\u00a0{b.number}{self.note.title_page['part'].format(n=b.part)}")
+        else:
+            self._numbered(p, self.note.title_page["figure"], b.number, "figure", b.title)
 
     def _picture(self, b: Figure | Sheet, width: float, height: float, turned: bool) -> None:
         from docx.enum.text import WD_ALIGN_PARAGRAPH

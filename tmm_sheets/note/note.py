@@ -52,6 +52,7 @@ def run_on(variant: Variant, say: Callable[[str], None] = lambda _: None) -> Var
 
     note = composing.compose(Project(variant), say)
     say("pages")
+    note = typst_writer.placed(note)
     places = typst_writer.render(note)[1]
     first = int(places["pages"]) - sum(isinstance(b, Sheet) for b in note.body) + 1
     block = variant.title_block.model_copy(update={"first_sheet": first})
@@ -81,6 +82,7 @@ def write(project: Project, formats: Iterable[str] = ("pdf",), say: Callable[[st
 
     note = composing.compose(project, say)
     say("pages")
+    note = typst_writer.placed(note)
     data, places = typst_writer.render(note)
     note = composing.counted(note, int(places["pages"]))
     made: dict[str, bytes] = {}

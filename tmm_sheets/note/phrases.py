@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -132,9 +132,13 @@ class Numbering:
         """Number of the next formula, figure or table of the section."""
         self.counts[kind] = self.counts.get(kind, 0) + 1
         self.total[kind] = self.total.get(kind, 0) + 1
-        found = f"{self.section}.{self.counts[kind]}" if self.section else str(self.counts[kind])
+        found = self.again(kind)
         self.labels[f"{kind}:{label}"] = found
         return found
+
+    def again(self, kind: str) -> str:
+        """Number of the last formula, figure or table."""
+        return f"{self.section}.{self.counts[kind]}" if self.section else str(self.counts[kind])
 
     def cite(self, key: str) -> str:
         """Number of a source."""
@@ -270,15 +274,8 @@ class Writer:
         elif word == "figure":
             figure = scope.figures.get(name)
             if figure is not None:
-                yield Figure(
-                    self.numbering.next("figure", label(scope, name)),
-                    "".join(map(str, self.text(title, n, scope))),
-                    figure.name,
-                    figure.svg,
-                    figure.width,
-                    figure.height,
-                    figure.turned,
-                )
+                number = self.numbering.again("figure") if figure.further else self.numbering.next("figure", label(scope, name))
+                yield replace(figure, number=number, title="".join(map(str, self.text(title, n, scope))))
         else:
             raise _Wrong(tell('"%{word}" is no command of a template').format(word=word), n)
 
@@ -310,7 +307,10 @@ class Writer:
         at = 0
         line = _OPTIONAL.sub(lambda m: m[1] if self._all_there(m[1], scope) else "", line)
         for m in _FIELD.finditer(line):
-            found.append(line[at : m.start()])
+            before = line[at : m.start()]
+            if (m[1] or "").startswith("@"):
+                before = re.sub(" $", "\u00a0", before)  # a number stays with its word
+            found.append(before)
             at = m.end()
             found += [Symbol(letters(m[2]))] if m[2] is not None else self._field(m[1], n, scope)
         found.append(line[at:])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -124,7 +125,7 @@ class Pictures:
             if part:
                 place = extent(part)
                 made.append(_figure(name, part, Box(place.x0, max(place.y0, low - 6), place.x1, min(place.y1, high + 6))))
-        return made[::-1]
+        return [replace(figure, part=i) for i, figure in enumerate(reversed(made), 1)]
 
     def pages(self) -> list[Sheet]:
         """The sheets as they stand in the appendices, on A4 each."""
@@ -172,7 +173,8 @@ def scale(box: Box) -> tuple[float, bool]:
 
 def _figure(name: str, marks: Sequence[Mark], box: Box) -> Figure:
     factor, turned = scale(box)
-    return Figure("", "", name, svg.picture(marks, box), box.width * factor, box.height * factor, turned)
+    least = min(1.0, READABLE / (LETTERS * factor))
+    return Figure("", "", name, svg.picture(marks, box), box.width * factor, box.height * factor, turned, least)
 
 
 AROUND = 8.0

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from tmm_sheets import typed
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
-from tmm_sheets.note.alphabets import TYPST, spelt, string
+from tmm_sheets.note.alphabets import TYPST, characters, spelt, string
+from tmm_sheets.note.arranging import Measured, arranged, sticky
 from tmm_sheets.note.document import (
     FRAMED,
     Block,
@@ -27,9 +31,11 @@ from tmm_sheets.note.document import (
     Text,
     Where,
 )
-from tmm_sheets.note.heights import PAGE, height
 from tmm_sheets.resources import template
 from tmm_sheets.words import both, tell
+
+BLANK, NOTHING = "blank.svg", b'<svg xmlns="http://www.w3.org/2000/svg" width="1mm" height="1mm"/>'
+"""A picture that stands for the others where only their size is asked for."""
 
 
 def render(note: Note) -> tuple[bytes, dict[str, int]]:
@@ -42,32 +48,72 @@ def render(note: Note) -> tuple[bytes, dict[str, int]]:
     BadInput
         when the preamble, which a department may change, cannot be set or names a font that is not there.
     """
+    import json
+
+    with _compiler(source(note), pictures(note.blocks())) as compiler:
+        made, warnings = compiler.compile_with_warnings(format="pdf", timestamp=0, pdf_tags=False)
+        for warning in warnings:
+            if "font" in warning.message:
+                raise BadInput(Problem(warning.message, str(_preamble())), hint=tell("fonts are read from {folders}").format(
+                    folders=both(_fonts())))
+        found = json.loads(compiler.query("<places>", field="value", one=True))
+    assert isinstance(made, bytes)
+    return made, found
+
+
+def placed(note: Note) -> Note:
+    """The note with its figures and tables where they stand best, see :mod:`~tmm_sheets.note.arranging`.
+
+    Raises
+    ------
+    CannotBuild, BadInput
+        as :func:`render`.
+    """
+    import json
+
+    blocks = list(note.blocks())
+    order = sorted(range(len(blocks)), key=lambda k: isinstance(blocks[k], Figure | Table))
+    running = sum(not isinstance(b, Figure | Table) for b in blocks)
+    with _compiler(_measuring(note, [blocks[k] for k in order], running), {BLANK: NOTHING}) as compiler:
+        found = json.loads(compiler.query("<heights>", field="value", one=True))
+    heights = found["heights"]
+    del heights[running]  # where the running text ends
+    of_block = dict(zip(order, heights, strict=True))
+
+    def part(some: range) -> tuple[Block, ...]:
+        measured = Measured(tuple(of_block[k] for k in some), {kind: tuple(room) for kind, room in found["room"].items()})
+        return tuple(arranged([blocks[k] for k in some], measured))
+
+    n = len(note.front)
+    return replace(note, front=part(range(n)), body=part(range(n, len(blocks))))
+
+
+def _preamble() -> Path:
+    return template("note/preamble.typ")
+
+
+def _fonts() -> list[str]:
+    return [str(template("note/fonts")), str(template("fonts"))]
+
+
+@contextmanager
+def _compiler(source: str, files: Mapping[str, bytes]) -> Iterator[Any]:
+    """Typst with a source and the files it names."""
     try:
         import typst
     except ImportError:
         raise CannotBuild(tell("the note as PDF needs the package typst"), typed.install("note")) from None
-    import json
 
-    preamble = template("note/preamble.typ")
     with TemporaryDirectory(prefix="tmm-note-") as folder:
         root = Path(folder)
-        for name, data in pictures(note.blocks()).items():
+        for name, data in files.items():
             (root / name).write_bytes(data)
-        (root / "preamble.typ").write_bytes(preamble.read_bytes())
-        (root / "note.typ").write_text(source(note), encoding="utf-8")
-        fonts = [str(template("note/fonts")), str(template("fonts"))]
-        compiler = typst.Compiler(str(root / "note.typ"), root=str(root), font_paths=fonts, ignore_system_fonts=True)
+        (root / "preamble.typ").write_bytes(_preamble().read_bytes())
+        (root / "note.typ").write_text(source, encoding="utf-8")
         try:
-            made, warnings = compiler.compile_with_warnings(format="pdf", timestamp=0, pdf_tags=False)
-        except typst.TypstError as e:
-            raise BadInput(Problem(str(e), str(preamble))) from None
-        for warning in warnings:
-            if "font" in warning.message:
-                raise BadInput(Problem(warning.message, str(preamble)), hint=tell("fonts are read from {folders}").format(
-                    folders=both(fonts)))
-        found = json.loads(compiler.query("<places>", field="value", one=True))
-    assert isinstance(made, bytes)
-    return made, found
+            yield typst.Compiler(str(root / "note.typ"), root=str(root), font_paths=_fonts(), ignore_system_fonts=True)
+        except (typst.TypstError, RuntimeError) as e:
+            raise BadInput(Problem(str(e), str(_preamble()))) from None
 
 
 def pictures(blocks: Iterable[Block]) -> dict[str, bytes]:
@@ -99,80 +145,82 @@ def rasters(blocks: Iterable[Block], dpi: float) -> dict[str, bytes]:
 
 def file_name(block: Figure | Sheet) -> str:
     """Name of the file of a picture."""
-    return f"sheet-{block.number}" if isinstance(block, Sheet) else f"fig-{block.number.replace('.', '-')}"
+    if isinstance(block, Sheet):
+        return f"sheet-{block.number}"
+    return f"fig-{block.number.replace('.', '-')}" + (f"-{block.part}" if block.further else "")
 
 
 def source(note: Note) -> str:
     """The Typst source of a note."""
-    w = _Writer()
-    body = "\n".join(map(w.block, note.body))
-    front = "\n".join(map(w.block, note.front))
-    reminders = "\n".join(map(w.block, note.reminders))
     fields = ", ".join(f"{string(k)}: {string(v)}" for k, v in (note.frame.fields | note.frame.words).items())
     framed = ", ".join(map(str, FRAMED)) if note.frame.short else ""
-    title = ", ".join(f"{string(k)}: {_value(v)}" for k, v in note.title_page.items())
     return (
         '#import "preamble.typ": *\n'
         f"#show: note.with(lang: {string(note.language)}, title: {string(note.title)}, author: {string(note.author)}, "
         f"first: {note.first_page}, framed: ({framed}), words: ({fields or ':'}))\n"
-        f"#title-page(({title}))\n{front}\n{body}\n#last-page()\n#places()\n" + (f"#reminders[{reminders}]\n" if reminders else "")
+        f"#title-page({_titles(note)})\n{_written(note.front)}\n{_written(note.body)}\n#last-page()\n#places()\n"
+        + (f"#reminders[{_written(note.reminders)}]\n" if note.reminders else "")
     )
+
+
+def _measuring(note: Note, blocks: Sequence[Block], running: int) -> str:
+    """The source that tells how high blocks are, so many of them one after another; what has a page of its own has no height."""
+    written = [
+        "" if isinstance(b, Contents | NewPage | Sheet) else _block(b, after, BLANK) for b, after in pairwise([*blocks, None])
+    ]
+    parts = (f"({' '.join(f'[{x}],' for x in some)})" for some in (written[:running], written[running:]))
+    return f'#import "preamble.typ": *\n#heights({string(note.language)}, {_titles(note)}, {", ".join(parts)})\n'
+
+
+def _titles(note: Note) -> str:
+    return "(" + ", ".join(f"{string(k)}: {_value(v)}" for k, v in note.title_page.items()) + ")"
 
 
 def _value(value: Any) -> str:
     return f"({', '.join(string(x) for x in value)},)" if isinstance(value, list | tuple) else string(str(value))
 
 
-class _Writer:
-    """Blocks as Typst, with the headings counted for the contents."""
+def _written(blocks: Sequence[Block]) -> str:
+    """Blocks one after another."""
+    return "\n".join(_block(b, after) for b, after in pairwise([*blocks, None]) if b is not None)
 
-    def __init__(self) -> None:
-        self.headings = 0
-        self.height = 0.0
-        """About how far down it is from the beginning of the section, mm: no figure may stand above its heading."""
 
-    def block(self, b: Block) -> str:
-        """One block."""
-        self.height = 20.0 if isinstance(b, Heading) and b.level == 1 else self.height + height(b)
-        made: str = getattr(self, f"_{type(b).__name__.lower()}")(b)
-        return made
+FITTING = 50
+"""Width of a formula, in characters, up to which it is sure to have room in a line."""
+LOOKS = {"item": "item", "centre": "middle", "right": "aside"}
+"""Functions of the preamble for paragraphs that are not plain."""
 
-    def _heading(self, b: Heading) -> str:
-        text = f"{b.number}  {b.text}" if b.number else b.text
-        self.headings += 1
-        return f"#title({b.level}, {string(text)})"
 
-    def _paragraph(self, b: Paragraph) -> str:
-        function = {"plain": "para", "item": "item", "centre": "middle", "right": "aside"}[b.look]
-        return f"#{function}[{text(b.text)}]\n"
-
-    def _formula(self, b: Formula) -> str:
-        lines = " ".join(f"${spelt(x, TYPST)}$," for x in b.lines)
-        return f"#formula(({lines}), {string(b.number)})"
-
-    def _where(self, b: Where) -> str:
-        rows = " ".join(f"([${spelt(r.symbol, TYPST)}$], [{text((*r.meaning, f', {r.unit}' if r.unit else ''))}])," for r in b.rows)
-        return f"#where({string(b.word)}, ({rows}))"
-
-    def _table(self, b: Table) -> str:
-        columns = max(map(len, b.rows))
-        rows = ", ".join("(" + ", ".join(f"[{text(c)}]" for c in row) + ",)" for row in b.rows)
-        return f"#grid-table({string(b.number)}, {string(b.title)}, {columns}, ({rows},), {'true' if b.worded else 'false'})"
-
-    def _figure(self, b: Figure) -> str:
-        turned = "true" if b.turned else "false"
-        place = "auto" if self.height > PAGE else "bottom"
-        size = f"{b.width:.2f}mm, {b.height:.2f}mm"
-        return f"#picture({string(b.number)}, {string(b.title)}, {string(file_name(b) + '.svg')}, {size}, {turned}, {place})"
-
-    def _sheet(self, b: Sheet) -> str:
-        return f"#sheet({string(b.number)}, {string(b.title)}, {string(file_name(b) + '.svg')})"
-
-    def _contents(self, b: Contents) -> str:
-        return f"#contents({string(b.title)})"
-
-    def _newpage(self, b: NewPage) -> str:
-        return "#pagebreak(weak: true)"
+def _block(b: Block | None, after: Block | None, file: str = "") -> str:
+    """One block; ``after`` comes next, which may have to stand on the same page; ``file`` is that of a figure if not its own."""
+    held = "true" if b is not None and after is not None and sticky(b, after) else "false"
+    match b:
+        case Heading():
+            return f"#title({b.level}, {string(f'{b.number}  {b.text}' if b.number else b.text)})"
+        case Paragraph(look="plain"):
+            return f"#para(held: {held})[{text(b.text)}]\n"
+        case Paragraph():
+            return f"#{LOOKS[b.look]}[{text(b.text)}]\n"
+        case Formula():
+            lines = " ".join(f"${spelt(x, TYPST)}$," for x in b.lines)
+            wide = "true" if any(characters(x) > FITTING for x in b.lines) else "false"
+            return f"#formula(({lines}), {string(b.number)}, held: {held}, wide: {wide})"
+        case Where():
+            rows = (f"([${spelt(r.symbol, TYPST)}$], [{text((*r.meaning, f', {r.unit}' if r.unit else ''))}])," for r in b.rows)
+            return f"#where({string(b.word)}, ({' '.join(rows)}))"
+        case Table():
+            rows = ("(" + ", ".join(f"[{text(c)}]" for c in row) + ",)," for row in b.rows)
+            looks = f"{'true' if b.worded else 'false'}, {'true' if b.parts else 'false'}"
+            return f"#grid-table({string(b.number)}, {string(b.title)}, {max(map(len, b.rows))}, ({' '.join(rows)}), {looks})"
+        case Figure():
+            size = f"{b.width:.2f}mm, {b.height:.2f}mm, {'true' if b.turned else 'false'}, {b.part if b.further else 'none'}"
+            return f"#picture({string(b.number)}, {string(b.title)}, {string(file or file_name(b) + '.svg')}, {size})"
+        case Sheet():
+            return f"#sheet({string(b.number)}, {string(b.title)}, {string(file_name(b) + '.svg')})"
+        case Contents():
+            return f"#contents({string(b.title)})"
+        case _:
+            return "#pagebreak(weak: true)"
 
 
 def text(parts: Text) -> str:
