@@ -198,20 +198,27 @@ def test_why_of_the_cycle(result, given, value, capsys):
 
 @pytest.mark.parametrize("numbers", [(1,), (1, 2)])
 def test_searches_are_counted(numbers):
-    """Every step that is evaluated is one of a drawn plan or of a search."""
+    """Every step that is evaluated, or done again at other angles, is one of a drawn plan or of a search."""
+    from tmm_sheets.construction import replay
     from tmm_sheets.construction.step import Step
     from tmm_sheets.sheets import sheet
 
-    total, computed = 0, Step._computed
+    total, computed, repeated = 0, Step._computed, replay.Replay.__call__
 
     def counted(step):
         nonlocal total
         total += 1
         return computed(step)
 
+    def again(self, inputs):
+        nonlocal total
+        total += len(self)
+        return repeated(self, inputs)
+
     project = Project(catalogue.read("sixbar/1:1"))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Step, "_computed", counted)
+        patch.setattr(replay.Replay, "__call__", again)
         sheet.every(project, numbers=numbers)
         drawn = sum(step.evaluated for of in project.plans.values() for plan in (of or {}).values()
                     for step in (*plan, *plan.asides.values()))

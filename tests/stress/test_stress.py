@@ -13,6 +13,7 @@ from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.__main__ import run
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.expression import primitive
 from tmm_sheets.mechanism.groups import PRP, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, StructuralGroup
 from tmm_sheets.methods.linkage import accelerations, forces, positions, velocities, zhukovsky
@@ -169,6 +170,7 @@ def test_a_moving_guide_is_known_by_the_points_it_goes_through():
 # --- wrong formulas --------------------------------------------------------------------------------------------------
 
 
+@primitive("arcsine")
 def arcsine(p, q):
     """Direction by the arcsine of its slope: right and left are one, and near the vertical half of the digits are lost."""
     e = q - p
@@ -176,12 +178,14 @@ def arcsine(p, q):
     return np.cos(sine) + 1j * np.sin(sine)
 
 
+@primitive("arcsine on the right side")
 def arcsine_on_the_right_side(p, q):
     """The same with the sides told apart: wrong only where half of the digits are lost."""
     u = arcsine(p, q)
     return np.where((q - p).real < 0, -u.conj(), u)
 
 
+@primitive("higher point")
 def nearest(c1, r1, c2, r2, side, *known):
     """The assembly side by where the point would be higher, instead of what the group says."""
     left, right = (ar.arc_arc(c1, r1, c2, r2, s, *known) for s in (1, -1))

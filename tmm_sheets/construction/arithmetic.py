@@ -3,6 +3,10 @@
 Every function works on scalars and arrays alike and gives NaN where the construction does not exist. The forms are the
 measured ones: factored gaps (Kahan's sorted Heron form) for two circles, the foot of the perpendicular for line and
 circle, and compensated differences of products for two lines (W. Kahan; T. J. Dekker, Numer. Math. 18, 1971).
+
+Beside each stands its plain form, as a textbook has it: where lines cross under no small angle it gives the same numbers to a
+few units in the last place, at a tenth of the operations. Guards tell where that is, see
+:class:`~tmm_sheets.construction.expression.Primitive`.
 """
 
 from __future__ import annotations
@@ -25,7 +29,7 @@ def two_product(a: Any, b: Any) -> tuple[Any, Any]:
     return p, al * bl - (((p - ah * bh) - al * bh) - ah * bl)
 
 
-@primitive("difference of products")
+@primitive("difference of products", "real", plain=lambda a, b, c, d: a * b - c * d)
 def difference_of_products(a: Any, b: Any, c: Any, d: Any) -> Any:
     """``a*b - c*d`` to about two units in the last place, whatever cancels."""
     p, e = two_product(a, b)
@@ -33,25 +37,34 @@ def difference_of_products(a: Any, b: Any, c: Any, d: Any) -> Any:
     return (p - q) + (e - f)
 
 
-@primitive("cross")
+def _plain_cross(u: Any, v: Any) -> Any:
+    """Cross product where it only decides or corrects, or nothing cancels."""
+    return np.real(u) * np.imag(v) - np.imag(u) * np.real(v)
+
+
+def _plain_dot(u: Any, v: Any) -> Any:
+    return np.real(u) * np.real(v) + np.imag(u) * np.imag(v)
+
+
+@primitive("cross", "real", plain=_plain_cross)
 def cross(u: Any, v: Any) -> Any:
     """Cross product of two plane vectors: Re u Im v - Im u Re v."""
     return difference_of_products(np.real(u), np.imag(v), np.imag(u), np.real(v))
 
 
-@primitive("dot")
+@primitive("dot", "real", plain=_plain_dot)
 def dot(u: Any, v: Any) -> Any:
     """Scalar product of two plane vectors."""
     return difference_of_products(np.real(u), np.real(v), -np.imag(u), np.imag(v))
 
 
-@primitive("polar")
+@primitive("polar", formula=True)
 def polar(centre: Any, radius: Any, angle: Any) -> Any:
     """Point at ``radius`` from ``centre`` under ``angle`` (rad, counter-clockwise from the x axis)."""
     return centre + radius * (np.cos(angle) + 1j * np.sin(angle))
 
 
-@primitive("ray")
+@primitive("ray", formula=True)
 def ray(p: Any, q: Any) -> Any:
     """Unit direction from ``p`` to ``q``; NaN when they coincide."""
     e = q - p
@@ -63,7 +76,7 @@ def along(p: Any, u: Any, distance: Any) -> Any:
     return p + distance * u
 
 
-@primitive("unit")
+@primitive("unit", plain=lambda angle: np.cos(angle) + 1j * np.sin(angle))
 def unit(angle: float) -> complex:
     """Unit vector; exact for multiples of 90 degrees, where cos(pi/2) would leave 6e-17."""
     quarter = angle / (np.pi / 2)
@@ -77,7 +90,11 @@ def turned(u: Any) -> Any:
     return 1j * u
 
 
-@primitive("lines meet")
+def _plain_lines(p: Any, u: Any, q: Any, v: Any, det: Any = None) -> Any:
+    return p + _plain_cross(q - p, v) / _plain_cross(u, v) * u
+
+
+@primitive("lines meet", plain=_plain_lines, guard=lambda p, u, q, v, det=None: _plain_cross(u, v) ** 2)
 def line_line(p: Any, u: Any, q: Any, v: Any, det: Any = None) -> Any:
     """Intersection of the line through ``p`` along ``u`` with the line through ``q`` along ``v``; NaN when parallel.
 
@@ -94,11 +111,6 @@ def line_line(p: Any, u: Any, q: Any, v: Any, det: Any = None) -> Any:
     return p + t * u
 
 
-def _plain_cross(u: Any, v: Any) -> Any:
-    """Cross product where it only decides or corrects."""
-    return np.real(u) * np.imag(v) - np.imag(u) * np.real(v)
-
-
 def difference(q: Any, p: Any) -> tuple[Any, Any]:
     """``q - p`` and what rounding takes from it, exactly: points far from the crossing keep their digits."""
     w = q - p
@@ -106,7 +118,24 @@ def difference(q: Any, p: Any) -> tuple[Any, Any]:
     return w, (q - (w - back)) - (p + back)
 
 
-@primitive("arc cuts arc")
+def _gaps(c1: Any, r1: Any, c2: Any, r2: Any) -> tuple[Any, Any, Any]:
+    """Centre to centre, the square of that distance, and the square of four times the area of the triangle."""
+    e = c2 - c1
+    square = _plain_dot(e, e)
+    return e, square, ((r1 + r2) ** 2 - square) * (square - (r1 - r2) ** 2)
+
+
+def _plain_arcs(c1: Any, r1: Any, c2: Any, r2: Any, side: Any, height: Any = None, distance: Any = None) -> Any:
+    e, square, area = _gaps(c1, r1, c2, r2)
+    share = 0.5 / square
+    return c1 + (0.5 + (r1 - r2) * (r1 + r2) * share + 1j * (side * np.sqrt(area) * share)) * e
+
+
+def _between_arcs(c1: Any, r1: Any, c2: Any, r2: Any, side: Any, height: Any = None, distance: Any = None) -> Any:
+    return _gaps(c1, r1, c2, r2)[2] / (4 * (r1 * r2) ** 2)
+
+
+@primitive("arc cuts arc", plain=_plain_arcs, guard=_between_arcs)
 def arc_arc(c1: Any, r1: Any, c2: Any, r2: Any, side: Any, height: Any = None, distance: Any = None) -> Any:
     """Intersection of two circles; ``side`` +1 is left of the line from ``c1`` to ``c2``, -1 right.
 
@@ -132,7 +161,19 @@ def _sorted_three(x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:
     return stacked[2], stacked[1], stacked[0]
 
 
-@primitive("arc cuts line")
+def _chord(centre: Any, radius: Any, p: Any, u: Any) -> tuple[Any, Any]:
+    """Distance of the line from the centre, and the square of half of the chord."""
+    height = _plain_cross(u, p - centre)
+    return height, (radius - height) * (radius + height)
+
+
+def _plain_arc_line(centre: Any, radius: Any, p: Any, u: Any, side: Any, half: Any = None) -> Any:
+    height, square = _chord(centre, radius, p, u)
+    return centre + (side * np.sqrt(square) + 1j * height) * u
+
+
+@primitive("arc cuts line", plain=_plain_arc_line,
+           guard=lambda centre, radius, p, u, side, half=None: _chord(centre, radius, p, u)[1] / radius**2)
 def arc_line(centre: Any, radius: Any, p: Any, u: Any, side: Any, half: Any = None) -> Any:
     """Intersection of a circle with the line through ``p`` along ``u``; ``side`` +1 is the one further along ``u``.
 
@@ -150,7 +191,24 @@ def arc_line(centre: Any, radius: Any, p: Any, u: Any, side: Any, half: Any = No
     return np.where(near, p + along * u, centre + (side * half + 1j * height) * u)[()]
 
 
-@primitive("tangent")
+def _tangent(p: Any, centre: Any, radius: Any) -> tuple[Any, Any, Any]:
+    """Centre to point, the square of that distance, and that of the tangent's length."""
+    e = p - centre
+    square = _plain_dot(e, e)
+    return e, square, square - radius**2
+
+
+def _plain_tangent(p: Any, centre: Any, radius: Any, side: Any) -> Any:
+    e, square, tangent = _tangent(p, centre, radius)
+    return centre + (radius / square) * (radius - 1j * (side * np.sqrt(tangent))) * e
+
+
+def _to_tangent(p: Any, centre: Any, radius: Any, *others: Any) -> Any:
+    _, square, tangent = _tangent(p, centre, radius)
+    return tangent / square
+
+
+@primitive("tangent", plain=_plain_tangent, guard=_to_tangent)
 def tangent_point(p: Any, centre: Any, radius: Any, side: Any) -> Any:
     """Point where the tangent from ``p`` touches a circle; ``side`` +1 is left of the line from ``p`` to the centre."""
     e = p - centre
@@ -160,7 +218,12 @@ def tangent_point(p: Any, centre: Any, radius: Any, side: Any) -> Any:
     return centre + radius * (cos - 1j * side * sin) * e / d
 
 
-@primitive("tangent direction")
+def _plain_tangent_direction(p: Any, centre: Any, radius: Any, side: Any, length: Any = None, distance: Any = None) -> Any:
+    e, square, tangent = _tangent(p, centre, radius)
+    return (np.sqrt(tangent) + 1j * (side * radius)) * e / square
+
+
+@primitive("tangent direction", plain=_plain_tangent_direction, guard=_to_tangent)
 def tangent_direction(p: Any, centre: Any, radius: Any, side: Any, length: Any = None, distance: Any = None) -> Any:
     """Direction from :func:`tangent_point` to ``p``, also where they fall together.
 
@@ -173,7 +236,7 @@ def tangent_direction(p: Any, centre: Any, radius: Any, side: Any, length: Any =
     return (length + 1j * side * radius) / distance * (e / d)
 
 
-@primitive("foot")
+@primitive("foot", formula=True)
 def foot(p: Any, q: Any, u: Any) -> Any:
     """Foot of the perpendicular from ``p`` on the line through ``q`` along the unit direction ``u``."""
     return q + dot(u, p - q) * u

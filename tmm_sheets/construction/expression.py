@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import cache, reduce, wraps
 from math import pi
 from types import ModuleType
-from typing import Any, TypeVar, cast
+from typing import Any, Literal, TypeVar, cast
 
 import numpy as np
 
@@ -27,11 +27,32 @@ _UFUNCS = {sign: name for name, sign in _SIGNS.items() if sign not in ("-", "+")
 _KNOWN = {*_SIGNS, "sqrt", "square", "cbrt", "reciprocal", "sin", "cos", "tan", "exp", "log", "hypot", "sign", "maximum", "minimum"}
 
 
+Type = Literal["real", "complex", "other"]
+"""A number, a point or direction, or something that no arithmetic takes: a curve, a table."""
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def primitive(name: str) -> Callable[[Function], Function]:
-    """Decorator: the function stands in a tree as one operation of that name, its inside is not looked into."""
+@dataclass(frozen=True)
+class Primitive:
+    """What a primitive is besides its name.
+
+    ``plain`` is its formula as a textbook has it: the same numbers where the construction is well conditioned, without a branch;
+    None where there is none. ``guard`` tells where: the square of the sine of the angle under which the lines cross; None for a
+    formula that loses nothing. Both take the primitive's arguments. ``gives`` is the type of its value.
+    """
+
+    name: str
+    gives: Type
+    plain: Callable[..., Any] | None = None
+    guard: Callable[..., Any] | None = None
+
+
+def primitive(name: str, gives: Type = "complex", plain: Callable[..., Any] | None = None,
+              guard: Callable[..., Any] | None = None, formula: bool = False) -> Callable[[Function], Function]:
+    """Decorator: the function stands in a tree as one operation of that name, its inside is not looked into.
+
+    See :class:`Primitive`; a ``formula`` is its own plain one.
+    """
     def made(function: Function) -> Function:
         @wraps(function)
         def called(*operands: Any, **known: Any) -> Any:
@@ -40,7 +61,8 @@ def primitive(name: str) -> Callable[[Function], Function]:
                     return Operation(name, tuple(map(_node, (*operands, *known.values()))), function)
             return function(*operands, **known)
 
-        called.__dict__["primitive"] = name
+        called.__dict__["primitive"] = function.__dict__["primitive"] = Primitive(
+            name, gives, function if formula else plain, guard)
         return cast("Function", called)
 
     return made
@@ -48,7 +70,7 @@ def primitive(name: str) -> Callable[[Function], Function]:
 
 def primitives(*modules: ModuleType) -> dict[str, Callable[..., Any]]:
     """The primitives that some modules define, by their names in the record."""
-    return {f.primitive: f for m in modules for f in vars(m).values()
+    return {f.primitive.name: f for m in modules for f in vars(m).values()
             if callable(f) and hasattr(f, "primitive") and f.__module__ == m.__name__}
 
 

@@ -40,7 +40,7 @@ def _difference(p: Any, q: Any) -> Any:
     return q - p
 
 
-@primitive("values at positions")
+@primitive("values at positions", "real")
 def take(row: Any, at: Any) -> Any:
     """Values of a row at the positions with these numbers, or at one; of what is the same at all positions, as often."""
     at = np.asarray(at, dtype=int)

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.construction.expression import Expression, trace
-from tmm_sheets.construction.given import Given
+from tmm_sheets.construction.given import FoundNumber, Given
 from tmm_sheets.construction.tally import Tally
 
 Complex = npt.NDArray[np.complex128]
@@ -165,6 +165,11 @@ class Step:
         Not those whose id() is ``known``, nor what only they depend on.
         """
         return ordered([self], lambda step: [a for a in step.args if isinstance(a, Step)], set(known))
+
+
+def parents(step: Step) -> list[Step]:
+    """Steps that a step is made of, those of numbers that were found among them."""
+    return [a if isinstance(a, Step) else a.step for a in step.args if isinstance(a, Step | FoundNumber)]
 
 
 def ordered(steps: Iterable[Step], parents: Callable[[Step], list[Step]], seen: set[int] | None = None) -> Iterator[Step]:

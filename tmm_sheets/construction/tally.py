@@ -18,3 +18,8 @@ class Tally:
         """Count a step: a searching step keeps its time here, a drawn one in a list of its own."""
         self.steps += 1
         self.seconds += seconds
+
+    def again(self, steps: int, seconds: float) -> None:
+        """Count so many steps done again at other angles."""
+        self.steps += steps
+        self.seconds += seconds

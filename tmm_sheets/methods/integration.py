@@ -39,7 +39,7 @@ def _between(p: Any, q: Any, ordinate: Any) -> Any:
     return (np.real(p) + np.real(q)) / 2 + 1j * np.imag(ordinate)
 
 
-@primitive("smooth curve")
+@primitive("smooth curve", "other")
 def smooth_curve(*of: Any) -> Curve:
     """Smooth curve through n + 1 points, then its slopes at the beginnings of the n intervals, then those at their ends.
 
@@ -50,19 +50,19 @@ def smooth_curve(*of: Any) -> Curve:
     return Curve(points.real, points.imag, left, right)
 
 
-@primitive("ordinate of a curve")
+@primitive("ordinate of a curve", "real")
 def ordinate_of(curve: Any, x: Any) -> Any:
     """Ordinate of a curve at an abscissa."""
     return curve(x)[()]
 
 
-@primitive("weighted sum")
+@primitive("weighted sum", "real")
 def weighted(row: Any, weights: Any) -> Any:
     """Sum of a row's numbers, each times its weight: the integral over the nodes of a quadrature."""
     return float(row @ weights)
 
 
-@primitive("running integral")
+@primitive("running integral", "real")
 def running(row: Any, halves: Any, weights: Any, ends: Any) -> Any:
     """Integral from the first border to those with the numbers ``ends``.
 

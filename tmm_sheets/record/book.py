@@ -6,15 +6,9 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from tmm_sheets.construction import expression
-from tmm_sheets.construction.given import FoundNumber
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Step, ordered
+from tmm_sheets.construction.step import Step, ordered, parents
 from tmm_sheets.words import tr
-
-
-def parents(step: Step) -> list[Step]:
-    """Steps that a step is made of."""
-    return [a if isinstance(a, Step) else a.step for a in step.args if isinstance(a, Step | FoundNumber)]
 
 
 def chain(steps: Iterable[Step], seen: set[int] | None = None) -> Iterator[Step]:

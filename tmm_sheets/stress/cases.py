@@ -14,7 +14,19 @@ from tmm_sheets.mechanism.groups import RRP, RRR, TRIAD
 from tmm_sheets.mechanism.model import Guide, Link, Mechanism, StructuralGroup
 from tmm_sheets.stress import truth
 from tmm_sheets.stress.draw import chain, crank_of, loaded
-from tmm_sheets.stress.invariants import Residual, State, assembled, balancing, derivatives, geometry, powers, rigidity, statics
+from tmm_sheets.stress.invariants import (
+    OneFunction,
+    Residual,
+    State,
+    alike,
+    assembled,
+    balancing,
+    derivatives,
+    geometry,
+    powers,
+    rigidity,
+    statics,
+)
 
 ANGLES = 24
 """Crank angles of a case."""
@@ -24,6 +36,7 @@ BOUNDS = {
     "closure on guides": (2e-15, "of the reach and the way to the guide's point"),
     "assembly side": (2e-15, "of the reach"),
     "NaN exactly where it cannot assemble": (2e-15, "of the reach: what the pin's rounding may decide"),
+    "one function = its steps": (1e-13, "of the reach, of the fastest point, of the greatest acceleration"),
     "velocity closure": (1e-14, "of the fastest point, times how far beyond the points that tell the turning"),
     "acceleration closure": (1e-14, "of the greatest acceleration, the same"),
     "derivative of position = velocity": (1e-9, "of the fastest point; differences of order 8, condition under 100"),
@@ -62,13 +75,16 @@ class Worst:
             self.value, self.case, self.scene = value, case, scene
 
 
-Scene = Callable[[np.random.Generator], Iterator[Residual]]
+Make = Callable[[Mechanism, Any], State]
+"""How the plans of a mechanism are evaluated at some crank angles."""
+Scene = Callable[[np.random.Generator, Make], Iterator[Residual]]
 
 
-def _everything(m: Mechanism, phi: Any, gravity: float) -> Iterator[Residual]:
-    s = State(m, phi)
+def _everything(m: Mechanism, phi: Any, gravity: float, make: Make) -> Iterator[Residual]:
+    s = make(m, phi)
     yield from geometry(s)
     yield from rigidity(s)
+    yield from alike(s)
     yield from assembled(s)
     yield from derivatives(s, gravity)
     yield from statics(s, gravity)
@@ -86,25 +102,25 @@ def _around(rng: np.random.Generator, phi: float) -> Any:
 
 
 def _chain(hard: str, spread: float = 0.3, empty: float = 0.2) -> Scene:
-    def scene(rng: np.random.Generator) -> Iterator[Residual]:
+    def scene(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
         m, phi = chain(rng, hard)
         m = loaded(rng, m, spread, empty)
-        yield from _everything(m, _around(rng, phi), _gravity(rng, m))
+        yield from _everything(m, _around(rng, phi), _gravity(rng, m), make)
 
     return scene
 
 
-def _turns(rng: np.random.Generator) -> Iterator[Residual]:
+def _turns(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     m, phi = chain(rng)
     m = loaded(rng, m)
     turns = 2 * pi * rng.integers(-(10**6), 10**6, ANGLES)
-    s = State(m, phi + turns + rng.uniform(-1e-3, 1e-3, ANGLES))
+    s = make(m, phi + turns + rng.uniform(-1e-3, 1e-3, ANGLES))
     for invariants in (geometry, rigidity, assembled):
         yield from invariants(s)
     yield from statics(s, _gravity(rng, m))
 
 
-def _round(rng: np.random.Generator) -> Iterator[Residual]:
+def _round(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     """Mechanisms that turn all the way: what weights and inertia forces ask of the crank adds up to nothing over a turn."""
     phi = np.linspace(0, 2 * pi, 2048, endpoint=False)
     for _ in range(200):
@@ -116,7 +132,7 @@ def _round(rng: np.random.Generator) -> Iterator[Residual]:
     else:
         return
     m = loaded(rng, replace(m, crank=replace(m.crank, acceleration=0.0)), 0.3, 0.0)
-    s = State(m, phi)
+    s = make(m, phi)
     moment = balancing(s, _gravity(rng, m))
     yield "energy over the turn", np.abs([moment.sum() / np.abs(moment).sum()])
 
@@ -155,7 +171,7 @@ def _sharpened(m: Mechanism, angle: float) -> float:
     return low if inside else high
 
 
-def _dead(rng: np.random.Generator) -> Iterator[Residual]:
+def _dead(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     m, angle = _limited(rng)
     m = loaded(rng, m)
     limit = _sharpened(m, angle)
@@ -164,7 +180,7 @@ def _dead(rng: np.random.Generator) -> Iterator[Residual]:
     phi = limit + sense * gaps
     true = [truth.motion(m, float(x)) for x in phi]
     beyond = np.array([truth.motion(m, float(x)) is None for x in limit - sense * gaps[1:]])
-    s = State(m, np.concatenate((phi, limit - sense * gaps[1:])))
+    s = make(m, np.concatenate((phi, limit - sense * gaps[1:])))
     known = np.array([t is not None for t in true])
     # Against exact arithmetic: here even the last bit of the crank angle decides rightly.
     expected = np.concatenate((known, ~beyond))
@@ -176,7 +192,7 @@ def _dead(rng: np.random.Generator) -> Iterator[Residual]:
     yield from statics(s, 0.0)
 
 
-def _change_points(rng: np.random.Generator) -> Iterator[Residual]:
+def _change_points(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     """Parallelograms, kites and four-bars that fold flat, or miss it by some 1e-15; about their change points."""
     size = 2.0 ** int(rng.integers(-9, 10))
     a, b = size * float(rng.integers(1, 64)) / 16, size * float(rng.integers(1, 64)) / 16
@@ -188,7 +204,7 @@ def _change_points(rng: np.random.Generator) -> Iterator[Residual]:
     links = {n: Link(n) for n in "123"}
     m = Mechanism(replace(crank_of(rng, size), length=crank), {"A": 0j, "D": complex(frame)}, {}, (g,), (), links)
     near = 10.0 ** rng.uniform(-15, -1, ANGLES // 2)
-    s = State(m, np.concatenate((near, pi - near, [0.0, pi])))
+    s = make(m, np.concatenate((near, pi - near, [0.0, pi])))
     yield from geometry(s)
     yield from assembled(s)
 
@@ -201,7 +217,7 @@ def _compared(s: State, true: list[truth.Motion | None]) -> Iterator[Residual]:
     yield "acceleration at a dead position", np.abs(s.a["C"][:n] - a) / np.maximum(np.abs(a), pin * s.m.crank.speed)
 
 
-def _stroke_ends(rng: np.random.Generator) -> Iterator[Residual]:
+def _stroke_ends(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     """Crank and rod in line, folded or stretched, exactly or nearly: the slider or rocker stands still."""
     size = 2.0 ** int(rng.integers(-9, 10))
     r, l2 = (size * float(rng.integers(low, high)) / 16 for low, high in ((1, 16), (32, 64)))
@@ -224,15 +240,15 @@ def _stroke_ends(rng: np.random.Generator) -> Iterator[Residual]:
         ends = [turn + side * float(np.arccos(cosines[0])), pi + turn + side * float(np.arccos(cosines[1]))]
     gaps = np.concatenate(([0.0], 10.0 ** rng.uniform(-16, 0, 5) * rng.choice((1, -1), 5)))
     phi = np.concatenate([end + gaps for end in ends])
-    s = State(m, phi)
+    s = make(m, phi)
     yield from _compared(s, [truth.motion(m, float(x)) for x in phi])
     still = np.abs(s.v["C"][[0, len(gaps)]]) / (crank.speed * r)
     # The angle of the end is a double, the way beside it is of the second order.
     yield "standstill at the ends of the stroke", still
-    yield from _everything(loaded(rng, m), phi, _gravity(rng, m))
+    yield from _everything(loaded(rng, m), phi, _gravity(rng, m), make)
 
 
-def _tangent(rng: np.random.Generator) -> Iterator[Residual]:
+def _tangent(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     """A rod just long enough: the pin's circle touches the limit on one side of the guide, or misses it by some 1e-15."""
     size = 2.0 ** int(rng.integers(-9, 10))
     r, e = size * float(rng.integers(1, 64)) / 16, size * float(rng.integers(-16, 17)) / 16
@@ -245,7 +261,7 @@ def _tangent(rng: np.random.Generator) -> Iterator[Residual]:
     near = 10.0 ** rng.uniform(-7, -1, 5)
     top = turn + (-pi / 2 if e > 0 else pi / 2)
     phi = np.concatenate((top + near, top - near, [top]))
-    s = State(m, phi)
+    s = make(m, phi)
     yield from geometry(s)
     yield from rigidity(s)
     yield from assembled(s)
@@ -254,14 +270,14 @@ def _tangent(rng: np.random.Generator) -> Iterator[Residual]:
         yield name.replace("dead position", "change point"), residual / s.condition[:-1]
 
 
-def _senses(rng: np.random.Generator) -> Iterator[Residual]:
+def _senses(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     """Any speed, one sense and the other: the same accelerations, opposite velocities, the same forces."""
     m, phi = chain(rng)
     crank = replace(m.crank, speed=10.0 ** float(rng.choice((rng.uniform(-5, -1), rng.uniform(3, 5)))), acceleration=0.0)
     m = loaded(rng, replace(m, crank=crank))
     around, gravity = _around(rng, phi), _gravity(rng, m)
-    yield from _everything(m, around, gravity)
-    s, back = State(m, around), State(replace(m, crank=replace(crank, sense=-crank.sense)), around)
+    yield from _everything(m, around, gravity, make)
+    s, back = make(m, around), make(replace(m, crank=replace(crank, sense=-crank.sense)), around)
     for name in s.v:
         yield "one sense and the other", np.abs(s.v[name] + back.v[name]) / s.fastest
         yield "one sense and the other", np.abs(s.a[name] - back.a[name]) / s.sharpest
@@ -278,12 +294,12 @@ def _mirrored(m: Mechanism) -> Mechanism:
                    guides=guides, groups=groups, points=tuple(replace(p, angle=-p.angle) for p in m.points))
 
 
-def _mirror(rng: np.random.Generator) -> Iterator[Residual]:
+def _mirror(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     """A mechanism and its picture in a mirror: sides, offsets, slots and senses of both signs."""
     m, phi = chain(rng, str(rng.choice(("", "offset"))))
     m = loaded(rng, m)
     around = _around(rng, phi)
-    s, other = State(m, around), State(_mirrored(m), -around)
+    s, other = make(m, around), make(_mirrored(m), -around)
     grown = s.condition
     # Positions are off by rounding times the condition; so are directions, and lines that cross by as much again.
     for name, scale in (("z", s.reach * grown), ("v", s.fastest * grown**2), ("a", s.sharpest * grown**2)):
@@ -295,14 +311,14 @@ def _mirror(rng: np.random.Generator) -> Iterator[Residual]:
     yield "picture in a mirror", _share(balancing(s, 0.0) + balancing(other, 0.0), total * grown**2)
 
 
-def _triads(rng: np.random.Generator) -> Iterator[Residual]:
+def _triads(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     """A group of class III, now and then before or behind another group."""
     kinds = (TRIAD.number,)
     other = int(rng.integers(0, 6))
     m, phi = chain(rng, kinds=kinds if not other else (other, *kinds) if rng.random() < 0.3 else (*kinds, other))
     m = loaded(rng, m)
     try:
-        yield from _everything(m, _around(rng, phi), _gravity(rng, m))
+        yield from _everything(m, _around(rng, phi), _gravity(rng, m), make)
     except CannotBuild:
         return  # after a turn it is another way of assembly: refused
 
@@ -341,10 +357,11 @@ SCENES: dict[str, Scene] = {
 
 def run_case(seed: int, case: int) -> tuple[str, list[tuple[str, float]]]:
     """Scene of a case and the worst value of each invariant in it."""
-    scene = list(SCENES)[case % len(SCENES)]
+    turn, number = divmod(case, len(SCENES))
+    scene, make = list(SCENES)[number], OneFunction if turn % 2 else State  # each scene by steps and by one function in turn
     found: dict[str, float] = {}
     with np.errstate(all="ignore"):
-        for name, residual in SCENES[scene](np.random.default_rng((seed, case))):
+        for name, residual in SCENES[scene](np.random.default_rng((seed, case)), make):
             values = np.asarray(residual, dtype=float)
             values = values[~np.isnan(values)]
             if len(values):

@@ -12,14 +12,18 @@ afterwards. So the condition is that of the size, and what it multiplies is a sh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.function import fill
 from tmm_sheets.construction.indices import on_link, pair_index
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.replay import Replay
+from tmm_sheets.construction.step import Step
 from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, TRIAD, GroupKind
 from tmm_sheets.mechanism.groups.triad import TriadGroup
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
@@ -54,6 +58,7 @@ class State:
         self.phi = np.asarray(phi, dtype=float)
         self.positions: Positions = position_plan(m, self.phi)
         self.velocities: Velocities = velocity_plan(self.positions)
+        self.evaluate(self.positions.plan, self.velocities.plan)
         self.z = {name: self.spread(step) for name, step in self.positions.points.items()}
         self.v = {name: self.spread(step) for name, step in self.velocities.points.items()}
         self.u = {name: self.spread(step) for name, step in self.positions.directions.items()}
@@ -63,12 +68,21 @@ class State:
         self.reach = self.size + abs(pivot)
         self.built = ~np.isnan(sum(self.z.values()))
 
+    def evaluate(self, *plans: Plan) -> None:
+        """Whatever makes values of the steps of plans before they are read: nothing, each step makes its own."""
+
+    def others(self, phi: Any) -> State:
+        """The same mechanism at other crank angles, in the same way."""
+        return type(self)(self.m, phi)
+
     # Nobody asks for accelerations where only positions and velocities are differentiated.
 
     @cached_property
     def accelerations(self) -> Accelerations:
         """The acceleration plan."""
-        return acceleration_plan(self.velocities)
+        found = acceleration_plan(self.velocities)
+        self.evaluate(found.plan)
+        return found
 
     @cached_property
     def a(self) -> dict[str, Any]:
@@ -82,7 +96,10 @@ class State:
 
     def spread(self, step: Any) -> Any:
         """Values of a step, one a position."""
-        value = step.value
+        return self.full(step.value)
+
+    def full(self, value: Any) -> Any:
+        """A value, one a position."""
         return value if np.shape(value) == self.phi.shape else np.broadcast_to(value, self.phi.shape)
 
     def largest(self, values: dict[str, Any]) -> Any:
@@ -126,6 +143,19 @@ class State:
             return self.size
         towards = str(guide.towards)
         return np.abs(self.z[towards] - self.z[guide.through]) if towards in self.z else self._base(towards)
+
+
+class OneFunction(State):
+    """The same by one function for each plan instead of its steps, see :mod:`~tmm_sheets.construction.function`."""
+
+    def evaluate(self, *plans: Plan) -> None:
+        """Values of all steps at once."""
+        fill((step for plan in plans for step in (*plan, *plan.asides.values())), self.phi.size)
+
+    def by_steps(self, steps: Iterable[Step]) -> list[Any]:
+        """Values that the steps themselves come to."""
+        known = list(steps)
+        return [self.full(value) for value in Replay(known, [self.phi])([self.phi])]
 
 
 @dataclass(frozen=True)
@@ -220,6 +250,17 @@ def geometry(s: State) -> Iterator[Residual]:
         yield "link lengths", np.abs(np.abs(s.z[point.name] - s.z[point.start]) - abs(point.distance)) / s.reach
 
 
+def alike(s: State) -> Iterator[Residual]:
+    """What one function makes of the plans against what their steps make of them."""
+    if not isinstance(s, OneFunction):
+        return
+    name = "one function = its steps"
+    for steps, found, scale in ((s.positions.points, s.z, s.reach), (s.velocities.points, s.v, s.fastest),
+                                (s.accelerations.points, s.a, s.sharpest)):
+        for own, value in zip(s.by_steps(steps.values()), found.values(), strict=True):
+            yield name, np.where(np.isnan(own) == np.isnan(value), np.abs(value - own) / scale, 1.0)
+
+
 def rigidity(s: State) -> Iterator[Residual]:
     """Velocities and accelerations of points on one link, and of points that slide on another.
 
@@ -283,7 +324,7 @@ def derivatives(s: State, gravity: float) -> Iterator[Residual]:
     h = 0.02 / condition[k] * np.minimum(1.0, s.m.crank.speed / np.sqrt((s.largest(s.omega) ** 2 + s.largest(s.epsilon))[k]))
     around = s.phi[k] + np.multiply.outer([n * sign for n, _ in STENCIL for sign in (1, -1)], h)
     step = (around[0::2] - around[1::2]) / (2 * np.array([[n] for n, _ in STENCIL]))  # as it is after rounding
-    other = State(s.m, around.ravel())
+    other = s.others(around.ravel())
     w = s.m.crank.omega
     e = s.m.crank.sense * s.m.crank.acceleration
 
@@ -333,7 +374,9 @@ def statics(s: State, gravity: float) -> Iterator[Residual]:
     m = s.m
     loads, link_couples, _ = external_loads(s.positions, s.accelerations, gravity, ())
     forces = kinetostatics(s.positions, s.accelerations, loads, link_couples, None)
-    balance = lever(s.velocities, forces.external, link_couples, None).balancing
+    on_lever = lever(s.velocities, forces.external, link_couples, None)
+    s.evaluate(forces.plan, *(fp.plan for fp in forces.plans.values()), on_lever.plan)
+    balance = on_lever.balancing
     reactions = {name: s.spread(step) for name, step in forces.reactions.items()}
     outer = [s.spread(load.vector) for load in forces.external]
     strongest = s.largest({str(i): f for i, f in enumerate([*reactions.values(), *outer])})
@@ -389,6 +432,7 @@ def _moments(s: State, loads: Any, link_couples: Any, forces: Any, reactions: di
 def balancing(s: State, gravity: float) -> Any:
     """Balancing moment of the lever, N m."""
     loads, couples, _ = external_loads(s.positions, s.accelerations, gravity, ())
-    step = lever(s.velocities, [load for of_link in loads.values() for load in of_link], couples, None).balancing
-    assert step is not None
-    return s.spread(step)
+    on_lever = lever(s.velocities, [load for of_link in loads.values() for load in of_link], couples, None)
+    s.evaluate(on_lever.plan)
+    assert on_lever.balancing is not None
+    return s.spread(on_lever.balancing)

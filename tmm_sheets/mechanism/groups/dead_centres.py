@@ -81,26 +81,26 @@ def _beside(l1: float, ahead: float, length: float, pivot: complex, through: com
         return Cosine(rod + e0, radius, start + PI / 2), Cosine(rod - e0, radius, start - PI / 2)
 
 
-@primitive("half-chord of two arcs")
+@primitive("half-chord of two arcs", "real")
 def half_of_arcs(phi: Any, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float, l3: float) -> Any:
     """sqrt(((l2 + l3)^2 - d^2) (d^2 - (l2 - l3)^2)) / 2d at crank angles, d as in :func:`pin_distance`."""
     span = (l1, ahead, pivot, fixed)
     return np.sqrt(_less(span, l2, l3)(phi) * _less(span, l2, -l3)(phi) / _less(span, 0.0)(phi)) / 2
 
 
-@primitive("distance from the crank's point")
+@primitive("distance from the crank's point", "real")
 def pin_distance(phi: Any, l1: float, ahead: float, pivot: complex, fixed: complex) -> Any:
     """Distance d of a fixed hinge from a point on the crank, ``l1`` from its pivot and ``ahead`` of it."""
     return np.sqrt(-_less((l1, ahead, pivot, fixed), 0.0)(phi))
 
 
-@primitive("tangent from the crank's point")
+@primitive("tangent from the crank's point", "real")
 def tangent_length(phi: Any, l1: float, ahead: float, pivot: complex, fixed: complex, radius: float) -> Any:
     """sqrt(d^2 - radius^2): length of the tangent from a point on the crank to a circle about a fixed hinge."""
     return np.sqrt(-_less((l1, ahead, pivot, fixed), radius)(phi))
 
 
-@primitive("half-chord of arc and line")
+@primitive("half-chord of arc and line", "real")
 def half_of_line(phi: Any, l1: float, ahead: float, length: float, pivot: complex, through: complex, guide: float) -> Any:
     """sqrt((length - e) (length + e)), e the distance of a point on the crank from a guide."""
     below, above = _beside(l1, ahead, length, pivot, through, guide)

@@ -157,7 +157,7 @@ def false_place(k: Any, u: Any, amount: Any, *legs: Any) -> Any:
     return _as_given(_moved(k, u, amount, legs)[0], k)
 
 
-@primitive("side of a false position")
+@primitive("side of a false position", "real")
 def false_side(k: Any, u: Any, amount: Any, *legs: Any) -> Any:
     """On which side the second corner then lies: of the line to the second leg's pivot, or further along its guide; +1 or -1."""
     k, u = _moved(k, u, amount, legs)

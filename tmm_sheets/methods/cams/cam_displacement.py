@@ -67,7 +67,7 @@ AT_SHARE = Rule("cam angle of a share", lambda start, angle, x: start + angle * 
                 marked("This part of the phase corresponds to the cam angle {name} = {0} + {1}·{2} = {value}."), unit="rad")
 
 
-@primitive("row")
+@primitive("row", "real")
 def row(*values: Any) -> Any:
     """Numbers as one row."""
     return np.array([np.real(v) for v in values], dtype=float) if values else np.zeros(0)

@@ -25,14 +25,14 @@ Reals = npt.NDArray[np.float64]
 Function = Callable[..., Any]
 
 
-@primitive("by pieces")
+@primitive("by pieces", "real")
 def by_pieces(x: Any, *pieces: Any) -> Any:
     """The first of some values whose border ``x`` has not reached: value, border, value, border ... value."""
     borders, values = pieces[1::2], pieces[::2]
     return np.select([np.asarray(x) < b for b in borders], values[:-1], values[-1])
 
 
-@primitive("within a turn")
+@primitive("within a turn", "real")
 def within_turn(phi: Any) -> Any:
     """Cam angle within a turn, 0 .. 2 pi, both included."""
     phi = np.asarray(phi, dtype=float)
@@ -231,7 +231,7 @@ def _pieces(x: tuple[float, ...], y: tuple[float, ...]) -> _Pieces:
     return _Pieces(x, y)
 
 
-@primitive("law of a diagram")
+@primitive("law of a diagram", "real")
 def diagram(x: Any, shares: Any, accelerations: Any, order: float) -> Any:
     """The law whose acceleration is a given diagram (see :func:`table_law`), ``order`` 0, or its first or second derivative."""
     p = _pieces(tuple(shares), tuple(accelerations))
@@ -298,7 +298,7 @@ def _spline(x: tuple[float, ...], y: tuple[float, ...]) -> _Spline:
     return _Spline(x, y)
 
 
-@primitive("spline of ordinates")
+@primitive("spline of ordinates", "real")
 def through_ordinates(x: Any, shares: Any, displacements: Any, order: float) -> Any:
     """The law through given ordinates (see :func:`ordinates_law`), ``order`` 0, or its first or second derivative."""
     return _spline(tuple(shares), tuple(displacements)).at(int(order), x)

@@ -154,7 +154,7 @@ class RollerRule:
         return float(self.steps[0].value), float(self.steps[1].value)
 
 
-@primitive("rounded down to half a millimetre")
+@primitive("rounded down to half a millimetre", "real")
 def rounded_down(radius: Any) -> Any:
     """Radius of a roller, m, rounded down to 0.5 mm; a smaller one to one significant digit."""
     if radius >= 0.5e-3:

@@ -304,7 +304,7 @@ NEEDED = Rule("radius with a reserve", lambda total, stroke: np.maximum(1.1 * -t
               marked("With a margin of a tenth of r_min, but not below half the stroke: {name} = {value}."), source=SOURCE)
 
 
-@primitive("rounded up to a millimetre")
+@primitive("rounded up to a millimetre", "real")
 def rounded_up(radius: Any) -> Any:
     """Radius, m, rounded up to a millimetre, a very small one to a tenth."""
     unit = 1e-3 if radius > 5e-3 else 1e-4

@@ -213,12 +213,12 @@ def _fresh(number: str, taken: set[str]) -> str:
     return found
 
 
-@primitive("gather ordinates")
+@primitive("gather ordinates", "real")
 def _gather(*points: Any) -> Any:
     return np.array([np.imag(p) for p in points])
 
 
-@primitive("within the first turn")
+@primitive("within the first turn", "real")
 def _within(phi: Any, turn: Any) -> Any:
     """Angles of later turns as those of the first; whole turns but the first end it."""
     later = phi > turn * (1 + 1e-12)

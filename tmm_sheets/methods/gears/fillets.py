@@ -39,7 +39,7 @@ def _largest(fits: Callable[[float], bool], rho: float) -> float:
     return low
 
 
-@primitive("largest fillet")
+@primitive("largest fillet", "real")
 def radius(rho: float, rb: float, rf: float, half: float, half_pitch: float, t_low: float) -> float:
     """The radius ``rho``, or the largest that leaves room for both fillets of a space and for the mate's tip; NaN if none.
 
@@ -56,7 +56,7 @@ def ring_start(rho: Any, rb: Any, rf: Any) -> Any:
     return np.sqrt(np.maximum((rf - rho - rb) * (rf - rho + rb), 0.0)) + rho
 
 
-@primitive("largest fillet of a ring")
+@primitive("largest fillet of a ring", "real")
 def ring_radius(rho: float, rb: float, rf: float, half: float, t_low: float) -> float:
     """The radius ``rho``, or the largest that leaves room for both fillets of a ring's space and for the mate's tip; NaN if none.
 

@@ -46,7 +46,7 @@ def hand(pair: PairGeometry) -> int:
     return motion if pair.driver == 1 else -motion
 
 
-@primitive("angle at a point")
+@primitive("angle at a point", "real")
 def _angle(p: Any, o: Any, q: Any) -> Any:
     return np.abs(np.angle((p - o) * np.conj(q - o)))
 

@@ -54,7 +54,7 @@ def involute(angle: Any) -> Any:
     return np.tan(angle) - angle
 
 
-@primitive("inverse involute")
+@primitive("inverse involute", "real")
 def inverse_involute(value: float) -> float:
     """Angle whose involute function is ``value``, rad, by Newton's method down to rounding; NaN below zero."""
     if not value >= 0:
@@ -69,13 +69,13 @@ def inverse_involute(value: float) -> float:
         angle = nearer
 
 
-@primitive("whole teeth without undercut")
+@primitive("whole teeth without undercut", "real")
 def least_teeth(addendum: float, alpha: float) -> int:
     """Whole part of 2 ha*/sin^2 alpha, at least 1: 17 for the basic rack, as the manuals take it, not the exact 17.097."""
     return max(floor(2 * addendum / sin(alpha) ** 2), 1)
 
 
-@primitive("beginning of the involute")
+@primitive("beginning of the involute", "real")
 def involute_from(m: float, alpha: float, addendum: float, clearance: float, teeth: int, shift: float) -> float:
     """Radius of curvature at which the involute that a rack cuts begins, above the undercut where there is one; 0 at least."""
     return max(Rack(m, alpha, addendum, clearance, teeth, shift).involute_from(), 0.0)

@@ -102,7 +102,7 @@ def neighbours_clear(signs: tuple[int, int], z: Sequence[Any], satellites: int, 
     return (z[0] + signs[0] * z[1]) * sin(pi / satellites) > np.maximum(z[1], z[2]) + 2 * addendum
 
 
-@primitive("least ring")
+@primitive("least ring", "real")
 def least_ring(satellite: int, addendum: float, alpha: float = pi / 9) -> int:
     """Least tooth number of a ring with which a satellite meshes without interference, no shifts; 0 when there is none.
 

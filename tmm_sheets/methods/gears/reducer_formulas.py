@@ -33,7 +33,7 @@ def _formula(name: str, compute: Any, count: int, wording: str, unit: str = "") 
     return Rule(name, compute, NUMBER * count, "number", wording, unit=unit, source=SOURCE)
 
 
-@primitive("greatest common divisor")
+@primitive("greatest common divisor", "real")
 def common_divisor(a: float, b: float) -> int:
     """Greatest common divisor (НОД) of two whole numbers."""
     return gcd(int(a), int(b))

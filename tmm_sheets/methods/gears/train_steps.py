@@ -43,7 +43,7 @@ CENTRAL_PITCH = Rule("pitch diameter of a central wheel", lambda a, s, zc, zp: 2
                      unit="mm")
 
 
-@primitive("equations of Willis together")
+@primitive("equations of Willis together", "real")
 def together(k: Any, structure: Any, *values: Any) -> Any:
     """Speed of link ``k`` from the equations of all meshes at once.
 

@@ -40,7 +40,7 @@ def check_dead_positions(m: Mechanism) -> None:
         group.kind.check_dead_positions(m, group)
 
 
-@primitive("angle turned to a point")
+@primitive("angle turned to a point", "real")
 def _turned(centre: Any, pin: Any, start: Any, sense: Any) -> Any:
     """Angle from a direction to that from a centre to a point, in the sense of rotation, 0 to 360 degrees."""
     v = pin - centre

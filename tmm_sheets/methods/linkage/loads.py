@@ -26,9 +26,9 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
 from tmm_sheets.methods.linkage.cycle import Cycle, Strokes
-from tmm_sheets.methods.linkage.positions import Positions, position_plan
+from tmm_sheets.methods.linkage.positions import Positions
 from tmm_sheets.methods.linkage.strokes import SWEEP, TURN, Floats, Run, in_strokes, over_cycle, root, runs_of
-from tmm_sheets.methods.linkage.velocities import velocity_plan
+from tmm_sheets.methods.linkage.watched import Watched
 from tmm_sheets.words import marked, tell
 
 STROKES = "strokes of forces"
@@ -54,7 +54,7 @@ WAY = Rule("fraction of a straight way",
            ("point", "direction", "length", "length"), "number", marked("Part of the way travelled {name} = {value}."), exact=True)
 
 
-@primitive("fraction of a swing")
+@primitive("fraction of a swing", "real")
 def _swung(u: Any, sense: float, low: float, swing: float) -> Any:
     """How far a direction has turned from one end of its swing, ``low`` (rad, in the sense of the working stroke), to the other."""
     spare = np.pi - swing / 2
@@ -158,13 +158,14 @@ def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, know
     CannotBuild
         when the mechanism does not assemble all the way round or the point does not move that way.
     """
+    watched = Watched(m, STROKES)
+    place, velocity = watched.point(point), watched.velocity(point)
 
     def along(turned: Floats) -> Any:
-        return (position_plan(m, cycle.world(turned), purpose=STROKES).points[point].value * np.conj(sense)).real
+        return (place(cycle.world(turned)) * np.conj(sense)).real
 
     def speed(turned: Floats) -> Any:
-        v = velocity_plan(position_plan(m, cycle.world(turned), purpose=STROKES)).points[point].value
-        return (np.broadcast_to(v, np.shape(turned)) * np.conj(sense)).real
+        return (velocity(cycle.world(turned)) * np.conj(sense)).real
 
     the_output = known is not None and known.output == point and abs(known.path - sense) < 1e-9
     runs = known.runs if known is not None and the_output else tuple(runs_of(speed))
@@ -189,14 +190,14 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
     CannotBuild
         when the mechanism does not assemble all the way round or the link does not turn.
     """
+    watched = Watched(m, STROKES)
+    omega, direction = watched.omega(link), watched.direction(link)
 
     def speed(turned: Floats) -> Any:
-        w = velocity_plan(position_plan(m, cycle.world(turned), purpose=STROKES)).omega[link].value
-        return np.broadcast_to(sense * w, np.shape(turned))
+        return sense * omega(cycle.world(turned))
 
     def angle(turned: Any) -> Any:
-        u = position_plan(m, cycle.world(turned), purpose=STROKES).directions[link].value
-        return sense * np.angle(np.broadcast_to(u, np.shape(turned)))
+        return sense * np.angle(direction(cycle.world(turned)))
 
     runs = runs_of(speed)
     if not runs:
@@ -427,7 +428,7 @@ def curve_of(table: Table, smooth: bool = False, period: float | None = None) ->
     return ordinates
 
 
-@primitive("load diagram")
+@primitive("load diagram", "other")
 def diagram(x: Any, y: Any, smooth: Any, turns: Any) -> Curve:
     """Curve through the points of a diagram: chords, or smooth (1); one over the angle repeats itself after ``turns``, else 0."""
     return _curve(x, y, bool(smooth), 2 * np.pi * turns or None)
@@ -471,13 +472,13 @@ def read(curve: Curve, t: Any, side: int = 0, period: float | None = None) -> An
     return np.where(after, y[-1], np.where(before, y[0], found))
 
 
-@primitive("ordinate of a diagram")
+@primitive("ordinate of a diagram", "real")
 def ordinate(curve: Any, at: Any, ahead: Any) -> Any:
     """Ordinates of a diagram at fractions of the way, passed forwards (+1) or backwards (-1): at a jump that tells the side."""
     return np.where(np.asarray(ahead) < 0, read(curve, at, -1), read(curve, at, 1))
 
 
-@primitive("ordinate of a periodic diagram")
+@primitive("ordinate of a periodic diagram", "real")
 def periodic_ordinate(curve: Any, at: Any, turns: Any, side: Any) -> Any:
     """Ordinates of a diagram that repeats itself after some turns, at angles turned; at a jump before it (-1) or behind it."""
     return read(curve, at, int(side), 2 * np.pi * turns or None)

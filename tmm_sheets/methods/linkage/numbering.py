@@ -20,9 +20,8 @@ from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
 from tmm_sheets.methods.linkage.cycle import Cycle, Strokes
 from tmm_sheets.methods.linkage.dead_positions import check_dead_positions, dead_positions
-from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.strokes import Floats, Run, in_strokes, over_cycle, runs_of, working_stroke
-from tmm_sheets.methods.linkage.velocities import velocity_plan
+from tmm_sheets.methods.linkage.watched import OfAngles, Watched
 from tmm_sheets.words import marked, tell, tr
 
 DEAD_POINTS = "dead points"
@@ -49,20 +48,20 @@ BETWEEN = Rule("symmetric between the dead positions",
                unit="rad", exact=True)
 
 
-@primitive("angle turned")
+@primitive("angle turned", "real")
 def _turned(start: float, end: float, sense: float) -> float:
     """Angle from one direction to another in the sense of rotation, 0 to 360 degrees."""
     return float(np.mod(sense * (end - start), 2 * np.pi))
 
 
-@primitive("parts of two strokes")
+@primitive("parts of two strokes", "real")
 def _parts(stroke: float, working: float, idle: float) -> Floats:
     """Angles turned where the working stroke, and then the rest of the turn, are divided into equal parts."""
     rest, into = 2 * np.pi - stroke, (np.arange(int(working)), np.arange(int(idle)))
     return np.concatenate((stroke / working * into[0], stroke + rest / idle * into[1]), dtype=np.float64)
 
 
-@primitive("parts of two strokes of several turns")
+@primitive("parts of two strokes of several turns", "real")
 def _parts_of_turns(stroke: float, working: float, idle: float, turns: float) -> Floats:
     """Angles turned where both strokes are divided into equal parts, on through several turns."""
     once = _parts(stroke, working, idle)
@@ -194,20 +193,22 @@ def swing_cycle(m: Mechanism, start: float, end: float, positions: int, *, zero:
 class DeadPoints:
     """World angle of the crank where the output's (longest) working stroke begins and the angle it takes, rad.
 
-    ``plan`` constructs them; None where they were searched for. ``runs`` are those of one turn from there on.
+    ``plan`` constructs them; None where they were searched for. ``runs`` are those of one turn from there on. ``watched`` is the
+    mechanism as they were looked for.
     """
 
     plan: Plan | None
     start: Step | Given
     width: Step | Given
     runs: tuple[Run, ...]
+    watched: Watched
 
 
 def _strokes(m: Mechanism, output: str, dead: DeadPoints, begin: float) -> Strokes:
     """Strokes whose working one begins turned ``begin`` from position 0."""
     first, runs = float(dead.start.value), dead.runs
     width = working_stroke(runs)[1]
-    out = np.asarray(position_plan(m, np.array([first, first + m.crank.sense * width]), purpose=DEAD_POINTS).points[output].value)
+    out = dead.watched.point(output)(np.array([first, first + m.crank.sense * width]))
     path = complex(out[1] - out[0])
     if not abs(path) > 0:
         raise CannotBuild(tell("point {output} has no stroke: it is in one place in both dead positions").format(output=output),
@@ -222,10 +223,11 @@ def _dead_of(m: Mechanism, output: str, axis: complex) -> DeadPoints:
     constructed where the group on the crank pin allows it and the output has its extremes there; found as zeros of its velocity
     otherwise.
     """
-    sense = m.crank.sense
+    sense, watched = m.crank.sense, Watched(m, DEAD_POINTS)
+    velocity = watched.velocity(output)
 
     def along(turned: Floats) -> Any:
-        return (velocity_plan(position_plan(m, sense * turned, purpose=DEAD_POINTS)).points[output].value * np.conj(axis)).real
+        return (velocity(sense * turned) * np.conj(axis)).real
 
     runs = runs_of(along)
     if len(runs) < 2:
@@ -233,7 +235,7 @@ def _dead_of(m: Mechanism, output: str, axis: complex) -> DeadPoints:
         raise CannotBuild(tell("point {output} has no dead positions: it never turns back").format(output=output),
                           tell('give the crank angle of position 0 instead: start = "90 deg"'))
     turned = np.array([r.begin for r in runs])
-    ways = (np.asarray(position_plan(m, sense * turned, purpose=DEAD_POINTS).points[output].value) * np.conj(axis)).real
+    ways = (watched.point(output)(sense * turned) * np.conj(axis)).real
     if not np.ptp(ways) > 1e-9 * m.crank.length:
         raise CannotBuild(tell("point {output} has no working stroke: it does not move that way").format(output=output),
                           tell("give another working_sense"))
@@ -241,12 +243,12 @@ def _dead_of(m: Mechanism, output: str, axis: complex) -> DeadPoints:
     begin, end = working_stroke(runs)
     ordered = over_cycle(runs, 2 * np.pi, begin)
     plan, dead = dead_positions(m)
-    found = None if dead is None else _constructed(m, output, dead, (sense * begin, sense * end))
+    found = None if dead is None else _constructed(m, velocity, dead, (sense * begin, sense * end))
     if plan is None or found is None:
         whole = tuple(r.later(-ordered[0].begin) for r in ordered)
         start, wide = (Given(value, name, "", "rad", over="none", choice="zeros of the output's velocity")
                        for value, name in ((sense * begin, "cycle.start"), (working_stroke(whole)[1], "working stroke")))
-        return DeadPoints(None, start, wide, whole)
+        return DeadPoints(None, start, wide, whole, watched)
     # The constructed angles are put in the place of the found ones.
     step = plan.aside("φ_рх", TURNED, *found, sense, symbol=tr("φ_w"))
     width = step.value
@@ -255,15 +257,19 @@ def _dead_of(m: Mechanism, output: str, axis: complex) -> DeadPoints:
     def moved(angle: float) -> float:
         return next((exact for near, exact in places.items() if abs(angle - near) < 1e-12), angle - begin)
 
-    return DeadPoints(plan, found[0], step, tuple(replace(r, begin=moved(r.begin), end=moved(r.end)) for r in ordered))
+    runs = [replace(r, begin=moved(r.begin), end=moved(r.end)) for r in ordered]
+    return DeadPoints(plan, found[0], step, tuple(runs), watched)
 
 
-def _constructed(m: Mechanism, output: str, dead: tuple[Step, Step], ends: tuple[float, float]) -> tuple[Step, Step] | None:
-    """The constructed dead positions (world angles) in the order of the ``ends`` of the stroke; None when they are others."""
+def _constructed(m: Mechanism, velocity: OfAngles, dead: tuple[Step, Step], ends: tuple[float, float]) -> tuple[Step, Step] | None:
+    """The constructed dead positions (world angles) in the order of the ``ends`` of the stroke; None when they are others.
+
+    ``velocity`` is that of the output.
+    """
     angles = np.array([float(step.value) for step in dead])
     away = np.abs(np.angle(np.exp(1j * (angles[:, None] - np.array(ends)))))
     which = np.argmin(away, axis=0)
-    speed = np.abs(velocity_plan(position_plan(m, angles, purpose=DEAD_POINTS)).points[output].value)
+    speed = np.abs(velocity(angles))
     # A slow reversal is found less exactly than it is constructed.
     if which[0] == which[1] or away.min(axis=0).max() > 1e-3 or not np.all(speed < 1e-9 * m.crank.speed * m.crank.length):
         return None

@@ -39,7 +39,7 @@ TIMES = Rule("part or multiple of a length", lambda ratio, x: ratio * x, ("numbe
              marked("Length {name} = {0}·{1} = {value}."))
 
 
-@primitive("round to a step")
+@primitive("round to a step", "real")
 def _nearest(x: Any, step: float) -> float:
     """The nearest whole multiple of a step, half of it upwards, as it is written with 12 significant digits."""
     # A decimal number of steps: 566 steps of 1 mm are 0.566 m and not a neighbour of it.
@@ -49,7 +49,7 @@ def _nearest(x: Any, step: float) -> float:
 ROUND = Rule("round a length", _nearest, ("length", "length"), "length", marked("Round to {1}: {name} = {value}."))
 
 
-@primitive("15 digits")
+@primitive("15 digits", "real")
 def _digits(x: float) -> float:
     """The number as it is written with 15 significant digits."""
     return float(f"{x:.15g}")
