@@ -85,12 +85,16 @@ def test_device_that_is_full_stays_a_device():
     assert Path("/dev/full").is_char_device()
 
 
-def test_link_is_followed(tmp_path):
-    (tmp_path / "real").write_bytes(b"old")
+@pytest.mark.parametrize("there", [True, False])
+def test_nothing_is_written_through_a_link(there, tmp_path):
+    """The link is replaced; what it led to stays as it was, there or not."""
+    if there:
+        (tmp_path / "real").write_bytes(b"old")
     (tmp_path / "link").symlink_to("real")
     write_all({tmp_path / "link": b"new"})
-    assert (tmp_path / "link").is_symlink()
-    assert (tmp_path / "real").read_bytes() == b"new"
+    assert not (tmp_path / "link").is_symlink()
+    assert (tmp_path / "link").read_bytes() == b"new"
+    assert (tmp_path / "real").read_bytes() == b"old" if there else not (tmp_path / "real").exists()
 
 
 def test_file_in_the_place_of_a_folder(tmp_path):

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from tmm_sheets import __version__, nearest, words
 from tmm_sheets.box import Box
-from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
+from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of, together
 from tmm_sheets.spoken import Group, Option, argument, option
 from tmm_sheets.words import tell
 
@@ -119,7 +119,8 @@ def list_projects(as_json: bool) -> None:
 @CORRECTED
 @option("--file", "as_file", is_flag=True, help="The project file itself, to be changed and used as one's own.")
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="With --file: write it there.")
-def show(project: str, corrected: bool, as_file: bool, output: Path | None) -> None:
+@option("--force", is_flag=True, help="With -o: overwrite a file that says something else.")
+def show(project: str, corrected: bool, as_file: bool, output: Path | None, force: bool) -> None:
     """Show inputs with units and source, links, pairs, mobility W, Assur groups, formula of structure."""
     if output is not None and not as_file:
         raise click.UsageError(tell("-o goes with --file"))
@@ -127,6 +128,7 @@ def show(project: str, corrected: bool, as_file: bool, output: Path | None) -> N
     if output is not None:
         from tmm_sheets import files
 
+        files.refuse_other(output, variant.text.encode(), force)
         files.write_all({output: variant.text.encode()})
         click.echo(output)
     elif as_file:
@@ -167,7 +169,7 @@ def check(project: str, corrected: bool) -> None:
 @argument("projects", metavar="PROJECT...", nargs=-1)
 @option("--all", "families", multiple=True, metavar="FAMILY",
               help="All shipped projects of a family, such as sixbar, or of all.")
-@option("--list", "lists", multiple=True, type=click.File("rb"), metavar="FILE",
+@option("--list", "lists", multiple=True, metavar="FILE",
               help="Projects named in a file, one a line; - for standard input.")
 @CORRECTED
 @option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
@@ -188,7 +190,7 @@ def check(project: str, corrected: bool) -> None:
 @option("--with-note", is_flag=True, help="Also the explanatory note, note.pdf; the numbers of the sheets run on after its pages.")
 @option("--explain", is_flag=True, help="Also tell what was built and evaluated, and how long it took.")  # fmt: skip
 def build(
-    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[BinaryIO, ...], corrected: bool, sheets: tuple[int, ...],
+    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[str, ...], corrected: bool, sheets: tuple[int, ...],
     formats: tuple[str, ...], dpi: float, machine: Plotter | None, text: str, one_file: bool, output: Path | None,
     archive: bool, force: bool, jobs: int | None, scheduler: str | None, with_note: bool, explain: bool,
 ) -> None:
@@ -217,15 +219,20 @@ def build(
     _build_many(projects, families, lists, order, output or Path("out"), jobs, scheduler)
 
 
-def _listed(file: BinaryIO) -> list[str]:
-    """Lines of a list of projects."""
-    from tmm_sheets import texts
+def _listed(file: str) -> list[str]:
+    """Lines of a list of projects, of standard input for -."""
+    import sys
 
+    from tmm_sheets import files, texts
+
+    hint = tell("a list names a project in each line, in UTF-8")
     try:
-        return texts.cleaned(texts.decoded(file.read()).text).splitlines()
+        data = sys.stdin.buffer.read() if file == "-" else files.content(Path(file))
+        return texts.cleaned(texts.decoded(data).text).splitlines()
+    except OSError as e:
+        raise BadInput(Problem(tell("cannot be read: {why}").format(why=reason_of(e)), file, hint=hint)) from None
     except texts.NotText as e:
-        hint = tell("a list names a project in each line, in UTF-8")
-        raise BadInput(Problem(str(e), str(getattr(file, "name", "")), e.line, hint=hint)) from None
+        raise BadInput(Problem(str(e), file, e.line, hint=hint)) from None
 
 
 def _build_one(project: str, order: Order, output: Path | None, explain: bool, with_note: bool) -> None:
@@ -248,13 +255,12 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool, w
         built = build_project(variant, order, outlet, watch, lambda what: progress.say(f"{what} ..."))
         paths, warnings = built.paths, built.warnings
         if with_note:
-            from tmm_sheets import files
 
             with watch.phase(tell("note")):
                 written = writing.write(built.opened, ("pdf",), lambda what: progress.say(f"{what} ..."))
-                files.write_all({folder / name: data for name, data in written.files.items()})
-            paths += tuple(folder / name for name in written.files)
-            warnings += tuple(tell("left out: {problem}").format(problem=problem) for problem in written.problems)
+                noted, kept = _put(folder, written.files, order.force)
+            paths += noted
+            warnings += (*kept, *(tell("left out: {problem}").format(problem=problem) for problem in written.problems))
     for path in paths:
         click.echo(path)
     for warning in warnings:
@@ -271,8 +277,16 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool, w
         raise built.refused
 
 
+def _put(folder: Path, made: Mapping[str, bytes], force: bool) -> tuple[tuple[Path, ...], list[str]]:
+    """Write files that are made whole each time; where they are, and what is to be said of those that were changed by hand."""
+    from tmm_sheets.output.build_store import Folder, put
+
+    written, kept = put(Folder(folder), made, force)
+    return tuple(folder / name for name in written), kept
+
+
 def _build_many(
-    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[BinaryIO, ...], order: Order, parent: Path,
+    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[str, ...], order: Order, parent: Path,
     jobs: int | None, scheduler: str | None,
 ) -> None:
     from time import monotonic
@@ -400,7 +414,8 @@ def why(project: str, result: str, corrected: bool) -> None:
 @option("--format", "formats", default="pdf", show_default=True, callback=_among(NOTE_FORMATS), metavar="F,F",
         help=f"Formats: {', '.join(NOTE_FORMATS)}.")
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Folder of the note.  [default: out/<project>]")
-def note(project: str, corrected: bool, formats: tuple[str, ...], output: Path | None) -> None:
+@option("--force", is_flag=True, help="Overwrite what was changed by hand.")
+def note(project: str, corrected: bool, formats: tuple[str, ...], output: Path | None, force: bool) -> None:
     """Write the explanatory note of PROJECT: text, formulas, tables and figures from the record, ready to be printed."""
     from tmm_sheets import files
     from tmm_sheets.note import note as writing
@@ -412,9 +427,11 @@ def note(project: str, corrected: bool, formats: tuple[str, ...], output: Path |
     files.check_folder(folder)
     with Progress() as progress:
         written = writing.write(opened, formats, lambda what: progress.say(f"{what} ..."))
-        files.write_all({folder / name: data for name, data in written.files.items()})
-    for name in written.files:
-        click.echo(folder / name)
+        paths, kept = _put(folder, written.files, force)
+    for path in paths:
+        click.echo(path)
+    for line in kept:
+        click.echo(f"{opened.variant.called}: {line}", err=True)
     for problem in written.problems:
         click.echo(f"{opened.variant.called}: {tell('left out: {problem}').format(problem=problem)}", err=True)
 

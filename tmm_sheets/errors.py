@@ -19,7 +19,7 @@ _OF_SYSTEM = (
     marked("no such file or directory"), marked("permission denied"), marked("no space left on device"), marked("is a directory"),
     marked("not a directory"), marked("read-only file system"), marked("file name too long"), marked("input/output error"),
     marked("disk quota exceeded"), marked("file too large"), marked("bad file descriptor"), marked("too many open files"),
-    marked("operation not permitted"), marked("invalid argument"),
+    marked("operation not permitted"), marked("invalid argument"), marked("too many levels of symbolic links"),
 )  # fmt: skip
 """What systems usually say, for the catalogues."""
 

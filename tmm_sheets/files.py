@@ -1,10 +1,16 @@
-"""Output files that appear whole or not at all, all of a set together."""
+"""Files that are read and written: whole or not at all, a set together, never through a link; pipes and devices are told by name.
+
+What is named outright below ``/dev`` or ``/proc`` (``/dev/stdout``, ``/dev/fd/63`` of a shell) is open already: it is read and
+written as it is.
+"""
 
 from __future__ import annotations
 
+import errno
 import os
 import platform
 import re
+import stat
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -12,12 +18,52 @@ from threading import Lock
 from time import gmtime, time
 
 from tmm_sheets.errors import BadInput, Problem, reason_of
-from tmm_sheets.words import tell
+from tmm_sheets.words import marked, tell
 
 WRITING = Lock()
 """Held while files are written: whoever ends the process at once waits for it, and nothing half-written stays."""
 LONG = 86_400.0
 """Seconds after which a passing file belongs to nobody, whatever its name says."""
+LARGEST = 500_000_000
+"""Bytes of the largest file that is read."""
+_SPECIAL = (
+    (stat.S_ISFIFO, marked("expected a file, this is a pipe")), (stat.S_ISSOCK, marked("expected a file, this is a socket")),
+    (stat.S_ISCHR, marked("expected a file, this is a device")), (stat.S_ISBLK, marked("expected a file, this is a device")),
+)  # fmt: skip
+"""What a name may stand for that is no file, and no folder either."""
+
+
+def content(path: Path, most: int = LARGEST) -> bytes:
+    """Bytes of a file.
+
+    Raises
+    ------
+    OSError
+        when there is none, it is a folder, a pipe or a device, its links lead round, or it has more than ``most`` bytes.
+    """
+    check_file(path)
+    with path.open("rb") as file:
+        data = file.read(most + 1)
+    if len(data) > most:
+        raise OSError(errno.EFBIG, os.strerror(errno.EFBIG), str(path))
+    return data
+
+
+def check_file(path: Path) -> None:
+    """Refuse, as :func:`content` does, what is there under a name and is no file."""
+    _refuse_special(path, os.stat(path).st_mode)
+
+
+def _refuse_special(path: Path, mode: int) -> None:
+    for is_so, said in _SPECIAL:
+        if is_so(mode) and not _is_open(path):
+            raise OSError(errno.EINVAL, tell(said), str(path))
+
+
+def _is_open(path: Path) -> bool:
+    """Whether a name is one of the system's for what is open already, or for nothing."""
+    place = os.path.abspath(path)
+    return place.startswith(("/dev/fd/", "/dev/std", "/proc/")) or place in ("/dev/null", "/dev/full", "/dev/tty", os.devnull)
 
 
 def write_all(files: Mapping[Path, bytes]) -> None:
@@ -57,17 +103,17 @@ def _put(files: Mapping[Path, bytes]) -> None:
     passing: dict[Path, Path] = {}
     current = Path()
     try:
+        for path in files:
+            current = path
+            _check_name(path)
         for path, data in files.items():
             current = path
-            if path.is_dir():
-                raise IsADirectoryError(0, tell("expected a file, this is a folder"))
-            if path.exists() and not path.is_file():  # a pipe or a device: nothing to rename onto
+            if _is_open(path):
                 path.write_bytes(data)
                 continue
-            target = path.resolve()
-            sweep(target)
-            passing[target] = target.with_name(f".{target.name}.{os.getpid()}{_host()}.part")
-            passing[target].write_bytes(data)
+            sweep(path)
+            passing[path] = path.with_name(f".{path.name}.{os.getpid()}{_host()}.part")
+            passing[path].write_bytes(data)
         for target, part in passing.items():
             current = target
             part.replace(target)
@@ -78,6 +124,20 @@ def _put(files: Mapping[Path, bytes]) -> None:
         for part in passing.values():
             with suppress(OSError):
                 part.unlink(missing_ok=True)
+
+
+def _check_name(path: Path) -> None:
+    """Refuse a name that is taken by what is no file: it would be lost, or waited for. A link is replaced, whatever it leads to."""
+    if path.is_dir():
+        raise IsADirectoryError(0, tell("expected a file, this is a folder"))
+    try:
+        mode = path.lstat().st_mode
+    except FileNotFoundError:
+        return
+    _refuse_special(path, mode)
+    if stat.S_ISLNK(mode) and not _is_open(path):
+        with suppress(FileNotFoundError):
+            path.stat()  # tells of links that lead round
 
 
 def sweep(path: Path) -> None:
@@ -111,6 +171,20 @@ def _alive(process: int) -> bool:
         return True
 
 
+def refuse_other(path: Path, data: bytes, force: bool) -> None:
+    """Refuse to write over a file that says something else, unless forced to.
+
+    Raises
+    ------
+    BadInput
+        when it does: it may be somebody's own work.
+    """
+    if force or not path.is_file() or path.read_bytes() == data:
+        return
+    raise BadInput(Problem(tell("is there already and says something else; nothing was written"), str(path),
+                           hint=tell("choose another name, or overwrite it with --force")))
+
+
 def check_folder(folder: Path) -> None:
     """Check, before any work is done for it, that a folder can be made and written into; nothing is made yet.
 
@@ -119,7 +193,11 @@ def check_folder(folder: Path) -> None:
     BadInput
         when it cannot.
     """
-    nearest = next(p for p in (folder, *folder.absolute().parents) if p.exists())
+    try:
+        nearest = next(p for p in (folder, *folder.absolute().parents) if os.path.lexists(p))
+        nearest.stat()
+    except OSError as e:  # links that lead round, or to nothing
+        raise BadInput(_unwritable(Path(e.filename or folder), e)) from None
     if not nearest.is_dir():
         raise BadInput(Problem(tell("expected a folder, this is a file"), str(nearest), hint=tell("choose another with -o")))
     if not os.access(nearest, os.W_OK | os.X_OK):

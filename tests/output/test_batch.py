@@ -440,6 +440,22 @@ def whole(folder):
     return sum(name.endswith(".svg") for name in built)
 
 
+WAITING = """
+import sys, time
+from pathlib import Path
+from tmm_sheets.__main__ import main
+Path.replace = lambda *paths: time.sleep(600)
+main()
+"""
+
+
+def waiting(*arguments):
+    """The program, which waits where it would rename what it wrote."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    return subprocess.Popen([sys.executable, "-c", WAITING, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                            text=True, env=environment)
+
+
 @needs_proc
 @pytest.mark.usefixtures("heard")
 @pytest.mark.parametrize(("number", "to_all"), [(signal.SIGINT, True), (signal.SIGTERM, False), (signal.SIGHUP, True)])
@@ -487,35 +503,30 @@ def test_nohup_is_kept(tmp_path):
 @pytest.mark.usefixtures("heard")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_ends_one_project(number, tmp_path):
-    """The first file is a pipe nobody reads: the program waits there, with the others beside their places."""
+    """The program waits with its files beside their places."""
     out = tmp_path / "out"
-    out.mkdir()
-    os.mkfifo(out / "sheet2.svg")
-    running = command("build", "sixbar/2:1", "--format", "svg", "-o", out)
-    until(lambda: any(p.name.endswith(".part") and p.stat().st_size for p in out.iterdir()), "the first file")
+    running = waiting("build", "sixbar/2:1", "--format", "svg", "-o", out)
+    until(lambda: out.exists() and len([p for p in out.iterdir() if p.name.endswith(".part")]) == 3, "the files")
     running.send_signal(number)
     _, errors = running.communicate(timeout=ALL_DONE)
     assert (running.returncode, errors) == (128 + number, "")
-    assert [p.name for p in out.iterdir()] == ["sheet2.svg"]
+    assert list(out.iterdir()) == []
 
 
 @needs_proc
 def test_what_a_killed_build_left_is_swept(tmp_path, capsys):
     """The process waits with half its files beside their places, as above, and is killed there."""
     out = tmp_path / "out"
-    out.mkdir()
-    os.mkfifo(out / "sheet2.svg")
     arguments = ["build", "sixbar/2:1", "--format", "svg", "-o", str(out)]
-    running = command(*arguments)
-    until(lambda: any(p.name.endswith(".part") for p in out.iterdir()), "the first file")
-    (part,) = (p for p in out.iterdir() if p.name.endswith(".part"))
+    running = waiting(*arguments, "--sheet", "1")
+    until(lambda: out.exists() and any(p.name.startswith(".sheet1") for p in out.iterdir()), "the first file")
+    part = next(p for p in out.iterdir() if p.name.startswith(".sheet1"))
     again = command("build", "sixbar/2:1", "--format", "svg", "--sheet", "1", "-o", out)
     _, errors = again.communicate(timeout=ALL_DONE)
     assert again.returncode == 0, errors
     assert part.exists()  # its process lives
     running.kill()
     running.communicate()
-    (out / "sheet2.svg").unlink()
     assert run([*arguments, "--sheet", "1"]) == 0
     assert "1 of 1 files unchanged" in capsys.readouterr().err
     assert sorted(p.name for p in out.iterdir()) == [RECORD, "sheet1.svg"]

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from unicodedata import normalize
 
-from tmm_sheets import texts
+from tmm_sheets import files, texts
 from tmm_sheets.compare.known_sheet import sheet_numbers
 from tmm_sheets.compare.marking import KINDS, Scheme
 from tmm_sheets.compare.report import Report
@@ -146,7 +146,7 @@ def _projects(path: Path, works: Mapping[str, object]) -> dict[str, str]:
     if not path.is_file():
         return {}
     try:
-        text = texts.cleaned(texts.decoded(path.read_bytes()).text)
+        text = texts.cleaned(texts.decoded(files.content(path)).text)
         data = tomllib.loads(text)
     except (OSError, tomllib.TOMLDecodeError, texts.NotText) as e:
         raise BadInput(Problem(str(e), str(path), hint=tell('a line for each student: "Petrenko" = "sixbar/3:2"'))) from None

@@ -29,7 +29,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from tmm_sheets import nearest, texts
+from tmm_sheets import files, nearest, texts
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.numbers import told
 from tmm_sheets.words import tell
@@ -76,7 +76,7 @@ def read(path: Path) -> Scheme:
         If it cannot be read, or something in it is unknown, missing or no number; every problem with its line and field.
     """
     try:
-        text = texts.cleaned(texts.decoded(path.read_bytes()).text)
+        text = texts.cleaned(texts.decoded(files.content(path)).text)
         data = tomllib.loads(text)
     except OSError as e:
         raise BadInput(Problem(tell("cannot be read: {why}").format(why=e.strerror or e), str(path))) from None

@@ -22,7 +22,7 @@ from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
-from tmm_sheets import nearest, texts
+from tmm_sheets import files, nearest, texts
 from tmm_sheets.compare.elements import ElementView
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.errors import BadInput, Problem
@@ -64,7 +64,7 @@ def read(path: Path, views: Sequence[ElementView]) -> tuple[ViewPlace, ...]:
         If it cannot be read, names a view the sheet does not have, or lacks points; it tells every problem.
     """
     try:
-        data = tomllib.loads(texts.cleaned(texts.decoded(path.read_bytes()).text))
+        data = tomllib.loads(texts.cleaned(texts.decoded(files.content(path)).text))
     except OSError as e:
         raise BadInput(Problem(tell("cannot be read: {why}").format(why=e.strerror or e), str(path))) from None
     except (tomllib.TOMLDecodeError, texts.NotText) as e:

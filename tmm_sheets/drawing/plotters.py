@@ -9,7 +9,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, Literal
 
-from tmm_sheets import nearest, texts
+from tmm_sheets import files, nearest, texts
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.resources import template
 from tmm_sheets.words import tell
@@ -81,7 +81,7 @@ def plotter(name: str = DEFAULT) -> Plotter:
         near = nearest.near(name, names())
         raise ValueError(f"{said}; " + tell("did you mean {near}?").format(near=near[0]) if near else said)
     try:
-        return _plotter(path.stem, tomllib.loads(texts.cleaned(texts.decoded(path.read_bytes()).text)))
+        return _plotter(path.stem, tomllib.loads(texts.cleaned(texts.decoded(files.content(path)).text)))
     except ValueError as e:
         raise ValueError(f"{path}: {e}") from None
 

@@ -184,6 +184,27 @@ def free_name(outlet: Outlet, record: BuildRecord, name: str) -> str:
     return next(other for other in names if (data := outlet.read(other)) is None or fingerprint(data) in ours)
 
 
+def put(outlet: Outlet, made: Mapping[str, bytes], force: bool) -> tuple[list[str], list[str]]:
+    """Write files that are made anew each time; the names they got, and what is to be said of those that were changed by hand.
+
+    Such a file stays, and the new one goes beside it; with ``force`` it is overwritten.
+    """
+    record = record_of(outlet)
+    named, kept = dict[str, bytes](), list[str]()
+    for name, data in made.items():
+        new = name if force or outlet.read(name) == data else free_name(outlet, record, name)
+        if new != name:
+            kept.append(of_hand(name, new))
+        named[new] = data
+    keep(outlet, record, named, dict.fromkeys(named, ""), None)
+    return list(named), kept
+
+
+def of_hand(name: str, new: str) -> str:
+    """That a file was changed by hand, and where the new one is."""
+    return tell("{name} was changed by hand and stays; the new one is {new} (--force overwrites it)").format(name=name, new=new)
+
+
 def keep(outlet: Outlet, record: BuildRecord, made: Mapping[str, bytes], made_from: Mapping[str, str], whole: str | None,
          beside: Mapping[str, bytes] | None = None) -> None:
     """Write files together with the record of them, and those that lie ``beside`` them without a record."""

@@ -22,6 +22,7 @@ from tmm_sheets.output.build_store import (
     fingerprint,
     free_name,
     keep,
+    of_hand,
     program,
     record_of,
 )
@@ -204,11 +205,7 @@ def _settled(done: list[Target], work: _Work, made: dict[str, bytes], outlet: Ou
             work.made_from[target._replace(name=name)] = work.made_from[target]
             target = target._replace(name=name)
         elif name is not None:
-            kept.append(
-                tell("{name} was changed by hand and stays; the new one is {new} (--force overwrites it)").format(
-                    name=name, new=target.name
-                )
-            )
+            kept.append(of_hand(name, target.name))
         settled.append(target)
     return settled, kept
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
+from tmm_sheets import files
 from tmm_sheets.box import Box
 from tmm_sheets.errors import BadInput, CannotBuild, reason_of
 from tmm_sheets.words import marked, tell, tell_n
@@ -174,7 +175,7 @@ def ready(path: Path) -> Job:
         when it cannot be read.
     """
     try:
-        data = path.read_bytes()
+        data = files.content(path)
     except OSError as e:
         raise BadInput(f"{path}: {reason_of(e)}") from None
     return Job(

@@ -15,7 +15,7 @@ from typing import Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationError
 
-from tmm_sheets import texts, typed, words
+from tmm_sheets import files, texts, typed, words
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
 from tmm_sheets.task import synthesis_refs, units
 from tmm_sheets.task.bare_values import BareValue, quoted
@@ -200,6 +200,8 @@ class Variant(Table):
 
 
 _SECTIONS = ("flywheel", "gear", "reducer", "train", "cam")
+LARGEST = 20_000_000
+"""Bytes of the largest project file that is read."""
 ROOM_OF_GROUPS = 4
 """So many Assur groups have no room on one sheet beside the kinematics: their forces get a sheet of their own."""
 
@@ -216,7 +218,7 @@ def read(path: Path | str) -> Variant:
     """
     file = str(path)
     try:
-        data = Path(path).read_bytes()
+        data = files.content(Path(path), LARGEST)
     except FileNotFoundError:
         raise BadInput(Problem(tell("no such file"), file, hint=tell("{command} shows the shipped projects").format(
             command=typed.command("list")))) from None

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tmm_sheets import files
 from tmm_sheets.compare.cad.cad_ink import Area, CadInk, DrawingSpace, DrawnStroke, Entity, Writing
 from tmm_sheets.compare.cad.cad_patterns import Pattern, of_dashes
 from tmm_sheets.compare.cad.overlaps import Interval
@@ -135,6 +136,7 @@ def _open(path: Path) -> tuple[Document, list[str]]:
 def _head(path: Path) -> bytes:
     """How a file begins, if it is not too large."""
     try:
+        files.check_file(path)
         size = path.stat().st_size
         if size > LARGEST:
             said = tell("{file}: {size} MB are more than can be handled ({most})")

@@ -18,7 +18,7 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from tmm_sheets import nearest, texts, typed
+from tmm_sheets import files, nearest, texts, typed
 from tmm_sheets.compare.measured import measured_units as units
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, plain
 from tmm_sheets.construction.scale import Scale
@@ -173,7 +173,7 @@ def _bytes(path: Path, project: Project) -> bytes:
     try:
         if path.is_dir():
             raise BadInput(Problem(tell("expected a CSV file, this is a folder"), str(path)))
-        data = path.read_bytes() if path.stat().st_size <= LARGEST else b""
+        data = files.content(path) if path.stat().st_size <= LARGEST else b""
     except OSError as e:
         raise BadInput(Problem(tell("cannot be read: {why}").format(why=(e.strerror or str(e)).lower()), str(path),
                                hint=writes if isinstance(e, FileNotFoundError) else "")) from None

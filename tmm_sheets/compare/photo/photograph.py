@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets import typed
+from tmm_sheets import files, typed
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
@@ -74,7 +74,7 @@ def read(path: Path) -> Picture:
         if size > LARGEST:
             raise CannotBuild(tell("{file}: {size} GB are more than can be read ({most} GB)").format(
                 file=path, size=told(f"{size / 1e9:.1f}"), most=told(f"{LARGEST / 1e9:.1f}")), tell(SMALLER))
-        data = path.read_bytes()
+        data = files.content(path, LARGEST)
     except FileNotFoundError:
         raise BadInput(Problem(tell("there is no such file"), str(path), hint=tell(SHOW))) from None
     except OSError as e:
