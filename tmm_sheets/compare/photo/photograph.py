@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 from io import BytesIO
-from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets import files, typed
+from tmm_sheets.compare.photo import pdf_page
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
@@ -149,17 +149,6 @@ def _decoded(data: bytes, path: Path) -> tuple[Any, tuple[str, ...]]:
         cv2.utils.logging.setLogLevel(log)
 
 
-def _pixels_of(image: Any) -> tuple[int, int]:
-    """Width and height of an image on the page of a PDF."""
-    import ctypes
-
-    from pypdfium2 import raw
-
-    width, height = ctypes.c_uint(), ctypes.c_uint()
-    raw.FPDFImageObj_GetImagePixelSize(image, width, height)
-    return width.value, height.value
-
-
 def _on_white(with_alpha: Any) -> Grey:
     """Grey pixels of a picture (BGR and opacity) on white paper, a band of rows after the other."""
     import cv2
@@ -180,37 +169,27 @@ def _page(data: bytes, path: Path) -> tuple[Grey, tuple[str, ...]]:
     if find_spec("pypdfium2") is None:
         raise BadInput(tell("reading a PDF needs pypdfium2, which is not installed"),
                        hint=tell("{command}, or save the page as PNG").format(command=typed.install("compare")))  # fmt: skip
-    import pypdfium2
-
     try:
-        document = pypdfium2.PdfDocument(data)
-    except pypdfium2.PdfiumError as e:
-        if "password" in str(e).lower():
-            said = tell("the PDF is locked with a password")
-            raise BadInput(Problem(said, str(path), hint=tell("save or print it without one"))) from None
-        raise BadInput(Problem(tell("is not a PDF that can be read: {why}").format(why=e), str(path), hint=tell(SHOW))) from None
-    try:
-        pages = len(document)
-        if not pages:
-            raise BadInput(Problem(tell("the PDF has no page"), str(path), hint=tell(SHOW)))
-        page = document[0]
-        width, height = page.get_size()
-        if not (isfinite(width) and isfinite(height) and 0 < max(width, height) <= 5 * min(width, height)):
-            raise CannotBuild(tell("{file}: the page of {width} x {height} mm is not that of a sheet").format(
-                file=path, width=f"{width / MM:.0f}", height=f"{height / MM:.0f}"),
-                hint=tell("scan or print the whole sheet, A1, to one page"))
-        for image in page.get_objects(filter=[pypdfium2.raw.FPDF_PAGEOBJ_IMAGE]):
-            _refuse_large(*_pixels_of(image), path, MOST_PIXELS)  # shrunk when the page is drawn, but decoded before
-        scale = min(PDF_DPI / 72, (0.5 * MOST_PIXELS / max(width * height, 1.0)) ** 0.5)
-        # Scans are often put on a page of another size than the paper's: as many pixels as A1 has at this resolution then.
-        scale = max(scale, (30e6 / max(width * height, 1.0)) ** 0.5)
-        bitmap = page.render(scale=scale, grayscale=True)
-        pixels = np.array(bitmap.to_numpy(), dtype=np.uint8)
-        bitmap.close()
-        page.close()
-    finally:
-        document.close()
-    grey = pixels[:, :, 0] if pixels.ndim == 3 else pixels
+        made, pixels = pdf_page.drawn(data, PDF_DPI, MOST_PIXELS, 30e6)
+    except pdf_page.NotDrawn:
+        raise CannotBuild(tell("{file}: its page cannot be drawn within {seconds} s and {memory} GB").format(
+            file=path, seconds=pdf_page.SECONDS, memory=pdf_page.MEMORY / 1e9),
+            hint=tell("print it to a PDF or a PNG with another program")) from None
+    wrong = {"locked": (tell("the PDF is locked with a password"), tell("save or print it without one")),
+             "unreadable": (tell("is not a PDF that can be read: {why}").format(why=made.get("why")), tell(SHOW)),
+             "empty": (tell("the PDF has no page"), tell(SHOW))}  # fmt: skip
+    if made["kind"] in wrong:
+        message, hint = wrong[made["kind"]]
+        raise BadInput(Problem(message, str(path), hint=hint))
+    width, height = made["width"], made["height"]
+    if made["kind"] == "shape":
+        raise CannotBuild(tell("{file}: the page of {width} x {height} mm is not that of a sheet").format(
+            file=path, width=f"{width / MM:.0f}", height=f"{height / MM:.0f}"),
+            hint=tell("scan or print the whole sheet, A1, to one page"))
+    if made["kind"] == "large":
+        _refuse_large(width, height, path, MOST_PIXELS)
+    rows = np.frombuffer(pixels, np.uint8).reshape(height, made["stride"])
+    grey, pages = rows[:, : width * made["channels"] : made["channels"]], made["pages"]
     said = tell_n("{file} has {n} page; the first was compared", "{file} has {n} pages; the first was compared", pages)
     note = (said.format(file=path.name, n=pages),) if pages > 1 else ()
     return np.ascontiguousarray(grey), note
