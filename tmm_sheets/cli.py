@@ -348,6 +348,8 @@ def solve(
 
     opened, refused = _open(project, corrected), dict[str, CannotBuild]()
     found = results.assemble(opened, parts, phi=phi, positions=positions, refused=refused)
+    for line in results.remarks(opened, found):
+        click.echo(f"{opened.variant.project.name}: {line}", err=True)
     if target is None:
         click.echo(results.listing(found))
     elif target == "-":

@@ -217,14 +217,38 @@ class Project:
 
     @cached_property
     def force_index(self) -> int:
-        """Number of the position of the force analysis, the highlighted plan.
+        """Number of the position of the force analysis, the highlighted plan: the first unless told.
+
+        Not one in a change point, where reactions grow beyond all bounds, unless told either.
 
         Raises
         ------
         CannotBuild
             when there is no [cycle], or no position of the label it names.
         """
-        return self.cycle.index(self._section("cycle").force_position or self.cycle.labels[0], "[cycle] force_position: ")
+        told = self._section("cycle").force_position
+        if told is None and self.variant.loaded:
+            from tmm_sheets.methods.linkage.positions import passages
+
+            return int(passages(self.mechanism).within(self.cycle.phi).argmin())
+        return self.cycle.index(told or self.cycle.labels[0], "[cycle] force_position: ")
+
+    def check_forces(self) -> None:
+        """Look whether the position of the force analysis has reactions.
+
+        Raises
+        ------
+        CannotBuild
+            when they grow beyond all bounds there, as in a change point.
+        """
+        bounded, k = self.study.forces.bounded(), self.force_index
+        if not bounded[k]:
+            labels = self.cycle.labels
+            said = tell("position {label}: reactions grow beyond all bounds, links that carry them lie in one line; no force plan "
+                        "can be drawn there").format(label=labels[k])
+            others = [label for label, there in zip(labels, bounded, strict=True) if there]
+            hint = tell('take another position for the forces in [cycle], for example force_position = "{label}"')
+            raise CannotBuild("\n".join((said, *map(str, self.dead_positions))), hint.format(label=others[0]) if others else "")
 
     @cached_property
     def reduced(self) -> Reduced:
@@ -337,6 +361,8 @@ class Project:
                     _ = self.applied
                     if self.friction is not None:
                         _ = self.study.forces  # it may jam
+                    if self.dead_positions or any(g.follow for g in self.mechanism.groups):
+                        self.check_forces()
                 elif part == "cam":
                     self.cam.check()
                 elif part in ("gear", "reducer", "train"):

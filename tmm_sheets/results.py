@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING, Any
@@ -17,7 +17,7 @@ from tmm_sheets.construction.step import Part, Step, Told
 from tmm_sheets.errors import BadInput, CannotBuild, together
 from tmm_sheets.numbers import Sizes, clean, in_a_row, listed
 from tmm_sheets.project import LINKAGE
-from tmm_sheets.words import tell
+from tmm_sheets.words import tell, tell_n
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.friction import Friction
@@ -146,6 +146,44 @@ def _latin(unit: str) -> str:
                            ("²", "2"), ("·", "*")):  # fmt: skip
         unit = unit.replace(russian, latin)
     return unit
+
+
+def remarks(project: Project, tree: dict[str, Any]) -> list[str]:
+    """What has to be said beside the numbers: groups that turn back at once in a change point, and what is not defined there."""
+    if "cycle" not in tree and "flywheel" not in tree:
+        return []
+    told: list[str] = []
+    with suppress(CannotBuild):  # angles that are asked for may be reached where the whole turn is not
+        told += map(str, project.dead_positions)
+    for name in (part for part in LINKAGE if part in tree):
+        labels = tree[name].get("label", tree["cycle"]["labels"])
+        lost = [label for k, label in enumerate(labels) if _undefined(tree[name].get("reactions", tree[name]), k)]
+        if lost:
+            shown = ", ".join(lost[:MOST]) + (" .." if len(lost) > MOST else "")
+            if name == "forces":
+                said = tell_n("position {labels}: reactions grow beyond all bounds (null), links that carry them lie in one line",
+                              "positions {labels}: reactions grow beyond all bounds (null), links that carry them lie in one line",
+                              len(lost))
+            else:
+                said = tell_n("position {labels}: {part} not defined (null)", "positions {labels}: {part} not defined (null)",
+                              len(lost))
+            told.append(said.format(labels=shown, part=name))
+    return told
+
+
+MOST = 8
+"""Most positions that are named in a message."""
+
+
+def _undefined(table: dict[str, Any], k: int) -> bool:
+    """True where some quantity of a table has no value at a position."""
+    for row in table.values():
+        if isinstance(row, dict):
+            if _undefined(row, k):
+                return True
+        elif isinstance(row, list) and k < len(row) and (row[k] is None or (isinstance(row[k], list) and None in row[k])):
+            return True
+    return False
 
 
 def as_json(tree: dict[str, Any]) -> str:

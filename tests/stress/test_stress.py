@@ -17,7 +17,7 @@ from tmm_sheets.construction.expression import primitive
 from tmm_sheets.mechanism.groups import PRP, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, StructuralGroup
 from tmm_sheets.methods.linkage import accelerations, forces, positions, velocities, zhukovsky
-from tmm_sheets.stress import report, truth
+from tmm_sheets.stress import invariants, report, truth
 from tmm_sheets.stress.cases import BOUNDS, SCENES, memory, run_case
 from tmm_sheets.stress.invariants import State
 
@@ -224,6 +224,20 @@ def test_a_wrong_formula_is_caught(monkeypatch, what):
     module, name, compute, invariant = SPOILT[what]
     monkeypatch.setattr(module, name, (lambda *a: ()) if compute is None else mutated(getattr(module, name), compute))
     assert any(not dict(run_case(11, case)[1]).get(invariant, 0.0) <= BOUNDS[invariant][0] for case in range(CASES))
+
+
+def test_lines_that_fall_together_are_caught(monkeypatch):
+    """The arithmetic of before: what lines tell that fall together is rounding times a condition of 8e15."""
+    def exceeded(invariant):
+        values = (dict(run_case(11, case)[1]).get(invariant, 0.0) for case in range(CASES))
+        return sum(not value <= BOUNDS[invariant][0] for value in values)
+
+    monkeypatch.setattr(velocities.MotionPolygon, "known", lambda self, group: self.positions.known_sine(group))
+    assert exceeded("velocity through a change point") >= 40
+    assert exceeded("acceleration through a change point") >= 40
+    monkeypatch.undo()
+    monkeypatch.setattr(invariants, "limits_of_forces", lambda *of: {})
+    assert exceeded("moment through a change point") > 30
 
 
 # --- the command -----------------------------------------------------------------------------------------------------

@@ -90,25 +90,32 @@ def turned(u: Any) -> Any:
     return 1j * u
 
 
-def _plain_lines(p: Any, u: Any, q: Any, v: Any, det: Any = None) -> Any:
+def _plain_lines(p: Any, u: Any, q: Any, v: Any, det: Any = None, way: Any = None) -> Any:
     return p + _plain_cross(q - p, v) / _plain_cross(u, v) * u
 
 
-@primitive("lines meet", plain=_plain_lines, guard=lambda p, u, q, v, det=None: _plain_cross(u, v) ** 2)
-def line_line(p: Any, u: Any, q: Any, v: Any, det: Any = None) -> Any:
+@primitive("lines meet", plain=_plain_lines, guard=lambda p, u, q, v, det=None, way=None: _plain_cross(u, v) ** 2)
+def line_line(p: Any, u: Any, q: Any, v: Any, det: Any = None, way: Any = None) -> Any:
     """Intersection of the line through ``p`` along ``u`` with the line through ``q`` along ``v``; NaN when parallel.
 
     Laid off from the nearer of the two points. ``det``, the cross product of the directions, may be known better than they
-    can tell themselves (from the plan they were taken from).
+    can tell themselves (from the plan they were taken from); and so may be the whole ``way`` from ``p``, also where both lines are
+    one. Where these are NaN they are not known.
     """
+    if way is not None and not np.any(np.isnan(way)):
+        return p + way * u
+    start, along = p, u
     w, lost = difference(q, p)
     if det is None:
         det = cross(u, v)
+    elif np.any(np.isnan(det)):
+        det = np.where(np.isnan(det), cross(u, v), det)
     far = np.abs(_plain_cross(w, v)) > np.abs(_plain_cross(w, u))
     if np.any(far):
         p, u, v = np.where(far, q, p), np.where(far, v, u), np.where(far, u, v)
     t = (cross(w, v) + _plain_cross(lost, v)) / np.where(det == 0, np.nan, det)
-    return p + t * u
+    found = p + t * u
+    return found if way is None else np.where(np.isnan(way), found, start + way * along)
 
 
 def difference(q: Any, p: Any) -> tuple[Any, Any]:
@@ -125,35 +132,43 @@ def _gaps(c1: Any, r1: Any, c2: Any, r2: Any) -> tuple[Any, Any, Any]:
     return e, square, ((r1 + r2) ** 2 - square) * (square - (r1 - r2) ** 2)
 
 
-def _plain_arcs(c1: Any, r1: Any, c2: Any, r2: Any, side: Any, height: Any = None, distance: Any = None) -> Any:
+def _plain_arcs(c1: Any, r1: Any, c2: Any, r2: Any, side: Any, height: Any = None, distance: Any = None, line: Any = None) -> Any:
     e, square, area = _gaps(c1, r1, c2, r2)
     share = 0.5 / square
     return c1 + (0.5 + (r1 - r2) * (r1 + r2) * share + 1j * (side * np.sqrt(area) * share)) * e
 
 
-def _between_arcs(c1: Any, r1: Any, c2: Any, r2: Any, side: Any, height: Any = None, distance: Any = None) -> Any:
+def _between_arcs(c1: Any, r1: Any, c2: Any, r2: Any, side: Any, height: Any = None, distance: Any = None, line: Any = None) -> Any:
     return _gaps(c1, r1, c2, r2)[2] / (4 * (r1 * r2) ** 2)
 
 
 @primitive("arc cuts arc", plain=_plain_arcs, guard=_between_arcs)
-def arc_arc(c1: Any, r1: Any, c2: Any, r2: Any, side: Any, height: Any = None, distance: Any = None) -> Any:
+def arc_arc(c1: Any, r1: Any, c2: Any, r2: Any, side: Any, height: Any = None, distance: Any = None, line: Any = None) -> Any:
     """Intersection of two circles; ``side`` +1 is left of the line from ``c1`` to ``c2``, -1 right.
 
     The height over the line of centres comes from the sorted, factored Heron form: about ten times fewer digits are
     lost towards tangency than with ``sqrt(r**2 - a**2)``; or it is given, with the distance of the centres, where both are
-    known better than from the points.
+    known better than from the points. The ``line`` from the first centre is given where both may lie in one place: the radii are
+    one then, and the distance has a sign along the line.
     """
+    if line is not None:
+        return c1 + (distance / 2 + 1j * side * height) * line
     e = c2 - c1
     d = np.abs(e)
     u = e / d
     if height is None:
-        a, b, c = _sorted_three(r1, r2, d)
-        four_area_squared = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c))
-        height = np.sqrt(four_area_squared) / (2 * d)
+        height = half_chord(d, r1, r2)
     if distance is not None:
         d = distance
     foot = (d + (r1 - r2) * (r1 + r2) / d) / 2
     return c1 + (foot + 1j * side * height) * u
+
+
+def half_chord(d: Any, r1: Any, r2: Any) -> Any:
+    """Half of the chord that two circles have together, their centres ``d`` apart."""
+    a, b, c = _sorted_three(r1, r2, d)
+    four_area_squared = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c))
+    return np.sqrt(four_area_squared) / (2 * d)
 
 
 def _sorted_three(x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:

@@ -28,11 +28,16 @@ def _cross(u: Any, v: Any) -> Any:
 
 
 def _arcs(x: Any, p: Any, r1: Any, q: Any, r2: Any, side: Any, *known: Any) -> Any:
-    return _cross(x - p, x - q) / (np.abs(x - p) * np.abs(x - q))
+    return _touching(_cross(x - p, x - q) / (np.abs(x - p) * np.abs(x - q)), known)
 
 
 def _arc_line(x: Any, p: Any, r: Any, q: Any, u: Any, side: Any, *known: Any) -> Any:
-    return (np.conj(u) * (x - p)).real / (np.abs(x - p) * np.abs(u))
+    return _touching((np.conj(u) * (x - p)).real / (np.abs(x - p) * np.abs(u)), known)
+
+
+def _touching(sine: Any, known: tuple[Any, ...]) -> Any:
+    """The sine; nothing where the half-chord, the first of what is known, is nothing: points tell no more than their rounding."""
+    return np.where(np.asarray(known[0]) == 0, 0.0, sine) if known else sine
 
 
 def _lines(x: Any, p: Any, u: Any, q: Any, v: Any, *sine: Any) -> Any:

@@ -3,6 +3,9 @@
 Near a dead position the crank pin is already rounded when the arcs are drawn: no arithmetic on points brings its digits back.
 What does is the crank angle itself: a + b cos(x) = 2 b sin((x0 + x)/2) sin((x0 - x)/2) with the limit angle x0, once per
 mechanism in many digits and kept as an unevaluated sum of two doubles. Relative error some 1e-16 down to 1e-15 rad from x0.
+
+Where a = b the quantity touches zero at x = pi and is a square, (sqrt(2 b) sin((x - pi)/2))^2: its root goes on smoothly through
+the change point with the other sign.
 """
 
 from __future__ import annotations
@@ -101,9 +104,103 @@ class Cosine:
 
     def __call__(self, phi: Any) -> Any:
         """Values at crank angles, rad."""
-        form, (high, low) = _prepared(self)
-        s, e = two_sum(np.asarray(phi, dtype=float), -high)
-        return form((s, e - low))
+        form, start = _prepared(self)
+        return form(_from(phi, start))
+
+    @property
+    def touches(self) -> bool:
+        """True where it comes down to zero and no further: its root changes its sign there."""
+        with localcontext(prec=DIGITS):
+            return abs(self.a - self.b) < SAME * self.b
+
+    def root(self, phi: Any) -> Pair:
+        """Smooth square root at crank angles, rad, and its derivative over them; with a sign, and so over two turns, if it touches.
+
+        Next to a change point, where the crank angle is nothing but its rounding away from it, the root is zero.
+        """
+        if self.touches:
+            with localcontext(prec=DIGITS):
+                double, start, pi = float(2 * self.b), split(self.start), split(-PI)
+            x = half(_from(phi, start), pi, 1)
+            near = np.abs(np.sin(x[0])) * 2 <= at_rest(phi)
+            scale = double**0.5
+            return np.where(near, 0.0, scale * sine(x))[()], scale / 2 * np.cos(x[0])
+        found = np.sqrt(self(phi))
+        return found, self.slope(phi) / (2 * found)
+
+    def slope(self, phi: Any) -> Any:
+        """Derivative over the crank angle, rad."""
+        s, e = _from(phi, _prepared(self)[1])
+        return -float(self.b) * sine((s, e))
+
+
+@dataclass(frozen=True)
+class Gaps:
+    """Two gaps ``p`` and ``q`` of a group, p + q the same all round; its half-chord is made of the root of their product.
+
+    Where one of them touches zero both ways of assembly of the group pass through each other, a change point. There the root goes
+    on smoothly with the other sign; it keeps to one way, which is the other side behind each change point.
+    """
+
+    p: Cosine
+    q: Cosine
+
+    @property
+    def touching(self) -> tuple[Cosine, ...]:
+        """Those that touch zero: each makes one change point a turn."""
+        return tuple(c for c in (self.p, self.q) if c.touches)
+
+    @property
+    def angles(self) -> tuple[float, ...]:
+        """Crank angles of the change points, rad."""
+        with localcontext(prec=DIGITS):
+            return tuple(float(c.start + PI) for c in self.touching)
+
+    def root(self, phi: Any) -> Any:
+        """Root of the product, smooth through the change points."""
+        return self.p.root(phi)[0] * self.q.root(phi)[0]
+
+    def quotient(self, phi: Any) -> Pair:
+        """Derivative of ``q`` over the root of the product, and the derivative of that: finite where both vanish."""
+        (p, dp), (q, dq) = self.p.root(phi), self.q.root(phi)
+        if len(self.touching) == 2:
+            found = np.sign(np.where(np.abs(p) > np.abs(q), dq * p, -dp * q))
+            return found, np.zeros(np.shape(found))[()]
+        if self.q.touches:
+            return 2 * dq / p, -q / (2 * p) - 2 * dq * dp / p**2
+        return -2 * dp / q, p / (2 * q) + 2 * dp * dq / q**2
+
+    def branch(self, phi: Any, side: Any, at: float, cut: float, sense: float, follow: bool) -> Any:
+        """+1 or -1, by which the smooth root is multiplied so that it is the group's own at crank angles, rad.
+
+        A group that follows is on ``side`` at the crank angle ``at``, or just behind it, and goes on smoothly from there both ways
+        as far as ``cut``, a whole turn away. One that keeps its side is that all round; in a change point itself, where it turns
+        back at once, it counts as following.
+        """
+        x = np.asarray(phi, dtype=float)
+        start = self.root(at) or self.p.root(at)[1] * self.q.root(at)[0] + self.p.root(at)[0] * self.q.root(at)[1]
+        turns = _turns(x, cut, sense) - _turns(at, cut, sense)
+        smooth = side * np.sign(start) * (1 if self.root(at) else sense) * np.where(len(self.touching) * turns % 2, -1.0, 1.0)
+        if follow:
+            return smooth[()]
+        root = self.root(x)
+        return np.where(root == 0, smooth, side * np.sign(root))[()]
+
+
+def _turns(phi: Any, cut: float, sense: float) -> Any:
+    """Whole turns from ``cut`` to crank angles, in the sense of rotation."""
+    return np.floor((sense * (np.asarray(phi) - cut) + at_rest(phi)) / (2 * np.pi))
+
+
+def at_rest(phi: Any) -> Any:
+    """Angle from a change point that is nothing but the rounding of the crank angle, rad."""
+    return 1e-14 + 4 * np.spacing(np.abs(np.asarray(phi, dtype=float)))
+
+
+def _from(phi: Any, start: tuple[float, float]) -> Pair:
+    """Crank angles from a start in two doubles."""
+    s, e = two_sum(np.asarray(phi, dtype=float), -start[0])
+    return s, e - start[1]
 
 
 @lru_cache(maxsize=256)  # the same few numbers of a mechanism, asked for at one angle after another

@@ -10,6 +10,7 @@ from tmm_sheets.construction.tally import Tally
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.limit_angles import Gaps
     from tmm_sheets.construction.plan import Plan
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.groups.contexts import AccelerationPlan, ForcePlans, PositionPlan, VelocityPlan
@@ -78,7 +79,7 @@ class GroupKind(ABC):
 
     ``number`` is the manual's, ``grade`` and ``order`` are its class and order; ``form`` is its pairs, outer, inner,
     outer, R turning, P sliding, looked up when it is said. ``orders`` are the same pairs as R and P, in every order the links can
-    be met in.
+    be met in. Those of ``two_ways`` of assembly may come to change points, where one passes into the other.
     """
 
     number: ClassVar[int]
@@ -86,6 +87,7 @@ class GroupKind(ABC):
     orders: ClassVar[tuple[str, ...]]
     grade: ClassVar[int] = 2
     order: ClassVar[int] = 2
+    two_ways: ClassVar[bool] = False
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other)
@@ -139,6 +141,32 @@ class GroupKind(ABC):
     def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
         """Crossing of a group between crank and frame from the crank angles ``phi``, rad, shape (n,); None without such a form."""
         return None
+
+    def gaps(self, m: Mechanism, g: StructuralGroup) -> Gaps | None:
+        """Both gaps of a group between crank and frame over the crank angle; None elsewhere, and of a kind that has but one way."""
+        return None
+
+    def gaps_at(self, pos: Positions, g: StructuralGroup) -> tuple[Any, Any, Any]:
+        """Both gaps of a group from the points of a plan, shape (n,), and what is rounding beside them.
+
+        Raises
+        ------
+        NotImplementedError
+            of a kind that has but one way.
+        """
+        raise NotImplementedError
+
+    def passage(self, pos: Positions, g: StructuralGroup, side: Any, root: Any) -> Crossing:
+        """Crossing of a group that hangs on others and has change points, by its ``side`` and a row that is known next to them.
+
+        It is the ``root`` of the product of the gaps, with a sign; NaN where it is not known, minus infinity where nothing is.
+
+        Raises
+        ------
+        NotImplementedError
+            of a kind that has but one way.
+        """
+        raise NotImplementedError
 
     def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
         """Crank vectors (m, from the crank pivot ``centre``) of the dead positions of a group on the crank pin, on ``plan``.
@@ -210,6 +238,9 @@ class StructuralGroup:
 
     ``outer`` are the points of its outer turning pairs, ``inner`` the point of its inner turning pair (or, for RPP,
     of the guided link on the guide), ``side`` the assembly side, ``guides`` the guides of its outer sliding pairs.
+    A group that comes to change points keeps its side all round, or, where it is to ``follow``, goes on smoothly through them:
+    it is on its side at the crank angle ``at``, rad, and from there both ways as far as the angle ``cut``, where a turn begins
+    (``at`` unless told).
     """
 
     kind: GroupKind
@@ -221,6 +252,9 @@ class StructuralGroup:
     side: float = 1
     offset: float = 0.0
     slot: float = 0.0
+    follow: bool = False
+    at: float = 0.0
+    cut: float | None = None
 
     @property
     def name(self) -> str:

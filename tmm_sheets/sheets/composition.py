@@ -48,6 +48,8 @@ def arranged(project: Project, n: int) -> Arrangement:
     Raises :class:`CannotBuild` where the project has nothing for any of its views.
     """
     plan = _with_all_groups(project, arrangement(project.sheets[n - 1]).fitted(project.parts))
+    if any(view.needs == "forces" for view in plan.views):
+        project.check_forces()
     if any("axis" in view.options for view in plan.views):
         from tmm_sheets.sheets import flywheel
 

@@ -13,6 +13,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import RRP, RRR, TRIAD
 from tmm_sheets.mechanism.model import Guide, Link, Mechanism, StructuralGroup
 from tmm_sheets.stress import truth
+from tmm_sheets.stress.change_points import folding, in_a_row, scene
 from tmm_sheets.stress.draw import chain, crank_of, loaded
 from tmm_sheets.stress.invariants import (
     OneFunction,
@@ -51,6 +52,11 @@ BOUNDS = {
     "acceleration at a dead position": (2e-14, "of itself or of the pin's, against 60 digits"),
     "velocity at a change point": (2e-15, "of itself or of the pin's, times the condition, against 60 digits"),
     "acceleration at a change point": (2e-14, "of itself or of the pin's, times the condition, against 60 digits"),
+    "velocity through a change point": (1e-13, "of itself or of the pin's, against formulas, whatever the condition"),
+    "acceleration through a change point": (1e-12, "of itself or of the pin's, against formulas, whatever the condition"),
+    "moment through a change point": (1e-9, "of the powers of all loads, against formulas, whatever the condition"),
+    "velocity through a change point in a row": (1e-9, "of the pin's, against formulas, whatever the condition"),
+    "acceleration through a change point in a row": (1e-7, "of the pin's, against formulas, whatever the condition"),
     "standstill at the ends of the stroke": (2e-14, "of the pin's velocity"),
     "one sense and the other": (2e-15, "of the fastest point, of the greatest acceleration"),
     "picture in a mirror": (2e-15, "of reach times condition; of the fastest point, the greatest acceleration, times its square"),
@@ -193,13 +199,13 @@ def _dead(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
 
 
 def _change_points(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
-    """Parallelograms, kites and four-bars that fold flat, or miss it by some 1e-15; about their change points."""
+    """Parallelograms, kites and four-bars that fold flat, or miss it by some 1e-13; about their change points."""
     size = 2.0 ** int(rng.integers(-9, 10))
     a, b = size * float(rng.integers(1, 64)) / 16, size * float(rng.integers(1, 64)) / 16
     crank, rod, rocker, frame = ((a, b, a, b), (a, a, b, b), (a, b, a + b, 2 * max(a, b)))[int(rng.integers(3))]
     if frame == 2 * max(a, b):
         rocker = frame + crank - rod  # crank + frame = rod + rocker
-    rod *= 1 + float(rng.choice((0.0, 0.0, 1e-15, -1e-15, 1e-9)))
+    rod *= 1 + float(rng.choice((0.0, 0.0, 1e-13, -1e-13, 1e-9)))
     g = StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (rod, rocker), (), int(rng.choice((1, -1))))
     links = {n: Link(n) for n in "123"}
     m = Mechanism(replace(crank_of(rng, size), length=crank), {"A": 0j, "D": complex(frame)}, {}, (g,), (), links)
@@ -249,11 +255,11 @@ def _stroke_ends(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
 
 
 def _tangent(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
-    """A rod just long enough: the pin's circle touches the limit on one side of the guide, or misses it by some 1e-15."""
+    """A rod just long enough: the pin's circle touches the limit on one side of the guide, or misses it by some 1e-13."""
     size = 2.0 ** int(rng.integers(-9, 10))
     r, e = size * float(rng.integers(1, 64)) / 16, size * float(rng.integers(-16, 17)) / 16
     side, turn = int(rng.choice((1, -1))), float(rng.choice((0.0, pi / 2, pi, -pi / 2)))
-    rod = (r + abs(e)) * (1 + float(rng.choice((0.0, 0.0, 1e-15, -1e-15, 1e-9))))
+    rod = (r + abs(e)) * (1 + float(rng.choice((0.0, 0.0, 1e-13, -1e-13, 1e-9))))
     g = StructuralGroup(RRP, ("2", "3"), ("B",), "C", (rod,), ("x",), side)
     through = complex(1j * e) * {0.0: 1, pi / 2: 1j, pi: -1, -pi / 2: -1j}[turn]
     links = {n: Link(n) for n in "123"}
@@ -350,6 +356,9 @@ SCENES: dict[str, Scene] = {
     "right angles": _chain("square"),
     "one line, one pivot": _chain("coincident"),
     "pin by the pivot": _chain("pin by the pivot"),
+    **{name: scene(name) for name in ("parallelogram", "antiparallelogram", "kite", "slider-crank")},
+    "four-bar that folds": folding,
+    "parallelograms in a row": in_a_row,
     "class III": _triads,
 }
 """Scenes by name, run in turn."""

@@ -28,6 +28,7 @@ from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, TRIAD, GroupKin
 from tmm_sheets.mechanism.groups.triad import TriadGroup
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
+from tmm_sheets.methods.linkage.force_limits import limits_of_forces
 from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
@@ -367,6 +368,15 @@ def powers(s: State, gravity: float) -> Any:
         if link.centre is not None:
             total = total + link.mass * (gravity + np.abs(s.a[link.centre])) * np.abs(s.v[link.centre])
     return total
+
+
+def by_plans_and_lever(s: State, gravity: float) -> tuple[Any, Any]:
+    """Balancing moment from the force plans, with its limits in change points, and from the lever, N m."""
+    loads, couples, _ = external_loads(s.positions, s.accelerations, gravity, ())
+    limits = limits_of_forces(s.positions, s.accelerations, loads, couples, None)
+    step = kinetostatics(s.positions, s.accelerations, loads, couples, None, limits=limits).balancing
+    assert step is not None
+    return s.spread(step), balancing(s, gravity)
 
 
 def statics(s: State, gravity: float) -> Iterator[Residual]:

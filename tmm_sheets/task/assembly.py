@@ -313,8 +313,21 @@ def _group(of: Givens, i: int, g: GroupTable) -> StructuralGroup:
         lengths = (of.length(g.length, f"l_{{{ends[0]}}}", "group", i, "length"),)
     guides = g.guides or (() if g.guide is None else (g.guide,))
     slot = of.number(pi / 2 if g.slot is None else g.slot, "", "rad", "group", i, "slot")
+    at, cut = _on_its_side(of, i, g)
     return StructuralGroup(KINDS[g.kind], g.links, g.outer, g.inner, lengths, guides, of.number(g.side, "", "", "group", i, "side"),
-                           of.length(g.offset, "e", "group", i, "offset"), slot)
+                           of.length(g.offset, "e", "group", i, "offset"), slot, g.branch == "follow", at, cut)
+
+
+def _on_its_side(of: Givens, i: int, g: GroupTable) -> tuple[float, float | None]:
+    """Crank angle at which a group is on its side, rad, and the one that the crank never passes if it swings, else None."""
+    cycle, crank = of.variant.cycle, of.variant.crank
+    start = None if cycle is None or isinstance(cycle.start, str) else cycle.start
+    at = (of.number(g.at, "", "rad", "group", i, "at") if g.at is not None
+          else 0.0 if start is None else of.number(start, "φ_0", "rad", "cycle", "start"))
+    if cycle is None or crank is None or start is None or cycle.end is None:
+        return at, None
+    sense = -1.0 if crank.sense == "clockwise" else 1.0
+    return at, start - sense * (2 * pi - sense * (cycle.end - start) % (2 * pi)) / 2
 
 
 def _triad(of: Givens, i: int, g: GroupTable) -> TriadGroup:
@@ -335,4 +348,4 @@ def _triad(of: Givens, i: int, g: GroupTable) -> TriadGroup:
     return TriadGroup(TRIAD, g.links, outer, None, (), guides, legs=tuple(legs), sides=(one, two),
                       angle=of.number(g.angle, "", "rad", "group", i, "angle"),
                       near=of.number(g.direction, "", "rad", "group", i, "direction"),
-                      when=of.number(g.at, "", "rad", "group", i, "at"))
+                      when=of.number(g.at or 0.0, "", "rad", "group", i, "at"))

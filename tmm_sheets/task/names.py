@@ -19,8 +19,8 @@ Found = tuple[KeyPath, str, str]
 """Key path, message, hint."""
 
 GROUP_KEYS: dict[int, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    1: (("outer", "inner", "lengths"), ("side",)),
-    2: (("outer", "inner", "length", "guide"), ("side",)),
+    1: (("outer", "inner", "lengths"), ("side", "branch", "at")),
+    2: (("outer", "inner", "length", "guide"), ("side", "branch", "at")),
     3: (("outer",), ("offset", "side")),
     4: (("guides", "inner"), ()),
     5: (("outer", "guide", "slot", "inner"), ()),

@@ -204,8 +204,12 @@ class GroupTable(Table):
     """kind 5: direction of the second sliding pair against the guide"""
     side: Side = 1
     """which of the two ways the group is put together; 1: left of the line from the first outer point to the second, or further
-    along the guide; it is kept all round, so a group that comes to be stretched or folded (a parallelogram) jumps there, as
-    `check` tells"""
+    along the guide
+    """
+    branch: Literal["side", "follow"] = "side"
+    """kinds 1 and 2: what a group does that comes to be stretched or folded in a [change point](#change-points), as a parallelogram
+    does: it keeps its `side` all round, and its links turn back at once there, or it moves on smoothly, and the side changes
+    """
     leg: tuple[LegTable, ...] = ()
     """kind 6: the three legs, tables `[[group.leg]]`"""
     sides: tuple[Length, Length] | None = None
@@ -216,8 +220,16 @@ class GroupTable(Table):
     """kind 6: about the direction from the first corner to the second, at the crank angle `at`; the way of assembly nearest to it
     is taken
     """
-    at: Angle = 0.0
-    """kind 6: crank angle at which `direction` is told, against the x axis"""
+    at: Angle | None = None
+    """crank angle, against the x axis, at which `direction` of kind 6 is told, 0 unless given; or at which a group with
+    `branch = "follow"` is on its `side`, that of position 0 unless given (0 where position 0 is a dead position)
+    """
+
+    @model_validator(mode="after")
+    def _at_of_what(self) -> Self:
+        if self.at is not None and self.kind != 6 and self.branch != "follow":
+            raise ValueError(tell('"at" tells where a group that follows is on its side; write branch = "follow", or leave it out'))
+        return self
 
 
 class PointTable(Table):
@@ -279,7 +291,7 @@ class CycleTable(Table):
     coefficient: Annotated[float, si(units.NUMBER), from_to(1, inf, marked("expected K of 1 or more"))] | None = None
     """K, for `division = "nominal"`"""
     force_position: Name | None = None
-    """label of the position of the force analysis, drawn thick; left out: position 0"""
+    """label of the position of the force analysis, drawn thick; left out: position 0, or the first that is in no change point"""
     zero: Name = "0"
     """label of position 0, no other's; the number of positions of a turn stands for the last of all `turns`"""
     turns: Count = 1

@@ -45,6 +45,9 @@ class PositionPlan(Protocol[M, G]):
     def crossing(self, group: G) -> tuple[Step, ...]:
         """Further arguments of the rule that makes a group's crossing, where the crank angle knows better than the points."""
 
+    def side(self, group: G) -> Any:
+        """On which side a group is put together, +1 or -1: a step where it changes in change points."""
+
     def place(self, name: str) -> Step:
         """A point of the mechanism or a special point by its name."""
 
@@ -85,6 +88,9 @@ class MotionPlan(Protocol[M, G]):
 
     def perpendicular(self, p: str, q: str) -> Step:
         """Direction across the line of two points, drawn once."""
+
+    def known(self, group: G) -> tuple[Step, ...]:
+        """What is known of the crossing of a group's lines better than they tell: their sine, the way along the first."""
 
     def turning(self, link: str, big_q: str, big_b: str, q: Step, b: Step) -> None:
         """How a link turns, from the motions ``q`` and ``b`` of two of its points."""

@@ -18,11 +18,14 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, angle_of, direction
+from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, Gaps, angle_of, direction
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
 from tmm_sheets.words import marked
+
+MEANT = Decimal("1e-15")
+"""Share of the sizes by which two lengths differ that are written down as the same: decimals are rounded to doubles."""
 
 Numbers = tuple[Rule, tuple[Any, ...]]
 """A rule and the numbers of the mechanism it takes besides the crank angle."""
@@ -60,7 +63,7 @@ def span_from_crank(m: Mechanism, g: StructuralGroup) -> Span | None:
 
 
 @lru_cache(maxsize=256)
-def _less(span: Span, plus: float, minus: float = 0.0) -> Cosine:
+def gap_of_arcs(span: Span, plus: float, minus: float = 0.0) -> Cosine:
     """Square of a sum of lengths less the square of the distance d of the hinges.
 
     d^2 = l0^2 + l1^2 - 2 l0 l1 cos(phi - phi0).
@@ -69,42 +72,75 @@ def _less(span: Span, plus: float, minus: float = 0.0) -> Cosine:
         l1, ahead, length = Decimal(span[0]), direction(span[1])[0], Decimal(plus) + Decimal(minus)
         x, y = (Decimal(b) - Decimal(a) for a, b in ((span[2].real, span[3].real), (span[2].imag, span[3].imag)))
         square = x * x + y * y
-        return Cosine(-square - l1 * l1 + length * length, 2 * l1 * square.sqrt(), angle_of(x, y) - ahead)
+        apart = square.sqrt()
+        if minus:
+            length = alike(abs(length), l1 + apart if minus > 0 else abs(l1 - apart),
+                           l1 + apart + abs(Decimal(plus)) + abs(Decimal(minus)) + _far(span[2]) + _far(span[3]))
+        return Cosine(-square - l1 * l1 + length * length, 2 * l1 * apart, angle_of(x, y) - ahead)
+
+
+def alike(length: Decimal, other: Decimal, size: Decimal) -> Decimal:
+    """The ``other`` length where both are the same up to the rounding of the numbers of that ``size``: a change point is meant."""
+    return other if abs(length - other) <= MEANT * size else length
+
+
+def _far(point: complex) -> Decimal:
+    return abs(Decimal(point.real)) + abs(Decimal(point.imag))
 
 
 @lru_cache(maxsize=256)
-def _beside(l1: float, ahead: float, length: float, pivot: complex, through: complex, guide: float) -> tuple[Cosine, Cosine]:
+def gaps_of_line(l1: float, ahead: float, length: float, pivot: complex, through: complex, guide: float) -> Gaps:
     """Length of a rod plus and minus the distance of its pin on the crank from a guide, e = e0 + l1 sin(phi - psi)."""
     with localcontext(prec=DIGITS):
         radius, rod = Decimal(l1), Decimal(length)
         e0, start = height(pivot, through, guide)[0], direction(guide)[0] - direction(ahead)[0]
-        return Cosine(rod + e0, radius, start + PI / 2), Cosine(rod - e0, radius, start - PI / 2)
+        size = radius + rod + abs(e0) + _far(pivot)
+        below, above = (alike(rod + sign * e0, radius, size) for sign in (1, -1))
+        return Gaps(Cosine(below, radius, start + PI / 2), Cosine(above, radius, start - PI / 2))
+
+
+@lru_cache(maxsize=256)
+def gaps_of_arcs(l1: float, ahead: float, pivot: complex, fixed: complex, l2: float, l3: float) -> Gaps:
+    """(l2 + l3)^2 - d^2 and d^2 - (l2 - l3)^2, whose product is the square of twice the distance d times the half-chord."""
+    p, q = (gap_of_arcs((l1, ahead, pivot, fixed), l2, other) for other in (l3, -l3))
+    with localcontext(prec=DIGITS):
+        return Gaps(p, Cosine(-q.a, q.b, q.start + PI))
 
 
 @primitive("half-chord of two arcs", "real")
 def half_of_arcs(phi: Any, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float, l3: float) -> Any:
     """sqrt(((l2 + l3)^2 - d^2) (d^2 - (l2 - l3)^2)) / 2d at crank angles, d as in :func:`pin_distance`."""
     span = (l1, ahead, pivot, fixed)
-    return np.sqrt(_less(span, l2, l3)(phi) * _less(span, l2, -l3)(phi) / _less(span, 0.0)(phi)) / 2
+    gaps = gaps_of_arcs(*span, l2, l3)
+    if meets(span, gaps, l2, l3):
+        return np.abs(gaps.p.root(phi)[0]) / 2
+    if gaps.touching:
+        return np.abs(gaps.root(phi)) / pin_distance(phi, *span) / 2
+    return np.sqrt(gap_of_arcs(span, l2, l3)(phi) * gap_of_arcs(span, l2, -l3)(phi) / gap_of_arcs(span, 0.0)(phi)) / 2
+
+
+def meets(span: Span, gaps: Gaps, l2: float, l3: float) -> bool:
+    """True where the crank's point passes through the fixed hinge, and rods of one length hang on them: d^2 is a gap itself."""
+    return gaps.q.touches and abs(l2 - l3) <= float(MEANT) * (l2 + l3 + abs(span[2]) + abs(span[3]))
 
 
 @primitive("distance from the crank's point", "real")
 def pin_distance(phi: Any, l1: float, ahead: float, pivot: complex, fixed: complex) -> Any:
     """Distance d of a fixed hinge from a point on the crank, ``l1`` from its pivot and ``ahead`` of it."""
-    return np.sqrt(-_less((l1, ahead, pivot, fixed), 0.0)(phi))
+    return np.sqrt(-gap_of_arcs((l1, ahead, pivot, fixed), 0.0)(phi))
 
 
 @primitive("tangent from the crank's point", "real")
 def tangent_length(phi: Any, l1: float, ahead: float, pivot: complex, fixed: complex, radius: float) -> Any:
     """sqrt(d^2 - radius^2): length of the tangent from a point on the crank to a circle about a fixed hinge."""
-    return np.sqrt(-_less((l1, ahead, pivot, fixed), radius)(phi))
+    return np.sqrt(-gap_of_arcs((l1, ahead, pivot, fixed), radius)(phi))
 
 
 @primitive("half-chord of arc and line", "real")
 def half_of_line(phi: Any, l1: float, ahead: float, length: float, pivot: complex, through: complex, guide: float) -> Any:
     """sqrt((length - e) (length + e)), e the distance of a point on the crank from a guide."""
-    below, above = _beside(l1, ahead, length, pivot, through, guide)
-    return np.sqrt(below(phi) * above(phi))
+    gaps = gaps_of_line(l1, ahead, length, pivot, through, guide)
+    return np.abs(gaps.root(phi)) if gaps.touching else np.sqrt(gaps.p(phi) * gaps.q(phi))
 
 
 def _of_angle(name: str, compute: Callable[..., Any]) -> Rule:

@@ -3,25 +3,49 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from tmm_sheets.construction.indices import against, on_link
 from tmm_sheets.construction.step import Step
 
 
 @dataclass(frozen=True)
+class Turning:
+    """How a group with change points goes on, as steps or rows: the ``side`` on which it is; the angle that its first link turns by
+    an angle of the crank, ``first``, and the derivative of that, ``second``; both None of a group that hangs on others: the plans
+    of its motion find them. ``steps`` are those of them that belong to the plan of positions, arguments first.
+    """
+
+    side: Any
+    first: Any
+    second: Any
+    steps: tuple[Step, ...]
+
+
+@dataclass(frozen=True)
 class Crossing:
     """What the crank angle knows of the crossing of a group, as steps: half of the chord (or the tangent's length), the distance
     of the centres (none for a line), the sine between the group's lines in the plans of velocities.
+
+    ``turning`` of a group that has change points; ``line`` of the centres where they come to lie in one place.
     """
 
     half: Step
     distance: Step | None
     sine: Step
+    turning: Turning | None = None
+    line: Step | None = None
 
     @property
-    def lengths(self) -> tuple[Step, ...]:
+    def known(self) -> tuple[Step, ...]:
         """Further arguments of the rule that makes the crossing."""
-        return (self.half,) if self.distance is None else (self.half, self.distance)
+        return tuple(step for step in (self.half, self.distance, self.line) if step is not None)
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """All of them, arguments first."""
+        t = self.turning
+        return (*(() if t is None else t.steps), *self.known, self.sine)
 
 
 @dataclass(frozen=True)

@@ -67,6 +67,16 @@ def span(pos: PositionPlan[Any, Any], p: str, q: str) -> Any:
     return np.abs(pos.points[q].value - pos.points[p].value)
 
 
+def rounding(length: float, *points: Any) -> Any:
+    """What a difference of lengths may be by the rounding of a length and of some points alone, m, shape (n,)."""
+    return 4e-15 * (length + sum(np.abs(p) for p in points))
+
+
+def unrounded(margin: Any, rounding: Any) -> Any:
+    """A margin that is nothing where it is nothing but rounding, m: rods that just reach do reach."""
+    return np.where(np.abs(margin) <= rounding, 0.0, margin)
+
+
 def extremes(lengths: Any) -> tuple[float, float]:
     """Least and greatest of ``lengths`` over the turn, m: a number, or shape (n,) that ends with the sweep.
 

@@ -11,23 +11,35 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import against, on_link
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.dead_centres import HALF_OF_LINE, fold_and_stretch, measured, near_point, on_crank, reaches
-from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
-from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, mm, more
+from tmm_sheets.mechanism.groups.change_points import HALF_BESIDE_LINE, LINE, passing
+from tmm_sheets.mechanism.groups.dead_centres import (
+    HALF_OF_LINE,
+    fold_and_stretch,
+    gaps_of_line,
+    measured,
+    near_point,
+    on_crank,
+    reaches,
+)
+from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline, Turning
+from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, mm, more, rounding, unrounded
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.limit_angles import Gaps
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 SINE = Rule("sine between rod and perpendicular to the guide", lambda h, r, side: -side * h / r, (), "number",
-            marked("Sine of the angle between the coupler and the perpendicular to the guide {name} = {value}."), unit="1")
+            marked("Sine of the angle between the coupler and the perpendicular to the guide {name} = {value}."), beyond_paper=True,
+            unit="1")
 
 
 class RRPKind(GroupKind):
     """Kind 2: a rod hinged to a slider on a guide."""
 
     number, form, orders = 2, marked("RRP"), ("RRP", "PRR")
+    two_ways = True
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         p, c, (i, j) = g.outer[0], str(g.inner), g.links
@@ -39,8 +51,9 @@ class RRPKind(GroupKind):
     def position(self, pos: Positions, g: StructuralGroup) -> None:
         assert g.inner is not None
         guide = g.guides[0]
+        known = pos.crossing(g)
         pos.points[g.inner] = pos.plan.add(g.inner, rules.ARC_LINE, pos.points[g.outer[0]], g.lengths[0], pos.guide_points[guide],
-                                           pos.guide_directions[guide], g.side, *pos.crossing(g))
+                                           pos.guide_directions[guide], pos.side(g), *known)
         pos.directions[g.links[0]] = pos.direction(g.outer[0], g.inner)
         pos.directions[g.links[1]] = pos.guide_directions[guide]
 
@@ -49,7 +62,7 @@ class RRPKind(GroupKind):
         p, c, guide = g.outer[0], str(g.inner), g.guides[0]
         carrier, link = vel.guide(guide, c)
         n = vel.perpendicular(p, c)
-        step = plan.add(vel.name(c), rules.LINE_LINE, vel.points[p], n, carrier, pos.guide_directions[guide], *pos.known_sine(g))
+        step = plan.add(vel.name(c), rules.LINE_LINE, vel.points[p], n, carrier, pos.guide_directions[guide], *vel.known(g))
         vel.points[c] = step
         plan.vector(f"V̅_{c}", vel.pole, step)
         plan.vector(f"V̅_{c}{p}", vel.points[p], step)
@@ -65,8 +78,7 @@ class RRPKind(GroupKind):
         carrier, v_carrier, link = acc.guide(guide, c)
         n = acc.normal(acc.points[p], g.links[0], p, c)
         k = acc.coriolis(carrier, link, v_carrier, vel.points[c], against(c, link))
-        step = plan.add(acc.name(c), rules.LINE_LINE, n, acc.perpendicular(p, c), k, pos.guide_directions[guide],
-                        *pos.known_sine(g))
+        step = plan.add(acc.name(c), rules.LINE_LINE, n, acc.perpendicular(p, c), k, pos.guide_directions[guide], *acc.known(g))
         acc.points[c] = acc.coincident[on_link(c, g.links[1])] = step
         plan.vector(f"a̅_{{{c}{p}}}^τ", n, step)
         if carrier is not acc.pole:
@@ -97,7 +109,10 @@ class RRPKind(GroupKind):
         def away(pos: Positions) -> Any:
             return np.abs(ar.cross(pos.guide_directions[guide].value, pos.guide_points[guide].value - pos.points[p].value))
 
-        return [AssemblyLimit(m.crank.length, lambda pos: length - away(pos),
+        def margin(pos: Positions) -> Any:
+            return unrounded(length - away(pos), rounding(length, pos.points[p].value, pos.guide_points[guide].value))
+
+        return [AssemblyLimit(m.crank.length, margin,
                               lambda lack: tell(
                                   "rod {rod} = {length} is {lack} too short to reach the guide {guide}").format(
                                       rod=rod, length=mm(length), lack=lacking(lack), guide=guide),
@@ -107,14 +122,41 @@ class RRPKind(GroupKind):
         rod = pos.points[str(g.inner)].value - pos.points[g.outer[0]].value
         return size / g.lengths[0] / np.abs(ar.dot(pos.guide_directions[g.guides[0]].value, rod) / np.abs(rod))
 
-    def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
-        """Half-chord h = sqrt((l - e) (l + e)) with the pin's distance from the guide e = e0 + l1 sin(phi - psi)."""
+    @staticmethod
+    def _numbers(m: Mechanism, g: StructuralGroup) -> tuple[Any, ...] | None:
+        """What the crossing of a rod on the crank with a fixed guide follows from."""
         guide, pin = m.guides[g.guides[0]], on_crank(m, g.outer[0])
         if pin is None or isinstance(guide.through, str):
             return None
-        numbers = (*pin, g.lengths[0], m.fixed[m.crank.pivot], guide.through, guide.direction)
+        return *pin, g.lengths[0], m.fixed[m.crank.pivot], guide.through, guide.direction
+
+    def gaps(self, m: Mechanism, g: StructuralGroup) -> Gaps | None:
+        """The rod's length plus and minus the distance of its outer hinge from the guide."""
+        numbers = self._numbers(m, g)
+        return None if numbers is None else gaps_of_line(*numbers)
+
+    def gaps_at(self, pos: Positions, g: StructuralGroup) -> tuple[Any, Any, Any]:
+        p, guide, length = pos.points[g.outer[0]].value, g.guides[0], g.lengths[0]
+        through = pos.guide_points[guide].value
+        e = ar.cross(pos.guide_directions[guide].value, p - through)
+        return length + e, length - e, rounding(length, p, through)
+
+    def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
+        """Half-chord h = sqrt((l - e) (l + e)) with the pin's distance from the guide e = e0 + l1 sin(phi - psi)."""
+        numbers, gaps = self._numbers(m, g), self.gaps(m, g)
+        if numbers is None or gaps is None:
+            return None
         half, _ = measured(g, phi, (HALF_OF_LINE, numbers))
-        return Crossing(half, None, Step(f"sin {g.name}", SINE, (half, g.lengths[0], g.side)))
+        turning = passing(m, g, phi, LINE, numbers) if gaps.touching else None
+        side = g.side if turning is None else turning.side
+        return Crossing(half, None, Step(f"sin {g.name}", SINE, (half, g.lengths[0], side)), turning)
+
+    def passage(self, pos: Positions, g: StructuralGroup, side: Any, root: Any) -> Crossing:
+        guide, length = g.guides[0], g.lengths[0]
+        half = Step(f"h {g.name}", HALF_BESIDE_LINE, (root, pos.points[g.outer[0]], length, pos.guide_points[guide],
+                                                      pos.guide_directions[guide]))
+        sine = Step(f"sin {g.name}", SINE, (half, length, side))
+        return Crossing(half, None, sine, Turning(side, None, None, (side,) if isinstance(side, Step) else ()))
 
     def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
         """Arcs about the crank pivot of radius rod plus crank and rod minus crank cross the guide."""

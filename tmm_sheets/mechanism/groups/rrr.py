@@ -10,23 +10,36 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, HALF_OF_ARCS, fold_and_stretch, measured, reaches, span_from_crank
-from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
-from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, sine, span
+from tmm_sheets.mechanism.groups.change_points import ARCS, HALF_BESIDE_ARCS, LINE_OF_CENTRES, SIGNED_DISTANCE, passing
+from tmm_sheets.mechanism.groups.dead_centres import (
+    DISTANCE,
+    HALF_OF_ARCS,
+    fold_and_stretch,
+    gaps_of_arcs,
+    measured,
+    meets,
+    on_crank,
+    reaches,
+    span_from_crank,
+)
+from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline, Turning
+from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, rounding, sine, span, unrounded
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, turning
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.limit_angles import Gaps
     from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
 
 SINE = Rule("sine between links", lambda h, d, r1, r2, side: side * h * d / (r1 * r2), (), "number",
-            marked("Sine of the angle between the links {name} = {value}."), unit="1")
+            marked("Sine of the angle between the links {name} = {value}."), beyond_paper=True, unit="1")
 
 
 class RRRKind(GroupKind):
     """Kind 1: two rods joined by a hinge, hinged to what is before them."""
 
     number, form, orders = 1, marked("RRR"), ("RRR",)
+    two_ways = True
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         (p, q), c, (i, j) = g.outer, str(g.inner), g.links
@@ -35,8 +48,9 @@ class RRRKind(GroupKind):
     def position(self, pos: Positions, g: StructuralGroup) -> None:
         p, q = g.outer
         assert g.inner is not None
-        pos.points[g.inner] = pos.plan.add(g.inner, rules.ARC_ARC, pos.points[p], g.lengths[0], pos.points[q], g.lengths[1], g.side,
-                                           *pos.crossing(g))
+        known = pos.crossing(g)
+        pos.points[g.inner] = pos.plan.add(g.inner, rules.ARC_ARC, pos.points[p], g.lengths[0], pos.points[q], g.lengths[1],
+                                           pos.side(g), *known)
         pos.directions[g.links[0]] = pos.direction(p, g.inner)
         pos.directions[g.links[1]] = pos.direction(q, g.inner)
 
@@ -45,7 +59,7 @@ class RRRKind(GroupKind):
         (p, q), c = g.outer, str(g.inner)
         n1 = vel.perpendicular(p, c)
         n2 = vel.perpendicular(q, c)
-        step = plan.add(vel.name(c), rules.LINE_LINE, vel.points[p], n1, vel.points[q], n2, *vel.positions.known_sine(g))
+        step = plan.add(vel.name(c), rules.LINE_LINE, vel.points[p], n1, vel.points[q], n2, *vel.known(g))
         vel.points[c] = step
         plan.vector(f"V̅_{c}", vel.pole, step)
         plan.vector(f"V̅_{c}{p}", vel.points[p], step)
@@ -59,8 +73,7 @@ class RRRKind(GroupKind):
         (p, q), c, (i, j) = g.outer, str(g.inner), g.links
         n1 = acc.normal(acc.points[p], i, p, c)
         n2 = acc.normal(acc.points[q], j, q, c)
-        step = plan.add(acc.name(c), rules.LINE_LINE, n1, acc.perpendicular(p, c), n2, acc.perpendicular(q, c),
-                        *acc.positions.known_sine(g))
+        step = plan.add(acc.name(c), rules.LINE_LINE, n1, acc.perpendicular(p, c), n2, acc.perpendicular(q, c), *acc.known(g))
         acc.points[c] = step
         plan.vector(f"a̅_{{{c}{p}}}^τ", n1, step)
         plan.vector(f"a̅_{{{c}{q}}}^τ", n2, step)
@@ -95,11 +108,14 @@ class RRRKind(GroupKind):
                     return tell("try {rod} from {least} to {most}").format(rod=name, least=more(least), most=less(most))
             return tell("try {first} = {second} = {least} or longer").format(first=first, second=second, least=more(high / 2))
 
+        def around(pos: Positions) -> Any:
+            return rounding(l1 + l2, pos.points[p].value, pos.points[q].value)
+
         return [
-            AssemblyLimit(m.crank.length, lambda pos: l1 + l2 - span(pos, p, q),
+            AssemblyLimit(m.crank.length, lambda pos: unrounded(l1 + l2 - span(pos, p, q), around(pos)),
                           lambda lack: tell("{first} = {l1} and {second} = {l2} together are {lack} too short").format(
                               first=first, second=second, l1=mm(l1), l2=mm(l2), lack=lacking(lack)), hint),
-            AssemblyLimit(m.crank.length, lambda pos: span(pos, p, q) - (a - b),
+            AssemblyLimit(m.crank.length, lambda pos: unrounded(span(pos, p, q) - (a - b), around(pos)),
                           lambda lack: tell("{long} = {a} is {lack} too long beside {short} = {b}").format(
                               long=long, short=short, a=mm(a), b=mm(b), lack=lacking(lack)), hint),
         ]
@@ -108,13 +124,36 @@ class RRRKind(GroupKind):
         (p, q), c = (pos.points[name].value for name in g.outer), pos.points[str(g.inner)].value
         return size / min(g.lengths) * size / np.abs(p - q) / sine(ar.ray(p, c), ar.ray(q, c))
 
+    def gaps(self, m: Mechanism, g: StructuralGroup) -> Gaps | None:
+        """(l2 + l3)^2 - d^2 and d^2 - (l2 - l3)^2, d the distance of the outer hinges."""
+        span = span_from_crank(m, g)
+        return None if span is None else gaps_of_arcs(*span, *g.lengths)
+
+    def gaps_at(self, pos: Positions, g: StructuralGroup) -> tuple[Any, Any, Any]:
+        (p, q), (l1, l2) = (pos.points[name].value for name in g.outer), g.lengths
+        d = np.abs(q - p)
+        return (l1 + l2 - d) * (l1 + l2 + d), (d - l1 + l2) * (d + l1 - l2), (l1 + l2) * rounding(l1 + l2, p, q)
+
     def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
         """Half-chord h = sqrt(((l2 + l3)^2 - d^2) (d^2 - (l2 - l3)^2)) / 2d."""
-        span = span_from_crank(m, g)
-        if span is None:
+        span, gaps = span_from_crank(m, g), self.gaps(m, g)
+        if span is None or gaps is None:
             return None
-        half, distance = measured(g, phi, (HALF_OF_ARCS, (*span, *g.lengths)), (DISTANCE, span))
-        return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance, *g.lengths, g.side)))
+        numbers = (*span, *g.lengths)
+        met = meets(span, gaps, *g.lengths)
+        turning = passing(m, g, phi, ARCS, numbers, turned=met) if gaps.touching else None
+        side, line = g.side if turning is None else turning.side, None
+        if met:
+            line = Step(f"u {g.name}", LINE_OF_CENTRES, (phi, *span, 1.0 if on_crank(m, g.outer[0]) else -1.0))
+        half, distance = measured(g, phi, (HALF_OF_ARCS, numbers), (SIGNED_DISTANCE, numbers) if met else (DISTANCE, span))
+        return Crossing(half, distance, Step(f"sin {g.name}", SINE, (half, distance, *g.lengths, side)), turning, line)
+
+    def passage(self, pos: Positions, g: StructuralGroup, side: Any, root: Any) -> Crossing:
+        p, q = (pos.points[name] for name in g.outer)
+        half = Step(f"h {g.name}", HALF_BESIDE_ARCS, (root, p, g.lengths[0], q, g.lengths[1]))
+        distance = Step(f"d {g.name}", rules.DISTANCE, (p, q))
+        sine = Step(f"sin {g.name}", SINE, (half, distance, *g.lengths, side))
+        return Crossing(half, distance, sine, Turning(side, None, None, (side,) if isinstance(side, Step) else ()))
 
     def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
         """Arcs about the crank pivot of radius rod plus crank and rod minus crank cross the arc of the rocker."""

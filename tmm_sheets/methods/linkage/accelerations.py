@@ -13,7 +13,10 @@ import numpy as np
 
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step, value_of
-from tmm_sheets.methods.linkage.velocities import POLE, MotionPolygon, Velocities, plan_name, turning
+from tmm_sheets.mechanism.groups.hints import Turning
+from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
+from tmm_sheets.methods.linkage.positions import SEARCHED, passages, position_plan
+from tmm_sheets.methods.linkage.velocities import POLE, MotionPolygon, Velocities, plan_name, turning, velocity_plan
 from tmm_sheets.words import marked, tr
 
 NORMAL = Rule(
@@ -53,6 +56,11 @@ ANGULAR_ACCELERATION = Rule(
 )
 
 
+WAY = Rule("tangential acceleration about the other end",
+           lambda turning, second, w, e, length: (turning * e + second * w * w) * length,
+           ("number", "number", "number", "number", "length"), "number", "{name} = {value}.", beyond_paper=True, unit="m/s2")
+
+
 @dataclass
 class Accelerations(MotionPolygon):
     """Acceleration plan: ``points`` m/s2 from the pole for every point, ``epsilon`` rad/s2 of every link."""
@@ -79,6 +87,14 @@ class Accelerations(MotionPolygon):
             return self.pole, vel.pole, g.link
         assert isinstance(g.through, str)
         return self.on(g.link, g.through, at), vel.on(g.link, g.through, at), g.link
+
+    def way(self, turning: Turning, group: StructuralGroup) -> tuple[Any, ...]:
+        """Rule and arguments that tell the tangential acceleration of a point about the other end of its link."""
+        pos, crank = self.positions, self.positions.mechanism.crank.link
+        second = turning.second
+        if second is None:
+            second = passages(pos.mechanism).row(group, pos.phi, "second turning", _second_of_last)
+        return WAY, self.velocities.first(turning, group), second, self.velocities.omega[crank], self.epsilon[crank]
 
     def rotated(self, point: str, start: Step, link: str, q: str, b: str) -> Step:
         """Acceleration of a point of a turning link at ``b``, from that at ``q``; named after ``point``."""
@@ -139,6 +155,12 @@ def acceleration_plan(vel: Velocities, epsilon1: Any = None, where: str = "") ->
             acc.further_points(link)
     _number_alike(acc)
     return acc
+
+
+def _second_of_last(m: Mechanism, phi: Any) -> Any:
+    """Angular acceleration of the first link of the last group, rad/s2."""
+    vel = velocity_plan(position_plan(m, phi, purpose=SEARCHED))
+    return acceleration_plan(vel).epsilon[m.groups[-1].links[0]].value
 
 
 def _number_alike(acc: Accelerations) -> None:

@@ -14,7 +14,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups.limits import SWEEP, TOUCH, AssemblyLimit
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import Cycle
-from tmm_sheets.methods.linkage.positions import Positions, position_plan
+from tmm_sheets.methods.linkage.positions import Positions, passages, position_plan
 from tmm_sheets.methods.linkage.strokes import Floats
 from tmm_sheets.numbers import in_a_row, of_reader
 from tmm_sheets.words import tell, tell_n
@@ -30,19 +30,26 @@ NEAR_DEAD = 1e-4
 
 @dataclass(frozen=True)
 class DeadPosition:
-    """A group that is stretched or folded at some crank angles, degrees: from there it can go on in two ways."""
+    """A group that is stretched or folded at some crank angles, degrees: from there it can go on in two ways.
+
+    In its change points one of them goes on smoothly; it ``passes`` them if it comes back to its side after a turn.
+    """
 
     group: str
     angles: tuple[float, ...]
+    passes: bool = False
 
     def __str__(self) -> str:
         angles = in_a_row(of_reader(f"{angle:.1f}") for angle in sorted(round(angle, 1) % 360 for angle in self.angles))
-        return tell_n(
+        said = tell_n(
             "group {group} is stretched or folded at crank angle {angles} deg and can go on from there in two ways: it is drawn "
-            "on the same side all round, where its links turn back at once; change a length, or let the crank swing",
+            "on the same side all round, where its links turn back at once",
             "group {group} is stretched or folded at crank angles {angles} deg and can go on from there in two ways: it is drawn "
-            "on the same side all round, where its links turn back at once; change a length, or let the crank swing",
+            "on the same side all round, where its links turn back at once",
             len(self.angles)).format(group=self.group, angles=angles)
+        advice = (tell('to go on smoothly, write branch = "follow" in the group') if self.passes
+                  else tell("change a length, or let the crank swing"))
+        return f"{said}; {advice}"
 
 
 def check_turn(mechanism: Mechanism, moving: str = "") -> None:
@@ -58,8 +65,8 @@ def check_turn(mechanism: Mechanism, moving: str = "") -> None:
     passed = check_assembly(mechanism, Cycle((), np.empty(0), 0.0, mechanism.crank.sense, 2 * np.pi, None, None))
     if moving and passed:
         raise CannotBuild("\n".join(map(str, passed)),
-                          tell("the strokes of {moving} cannot be found: it has no speed there; change a length, or tell nothing "
-                               "of strokes (output, working_sense, stroke)").format(moving=moving))
+                          tell("the strokes of {moving} cannot be found: it turns back at once there, or has no speed; change a "
+                               "length, or tell nothing of strokes (output, working_sense, stroke)").format(moving=moving))
 
 
 def check_assembly(mechanism: Mechanism, cycle: Cycle) -> tuple[DeadPosition, ...]:
@@ -83,11 +90,34 @@ def check_assembly(mechanism: Mechanism, cycle: Cycle) -> tuple[DeadPosition, ..
     if missing:
         name, labels = missing
         raise CannotBuild(tell("{point} cannot be constructed at positions {labels}").format(point=name, labels=", ".join(labels)))
-    passed: dict[str, list[float]] = {}
+    _check_followed(mechanism, cycle)
+    passed: dict[tuple[str, bool], list[float]] = {}
     for i, (g, limit) in enumerate(limits):
-        if limit.measured and (angles := search.dead(i)):
-            passed.setdefault("-".join(g.links), []).extend(angles)
-    return tuple(DeadPosition(group, tuple(sorted(angles))) for group, angles in passed.items())
+        changes = np.degrees(passages(mechanism).angles(g))
+        for angle in search.dead(i) if limit.measured else ():
+            change = bool(np.any(np.abs(np.mod(changes - angle + 180.0, 360.0) - 180.0) < CHANGE))
+            if not (change and g.follow):
+                passed.setdefault(("-".join(g.links), change), []).append(angle)
+    closed = {"-".join(g.links): cycle.swings or len(passages(mechanism).angles(g)) % 2 == 0 for g in mechanism.groups}
+    return tuple(DeadPosition(group, tuple(sorted(angles)), change and closed[group]) for (group, change), angles in passed.items())
+
+
+CHANGE = 0.1
+"""Degrees within which the search for the narrowest places finds a change point."""
+
+
+def _check_followed(mechanism: Mechanism, cycle: Cycle) -> None:
+    """A group that follows has to come back to its side after a turn of the crank: it passes an even number of change points."""
+    for g in mechanism.groups:
+        angles = passages(mechanism).angles(g) if g.follow and not cycle.swings else ()
+        if len(angles) % 2:
+            message = tell_n('group {group} with branch = "follow" passes a change point at crank angle {angles} deg: after a turn '
+                             "of the crank it stands on the other side",
+                             'group {group} with branch = "follow" passes change points at crank angles {angles} deg: after a turn '
+                             "of the crank it stands on the other side", len(angles))
+            raise CannotBuild(message.format(group="-".join(g.links),
+                                             angles=in_a_row(of_reader(f"{angle:.1f}") for angle in np.degrees(angles) % 360)),
+                              tell("let the crank swing (end in [cycle]), change a length, or leave branch out"))
 
 
 @dataclass(frozen=True)

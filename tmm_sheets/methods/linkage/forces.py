@@ -17,7 +17,8 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.given import FoundNumber
+from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.given import FoundNumber, Given
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Rule, Step
@@ -79,7 +80,8 @@ class Kinetostatics:
     ``loads`` are all forces on each link, reactions included, as they were used; ``reactions`` by name ("F54", "F11,10");
     ``couples`` and ``arms`` of sliding pairs by name ("h50"); ``link_couples`` are inertia couples and applied
     moments of each link; ``from_moments`` are the parts of reactions that moment equations gave, in the order they were found;
-    ``parts`` those known before the normal part, by the reaction's name, from moments or along a slot.
+    ``parts`` those known before the normal part, by the reaction's name, from moments or along a slot; ``limits`` are rows that are
+    known next to change points (:func:`~tmm_sheets.methods.linkage.force_limits.limits_of_forces`).
     """
 
     positions: Positions
@@ -95,11 +97,17 @@ class Kinetostatics:
     parts: dict[str, Step] = field(default_factory=dict)
     balancing: Step | None = None
     friction: Friction | None = None
+    limits: dict[str, Given] = field(default_factory=dict)
 
     @property
     def external(self) -> list[Load]:
         """Weights, inertia forces and applied forces of all links, without reactions."""
         return [load for loads in self.loads.values() for load in loads if load.role != "reaction"]
+
+    def bounded(self) -> Any:
+        """True at the positions where every reaction is a number, shape (n,): not where links that carry it lie in one line."""
+        n = len(self.positions.plan.labels)
+        return np.all([np.isfinite(np.broadcast_to(step.value, (n,))) for step in self.reactions.values()], axis=0)
 
     @property
     def couple_points(self) -> dict[str, str]:
@@ -271,7 +279,8 @@ class Kinetostatics:
         before_last = tail
         if last is not None:
             lay(f"F̅_{{{two}}}^τ", last)
-        closing = fp.plan.add("1", rules.LINE_LINE, start, u, tail, v, *sine)
+        way = (self.limits[g.name],) if sine and g.name in self.limits else ()
+        closing = fp.plan.add("1", rules.LINE_LINE, start, u, tail, v, *sine, *way)
         fp.side(f"F̅_{{{one}}}" + ("^n" if first is not None else ""), closing, start, unknown=True)
         for sign, a, b in pending:
             fp.side(sign, a, b)
@@ -393,16 +402,17 @@ def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: 
 
 def kinetostatics(pos: Positions, acc: Accelerations, loads: dict[str, list[Load]], couples: dict[str, list[Step]],
                   driver: GearForce | None, plan: Plan | None = None, friction: Friction | None = None,
-                  search: Tally | None = None) -> Kinetostatics:
+                  search: Tally | None = None, limits: dict[str, Given] | None = None) -> Kinetostatics:
     """Force plans of all groups from the farthest to the crank; ``driver`` None means a pure balancing moment.
 
-    ``friction`` that acts besides; ``search`` counts plans that are only an approximation.
+    ``friction`` that acts besides; ``search`` counts plans that are only an approximation; ``limits`` are known next to change
+    points.
     """
     sums = plan or Plan("moments", tr("Sums of moments"), "m", pos.plan.labels, search=search or pos.plan.search)
     work = {name: list(of_link) for name, of_link in loads.items()}
     turning = {} if friction is None else friction.couples
     couples = {link: [*couples.get(link, ()), *turning.get(link, ())] for link in {**couples, **turning}}
-    k = Kinetostatics(pos, acc, work, sums, couples, friction=friction)
+    k = Kinetostatics(pos, acc, work, sums, couples, friction=friction, limits=limits or {})
     for g in reversed(pos.mechanism.groups):
         g.kind.force(k, g)
     _crank(k, driver)
@@ -421,11 +431,13 @@ def _crank(k: Kinetostatics, driver: GearForce | None) -> None:
     others = [load for load in k.loads[c.link] if load.role != "reaction"]
     tail = plan.chain(1, first, reactions)
     n = 1 + len(reactions)
+    known = (k.limits[TOTAL],) if TOTAL in k.limits else ()
     if driver is None:
-        k.balancing = k.plan.add("Mур", OPPOSITE_COUPLE, total, symbol=tr("Mb"))
+        k.balancing = k.plan.add("Mур", BALANCING if known else OPPOSITE_COUPLE, total, *known, symbol=tr("Mb"))
     else:
         at = contact_point(pos, driver)
-        k.balancing = k.plan.add(k.plan.named(driver.name), DRIVING_FORCE, total, pivot, at, driver.line(c.sense))
+        name = k.plan.named(driver.name)
+        k.balancing = k.plan.add(name, DRIVING_FORCE, total, pivot, at, driver.line(c.sense), *known)
         load = Load(symbol(driver.name), c.link, at, k.balancing, "applied")
         k.loads[c.link].append(load)
         tail = plan.chain(n, tail, [load])
@@ -434,8 +446,22 @@ def _crank(k: Kinetostatics, driver: GearForce | None) -> None:
     k.close(plan, c.link, m.frame, tail, first)
 
 
-def _driving(total: Any, centre: Any, at: Any, u: Any) -> Any:
-    return -total / ar.moment(centre, at, u) * u
+TOTAL = "sum of moments on the crank"
+"""Name of its limit."""
+
+
+@primitive("value or its limit", "real")
+def in_limit(value: Any, limit: Any) -> Any:
+    """A value at each position, and its limit where that is known: next to a change point."""
+    return np.where(np.isnan(limit), value, limit)
+
+
+BALANCING = Rule("balancing moment", lambda total, limit: -in_limit(total, limit), ("number", "number"), "number",
+                 OPPOSITE_COUPLE.wording, unit="N*m")
+
+
+def _driving(total: Any, centre: Any, at: Any, u: Any, *limit: Any) -> Any:
+    return -(in_limit(total, *limit) if limit else total) / ar.moment(centre, at, u) * u
 
 
 DRIVING_FORCE = Rule("balancing force", _driving, ("number", "point", "point", "direction"), "force",

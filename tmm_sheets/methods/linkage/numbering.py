@@ -20,6 +20,7 @@ from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
 from tmm_sheets.methods.linkage.cycle import Cycle, Strokes
 from tmm_sheets.methods.linkage.dead_positions import check_dead_positions, dead_positions
+from tmm_sheets.methods.linkage.positions import passages
 from tmm_sheets.methods.linkage.strokes import Floats, Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.methods.linkage.watched import OfAngles, Watched
 from tmm_sheets.words import marked, tell, tr
@@ -229,6 +230,8 @@ def _dead_of(m: Mechanism, output: str, axis: complex) -> DeadPoints:
     def along(turned: Floats) -> Any:
         return (velocity(sense * turned) * np.conj(axis)).real
 
+    if passages(m).turning_back(output):
+        check_turn(m, output)  # names the group
     runs = runs_of(along)
     if len(runs) < 2:
         check_turn(m, "" if runs else output)  # names the group that does not assemble, and by how much

@@ -8,14 +8,17 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, cast
 
+import numpy as np
+
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step, value_of
 from tmm_sheets.mechanism.groups.dead_centres import near_point
-from tmm_sheets.mechanism.groups.hints import SpecialPoint
+from tmm_sheets.mechanism.groups.hints import Crossing, SpecialPoint, Turning
 from tmm_sheets.mechanism.groups.three_legs import Course, course
 from tmm_sheets.mechanism.groups.triad import TRIAD, TriadGroup
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
+from tmm_sheets.methods.linkage.passages import SIDE, Passages
 from tmm_sheets.words import tr
 
 
@@ -25,7 +28,8 @@ class Positions:
 
     ``directions`` are unit vectors of the links, from the first named point of each to its next; ``feet`` name, for rockers
     with an offset, the foot of the perpendicular from the pivot on the slot. ``sines`` are, by the first link of a group next to
-    the crank, those of the angle between its lines in the plans of velocities, where they are known better than the lines.
+    the crank, those of the angle between its lines in the plans of velocities, where they are known better than the lines;
+    ``turnings`` tell how it turns, by the same, where it has change points.
     ``special`` are Assur's special points of groups of class III by their names, ``false`` the plans of their false positions by
     the groups' names.
     """
@@ -42,6 +46,7 @@ class Positions:
     rays: dict[tuple[str, str], Step] = field(default_factory=dict)
     feet: dict[str, str] = field(default_factory=dict)
     sines: dict[str, Step] = field(default_factory=dict)
+    turnings: dict[str, Turning] = field(default_factory=dict)
     special: dict[str, SpecialPoint] = field(default_factory=dict)
     false: dict[str, Plan] = field(default_factory=dict)
 
@@ -73,15 +78,58 @@ class Positions:
             known[group.name] = course(lambda phi: TRIAD.before(_before(self.mechanism, group, phi), group), group.when, group.near)
         return cast("Course", known[group.name])
 
+    @property
+    def chosen(self) -> bool:
+        """True where something is chosen by the very crank angles: special points, change points of groups that hang on others."""
+        return bool(self.special) or any(turning.first is None for turning in self.turnings.values())
+
+    def side(self, group: StructuralGroup) -> Any:
+        """On which side a group is put together, +1 or -1: a step where it changes in change points."""
+        turning = self.turnings.get(group.links[0])
+        return group.side if turning is None else turning.side
+
     def crossing(self, group: StructuralGroup) -> tuple[Step, ...]:
         """Further arguments of the rule that makes a group's crossing, where the crank angle knows better than the points."""
-        found = group.kind.crossing(self.mechanism, group, self.angle)
+        found = group.kind.crossing(self.mechanism, group, self.angle) or self._passage(group)
         if found is None:
             return ()
         self.sines[group.links[0]] = found.sine
-        for step in (*found.lengths, found.sine):
+        for step in found.steps:
             self.plan.adopt(step)
-        return found.lengths
+        if found.turning is not None:
+            self.turnings[group.links[0]] = found.turning
+        return found.known
+
+    def _passage(self, group: StructuralGroup) -> Crossing | None:
+        """Crossing of a group that hangs on others and has change points."""
+        passing = passages(self.mechanism)
+        angles = passing.angles(group)
+        if not angles:
+            return None
+        side: Any = group.side
+        if group.follow:
+            cut = group.at if group.cut is None else group.cut
+            side = Step(f"side {group.name}", SIDE, (self.angle, side, group.at, cut, self.mechanism.crank.sense, *angles))
+        return group.kind.passage(self, group, side, passing.row(group, self.phi, ROOT, _root, zero=True))
+
+
+ROOT = "root of the gaps"
+
+
+def _root(m: Mechanism, phi: Any) -> Any:
+    """Root of the product of the gaps of the last group, which changes its sides with its sign."""
+    group = m.groups[-1]
+    p, q, _ = group.kind.gaps_at(position_plan(m, phi, purpose=SEARCHED), group)
+    with np.errstate(invalid="ignore"):
+        return np.sqrt(p * q) * group.side
+
+
+SEARCHED = "change points"
+
+
+def passages(m: Mechanism) -> Passages:
+    """Change points of a mechanism."""
+    return Passages(m, lambda of, phi, until: position_plan(of, phi, purpose=SEARCHED, until=until))
 
 
 FOLLOWED = "ways of assembly"

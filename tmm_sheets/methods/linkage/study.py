@@ -17,6 +17,7 @@ from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.integration import weighted
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.cycle import Cycle
+from tmm_sheets.methods.linkage.force_limits import limits_of_forces
 from tmm_sheets.methods.linkage.forces import GearForce, Kinetostatics, external_loads, kinetostatics
 from tmm_sheets.methods.linkage.loads import Applied
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
@@ -134,7 +135,8 @@ class Study:
             return kinetostatics(self.positions, self.accelerations, loads, couples, self.driver, friction=friction, search=search)
 
         if self.friction is None:
-            return statics()
+            limits = limits_of_forces(self.positions, self.accelerations, loads, couples, self.driver)
+            return kinetostatics(self.positions, self.accelerations, loads, couples, self.driver, limits=limits)
         from tmm_sheets.methods.linkage.approximations import with_friction
 
         return with_friction(self.friction, self.velocities, self.sliding, statics)

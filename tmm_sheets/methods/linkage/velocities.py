@@ -15,7 +15,9 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
-from tmm_sheets.methods.linkage.positions import Positions
+from tmm_sheets.mechanism.groups.hints import Turning
+from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
+from tmm_sheets.methods.linkage.positions import SEARCHED, Positions, passages, position_plan
 from tmm_sheets.words import marked, tr
 
 POLE = Rule("pole", lambda z: z, ("point",), "point", marked("Choose the pole {name}."))
@@ -51,6 +53,10 @@ ANGULAR_VELOCITY = Rule(
 OF_CRANK = Rule("angular velocity of the crank", lambda sense, w: sense * w, ("number", "number"), "number", "{name} = {value}.",
                 unit="rad/s")
 SAME = Rule("the same", lambda w: w, ("number",), "number", "{name} = {value}.", unit="rad/s")
+
+
+WAY = Rule("velocity about the other end", lambda turning, w, length: turning * w * length, ("number", "number", "length"),
+           "number", "{name} = {value}.", beyond_paper=True, unit="m/s")
 
 
 @dataclass
@@ -111,6 +117,18 @@ class MotionPolygon:
         ray = self.positions.direction(p, q)
         return self.plan.once(f"⟂{ray.name}", rules.TURN, ray)
 
+    def known(self, group: StructuralGroup) -> tuple[Step, ...]:
+        """What is known of the crossing of a group's lines better than they tell: their sine, the way along the first."""
+        turning = self.positions.turnings.get(group.links[0])
+        if turning is None:
+            return self.positions.known_sine(group)
+        way = self.plan.aside(f"{self.RATE}l {group.name}", *self.way(turning, group), group.lengths[0])
+        return (*self.positions.known_sine(group), way)
+
+    def way(self, turning: Turning, group: StructuralGroup) -> tuple[Any, ...]:
+        """Rule and arguments that tell how far a point is laid off across its link, one metre from the other end."""
+        raise NotImplementedError
+
     def turning(self, link: str, big_q: str, big_b: str, q: Step, b: Step) -> None:
         """Rate of turning of a link from the vectors ``q`` and ``b`` of two of its points."""
         z = self.positions.points
@@ -141,6 +159,12 @@ class Velocities(MotionPolygon):
 
     POLE, VECTOR, RATE, TURNING, SAME = "p", "V̅", "ω", ANGULAR_VELOCITY, SAME
 
+    def first(self, turning: Turning, group: StructuralGroup) -> Any:
+        """Angle that the first link of a group with change points turns by an angle of the crank; NaN where it is not known."""
+        if turning.first is not None:
+            return turning.first
+        return passages(self.positions.mechanism).row(group, self.positions.phi, "turning", _turning_of_last)
+
     @property
     def omega(self) -> dict[str, Step]:
         """Angular velocity of every link, rad/s."""
@@ -155,10 +179,19 @@ class Velocities(MotionPolygon):
         assert isinstance(g.through, str)
         return self.on(g.link, g.through, at), g.link
 
+    def way(self, turning: Turning, group: StructuralGroup) -> tuple[Any, ...]:
+        """Rule and arguments that tell the velocity of a point about the other end of its link."""
+        return WAY, self.first(turning, group), self.omega[self.positions.mechanism.crank.link]
+
     def rotated(self, point: str, start: Step, link: str, q: str, b: str) -> Step:
         """Velocity of a point of a turning link at ``b``, from that at ``q``; named after ``point``."""
         z = self.positions.points
         return self.plan.add(self.name(point), RIGID, start, self.omega[link], z[q], z[b])
+
+
+def _turning_of_last(m: Mechanism, phi: Any) -> Any:
+    """Angular velocity of the first link of the last group, rad/s."""
+    return velocity_plan(position_plan(m, phi, purpose=SEARCHED)).omega[m.groups[-1].links[0]].value
 
 
 def plan_name(plan: Plan, point: str) -> str:

@@ -52,7 +52,7 @@ class Watched:
             if replay is None:
                 plans = self._plans(phi)
                 found = Replay([pick(plans)], [plans.row])
-                replay = None if plans.positions.special else found  # those are chosen by the angles they are recorded for
+                replay = None if plans.positions.chosen else found  # those are chosen by the angles they are recorded for
             else:
                 found = replay
             begin = perf_counter()
@@ -63,7 +63,7 @@ class Watched:
         return values
 
     def _plans(self, phi: Any) -> _Plans:
-        if self._first is None or self._first.positions.special:
+        if self._first is None or self._first.positions.chosen:
             self._first = _Plans(self.mechanism, self.purpose, phi)
         return self._first
 

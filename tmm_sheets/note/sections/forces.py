@@ -24,6 +24,7 @@ AGREES = 1.0
 
 def scope(r: Reader) -> Scope:
     """Everything of the force analysis at the position that is told, reactions at all of them."""
+    r.project.check_forces()
     study = r.project.study
     m = study.mechanism
     found = Scope(
