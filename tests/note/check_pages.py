@@ -52,6 +52,7 @@ KINDS = {
     "parted": "a page ends between a formula and its \"where\"",
     "uncontinued": "a table goes on without \"continued\"",
     "outside": "something crosses the frame",
+    "clipped": "ink of a picture is cut at its edge",
     "empty": "a page within a section is less than 60 % full",
 }
 """Kinds of fault; ``empty`` is no fault but a price."""
@@ -242,6 +243,36 @@ def events_of_docx(data: bytes, language: str) -> list[Event]:
     return events
 
 
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+_DRAWN = {"M": 2, "L": 2, "A": 7}
+"""Numbers behind a command of a path; the last two are where it leads."""
+
+
+def clipped(data: bytes) -> Iterator[Fault]:
+    """Pictures of a DOCX that hold ink outside of what they show; it has the drawings of all that are not turned."""
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        for name in archive.namelist():
+            if not re.search(r"media/fig-.*\.svg$", name):
+                continue
+            picture = ET.fromstring(archive.read(name))
+            _, _, width, height = map(float, picture.get("viewBox", "").split())
+            for x, y in _points(picture):
+                if not (0 <= x <= width and 0 <= y <= height):
+                    yield Fault("clipped", f"{name}: {x / 1000:.0f}, {y / 1000:.0f} mm of {width / 1000:.0f} x {height / 1000:.0f}")
+                    break
+
+
+def _points(picture: ET.Element) -> Iterator[tuple[float, float]]:
+    """Where the lines of a picture lead."""
+    for path in picture.iter("{http://www.w3.org/2000/svg}path"):
+        for command, numbers in re.findall(r"([A-Za-z])([^A-Za-z]*)", path.get("d", "")):
+            found = [float(v) for v in _NUMBER.findall(numbers)]
+            size = _DRAWN.get(command, 0)
+            assert command in "zZ" or (size and len(found) % size == 0), command
+            for k in range(0, len(found), size or 1):
+                yield found[k + size - 2], found[k + size - 1]
+
+
 # --- the rules
 
 
@@ -319,7 +350,8 @@ def judged(name: str, language: str, formats: tuple[str, ...]) -> dict[str, Any]
         found["continued"] = sum(e.kind == "continued" for e in events)
         found["pdf"] = [*faults, *faults_of(events)]
     if "docx" in formats:
-        found["docx"] = list(faults_of(events_of_docx(made.files["note.docx"], language)))
+        word = made.files["note.docx"]
+        found["docx"] = [*clipped(word), *faults_of(events_of_docx(word, language))]
     return found
 
 

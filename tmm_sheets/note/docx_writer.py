@@ -35,6 +35,8 @@ DPI = 220
 """Resolution of the pictures beside their vectors, for programs that do not show these."""
 TEXT = 175.0
 """Width of the text, mm; what is wider stands out of it on both sides."""
+WIDE, LEADING = 0.2, 0.42
+"""About how wide a letter is and how high a line, mm for each point of its size."""
 FIRST = datetime(1980, 1, 1)
 _W = "http://schemas.openxmlformats.org/wordprocessingml/2006/main"
 _SVG = "http://schemas.microsoft.com/office/drawing/2016/SVG/main"
@@ -241,21 +243,22 @@ class _Writer:
             column.width = self.mm(width)
         for row, cells, height in zip(table.rows, rows, heights, strict=True):
             _height(row, height)
-            for cell, text in zip(row.cells, cells, strict=True):
-                self._cell(cell, text, 7)
+            for cell, text, width in zip(row.cells, cells, widths, strict=True):
+                self._cell(cell, text, 7, width)
         for r0, c0, r1, c1 in merges:
             text = next((rows[r][c] for r in range(r0, r1 + 1) for c in range(c0, c1 + 1) if rows[r][c]), "")
             merged = table.cell(r0, c0).merge(table.cell(r1, c1))
             for p in merged.paragraphs[1:]:
                 p._p.getparent().remove(p._p)
             merged.paragraphs[0].clear()
-            self._cell(merged, text, 14 if text == w.get("designation") else 8)
+            self._cell(merged, text, 14 if text == w.get("designation") else 8, sum(widths[c0:c1 + 1]), sum(heights[r0:r1 + 1]))
         empty = footer.paragraphs[0]
         empty._p.getparent().remove(empty._p)
         last = footer.add_paragraph()
         last.paragraph_format.line_spacing = self.pt(1)
 
-    def _cell(self, cell: Any, text: str, size: float) -> None:
+    def _cell(self, cell: Any, text: str, size: float, width: float, height: float = 5.0) -> None:
+        """Lettering of a stamp, set narrower where it is too long for its cell, mm."""
         from docx.enum.table import WD_CELL_VERTICAL_ALIGNMENT
         from docx.enum.text import WD_ALIGN_PARAGRAPH
 
@@ -265,7 +268,13 @@ class _Writer:
         if text == "PAGE":
             _field(p, "PAGE", "1", size)
         elif text:
-            p.add_run(text).font.size = self.pt(size)
+            run = p.add_run(text)
+            run.font.size = self.pt(size)
+            lines = max(1, int(height / (LEADING * size)))
+            words = [max(map(len, text.split())), len(text) / lines + (max(map(len, text.split())) / 2 if lines > 1 else 0)]
+            share = (width - 1.0) / (WIDE * size * max(words))
+            if share < 1:
+                run._r.get_or_add_rPr().append(_parsed(f'<w:w xmlns:w="{_W}" w:val="{max(10, int(100 * share))}"/>'))
 
     def _title_page(self) -> None:
         from docx.enum.text import WD_ALIGN_PARAGRAPH

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from tmm_sheets.backends import svg
 from tmm_sheets.box import Box
-from tmm_sheets.drawing.ink import letters
-from tmm_sheets.drawing.marks import Fill, Line, Mark, Polyline, Text, flat
+from tmm_sheets.drawing.marks import Line, Mark, Polyline, Text, flat
+from tmm_sheets.note.cutting import bare, points_of, windowed
 from tmm_sheets.note.document import Figure, Sheet
 
 if TYPE_CHECKING:
@@ -19,11 +19,15 @@ if TYPE_CHECKING:
 WIDTH, HEIGHT = 182.0, 205.0
 """Place for a figure with its caption on a page, mm: within the frame, a little wider than the text."""
 LONG = 225.0
-"""Height for one that is turned or fills a page."""
+"""Height for one that is turned."""
+FULL = 245.0
+"""Height for one that fills a page."""
 LETTERS = 3.5
 """Height of the lettering that has to be read, mm on the sheet."""
 READABLE = 1.95
 """Least height of lettering on the page, mm: two, as a ruler tells it."""
+SMALLEST = 1.8
+"""The same for a view that can be shown as a whole only so, mm: the least of GOST 2.304."""
 USUAL = 0.66
 """Scale of a picture where there is room: lettering a little higher than it has to be."""
 SMALL = 70.0
@@ -86,11 +90,13 @@ class Pictures:
             own_labels = {labels, *labels.split(", ")}
             marks = [m for m in marks if m.of == name or (m.by is not None and m.by.position in own_labels and m.by.role == "text")]
         box = extent(marks)
-        if scale(box)[0] * LETTERS < READABLE and focus:
-            chosen = [m for m in marks if m.by is not None and _within(m.by.step, m.by.role, focus)]
-            if chosen:
-                box = _cut(_about(extent(chosen), box))
-                marks = [m for m in marks if _touches(m, box)]
+        if not readable(box):
+            marks = bare(marks)
+            box = extent(marks)
+        chosen = [m for m in marks if m.by is not None and _within(m.by.step, m.by.role, focus)]
+        if chosen and not readable(box, SMALLEST):
+            window = _cut(_about(extent(chosen), box))
+            return _figure(name, windowed(marks, window, "thin"), window.inset(-MARGIN))
         return _figure(name, marks, box)
 
     def top(self, name: str, height: float) -> Figure | None:
@@ -102,7 +108,7 @@ class Pictures:
         drawn = [self.sheets[n].drawing.marks[k] for view in found if view[0] == n and view[2] for k in view[1]]
         box = extent(drawn)
         box = Box(box.x0, max(box.y0, box.y1 - height), box.x1, box.y1)
-        return _figure(name, [m for m in drawn if _touches(m, box)], box)
+        return _figure(name, windowed(drawn, box.inset(MARGIN)), box)
 
     def parts(self, name: str) -> list[Figure]:
         """The view as several figures, one under another, where it is too large to be read as one."""
@@ -114,7 +120,7 @@ class Pictures:
         marks = [drawing.marks[k] for view in found if view[0] == n and view[2] for k in view[1]]
         box = extent(marks)
         count = 1
-        while count < 4 and scale(Box(box.x0, box.y0, box.x1, box.y0 + box.height / count))[0] * LETTERS < READABLE:
+        while count < 4 and not readable(Box(box.x0, box.y0, box.x1, box.y0 + box.height / count)):
             count += 1
         if count == 1:
             return [_figure(name, marks, box)]
@@ -124,7 +130,8 @@ class Pictures:
             part = [m for m in marks if low <= _middle(m).imag < high]
             if part:
                 place = extent(part)
-                made.append(_figure(name, part, Box(place.x0, max(place.y0, low - 6), place.x1, min(place.y1, high + 6))))
+                place = Box(place.x0, max(place.y0, low - 6), place.x1, min(place.y1, high + 6))
+                made.append(_figure(name, windowed(part, place.inset(MARGIN)), place))
         return [replace(figure, part=i) for i, figure in enumerate(reversed(made), 1)]
 
     def pages(self) -> list[Sheet]:
@@ -149,16 +156,9 @@ def _within(step: str, role: str, focus: Sequence[str]) -> bool:
 
 def extent(marks: Iterable[Mark]) -> Box:
     """Smallest rectangle round marks with the strokes of their lettering."""
-    low: list[tuple[float, float]] = []
-    high: list[tuple[float, float]] = []
-    for m in marks:
-        for p in letters(m) if isinstance(m, Text) else (flat(m, 3.0),):
-            if len(p):
-                low.append((float(p.real.min()), float(p.imag.min())))
-                high.append((float(p.real.max()), float(p.imag.max())))
-    x0, y0 = (min(v) for v in zip(*low, strict=True))
-    x1, y1 = (max(v) for v in zip(*high, strict=True))
-    return Box(x0 - MARGIN, y0 - MARGIN, x1 + MARGIN, y1 + MARGIN)
+    boxes = [Box.around(p, MARGIN) for p in points_of(marks)]
+    low, high = zip(*((b[:2], b[2:]) for b in boxes), strict=True)
+    return Box(*map(min, zip(*low, strict=True)), *map(max, zip(*high, strict=True)))
 
 
 def scale(box: Box) -> tuple[float, bool]:
@@ -166,9 +166,17 @@ def scale(box: Box) -> tuple[float, bool]:
     usual = max(USUAL, min(1.0, SMALL / box.width, SMALL / box.height))
     upright = min(WIDTH / box.width, HEIGHT / box.height, usual)
     turned = min(WIDTH / box.height, LONG / box.width, usual)
+    filling = min(WIDTH / box.width, FULL / box.height, usual)
+    if max(upright, turned) * LETTERS < READABLE and filling > upright:
+        upright = filling
     if upright * LETTERS >= READABLE or (turned * LETTERS < READABLE and turned < 1.15 * upright):
         return upright, False
     return turned, True
+
+
+def readable(box: Box, height: float = READABLE) -> bool:
+    """Whether the lettering of a picture is as high as that on the page, mm."""
+    return scale(box)[0] * LETTERS >= height
 
 
 def _figure(name: str, marks: Sequence[Mark], box: Box) -> Figure:
@@ -193,14 +201,6 @@ def _cut(box: Box) -> Box:
     x, y = (box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2
     w, h = min(box.width, width), min(box.height, height)
     return Box(x - w / 2, y - h / 2, x + w / 2, y + h / 2)
-
-
-def _touches(m: Mark, box: Box) -> bool:
-    if isinstance(m, Text):
-        return all(box.contains(complex(z)) for p in letters(m) for z in p)
-    p = flat(m, 3.0)
-    inside = bool(p.real.max() >= box.x0 and p.real.min() <= box.x1 and p.imag.max() >= box.y0 and p.imag.min() <= box.y1)
-    return inside and not (isinstance(m, Fill) and not (box.x0 <= p.real.min() and p.real.max() <= box.x1))
 
 
 def _middle(m: Mark) -> complex:
