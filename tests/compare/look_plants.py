@@ -12,7 +12,8 @@ from collections import Counter
 from dataclasses import replace
 
 from tests.compare.cad_plants import compared, covered, draw, sheets_of, some_way
-from tmm_sheets.compare.cad.cad_looks import BROAD, CALLED
+from tmm_sheets.compare.cad.cad_findings import STYLES
+from tmm_sheets.compare.cad.cad_looks import BROAD
 from tmm_sheets.drawing.dashes import cut
 from tmm_sheets.drawing.styles import line_type
 
@@ -68,7 +69,7 @@ def main() -> None:
             if number not in said:
                 print(f"  missed: {name} {n} {number} {by_number[number].kind} {was} drawn as {style}, "
                       f"{by_number[number].length:.0f} mm")
-        total += sum(e.style in CALLED for e in exact)
+        total += sum(e.style in STYLES for e in exact)
         for number in said.keys() - changed.keys():
             wrong += 1
             e = by_number[number]

@@ -37,6 +37,8 @@ TEXT = 175.0
 """Width of the text, mm; what is wider stands out of it on both sides."""
 WIDE, LEADING = 0.2, 0.42
 """About how wide a letter is and how high a line, mm for each point of its size."""
+PROPERTY = 255
+"""Signs that a property of a document may have; the pages say the whole."""
 FIRST = datetime(1980, 1, 1)
 _W = "http://schemas.openxmlformats.org/wordprocessingml/2006/main"
 _SVG = "http://schemas.microsoft.com/office/drawing/2016/SVG/main"
@@ -81,7 +83,8 @@ class _Writer:
         """the last paragraph of the block that is written, where it may have to stay with the next"""
         self._styles()
         props = self.made.core_properties
-        props.title, props.author, props.last_modified_by, props.comments = note.title, note.author, note.author, ""
+        title, author = note.title[:PROPERTY], note.author[:PROPERTY]
+        props.title, props.author, props.last_modified_by, props.comments = title, author, author, ""
         props.created = props.modified = FIRST
         props.language = note.language
 
