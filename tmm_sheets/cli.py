@@ -349,7 +349,7 @@ def solve(
     opened, refused = _open(project, corrected), dict[str, CannotBuild]()
     found = results.assemble(opened, parts, phi=phi, positions=positions, refused=refused)
     for line in results.remarks(opened, found):
-        click.echo(f"{opened.variant.project.name}: {line}", err=True)
+        click.echo(f"{opened.variant.called}: {line}", err=True)
     if target is None:
         click.echo(results.listing(found))
     elif target == "-":
@@ -436,6 +436,8 @@ def note(project: str, corrected: bool, formats: tuple[str, ...], output: Path |
         click.echo(f"{opened.variant.called}: {line}", err=True)
     for problem in written.problems:
         click.echo(f"{opened.variant.called}: {tell('left out: {problem}').format(problem=problem)}", err=True)
+    for dead in opened.dead_positions if opened.variant.crank is not None else ():
+        click.echo(f"{opened.variant.called}: {dead}", err=True)
 
 
 def _window(context: click.Context, parameter: click.Parameter, value: str | None) -> Box | None:

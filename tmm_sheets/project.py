@@ -233,6 +233,24 @@ class Project:
             return int(passages(self.mechanism).within(self.cycle.phi).argmin())
         return self.cycle.index(told or self.cycle.labels[0], "[cycle] force_position: ")
 
+    @property
+    def turning_back(self) -> dict[str, list[float]]:
+        """Crank angles, degrees from 0 to 360, at which links of groups turn back at once, by the groups' names."""
+        import numpy as np
+
+        from tmm_sheets.methods.linkage.positions import passages
+
+        found = {g.name: passages(self.mechanism).angles(g) for g in self.mechanism.groups if not g.follow}
+        return {name: sorted((np.degrees(angles).round(1) % 360).tolist()) for name, angles in found.items() if angles}
+
+    @cached_property
+    def unbounded(self) -> bool:
+        """True where reactions grow beyond all bounds at the position of the force analysis."""
+        from tmm_sheets.methods.linkage.positions import passages
+
+        k = self.force_index
+        return bool(passages(self.mechanism).within(self.cycle.phi)[k]) and not bool(self.study.forces.bounded()[k])
+
     def check_forces(self) -> None:
         """Look whether the position of the force analysis has reactions.
 
@@ -241,8 +259,8 @@ class Project:
         CannotBuild
             when they grow beyond all bounds there, as in a change point.
         """
-        bounded, k = self.study.forces.bounded(), self.force_index
-        if not bounded[k]:
+        if self.unbounded:
+            k, bounded = self.force_index, self.study.forces.bounded()
             labels = self.cycle.labels
             said = tell("position {label}: reactions grow beyond all bounds, links that carry them lie in one line; no force plan "
                         "can be drawn there").format(label=labels[k])
@@ -361,8 +379,7 @@ class Project:
                     _ = self.applied
                     if self.friction is not None:
                         _ = self.study.forces  # it may jam
-                    if self.dead_positions or any(g.follow for g in self.mechanism.groups):
-                        self.check_forces()
+                    self.check_forces()
                 elif part == "cam":
                     self.cam.check()
                 elif part in ("gear", "reducer", "train"):

@@ -127,13 +127,13 @@ def _put_linkage(project: Project, tree: dict[str, Any], asked: list[str], found
 
 
 def _drawn_scales(project: Project, plans: set[str], *, by_angle: bool) -> dict[str, Any]:
-    """Scale factors the sheets draw these plans with; none where a project asked angle by angle cannot be drawn."""
+    """Scale factors the sheets draw these plans with; none where one asked angle by angle, or its forces, cannot be drawn."""
     from tmm_sheets.sheets import composition
 
     try:
         found = composition.scales(project, plans)
     except CannotBuild:
-        if by_angle:
+        if by_angle or project.unbounded:
             return {}
         raise
     return {symbol: {"value": scale.mu, "unit": _latin(scale.unit), "where": f"sheet {sheet}"}

@@ -23,7 +23,7 @@ from tmm_sheets.methods.flywheel.flywheel import WITHOUT_CRANK
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.loads import Applied, distinct
-from tmm_sheets.methods.linkage.positions import Positions, position_plan
+from tmm_sheets.methods.linkage.positions import Positions, passages, position_plan
 from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
 from tmm_sheets.words import marked, tr
 
@@ -213,6 +213,13 @@ def turning(link: Link) -> float:
     return link.inertia if link.pivot_inertia is None else link.pivot_inertia
 
 
+def _turning_back(m: Mechanism, cycle: Cycle) -> list[float]:
+    """Angles turned, rad, at which links turn back at once: change points of groups that keep their side."""
+    changes = [a for g in m.groups if not g.follow for a in passages(m).angles(g)]
+    once = [float(np.mod(cycle.sense * (a - cycle.start), 2 * np.pi)) for a in changes]
+    return [x + 2 * np.pi * n for x in once for n in range(round(cycle.period / (2 * np.pi)))]
+
+
 class Reduced:
     """Reduced quantities of a mechanism over one period (see the flywheel's methods for how they are used).
 
@@ -231,7 +238,8 @@ class Reduced:
         self.period = cycle.period
         self.omega1 = mechanism.crank.speed
         self.omega = named(self.omega1, "crank.speed", "ω_1", "rad/s")
-        self.breaks = tuple(x for x in distinct((x for f in forces for x in f.jumps), cycle.period) if x > 0)
+        self.breaks = tuple(x for x in distinct((*(x for f in forces for x in f.jumps), *_turning_back(mechanism, cycle)),
+                                                cycle.period) if x > 0)
         self.numbered = Reduction(self, "" if drawn else "@positions", cycle.turned, cycle.labels, drawn)
         self.kept: dict[str, Reduction] = {}
 

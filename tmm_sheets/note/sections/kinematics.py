@@ -17,7 +17,7 @@ from tmm_sheets.note.document import Figure, Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Said, Scope, listed, words
 from tmm_sheets.note.reader import Quantity, Reader, named, shown
-from tmm_sheets.numbers import is_zero
+from tmm_sheets.numbers import is_zero, number
 from tmm_sheets.sheets.false_positions import triads
 
 BAR = "\u0305"
@@ -43,6 +43,8 @@ def scope(r: Reader) -> Scope:
         "own_scale": "positions" in r.project.variant.scales,
         "slides": any(p.motion == "translation" and study.mechanism.frame not in p.links for p in study.mechanism.pairs),
     }
+    fields["turning_back"] = [{"group": name, "angles": ", ".join(map(number, angles))}
+                              for name, angles in r.project.turning_back.items()]
     if cycle.plan is not None:
         fields["dead_steps"] = r.sentences(cycle.plan, _plain)
     if cycle.numbering is not None:
