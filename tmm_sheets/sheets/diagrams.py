@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction.scale import Scale
+from tmm_sheets.construction.step import Step, value_of
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import LEAST, needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.numbers import enough
+from tmm_sheets.numbers import NOISE, enough
 from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import Frame, pick
 from tmm_sheets.sheets.kinetic_frames import balancing_sign
@@ -23,7 +24,6 @@ from tmm_sheets.sheets.linkage import indexed, shapes
 from tmm_sheets.words import marked, tell, tr, tr_in
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.linkage.motion import Output
     from tmm_sheets.project import Project
 
@@ -244,8 +244,16 @@ def _quantities(project: Project, outputs: list[Output], units: Iterable[tuple[s
 
 
 def _row(step: Step, turned: Any) -> Any:
-    """Values of a step at some angles, of one that is the same at all of them as well."""
-    return np.broadcast_to(step.value, np.shape(turned))
+    """Values of a step at some angles, of one that is the same at all of them as well.
+
+    An angular acceleration that is nothing beside all that the points of its link are accelerated by is nothing.
+    """
+    values = np.broadcast_to(step.value, np.shape(turned))
+    source = step.args[0] if step.args and isinstance(step.args[0], Step) else step
+    if source.rule.unit != "rad/s2" or len(source.args) != 4:
+        return values
+    big_q, big_b, q, b = map(value_of, source.args)
+    return np.where(np.abs(values) <= NOISE * np.max(np.abs(b - q) / np.abs(big_b - big_q)), 0.0, values)
 
 
 def _quantity(key: str, sign: str, unit: str, curves: list[Curve]) -> DiagramQuantity:

@@ -73,6 +73,7 @@ def _links(project: Project) -> list[list[str]]:
     loads, couples, _ = study.loads
     omega, epsilon, forces = study.velocities.omega, study.accelerations.epsilon, study.forces
     of_omega, of_epsilon = (size((step.value for step in of.values()), k) for of in (omega, epsilon))
+    of_epsilon = max(of_epsilon, of_omega**2)  # where no link speeds up, what is left is the rounding of normal accelerations
     rows = [[tr("Link"), tr("ω, s^{−1}"), "ε, " + tr("s^{−2}"), tr("F_i, N"), tr("M_i, N·m")]]
     for name, link in m.links.items():
         inertia = next((load.vector for load in loads.get(name, ()) if load.role == "inertia"), None)

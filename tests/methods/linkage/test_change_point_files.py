@@ -137,3 +137,10 @@ def test_build_says_it_and_draws_no_force_without_bounds(solved, tmp_path, capsy
     solved(LOADED)
     assert __main__.run(["--lang", "en", "build", "my.toml", "--format", "svg", "-o", "out2"]) == 1
     assert 'for example force_position = "1"' in capsys.readouterr().err
+
+
+def test_a_sheet_holds_no_rounding(solved, tmp_path):
+    """Epsilon of a parallelogram is nothing beside the normal accelerations, and is written so."""
+    solved(FOLLOW)
+    assert __main__.run(["build", "my.toml", "--format", "svg", "--text", "live", "-o", "out"]) == 0
+    assert "0,00000" not in (tmp_path / "out/sheet1.svg").read_text(encoding="utf-8")
