@@ -41,6 +41,10 @@ CAM = {"cam": {"follower": "translating roller", "law": "sine", "rise": "100 deg
                "pressure_angle": "30 deg"}}
 
 
+NOMINAL = {"cycle.division": "nominal"}
+"""The shaper's positions as manual 000 divides them, by 216 and 144 degrees: its printed numbers stand on them."""
+
+
 def from_file(name):
     """A shipped project, or a file, as a part."""
     return tomllib.loads(catalogue.read(name).text)

@@ -82,7 +82,7 @@ def edited(old, new):
         ("to = 1.0", "to = 1.5", "force[1].to", "from 0 to 1, not 1.5"),
         ("working = 6", "working = 1", None, None),
         ("coefficient = 1.5", "coefficient = 0.5", "cycle.coefficient", "K of 1 or more"),
-        ("coefficient = 1.5", "", "cycle", "needs the coefficient K"),
+        ("coefficient = 1.5", 'division = "nominal"', "cycle", "needs the coefficient K"),
         ('sense = "clockwise"', 'sense = "clokwise"', "crank.sense", 'did you mean "clockwise"'),
         ('direction = "against motion"', 'direction = "agains motion"', "force[1].direction", 'expected "against motion"'),
         ('mate = "90 deg"', "", "balancing", "needs mate as well"),

@@ -154,8 +154,8 @@ def test_title_block_is_filled_in_and_read_again(tmp_path):
     assert names | {"GROUP", "INSTITUTION"} <= tags
     assert tags == {e.dxf.tag for e in doc.blocks.get("TITLE_BLOCK").query("ATTDEF")}
     block.get_attrib("DEVELOPED").dxf.text = "Петренко А. И."
-    number = next(e for e in doc.modelspace().query("TEXT") if "5131,9" in e.dxf.text)
-    number.dxf.text = number.dxf.text.replace("5131,9", "5132,0")
+    number = next(e for e in doc.modelspace().query("TEXT") if "5131,4" in e.dxf.text)
+    number.dxf.text = number.dxf.text.replace("5131,4", "5132,0")
     doc.saveas(path)
     again = ezdxf.readfile(path)
     assert not again.audit().has_issues

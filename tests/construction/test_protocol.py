@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+from tests import project_files as files
 from tests.methods.linkage import truth
 from tmm_sheets import catalogue, protocols
 from tmm_sheets.construction import rules
@@ -22,7 +23,7 @@ SCALES = {"m": Scale("μ_l", 0.006, "м/мм"), "m/s": Scale("μ_V", 0.02, "м·
 
 @pytest.fixture(scope="module")
 def project():
-    return Project(catalogue.read("lugansk/shaper"))
+    return files.project(files.from_file("lugansk/shaper"), files.NOMINAL)
 
 
 @pytest.fixture(scope="module")

@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 
 from tests.methods.linkage.mechanisms import value
-from tmm_sheets import catalogue
-from tmm_sheets.project import Project
+from tests.project_files import NOMINAL, from_file, project
 
 HERE = Path(__file__).parent
 MU_L, MU_V, MU_A = 0.006, 0.02, 0.05
@@ -35,7 +34,7 @@ ERRATA = {(r["table"], r["row"], r["column"]): r for r in rows("errata")}
 
 @pytest.fixture(scope="module")
 def study():
-    return Project(catalogue.read("lugansk/shaper")).study
+    return project(from_file("lugansk/shaper"), NOMINAL).study
 
 
 def modulus(step):

@@ -10,7 +10,7 @@ from tmm_sheets.sheets import kinetics
 
 @pytest.mark.parametrize(("position", "value", "held"), [("2", "7744,9", False), ("6", "−40,0", True), ("9", "−3843,3", True)])
 def test_a_gear_force_that_holds_back_is_negative(position, value, held):
-    own = files.project(files.from_file("lugansk/shaper"), {"cycle.force_position": position})
+    own = files.project(files.from_file("lugansk/shaper"), files.NOMINAL, {"cycle.force_position": position})
     canvas = Canvas()
     kinetics.results(own, canvas, Box(0, 0, 210, 60), {})
     said = {group.text for group in canvas.groups}

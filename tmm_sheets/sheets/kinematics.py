@@ -44,6 +44,7 @@ def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     canvas.title(box, tr("Positions of the mechanism"), str(frame.scale))
     flat_crossings.warn(project, canvas, box, pos.plan, (i for i, _ in cycle.drawn))
     _swing(project, canvas, box)
+    _nominal(project, canvas, box)
     canvas.scales["dead-positions"] = frame.scale
     every = stage(canvas, pos.plan, None, frame)
     _way_of_crank(project, every)
@@ -81,6 +82,16 @@ def _swing(project: Project, canvas: Canvas, box: Box) -> None:
     low, high = (number(round(float(angle or 0.0), 2)) for angle in limits.angles)
     canvas.note(box, tr("The crank could swing from {low}° (limit of group {first}) to {high}° (limit of group {last})").format(
         low=low, high=high, first=limits.groups[0], last=limits.groups[1]))
+
+
+def _nominal(project: Project, canvas: Canvas, box: Box) -> None:
+    """That the strokes were divided by K, and how far from the dead positions their ends are then."""
+    cycle, strokes = project.variant.cycle, project.cycle.strokes
+    if cycle is None or cycle.division != "nominal" or cycle.start != "dead" or cycle.working is None or strokes is None:
+        return
+    canvas.note(box, tr("The strokes are divided by K = {k}: positions {first} and {last} are {angle}° beside the dead positions")
+                .format(k=number(float(cycle.coefficient or 0.0)), first=project.cycle.labels[0],
+                        last=project.cycle.labels[cycle.working], angle=number(abs(degrees(strokes.begin)), 2)))
 
 
 def _way_of_crank(project: Project, s: Stage) -> None:

@@ -287,9 +287,11 @@ class CycleTable(Table):
     idle: Count | None = None
     """parts of the idle stroke"""
     division: Literal["nominal", "exact"] = "exact"
-    """`nominal`: the strokes take the crank angles of K instead of those of the lengths"""
+    """`exact`: positions are counted from the constructed dead positions; `nominal`: the strokes take the crank angles of K, beside
+    them, and the sheet says how far
+    """
     coefficient: Annotated[float, si(units.NUMBER), from_to(1, inf, marked("expected K of 1 or more"))] | None = None
-    """K, for `division = "nominal"`"""
+    """K that is asked for, needed with `division = "nominal"`; the note compares it with that of the lengths"""
     force_position: Name | None = None
     """label of the position of the force analysis, drawn thick; left out: position 0, or the first that is in no change point"""
     zero: Name = "0"

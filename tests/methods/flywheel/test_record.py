@@ -135,7 +135,7 @@ def test_a_plan_says_for_each_of_its_positions(project):
 def test_the_moments_are_virtual_power_on_the_plans_of_the_study(shaper):
     """F5 along the ram: M = -F5 dS5/dphi; J = sum of the closed forms; both from the very points of the study's velocity plan."""
     r, fw = shaper.reduced, shaper.flywheel
-    beta = shaper.cycle.turned + shaper_truth.START
+    beta = np.pi / 2 - shaper.cycle.phi
     rate = shaper_truth.ram_rate(beta)
     np.testing.assert_allclose(fw.M_reduced[:-1], np.where(rate > 1e-9, -2800 * rate, 0.0), rtol=1e-11, atol=1e-9)
     np.testing.assert_allclose(fw.J_reduced[:-1], shaper_truth.inertia(beta), rtol=1e-12)

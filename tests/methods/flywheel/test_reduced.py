@@ -12,11 +12,10 @@ from tests.methods.linkage import shaper_truth, truth
 from tests.methods.linkage.mechanisms import mechanism, mechanisms
 from tests.methods.linkage.test_forces import loaded
 from tests.methods.settings import kinds_alone, tried
-from tmm_sheets import catalogue
+from tests.project_files import NOMINAL, from_file, project
 from tmm_sheets.mechanism.model import Link
 from tmm_sheets.methods.flywheel.reduced import Reduced
 from tmm_sheets.methods.linkage.numbering import even_cycle
-from tmm_sheets.project import Project
 
 TURN = np.linspace(0, 2 * np.pi, 101)[:-1] + 0.003
 BETA = TURN + shaper_truth.START
@@ -25,8 +24,7 @@ BETA = TURN + shaper_truth.START
 
 def cutting(begin, end):
     """The shaper that cuts on a part of its working stroke only."""
-    v = catalogue.read("lugansk/shaper")
-    return Project(v.model_copy(update={"force": (v.force[0].model_copy(update={"from_": begin, "to": end}),)}))
+    return project(from_file("lugansk/shaper"), NOMINAL, {"force[1].from": begin, "force[1].to": end})
 
 
 def test_inertia_of_the_shaper(shaper):
@@ -64,8 +62,8 @@ def test_both_limits_at_the_dead_positions(shaper):
 @pytest.mark.parametrize(("begin", "end"), [(0.05, 0.95), (0.0, 0.5), (0.3, 1.0), (0.001, 0.999)])
 def test_limits_of_cutting_are_where_the_ram_stands_there(begin, end):
     """x(fraction) = CD sin(swing): the crank angle of a fraction of the stroke in closed form."""
-    project = cutting(begin, end)
-    r, s = project.reduced, project.cycle.strokes
+    p = cutting(begin, end)
+    r, s = p.reduced, p.cycle.strokes
     reach = float(truth.AB / truth.AC)
 
     def turned(fraction):

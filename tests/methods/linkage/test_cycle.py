@@ -8,6 +8,7 @@ import pytest
 
 from tests import project_files as files
 from tests.methods.linkage.mechanisms import mechanism
+from tmm_sheets import catalogue
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import RPR, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, LinkPoint, StructuralGroup
@@ -16,6 +17,7 @@ from tmm_sheets.methods.linkage.dead_positions import dead_positions
 from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.strokes import root
+from tmm_sheets.project import Project
 
 DEAD = acos(0.08 / 0.26)
 """Angle between the line of the pivots and the crank in a dead position of the shaper."""
@@ -56,6 +58,22 @@ def test_exact_division_starts_in_the_dead_position(shaper):
     assert out[0] == pytest.approx(-0.566 * 0.08 / 0.26, rel=1e-14)
     assert out[6] == pytest.approx(0.566 * 0.08 / 0.26, rel=1e-14)
     np.testing.assert_allclose(np.diff(cycle.turned[:7]), cycle.strokes.end / 6, rtol=1e-14)
+
+
+def test_zeros_of_the_shipped_shaper_are_zeros():
+    """Positions 0 and 6 are the tangents: rocker and ram stand still, all but to rounding; the ram moves between them only."""
+    p = Project(catalogue.read("lugansk/shaper"))
+    crank, v = p.mechanism.crank, p.study.velocities
+    assert np.degrees(p.cycle.turned[6]) == pytest.approx(degrees(2 * pi - 2 * DEAD), abs=1e-12)
+    for k in (0, 6):
+        pin = p.study.positions.points["B"].value[k]
+        assert abs((np.conj(pin) * (pin + 0.26j)).real) < 1e-16  # the crank stands square to the rocker
+        assert abs(v.omega["3"].value[k]) < 1e-15 * crank.speed
+        for point in (v.points["S5"], v.points["D"], v.points["S3"], v.coincident["B3"]):
+            assert abs(point.value[k]) < 1e-15 * crank.speed * crank.length * 10
+    ram = v.points["S5"].value.real
+    assert np.all(ram[1:6] > 0.5)
+    assert np.all(ram[7:] < -0.5)
 
 
 @pytest.mark.parametrize("coefficient", [None, 1.5])

@@ -1,0 +1,20 @@
+"""A sheet whose strokes are divided by K says so once, with the angle that its ends are beside the dead positions."""
+
+from math import acos, degrees
+
+import pytest
+
+from tests.project_files import NOMINAL, from_file, project
+from tmm_sheets.sheets.sheet import composed
+
+
+def words(drawing):
+    return " ".join(mark.text for mark in drawing.marks if hasattr(mark, "text"))
+
+
+@pytest.mark.parametrize("division", [{}, NOMINAL], ids=["exact", "nominal"])
+def test_it_is_told_once(division):
+    text = words(composed(project(from_file("lugansk/shaper"), division), 1).drawing)
+    assert text.count("отстоят") == bool(division)
+    beside = (216 - (360 - 2 * degrees(acos(0.08 / 0.26)))) / 2
+    assert (f"на {beside:.2f}°".replace(".", ",") in text) is bool(division)
