@@ -8,7 +8,7 @@ OUT := out/$(subst /,-,$(PROJECT))
 SOURCES := $(shell find tmm_sheets templates variants -type f -not -name '*.pyc' 2>/dev/null)
 
 .DEFAULT_GOAL := sheets
-.PHONY: help sheets test lint types wheel-test gallery gallery-check gold messages docs picture clean distclean
+.PHONY: help sheets test lint types wheel-test gallery gallery-check note-check gold messages docs picture clean distclean
 
 sheets: $(OUT)/sheet1.pdf  ## the sheets of PROJECT (default lugansk/shaper) in out/; this is what plain "make" does
 
@@ -34,6 +34,9 @@ gallery-check: gallery  ## the same; fails when a sheet cannot be drawn, a label
 	for language in ru uk en; do $(BIN)/python -m tests.labels --lang $$language || exit 1; done
 	$(BIN)/python -m tests.labels --ciphers 60
 	$(BIN)/python -m tests.evenness
+
+note-check: $(VENV)/.tested  ## the finished notes of every shipped project in three languages: places of figures, tables, "where"
+	$(BIN)/python -m tests.note.check_pages
 
 gold: $(VENV)/.tested  ## accept the display lists as they are drawn now (look at the sheets first)
 	$(BIN)/python -m tests.sheets.gold
