@@ -347,6 +347,7 @@ class _Writer:
         for i, node in enumerate(b.lines):
             self.last = p = self.made.add_paragraph()
             p.paragraph_format.keep_with_next = i < len(b.lines) - 1
+            p.paragraph_format.line_spacing = 1.0  # anything less cuts the foot of a fraction off
             p.paragraph_format.tab_stops.add_tab_stop(self.mm(84), WD_TAB_ALIGNMENT.CENTER)
             p.paragraph_format.tab_stops.add_tab_stop(self.mm(175), WD_TAB_ALIGNMENT.RIGHT)
             p.paragraph_format.space_before = p.paragraph_format.space_after = self.pt(2)
