@@ -33,6 +33,8 @@ SPOKEN = {"figure": r"(?:рис|[Ff]ig)\.", "table": r"(?:табли\w+|tables?)
 NUMBERS = r"\d+(?:\.\d+)?"
 FRAME = (19.5, 4.5, 205.5, 292.5)
 """Inside of the frame, mm from the lower left corner, with half the width of its line."""
+MITRE = 5000.0
+"""As large as pdfium reckons a picture with a sharp corner in a line, whose mitre nobody draws, mm."""
 HEADING = 12.5
 """Size of letters from which on a line is a heading, pt."""
 SPACE = 0.4
@@ -205,6 +207,8 @@ def outside(page: Any, lines: Iterable[Line]) -> Iterator[str]:
     mm = 25.4 / 72
     for item in page.get_objects(filter=(raw.FPDF_PAGEOBJ_PATH, raw.FPDF_PAGEOBJ_FORM), max_depth=1):
         x0, y0, x1, y1 = (v * mm for v in item.get_bounds())
+        if max(x1 - x0, y1 - y0) > MITRE:
+            continue
         if x0 < FRAME[0] or y0 < FRAME[1] or x1 > FRAME[2] or y1 > FRAME[3]:
             yield f"a picture or rule at {x0:.0f}..{x1:.0f} x {y0:.0f}..{y1:.0f}"
 
