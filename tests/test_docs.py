@@ -1,8 +1,10 @@
 """README and docs/ say what is so: links lead somewhere, commands can be typed, messages are the program's, tables are current."""
 
 import ast
+import importlib
 import re
 import shlex
+import shutil
 import tomllib
 from pathlib import Path
 
@@ -147,6 +149,42 @@ def test_the_first_project_works(tmp_path, monkeypatch, capsys):
     for arguments in commands:
         assert __main__.run(arguments) == __main__.DONE, (arguments, capsys.readouterr().err)
     assert {p.name for p in Path("out/my").iterdir()} >= {"sheet1.dxf", "sheet4.pdf", "sheet1-a4.pdf", "measured.csv"}
+
+
+def test_modules_of_the_tests_can_be_started():
+    """What docs tell to run as ``python -m tests...`` is imported without an error, and does something when it is started."""
+    modules = set(re.findall(r"python -m (tests[.\w]*)", EVERYWHERE))
+    assert len(modules) > 15
+    for name in modules:
+        module = importlib.import_module(name if not (ROOT / name.replace(".", "/")).is_dir() else f"{name}.__main__")
+        assert "__main__" in Path(module.__file__).read_text(encoding="utf-8")
+
+
+NOT_RUN = {
+    "bench": "minutes; tests/bench runs parts of it", "stress": "900 cases; tests/test_quoted.py runs some",
+    "build --all": "fifty projects", "--with-note": "builds all twice; tests/note runs it",
+    "--image": "needs a photograph; tests/compare takes some", "note": "tests/note writes some",
+    "--group": "needs works; tests/compare/test_group.py has some", "--list": "needs a list of one's own",
+    "--measured": "needs a table filled in; tests/test_quoted.py fills one in", "--dxf": "needs a drawing; tests/compare has some",
+    "lugansk/shaper press my.toml": "three projects; tests/output/test_batch.py builds more",
+}
+"""Commands of docs/ that the next test leaves out, by what they have in them, and why."""
+
+
+def test_other_commands_work(tmp_path, monkeypatch, capsys):
+    """Each command of all papers once, in one folder, in the order of the papers."""
+    monkeypatch.chdir(tmp_path)
+    Path("my.toml").write_text(catalogue.read("lugansk/shaper").text, encoding="utf-8")
+    commands = dict.fromkeys(shlex.join(c) for text in TEXTS.values() for c in typed(text, "tmm-sheets") if c and c[0] not in QUICK)
+    left = [c for c in commands if not any(word in c for word in NOT_RUN) and not re.search("PROJECT|COMMAND", c)]
+    assert len(left) > 20
+    for command in left:
+        shutil.rmtree("mine", ignore_errors=True)
+        for template in Path().rglob("measured.csv"):
+            template.unlink()
+        assert __main__.run(shlex.split(command)) == __main__.DONE, (command, capsys.readouterr().err)
+        capsys.readouterr()
+    assert [word for word in NOT_RUN if not any(word in c for c in commands)] == []
 
 
 QUICK = ("list", "show", "check", "solve", "protocol")
