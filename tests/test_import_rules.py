@@ -32,7 +32,8 @@ RULES = {
     "task.letters": ("drawing.lettering task", ""),
     "task.families": ("task", ""),
     "project": (f"task {METHODS}", "construction mechanism"),
-    "results": ("construction project sheets", "methods.linkage"),
+    "results": ("construction project result_files sheets", "methods.linkage"),
+    "result_files": ("", ""),
     "catalogue": ("task", ""),
     "summary": ("mechanism project task", ""),
     "explain": ("construction drawing", "project"),
@@ -56,7 +57,7 @@ RULES = {
     "stress": ("construction mechanism methods.linkage", ""),
     "spoken": ("completion", ""),
     "completion": ("catalogue drawing note output project protocols record results", ""),
-    "cli": ("backends bench catalogue compare drawing explain note output project protocols record results sheets "
+    "cli": ("backends bench catalogue compare drawing explain note output project protocols record result_files results sheets "
             "spoken stress summary task", ""),
     "__main__": ("cli completion spoken", ""),
     **dict.fromkeys(NEUTRAL.split(), ("", "")),

@@ -11,11 +11,12 @@ import os
 import platform
 import re
 import stat
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from threading import Lock
 from time import gmtime, time
+from typing import IO
 
 from tmm_sheets.errors import BadInput, Problem, reason_of
 from tmm_sheets.words import marked, tell
@@ -66,7 +67,11 @@ def _is_open(path: Path) -> bool:
     return place.startswith(("/dev/fd/", "/dev/std", "/proc/")) or place in ("/dev/null", "/dev/full", "/dev/tty", os.devnull)
 
 
-def write_all(files: Mapping[Path, bytes]) -> None:
+Content = bytes | Callable[[IO[bytes]], None]
+"""What a file holds, or what writes it piece by piece."""
+
+
+def write_all(files: Mapping[Path, Content]) -> None:
     """Write a set of files, making their folders.
 
     Raises
@@ -83,7 +88,7 @@ def write_all(files: Mapping[Path, bytes]) -> None:
         raise BadInput(_unwritable(Path(e.filename or ""), e)) from None
 
 
-def put(files: Mapping[Path, bytes]) -> None:
+def put(files: Mapping[Path, Content]) -> None:
     """Write a set of files into folders that are there: each beside its place under a passing name; all are renamed at the end.
 
     When anything fails nothing new is left behind, and older files stay as they were.
@@ -99,7 +104,7 @@ def put(files: Mapping[Path, bytes]) -> None:
         _put(files)
 
 
-def _put(files: Mapping[Path, bytes]) -> None:
+def _put(files: Mapping[Path, Content]) -> None:
     passing: dict[Path, Path] = {}
     current = Path()
     try:
@@ -109,11 +114,11 @@ def _put(files: Mapping[Path, bytes]) -> None:
         for path, data in files.items():
             current = path
             if _is_open(path):
-                path.write_bytes(data)
+                _write(path, data)
                 continue
             sweep(path)
             passing[path] = path.with_name(f".{path.name}.{os.getpid()}{_host()}.part")
-            passing[path].write_bytes(data)
+            _write(passing[path], data)
         for target, part in passing.items():
             current = target
             part.replace(target)
@@ -138,6 +143,14 @@ def _check_name(path: Path) -> None:
     if stat.S_ISLNK(mode) and not _is_open(path):
         with suppress(FileNotFoundError):
             path.stat()  # tells of links that lead round
+
+
+def _write(path: Path, data: Content) -> None:
+    if isinstance(data, bytes):
+        path.write_bytes(data)
+        return
+    with path.open("wb") as file:
+        data(file)
 
 
 def sweep(path: Path) -> None:

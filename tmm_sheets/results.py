@@ -6,20 +6,20 @@ counter-clockwise.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.construction.step import Part, Step, Told
 from tmm_sheets.errors import BadInput, CannotBuild, together
 from tmm_sheets.numbers import Sizes, clean, in_a_row, listed
 from tmm_sheets.project import LINKAGE
+from tmm_sheets.result_files import json_pieces, leaves, plain_numbers, row
 from tmm_sheets.words import tell, tell_n
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Plan
     from tmm_sheets.methods.linkage.friction import Friction
     from tmm_sheets.methods.linkage.study import Study
     from tmm_sheets.project import Project
@@ -33,7 +33,7 @@ def assemble(
     refused: dict[str, CannotBuild] | None = None,
 ) -> dict[str, Any]:
     """The results tree in plain numbers; see :func:`told`."""
-    return _plain(told(project, parts, phi=phi, positions=positions, refused=refused))  # type: ignore[no-any-return]
+    return plain_numbers(told(project, parts, phi=phi, positions=positions, refused=refused))  # type: ignore[no-any-return]
 
 
 def told(
@@ -123,7 +123,29 @@ def _put_linkage(project: Project, tree: dict[str, Any], asked: list[str], found
     for name in asked:
         with _losing(lost, name):
             tree[name] = _SECTIONS[name](project, study, chosen)
-    tree["condition"] = _condition(study, [name for name in asked if name not in lost], chosen)
+    there = [name for name in asked if name not in lost]
+    if len(study.labels) > MANY:
+        _at_once(study, tree, there)
+    tree["condition"] = _condition(study, there, chosen)
+
+
+MANY = 4096
+"""Positions from which on all is computed by one function, and nothing but what is told is kept."""
+
+
+def _at_once(study: Study, tree: dict[str, Any], asked: list[str]) -> None:
+    """Evaluate what is told, and the condition of its plans, by one function; a rule without a formula is left to its step."""
+    from tmm_sheets.construction import condition, function
+    parts = {key: tree[key] for key in ("cycle", *asked)}
+    told = [value.step for _, value in leaves(parts) if hasattr(value, "step")]
+    plans = [plan for name in asked for plan in _plans_of(study, name)]
+    with suppress(CannotBuild):
+        function.fill([*told, *(step for plan in plans for step in condition.steps(plan).values())], len(study.labels))
+
+
+def _plans_of(study: Study, part: str) -> list[Plan]:
+    """The plans whose crossings tell the condition of a part."""
+    return [fp.plan for fp in study.forces.plans.values()] if part == "forces" else [getattr(study, part).plan]
 
 
 def _drawn_scales(project: Project, plans: set[str], *, by_angle: bool) -> dict[str, Any]:
@@ -157,7 +179,7 @@ def remarks(project: Project, tree: dict[str, Any]) -> list[str]:
         told += map(str, project.dead_positions)
     for name in (part for part in LINKAGE if part in tree):
         labels = tree[name].get("label", tree["cycle"]["labels"])
-        lost = [label for k, label in enumerate(labels) if _undefined(tree[name].get("reactions", tree[name]), k)]
+        lost = [labels[k] for k in _undefined(tree[name].get("reactions", tree[name]), len(labels))]
         if lost:
             shown = ", ".join(lost[:MOST]) + (" .." if len(lost) > MOST else "")
             if name == "forces":
@@ -175,28 +197,21 @@ MOST = 8
 """Most positions that are named in a message."""
 
 
-def _undefined(table: dict[str, Any], k: int) -> bool:
-    """True where some quantity of a table has no value at a position."""
-    for row in table.values():
-        if isinstance(row, dict):
-            if _undefined(row, k):
-                return True
-        elif isinstance(row, list) and k < len(row) and (row[k] is None or (isinstance(row[k], list) and None in row[k])):
-            return True
-    return False
+def _undefined(table: dict[str, Any], count: int) -> list[int]:
+    """Positions at which some quantity of a table has no value."""
+    import numpy as np
+
+    lost = np.zeros(count, dtype=bool)
+    for _, value in leaves(table):
+        numbers = row(value)
+        if numbers is not None and len(numbers) == count:
+            lost |= ~np.isfinite(numbers).reshape(count, -1).all(axis=1)
+    return [int(k) for k in np.flatnonzero(lost)]
 
 
 def as_json(tree: dict[str, Any]) -> str:
     """JSON text of a results tree, a line for every key down to the third level."""
-    return _lines(tree, 0)
-
-
-def _lines(value: Any, level: int) -> str:
-    if isinstance(value, dict) and value and level < 3:
-        indent = " " * (level + 1)
-        rows = (f"{indent}{json.dumps(k, ensure_ascii=False)}: {_lines(v, level + 1)}" for k, v in value.items())
-        return "{\n" + ",\n".join(rows) + "\n" + " " * level + "}"
-    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+    return "".join(json_pieces(tree))
 
 
 def listing(tree: dict[str, Any]) -> str:
@@ -359,9 +374,10 @@ def _accelerations(project: Project, study: Study, chosen: list[int]) -> dict[st
 def _forces(project: Project, study: Study, chosen: list[int]) -> dict[str, Any]:
     f, lever, balance = study.forces, study.lever, study.balance
     labels = tuple(study.labels[k] for k in chosen)
+    rows = None if len(chosen) == len(study.labels) else tuple(chosen)
 
     def told(step: Step | None, part: Part = "") -> Any:
-        return None if step is None else Spread(step, part, labels, len(study.labels), tuple(chosen))
+        return None if step is None else Spread(step, part, labels, len(study.labels), rows)
 
     return {
         "label": list(labels),
@@ -398,11 +414,9 @@ def _condition(study: Study, asked: list[str], chosen: list[int]) -> dict[str, A
     """Condition number of each plan, the worst of its crossings, at each position; of forces at those they are told for."""
     from tmm_sheets.construction import condition
 
-    n = len(study.labels)
-    plans = {name: [getattr(study, name).plan] for name in asked if name != "forces"}
-    found = {name: condition.of_plans(of_part, n) for name, of_part in plans.items()}
-    if "forces" in asked:
-        found["forces"] = condition.of_plans((fp.plan for fp in study.forces.plans.values()), n)[chosen]
+    found = {name: condition.of_plans(_plans_of(study, name), len(study.labels)) for name in asked}
+    if "forces" in found:
+        found["forces"] = found["forces"][chosen]
     return found
 
 
@@ -419,23 +433,3 @@ def _flywheel(project: Project, scales: dict[str, Any]) -> dict[str, Any]:
         if scale is not None:
             scales[symbol] = {"value": scale.mu, "unit": _latin(scale.unit), "where": "flywheel"}
     return f.results()
-
-
-# --- from arrays to plain numbers -----------------------------------------------------------------------------------
-
-
-def _plain(value: Any) -> Any:
-    """Lists, texts and numbers only: values of steps, a point as [x, y]; NaN and infinity become null."""
-    if hasattr(value, "step") or hasattr(value, "rule"):  # Told, or a whole step
-        return _plain(value.value)
-    if isinstance(value, complex):
-        return [_plain(value.real), _plain(value.imag)]
-    if isinstance(value, dict):
-        return {key: _plain(v) for key, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    if hasattr(value, "tolist"):
-        return _plain(value.tolist())
-    if isinstance(value, float):
-        return value + 0.0 if isfinite(value) else None  # -0.0 becomes 0.0
-    return value

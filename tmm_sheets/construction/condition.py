@@ -11,12 +11,14 @@ Source: surveyors' rule for intersections (засечки): lines that meet unde
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import cache
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step, value_of
 
@@ -48,21 +50,43 @@ _SINES: dict[Rule, Callable[..., Any]] = {rules.ARC_ARC: _arcs, rules.ARC_LINE: 
 """Sine of the angle at which the lines of a rule cross, from the crossing itself and the arguments of the rule."""
 
 
-def condition(step: Step) -> Floats | None:
-    """Condition number of a crossing, 1/sin(alpha), shape (n,) or (1,): 1 at right angles, infinite at tangency, NaN where nothing
-    crosses. None for a step that is no crossing.
-    """
-    sine = step.rule.sine or _SINES.get(step.rule)
+@cache
+def _rule(of: Rule) -> Rule | None:
+    """The rule that tells the condition number of a crossing from its value and the arguments of its rule; None for no crossing."""
+    sine = of.sine or _SINES.get(of)
     if sine is None:
         return None
+
+    @primitive(f"condition of {of.name}", "real")
+    def number(value: Any, *args: Any) -> Any:
+        found = 1 / np.minimum(np.abs(np.atleast_1d(sine(value, *args))), 1.0)
+        return np.where(np.isnan(value), np.nan, found)
+
+    return Rule(number.primitive.name, number, (), "number", "{name} = {value}.", unit="1")  # type: ignore[attr-defined]
+
+
+def steps(plan: Plan) -> dict[str, Step]:
+    """Condition numbers of all crossings of a plan as steps of their own, by the names of the points; made once for a crossing."""
+    for step in plan:
+        if step.name not in plan.conditions and (rule := _rule(step.rule)) is not None:
+            plan.conditions[step.name] = Step(f"condition of {step.name}", rule, (step, *step.args))
+    return plan.conditions
+
+
+def condition(step: Step) -> Floats | None:
+    """Condition number of a crossing, shape (n,) or (1,): 1 at right angles, infinite at tangency, NaN where nothing
+    crosses. None for a step that is no crossing.
+    """
+    rule = _rule(step.rule)
+    if rule is None:
+        return None
     with np.errstate(invalid="ignore", divide="ignore"):
-        found = 1 / np.minimum(np.abs(np.atleast_1d(sine(step.value, *map(value_of, step.args)))), 1.0)
-        return np.where(np.isnan(step.value), np.nan, found)
+        return np.atleast_1d(rule.compute(step.value, *map(value_of, step.args)))
 
 
 def crossings(plan: Plan) -> dict[str, Floats]:
     """Condition numbers of all crossings of a plan, by the names of the points."""
-    return {step.name: found for step in plan if (found := condition(step)) is not None}
+    return {name: np.atleast_1d(step.value) for name, step in steps(plan).items()}
 
 
 def of_plans(plans: Iterable[Plan], n: int) -> Floats:

@@ -65,7 +65,7 @@ class Plan:
         count of a search that makes this plan only to look at its numbers; None for a plan that is drawn or told.
 
     ``asides`` are steps that no pencil makes: numbers that spare rounding (see :attr:`Rule.beyond_paper`). They are no part of the
-    drawing order and are told by the record alone.
+    drawing order and are told by the record alone. ``conditions`` tell how flat its crossings are, once somebody has asked.
 
     A plan's own names ("M", "p") are its own whatever a point or a force of the task is called: a step that is :meth:`named` after
     the task gives way and takes a prime.
@@ -81,6 +81,7 @@ class Plan:
         self.search = search
         self.steps: dict[str, Step] = {}
         self.asides: dict[str, Step] = {}
+        self.conditions: dict[str, Step] = {}
         self.segments: list[Segment] = []
         self.reserved: frozenset[str] = frozenset()
         self._of_task: set[str] = set()
