@@ -14,18 +14,20 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from math import pi
-from typing import Any
 
 import numpy as np
 
 from tmm_sheets import __version__
 from tmm_sheets.bench import peer_programs, truth
-from tmm_sheets.bench.linkages import BLOCK, CRANK, ROCKER_DYAD, SLIDER_DYAD, SLIDER_GUIDE, shaper, study_of
+from tmm_sheets.bench.linkages import CRANK, ROCKER_DYAD, SLIDER_DYAD, SLIDER_GUIDE, shaper, study_of
 from tmm_sheets.bench.peer_programs import PointArrays, Program, Turn
 from tmm_sheets.bench.records import Bench, BenchRecord, told
+from tmm_sheets.construction.function import Function
+from tmm_sheets.construction.program import depending
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import RRP
 from tmm_sheets.mechanism.model import Guide, Link, LinkPoint, Mechanism, StructuralGroup
+from tmm_sheets.methods.linkage.study import Study
 from tmm_sheets.words import tell
 
 COUNTS = (12, 360, 10_000)
@@ -85,23 +87,23 @@ def _moving(m: Mechanism, points: Iterable[str]) -> list[str]:
 
 
 class Ours(Program):
-    """tmm-sheets, its plans recorded anew at every run."""
+    """tmm-sheets, by one function written from the recorded plans."""
 
     name = f"tmm-sheets {__version__}"
 
     def prepare(self, mechanism: str, m: Mechanism, turn: Turn) -> dict[str, Callable[[], PointArrays]]:
         """A run for each quantity."""
-        return {quantity: partial(self._run, m, turn, quantity) for quantity in QUANTITIES}
+        study = study_of(m, turn.angles)
+        return {quantity: self._run(study, quantity) for quantity in QUANTITIES}
 
     @staticmethod
-    def _run(m: Mechanism, turn: Turn, quantity: str) -> PointArrays:
-        found: dict[str, list[Any]] = {}
-        for start in range(0, turn.n, BLOCK):
-            study = study_of(m, turn.angles[start:start + BLOCK])
-            for name, step in getattr(study, quantity).points.items():
-                found.setdefault(name, []).append(step.value)
-        return {name: parts[0] if len(parts) == 1 else np.concatenate([np.atleast_1d(p) for p in parts])
-                for name, parts in found.items()}
+    def _run(study: Study, quantity: str) -> Callable[[], PointArrays]:
+        """Points that move by the function of the crank angle, the others as they are."""
+        points, row = getattr(study, quantity).points, study.positions.angle
+        moving = {id(step) for step in depending(points.values(), [row], ())}
+        still = {name: step.value for name, step in points.items() if id(step) not in moving}
+        f, phi = Function({name: step for name, step in points.items() if id(step) in moving}, [row]), study.positions.phi
+        return lambda: {**still, **f(phi)}
 
 
 PROGRAMS: tuple[type[Program], ...] = (Ours, *peer_programs.PROGRAMS)
