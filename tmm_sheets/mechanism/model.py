@@ -175,16 +175,6 @@ class GroupKind(ABC):
         """
         return None
 
-    def check_dead_positions(self, m: Mechanism, g: StructuralGroup) -> None:
-        """A cycle that begins at a dead position needs a group on the crank pin that has some.
-
-        Raises
-        ------
-        CannotBuild
-            when the group surely has none.
-        """
-        return None
-
     @abstractmethod
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         """How both links look."""

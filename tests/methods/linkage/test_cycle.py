@@ -129,11 +129,47 @@ def test_further_positions_are_sorted_in_over_two_turns(shaper):
         even_cycle(shaper.mechanism, 0.0, 8, extra={"3": 0.1})
 
 
-def test_pivot_inside_the_crank_circle(shaper):
-    m = replace(shaper.mechanism, fixed={"A": 0j, "C": -0.07j})
-    message = r"pivot C of rocker 3 lies 10 mm inside the crank circle: AC = 70 mm, AB = 80 mm; the rocker has no dead positions"
-    with pytest.raises(CannotBuild, match=message):
-        dead_cycle(m, "S5", "+x", 6, 4, 1.5)
+WHITWORTH = files.CRANK | {
+    "crank.length": "200 mm", "points": {"O": ["0 mm", "0 mm"], "Q": ["0 mm", "-100 mm"]},
+    "guide": [{"name": "ram", "through": ["0 mm", "-100 mm"]}],
+    "group": [{"kind": 3, "links": ["2", "3"], "outer": ["A", "Q"]},
+              {"kind": 2, "links": ["4", "5"], "outer": ["C"], "inner": "D", "length": "500 mm", "guide": "ram", "side": -1}],
+    "point": [{"name": "C", "link": "3", "from": "Q", "towards": "A", "distance": "-150 mm"}],
+    "cycle": {"start": "dead", "output": "D", "working_sense": "+x", "working": 6, "idle": 6}}
+"""A rocker that goes round (its pivot is inside the crank circle) and drives a slider."""
+
+
+@pytest.mark.parametrize("sense", ["clockwise", "counter-clockwise"])
+def test_a_slider_behind_a_rocker_that_goes_round_turns_back(sense):
+    """Its dead positions are those of rocker and rod in line: the crank pin on the guide, at -30 and 210 degrees."""
+    p = files.project(WHITWORTH, {"crank.sense": sense})
+    out, turned = p.study.positions.points["D"].value, 240.0 if sense == "counter-clockwise" else 120.0
+    assert out[[0, 6]] == pytest.approx([-0.65 - 0.1j, -0.35 - 0.1j], abs=1e-15)
+    assert np.exp(1j * p.cycle.phi[[0, 6]]) == pytest.approx(np.exp(1j * np.radians([-30, 210])), abs=1e-14)
+    assert np.degrees(p.cycle.turned[6]) == pytest.approx(turned, abs=1e-12)
+    assert np.abs(p.study.velocities.points["D"].value[[0, 6]]) == pytest.approx([0, 0], abs=1e-14)
+
+
+@pytest.mark.parametrize(("output", "hinge"), [("A", "O"), ("C", "Q")])
+def test_an_output_that_goes_round_has_no_dead_positions(output, hinge):
+    with pytest.raises(CannotBuild, match=f"point {output} turns all the way round {hinge}: it has no dead positions"):
+        _ = files.project(WHITWORTH, {"cycle.output": output}).cycle
+
+
+@pytest.mark.parametrize(("sense", "far"), [("+x", "+x"), ("-x", "-x"), ("+y", "+y")])
+def test_the_stroke_of_a_rocker_is_its_swing(sense, far):
+    """A rocker that passes the vertical in its swing: its end is highest there, but turns back at the ends of the swing only."""
+    p = files.project(files.CRANK, {"points": {"O": ["0 m", "0 m"], "E": ["0.4 m", "-0.2 m"]}, "crank.length": "0.1 m", "group": [
+        {"kind": 1, "links": ["2", "3"], "outer": ["A", "E"], "inner": "B", "lengths": ["0.4 m", "0.25 m"]}], "cycle": {
+            "start": "dead", "output": "B", "working_sense": sense, "working": 6, "idle": 6}})
+    ring = position_plan(p.mechanism, np.linspace(0, 2 * pi, 20001)).points["B"].value
+    swing = np.angle(ring - (0.4 - 0.2j))
+    ends = ring[[np.argmin(swing), np.argmax(swing)]]
+    found = p.study.positions.points["B"].value[[0, 6]]
+    assert sorted(found, key=lambda z: z.real) == pytest.approx(sorted(ends, key=lambda z: z.real), abs=1e-7)
+    axis = {"+x": 1, "-x": -1, "+y": 1j}[far]
+    assert ((found[1] - found[0]) * np.conj(axis)).real > 0
+    assert abs(p.study.velocities.omega["3"].value[0]) < 1e-9 * p.mechanism.crank.speed
 
 
 def test_dead_positions_are_not_asked_of_what_does_not_assemble():
@@ -144,7 +180,7 @@ def test_dead_positions_are_not_asked_of_what_does_not_assemble():
 
 def test_output_that_never_turns_back(shaper):
     m = mechanism(StructuralGroup(RPR, ("2", "3"), ("B", "C")), fixed={"C": -0.05j})
-    with pytest.raises(CannotBuild, match="inside the crank circle"):
+    with pytest.raises(CannotBuild, match="point B turns all the way round A: it has no dead positions"):
         dead_cycle(m, "B", "+x", 6, 6, None)
 
 

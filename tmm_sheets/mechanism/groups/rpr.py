@@ -11,7 +11,6 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link, pair_index
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Helper, Rule, Step
-from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, PIN_ANGLE, TANGENT, measured, span_from_crank
 from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, extremes, lacking, less, mm, span
@@ -168,35 +167,6 @@ class RPRKind(GroupKind):
         pivot = plan.add(q, rules.GIVEN, m.fixed[q])
         a, b = (plan.add(f"{c.pin}{prime}", rules.TANGENT, pivot, centre, c.length, side) for prime, side in (("′", 1), ("″", -1)))
         return plan.aside("φ′", PIN_ANGLE, centre, a), plan.aside("φ″", PIN_ANGLE, centre, b)
-
-    def check_dead_positions(self, m: Mechanism, g: StructuralGroup) -> None:
-        """A cycle that begins at a dead position needs a rocker that swings.
-
-        Raises
-        ------
-        CannotBuild
-            when the rocker's pivot lies inside the crank circle.
-        """
-        c, q = m.crank, g.outer[1]
-        if c.pin not in g.outer or q not in m.fixed or (lack := _inside(m, q)) < 0:
-            return
-        raise CannotBuild(
-            tell(
-                "pivot {q} of rocker {link} lies {lack} inside the crank circle: {centres} = {distance}, {crank} = {length}; "
-                "the rocker has no dead positions"
-            ).format(
-                q=q,
-                link=g.links[1],
-                lack=mm(lack),
-                centres=f"{c.pivot}{q}",
-                distance=mm(c.length - lack),
-                crank=f"{c.pivot}{c.pin}",
-                length=mm(c.length),
-            ),
-            tell('make {centres} longer than the crank, or give the crank angle of position 0 instead of start = "dead"').format(
-                centres=f"{c.pivot}{q}"
-            ),
-        )
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         (i, j), (p, q) = g.links, g.outer

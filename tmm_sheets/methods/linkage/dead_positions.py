@@ -28,18 +28,6 @@ def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[Step, Step] | None]
     return (None, None) if dead is None else (plan, dead)
 
 
-def check_dead_positions(m: Mechanism) -> None:
-    """A cycle that begins at a dead position needs groups that have some.
-
-    Raises
-    ------
-    CannotBuild
-        when a group on the crank pin turns all the way round.
-    """
-    for group in m.groups:
-        group.kind.check_dead_positions(m, group)
-
-
 @primitive("angle turned to a point", "real")
 def _turned(centre: Any, pin: Any, start: Any, sense: Any) -> Any:
     """Angle from a direction to that from a centre to a point, in the sense of rotation, 0 to 360 degrees."""

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +18,8 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
 from tmm_sheets.methods.linkage.cycle import Cycle, Strokes
-from tmm_sheets.methods.linkage.dead_positions import check_dead_positions, dead_positions
+from tmm_sheets.methods.linkage.dead_positions import dead_positions
+from tmm_sheets.methods.linkage.output_way import BY_ANGLE, way_of
 from tmm_sheets.methods.linkage.positions import passages
 from tmm_sheets.methods.linkage.strokes import Floats, Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.methods.linkage.watched import OfAngles, Watched
@@ -92,7 +92,6 @@ def dead_cycle(m: Mechanism, output: str, working_sense: str, working: int, idle
     CannotBuild
         when the mechanism does not assemble all the way round, or the output never turns back, or not along its working sense.
     """
-    check_dead_positions(m)
     sense, dead = m.crank.sense, _dead_of(m, output, SENSES[working_sense])
     labels = tuple(str(i) for i in range((working + idle) * turns))
     plan = Plan("cycle", tr("Numbering of the positions"), "rad", labels)
@@ -225,20 +224,14 @@ def _dead_of(m: Mechanism, output: str, axis: complex) -> DeadPoints:
     otherwise.
     """
     sense, watched = m.crank.sense, Watched(m, DEAD_POINTS)
-    velocity = watched.velocity(output)
-
-    def along(turned: Floats) -> Any:
-        return (velocity(sense * turned) * np.conj(axis)).real
-
     if passages(m).turning_back(output):
         check_turn(m, output)  # names the group
-    runs = runs_of(along)
+    way = way_of(m, watched, output, axis)
+    runs = runs_of(way.speed)
     if len(runs) < 2:
         check_turn(m, "" if runs else output)  # names the group that does not assemble, and by how much
-        raise CannotBuild(tell("point {output} has no dead positions: it never turns back").format(output=output),
-                          tell('give the crank angle of position 0 instead: start = "90 deg"'))
-    turned = np.array([r.begin for r in runs])
-    ways = (watched.point(output)(sense * turned) * np.conj(axis)).real
+        raise CannotBuild(tell("point {output} has no dead positions: it never turns back").format(output=output), tell(BY_ANGLE))
+    ways = np.asarray(way.travelled(np.array([r.begin for r in runs])))
     if not np.ptp(ways) > 1e-9 * m.crank.length:
         raise CannotBuild(tell("point {output} has no working stroke: it does not move that way").format(output=output),
                           tell("give another working_sense"))
@@ -246,7 +239,7 @@ def _dead_of(m: Mechanism, output: str, axis: complex) -> DeadPoints:
     begin, end = working_stroke(runs)
     ordered = over_cycle(runs, 2 * np.pi, begin)
     plan, dead = dead_positions(m)
-    found = None if dead is None else _constructed(m, velocity, dead, (sense * begin, sense * end))
+    found = None if dead is None else _constructed(m, watched.velocity(output), dead, (sense * begin, sense * end))
     if plan is None or found is None:
         whole = tuple(r.later(-ordered[0].begin) for r in ordered)
         start, wide = (Given(value, name, "", "rad", over="none", choice="zeros of the output's velocity")
