@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from decimal import ROUND_HALF_UP, Context, Decimal
-from math import degrees, floor, isfinite, log10
+from math import copysign, degrees, floor, isfinite, log10, radians
 from typing import Any
 
 from tmm_sheets.words import decimal_sign, reader
@@ -111,11 +111,30 @@ def decimal(x: float, decimals: int = 2, sign: bool = False) -> str:
     return f"+{text}" if sign and x > 0 else text
 
 
-def degrees_and_minutes(angle: float) -> str:
-    """An angle in rad as it is written: 27°12′, 20°."""
-    minutes = round(abs(degrees(angle)) * 60)
-    sign = "−" if angle < 0 and minutes else ""
-    return f"{sign}{minutes // 60}°{minutes % 60:02d}′" if minutes % 60 else f"{sign}{minutes // 60}°"
+def degrees_and_minutes(angle: float, places: int = 0) -> str:
+    """An angle in rad as it is written: 27°12′, 20°.
+
+    With ``places`` it has seconds too, and all but the first of the places behind the decimal sign: 27°12′35″, 27°12′35,2″.
+    """
+    units, of_minute = _of_angle(angle, places)
+    sign = "−" if angle < 0 and units else ""
+    minutes, rest = divmod(units, of_minute)
+    second = of_minute // 60 or 1
+    seconds = f"{rest // second:02d}" + (f".{rest % second:0{places - 1}d}".rstrip("0").rstrip(".") if places > 1 else "")
+    minutes, whole = minutes % 60, minutes // 60
+    return f"{sign}{whole}°" + (f"{minutes:02d}′" if minutes or rest else "") + (f"{written(seconds)}″" if rest else "")
+
+
+def rounded_angle(angle: float, places: int = 0) -> float:
+    """The angle that :func:`degrees_and_minutes` writes, rad."""
+    units, of_minute = _of_angle(angle, places)
+    return copysign(radians(units / (60 * of_minute)), angle)
+
+
+def _of_angle(angle: float, places: int) -> tuple[int, int]:
+    """Size of an angle in the least unit that is written, and how many of them make a minute."""
+    of_minute = 60 * 10 ** (places - 1) if places else 1
+    return round(abs(degrees(angle)) * 60 * of_minute), of_minute
 
 
 def plain(x: float, digits: int = 6, kind: float = 0.0) -> str:

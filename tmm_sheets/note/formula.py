@@ -12,6 +12,7 @@ from math import isclose, pi
 from typing import Any, TypeGuard
 
 from tmm_sheets.construction import expression
+from tmm_sheets.numbers import rounded, written
 
 
 class Node:
@@ -236,7 +237,8 @@ def _cyrillic(c: str) -> bool:
 
 # --- expressions --------------------------------------------------------------------------------------------------
 
-_ANGLES = ("sin", "cos", "tan")
+ANGLES = ("sin", "cos", "tan")
+"""Functions of angles: these stand in degrees inside them."""
 _FUNCTIONS = {
     "tan": "tg",
     "atan": "arctg",
@@ -392,7 +394,7 @@ def _walk(tree: expression.Expression, operands: Sequence[Operand], angle: bool)
         return _constant(tree.value)
     assert isinstance(tree, expression.Operation)
     name = tree.name
-    parts = [_walk(p, operands, angle or name in _ANGLES) for p in tree.parts]
+    parts = [_walk(p, operands, angle or name in ANGLES) for p in tree.parts]
     if name in _ARITHMETIC:
         return _ARITHMETIC[name](parts)
     return _function(name, parts)
@@ -467,15 +469,24 @@ def _lettered(node: Node) -> bool:
 
 
 def _constant(value: float | complex) -> tuple[Node, int]:
+    text = constant_text(value)
+    if text:
+        return Figures(written(text)), ATOM if text[0] != "-" else SUM
     if isinstance(value, complex):
         return Letters("i"), ATOM
-    for of, node in ((pi, Letters("π")), (2 * pi, Row((Figures("2"), Letters("π"))))):
-        if isclose(value, of):
-            return node, PRODUCT
-    if isclose(value, pi / 2):
-        return Fraction(Letters("π"), Figures("2")), ATOM
-    if isclose(value, 0.2):
-        return Row((Figures("1"), Sign("/"), Figures("5"))), ATOM
-    from tmm_sheets.numbers import number
+    return next((node, binds) for of, node, binds in _NAMED if isclose(value, of))
 
-    return Figures(number(value, 6)), ATOM if value >= 0 else SUM
+
+_NAMED: tuple[tuple[float, Node, int], ...] = (
+    (pi, Letters("π"), PRODUCT),
+    (2 * pi, Row((Figures("2"), Letters("π"))), PRODUCT),
+    (pi / 2, Fraction(Letters("π"), Figures("2")), ATOM),
+    (0.2, Row((Figures("1"), Sign("/"), Figures("5"))), ATOM),
+)
+"""Numbers of formulas that are not written as such: of each the value, the node, and how tightly it binds."""
+
+
+def constant_text(value: float | complex) -> str:
+    """A number of the formula itself as a computer writes it; empty where it stands there as a letter or a fraction."""
+    named = isinstance(value, complex) or any(isclose(value, of) for of, _, _ in _NAMED)
+    return "" if named else rounded(value.real, 6)

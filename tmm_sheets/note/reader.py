@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
-from math import degrees, floor, isfinite, log10
+from math import copysign, degrees, isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +16,8 @@ from tmm_sheets.construction.given import FoundNumber, Given, GivenNumber
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.note import phrases
+from tmm_sheets.note import digits, phrases
+from tmm_sheets.note.digits import DIGITS, Digits, shown
 from tmm_sheets.note.document import Inline, Number, Symbol, Text
 from tmm_sheets.note.formula import (
     Figures,
@@ -36,7 +37,7 @@ from tmm_sheets.note.formula import (
     with_numbers,
 )
 from tmm_sheets.note.phrases import Said
-from tmm_sheets.numbers import degrees_and_minutes, fixed, is_zero, number, written
+from tmm_sheets.numbers import degrees_and_minutes, fixed, is_zero, number
 from tmm_sheets.record.recording import book_of, unit
 
 if TYPE_CHECKING:
@@ -44,10 +45,6 @@ if TYPE_CHECKING:
     from tmm_sheets.note.pictures import Pictures
     from tmm_sheets.project import Project
     from tmm_sheets.record.book import Book
-
-DIGITS = 4
-"""Significant digits of a number in the note, as a drawing gives them."""
-
 
 class Differs(CannotBuild):
     """A formula as people write it does not give what the record has: the note does not print it."""
@@ -206,9 +203,7 @@ class Reader:
         step: Step,
         k: int | None = None,
         symbol: str = "",
-        factor: float = 1.0,
         as_unit: str | None = None,
-        names: Mapping[str, str] | None = None,
     ) -> Said | None:
         """The formula of a step by its own expression; None when it has none that can be written."""
         tree = step.rule.tree(len(step.args))
@@ -216,7 +211,7 @@ class Reader:
             return None
         quantities = []
         for a in step.args:
-            q = self._operand(a, k, names or {})
+            q = self._operand(a, k)
             if q is None:
                 return None
             quantities.append(q)
@@ -239,33 +234,31 @@ class Reader:
             return None
         result = self.of(step, k)
         unit_ = self.unit_of(step) if as_unit is None else as_unit
-        return self.written(head, tree, quantities, Quantity("", result.value * factor, unit_, result.step, result.position))
+        return self.written(head, tree, quantities, Quantity("", result.value, unit_, result.step, result.position))
 
-    def _operand(self, a: Any, k: int | None, names: Mapping[str, str]) -> Quantity | None:
+    def _operand(self, a: Any, k: int | None) -> Quantity | None:
         if isinstance(a, Step):
             value = value_at(a, self.at(a, k))
             if np.ndim(value) or np.iscomplexobj(value) or not isinstance(value, int | float | np.number | np.ndarray):
                 return None
-            symbol = self.letters_of(a)
-            return Quantity(names.get(a.name, symbol), float(value), self.unit_of(a), self.id(a), self.position(a, self.at(a, k)))
+            return Quantity(self.letters_of(a), float(value), self.unit_of(a), self.id(a), self.position(a, self.at(a, k)))
         if isinstance(a, Given):
             value = a.value if np.ndim(a.value) == 0 else a.value[min(self.k if k is None else k, len(a.value) - 1)]
             if isinstance(value, str) or not isinstance(value, int | float | np.number):
                 return None
-            return Quantity(self._given(a, names), float(value), a.unit, a.name)
+            return Quantity(self._given(a), float(value), a.unit, a.name)
         if isinstance(a, GivenNumber):
-            return Quantity(self._given(a, names), float(a), a.unit, a.name)
+            return Quantity(self._given(a), float(a), a.unit, a.name)
         if isinstance(a, int | float | np.number):
             return Quantity(number(float(a), 6), float(a))
         return None
 
-    def _given(self, a: Given | GivenNumber, names: Mapping[str, str]) -> str:
-        return str(names.get(a.name) or phrases.words(self.language).get("symbols", {}).get(a.name) or a.symbol or a.name)
+    def _given(self, a: Given | GivenNumber) -> str:
+        return str(phrases.words(self.language).get("symbols", {}).get(a.name) or a.symbol or a.name)
 
     def written(self, symbol: str, tree: expression.Expression, quantities: Sequence[Quantity], result: Quantity | None) -> Said:
         """A formula from its expression and the quantities in the places of its arguments; without ``result`` letters only."""
         in_letters = [Operand(letters(q.symbol), None, bool(_SUM.search(q.symbol))) for q in quantities]
-        in_numbers = [self._figures(q) for q in quantities]
         head = letters(symbol)
         used = list(dict.fromkeys(arguments(simplified(tree))))
         explained = [(symbol, self.unit(result.unit) if result is not None else "")]
@@ -277,15 +270,25 @@ class Reader:
         formula = Row((head, Sign("="), *_items(of_tree(tree, in_letters))))
         if result is None:
             return Said(formula, None, tuple(explained))
-        numbers = Row((*_items(of_tree(tree, in_numbers)), Sign("="), *self.result(result)))
-        return Said(formula, numbers, tuple(explained))
+        rounded, of_result = digits.chosen(
+            tree,
+            [q.value for q in quantities],
+            [q.unit == "rad" for q in quantities],
+            [q.digits for q in quantities],
+            result.value,
+            result.digits,
+            result.unit == "rad",
+        )
+        in_numbers = [self._figures(q, of) for q, of in zip(quantities, rounded, strict=True)]
+        gives = self.result(replace(result, digits=of_result))
+        return Said(formula, Row((*_items(of_tree(tree, in_numbers)), Sign("="), *gives)), tuple(explained))
 
-    def _figures(self, q: Quantity) -> Operand:
-        source = Number(shown(q.value, q.digits), q.step, q.value, q.position, q.digits)
+    def _figures(self, q: Quantity, of: Digits) -> Operand:
+        source = Number(shown(q.value, of.number), q.step, q.value, q.position, of.number)
         node = figures(source) if q.step else Figures(source.text)
         as_angle = None
         if q.unit == "rad":
-            text = degrees_and_minutes(q.value)
+            text = degrees_and_minutes(q.value, of.angle)
             as_angle = Figures(text, Number(text, q.step, q.value, q.position))
         return Operand(node, as_angle, q.value < 0 and source.text != "0")
 
@@ -307,7 +310,6 @@ class Reader:
         step: Step,
         k: int | None = None,
         unit_: str | None = None,
-        factor: float = 1.0,
     ) -> Said:
         """A formula in the words of the field for a step that the record computes with vectors: its value must be the step's.
 
@@ -319,21 +321,11 @@ class Reader:
         tree = build(*(expression.Argument(i) for i in range(len(quantities))))
         value = float(np.real(expression.evaluate(tree, [q.value for q in quantities])))
         n = self.of(step, k)
-        size = max(abs(n.value * factor), 1e-9 * max((abs(q.value) for q in quantities), default=0.0), 1e-12)
-        if isfinite(value) and abs(abs(value) - abs(n.value * factor)) > 1e-6 * size:
-            raise Differs(f"{symbol} of {n.step} is {n.value * factor}, the note's formula gives {value}")
-        return self.written(
-            symbol,
-            tree,
-            quantities,
-            Quantity(
-                "",
-                abs(n.value * factor) if value > 0 else n.value * factor,
-                self.unit_of(step) if unit_ is None else unit_,
-                n.step,
-                n.position,
-            ),
-        )
+        size = max(abs(n.value), 1e-9 * max((abs(q.value) for q in quantities), default=0.0), 1e-12)
+        if isfinite(value) and abs(abs(value) - abs(n.value)) > 1e-6 * size:
+            raise Differs(f"{symbol} of {n.step} is {n.value}, the note's formula gives {value}")
+        given = self.unit_of(step) if unit_ is None else unit_
+        return self.written(symbol, tree, quantities, Quantity("", copysign(n.value, value), given, n.step, n.position))
 
     # --- sentences
 
@@ -419,20 +411,6 @@ def symbol_of(step: Step) -> str:
     return step.symbol or letters_of(step.name)
 
 
-def shown(value: float, digits: int = DIGITS) -> str:
-    """A number with at most so many significant digits; very large and small ones with a power of ten."""
-    if not isfinite(value):
-        return "∞" if value > 0 else "−∞" if value < 0 else "–"
-    if value == 0:
-        return "0"
-    exponent = floor(log10(abs(value)))
-    if -4 <= exponent < 6:
-        return number(value, digits)
-    mantissa = number(value / 10**exponent, digits)
-    return f"{mantissa}·10{written(str(exponent)).translate(_RAISED)}"
-
-
-_RAISED = str.maketrans("0123456789−", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 _LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789−")
 
 

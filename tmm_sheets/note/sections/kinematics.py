@@ -13,10 +13,11 @@ from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.plan import Plan, Segment
 from tmm_sheets.construction.rules import GIVEN, LINE_LINE, TURN
 from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.note.digits import shown
 from tmm_sheets.note.document import Figure, Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Said, Scope, listed, words
-from tmm_sheets.note.reader import Quantity, Reader, named, shown
+from tmm_sheets.note.reader import Quantity, Reader, named
 from tmm_sheets.numbers import is_zero, number
 from tmm_sheets.sheets.false_positions import triads
 
