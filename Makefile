@@ -35,7 +35,9 @@ gallery-check: gallery  ## the same; fails when a sheet cannot be drawn, a label
 	$(BIN)/python -m tests.labels --ciphers 60
 	$(BIN)/python -m tests.evenness
 
-note-check: $(VENV)/.tested  ## the finished notes of every shipped project in three languages: places of figures, tables, "where"
+note-check: $(VENV)/.tested  ## the notes of every shipped project in three languages, read as a strict teacher reads them
+	$(BIN)/python -m tests.note.check_notes
+	$(BIN)/python -m tests.note.check_notes --lang ru tests/projects/*.toml
 	$(BIN)/python -m tests.note.check_pages
 
 gold: $(VENV)/.tested  ## accept the display lists as they are drawn now (look at the sheets first)

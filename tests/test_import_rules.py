@@ -42,7 +42,7 @@ RULES = {
     "sheets": ("construction drawing mechanism.structure", f"project mechanism {METHODS}"),
     "backends": ("drawing", ""),
     "output": ("backends catalogue drawing explain project sheets", "task"),
-    "note": ("backends construction drawing project record results sheets", "task"),
+    "note": ("backends construction drawing project record results sheets task.synthesis_refs task.units", "task"),
     "compare": ("drawing sheets", "project"),
     "compare.story_pdf": ("backends compare drawing", ""),
     "compare.report_pages": ("compare", ""),

@@ -14,7 +14,7 @@ import numpy as np
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import LINE_LINE, take
 from tmm_sheets.construction.step import Kind, Step, value_at, value_of
-from tmm_sheets.numbers import Sizes, degrees_and_minutes, fixed, number
+from tmm_sheets.numbers import Sizes, degrees_and_minutes, fixed, number, rounded_angle
 from tmm_sheets.words import marked, tr, tr_n
 
 UNITS = {"mm": marked("mm"), "m": marked("m"), "m/s": marked("m/s"), "m/s2": marked("m/s²"), "N": marked("N"), "rad": marked("rad")}
@@ -36,10 +36,17 @@ def sentences(plan: Plan, k: int, to_mm: Callable[[float], float], unit: str = "
     sizes = SortSizes(plan)
     for step in plan:
         said = sentence(step, k, to_mm, unit, sizes)
-        segments = [f"|{name}{letter_of(step)}| = {_said(vector, 'vector', to_mm, unit, sizes.at(step, k))}"
-                    for name, vector in _segments(plan, step, k)]
-        if segments:
-            told = tr_n("Segment {segments}.", "Segments {segments}.", len(segments)).format(segments=", ".join(segments))
+        drawn: list[tuple[str, str]] = []
+        nothing: list[tuple[str, str]] = []
+        for name, vector in _segments(plan, step, k):
+            size = _said(vector, "vector", to_mm, unit, sizes.at(step, k))
+            (drawn if any(c in "123456789∞—" for c in size) else nothing).append((name, size))
+        if drawn:
+            segments = ", ".join(f"|{name}{letter_of(step)}| = {size}" for name, size in drawn)
+            told = tr_n("Segment {segments}.", "Segments {segments}.", len(drawn)).format(segments=segments)
+            said = f"{said} {told}"
+        for name, _ in nothing:
+            told = tr("On the drawing {point} falls on {other}.").format(point=letter_of(step), other=name)
             said = f"{said} {told}"
         yield said
 
@@ -131,6 +138,8 @@ def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "m
     args, drawn = () if step.rule.compute is take else step.args, step.rule.gives in ("point", "direction")
     shown = [_show(a, kind, k, to_mm, unit, sizes, drawn) for a, kind in zip(args, step.rule.takes, strict=False)]
     value = _exact_angle(step, k)
+    if value and args:
+        value = _with_seconds(step, k, shown)
     if not value and step.rule.gives in _MEASURED:
         of_sort = 100.0 if step.rule.unit == "%" else sizes.at(step, k)
         value = _said(value_at(step, k), step.rule.gives, to_mm, unit, of_sort)
@@ -174,6 +183,34 @@ def _exact_angle(arg: Any, k: int) -> str:
         value = float(value_at(arg, k))
         return degrees_and_minutes(value) if np.isfinite(value) else ""
     return ""
+
+
+def _with_seconds(step: Step, k: int, shown: list[str]) -> str:
+    """An angle that a formula gives, in degrees and minutes, and so the angles it is found from, which are ``shown`` with it.
+
+    Where minutes do not add up, all have seconds.
+    """
+    value = float(value_at(step, k))
+    kinds = zip(step.rule.takes, shown, strict=False)
+    angles = [i for i, (kind, text) in enumerate(kinds) if kind in ("angle", "inclination") and text.endswith(("°", "′"))]
+    places = 0
+    while angles and places < MOST_PLACES:
+        values = [value_at(a, k) for a in step.args]
+        for i in angles:
+            values[i] = rounded_angle(float(values[i]), places)
+        found = step.rule.compute(*values)
+        if np.ndim(found) or abs(float(found) - rounded_angle(value, places)) <= NOTHING:
+            break
+        places += 1
+    for i in angles:
+        shown[i] = degrees_and_minutes(float(value_at(step.args[i], k)), places)
+    return degrees_and_minutes(value, places)
+
+
+MOST_PLACES = 3
+"""Places of an angle behind the minutes: two of seconds, one behind the decimal sign."""
+NOTHING = 1e-9
+"""What two angles that are written alike differ by at most, rad."""
 
 
 def _said(value: Any, kind: Kind, to_mm: Callable[[float], float], unit: str, of_sort: float) -> str:

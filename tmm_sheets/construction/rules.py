@@ -57,6 +57,7 @@ def taken(name: str, unit: str, wording: str) -> Rule:
 
 GIVEN = Rule("given point", _same, ("point",), "point", marked("Mark point {name}."))
 GIVEN_NUMBER = Rule("given number", _same, ("number",), "number", marked("Given: {name} = {value}."))
+GIVEN_INERTIA = Rule("given moment of inertia", _same, ("number",), "number", marked("Given: {name} = {value}."), unit="kg*m2")
 GIVEN_LENGTH = Rule("given length", _same, ("length",), "length", marked("Take the segment {name} = {value}."))
 GIVEN_DIRECTION = Rule("given direction", _same, ("direction",), "direction", marked("Draw the direction {name}."))
 

@@ -27,11 +27,11 @@ from tmm_sheets.note.document import (
     Text,
     Where,
 )
-from tmm_sheets.note.formula import letters, letters_of, reworded
+from tmm_sheets.note.formula import letters_of, reworded
 from tmm_sheets.note.phrases import Numbering, Scope, Writer
 from tmm_sheets.note.pictures import Pictures
 from tmm_sheets.note.reader import Reader
-from tmm_sheets.note.sections import errata
+from tmm_sheets.note.sections import errata, task
 from tmm_sheets.resources import template
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
     before: dict[str, list[Block]] = {}
     for name in front_order:
         if name != "abstract":  # which tells of all the others
-            before[name] = writer.blocks(name, _with(_task(reader), base) if name == "task" else base)
+            before[name] = writer.blocks(name, _with(task.scope(reader), base) if name == "task" else base)
     body: list[Block] = []
     for section in sections:
         if section["needs"] not in parts:
@@ -189,7 +189,7 @@ def counted(note: Note, pages: int) -> Note:
 
 
 def _with(found: Scope, base: Scope) -> Scope:
-    return Scope(base.fields | found.fields, found.formulas, found.tables, found.figures)
+    return Scope(base.fields | found.fields, found.formulas, found.tables, found.figures, base.letters | found.letters)
 
 
 def _parts(project: Project) -> set[str]:
@@ -224,101 +224,19 @@ def general(r: Reader) -> Scope:
     fields |= said["balancing"]["moment" if moment else "force"]
     if "positions" in parts:
         fields["label"] = r.label
-    return Scope(fields)
+    return Scope(fields, letters=_letters(r))
 
 
-def _task(r: Reader) -> Scope:
-    """Given numbers with their letters, and the scheme."""
+def _letters(r: Reader) -> dict[str, str]:
+    """What the letters mean that the project chose itself: forces, moments, what balances them."""
     said = phrases.words(r.language)
-    rows: list[tuple[Text, ...]] = [tuple((h,) for h in said["task"]["head"])]
-    try:
-        from tmm_sheets import results
-
-        results.told(r.project, None, refused={})
-    except CannotBuild as e:
-        r.problems.append(str(e))
-    r._book = None
-    rows += [*_data(r), *_places(r)]
-    figures = {}
-    if r.project.variant.crank is not None and r.project.variant.cycle is not None:
-        figure = r.pictures.position("position plan", r.label, own=True)
-        if figure is not None:
-            figures["scheme"] = figure
-    titles = [{"sheet": str(n), "title": c.drawing.title.split(". ", 1)[-1]} for n, c in r.pictures.sheets.items()]
-    return Scope({"list": titles}, {}, {"data": tuple(rows)}, figures)
-
-
-def _data(r: Reader) -> list[tuple[Text, ...]]:
-    """Rows of the table of inputs: what the project file gives, as it is written there, and ``[data]`` has words for."""
-    said = phrases.words(r.language)
-    own = {q.step: q.symbol for q in r.givens()}
-    rows: list[tuple[Text, ...]] = []
-    for key, entry in said["data"].items():
-        for path, value, item in _values(r.project.variant.data, key.split(".")):
-            symbol, meaning = (text.replace("*", item) for text in entry[:2])
-            if path in own and not path.startswith("crank.speed"):
-                symbol = own[path]
-            symbol = letters_of(symbol)
-            if isinstance(value, list):  # of a force by a table the greatest
-                value = max((force for _, force in value), key=lambda force: float(str(force).split()[0]))
-            row = _row(r, path, value, symbol, meaning or phrases.meaning_of(symbol, r.language))
-            if row is not None:
-                rows.append(row)
-    return rows
-
-
-def _places(r: Reader) -> Iterator[tuple[Text, ...]]:
-    """Rows of the fixed points and guides: coordinates from the pivot of the crank, x to the right, y up."""
-    said = phrases.words(r.language)["task"]
-    data = r.project.variant.data
-    for name, place in data.get("points", {}).items():
-        if any(float(str(v).split()[0]) for v in place):
-            for axis, v in zip("xy", place, strict=True):
-                yield from _place(r, f"points.{name}", v, f"{axis}_{{{name}}}", said[axis].format(name=name))
-    for i, guide in enumerate(data.get("guide", ())):
-        name = r.quoted(guide["name"])
-        through = guide.get("through", ())
-        for axis, v in zip("xy", through if isinstance(through, list) else (), strict=False):
-            yield from _place(r, f"guide[{i}].through", v, "", said[f"guide_{axis}"].format(name=name))
-        if "direction" in guide and "link" not in guide:
-            yield from _place(r, f"guide[{i}].direction", guide["direction"], "", said["guide_angle"].format(name=name))
-
-
-def _place(r: Reader, path: str, value: Any, symbol: str, meaning: str) -> Iterator[tuple[Text, ...]]:
-    row = _row(r, path, value, symbol, meaning, zero=True)
-    if row is not None:
-        yield row
-
-
-def _row(r: Reader, path: str, value: Any, symbol: str, meaning: str, zero: bool = False) -> tuple[Text, ...] | None:
-    """A row of the inputs; None for a value that is no number."""
-    text, _, unit = (str(value).strip() + " ").partition(" ")
-    try:
-        number = float(text.replace(",", "."))
-    except ValueError:
-        return None
-    if isinstance(value, bool) or not (number or zero):
-        return None
-    named = r.unit(unit.strip())
-    shown: Text = (Symbol(letters(symbol)),) if symbol else ("–",)
-    return tuple(phrases.set_text(meaning)), shown, (named or "–",), (r.number(number, "", path),)
-
-
-def _values(data: Any, path: list[str], before: str = "", item: str = "") -> list[tuple[str, Any, str]]:
-    """Values under a path of the project file, with where they stand and what they are called there.
-
-    ``*`` stands for every table of a list, which is called by its name, ``#`` for every entry, which is called by its number.
-    """
-    if not path:
-        return [(before, data, item)]
-    key, rest = path[0], path[1:]
-    if key == "*" and isinstance(data, list):
-        return [x for i, inner in enumerate(data) for x in _values(inner, rest, f"{before}[{i}]", str(inner.get("name", i + 1)))]
-    if key == "#" and isinstance(data, list):
-        return [x for i, inner in enumerate(data) for x in _values(inner, rest, f"{before}[{i}]", str(i + 1))]
-    if isinstance(data, dict) and key in data:
-        return _values(data[key], rest, f"{before}.{key}".lstrip("."), item)
-    return []
+    v = r.project.variant
+    found = {phrases.bare(letters_of(f.name)): said["loads"]["force"].format(link=f.link) for f in v.force}
+    found |= {phrases.bare(letters_of(m.name)): said["loads"]["moment"].format(link=m.link) for m in v.moment}
+    if v.balancing is not None:
+        kind = "moment" if v.balancing.kind == "moment" else "force"
+        found[phrases.bare(letters_of(v.balancing.name))] = said["balancing"][kind]["balancing_nom"]
+    return found
 
 
 def _sources(language: str, numbering: Numbering) -> list[Block]:

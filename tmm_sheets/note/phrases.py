@@ -35,6 +35,7 @@ from tmm_sheets.note.document import (
 )
 from tmm_sheets.note.formula import Fenced, Fraction, Node, Row, Sign, letters, letters_of
 from tmm_sheets.resources import template
+from tmm_sheets.task import units
 from tmm_sheets.words import tell
 
 
@@ -95,6 +96,8 @@ class Scope:
     formulas: dict[str, Said | list[Said]] = field(default_factory=dict)
     tables: dict[str, tuple[tuple[Text, ...], ...]] = field(default_factory=dict)
     figures: dict[str, Figure] = field(default_factory=dict)
+    letters: dict[str, str] = field(default_factory=dict)
+    """what letters mean here and nowhere else, by the letters without markup"""
 
     def within(self, fields: Mapping[str, Any]) -> Scope:
         """The same with some fields more."""
@@ -104,6 +107,7 @@ class Scope:
             self.formulas | {k: v for k, v in fields.items() if isinstance(v, Said)},
             self.tables,
             self.figures | {k: v for k, v in fields.items() if isinstance(v, Figure)},
+            self.letters,
         )
 
 
@@ -113,7 +117,9 @@ class Numbering:
     def __init__(self, literature: Mapping[str, str]) -> None:
         self.section = 0
         self.part = 0
-        self.counts: dict[str, int] = {}
+        self.last = 0
+        """number of the last section that has one"""
+        self.counts: dict[tuple[int, str], int] = {}
         self.labels: dict[str, str] = {}
         self.literature = literature
         self.cited: list[str] = []
@@ -122,15 +128,20 @@ class Numbering:
     def heading(self, level: int) -> str:
         """Number of the next section of that level."""
         if level == 1:
-            self.section, self.part = self.section + 1, 0
-            self.counts.clear()
+            self.last += 1
+            self.section, self.part = self.last, 0
             return str(self.section)
         self.part += 1
         return f"{self.section}.{self.part}"
 
+    def unnumbered(self) -> str:
+        """A heading without a number begins: what stands under all of these is counted through."""
+        self.section = 0
+        return ""
+
     def next(self, kind: str, label: str) -> str:
         """Number of the next formula, figure or table of the section."""
-        self.counts[kind] = self.counts.get(kind, 0) + 1
+        self.counts[self.section, kind] = self.counts.get((self.section, kind), 0) + 1
         self.total[kind] = self.total.get(kind, 0) + 1
         found = self.again(kind)
         self.labels[f"{kind}:{label}"] = found
@@ -138,7 +149,8 @@ class Numbering:
 
     def again(self, kind: str) -> str:
         """Number of the last formula, figure or table."""
-        return f"{self.section}.{self.counts[kind]}" if self.section else str(self.counts[kind])
+        n = self.counts[self.section, kind]
+        return f"{self.section}.{n}" if self.section else str(n)
 
     def cite(self, key: str) -> str:
         """Number of a source."""
@@ -161,7 +173,7 @@ class Writer:
     def __init__(self, language: str, numbering: Numbering) -> None:
         self.language = language
         self.numbering = numbering
-        self.known: set[tuple[str, str]] = set()
+        self.known: set[tuple[str, str, str]] = set()
         self.template = ""
         self.pending: set[str] = set()
         self.running: list[Inline] = []
@@ -190,7 +202,7 @@ class Writer:
         numbering, known = self.numbering, self.known
         trial = Numbering(numbering.literature)
         trial.section, trial.labels = numbering.section, dict.fromkeys(self.pending, "0") | numbering.labels
-        trial.part, trial.counts = numbering.part, dict(numbering.counts)
+        trial.last, trial.part, trial.counts = numbering.last, numbering.part, dict(numbering.counts)
         self.numbering, self.known = trial, set(known)
         try:
             lines = list(enumerate(text_of(self.language, name).splitlines(), 1))
@@ -235,7 +247,7 @@ class Writer:
     def _heading(self, line: str, n: int, scope: Scope) -> Heading:
         level = len(line) - len(line.lstrip("="))
         text = line[level:].strip()
-        number = "" if text.startswith("!") else self.numbering.heading(level)
+        number = self.numbering.unnumbered() if text.startswith("!") else self.numbering.heading(level)
         return Heading(level, number, "".join(map(str, self.text(text.lstrip("! "), n, scope))))
 
     def _conditional(
@@ -263,7 +275,7 @@ class Writer:
             if name not in scope.formulas:
                 raise _Wrong(tell('there is no formula "{name}" here; there are {known}').format(
                     name=name, known=", ".join(scope.formulas) or "–"), n)
-            yield from self._formula(label(scope, name), scope.formulas[name])
+            yield from self._formula(label(scope, name), scope.formulas[name], scope.letters)
         elif word == "table":
             if name not in scope.tables:
                 raise _Wrong(tell('there is no table "{name}" here; there are {known}').format(
@@ -279,10 +291,10 @@ class Writer:
         else:
             raise _Wrong(tell('"%{word}" is no command of a template').format(word=word), n)
 
-    def _formula(self, name: str, said: Said | list[Said]) -> Iterator[Block]:
+    def _formula(self, name: str, said: Said | list[Said], own: Mapping[str, str]) -> Iterator[Block]:
         for i, one in enumerate(said if isinstance(said, list) else [said]):
             number = self.numbering.next("formula", name if not i else f"{name}-{i}")
-            rows = tuple(self._explained(one))
+            rows = tuple(self._explained(one, own))
             together = one.numbers is not None and characters(one.letters) + characters(one.numbers) < LONGEST
             if one.numbers is not None and together:
                 yield Formula((Row((*items(one.letters), Sign("="), *items(one.numbers))),), f"({number})")
@@ -293,10 +305,11 @@ class Writer:
             if one.numbers is not None and not together:
                 yield Formula(broken(Row((*items(_left(one.letters) or Row(())), Sign("="), *items(one.numbers)))))
 
-    def _explained(self, said: Said) -> Iterator[Explained]:
+    def _explained(self, said: Said, own: Mapping[str, str]) -> Iterator[Explained]:
         for markup, unit in said.explained:
-            meaning = meaning_of(markup, self.language, self.template)
-            once = ("" if meaning.endswith(_OF_INDEX) else bare(markup)[:1], meaning)  # its index may have two spellings
+            meaning = own.get(bare(markup)) or meaning_of(markup, self.language, self.template)
+            # Its index may have two spellings; an arm on a plan is not that of the mechanism.
+            once = ("" if meaning.endswith(_OF_INDEX) else bare(markup)[:1], meaning, unit)
             if meaning and once not in self.known:
                 self.known.add(once)
                 yield Explained(letters(markup), tuple(set_text(meaning.removesuffix(_OF_INDEX).rstrip())), unit)
@@ -473,11 +486,14 @@ def bare(markup: str) -> str:
 
 
 def unit(name: str, language: str) -> str:
-    """A unit of the record in words."""
-    if not name:
-        return ""
-    units: dict[str, str] = words(language)["units"]
-    return units.get(name, name)
+    """A unit of the record or of a project file in words; one that the language has no word for as it stands."""
+    return "" if name == "1" else _units(language).get(units.common(name), name)
+
+
+@cache
+def _units(language: str) -> dict[str, str]:
+    """Words for units by their common spelling."""
+    return {units.common(name): said for name, said in words(language)["units"].items()}
 
 
 def _tidied(text: Iterable[Inline]) -> Iterator[Inline]:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
-from math import copysign, degrees, isfinite
+from math import copysign, degrees, floor, isfinite, log10, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,12 +39,17 @@ from tmm_sheets.note.formula import (
 from tmm_sheets.note.phrases import Said
 from tmm_sheets.numbers import degrees_and_minutes, fixed, is_zero, number
 from tmm_sheets.record.recording import book_of, unit
+from tmm_sheets.task import units
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
     from tmm_sheets.note.pictures import Pictures
     from tmm_sheets.project import Project
     from tmm_sheets.record.book import Book
+
+FINEST = 6
+"""Digits that the greatest of a kind would have with the decimals of the least of them."""
+
 
 class Differs(CannotBuild):
     """A formula as people write it does not give what the record has: the note does not print it."""
@@ -79,6 +84,10 @@ class Reader:
         if self._book is None:
             self._book = book_of(self.project)
         return self._book  # type: ignore[no-any-return]
+
+    def forget(self) -> None:
+        """Read the record anew: more has been computed since."""
+        self._book = None
 
     def plan(self, name: str) -> Plan | None:
         """A plan of the project, None for one that was not made."""
@@ -116,10 +125,17 @@ class Reader:
     def number(
         self, value: float, unit: str = "", step: str = "", position: str = "", digits: int = DIGITS, kind: float = 0.0
     ) -> Number:
-        """A number as it is written; large and small ones as a product with a power of ten in words of the paper."""
+        """A number as it is written; large and small ones as a product with a power of ten in words of the paper.
+
+        Beside ``kind``, the size of its kind, it has no more decimals than a drawing could show of that: a table has no 5·10⁻⁶ in a
+        column of fives.
+        """
         value = float(np.real(value))
         if is_zero(value, kind):
             value = 0.0
+        if kind and value and isfinite(value) and isfinite(kind):
+            digits = min(digits, floor(log10(abs(value))) - floor(log10(kind)) + FINEST)
+            value = value if digits > 0 else 0.0
         return Number(shown(value, digits), step, value, position, digits, self.unit(unit))
 
     def of(
@@ -171,6 +187,10 @@ class Reader:
     def id(self, step: Step) -> str:
         """Id of a step: plan/name."""
         return self.book.id(step) if step in self.book else step.path
+
+    def origin(self, value: Any, place: str) -> str:
+        """Where a number comes from that the project file gives in that ``place``, or has found by synthesis: id of its step."""
+        return self.id(value.step) if isinstance(value, FoundNumber) else place
 
     def unit_of(self, step: Step) -> str:
         """Unit of a step, as the record writes it."""
@@ -281,7 +301,8 @@ class Reader:
         )
         in_numbers = [self._figures(q, of) for q, of in zip(quantities, rounded, strict=True)]
         gives = self.result(replace(result, digits=of_result))
-        return Said(formula, Row((*_items(of_tree(tree, in_numbers)), Sign("="), *gives)), tuple(explained))
+        worked_out = () if isinstance(tree, expression.Argument) else (*_items(of_tree(tree, in_numbers)), Sign("="))
+        return Said(formula, Row((*worked_out, *gives)), tuple(explained))
 
     def _figures(self, q: Quantity, of: Digits) -> Operand:
         source = Number(shown(q.value, of.number), q.step, q.value, q.position, of.number)
@@ -301,6 +322,17 @@ class Reader:
             text = degrees_and_minutes(q.value)
             found = (*found, Sign("="), Figures(text, Number(text, q.step, q.value, q.position)))
         return found
+
+    def of_turns(self, path: str, turns: str, omega: Quantity) -> Said | None:
+        """Formula of the angular velocity of a speed that the project file gives by its turns; None where it is given in rad/s."""
+        value: Any = self.project.variant.data
+        for key in path.split("."):
+            value = value.get(key, {}) if isinstance(value, Mapping) else {}
+        number_, name = units.split(value)
+        tree: Any = {"1/s": 2 * pi * expression.Argument(0), "rpm": pi * expression.Argument(0) / 30}.get(units.common(name))
+        if tree is None:
+            return None
+        return self.written(omega.symbol, tree, [Quantity(turns, float(number_), name, path)], omega)
 
     def checked(
         self,
@@ -429,10 +461,11 @@ _LETTER = r"A-Za-zα-ωΑ-Ωϕϑ"
 
 @cache
 def _marked(language: str) -> re.Pattern[str]:
-    """Numbers, with their units, and letters in the sentences of a language."""
+    """Names between quotation marks, numbers with their units, and letters in the sentences of a language."""
+    opened, closed = map(re.escape, phrases.words(language)["quoted"].split("{name}"))
     units = "|".join(sorted(map(re.escape, phrases.words(language)["units"].values()), key=len, reverse=True))
     return re.compile(
-        rf"(?P<number>[−]?\d+(?:[,.]\d+)?(?:e[−-]?\d+)?(?![{_LETTER}\d_′″])(?: (?:{units})(?!\w))?°?)"
+        rf"(?P<name>{opened}.*?{closed})|(?P<number>[−]?\d+(?:[,.]\d+)?(?:e[−-]?\d+)?(?![{_LETTER}\d_′″])(?: (?:{units})(?!\w))?°?)"
         rf"|(?P<word>[{_LETTER}∞](?:_\w+|[{_LETTER}\d_′″*'̅]|(?<=[FM])и(?=\d))*(?:\^\S)?)"
     )
 
@@ -442,7 +475,9 @@ def marked(sentence: str, step: str, position: str, language: str, names: Collec
     at = 0
     for m in _marked(language).finditer(sentence):
         before = sentence[m.start() - 1 : m.start()]
-        if before.isalpha() or (m["word"] and sentence[m.end() : m.end() + 1].isalpha() and _cyrillic(sentence[m.end()])):
+        if m["name"] or before.isalpha():
+            continue
+        if m["word"] and sentence[m.end() : m.end() + 1].isalpha() and _cyrillic(sentence[m.end()]):
             continue
         if m["word"] and language == "en" and not _lettered(m["word"], sentence[: m.start()], names):
             continue

@@ -115,6 +115,34 @@ QUANTITIES = (
 )  # fmt: skip
 
 
+def split(value: Any) -> tuple[str, str]:
+    """Number and unit of a value as it is written; both empty where there is no number."""
+    text = str(value).strip().replace("−", "-")
+    match = None if isinstance(value, bool) else _NUMBER.match(text)
+    return (match.group().replace(",", "."), text[match.end() :].strip()) if match else ("", "")
+
+
+def common(unit: str) -> str:
+    """One spelling for every way to write a unit, that of the program: rpm for об/мин, Nm for N*m."""
+    plain = _plain(unit)
+    for quantity in QUANTITIES:
+        if plain in quantity.units:
+            return next(name for name, factor in quantity.units.items() if factor == quantity.units[plain])
+    return plain
+
+
+def quantity_of(unit: str) -> str:
+    """Name of the quantity that a unit is one of; empty for an unknown one."""
+    return next((q.name for q in QUANTITIES if _plain(unit) in q.units), "")
+
+
+def si(value: Any) -> float:
+    """A value as it is written, in SI, whatever its quantity is; 0 for what is no number or has an unknown unit."""
+    number, unit = split(value)
+    factor = next((q.units[_plain(unit)] for q in QUANTITIES if _plain(unit) in q.units), None)
+    return factor.si(number) if number and factor is not None else 0.0
+
+
 def parse(value: Any, quantity: Quantity) -> float:
     """SI value of a number written with its unit; see :func:`read`."""
     return read(value, quantity)[0]

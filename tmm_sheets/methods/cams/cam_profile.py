@@ -101,7 +101,8 @@ def given(data: CamTable, key: str) -> GivenNumber | None:
     """A number of the project file that knows its place there; None where it is left out."""
     value = getattr(data, key)
     symbol, unit = GIVEN[key]
-    return None if value is None else GivenNumber(value, f"cam.{data.place(key)}", tr(symbol), unit)
+    letter = tr(symbol) if symbol in PHASES.values() else symbol  # as a text "m" is a unit
+    return None if value is None else GivenNumber(value, f"cam.{data.place(key)}", letter, unit)
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given, named
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.rules import GIVEN_NUMBER, taken
+from tmm_sheets.construction.rules import GIVEN_INERTIA, GIVEN_NUMBER, taken
 from tmm_sheets.construction.scale import HANDY, Scale, fit, handy
 from tmm_sheets.construction.step import Helper, Rule, Step, Told
 from tmm_sheets.errors import CannotBuild
@@ -916,7 +916,7 @@ class Flywheel(ABC):
         """A given flywheel: ``J_м``, with a rotor ``J_доб`` both, ``J_I`` with the crank, which is what runs: ``J_вр``."""
         plan = Plan(f"flywheel-given{self.where}", tr("Given flywheel"), "")
         assert self.data.inertia is not None
-        added = plan.add("J_м", GIVEN_NUMBER, named(self.data.inertia, "flywheel.inertia", tr("J_f"), "kg*m2"), symbol=tr("J_f"))
+        added = plan.add("J_м", GIVEN_INERTIA, named(self.data.inertia, "flywheel.inertia", tr("J_f"), "kg*m2"), symbol=tr("J_f"))
         if "J_рот" in self.rotor_plan:
             added = plan.add("J_доб", WITH_ROTOR, added, self.rotor_plan["J_рот"], symbol=tr("J_add"))
         first = plan.add("J_I", TOGETHER, added, self.reduced.crank)

@@ -16,7 +16,7 @@ import numpy as np
 
 from tmm_sheets.construction.given import Given, named
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.rules import GIVEN_NUMBER, taken
+from tmm_sheets.construction.rules import GIVEN_INERTIA, taken
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.model import Link, Mechanism
 from tmm_sheets.methods.flywheel.flywheel import WITHOUT_CRANK
@@ -320,7 +320,7 @@ class Reduced:
         m, plan = self.mechanism, self.crank_plan
         crank = m.links[m.crank.link]
         if crank.pivot_inertia is not None or not self.moves(crank):
-            return plan.add("J_кр", GIVEN_NUMBER, turning(crank), symbol=tr("J_cr"))
+            return plan.add("J_кр", GIVEN_INERTIA, turning(crank), symbol=tr("J_cr"))
         assert crank.centre is not None
         pos = self._at_start
         at_start = plan.add("J_1", CRANK_INERTIA, turning(crank), crank.mass, pos.points[crank.centre],

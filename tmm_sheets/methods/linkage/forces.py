@@ -378,7 +378,8 @@ def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: 
             at = pos.points[link.centre]
             if gravity:
                 w = plan.add(f"G{link.name}", WEIGHT, link.mass, gravity)
-                loads[link.name].append(Load(f"G̅_{link.name}", link.name, at, w, "weight"))
+                letter = f"G̅_{link.name}" if len(link.name) == 1 else symbol(f"G{link.name}")
+                loads[link.name].append(Load(letter, link.name, at, w, "weight"))
             if link.centre not in m.fixed:
                 fi = plan.add(f"Fи{link.name}", INERTIA, link.mass, acc.points[link.centre],
                               symbol=tr("Fi{link}").format(link=link.name))

@@ -31,7 +31,8 @@ SWING = Rule("swing of the rocker", lambda k: pi * (k - 1) / (k + 1), ("number",
 HALF = Rule("half", lambda x: x / 2, ("angle",), "angle", marked("Half the angle: {name} = {value}."))
 UNDER = Rule("direction under an angle", lambda u, angle: u * (np.cos(angle) - 1j * np.sin(angle)), ("direction", "angle"),
              "direction", marked("At the angle {1} to {0} draw the direction {name}."))
-PERIOD = Rule("time of a turn", lambda w: 2 * pi / w, ("number",), "number", marked("Time of a turn {name} = 2π/ω = {value} s."))
+PERIOD = Rule("time of a turn", lambda w: 2 * pi / w, ("number",), "number", marked("Time of a turn {name} = 2π/ω = {value} s."),
+              unit="s")
 STROKE = Rule("stroke of the piston", lambda v, t: v * t / 2, ("number", "number"), "length",
               marked("Stroke of the piston {name} = V·T/2 = {value}."))
 CRANK = Rule("crank from the stroke", lambda h: h / 2, ("length",), "length", marked("Radius of the crank {name} = H/2 = {value}."))

@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_sheets.note.document import Text
 from tmm_sheets.note.phrases import Scope, words
-from tmm_sheets.note.reader import Reader
+from tmm_sheets.note.reader import Quantity, Reader
 from tmm_sheets.note.sections.forces import scale_text
 
 MINUTE = radians(1 / 60)
@@ -46,6 +46,10 @@ def scope(r: Reader) -> Scope:
             said = r.formula(step)
             if said is not None:
                 found.formulas[f"{name.removeprefix('cam-')}/{step.name}"] = said
+    if table.speed is not None:
+        turning = r.of_turns("cam.speed", "n", Quantity("ω", float(table.speed), "rad/s", "cam.speed"))
+        if turning is not None:
+            found.formulas["speed"] = turning
     sizes: dict[str, float] = {}
     for name in ("r0", "e", "l0", "r_roller", "rho_min"):
         told = results.get(name)

@@ -61,7 +61,7 @@ def scope(r: Reader) -> Scope:
 def _written(reason: str) -> str:
     """A reason with the signs and the decimal sign of the paper."""
     text = re.sub(r"(?<=\d)\.(?=\d)", decimal_sign(), reason)
-    for typed, sign in (("*", "·"), (">=", "≥"), (" - ", " − ")):
+    for typed, sign in (("*", "·"), (">=", "≥"), (" - ", " − "), ("..", "…")):
         text = text.replace(typed, sign)
     return re.sub(r"(\d[.,]\d+)\^2", r"\1²", text)
 
@@ -77,7 +77,7 @@ def _parts(r: Reader, text: str) -> Iterator[Any]:
         yield said["table" if m[1] == "t" else "section"].format(n=m[2])
         return
     sign = decimal_sign()
-    for i, part in enumerate(re.sub(r"\{([a-z]\w*|N)\}", lambda m: said["words"].get(m[1], m[0]), text).split("$")):
+    for i, part in enumerate(re.sub(r"\{(\w+)\}", lambda m: said["words"].get(m[1], m[0]), text).split("$")):
         if i % 2:
             yield Symbol(letters(letters_of(part)))
         elif part:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -115,7 +118,8 @@ def _reduction(r: Reader, found: Scope) -> None:
                 out = out + p
             return out / w**2
 
-        found.formulas["J"] = r.checked("J_{пр}", total, [omega, *terms], inertia)
+        said = r.checked("J_{пр}", total, [omega, *terms], inertia)
+        found.formulas["J"] = replace(said, explained=(*said.explained, *(x for t in terms for x in _letters_of_term(r, t.symbol))))
     for name, step in plan.steps.items():
         own = name.startswith("N_") and not name.startswith("N_G") and "(" not in name
         if own and not is_zero(float(np.real(value_at(step, r.at(step, None)))), 1.0):
@@ -130,11 +134,16 @@ def _reduction(r: Reader, found: Scope) -> None:
 
 def _term(name: str) -> str:
     """Markup of a term of the kinetic energy: m2V_B² is m with the index 2 times V with B squared."""
-    import re
-
     text = re.sub(r"^m(\d+)V_?(\w+)²$", r"m_{\1}V_{\2}^{2}", name)
     text = re.sub(r"^J_?(\w+?)ω(\d+)²$", r"J_{\1}ω_{\2}^{2}", text)
     return text
+
+
+def _letters_of_term(r: Reader, term: str) -> Iterator[tuple[str, str]]:
+    """Letters of a term of the kinetic energy, each with its unit."""
+    units = {"m": "kg", "J": "kg*m2", "V": "m/s", "ω": "rad/s"}
+    for markup in re.findall(r"[mJVω]_\{\w+\}|[mJVω]_\w", term):
+        yield markup, r.unit(units[markup[0]])
 
 
 def _results(r: Reader, found: Scope) -> None:
@@ -144,7 +153,11 @@ def _results(r: Reader, found: Scope) -> None:
     if not fw.given:
         found.fields["J_flywheel_limit"] = r.of(fw.limit_plan["J_м∞"])
     found.fields["difference"] = r.number(abs(fw.difference_percent), "%", "flywheel-limit/разность", digits=2)
-    found.fields |= {"above": fw.difference_percent >= 0, "close": abs(fw.difference_percent) < CLOSE}
+    found.fields |= {"above": fw.difference_percent >= 0, "close": abs(fw.difference_percent) < CLOSE,
+                     "share": r.number(100 * abs(fw.work_error), "%", "total-work/δA", digits=2),
+                     "coarse": 100 * abs(fw.work_error) > CLOSE}
+    if fw.method == "mertsalov":
+        found.letters["ab"] = words(r.language)["flywheel"]["ab"]
     work = fw.work_plan
     for name in ("∫M", "ΔA"):
         if name in work:

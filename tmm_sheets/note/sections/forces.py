@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -13,8 +14,9 @@ from tmm_sheets.construction import expression
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.note.document import Number, Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
-from tmm_sheets.note.phrases import Said, Scope, words
+from tmm_sheets.note.phrases import Said, Scope, bare, words
 from tmm_sheets.note.reader import Differs, Quantity, Reader
+from tmm_sheets.note.sections.task import pressure_of
 from tmm_sheets.numbers import is_zero
 
 BAR = "\u0305"
@@ -79,19 +81,19 @@ def _loads(r: Reader, found: Scope) -> None:
         )
     ]
     heaviest = 0.0
-    for name, link in m.links.items():
+    for i, (name, link) in enumerate(m.links.items()):
         loads: dict[str, Any] = {load.role: load for load in forces.loads[name] if load.role in ("weight", "inertia")}
         couples = [c for c in study.loads[1].get(name, ()) if c.name.startswith("Mи")]
         if not loads and not couples:
             continue
         moved = acc.points.get(str(link.centre))
-        row: list[Text] = [(name,), (r.number(link.mass, "", f"link.{name}.mass"),)]
+        row: list[Text] = [(name,), (r.number(link.mass, "", f"link[{i}].mass"),)]
         row += [
             (r.of(step, None, ""),) if step is not None else ("–",)
             for step in (_vector(loads, "weight"), moved, _vector(loads, "inertia"))
         ]
         if couples:
-            of = _inertia(r, name, couples[0])
+            of = _inertia(r, name, f"link[{i}].inertia", couples[0])
             row += [(r.number(of.value, "", of.step),), (r.of(acc.epsilon[name], None, ""),), (r.of(couples[0], None, ""),)]
             _couple_formula(r, found, name, of, couples[0])
         else:
@@ -100,7 +102,7 @@ def _loads(r: Reader, found: Scope) -> None:
         force = link.mass * abs(value_at(moved, r.k)) if moved is not None else 0.0
         if force > heaviest and "inertia" in loads and moved is not None:
             heaviest = force
-            _weight_formulas(r, found, link, loads, moved)
+            _weight_formulas(r, found, link, f"link[{i}].mass", loads, moved)
     found.tables["loads"] = tuple(rows)
 
 
@@ -108,10 +110,10 @@ def _vector(loads: dict[str, Any], role: str) -> Step | None:
     return loads[role].vector if role in loads else None
 
 
-def _inertia(r: Reader, name: str, couple: Step) -> Quantity:
-    """Moment of inertia that a couple was computed with: of the crank with a flywheel that of both."""
+def _inertia(r: Reader, name: str, place: str, couple: Step) -> Quantity:
+    """Moment of inertia that a couple was computed with, given in that ``place``: of the crank with a flywheel that of both."""
     of = couple.args[0]
-    step = r.id(of) if isinstance(of, Step) else f"link.{name}.inertia"
+    step = r.id(of) if isinstance(of, Step) else place
     return Quantity(f"J_{{S{name}}}", abs(float(value_at(of, r.k))), "kg*m2", step)
 
 
@@ -123,10 +125,10 @@ def _couple_formula(r: Reader, found: Scope, name: str, inertia: Quantity, coupl
         found.formulas["couple"] = r.checked(f"M_{{и{name}}}", lambda x, y: x * y, [inertia, turned], couple)
 
 
-def _weight_formulas(r: Reader, found: Scope, link: Any, loads: dict[str, Any], moved: Step) -> None:
-    """Weight and inertia force of one link, as formulas."""
+def _weight_formulas(r: Reader, found: Scope, link: Any, place: str, loads: dict[str, Any], moved: Step) -> None:
+    """Weight and inertia force of one link, whose mass is given in that ``place``, as formulas."""
     name = link.name
-    mass = Quantity(f"m_{{{name}}}", float(link.mass), "kg", f"link.{name}.mass")
+    mass = Quantity(f"m_{{{name}}}", float(link.mass), "kg", place)
     g = Quantity("g", r.project.gravity, "m/s2", "forces.gravity")
     a = Quantity(f"a_{{{link.centre}}}", abs(value_at(moved, r.k)), "m/s2", r.id(moved), r.label)
     found.formulas["inertia"] = r.checked(f"F_{{и{name}}}", lambda x, y: x * y, [mass, a], loads["inertia"].vector)
@@ -141,13 +143,34 @@ def _applied(r: Reader) -> Iterator[dict[str, Any]]:
         if load.role == "applied" and load.vector is not study.forces.balancing:
             symbol = Symbol(letters(load.symbol.replace(BAR, "")))
             acts = bool(abs(value_at(load.vector, r.k)))
-            yield {"symbol": symbol, "link": load.link, "value": r.of(load.vector), "acts": acts, "force": True}
+            yield {"symbol": symbol, "link": load.link, "value": r.of(load.vector), "acts": acts, "force": True,
+                   **_from_diagram(r, load)}
     for link, couples in study.loads[1].items():
         for couple in couples:
             if not couple.name.startswith("Mи") and couple is not study.forces.balancing:
                 symbol = Symbol(letters(letters_of(couple.name)))
                 acts = bool(value_at(couple, r.at(couple, None)))
                 yield {"symbol": symbol, "link": link, "value": _size(r, couple, None), "acts": acts, "force": False}
+
+
+def _from_diagram(r: Reader, load: Any) -> dict[str, Any]:
+    """Where the size of a force comes from: its formula for a pressure on a piston, whether a diagram gives it."""
+    i, given = next(((i, f) for i, f in enumerate(r.project.variant.force) if f"F̅_{{{f.name}}}" == load.symbol
+                     or letters_of(f.name) == load.symbol.replace(BAR, "")), (0, None))
+    if given is None or (given.table is None and given.tables is None):
+        return {}
+    force = abs(complex(value_at(load.vector, r.k)))
+    if given.bore is None:
+        return {"diagram": True}
+    area = pi * float(given.bore) ** 2 / 4
+    quantities = [
+        Quantity("D", 1e3 * float(given.bore), "mm", f"force[{i}].bore"),
+        Quantity(pressure_of(given.name), 1e-6 * (force / area + float(given.ambient)), "MPa", r.id(load.vector), r.label),
+        Quantity("p_{0}", 1e-6 * float(given.ambient), "MPa", f"force[{i}].ambient"),
+    ]
+    said = r.checked(letters_of(given.name), lambda d, p, around: pi * d**2 / 4 * (p - around if given.ambient else p), quantities,
+                     load.vector)  # fmt: skip
+    return {"diagram": True, "pressure": said, "pressure_letter": Symbol(letters(pressure_of(given.name)))}
 
 
 def _terms(r: Reader, total: Step) -> Iterator[tuple[str, complex, complex, float, Step, float]]:
@@ -299,12 +322,18 @@ def _arm(r: Reader, name: str, step: Step) -> dict[str, Any]:
         ],
         step,
     )
-    return {
+    found: dict[str, Any] = {
         "zero": False,
         "of": Symbol(letters(letters_of(name))),
         "force": Symbol(letters(letters_of(f"F{name[1:]}"))),
         "arm": said,
     }
+    total = moment.args[0]
+    made = _sum(r, total, letters_of(moment.name), moment, None) if total.rule.name == "sum of moments" else None
+    if made is not None:
+        about = total.args[0].name
+        found |= {"moment": made[0], "equation": _shown(made[1], total.name, about), "about": Symbol(letters(letters_of(about)))}
+    return found
 
 
 SEEN = 0.05
@@ -449,13 +478,15 @@ def _lever(r: Reader, found: Scope) -> None:
         raise Differs(f"lever: the record has {f_own}, the note's formula gives {value}")
     found.formulas["lever"] = r.written(name, tree, quantities, Quantity("", value, "N", r.id(lever.balancing), r.label))
     found.tables["lever"] = tuple(rows)
+    if lever.line is None:
+        found.letters[bare(name)] = words(r.language)["loads"]["at_pin"]
     found.fields["mu_lever"] = scale_text(scale)
     if lever.line is None:
         length = Quantity(
             f"l_{{{study.mechanism.crank.pivot}{study.mechanism.crank.pin}}}",
             float(study.mechanism.crank.length),
             "m",
-            "crank.length",
+            r.origin(study.mechanism.crank.length, "crank.length"),
         )
         force = Quantity(name, abs(f_own), "N", r.id(own.force), r.label)
         found.formulas["lever_moment"] = r.checked(

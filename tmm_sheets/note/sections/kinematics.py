@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from math import pi
 from typing import Any
 
 import numpy as np
@@ -104,29 +103,20 @@ def _first_formulas(r: Reader, found: Scope) -> None:
     study = r.project.study
     crank = study.mechanism.crank
     omega = study.velocities.omega[crank.link]
-    speed = str((r.project.variant.data.get("crank") or {}).get("speed", ""))
     q_omega = r.quantity(omega, symbol=f"ω_{{{crank.link}}}")
     q_omega = Quantity(q_omega.symbol, abs(q_omega.value), q_omega.unit, q_omega.step, q_omega.position)
-    number = speed.replace(",", ".").split(" ")[0] if speed else ""
-    try:
-        turns = float(number)
-    except ValueError:
-        turns = 0.0
-    if turns and abs(2 * pi * turns - q_omega.value) < 1e-6 * q_omega.value:
-        tree: Any = 2 * pi * expression.Argument(0)
-        found.formulas["omega"] = r.written(q_omega.symbol, tree, [Quantity("n_1", turns, "1/s", "crank.speed")], q_omega)
-    elif turns and abs(pi * turns / 30 - q_omega.value) < 1e-6 * q_omega.value:
-        tree = expression.Operation("/", (pi * expression.Argument(0), expression.Constant(30.0)))
-        found.formulas["omega"] = r.written(q_omega.symbol, tree, [Quantity("n_1", turns, "rpm", "crank.speed")], q_omega)
+    from_turns = r.of_turns("crank.speed", "n_1", q_omega)
+    if from_turns is not None:
+        found.formulas["omega"] = from_turns
     found.fields["omega1"] = r.number(q_omega.value, q_omega.unit, q_omega.step, q_omega.position)
-    length = Quantity(f"l_{{{crank.pivot}{crank.pin}}}", float(crank.length), "m", "crank.length")
+    length = Quantity(f"l_{{{crank.pivot}{crank.pin}}}", float(crank.length), "m", r.origin(crank.length, "crank.length"))
     pin = study.velocities.points[crank.pin]
     found.formulas["pin"] = r.checked(f"V_{{{crank.pin}}}", lambda w, length: w * length, [q_omega, length], pin)
     scale = r.scales.get("velocities")
     if scale is not None:
         drawn = Quantity(f"p{crank.pin.lower()}", float(scale.mm(abs(value_at(pin, r.k)))), "mm", r.id(pin), r.label)
         of = Quantity(f"V_{{{crank.pin}}}", abs(value_at(pin, r.k)), "m/s", r.id(pin), r.label)
-        tree = expression.Operation("/", (expression.Argument(0), expression.Argument(1)))
+        tree: Any = expression.Argument(0) / expression.Argument(1)
         found.formulas["mu_V"] = r.written("μ_{V}", tree, [of, drawn], Quantity("", scale.mu, "(m/s)/mm", "scales.mu_V"))
     found.fields["pin"] = Symbol(letters_of_point(crank.pin))
     acceleration = study.accelerations.points[crank.pin]
@@ -292,7 +282,7 @@ def _greatest_acceleration(r: Reader, plan: Plan) -> dict[str, Any]:
     """Which point beside the pin of the crank has the greatest acceleration, and in which position."""
     pin = r.project.study.mechanism.crank.pin
     found = [
-        (float(sizes[i]), s.symbol, plan.labels[i], s.head)
+        (float(sizes[i]), s.symbol, plan.labels[i], s.head, sizes)
         for s in plan.segments
         if s.tail.name == plan.pole and "^" not in s.symbol and s.symbol.replace(BAR, "") != f"a_{{{pin}}}"
         for sizes in [np.atleast_1d(np.abs(s.head.value - s.tail.value))]
@@ -301,8 +291,7 @@ def _greatest_acceleration(r: Reader, plan: Plan) -> dict[str, Any]:
     ]
     if not found:
         return {}
-    size, symbol, label, step = max(found, key=lambda x: x[0])
-    sizes = np.abs(step.value - next(s.tail for s in plan.segments if s.head is step).value)
+    size, symbol, label, step, sizes = max(found, key=lambda x: x[0])
     labels = [at for at, other in zip(plan.labels, sizes, strict=True) if shown(float(other)) == shown(size)]
     return {
         "greatest": r.number(size, plan.unit, r.id(step), label),
@@ -354,7 +343,7 @@ def _lengths(r: Reader, plan: Plan) -> Iterator[tuple[str, Said]]:
             size = float(abs(value_at(s.head, k) - value_at(s.tail, k)))
             if not is_zero(size, _greatest(plan, k)):
                 mm = Quantity(f"{s.tail.name}{named(s.head.name)}", float(scale.mm(size)), "mm", r.id(s.head), r.label)
-                mu = Quantity(scale.symbol, scale.mu, "", f"scales.{scale.symbol}")
+                mu = Quantity(scale.symbol, scale.mu, scale.unit, f"scales.{scale.symbol}")
                 tree = expression.Argument(0) * expression.Argument(1)
                 said = r.written(
                     s.symbol.replace(BAR, ""), tree, [mm, mu], Quantity("", size, plan.unit, r.id(s.head), r.label)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from tmm_sheets.note.phrases import Scope
-from tmm_sheets.note.reader import Reader
+from tmm_sheets.note.document import Symbol, Text
+from tmm_sheets.note.formula import letters
+from tmm_sheets.note.phrases import Scope, words
+from tmm_sheets.note.reader import Quantity, Reader
 from tmm_sheets.numbers import number
 
 
@@ -38,8 +40,12 @@ def scope(r: Reader) -> Scope:
         found.fields |= {
             "deviation": r.number(abs(off), "%", r.id(ratio["u_deviation"]), digits=2),
             "tolerance": r.number(100 * table.tolerance, "%", "reducer.tolerance", digits=2),
+            "tiers": ", ".join(number(100 * t) for t in r.project.reducer.tiers),
+            "least_teeth": r.number(table.least_teeth, "", "reducer.least_teeth"),
             "within": abs(off) <= 100 * table.tolerance + 1e-9,
         }
+    _speeds(r, found)
+    found.tables["sets"] = _sets(r)
     reducer = r.project.reducer
     found.fields |= {"small_ratio": reducer.small_ratio, "least_ratio": number(reducer.scheme.least_simple)}
     found.fields["interferences"] = [
@@ -54,3 +60,31 @@ def scope(r: Reader) -> Scope:
     n = r.pictures.sheet_of("reducer.scheme")
     found.fields["sheet"] = str(n) if n is not None else ""
     return found
+
+
+def _speeds(r: Reader, found: Scope) -> None:
+    """Angular velocities of the shafts from the speeds that are given in turns."""
+    symbols = words(r.language)["symbols"]
+    table: Any = r.project.variant.reducer
+    for key in ("input_speed", "output_speed"):
+        value = getattr(table, key)
+        if value is not None:
+            omega = Quantity(symbols[f"reducer.{key}"], float(value), "rad/s", f"reducer.{key}")
+            said = r.of_turns(f"reducer.{key}", omega.symbol.replace("ω", "n"), omega)
+            if said is not None:
+                found.formulas[key] = said
+
+
+def _sets(r: Reader) -> tuple[tuple[Text, ...], ...]:
+    """The sets of tooth numbers that the search found best, the chosen one first: ratio, its deviation, height of the reducer."""
+    reducer = r.project.reducer
+    said = words(r.language)["reducer"]
+    names = reducer.teeth_names
+    head: list[Text] = [(said["set"],), *((Symbol(letters(f"z_{{{n[1:]}}}")),) for n in names), (Symbol(letters("u")),)]
+    rows: list[tuple[Text, ...]] = [(*head, (Symbol(letters("Δu")), ", %"), (said["height"],))]
+    for i, (plan, teeth) in enumerate(zip(reducer.sets, (reducer.chosen, *reducer.runners_up), strict=True), 1):
+        cells: list[Text] = [(str(i),), *((r.of(plan[n], unit_=""),) for n in names), (r.of(plan["u"], unit_=""),)]
+        cells.append((r.number(100 * float(plan["u_deviation"].value), "", r.id(plan["u_deviation"]), digits=2, kind=1.0),))
+        cells.append((r.number(1e3 * teeth.height, "", r.id(plan["u"])),))
+        rows.append(tuple(cells))
+    return tuple(rows)
