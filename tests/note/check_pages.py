@@ -314,9 +314,10 @@ def faults_of(events: list[Event]) -> Iterator[Fault]:
         page = e.page
     del page
     for kind, labels in order.items():
-        for before, after in pairwise(labels):
-            if _key(before) > _key(after):
-                yield Fault("disorder", f"{kind} {after} after {before}")
+        for numbered in (True, False):  # those of the parts without a number are counted by themselves
+            for before, after in pairwise([x for x in labels if ("." in x) is numbered]):
+                if _key(before) >= _key(after):
+                    yield Fault("disorder", f"{kind} {after} after {before}")
     for i, e, own in places:
         who = f"{e.kind} {e.label}, p. {e.page}"
         said = spoken.get(f"{e.kind}:{e.label}", [])
