@@ -64,7 +64,7 @@ def test_two_changes_in_one_replay(shaper):
 @pytest.mark.parametrize(("number", "kinds"), [
     (1, ()),
     (8, ("coriolis", "normal")),  # both in one plan: neither of them explains it alone
-    (14, ("crank", "scale")),  # a plan of velocities 1.25 times as large, of a crank that turns the other way
+    (20, ("crank", "scale")),  # a plan of velocities larger than its scale factor says, of a crank that turns the other way
     (11, ("mirror", "neighbour"))])  # a plan mirrored at every position, and two of its rows exchanged
 def test_students_are_told_what_they_did(number, kinds):
     """What was done wrong is worked out by the trial's own vector equations; nothing but that is told."""
