@@ -12,7 +12,7 @@ from tests.compare.cad_plants import Way, draw
 from tests.compare.hypotheses import Slip
 from tests.compare.own_layouts import Drawn, follows, is_there, taken
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare.cad import cad_built, cad_drawing, cad_file, cad_report, cad_story, laying, view_search
+from tmm_sheets.compare.cad import cad_built, cad_drawing, cad_file, cad_report, cad_story, laying, titles, view_search
 from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.diagnosis.built_plan import Drawing, built_otherwise, errors_of, possible
 from tmm_sheets.compare.diagnosis.drawn_plan import between, drawn_plan, drawn_positions, rebuilt
@@ -196,11 +196,12 @@ def test_the_plan_is_compared_as_it_was_built(compared):
 def test_a_view_taken_for_ink_of_its_shape_speaks_against_nothing(compared):
     """A view that was found by its shape, of which nothing else is there, was not drawn; one built wrongly was."""
     _, found, _ = compared
-    assert not cad_drawing._absent(found.outcome, found.places.share, found.places) & PLACES.keys()
-    elsewhere = [replace(f, verdict="red", missing=True) for f in found.outcome.findings if f.element.view == FORCES[0]]
+    assert not cad_drawing._by_chance(found.outcome, found.places.share) & PLACES.keys()
+    elsewhere = [replace(f, verdict="red", missing=True, absent="", follows=False) for f in found.outcome.findings
+                 if f.element.view == FORCES[0]]
     nothing_else = replace(found.outcome, findings=tuple(elsewhere))
-    assert cad_drawing._absent(nothing_else, {FORCES[0]: 0.97}, found.places) == {FORCES[0]}
-    assert cad_drawing._absent(nothing_else, {FORCES[0]: 0.5}, found.places) == set()
+    assert cad_drawing._by_chance(nothing_else, {FORCES[0]: 0.97}) == {FORCES[0]}
+    assert cad_drawing._by_chance(nothing_else, {FORCES[0]: 0.5}) == set()
 
 
 @pytest.mark.parametrize("far", [1e20, np.inf, np.nan])
@@ -264,8 +265,7 @@ def test_a_short_arrow_in_a_small_view_has_no_shaft_beyond_its_tip():
 @pytest.mark.parametrize(("title", "other"), [("Положение 9", True), ("ПЛАН СКОРОСТЕЙ ПОЛ. 9", True), ("Положение 3", False),
                                               ("План сил звена 9", False)])
 def test_a_title_of_another_position_may_be_the_position_alone(title, other):
-    own = view_search._tokens("План скоростей, положение 3")
-    assert view_search._namesakes(own, view_search._tokens(title)) == other
+    assert titles.namesakes(titles.Said.of("План скоростей, положение 3"), titles.Said.of(title)) == other
 
 
 def test_the_picture_shows_the_exact_plan_and_what_was_built(compared):

@@ -10,7 +10,6 @@ import pytest
 from tmm_sheets.box import Box
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, DrawnStroke, Writing
 from tmm_sheets.compare.cad.laying import Laid, _to_size
-from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.cad.view_search import FoundView, Search, _Try, distinct
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.placing import Placing
@@ -46,7 +45,8 @@ def search(parts, writings=()):
     """A search for views in what is drawn of them; ``parts``: view, elements, strokes."""
     strokes = [s for _, _, some in parts for s in some]
     every = [e for _, elements, _ in parts for e in elements]
-    return Search(every, [v for v, _, _ in parts], strokes, lines(s.points for s in strokes), writings, {})
+    space = DrawingSpace("", tuple(strokes), (), tuple(writings), ())
+    return Search(every, [v for v, _, _ in parts], space, space.lines, {})
 
 
 def title(text, at):
@@ -145,7 +145,7 @@ def test_a_title_is_worth_more_over_a_view_than_beside_it():
     places = Placing(1 + 0j, 0j), Placing(1 + 0j, 95 + 0j)
     strokes = [s for place in places for s in drawn(elements, place, "whole")]
     made = search([(of, elements, strokes)], [title(of.name, places[1](210j))])
-    assert [made.titled(of, place, 0.5) for place in places] == [0.5, 1]
+    assert [made.titled(of, made.forms[of][0], place, 0.5) for place in places] == [0, 1]
     assert is_at(made.found()[of], places[1])
 
 
@@ -156,7 +156,8 @@ def test_what_lies_along_one_line_is_placed_by_its_ends(vectors, by):
     (first, line), (second, star) = view(1, vectors), view(2, STAR)
     made = search([(first, line, drawn(line, PLACES[0], "whole")), (second, star, drawn(star, PLACES[1], "whole"))])
     aside = [place._replace(shift=place.shift + by) for place in PLACES]
-    there = [made._there(v, _Try(0.0, 0, 0, place, 1.0)).placing for v, place in zip((first, second), aside, strict=True)]
+    there = [made._there(_Try(0.0, 0, 0, place, 1.0, made.forms[v][0])).placing
+             for v, place in zip((first, second), aside, strict=True)]
     assert abs(there[0].shift - PLACES[0].shift) < 1e-9
     assert there[1] == aside[1]
 
@@ -165,4 +166,4 @@ def test_a_single_curve_has_no_ends_to_be_known_by():
     of, (line,) = view(1, ALONG[:1])
     curve = replace(line, kind="curve", points=np.array([0j, 20 + 15j, 40 + 2j, 60 + 20j]))
     made = search([(of, [curve], drawn([line], PLACES[0], "whole"))])
-    assert not made._ends(of, PLACES[0])
+    assert not made._ends(of, made.forms[of][0], PLACES[0])

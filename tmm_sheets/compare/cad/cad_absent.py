@@ -2,21 +2,23 @@
 
 Twelve construction lines that are not there are one remark on the view, not twelve mistakes, and what lies where they would be is
 not theirs. A kind is left out where hardly any of it has ink that nothing else accounts for; one missing line among others that are
-drawn is a mistake as ever. Where a view has a place of its own, its letters have too: those not found are a remark as well.
+drawn is a mistake as ever. Where a view has a place of its own, its letters have too: those not found are a remark as well. There
+it may also show the mechanism at one of its positions only, or at some.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.compare.cad import cad_text
 from tmm_sheets.compare.cad.cad_comparison import Comparison
 from tmm_sheets.compare.cad.cad_findings import AbsentKind, CadFinding
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines
 from tmm_sheets.compare.cad.overlaps import overlaps
+from tmm_sheets.compare.cad.view_search import positions
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.placing import HINGE
 from tmm_sheets.drawing.marks import Points
@@ -26,10 +28,14 @@ FEW = 0.35
 """Share of what there should be of a kind below which it is left out."""
 SEVERAL = 3
 """Of fewer in a view each is judged by itself, unless the whole drawing leaves the kind out."""
+DRAWN = 0.6
+"""Share of a line that must have ink for the line to be drawn."""
+AT_POSITION = 0.5
+"""The same of the links of a position."""
 CLEAR = 0.8
 """How far from every other element a point must be for its ink to prove anything, mm."""
 
-KINDS = frozenset({"construction", "symbol", "arrow", "dimension", "table", "hatch", "frame", "axis", "point", "text"})
+KINDS = frozenset({"construction", "symbol", "joint", "arrow", "dimension", "table", "hatch", "frame", "axis", "point", "text"})
 """What may be left out."""
 
 
@@ -41,14 +47,19 @@ def kind_of(e: Element) -> str:
         return "point"
     if e.kind == "arc" and e.arrow and e.role == "symbol":
         return "arrow"  # of a couple, or of how a link turns: no part of a hinge or support
+    if e.kind == "circle" and e.role == "symbol":
+        return "joint"  # a guide or a block may be drawn where these are not
     return e.role if e.role in KINDS else ""
 
 
 def said(kind: str, n: int) -> str:
     """How many elements of a kind, in words."""
     words = {
+        "position": tell_n("{n} position", "{n} positions", n),
+        "curve": tell_n("{n} curve", "{n} curves", n),
         "construction": tell_n("{n} construction line", "{n} construction lines", n),
         "symbol": tell_n("{n} line of a symbol", "{n} lines of symbols", n),
+        "joint": tell_n("{n} circle of a joint", "{n} circles of joints", n),
         "arrow": tell_n("{n} round arrow", "{n} round arrows", n),
         "dimension": tell_n("{n} line of a dimension", "{n} lines of dimensions", n),
         "table": tell_n("{n} line of a table", "{n} lines of a table", n),
@@ -59,6 +70,17 @@ def said(kind: str, n: int) -> str:
         "text": tell_n("{n} text", "{n} texts", n),
     }
     return words[kind].format(n=n)
+
+
+def positions_left_out(state: Comparison) -> None:
+    """Set aside the positions that views of their own places do not show, and curves through all of them."""
+    of = _by_view(state)
+    for view in state.moved:
+        some = of.get(view, ())
+        if left_out := _of_positions_left_out(state, some):
+            _set_aside(state, left_out, "position")
+            through_all = [n for n in some if state.elements[n].role in ("link", "curve") and not state.elements[n].position]
+            _set_aside(state, [n for n in through_all if not _is_drawn(state, n)], "curve")
 
 
 def lines_left_out(state: Comparison) -> None:
@@ -79,51 +101,74 @@ def lines_left_out(state: Comparison) -> None:
             found = shown.get((view, kind), [])
             # Of a view in which nothing is clear of the rest the whole drawing tells.
             if kind in nowhere if len(found) < SEVERAL else _drawn(share for _, share in found) < FEW:
-                _set_aside(state, [n for n in numbers if kind_of(state.elements[n]) == kind])
+                _set_aside(state, [n for n in numbers if kind_of(state.elements[n]) == kind
+                                   and not (n in state.found and state.found[n].absent)], kind)
 
 
 def others_left_out(state: Comparison) -> None:
     """Set aside lettering, dots and hatchings that views do not have, after they were looked for."""
     kinds: dict[tuple[ElementView, str], list[int]] = {}
     for n, e in enumerate(state.elements):
-        if e.view.n and n in state.found and kind_of(e) in ("text", "point", "hatch"):
+        if e.view.n and n in state.found and not state.found[n].absent and kind_of(e) in ("text", "point", "hatch"):
             kinds.setdefault((e.view, kind_of(e)), []).append(n)
     for (view, kind), numbers in kinds.items():
         lost = [n for n in numbers if state.found[n].missing]
         if view in state.moved:
-            _set_aside(state, lost)
-            _set_aside(state, [n for n in numbers if _other_words(state, n)])
+            _set_aside(state, lost, kind)
+            _set_aside(state, [n for n in numbers if _other_words(state, n)], kind)
             continue
         everywhere = [state.found[n].missing for (_, k), every in kinds.items() if k == kind for n in every]
         much = len(lost) > (1 - FEW) * len(numbers) or np.mean(everywhere) > 1 - FEW
         if lost and much and (len(numbers) >= SEVERAL or np.mean(everywhere) > 1 - FEW):
-            _set_aside(state, lost)
+            _set_aside(state, lost, kind)
 
 
 def _other_words(state: Comparison, n: int) -> bool:
-    """Whether a title is put in words of its own: it may say less than ours, but no other number."""
+    """Whether a text that stands there is none for this one: a title, a label without some of its parts, or that of another."""
     e, finding = state.elements[n], state.found[n]
-    ours = iter(_numbers(e.text))
-    return e.kind == "text" and not e.step and finding.says is not None and all(x in ours for x in _numbers(finding.says))
-
-
-def _numbers(text: str) -> tuple[str, ...]:
-    return tuple(re.findall(r"\d+", text))
+    if e.kind != "text" or finding.says is None:
+        return False
+    letters = {part for other in state.elements if other.view == e.view and other.kind == "text"
+               for part in (cad_text.meant(other.text), *cad_text.parts(other.text))}
+    return not e.step or cad_text.meant(finding.says) in letters or cad_text.says_less(finding.says, e.text)
 
 
 def remarks(findings: Iterable[CadFinding]) -> tuple[AbsentKind, ...]:
     """What each view leaves out, by view and kind."""
-    left: dict[ElementView, dict[str, int]] = {}
+    left: dict[ElementView, dict[str, set[str | int]]] = {}
     for f in findings:
         if f.absent:
-            of_view = left.setdefault(f.element.view, {})
-            of_view[kind_of(f.element)] = of_view.get(kind_of(f.element), 0) + 1
-    return tuple(AbsentKind(view, kind, n) for view, kinds in left.items() for kind, n in kinds.items())
+            what = f.element.position if f.absent == "position" else f.element.number
+            left.setdefault(f.element.view, {}).setdefault(f.absent, set()).add(what)
+    return tuple(AbsentKind(view, kind, len(some)) for view, kinds in left.items() for kind, some in kinds.items())
+
+
+def _of_positions_left_out(state: Comparison, numbers: Sequence[int]) -> list[int]:
+    """What a view has of the positions at which nobody has drawn it.
+
+    Those are drawn that explain most ink, one after another: a link that lies upon one of another position proves nothing.
+    """
+    links = positions([state.elements[n] for n in numbers])
+    ways = {label: lines([e.points for e in some]) for label, some in links.items()}
+    free = {label: ours.points(0.5) for label, ours in ways.items()}
+    drawn: set[str] = set()
+    while True:
+        inked = {label: float(_in_direction(ways[label], state.theirs, z).sum()) for label, z in free.items() if label not in drawn}
+        best = max(inked, key=lambda label: inked[label], default="")
+        if not best or inked[best] <= AT_POSITION * len(free[best]):
+            return [n for n in numbers if state.elements[n].position in links.keys() - drawn]
+        drawn.add(best)
+        free = {label: z[_clear(ways[best], z)] for label, z in free.items()}
+
+
+def _is_drawn(state: Comparison, n: int) -> bool:
+    """Whether most of an element has ink."""
+    return bool(state.paths[n]) and _along(state, n, np.concatenate([sampled(p, 0.5)[0] for p in state.paths[n]])) > DRAWN
 
 
 def _drawn(shares: Iterable[float]) -> float:
     """Share of elements most of which has ink."""
-    return float(np.mean([share > 0.6 for share in shares]))
+    return float(np.mean([share > DRAWN for share in shares]))
 
 
 def _by_view(state: Comparison) -> dict[ElementView, list[int]]:
@@ -135,13 +180,15 @@ def _by_view(state: Comparison) -> dict[ElementView, list[int]]:
 
 def _own_ink(state: Comparison, numbers: Sequence[int]) -> Iterator[tuple[int, float]]:
     """Lines that may be left out, each with the share that has ink of what lies clear of all that others draw."""
+    numbers = [n for n in numbers if n not in state.found or not state.found[n].absent]
     asked = [n for n in numbers if state.paths[n] and n not in state.found
              and kind_of(state.elements[n]) not in ("", "text", "hatch", "point")]
     others = {kind: lines([p for n in numbers if kind_of(state.elements[n]) in {"", "point", "axis"} - {kind}
                            for p in _up_to_tips(state, n)]) for kind in {kind_of(state.elements[n]) for n in asked}}
     for n in asked:
         z = np.concatenate([sampled(p, 0.5)[0] for p in state.paths[n]])
-        z = z[_clear(others[kind_of(state.elements[n])], z)]
+        if kind_of(state.elements[n]) != "joint":  # no line lies along a circle
+            z = z[_clear(others[kind_of(state.elements[n])], z)]
         if len(z) >= 2:
             yield n, _along(state, n, z)
 
@@ -158,18 +205,22 @@ def _clear(paths: KnownLines, z: npt.NDArray[np.complex128]) -> npt.NDArray[np.b
 
 def _along(state: Comparison, n: int, z: npt.NDArray[np.complex128]) -> float:
     """Share of points of an element that ink passes in nearly its direction; crossing lines do not count."""
-    ours, _, _ = state.ours([n])
-    mine, (_, theirs, found) = ours.nearest(z, 0.5)[1], state.theirs.nearest(z, 0.5)
-    return float((found & (np.abs((mine * np.conj(theirs)).imag) < 0.2)).mean())
+    return float(_in_direction(state.ours([n])[0], state.theirs, z).mean())
 
 
-def _set_aside(state: Comparison, numbers: Sequence[int]) -> None:
-    """Leave elements out of the comparison; ink that lies along them all the same is not extra."""
+def _in_direction(ours: KnownLines, theirs: KnownLines, z: npt.NDArray[np.complex128]) -> npt.NDArray[np.bool_]:
+    """Which points of lines of ours ink passes in nearly their direction."""
+    mine, (_, way, found) = ours.nearest(z, 0.5)[1], theirs.nearest(z, 0.5)
+    return np.asarray(found & (np.abs((mine * np.conj(way)).imag) < 0.2))
+
+
+def _set_aside(state: Comparison, numbers: Sequence[int], kind: str) -> None:
+    """Leave elements out of the comparison; those of them that are drawn all the same are not extra."""
     for n in numbers:
         e = state.elements[n]
-        state.found[n] = CadFinding(e, None, 0.0, tell("not drawn in this view"), e.middle, 5.0, missing=True, absent=True)
+        state.found[n] = CadFinding(e, None, 0.0, tell("not drawn in this view"), e.middle, 5.0, missing=True, absent=kind)
         state.inked.pop(n, None)
-    with_lines = [n for n in numbers if state.paths[n]]
+    with_lines = [n for n in numbers if _is_drawn(state, n)]
     if with_lines:
         state.claims.append(overlaps(state.ours(with_lines)[0], state.theirs, 2 * state.tolerance))
     state.zones += [_disc(e.centre) for e in (state.elements[n] for n in numbers) if e.kind == "circle" and e.radius <= HINGE]

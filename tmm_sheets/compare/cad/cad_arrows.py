@@ -116,13 +116,18 @@ def heads_in(space: DrawingSpace) -> Heads:
     for k, a in enumerate(space.areas):
         if a.solid and np.ptp(a.points.real) < LARGEST and np.ptp(a.points.imag) < LARGEST:
             middle = complex(a.points.mean())
-            from_middle = a.points - middle
-            far = complex(from_middle[np.abs(from_middle).argmax()])
-            if abs(far) > POINTED * np.median(np.abs(from_middle)):
+            if (far := pointed(a.points)) is not None:
                 area.append(k)
                 tips.append(middle + far)
                 ways.append(far / abs(far))
     return Heads(np.array(area, dtype=np.int64), np.array(tips, dtype=complex), np.array(ways, dtype=complex))
+
+
+def pointed(z: Points) -> complex | None:
+    """The way from the middle of an area to its tip; None where it has none: it is a dot, not a head."""
+    from_middle = z - z.mean()
+    far = complex(from_middle[np.abs(from_middle).argmax()])
+    return far if abs(far) > POINTED * np.median(np.abs(from_middle)) else None
 
 
 def _wanted(state: Comparison) -> Iterator[_Arrow]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,10 +16,9 @@ from tmm_sheets.compare.cad.laying import Laid, fitting, lay
 from tmm_sheets.compare.cad.lost_views import lost_views
 from tmm_sheets.compare.cad.matching import match
 from tmm_sheets.compare.cad.view_search import AS_DRAWN
-from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
-from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint, rebuilt, vanished
+from tmm_sheets.compare.diagnosis.drawn_plan import rebuilt, vanished
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
-from tmm_sheets.compare.elements import ElementView, drawn
+from tmm_sheets.compare.elements import Element, ElementView, drawn
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.findings import worst
 from tmm_sheets.compare.known_sheet import KnownSheet, known_sheet, sheet_numbers
@@ -114,34 +113,49 @@ def _examined(project: Project, sheet: int | None, path: Path, views: Path | Non
         lost, made = lost_views(project, laid.known, space, places)
         shaped = {v: share for v, share in places.share.items() if v not in lost}  # these are where a mistake leads them
         places = places.with_more(lost)
-    outcome = match(laid.known.elements, space, places.moves, pencil, say)
+    absent = {v for v in places.share if places.absent(v)}
+
+    def matched(elements: Sequence[Element]) -> CadOutcome:
+        return _matched(laid.known.elements, elements, absent, space, places.moves, pencil)
+
+    outcome = matched(laid.known.elements)
     say(tell("looking for what was done wrong"))
-    absent = _absent(outcome, shaped, places) if places.own else set()
-    built = cad_built.built_otherwise(project, laid.known, space, places.moves, outcome, made, absent)
-    if built:
-        outcome = _as_built(laid.known, space, places, built, pencil)
-    if not _of_this_sheet(outcome):  # one mistake may lead everything elsewhere
+    by_chance = _by_chance(outcome, shaped) if places.own else set()
+    built = cad_built.built_otherwise(project, laid.known, space, places.moves, outcome, made, absent | by_chance)
+    now = [rebuilt(e, built[e.view][1]) if e.view in built else e for e in laid.known.elements]
+    kept = absent | {v for v in places.share if not v.n}  # a frame alone is one
+    again, gone = bool(built), cad_report.gone(outcome) - kept - built.keys()
+    while again or gone:  # ink of a view that is not there after all is that of nothing
+        absent |= gone
+        outcome, again = matched(now), False
+        gone = cad_report.gone(outcome) - absent - kept
+    if not _of_this_sheet(outcome, places.own):  # one mistake may lead everything elsewhere
         _refuse(project, laid, outcome, ink, sheet, path)
     notes = (*ink.notes, *_how(laid, ink.unit), *places.notes, *outcome.notes)
     return cad_report.Examined(laid, space, places, outcome, notes, {view: plan for view, (plan, _) in built.items()})
 
 
-def _absent(outcome: CadOutcome, shaped: Mapping[ElementView, float], places: layout.Layout) -> set[ElementView]:
-    """Views that a layout of its own lacks: not found, or taken for ink of their shape that has nothing else of them."""
-    lost = {f.element.view for f in outcome.findings} - places.moves.keys()
-    return lost | {v for v in cad_report.gone(outcome) if shaped.get(v, 0.0) >= AS_DRAWN}
+def _by_chance(outcome: CadOutcome, shaped: Mapping[ElementView, float]) -> set[ElementView]:
+    """Views that were taken for ink of their shape that has nothing else of them."""
+    return {v for v in cad_report.gone(outcome) if shaped.get(v, 0.0) >= AS_DRAWN}
 
 
-def _as_built(known: KnownSheet, space: DrawingSpace, places: layout.Layout,
-              built: Mapping[ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]], pencil: float) -> CadOutcome:
-    """The outcome with plans compared as they were built, judged by how they should have been."""
-    now = [rebuilt(e, built[e.view][1]) if e.view in built else e for e in known.elements]
-    outcome = match([e for e in now if not vanished(e)], space, places.moves, pencil)
+def _matched(known: Sequence[Element], now: Sequence[Element], absent: Collection[ElementView], space: DrawingSpace,
+             moves: Mapping[ElementView, Placing], pencil: float) -> CadOutcome:
+    """The outcome with plans compared as they were built, judged by how they should have been.
+
+    ``known`` and ``now`` are the elements of the sheet as they should be and as they were built; ``absent`` views have no ink.
+    """
+    outcome = match([e for e in now if e.view not in absent and not vanished(e)], space, moves, pencil)
     found = {f.element.number: f for f in outcome.findings}
-    findings = [found[e.number] if was is e else
-                cad_built.as_built(found.get(e.number), was, e, places.moves.get(was.view, Placing()), pencil)
-                for was, e in zip(known.elements, now, strict=True)]
-    return replace(outcome, findings=tuple(findings))
+
+    def finding(was: Element, e: Element) -> CadFinding:
+        if e.view in absent:
+            return CadFinding(e, "red", e.length, tell("missing"), e.middle, 5.0, missing=True)
+        judged, move = found.get(e.number), moves.get(was.view, Placing())
+        return judged if was is e and judged is not None else cad_built.as_built(judged, was, e, move, pencil)
+
+    return replace(outcome, findings=tuple(map(finding, known, now)))
 
 
 def _how(laid: Laid, unit: float | None) -> Iterator[str]:
@@ -192,9 +206,10 @@ def _green(found: Sequence[CadFinding]) -> float:
     return sum(f.verdict == "green" or f.follows for f in found) / max(len(found), 1)
 
 
-def _of_this_sheet(outcome: CadOutcome) -> bool:
-    """Whether enough lines are right on the whole sheet, or in one view: a drawing may be of a single one."""
-    found = _judged_lines(outcome)
+def _of_this_sheet(outcome: CadOutcome, own: bool) -> bool:
+    """Whether enough lines are right on the whole sheet, or of what a layout of its ``own`` shows; or in one view."""
+    gone = cad_report.gone(outcome) if own else ()
+    found = [f for f in _judged_lines(outcome) if f.element.view not in gone]
     by_view: dict[ElementView, list[CadFinding]] = {}
     for f in found:
         by_view.setdefault(f.element.view, []).append(f)

@@ -54,7 +54,8 @@ def extra(state: Comparison) -> tuple[ExtraStroke, ...]:
         if before is not None and after is not None and size < 4.5:
             continue  # one line drawn through where ours are two
         n = before if before is not None else after
-        if n is not None and state.elements[n].kind in ("line", "arc", "curve") and _continues(state, n, chain, owners):
+        goes_on = n is not None and state.elements[n].kind in ("line", "arc", "curve") and _continues(state, n, chain, owners)
+        if n is not None and goes_on and state.found[n].verdict is not None:
             excess.append((sum(r.b - r.a for r in {uncut.get(r, r) for r in chain}), n, chain))
         elif size > LEAST:
             found.append((chain, size))
@@ -205,7 +206,7 @@ def _continues(state: Comparison, n: int, chain: list[Left], owners: Owners) -> 
 def _too_long(state: Comparison, n: int, size: float, chain: list[Left]) -> None:
     """Add an excess to the finding of an element."""
     e, old = state.elements[n], state.found[n]
-    if old.verdict is None or (e.style in LOOSE_STYLES and size < BEYOND):
+    if e.style in LOOSE_STYLES and size < BEYOND:
         return
     r = chain[0]
     piece = state.theirs.b[r.piece] - state.theirs.a[r.piece]

@@ -313,16 +313,15 @@ class _DxfReader:
         strokes = [s for s in strokes if len(s.points) > 1 and np.isfinite(s.points).all()]
         areas = [Area(_open_ended(a.points), a.entity, a.solid) for a in areas if np.isfinite(a.points).all()]
         areas = [a for a in areas if len(a.points) > 2]
-        writings = [w._replace(text=words(w.text, self.document.encoding)) for w in writings]
         writings = [w for w in writings if isfinite(w.at.real + w.at.imag + w.height) and w.text.strip()]
         return DrawingSpace(name, tuple(strokes), tuple(areas), tuple(writings), tuple(entities))
 
     def _take(self, e: Any, kind: str, n: int, fine: float, found: _Contents) -> None:
         """Read one primitive, entity number ``n``; what was read before an error stays."""
         if kind in ("TEXT", "ATTRIB"):
-            found.writings.extend(_text(e, n))
+            found.writings.extend(_text(e, n, self.document.encoding))
         elif kind == "MTEXT":
-            found.writings.extend(_mtext(e, n))
+            found.writings.extend(_mtext(e, n, self.document.encoding))
         elif kind in ("SOLID", "TRACE"):
             found.areas.append(Area(_xy(e.wcs_vertices()), n))
         elif kind in ("HATCH", "MPOLYGON"):
@@ -505,10 +504,10 @@ def _open_ended(z: Points) -> Points:
     return np.asarray(z[keep])
 
 
-def _text(e: Any, n: int) -> Iterator[Writing]:
+def _text(e: Any, n: int, encoding: str) -> Iterator[Writing]:
     align, p, q = e.get_placement()
     name = align.name
-    text, height = e.plain_text(), float(e.dxf.height)
+    text, height = words(e.plain_text(), encoding), float(e.dxf.height)
     angle = radians(e.dxf.get("rotation", 0.0))
     width = NARROW * height * len(text) * float(e.dxf.get("width", 1.0))
     p = e.ocs().to_wcs(p)
@@ -523,8 +522,8 @@ def _text(e: Any, n: int) -> Iterator[Writing]:
     yield Writing(text, at + np.exp(1j * angle) * complex(width * (0.5 - x), height * (0.5 - y)), height, width, angle, n)
 
 
-def _mtext(e: Any, n: int) -> Iterator[Writing]:
-    lines = [line for line in e.plain_text(split=True) if line.strip()]
+def _mtext(e: Any, n: int, encoding: str) -> Iterator[Writing]:
+    lines = [words(line, encoding) for line in e.plain_text(split=True) if line.strip()]
     height = float(e.dxf.get("char_height", 2.5))
     begins = BEGINNING.match(e.text)
     for size, times in HEIGHT.findall(begins.group() if begins else ""):

@@ -30,7 +30,7 @@ class CadFinding(Finding):
     shift, turn, size : shift (right, up), mm, turn, degrees counter-clockwise, and excess of length or radius, mm, where these can
         be told apart
     missing : whether it is not there at all
-    absent : whether all of its kind are left out of the view, which is told of the view
+    absent : the kind it is left out with, where all of that are, which is told of the view; else ""
     entities : numbers of the entities of the drawing it is made of
     says : what a text says instead of what it should
     follows : whether it is as it follows from the mistake its plan was built on
@@ -42,7 +42,7 @@ class CadFinding(Finding):
     size: float | None = None
     missing: bool = False
     entities: tuple[int, ...] = ()
-    absent: bool = False
+    absent: str = ""
     says: str | None = None
     follows: bool = False
 
@@ -94,7 +94,7 @@ class LookFinding:
 
 @dataclass(frozen=True)
 class AbsentKind:
-    """That a view leaves out so many elements of a kind (of :data:`~tmm_sheets.compare.cad.cad_absent.KINDS`)."""
+    """That a view leaves out so many elements of a kind (of :data:`~tmm_sheets.compare.cad.cad_absent.KINDS`), or positions."""
 
     view: ElementView
     kind: str

@@ -8,11 +8,14 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.box import Box
 from tmm_sheets.compare.cad import cad_text
 from tmm_sheets.compare.cad.cad_comparison import Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines
 from tmm_sheets.compare.cad.overlaps import Left, Overlaps, overlaps, union
+from tmm_sheets.compare.cad.titles import NAMED, Said, likeness
+from tmm_sheets.compare.cad.view_search import TITLE
 from tmm_sheets.compare.elements import grown
 from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.marks import Points, Text
@@ -24,7 +27,7 @@ LETTER = 4
 
 def lettering(state: Comparison) -> None:
     """Check what texts say; lettering that no text is found for is sought as drawn letters."""
-    numbers = [n for n, e in enumerate(state.elements) if e.kind == "text"]
+    numbers = [n for n, e in enumerate(state.elements) if e.kind == "text" and n not in state.found]
     wanted = [state.elements[n] for n in numbers]
     got = cad_text.read(wanted, state.space.writings)
     for k, answer in got.items():
@@ -40,6 +43,20 @@ def lettering(state: Comparison) -> None:
         _bars(state, n)
         state.lettered.append(grown(wanted[k].points, 0.8))
     _strokes_of_letters(state, [n for k, n in enumerate(numbers) if k not in got])
+    _of_own_places(state)
+
+
+def _of_own_places(state: Comparison) -> None:
+    """Letters and titles of a view that has a place of its own may stand anywhere at it, and more than once: they are not extra."""
+    for view in state.moved:
+        mine = [e for e in state.elements if e.view == view]
+        box, own = Box.around(np.concatenate([e.points for e in mine])), Said.of(view.name)
+        letters = {part for e in mine if e.kind == "text" for part in (cad_text.meant(e.text), *cad_text.parts(e.text))}
+        for k, w in enumerate(state.space.writings):
+            said = Said.of(w.text)
+            if (box.contains(w.at, cad_text.FAR) and cad_text.meant(w.text) in letters) or (
+                    box.contains(w.at, TITLE) and likeness(own, said, said.numbers) >= NAMED):
+                state.used_writings.add(k)
 
 
 def _bars(state: Comparison, n: int) -> None:

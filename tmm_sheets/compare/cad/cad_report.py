@@ -95,9 +95,15 @@ def gone(outcome: CadOutcome) -> set[ElementView]:
     by_view: dict[ElementView, list[CadFinding]] = {}
     for f in outcome.findings:
         by_view.setdefault(f.element.view, []).append(f)
-    return {v for v, found in by_view.items() if (len(found) > 5 or all(f.missing for f in found))
-            and sum(f.missing for f in found) > 0.6 * len(found)
-            and sum(f.verdict == "green" for f in found) < VIEW_GONE * len(found)}
+    return {v for v, found in by_view.items() if _is_gone(found)}
+
+
+def _is_gone(found: Sequence[CadFinding]) -> bool:
+    """Whether hardly anything of a view is there, of what it does not leave out; what follows from a mistake is."""
+    judged = [f for f in found if not f.absent]
+    there = sum(f.verdict == "green" or f.follows for f in judged)
+    return (len(found) > 5 or all(f.missing for f in judged)) and sum(f.missing for f in judged) >= 0.6 * len(judged) and (
+        there < VIEW_GONE * len(judged) or not judged)
 
 
 def tables_and_texts(outcome: CadOutcome) -> set[ElementView]:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.box import Box
+from tmm_sheets.compare.cad.cad_arrows import pointed
 from tmm_sheets.compare.cad.cad_comparison import SIZE_OF_SYMBOL, Comparison
 from tmm_sheets.compare.cad.overlaps import left, overlaps
 from tmm_sheets.compare.findings import shifted
@@ -27,10 +28,12 @@ def filled(state: Comparison) -> None:
     wanted = {n: complex(e.fills[0].mean()) for n, e in enumerate(state.elements)
               if n not in state.found and (e.kind == "fill" or (e.kind == "circle" and e.fills))}
     dots = np.array([a.solid and _round(a.points) for a in state.space.areas], dtype=bool)
+    heads = np.array([pointed(a.points) is not None for a in state.space.areas], dtype=bool)
     trials = []
     for n, centre in wanted.items():
         off = np.abs(state.areas - centre)
-        near = (off < NEAR) | ((off < FAR) & dots & (state.elements[n].kind == "circle"))
+        dot = state.elements[n].kind == "circle"
+        near = (off < (FAR if dot else NEAR)) & (dots | ((off < NEAR) & ~(dot & heads)))
         trials += [(float(off[k]), n, k) for k in np.flatnonzero(near).tolist()]
     dot_at: dict[int, complex] = {}
     for _, n, k in sorted(trials):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, permutations
 from math import inf
 
 import numpy as np
@@ -23,6 +23,8 @@ MOST = 8
 """So many texts are tried in all ways in which one or two of them belong to another label."""
 WORDS = re.compile(r"[^\W\d_]{4}")
 """What a title has and a label has not."""
+SOME = 4
+"""A label with more parts is left out whole."""
 FAR = 12.0
 """How far from its place a text may be, mm: where a letter goes is the draughtsman's choice."""
 
@@ -173,6 +175,17 @@ def _same(joined: str, wanted: str, several: bool) -> bool:
 def meant(text: str) -> str:
     """Text as it is compared: normal, with numbers without trailing zeros (0,50 is 0,5)."""
     return re.sub(r"\d+\.\d+", lambda m: m.group().rstrip("0").rstrip("."), normal(text))
+
+
+def parts(text: str) -> list[str]:
+    """What a label is put together of, as it is compared: letters of several points, and the position of one."""
+    return [p for part in re.split(r"[,()]", text) if (p := meant(part))]
+
+
+def says_less(text: str, wanted: str) -> bool:
+    """Whether a text is a label without some of its parts, in any order."""
+    some = parts(wanted)
+    return any(meant(text) == "".join(few) for size in range(1, min(len(some), SOME) + 1) for few in permutations(some, size))
 
 
 def _has(text: str, part: str) -> bool:

@@ -13,6 +13,7 @@ from tmm_sheets.compare.cad import layout, view_search
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.cad_text import meant
 from tmm_sheets.compare.cad.line_fit import HIT, RATIOS, KnownLines, candidates, lines, refine, search, snapped
+from tmm_sheets.compare.cad.titles import Titles
 from tmm_sheets.compare.cad.view_search import ASKEW, FoundView
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.known_sheet import KnownSheet
@@ -47,7 +48,8 @@ PART = 100.0
 class Laid:
     """A drawing laid over a known sheet: ``space`` by ``placing``, with ``share`` of the sheet's lines found in it.
 
-    In a drawing with a layout of its own the placing tells scale and turn only, ``views`` where each view is after it.
+    In a drawing with a layout of its own the placing tells scale and turn only, ``views`` where each view is after it; ``titled``
+    is the share of its ink that stands under titles of the sheet.
     """
 
     known: KnownSheet
@@ -55,6 +57,12 @@ class Laid:
     placing: Placing
     share: float
     views: Mapping[ElementView, FoundView] = field(default_factory=dict)
+    titled: float = 0.0
+
+    @property
+    def meant(self) -> float:
+        """Share of the ink that is known to be of the sheet: by its shape, or by the titles over it."""
+        return max(self.share, self.titled)
 
 
 def lay(known: Sequence[KnownSheet], ink: CadInk) -> Laid:
@@ -165,7 +173,7 @@ def _own_layout(known: Sequence[KnownSheet], ink: CadInk) -> Laid | None:
                     likely = handy * laid.share, laid
                 if handy > SURELY_HANDY and laid.share >= OWN:
                     break
-            if likely is not None and likely[1].share >= OWN and (best is None or likely[1].share > best.share):
+            if likely is not None and likely[1].meant >= OWN and (best is None or likely[1].share > best.share):
                 best = likely[1]
     return best if best is None else _to_size(best)
 
@@ -178,7 +186,7 @@ def _own_layout_framed(tried: Sequence[Laid], unit: float | None) -> Laid | None
     upright = [(laid.known, laid.space, _refined(laid, unit).placing) for laid in tried
                if not laid.placing.mirrored and round(laid.placing.degrees / 90 + _quarter(laid.space)) % 4 == 0]
     best = max((_by_views(*one, framed=True) for one in upright), key=lambda laid: laid.share, default=None)
-    if best is None or best.share < OWN:
+    if best is None or best.meant < OWN:
         return None
     moved_off = [abs(one.placing(v.box.centre) - v.box.centre) > AWAY for v, one in best.views.items()]
     if sum(moved_off) <= 0.5 * len(moved_off):
@@ -192,9 +200,10 @@ def _by_views(sheet: KnownSheet, space: DrawingSpace, placing: Placing, *, frame
     """A drawing of some size and turn by its views; the share is that of its ink, with the title block if it is ``framed``."""
     laid = space.placed(placing)
     views = list(dict.fromkeys(e.view for e in sheet.elements if e.view.n))
-    found = view_search.find(sheet.elements, views, laid.strokes, laid.lines, laid.writings, {})
+    titles = Titles(sheet.elements, view_search.shaped(sheet.elements), laid)
+    found = view_search.Search(sheet.elements, views, laid, laid.lines, {}, titles).found()
     block = {e.view: FoundView(Placing(), 1.0) for e in sheet.elements if framed and not e.view.n}
-    return Laid(sheet, space, placing, _explained(sheet, laid, {**found, **block}), found)
+    return Laid(sheet, space, placing, _explained(sheet, laid, {**found, **block}), found, titles.share)
 
 
 def _sizes(sheet: KnownSheet, space: DrawingSpace, unit: float | None) -> list[float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -28,6 +28,10 @@ WRONG = 0.3
 """Least share of a view that must be found at a place from a file, else the place is wrong."""
 ENOUGH = 30
 """Least points of a view that can be placed by its lines alone."""
+AT_HOME = 0.6
+"""Share of a view from which on it is where it is."""
+
+
 @dataclass(frozen=True)
 class Layout:
     """Where the views are.
@@ -47,11 +51,15 @@ class Layout:
     elsewhere: tuple[ElementView, ...]
     own: bool
 
+    def absent(self, v: ElementView) -> bool:
+        """Whether a view is nowhere: in a layout of its own none is expected in its place on our sheet."""
+        return self.own and v.n > 0 and v not in self.moves and self.share.get(v, 0.0) < AT_HOME
+
     @property
     def notes(self) -> tuple[str, ...]:
         """Where the views are, in words."""
         if self.own:
-            return (*self.said, _own_layout(list(self.share), self.moves))
+            return (*self.said, _own_layout(list(self.share), self.moves), *_odd(self.moves))
         there = tell('"{view}" stands {place}; compared there')
         return (*self.said, *(there.format(view=v.name, place=_where(v, self.moves[v])) for v in self.elsewhere))
 
@@ -113,7 +121,9 @@ class _ViewFinder:
         for v, one in found.items():
             if v not in self.moves:
                 self.moves[v], self.share[v] = one.placing, one.share
-        self._search([v for v in self.views if v not in self.moves and not self._place_near(v)])
+        if found:  # what has a shape was sought
+            self.share |= {v: 0.0 for v in view_search.shaped(self.elements) if v not in self.moves}
+        self._search([v for v in self.views if v not in self.moves and (v in self.share or not self._place_near(v))])
         return Layout(self.moves, self.share, tuple(self.notes), tuple(self.elsewhere), bool(found))
 
     def _place_given(self, place: ViewPlace, whole: Placing) -> None:
@@ -137,7 +147,7 @@ class _ViewFinder:
             return True
         starts = [Placing(shift=d) for d in (0j, *self._by_texts(v))]
         trials = [self._nudged(v, s) for s in starts] if len(self.points[v]) >= ENOUGH else starts[1:]
-        return self._accept(v, trials) or self.share[v] >= 0.6 or len(self.points[v]) < 2 * ENOUGH
+        return self._accept(v, trials) or self.share[v] >= AT_HOME or len(self.points[v]) < 2 * ENOUGH
 
     def _accept(self, v: ElementView, trials: Sequence[Placing]) -> bool:
         """Take the best of several places if it is clearly better than the view's own."""
@@ -192,11 +202,11 @@ class _ViewFinder:
             return
         free = self.theirs
         for v, s in self.share.items():
-            if s >= 0.6:
+            if s >= AT_HOME:
                 free = view_search.unused(free, self.moves.get(v, Placing())(self.points[v]))
         self.say(tell("looking for views that stand elsewhere"))
-        at_home = {v: self.moves.get(v, Placing()) for v, s in self.share.items() if s >= 0.6}
-        for v, one in view_search.find(self.elements, lost, self.space.strokes, free, self.space.writings, at_home).items():
+        at_home = {v: self.moves.get(v, Placing()) for v, s in self.share.items() if s >= AT_HOME}
+        for v, one in view_search.Search(self.elements, lost, self.space, free, at_home).found().items():
             if self._score(v, one.placing) > self._score(v, Placing()):
                 self._take(v, one.placing, one.share)
                 free = view_search.unused(free, one.placing(self.points[v]))
@@ -222,6 +232,15 @@ def _own_layout(views: Sequence[ElementView], moves: Mapping[ElementView, Placin
     said = tell_n("the layout is the student's own: of {n} view {found} found by shape, scale and title",
                   "the layout is the student's own: of {n} views {found} found by shape, scale and title", len(shown))
     return said.format(n=len(shown), found=sum(v in moves for v in shown))
+
+
+def _odd(moves: Mapping[ElementView, Placing]) -> Iterator[str]:
+    """Plans that fit only at a scale factor that hardly anybody takes: all of their lengths may be wrong."""
+    for v, move in moves.items():
+        if v.mu is not None and not view_search.handy(move):
+            said = tell('"{view}" fits only at {times} times the size of ours, a scale factor that hardly anybody takes: '
+                        "is it yours?")
+            yield said.format(view=v.name, times=told(f"{move.scale:.4g}"))
 
 
 def _where(view: ElementView, move: Placing) -> str:

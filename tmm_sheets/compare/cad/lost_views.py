@@ -14,7 +14,19 @@ import numpy as np
 
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.line_fit import lines
-from tmm_sheets.compare.cad.view_search import AS_DRAWN, FEW_LINES, NEAR, SURE, FoundView, Search, distinct, handy, unused
+from tmm_sheets.compare.cad.titles import Said, Titles
+from tmm_sheets.compare.cad.view_search import (
+    AS_DRAWN,
+    FEW_LINES,
+    NEAR,
+    SURE,
+    FoundView,
+    Search,
+    distinct,
+    handy,
+    shaped,
+    unused,
+)
 from tmm_sheets.compare.diagnosis.built_plan import AS_GOOD, EQUAL, KINDS, errors_of, explains, possible
 from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint, drawn_plan, rebuilt
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
@@ -59,12 +71,14 @@ class _Lost:
         self.moves, self.share = dict(places.moves), places.share
         views = dict.fromkeys(e.view for e in known.elements)
         self.shown = {view: drawn for view in views if (drawn := drawn_plan(known, plans, view)) is not None}
-        self.owners: dict[frozenset[str], ElementView] = {}
+        self.owners: dict[Said, ElementView] = {}
+        self.titles = Titles(known.elements, shaped(known.elements), space)
         search = self._search(self.shown)
         for v in self.shown:
-            if places.share.get(v, 0.0) >= SURE and v in self.moves and search.named(v, self.moves[v]):
-                self.owners[search.title(v, self.moves[v]) or frozenset()] = v
-        self.main, self.points = dict(search.main), dict(search.points)
+            said = search.title(v, self.moves[v]) if places.share.get(v, 0.0) >= SURE and v in self.moves else None
+            if said is not None and search.named(v, self.moves[v]):
+                self.owners[said] = v
+        self.main = {v: search.whole(v) for v in self.shown}
         self.usual = {v: search.worth(v, FoundView(self.moves[v], places.share[v])) for v in self.shown if v in self.moves}
         self.titled_otherwise = {v for v in self.usual if places.share[v] >= SURE and search.strange(v, self.moves[v])
                                  and (v.mu is None or handy(self.moves[v]))}
@@ -80,9 +94,7 @@ class _Lost:
             if view not in self.shown or view not in self.doubtful or self.usual.get(view, 1.0) >= AS_DRAWN:
                 ink = [move(e.points) for e in self.known.elements if e.view == view and e.kind not in ("text", "hatch", "fill")]
                 free = unused(free, lines(ink).points(1.0), 1.2)
-        left = set(np.unique(free.owner).tolist())
-        strokes = [s for k, s in enumerate(self.space.strokes) if k in left]
-        search = Search(self.known.elements, list(views), strokes, free, self.space.writings, others)
+        search = Search(self.known.elements, list(views), self.space, free, others, self.titles)
         search.owners = self.owners
         return search
 
@@ -90,16 +102,17 @@ class _Lost:
         """The mistake with which, besides those made already, most ink of the doubtful views is explained; None without."""
         mistaken = {self.shown[v].plan for v in self.titled_otherwise}  # plans without a title are taken for one another too
         search = self._search([v for v in self.shown if v in self.doubtful or self.shown[v].plan in mistaken])
-        if not self.doubtful or not search.enough():
+        doubtful = [v for v in self.doubtful if v in self.moves or search.enough(v)]
+        if not doubtful:
             return None
         known: dict[tuple[ElementView, bytes], tuple[FoundView, dict[ElementView, float]] | None] = {}
         tried: list[tuple[float, float, Hypothesis]] = []
-        for h in possible([self.shown[v] for v in self.doubtful], self.errors):
+        for h in possible([self.shown[v] for v in doubtful], self.errors):
             value = replay(self.errors, [c for m in (*made, h) for c in m.changes])
             gain, whole, factors = 0.0, False, set()
             explained: set[ElementView] = set()
             taken: dict[ElementView, float] = {}
-            for view in self.doubtful:
+            for view in doubtful:
                 if h.at is not None and view in self.titled_otherwise:
                     continue  # all positions are mistaken for others, or none
                 new = self.shown[view].moved(value)
@@ -155,7 +168,7 @@ class _Lost:
             return None
         drawn = lines([one.placing(e.points) for e in main])
         # What stands under the title of another one has no right to its ink.
-        others = ((v, drawn.share(self.moves[v](self.points[v]), NEAR)) for v in self.doubtful
+        others = ((v, drawn.share(self.moves[v](lines([e.points for e in self.main[v]]).points(1.0)), NEAR)) for v in self.doubtful
                   if v in self.moves and v != view and v not in self.titled_otherwise)
         return one, {v: share for v, share in others if share > EQUAL}
 
@@ -182,7 +195,7 @@ class _Lost:
 
     def _still_usual(self, search: Search, view: ElementView) -> float:
         """How well a view is where it was found as it should be, if no other one has the ink there now."""
-        there = view in self.usual and search.free.share(self.moves[view](self.points[view]), NEAR) > HALF
+        there = view in self.usual and search.inked(view, self.moves[view]) > HALF
         return self.usual[view] if there else 0.0
 
     def left_over(self) -> dict[ElementView, FoundView]:
@@ -198,8 +211,8 @@ class _Lost:
                 if v.n and v not in self.moves and v not in already]
         search, out = self._search(lost), {}
         for view in search.views:
-            whole = search.main[view]
-            found = [(one, way) for way in TURNS if search.enough()
+            whole = search.whole(view)
+            found = [(one, way) for way in TURNS if search.enough(view)
                      and (one := search.changed(view, [moved(e, way) for e in whole])) is not None and one.share >= SURE]
             if found:
                 one, way = max(found, key=lambda x: search.worth(view, x[0]))
@@ -212,7 +225,7 @@ class _Lost:
         search = self._search([v for v in dict.fromkeys(e.view for e in self.known.elements) if v.n and v not in self.moves])
         out: dict[ElementView, FoundView] = {}
         for view in search.views:
-            one = search.changed(view, search.main[view], 1, left_over=True) if search.enough() else None
+            one = search.changed(view, search.whole(view), 1, left_over=True) if search.enough(view) else None
             if one is not None and search.worth(view, one) >= SURE:
                 out[view] = one
                 search.without(view, one.placing)

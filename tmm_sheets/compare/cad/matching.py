@@ -42,6 +42,7 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     """
     state = Comparison(elements, space, moves, tolerance)
     say(tell("comparing lines"))
+    cad_absent.positions_left_out(state)
     _not_compared(state)
     cad_absent.lines_left_out(state)
     _right(state)
@@ -74,7 +75,7 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
 def _not_compared(state: Comparison) -> None:
     """In a view of another scale symbols keep their size: they are not compared."""
     for n, e in enumerate(state.elements):
-        if e.view in state.moved and state.moved[e.view].scaled and symbol(e):
+        if n not in state.found and e.view in state.moved and state.moved[e.view].scaled and symbol(e):
             state.found[n] = CadFinding(e, None, 0.0, tell("a symbol in a view of another scale"), e.middle, 5.0)
             if e.role != "dimension":
                 state.zones.append(Box.around(e.points, BESIDE).corners)

@@ -7,19 +7,19 @@ ink there that no other view has taken, which of its letters stand there, what t
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from heapq import heapify, heappop, heappush
 
 import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.box import Box
-from tmm_sheets.compare.cad.cad_ink import DrawnStroke, Writing, normal
+from tmm_sheets.compare.cad.cad_ink import DrawingSpace, DrawnStroke, normal
 from tmm_sheets.compare.cad.cad_text import meant
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines, refine
 from tmm_sheets.compare.cad.overlaps import runs
+from tmm_sheets.compare.cad.titles import Said, Titles, in_common, likeness, namesakes
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.placing import HINGE, Placing, moved
 from tmm_sheets.construction.scale import HANDY
@@ -57,12 +57,22 @@ OVER = 1.0
 """How far beyond the end of a line it is looked whether it goes on, mm."""
 FEW_LINES = 3
 """Least number of lines by which a changed view is known."""
+UNEXPLAINED = 0.3
+"""By how much less a view is worth at a place, not under its title, where all ink of the figure is that of something else."""
+OWN_INK = 2.0
+"""How near to lines of a view ink is its own, mm."""
+OWN_FIGURE = 0.2
+"""Least share of a view that is in figures under its title, where there are any, for the title to be over it."""
+AT_JOINT = 0.1
+"""How near to the circle of a joint a link ends, and how near to its middle it points, mm."""
 MANY_LINES = 4
 """From so many lines on a view can be known without others."""
 TRIED, TRIED_LAST = 10, 60
 """How many places of a view are looked at, and how many in what the others leave."""
 MOST = 500
 """Most points of a view that are compared."""
+HALF = 0.5
+"""Share of a view of several positions from which on it is not sought at one of them."""
 COARSE = 3
 """Each of so many points is enough to see whether a place is worth more."""
 HOPELESS, FEW = 0.7, 0.2
@@ -84,10 +94,38 @@ def main_lines(elements: Sequence[Element]) -> list[Element]:
 
 @dataclass(frozen=True)
 class FoundView:
-    """Where a view is: its placing in the drawing and the share of its main lines that has ink there."""
+    """Where a view is: its placing in the drawing and the share of its main lines that has ink there.
+
+    ``position`` is the one of several by which it was found.
+    """
 
     placing: Placing
     share: float
+    position: str = ""
+
+
+@dataclass(frozen=True)
+class _Form:
+    """What may be drawn of a view: main lines, and points along them; of one ``position`` only where it shows several."""
+
+    main: Sequence[Element]
+    points: Points
+    position: str = ""
+
+    @classmethod
+    def of(cls, main: Sequence[Element], position: str = "") -> _Form:
+        """The form of some main lines."""
+        z = lines([e.points for e in main]).points(1.0)
+        return cls(main, z[:: max(len(z) // MOST, 1)], position)
+
+
+def positions(main: Iterable[Element]) -> dict[str, list[Element]]:
+    """The links of each position, where a view shows several: one or two are as good a plan."""
+    found: dict[str, list[Element]] = {}
+    for e in main:
+        if e.role == "link" and e.position:
+            found.setdefault(e.position, []).append(e)
+    return found if len(found) > 1 else {}
 
 
 @dataclass(frozen=True)
@@ -114,44 +152,87 @@ class _Try:
     view: int
     placing: Placing = field(compare=False)
     share: float = field(compare=False)
+    form: _Form = field(compare=False)
 
 
-def find(elements: Sequence[Element], views: Sequence[ElementView], strokes: Sequence[DrawnStroke], theirs: KnownLines,
-         writings: Sequence[Writing], known: Mapping[ElementView, Placing]) -> dict[ElementView, FoundView]:
-    """Seek views anywhere in a drawing.
+def to_joints(links: Iterable[Element], joints: Sequence[Element]) -> list[Element]:
+    """Links up to the middles of the circles at which they end: a circle is as large in every scale, or not drawn at all."""
+    centre, radius = np.array([c.centre for c in joints], dtype=complex), np.array([c.radius for c in joints])
+
+    def end(z: complex, other: complex) -> complex:
+        on = (centre - z) * np.conj(z - other) / max(abs(z - other), 1e-9)
+        here = np.flatnonzero((np.abs(on.imag) < AT_JOINT) & (np.abs(on.real - radius) < AT_JOINT))
+        return complex(centre[here[0]]) if len(here) else z
+
+    return [replace(e, points=np.array([end(*e.points), end(*e.points[::-1])])) if e.kind == "line" else e for e in links]
+
+
+def shaped(elements: Iterable[Element]) -> list[ElementView]:
+    """The views that have a shape to be known by."""
+    return list(dict.fromkeys(e.view for e in elements if e.role in SHAPES))
+
+
+class Search:
+    """Views sought anywhere in a drawing.
 
     Parameters
     ----------
     elements : those of the sheet
     views : those to seek
-    strokes, theirs : lines of the drawing that no other view has, and their straight pieces, mm
-    writings : its texts
+    space : the drawing, mm
+    free : straight pieces of its lines that no other view has
     known : where other views of the sheet are
+    titles : its titles, if they are known already
     """
-    return Search(elements, views, strokes, theirs, writings, known).found()
 
-
-class Search:
-    """Views sought in what is free of a drawing; the arguments are those of :func:`find`."""
-
-    def __init__(self, elements: Sequence[Element], views: Sequence[ElementView], strokes: Sequence[DrawnStroke],
-                 theirs: KnownLines, writings: Sequence[Writing], known: Mapping[ElementView, Placing]) -> None:
+    def __init__(self, elements: Sequence[Element], views: Sequence[ElementView], space: DrawingSpace, free: KnownLines,
+                 known: Mapping[ElementView, Placing], titles: Titles | None = None) -> None:
         of = {v: [e for e in elements if e.view == v] for v in views}
-        self.views = [v for v in views if any(e.role in SHAPES for e in of[v])]
-        self.main = {v: main_lines(of[v]) for v in self.views}
-        every = {v: lines([e.points for e in self.main[v]]).points(1.0) for v in self.views}
-        self.points = {v: z[:: max(len(z) // MOST, 1)] for v, z in every.items()}
+        self.views = shaped(e for some in of.values() for e in some)
+        self.forms = {v: [_Form.of(main_lines(of[v]))] for v in self.views}
+        self.beside = {v: [e for e in of[v] if e.kind not in ("text", "fill")] for v in self.views}
+        self.joints = {v: [e for e in of[v] if e.kind == "circle" and e.radius <= HINGE] for v in self.views}
         self.texts = {v: [(meant(e.text), e.middle) for e in of[v] if e.kind == "text" and e.step] for v in self.views}
         self.words: dict[str, list[complex]] = {}
-        for w in writings:
+        for w in space.writings:
             self.words.setdefault(meant(w.text), []).append(w.at)
-        self.titles = [(_tokens(w.text), w.at) for w in writings if len(normal(w.text)) > 4]
-        self.shapes = _of_drawing(strokes)
-        self.tips = np.concatenate([s.points[[0, -1]] for s in strokes]) if strokes else np.zeros(0, complex)
-        self.free = theirs
+        self.own = {v: Said.of(v.name) for v in views}
+        self.shown = {v: positions(self.whole(v)).keys() for v in self.views}
+        self.said = [(Said.of(w.text), w.at) for w in space.writings if len(normal(w.text)) > 4]
+        self.titles = Titles(elements, shaped(elements), space) if titles is None else titles
+        self.space, self.free = space, free
+        self.left = np.unique(free.owner)
+        strokes = [space.strokes[k].points for k in self.left.tolist()]
+        self.tips = np.concatenate([z[[0, -1]] for z in strokes]) if strokes else np.zeros(0, complex)
         self.scales: dict[float | None, float] = {v.mu: p.scale for v, p in known.items() if v.mu is not None}
-        self.owners: Mapping[frozenset[str], ElementView] = {}
+        self.owners: Mapping[Said, ElementView] = {}
         """Views whose titles are known: they are those of no others."""
+        self.placed = {v: self.titles.at(p(lines([e.points for e in main_lines([e for e in elements if e.view == v])]).points(2.0)),
+                                         NEAR) for v, p in known.items() if self.titles.over}
+        self._may_be: dict[ElementView, npt.NDArray[np.bool_] | None] = {}
+        self._own_ink: dict[ElementView, KnownLines | None] = {}
+        self._shapes: dict[bytes, _Shapes] = {}
+        self._ink: dict[bytes, KnownLines] = {}
+
+    def ink(self, v: ElementView) -> KnownLines:
+        """Free lines that may be of a view."""
+        may, key = self._mask(v)
+        if key not in self._ink:
+            self._ink[key] = self.free if may is None else self.free.only(may[self.free.owner])
+        return self._ink[key]
+
+    def shapes(self, v: ElementView) -> _Shapes:
+        """The shapes of lines that may be of a view."""
+        may, key = self._mask(v)
+        if key not in self._shapes:
+            self._shapes[key] = _of_drawing(self.space.strokes[k] for k in self.left.tolist() if may is None or may[k])
+        return self._shapes[key]
+
+    def _mask(self, v: ElementView) -> tuple[npt.NDArray[np.bool_] | None, bytes]:
+        if v not in self._may_be:
+            self._may_be[v] = self.titles.may_be(v, self.placed)
+        may = self._may_be[v]
+        return may, b"" if may is None else may.tobytes()
 
     def changed(self, v: ElementView, main: Iterable[Element], least: int = FEW_LINES, left_over: bool = False) -> FoundView | None:
         """A view that is drawn with other main lines than ours, at a scale of its own; None where it is not found whole.
@@ -159,40 +240,58 @@ class Search:
         ``least`` is the number of lines by which it is known, if not by its title and letters; in what the others have
         ``left_over`` a line that ends where it should will do.
         """
-        self.main[v] = [e for e in main if e.length > 0.01]
-        if not self.main[v]:
+        lasting = [e for e in main if e.length > 0.01]
+        if not lasting:
             return None
-        z = lines([e.points for e in self.main[v]]).points(1.0)
-        self.points[v] = z[:: max(len(z) // MOST, 1)]
-        few = distinct([e for e in self.main[v] if e.length > SHORTEST]) < least
+        form = _Form.of(lasting)
+        self.forms[v] = [form]
+        few = distinct([e for e in lasting if e.length > SHORTEST]) < least
         scales = dict.fromkeys((self.scales.get(v.mu), None))  # plans of one scale factor are drawn alike, mostly
-        tries = [one for scale in scales for one in self.tries(0, v, scale, 1, 0, AGREE, left_over) if one.share > AS_DRAWN
+        tries = [one for scale in scales for one in self.tries(0, v, form, scale, 1, 0, AGREE, left_over) if one.share > AS_DRAWN
                  and (v.mu is None or handy(one.placing))
-                 and not (few and self._read(v, one.placing) + self.titled(v, one.placing) < CALLED
-                          and not (left_over and self._ends(v, one.placing)))]
+                 and not (few and self._read(v, one.placing) + self.titled(v, form, one.placing) < CALLED
+                          and not (left_over and self._ends(v, form, one.placing)))]
         found = [(self.worth(v, FoundView(one.placing, one.share)) - one.less, one) for one in tries]
         best = max(found, key=lambda x: x[0], default=None)
-        return None if best is None else self._there(v, best[1])
+        return None if best is None else self._there(best[1])
 
-    def _there(self, v: ElementView, one: _Try) -> FoundView:
+    def _there(self, one: _Try) -> FoundView:
         """A view where it was found; what lies along one direction is where the ends of its lines say."""
-        placing, main = one.placing, self.main[v]
+        placing, main = one.placing, one.form.main
         ends = np.array([moved(e, placing).points[[0, -1]] for e in main if e.kind == "line"], dtype=complex)
         if len(ends) < len(main) or not len(self.tips):
-            return FoundView(placing, one.share)
+            return FoundView(placing, one.share, one.form.position)
         along = ends[:, 1] - ends[:, 0]
         u = along[np.abs(along).argmax()] / np.abs(along).max()
-        if np.abs((along * np.conj(u)).imag).max() > NEAR:
-            return FoundView(placing, one.share)
-        off = (self.tips[None, :] - ends.ravel()[:, None]) * np.conj(u)
-        off[np.abs(off.imag) > NEAR] = np.inf
-        by = off[np.arange(len(off)), np.abs(off).argmin(axis=1)].real
-        by = by[np.abs(by) < SLID]
-        return FoundView(placing._replace(shift=placing.shift + np.median(by) * u) if len(by) else placing, one.share)
+        if np.abs((along * np.conj(u)).imag).max() <= NEAR:
+            off = (self.tips[None, :] - ends.ravel()[:, None]) * np.conj(u)
+            off[np.abs(off.imag) > NEAR] = np.inf
+            by = off[np.arange(len(off)), np.abs(off).argmin(axis=1)].real
+            by = by[np.abs(by) < SLID]
+            placing = placing._replace(shift=placing.shift + np.median(by) * u) if len(by) else placing
+        return FoundView(placing, one.share, one.form.position)
 
-    def enough(self) -> bool:
+    def explained(self, v: ElementView, form: _Form, placing: Placing) -> float:
+        """Share of the ink of the figures a view would be of that is its own then."""
+        import shapely
+
+        theirs, points = self.space.lines, placing(form.points)
+        figures = self.titles.figures[theirs.owner]
+        _, j = theirs.tree.query(shapely.points(points.real, points.imag), predicate="dwithin", distance=NEAR)
+        mine = theirs.only(np.isin(figures, figures[j]) & (figures >= 0))
+        return lines([moved(e, placing).points for e in (*form.main, *self.beside[v])]).share(mine.points(2.0), OWN_INK)
+
+    def enough(self, v: ElementView) -> bool:
         """Whether there are lines for a changed view to be known by."""
-        return bool((self.free.length > SHORTEST).any())
+        return bool((self.ink(v).length > SHORTEST).any())
+
+    def whole(self, v: ElementView) -> Sequence[Element]:
+        """The main lines of a view."""
+        return self.forms[v][0].main
+
+    def inked(self, v: ElementView, placing: Placing) -> float:
+        """Share of a whole view at a place that free ink covers."""
+        return self.free.share(placing(self.forms[v][0].points), NEAR)
 
     def worth(self, v: ElementView, found: FoundView) -> float:
         """How well a view is there: the share that has ink, less under another's title or with a scale factor nobody takes."""
@@ -202,24 +301,29 @@ class Search:
     def strange(self, v: ElementView, placing: Placing) -> bool:
         """Whether the title over or under a place is that of another such view, with another number."""
         said = self.title(v, placing)
-        return said is not None and self.owners.get(said, v) == v and _namesakes(_tokens(v.name), said)
+        return said is not None and self.owners.get(said, v) == v and namesakes(self.own[v], said)
 
     def named(self, v: ElementView, placing: Placing) -> bool:
         """Whether the title over or under a place is the view's own, with its number."""
-        own, said = _tokens(v.name), self.title(v, placing)
-        return said is not None and (bool(_numbers(own) & _numbers(said)) if _numbers(own) else _common(own, said) > CALLED)
+        own, said = self.own[v], self.title(v, placing)
+        like = likeness(own, said, self.shown[v]) if said is not None else 0.0
+        return said is not None and (bool(own.numbers & said.numbers) if own.numbers else like > CALLED)
 
-    def title(self, v: ElementView, placing: Placing) -> frozenset[str] | None:
+    def title(self, v: ElementView, placing: Placing) -> Said | None:
         """The nearest title that may be that of a view; one that has more words of the view's own may be farther off."""
-        own = _tokens(v.name)
-        box, titles = self._titles(v, placing)
-        near = [(abs(at - complex(box.centre.real, box.nearest(at).imag)) / len(shared), said) for said, at in titles
-                for shared in [_words(own) & _words(said)] if len(shared) > 0.5 * len(_words(said))]
+        own = self.own[v]
+        box, titles = self._titles(self.forms[v][0], placing)
+        near = [(abs(at - complex(box.centre.real, box.nearest(at).imag)) / both, said) for said, at in titles
+                for both in [in_common(own, said)] if both > 0.5 * said.size]
         return min(near, key=lambda x: x[0], default=(0.0, None))[1]
 
     def without(self, v: ElementView, placing: Placing) -> None:
         """Keep the ink of a view from the others; those of its scale factor have its scale, mostly."""
-        self.free = unused(self.free, placing(self.points[v]))
+        points = placing(self.forms[v][0].points)
+        self.free = unused(self.free, points)
+        self.placed[v] = self.titles.at(points, NEAR)
+        self._ink.clear()
+        self._may_be.clear()
         if v.mu is not None:
             self.scales.setdefault(v.mu, placing.scale)
 
@@ -230,8 +334,16 @@ class Search:
             lost = [(k, v) for k, v in enumerate(self.views) if v not in out]
             scales = {v: self.scales.get(v.mu) for _, v in lost}
             self._place(out, [one for k, v in lost if not at_known or scales[v] is not None
-                              for one in self.tries(k, v, scales[v] if at_known else None, least, len(out))], least)
+                              for one in self._anyhow(k, v, scales[v] if at_known else None, least, len(out))], least)
         return out
+
+    def _anyhow(self, k: int, v: ElementView, scale: float | None, least: int, taken: int) -> list[_Try]:
+        """The places a view may be at; what shows several positions may be drawn at one of them only."""
+        whole = list(self.tries(k, v, self.forms[v][0], scale, least, taken))
+        if any(one.share > HALF for one in whole):
+            return whole
+        at_one = [_Form.of(to_joints(main, self.joints[v]), label) for label, main in positions(self.whole(v)).items()]
+        return [*whole, *(one for form in at_one for one in self.tries(k, v, form, scale, min(least, FEW_LINES), taken))]
 
     def _place(self, out: dict[ElementView, FoundView], heap: list[_Try], least: int) -> None:
         """Place views, the surest first: it keeps its ink from the others."""
@@ -242,70 +354,78 @@ class Search:
             if v in out:
                 continue
             if best.taken < len(out):  # others have taken ink since
-                again = self._judged(best.view, v, best.placing, least, len(out))
+                again = self._judged(best.view, v, best.form, best.placing, least, len(out))
                 if again is not None:
                     heappush(heap, again)
                 continue
-            out[v] = self._there(v, best)
+            out[v] = self._there(best)
             self.without(v, out[v].placing)
 
-    def tries(self, k: int, v: ElementView, scale: float | None, least: int, taken: int, agree: float = 0.0,
+    def tries(self, k: int, v: ElementView, form: _Form, scale: float | None, least: int, taken: int, agree: float = 0.0,
               left_over: bool = False) -> Iterator[_Try]:
         """The places a view may be at, at a scale if that is known, on which a share of its lines agrees."""
         seen: list[Placing] = []
-        middle = complex(self.points[v].mean())
+        theirs = self.ink(v)
+        if not len(theirs.a):
+            return
+        middle = complex(form.points.mean())
         most = TRIED_LAST if left_over else TRIED
-        for placing in _voted(_of_sheet(self.main[v]), self.shapes, middle, scale, agree, 4 * most):
-            if agree and self.free.share(placing(self.points[v][::10]), 2.0) < agree:
+        for placing in _voted(_of_sheet(form.main), self.shapes(v), middle, scale, agree, 4 * most):
+            if agree and theirs.share(placing(form.points[::10]), 2.0) < agree:
                 continue
-            fitted = _fitted(self.points[v], self.free, placing, scale, agree)
+            fitted = _fitted(form.points, theirs, placing, scale, agree)
             if fitted is None or any(_alike(fitted, p, middle) for p in seen):
                 continue
             seen.append(fitted)
-            one = self._judged(k, v, fitted, least, taken, left_over)
+            one = self._judged(k, v, form, fitted, least, taken, left_over)
             if one is not None:
                 yield one
             if len(seen) >= most:
                 return
 
-    def _judged(self, k: int, v: ElementView, placing: Placing, least: int, taken: int, left_over: bool = False) -> _Try | None:
+    def _judged(self, k: int, v: ElementView, form: _Form, placing: Placing, least: int, taken: int,
+                left_over: bool = False) -> _Try | None:
         """A place with how sure it is; None where it may be chance."""
-        points = placing(self.points[v])
-        share = self.free.share(points, NEAR)
-        met = [e for e in self.main[v] if e.length * min(placing.scale, 1.0) > SHORTEST
-               and self.free.share(placing(_some(e.points)), NEAR) > 0.8]
+        theirs, points = self.ink(v), placing(form.points)
+        share = theirs.share(points, NEAR)
+        met = [e for e in form.main if e.length * min(placing.scale, 1.0) > SHORTEST
+               and theirs.share(placing(_some(e.points)), NEAR) > 0.8]
         lines_met = distinct(met)
         bends = any(e.kind in ("curve", "arc") for e in met)
-        read, titled = self._read(v, placing), self.titled(v, placing)
+        read, titled = self._read(v, placing), self.titled(v, form, placing)
         known_scale = self.scales.get(v.mu)
         same = known_scale is not None and abs(placing.scale / known_scale - 1) < 0.01
         if known_scale is not None and not same and not handy(placing):
             return None  # plans of one scale factor are drawn alike, or at one that somebody takes
-        witness = 0.35 * read + 0.25 * self.titled(v, placing, BESIDE) + 0.15 * same + 0.05 * handy(placing)
+        witness = 0.35 * read + 0.25 * self.titled(v, form, placing, BESIDE) + 0.15 * same + 0.05 * handy(placing)
         if least > 1 and not bends and lines_met < least:
             return None
         called = read + titled > (0.3 if same else CALLED)
         # Along one line another scale has as much ink, of which only the ends tell more.
         one = lines_met == 1 and (known_scale is None or same) and (
-            (called and same) or ((called or same or left_over) and self._ends(v, placing)))
+            (called and same) or ((called or same or left_over) and self._ends(v, form, placing)))
         enough = lines_met >= 2 or bends or one
         if not enough or share < 0.35 or share + witness < 0.75:
             return None
         size = max(float(np.abs(points - points[0]).max()), 1.0)
         witness -= ODD_TITLE * self.strange(v, placing)
+        if titled < CALLED:
+            witness -= UNEXPLAINED * (1 - self.explained(v, form, placing))
+            if share + witness < 0.75:
+                return None
         sure = (share + witness) * (1 + 0.15 * np.log1p(lines_met) + 0.1 * np.log10(size))
-        return _Try(-float(sure), taken, k, placing, share)
+        return _Try(-float(sure), taken, k, placing, share, form)
 
-    def _ends(self, v: ElementView, placing: Placing) -> bool:
+    def _ends(self, v: ElementView, form: _Form, placing: Placing) -> bool:
         """Whether the longest line of a view, at a scale one may choose, is in the drawing and no longer there."""
-        straight = [z for z, _ in _together([e.points for e in self.main[v]])]
+        straight = [z for z, _ in _together([e.points for e in form.main])]
         if not straight:
             return False  # a single curve
         whole = max(straight, key=lambda z: float(abs(z[1] - z[0])))
         a, b = placing(whole)
         u = (b - a) / max(abs(b - a), 1e-9)
         inside, beyond = np.linspace(a, b, MOST // 10), np.array([a - OVER * u, b + OVER * u])
-        return handy(placing) and self.free.share(inside, NEAR) >= SURE and not self.free.share(beyond, NEAR)
+        return handy(placing) and self.ink(v).share(inside, NEAR) >= SURE and not self.ink(v).share(beyond, NEAR)
 
     def _read(self, v: ElementView, placing: Placing) -> float:
         """Share of a view's letters that stand near their places."""
@@ -314,17 +434,29 @@ class Search:
                    for word, z in texts)
         return near / len(texts) if texts else 0.0
 
-    def titled(self, v: ElementView, placing: Placing, beside: float = 1.0) -> float:
-        """How much the most similar title near a place has in common with the view's own, 0 .. 1; ``beside`` it times as much."""
-        box, titles = self._titles(v, placing)
+    def titled(self, v: ElementView, form: _Form, placing: Placing, beside: float = 1.0) -> float:
+        """How much the most similar title near a place has in common with the view's own, 0 .. 1; ``beside`` it times as much.
+
+        Where a figure stands under a title that names the view, nothing else has its title.
+        """
+        box, titles = self._titles(form, placing)
+        if (own := self._under_own_title(v)) is not None and own.share(placing(form.points), NEAR) < OWN_FIGURE:
+            return 0.0
         reach = box.width / 2 + OVER_VIEW
-        return max((_common(_tokens(v.name), said) * (1.0 if abs(at.real - box.centre.real) < reach else beside)
+        return max((likeness(self.own[v], said, self.shown[v]) * (1.0 if abs(at.real - box.centre.real) < reach else beside)
                     for said, at in titles), default=0.0)
 
-    def _titles(self, v: ElementView, placing: Placing) -> tuple[Box, list[tuple[frozenset[str], complex]]]:
+    def _under_own_title(self, v: ElementView) -> KnownLines | None:
+        """Lines of figures under titles that name a view; None where there are none."""
+        if v not in self._own_ink:
+            of = self.titles.of(v)
+            self._own_ink[v] = None if of is None else self.space.lines.only(of[self.space.lines.owner])
+        return self._own_ink[v]
+
+    def _titles(self, form: _Form, placing: Placing) -> tuple[Box, list[tuple[Said, complex]]]:
         """The rectangle round a view, and the titles that may be its own; in a larger view they may be farther off."""
-        box = Box.around(placing(self.points[v]))
-        return box, [(said, at) for said, at in self.titles if box.contains(at, TITLE * max(placing.scale, 1.0))]
+        box = Box.around(placing(form.points))
+        return box, [(said, at) for said, at in self.said if box.contains(at, TITLE * max(placing.scale, 1.0))]
 
 
 def distinct(elements: Iterable[Element]) -> int:
@@ -356,35 +488,6 @@ def _alike(a: Placing, b: Placing, middle: complex) -> bool:
 def _some(points: Points) -> Points:
     """Points along a line, enough to tell whether there is ink."""
     return sampled(points, max(float(np.abs(np.diff(points)).sum()) / 24, 0.3))[0]
-
-
-def _tokens(text: str) -> frozenset[str]:
-    """Words of a title by their beginnings, numbers whole."""
-    return frozenset(w if w.isdigit() else w[:5] for w in re.findall(r"\d+|[^\W\d_]{3,}", text.casefold()))
-
-
-def _common(own: frozenset[str], said: frozenset[str]) -> float:
-    """Likeness of two titles: words in common; other numbers make them unlike."""
-    numbers, theirs = _numbers(own), _numbers(said)
-    if not own or (numbers and theirs and not numbers & theirs):
-        return 0.0
-    return len(own & said) / len(own | said)
-
-
-def _namesakes(own: frozenset[str], said: frozenset[str]) -> bool:
-    """Whether two titles differ in their numbers only."""
-    a, b, n, m = _words(own), _words(said), _numbers(own), _numbers(said)
-    return bool(n and m and not n & m and len(a & b) > 0.6 * min(len(a), len(b)))
-
-
-def _words(title: frozenset[str]) -> set[str]:
-    """The words of a title, without numbers, by their beginnings."""
-    return {w[:3] for w in title if not w.isdigit()}
-
-
-def _numbers(title: frozenset[str]) -> set[str]:
-    """The numbers of a title."""
-    return {w for w in title if w.isdigit()}
 
 
 def _of_sheet(elements: Iterable[Element]) -> _Shapes:
