@@ -1,0 +1,151 @@
+"""The figures of docs/accuracy.md, each made by one command; ``make figures``.
+
+``python -m tests.figures [NAME ...] [--all] [--check]``: without names those that take a minute or two, ``--all`` the trials of half
+an hour as well. A part of the page begins with ``<!-- figure: NAME -->`` and ends with ``<!-- end -->``; between them stand the
+command, when, where and with which commit it ran, and what it said. ``--check`` runs nothing and tells what does not fit together.
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import date
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+PAGE = ROOT / "docs" / "accuracy.md"
+LONGEST = 12_000
+"""Bytes of the page: results, not a diary."""
+PART = re.compile(r"^(<!-- figure: (\w+) -->\n)(.*?)^(<!-- end -->)$", re.MULTILINE | re.DOTALL)
+RAN = re.compile(r"^\*\d{4}-\d\d-\d\d, [0-9a-f]{8}, .+\*$", re.MULTILINE)
+
+
+def columns(said: str, *kept: int) -> str:
+    """Some columns of a Markdown table."""
+    rows = [[cell.strip() for cell in line.strip("| \n").split("|")] for line in said.splitlines() if line.startswith("|")]
+    return "\n".join(f"| {' | '.join(row[k] for k in kept)} |" if set(row[0]) != {"-"} else "|" + "---|" * len(kept)
+                     for row in rows)
+
+
+def block(said: str) -> str:
+    """Lines as they were printed."""
+    return "```text\n" + "\n".join(line.rstrip() for line in said.strip().splitlines()) + "\n```"
+
+
+def last(n: int) -> Callable[[str], str]:
+    """The last lines, as they were printed."""
+    return lambda said: block("\n".join(said.strip().splitlines()[-n:]))
+
+
+def methods(said: str) -> str:
+    """Method, range, error: the times hang on the machine."""
+    return columns(said, 1, 2, 3, 4)
+
+
+def peers(said: str) -> str:
+    """Accelerations alone: positions and velocities are in them."""
+    rows = said.splitlines()
+    return "\n".join(line for k, line in enumerate(rows) if line.startswith("|") and (k < 2 or "| accelerations |" in line))
+
+
+def invariants(said: str) -> str:
+    """Invariant, worst, bound."""
+    rows = [m for line in said.splitlines() if (m := re.match(r"(.{40})\s*(\d+)\s+(\S+)\s+(\S+)\s", line))]
+    return "\n".join(("| invariant | cases | worst | bound |", "|---|---|---|---|",
+                      *(f"| {m[1].strip()} | {m[2]} | {m[3]} | {m[4]} |" for m in rows)))
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A command (words after ``python -m``), how the page shows what it says, whether it takes longer than two quiet minutes."""
+
+    command: str
+    shown: Callable[[str], str]
+    long: bool = False
+
+    @property
+    def typed(self) -> str:
+        """The command as a person types it."""
+        program = "tmm_sheets "
+        return f"python -m {self.command}" if not self.command.startswith(program) else f"tmm-sheets {self.command[len(program):]}"
+
+
+STUDENTS = "tests.compare.hypotheses lugansk/shaper lugansk/engine press sixbar/3:2 sixbar/6:3"
+LAYOUTS = "tests.compare.own_layouts 8 --slips --projects lugansk/shaper press sixbar/3:1"
+FIGURES = {
+    "methods": Figure("tmm_sheets bench --summary", methods),
+    "peers": Figure("tmm_sheets bench --peers --summary", peers, long=True),
+    "stress": Figure("tmm_sheets stress", invariants),
+    "cost": Figure("tmm_sheets bench --cost lugansk/shaper", lambda said: columns(said, 0, 1, 2, 3, 5)),
+    "whole": Figure("tmm_sheets bench --whole lugansk/shaper", lambda said: columns(said, 0, 3, 4, 5)),
+    "students": Figure(f"{STUDENTS} --students 8 --seed 441", last(2), long=True),
+    "sound": Figure(f"{STUDENTS} --sound --students 4 --seed 445", last(1), long=True),
+    "cad": Figure("tests.compare.cad_plants 6", last(6), long=True),
+    "layouts": Figure(f"{LAYOUTS} --seed 711", last(8), long=True),
+    "photographs": Figure("tests.foreign --pictures 54 --seed 301 --jobs 2", last(14), long=True),
+    "photograph": Figure("tests.compare.trial --time", last(2)),
+    "evenness": Figure("tests.evenness", last(16), long=True),
+}
+
+
+def commit() -> str:
+    """Eight digits of the commit."""
+    words = ["git", "rev-parse", "--short=8", "HEAD"]
+    return subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def machine() -> str:
+    """Processors, memory, Python, load."""
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
+    version = ".".join(map(str, sys.version_info[:3]))
+    return f"{os.cpu_count()} processors, {memory:.0f} GB, Python {version}, load {os.getloadavg()[0]:.1f}"
+
+
+def made(figure: Figure) -> str | None:
+    """What stands in a part of the page; None, and why on standard error, when the command cannot run here."""
+    load = machine()
+    done = subprocess.run([sys.executable, "-m", *figure.command.split()], cwd=ROOT, capture_output=True, text=True, check=False)
+    if done.returncode not in (0, 1) or not done.stdout.strip():
+        print(f"{figure.typed}: exit status {done.returncode}\n{done.stderr[-500:]}", file=sys.stderr)
+        return None
+    return f"```\n{figure.typed}\n```\n\n*{date.today().isoformat()}, {commit()}, {load}*\n\n{figure.shown(done.stdout)}\n"
+
+
+def faults(page: str) -> list[str]:
+    """What does not fit together: figures that nobody makes or that are not dated, a page that is too long."""
+    parts = PART.findall(page)
+    found = [f"no command makes {name}" for _, name, _, _ in parts if name not in FIGURES]
+    found += [f"{name} does not say when and where it ran" for _, name, said, _ in parts
+              if name in FIGURES and not RAN.search(said)]
+    found += [f"{name} is another command now" for _, name, said, _ in parts
+              if name in FIGURES and f"```\n{FIGURES[name].typed}\n```" not in said]
+    if len(page.encode()) > LONGEST:
+        found.append(f"{len(page.encode())} bytes, at most {LONGEST}")
+    return found
+
+
+def main() -> int:
+    """Run the commands, write the page."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", choices=[[], *FIGURES])
+    parser.add_argument("--all", action="store_true")
+    parser.add_argument("--check", action="store_true")
+    told = parser.parse_args()
+    if not told.check:
+        on_page = [name for _, name, _, _ in PART.findall(PAGE.read_text("utf-8"))]
+        for name in told.names or [n for n in on_page if told.all or not FIGURES[n].long]:
+            if (said := made(FIGURES[name])) is not None:
+                page = PAGE.read_text("utf-8")
+                PAGE.write_text(PART.sub(lambda m, n=name, s=said: m[1] + s + m[4] if m[2] == n else m[0], page), "utf-8")
+                print(name, flush=True)
+    found = faults(PAGE.read_text("utf-8"))
+    print("\n".join(found))
+    return int(bool(found))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
