@@ -196,6 +196,8 @@ def test_quick_commands_work(paper, tmp_path, monkeypatch, capsys):
     Path("my.toml").write_text(catalogue.read("lugansk/shaper").text, encoding="utf-8")
     for arguments in typed(TEXTS[paper], "tmm-sheets"):
         if arguments and arguments[0] in QUICK and "PROJECT" not in arguments:
+            if "-o" in arguments:
+                Path(arguments[arguments.index("-o") + 1]).unlink(missing_ok=True)  # what is there already is not overwritten
             assert __main__.run(arguments) == __main__.DONE, (arguments, capsys.readouterr().err)
 
 

@@ -51,7 +51,13 @@ def content(path: Path, most: int = LARGEST) -> bytes:
 
 
 def check_file(path: Path) -> None:
-    """Refuse, as :func:`content` does, what is there under a name and is no file."""
+    """Refuse, as :func:`content` does, what is there under a name and is no file.
+
+    Raises
+    ------
+    OSError
+        when it is a pipe, a device or a socket, or cannot be looked at.
+    """
     _refuse_special(path, os.stat(path).st_mode)
 
 

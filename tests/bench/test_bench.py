@@ -187,7 +187,7 @@ def test_command(tmp_path, monkeypatch, capsys, records):
 def test_without_mpmath(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "mpmath", None)
     assert run(["bench", "--quick"]) == 2
-    assert "pip install 'tmm-sheets[bench]'" in capsys.readouterr().err
+    assert "pip install 'mpmath>=1.3'" in capsys.readouterr().err
 
 
 def test_costs():

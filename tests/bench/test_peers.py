@@ -117,7 +117,8 @@ def test_what_would_take_too_long_is_left_out(monkeypatch):
 @pytest.mark.parametrize("program", peer_programs.PROGRAMS)
 def test_without_a_peer(monkeypatch, program):
     monkeypatch.setitem(__import__("sys").modules, program.name.split()[0], None)
-    assert {r.note for r in measured(program)} == {"not installed: pip install 'tmm-sheets[peers]'"}
+    assert {r.note for r in measured(program)} == {
+        "not installed: pip install 'kinepy>=0.1' 'mechanism>=1.1' 'mpmath>=1.3' 'pylinkage>=1.0'"}
 
 
 def test_table_command_and_diagrams(tmp_path, monkeypatch, capsys):

@@ -298,7 +298,7 @@ def compared(table: Table, folder: Path) -> tuple[list[Outcome], list[Cell]]:
     lines += [f"{entry};{cell.printed}" for entry, cell in cells.items()]
     path = folder / "table.csv"
     path.write_text("\n".join(lines), encoding="utf-8")
-    filled: Filled = read(path, table.project, found)
+    filled: Filled = read(path, Project(catalogue.read(table.project)), found)
     judged = {j.entry.id: j for j in judge(filled, found, 0.25, 0.5)}
     return [Outcome(cell, judged[entry]) for entry, cell in cells.items()], [c for c in table.cells if c.entry not in found.entries]
 

@@ -180,4 +180,4 @@ shift = "rule"
 ''', encoding="utf-8")
     assert run(["--lang", "en", "check", str(file)]) == 0
     assert capsys.readouterr().err == (
-        'own: the title block has no room for all of "Гончаренко В. О.": "Гончаренко" stands there\n')
+        f'{file}: the title block has no room for all of "Гончаренко В. О.": "Гончаренко" stands there\n')

@@ -305,9 +305,9 @@ def test_notes_go_beside_a_full_view_and_are_told_when_nothing_is_free():
 def test_check_tells(capsys):
     assert run(["check", NEAR]) == 0
     told = capsys.readouterr()
-    assert told.out == "near: OK\n"
+    assert told.out == f"{NEAR}: OK\n"
     assert told.err == (
-        "near: positions 5–7: point C can be drawn no better than 2.5 mm, its lines cross under 13.2 deg "
+        f"{NEAR}: positions 5–7: point C can be drawn no better than 2.5 mm, its lines cross under 13.2 deg "
         "at position 6; position 4 is better (0.6 mm)\n"
     )  # fmt: skip
     assert run(["check", "lugansk/shaper"]) == 0

@@ -167,7 +167,7 @@ def test_build_says_so_and_is_done(tmp_path, capsys, monkeypatch):
     assert run(["build", path, "-o", str(tmp_path / "out"), "--format", "dxf"]) == 0
     told = [line for line in capsys.readouterr().err.splitlines() if "leaves its place" in line]
     assert len(told) == 1
-    assert told[0].startswith('own: sheet 1: view "Рычаг Жуковского (положение 3)" leaves its place by ')
+    assert told[0].startswith(f'{path}: sheet 1: view "Рычаг Жуковского (положение 3)" leaves its place by ')
     assert "scales.lever = " in told[0]
     assert (tmp_path / "out" / "sheet1.dxf").exists()
 

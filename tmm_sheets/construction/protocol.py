@@ -188,20 +188,18 @@ def _exact_angle(arg: Any, k: int) -> str:
 def _with_seconds(step: Step, k: int, shown: list[str]) -> str:
     """An angle that a formula gives, in degrees and minutes, and so the angles it is found from, which are ``shown`` with it.
 
-    Where minutes do not add up, all have seconds.
+    Where minutes do not add up, all have seconds with which they do. What is no sum, an arc cosine, stays in minutes.
     """
     value = float(value_at(step, k))
     kinds = zip(step.rule.takes, shown, strict=False)
     angles = [i for i, (kind, text) in enumerate(kinds) if kind in ("angle", "inclination") and text.endswith(("°", "′"))]
-    places = 0
-    while angles and places < MOST_PLACES:
-        values = [value_at(a, k) for a in step.args]
-        for i in angles:
-            values[i] = rounded_angle(float(values[i]), places)
+
+    def adds_up(places: int) -> bool:
+        values = [rounded_angle(float(value_at(a, k)), places) if i in angles else value_at(a, k) for i, a in enumerate(step.args)]
         found = step.rule.compute(*values)
-        if np.ndim(found) or abs(float(found) - rounded_angle(value, places)) <= NOTHING:
-            break
-        places += 1
+        return bool(np.ndim(found)) or abs(float(found) - rounded_angle(value, places)) <= NOTHING
+
+    places = next(filter(adds_up, range(MOST_PLACES + 1)), 0) if angles else 0
     for i in angles:
         shown[i] = degrees_and_minutes(float(value_at(step.args[i], k)), places)
     return degrees_and_minutes(value, places)

@@ -243,7 +243,7 @@ def phase_diagram(pairs: Sequence[tuple[Any, Any]]) -> tuple[list[float], list[f
 
     Raises
     ------
-    ValueError
+    Refused
         when the shares do not rise from 0 to 1.
     """
     x, y = diagram(pairs, units.NUMBER, units.NUMBER)

@@ -251,7 +251,7 @@ def alone(m: Mechanism, g: StructuralGroup, sides: dict[str, Any] | None = None)
     groups = m.groups[: [x.name for x in m.groups].index(g.name) + 1]
     if sides:
         groups = tuple(replace(x, side=sides[x.name], follow=False) if x.name in sides else x for x in groups)
-    found = replace(m, groups=groups, searches={})
+    found = replace(m, groups=groups)
     found.courses.update({f"{PURPOSE} {x.name}": () for x in groups} if sides else m.courses | {f"{PURPOSE} {g.name}": ()})
     return found
 
