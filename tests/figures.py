@@ -1,8 +1,9 @@
 """The figures of docs/accuracy.md, each made by one command; ``make figures``.
 
-``python -m tests.figures [NAME ...] [--all] [--check]``: without names those that take a minute or two, ``--all`` the trials of half
-an hour as well. A part of the page begins with ``<!-- figure: NAME -->`` and ends with ``<!-- end -->``; between them stand the
-command, when, where and with which commit it ran, and what it said. ``--check`` runs nothing and tells what does not fit together.
+``python -m tests.figures [NAME ...] [--all] [--check]``: without names those that take a minute or two, ``--all`` the trials of
+half an hour as well. A part of the page begins with ``<!-- figure: NAME -->`` and ends with ``<!-- end -->``; between them stand
+the command, when, where and with which commit it ran, and what it said. ``--check`` runs nothing and tells what does not fit
+together.
 """
 
 from __future__ import annotations
