@@ -250,7 +250,8 @@ def test_command(capsys, monkeypatch):
     assert err == ""
     lines = out.splitlines()
     assert lines[0].split() == ["invariant", "cases", "worst", "bound", "case", "scene", "share"]
-    assert lines[-1] == "one case again: tmm-sheets stress --seed 3 --case N"
+    assert lines[-1].startswith("one case again: tmm-sheets stress --seed 3 --case ")
+    assert 0 <= int(lines[-1].split()[-1]) < 12
     number = next(line for line in lines if line.startswith("link lengths")).split()[5]
     worst = next(line for line in lines if line.startswith("link lengths")).split()[3]
     assert run(["stress", "--seed", "3", "--case", number]) == 0

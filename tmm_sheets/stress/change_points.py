@@ -24,6 +24,8 @@ from tmm_sheets.stress.truth import DIGITS, Vector, motion, vector
 
 COUNT = 6
 """Crank angles about each change point."""
+BORDER = 1e-15
+"""How near an angle may be to where a change point ends, rad: the change point itself is known to its rounding."""
 SIDEWAYS = (0.0, pi / 2, pi, -pi / 2)
 ZERO = Vector(Decimal(0), Decimal(0))
 
@@ -170,9 +172,11 @@ def _slider(rng: np.random.Generator) -> Passing:
 
 
 def about(rng: np.random.Generator, angles: tuple[float, ...]) -> Any:
-    """Crank angles in change points, next to them, and anywhere."""
+    """Crank angles in change points, next to them, and anywhere; none whose last digit decides whether it is in a change point."""
     near = [a + x for a in angles for x in (0.0, *(10.0 ** rng.uniform(-16, 0, COUNT - 1) * rng.choice((1, -1), COUNT - 1)))]
-    return np.concatenate((near, rng.uniform(-pi, pi, COUNT)))
+    phi = np.concatenate((near, rng.uniform(-pi, pi, COUNT)))
+    apart = np.abs(np.angle(np.exp(1j * np.subtract.outer(phi, angles))))
+    return phi[(np.abs(apart - at_rest(phi)[:, None]) > BORDER).all(axis=1)]
 
 
 def scene(name: str) -> Callable[[np.random.Generator, Make], Iterator[Residual]]:

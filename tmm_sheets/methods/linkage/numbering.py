@@ -146,7 +146,7 @@ def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", t
     numbering.add("φ", WORLD, GivenNumber(start, "cycle.start", "φ_0", "rad"), m.crank.sense, turned)
     plan, strokes = None, None
     if output is not None and working_sense is not None:
-        dead = _dead_of(m, output, SENSES[working_sense])
+        dead = _dead_of(m, output, SENSES[working_sense], round_about=True)
         plan = dead.plan
         begin = float(np.mod(m.crank.sense * (dead.start.value - start), 2 * np.pi))
         # A dead position that is position 0 up to rounding is position 0.
@@ -216,8 +216,8 @@ def _strokes(m: Mechanism, output: str, dead: DeadPoints, begin: float) -> Strok
     return Strokes(output, begin, begin + width, path / abs(path), abs(path), complex(out[0]), tuple(r.later(begin) for r in runs))
 
 
-def _dead_of(m: Mechanism, output: str, axis: complex) -> DeadPoints:
-    """Where the output's strokes begin and end.
+def _dead_of(m: Mechanism, output: str, axis: complex, round_about: bool = False) -> DeadPoints:
+    """Where the output's strokes begin and end; ``round_about``: of one that goes round a hinge, too.
 
     The strokes are those between the true extremes of the way, see :mod:`~tmm_sheets.methods.linkage.strokes`. Their ends are
     constructed where the group on the crank pin allows it and the output has its extremes there; found as zeros of its velocity
@@ -226,7 +226,7 @@ def _dead_of(m: Mechanism, output: str, axis: complex) -> DeadPoints:
     sense, watched = m.crank.sense, Watched(m, DEAD_POINTS)
     if passages(m).turning_back(output):
         check_turn(m, output)  # names the group
-    way = way_of(m, watched, output, axis)
+    way = way_of(m, watched, output, axis, round_about)
     runs = runs_of(way.speed)
     if len(runs) < 2:
         check_turn(m, "" if runs else output)  # names the group that does not assemble, and by how much

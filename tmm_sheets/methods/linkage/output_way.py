@@ -27,23 +27,29 @@ class Way:
     speed: Callable[[Floats], Any]
 
 
-def way_of(m: Mechanism, watched: Watched, output: str, axis: complex) -> Way:
+def way_of(m: Mechanism, watched: Watched, output: str, axis: complex, round_about: bool = False) -> Way:
     """The way of a point, positive where it goes along the unit vector ``axis``, of a swing where its chord does.
+
+    One that goes ``round_about`` a fixed hinge has no dead positions, but where these are not asked for it goes to and fro
+    along the axis.
 
     Raises
     ------
     CannotBuild
-        when the point goes round a fixed hinge, or does not move that way.
+        when the point goes round a fixed hinge and may not, or does not move that way.
     """
     sense, point, velocity = m.crank.sense, watched.point(output), watched.velocity(output)
     path = np.asarray(point(sense * np.linspace(0.0, TURN, SWEEP + 1)))
     hinge = None if np.isnan(path).any() else _hinge_of(m, path)
-    if hinge is None:
-        return Way(lambda turned: (point(sense * turned) * np.conj(axis)).real,
+    straight = Way(lambda turned: (point(sense * turned) * np.conj(axis)).real,
                    lambda turned: (velocity(sense * turned) * np.conj(axis)).real)
+    if hinge is None:
+        return straight
     centre = m.fixed[hinge]
     radius, swept = float(abs(path[0] - centre)), np.unwrap(np.angle(path - centre))
     if round(float(swept[-1] - swept[0]) / TURN):
+        if round_about:
+            return straight
         raise CannotBuild(tell("point {output} turns all the way round {centre}: it has no dead positions").format(
             output=output, centre=hinge), tell(BY_ANGLE))
     ahead = float((complex(path[np.argmax(swept)] - path[np.argmin(swept)]) * np.conj(axis)).real)
