@@ -25,7 +25,8 @@ from tmm_sheets.words import DOMAIN, LANGUAGES
 
 ROOT = Path(__file__).parents[1]
 LOCALE = ROOT / "templates" / "locale"
-KEYWORDS = {"tr": None, "tell": None, "marked": None, "tr_in": ((1, "c"), 2), "tr_n": (1, 2), "tell_n": (1, 2)}
+KEYWORDS = {"tr": None, "tell": None, "marked": None, "tr_in": ((1, "c"), 2), "tr_n": (1, 2), "tell_n": (1, 2),
+            "marked_n": (1, 2)}
 CYRILLIC = re.compile("[\u0400-\u04ff]")
 NEVER = datetime(2026, 1, 1, tzinfo=UTC)
 """Date in the headers: a catalogue depends on its texts only."""

@@ -1,14 +1,23 @@
 """What holds for all tests."""
 
 import os
+import shutil
+import tempfile
 
+import pytest
 from hypothesis import settings
+
+from tmm_sheets import kept
 
 # A busy machine is no mistake of the program: time is measured by benchmarks, never by tests.
 settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
 os.environ["LANGUAGE"] = "en"  # messages are compared in the language of the code, wherever the tests run
+# Sheets that one test has composed are there for all others, of all workers and of the programs they start; the user's are not.
+OWN_CACHE = "" if "PYTEST_XDIST_WORKER" in os.environ else tempfile.mkdtemp(prefix="tmm-sheets-tests-")
+if OWN_CACHE:
+    os.environ[kept.FOLDER] = OWN_CACHE
 # Programs that tests start keep their byte code: the next one begins sooner.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
@@ -29,3 +38,20 @@ def pytest_collection_modifyitems(items):
     """Long files first; all others as they were found."""
     rank = {f"tests/{name}.py": i for i, name in enumerate(LONGEST)}
     items.sort(key=lambda item: rank.get(item.nodeid.partition("::")[0], len(rank)))
+
+
+def pytest_unconfigure():
+    """Of all workers the one that began it removes the folder of kept sheets."""
+    if OWN_CACHE:
+        shutil.rmtree(OWN_CACHE, ignore_errors=True)
+
+
+@pytest.fixture(autouse=True)
+def _nothing_kept(request):
+    """A test that changes the program has no use for sheets of the unchanged one, nor others for its own."""
+    if "monkeypatch" not in request.fixturenames:
+        yield
+        return
+    before, os.environ[kept.FOLDER] = os.environ[kept.FOLDER], ""
+    yield
+    os.environ[kept.FOLDER] = before

@@ -20,6 +20,7 @@ import numpy as np
 
 from tests.gallery import names
 from tmm_sheets import catalogue
+from tmm_sheets import kept as stored
 from tmm_sheets.drawing import labels as placing
 from tmm_sheets.drawing import owners
 from tmm_sheets.drawing.canvas import Label
@@ -67,7 +68,8 @@ def judged(project, n):
 
     placing._draw = keeping
     try:
-        composed = sheet.composed(project, n)
+        with stored.unused():
+            composed = sheet.composed(project, n)
     finally:
         placing._draw = original
     ink = owners.Ink([m for n, m in enumerate(composed.drawing.marks[: composed.parts[-1].first]) if n not in windows])

@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1] / "tmm_sheets"
 MODULES = {".".join(p.relative_to(ROOT).with_suffix("").parts): p for p in ROOT.rglob("*.py")}
-NEUTRAL = "box errors files nearest numbers resources progress texts typed words __init__"
+NEUTRAL = "box errors files kept nearest numbers program remarks resources progress texts typed words __init__"
 METHODS = "methods.linkage methods.flywheel methods.gears methods.cams methods.integration"
 
 RULES = {
@@ -43,7 +43,7 @@ RULES = {
     "backends": ("drawing", ""),
     "output": ("backends catalogue drawing explain project sheets", "task"),
     "note": ("backends construction drawing project record results sheets task.synthesis_refs task.units", "task"),
-    "compare": ("drawing sheets", "project"),
+    "compare": ("drawing sheets", "construction project"),
     "compare.story_pdf": ("backends compare drawing", ""),
     "compare.report_pages": ("compare", ""),
     "compare.group": ("compare", "project"),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tmm_sheets import __version__, nearest, words
+from tmm_sheets import __version__, kept, nearest, words
 from tmm_sheets.box import Box
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of, together
 from tmm_sheets.spoken import Group, Option, argument, option
@@ -76,7 +76,14 @@ def _plotter(context: click.Context, parameter: click.Parameter, value: str | No
         raise click.BadParameter(str(e)) from None
 
 
+def _forgo(context: click.Context, parameter: click.Parameter, value: bool) -> None:
+    if value:
+        kept.forgo()
+
+
 PROJECT = argument("project")
+NO_CACHE = option("--no-cache", is_flag=True, expose_value=False, callback=_forgo,
+                  help="Draw every sheet anew, without the drawings kept of earlier times.")  # fmt: skip
 CORRECTED = option("--corrected", is_flag=True, help="With the suggested values instead of suspected misprints.")
 
 
@@ -145,21 +152,20 @@ def show(project: str, corrected: bool, as_file: bool, output: Path | None, forc
 def check(project: str, corrected: bool) -> None:
     """Read and assemble PROJECT, tell what no pencil can draw; write nothing."""
     opened = _open(project, corrected)
-    from tmm_sheets.sheets import composition, sheet
+    from tmm_sheets.sheets import composing, composition
 
     opened.check()
     composition.check(opened)
-    for line in sheet.shortened(opened):
+    for line in composing.shortened(opened):
         click.echo(f"{opened.variant.called}: {line}", err=True)
     if opened.variant.crank is not None:
         from tmm_sheets import summary
         from tmm_sheets.sheets import flat_crossings, legibility
 
         every = range(1, len(opened.sheets) + 1)
-        for line in (*composition.left_out(opened, every), *legibility.crowded(opened, every), *flat_crossings.lines(opened)):
-            click.echo(f"{opened.variant.called}: {line}", err=True)
-        for line in (*map(str, opened.dead_positions), *summary.swing(opened)):
-            click.echo(f"{opened.variant.called}: {line}", err=True)
+        for told in (*composition.left_out(opened, every), *legibility.crowded(opened, every), *flat_crossings.lines(opened),
+                     *opened.dead_positions, *summary.swing(opened)):
+            click.echo(f"{opened.variant.called}: {told}", err=True)
     for line in opened.flywheel.remarks if opened.variant.flywheel is not None else ():
         click.echo(f"{opened.variant.called}: {line}", err=True)
     click.echo(tell("{project}: OK").format(project=opened.variant.called))
@@ -187,6 +193,7 @@ def check(project: str, corrected: bool) -> None:
 @option("--force", is_flag=True, help="Make again also what has not changed, and overwrite what was changed by hand.")
 @option("--jobs", type=click.IntRange(1), metavar="N", help="Processes for several projects.  [default: all processors]")
 @option("--dask", "scheduler", metavar="ADDRESS", help="Build several projects on a dask cluster.")
+@NO_CACHE
 @option("--with-note", is_flag=True, help="Also the explanatory note, note.pdf; the numbers of the sheets run on after its pages.")
 @option("--explain", is_flag=True, help="Also tell what was built and evaluated, and how long it took.")  # fmt: skip
 def build(
@@ -204,7 +211,7 @@ def build(
 
     settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": machine}, "dxf": {"text": text},
                                            "pdf": {"date": files.source_date()}}  # fmt: skip
-    order = Order(sheets, formats, settings, corrected, force, archive, one_file, words.asked(), words.reader())
+    order = Order(sheets, formats, settings, corrected, force, archive, one_file, words.asked(), words.reader(), kept.used())
     if len(projects) == 1 and not families and not lists:
         if jobs is not None or scheduler is not None:
             raise click.UsageError(tell("--jobs and --dask are for several projects"))
@@ -388,6 +395,7 @@ def protocol(project: str, corrected: bool, name: str | None, everything: bool) 
 @CORRECTED
 @option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
 @option("--json", "target", required=True, metavar="FILE", help="Write to FILE, or to standard output for -.")
+@NO_CACHE
 def record(project: str, corrected: bool, sheets: tuple[int, ...], target: str) -> None:
     """Write the record of PROJECT as JSON: every number with its step, every mark with what it shows."""
     from tmm_sheets.output.building import chosen
@@ -425,6 +433,7 @@ def why(project: str, result: str, corrected: bool) -> None:
         help=f"Formats: {', '.join(NOTE_FORMATS)}.")
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Folder of the note.  [default: out/<project>]")
 @option("--force", is_flag=True, help="Overwrite what was changed by hand.")
+@NO_CACHE
 def note(project: str, corrected: bool, formats: tuple[str, ...], output: Path | None, force: bool) -> None:
     """Write the explanatory note of PROJECT: text, formulas, tables and figures from the record, ready to be printed."""
     from tmm_sheets import files
@@ -476,6 +485,7 @@ def _window(context: click.Context, parameter: click.Parameter, value: str | Non
 @option("--dpi", type=click.FloatRange(10, 1200), default=100, show_default=True, help="Dots per inch of the picture.")
 @option("--ctb", is_flag=True, help="Also a plot style table for AutoCAD that prints every colour black.")
 @option("--dry-run", is_flag=True, help="Tell what would be written and sent; do neither.")
+@NO_CACHE
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
               help="Folder of the files.  [default: out/<project>]")  # fmt: skip
 def plot(
@@ -626,6 +636,7 @@ def _check_pages(pages: tuple[Path, ...]) -> None:
 @option("--json", "target", metavar="FILE", help="Also write the outcome as JSON, to standard output for -.")
 @option("--report", "pages", type=click.Path(path_type=Path), multiple=True, metavar="FILE",
               help="Also write the report with pictures: .html (one self-contained page) or .pdf; may be given twice.")
+@NO_CACHE
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
               help="Folder of the template and the overlays.  [default: out/<project>]")  # fmt: skip
 def compare(

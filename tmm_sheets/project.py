@@ -45,6 +45,8 @@ class Project:
 
     def __init__(self, variant: Variant) -> None:
         self.variant = variant
+        self.shown = set[int]()
+        """Numbers of the sheets whose steps are made."""
 
     @property
     def sheets(self) -> tuple[str, ...]:

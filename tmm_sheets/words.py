@@ -150,6 +150,11 @@ def marked(text: str) -> str:
     return text
 
 
+def marked_n(one: str, many: str) -> tuple[str, str]:
+    """The same of a text with a number: its forms."""
+    return one, many
+
+
 def tr(text: str) -> str:
     """The text as it stands on the paper; fields in braces stay for ``format``."""
     return _text(_catalogue(_paper.get()).gettext(text), _paper.get()) if text else text

@@ -26,7 +26,8 @@ from tmm_sheets.compare.elements import Element, elements
 from tmm_sheets.compare.known_sheet import KnownSheet
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.sheet import Composed, composed
+from tmm_sheets.sheets.composed import Composed
+from tmm_sheets.sheets.sheet import composed
 
 KINDS = ("shift", "end", "turn", "remove", "extra", "text", "radius", "centre", "bump", "reverse", "gap", "long")
 

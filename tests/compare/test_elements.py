@@ -12,7 +12,9 @@ from tmm_sheets.drawing.dashes import strokes
 from tmm_sheets.drawing.labels import place
 from tmm_sheets.drawing.marks import Drawing, Fill, Text
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.sheet import Composed, _views, composed
+from tmm_sheets.sheets.composed import Composed
+from tmm_sheets.sheets.composing import _views
+from tmm_sheets.sheets.sheet import composed
 
 PAPER = Box(0, 0, 200, 100)
 

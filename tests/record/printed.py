@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets import results, sheets
+from tmm_sheets import kept, results, sheets
 from tmm_sheets.catalogue import read
 from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.step import Step, value_of
@@ -77,13 +77,14 @@ def written(project: Project) -> tuple[dict[Line, list[float]], dict[str, float]
         return noted
 
     views = [import_module(f"{sheets.__name__}.{m.name}") for m in iter_modules(sheets.__path__)]
-    kept = [(m, name, vars(m)[name]) for m in views for name in ("number", "fixed") if name in vars(m)]
+    before = [(m, name, vars(m)[name]) for m in views for name in ("number", "fixed") if name in vars(m)]
     try:
-        for module, name, write in kept:
+        for module, name, write in before:
             setattr(module, name, noting(write))
-        drawn = attempt(project, range(1, len(project.sheets) + 1)).drawn
+        with kept.unused():
+            drawn = attempt(project, range(1, len(project.sheets) + 1)).drawn
     finally:
-        for module, name, write in kept:
+        for module, name, write in before:
             setattr(module, name, write)
     return found, {key: scale.mu for composed in drawn.values() for key, scale in composed.scales.items()}
 

@@ -7,7 +7,7 @@ import pytest
 
 from tests.record.printed import strangers
 from tests.record.replayer import Replay, number
-from tmm_sheets import catalogue, results
+from tmm_sheets import catalogue, kept, results
 from tmm_sheets.__main__ import run
 from tmm_sheets.project import Project
 from tmm_sheets.record import recording
@@ -216,7 +216,7 @@ def test_searches_are_counted(numbers):
         return repeated(self, inputs)
 
     project = Project(catalogue.read("sixbar/1:1"))
-    with pytest.MonkeyPatch.context() as patch:
+    with pytest.MonkeyPatch.context() as patch, kept.unused():
         patch.setattr(Step, "_computed", counted)
         patch.setattr(replay.Replay, "__call__", again)
         sheet.every(project, numbers=numbers)

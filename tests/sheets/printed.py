@@ -27,7 +27,8 @@ from tmm_sheets.drawing.marks import Text
 from tmm_sheets.project import Project
 from tmm_sheets.record.book import chain
 from tmm_sheets.record.recording import unit
-from tmm_sheets.sheets.sheet import Composed, every
+from tmm_sheets.sheets.composed import Composed
+from tmm_sheets.sheets.sheet import every
 
 OWN = sorted(str(path) for path in (Path(__file__).parent.parent / "projects").glob("*.toml"))
 PROJECTS = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/1:1", "transport/press@05-ЭПС-123", "transport/compressor@09-В-5",

@@ -6,6 +6,7 @@ from itertools import pairwise
 import pytest
 
 from tests import project_files
+from tmm_sheets import kept as stored
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing import labels, owners
 from tmm_sheets.drawing.marks import Line, Trace
@@ -148,7 +149,7 @@ def test_an_arm_does_not_strike_its_own_letter():
         kept.append((label, box))
         original(canvas, label, box)
 
-    with pytest.MonkeyPatch.context() as patch:
+    with pytest.MonkeyPatch.context() as patch, stored.unused():
         patch.setattr(labels, "_draw", keeping)
         sheet = composed(Project(read("sixbar/7:1")), 1)
     arms = [(label, box) for label, box in kept if label.text.startswith("h_")]

@@ -14,9 +14,10 @@ from tmm_sheets.drawing.marks import Arc, Text
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import friction, kinematic_frames, kinetic_frames, linkage
 from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.composing import INSIDE
 from tmm_sheets.sheets.composition import OF_FORCE, SHOWN, TITLE_BLOCK, _reaching, arranged
 from tmm_sheets.sheets.frame import fit_frame
-from tmm_sheets.sheets.sheet import INSIDE, composed
+from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.sheets.solver import Need, Node, cut, joined, rounded_up, solve
 
 ROOM = Box(0.0, 0.0, 400.0, 300.0)

@@ -21,7 +21,7 @@ def on_sheets(*names):
 
 
 def test_four_groups_beside_the_kinematics_are_told_to_be_too_small():
-    said, _ = legibility.crowded(on_sheets("kinematics_forces_wide"), [1])
+    said, _ = map(str, legibility.crowded(on_sheets("kinematics_forces_wide"), [1]))
     assert "29" in said
     assert 'sheets = ["kinematics", "forces"]' in said
 
@@ -39,7 +39,7 @@ def test_four_groups_call_for_a_sheet_of_their_own_and_can_be_read_there():
 
 
 def test_an_acceleration_plan_with_too_many_letters_together_is_told():
-    (said,) = legibility.crowded(Project(read(CHAIN)), [1])
+    (said,) = map(str, legibility.crowded(Project(read(CHAIN)), [1]))
     assert "14" in said
     assert "force_position" in said
 

@@ -28,7 +28,8 @@ from tmm_sheets.sheets import (
     reducer,
     train,
 )
-from tmm_sheets.sheets.sheet import _code, composed
+from tmm_sheets.sheets.composing import _code
+from tmm_sheets.sheets.sheet import composed
 
 FIELD = Box(20.0, 5.0, 836.0, 589.0)
 

@@ -15,11 +15,12 @@ from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.labels import place
 from tmm_sheets.drawing.marks import Text, flat
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import sheet as sheets
+from tmm_sheets.sheets import composing as sheets
 from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.composing import INSIDE, TITLE_BLOCK
 from tmm_sheets.sheets.composition import arranged
 from tmm_sheets.sheets.places import BESIDE, TOUCH, leaving
-from tmm_sheets.sheets.sheet import INSIDE, TITLE_BLOCK, composed
+from tmm_sheets.sheets.sheet import composed
 
 
 def masses(distance, angle):

@@ -62,7 +62,7 @@ def every_sheet(project):
 def test_a_plan_that_is_not_drawn_is_said(close, composed, capsys):
     sizes = plan_sizes(np.radians(np.arange(0, 360, 30)))
     times = sizes[0] / np.median(sizes)
-    (line,) = composition.left_out(close, every_sheet(close))
+    (line,) = map(str, composition.left_out(close, every_sheet(close)))
     assert line == f"position 0 is next to a dead point: its velocity plan is not drawn, it is {times:.3g} times as large as usual"
     note = " ".join(lettering(composed))
     assert re.search(rf"План скоростей положения 0 .*{round(times)} раз больше обычного", note)
@@ -114,7 +114,7 @@ def test_forty_plans_are_as_large_as_their_lettering_allows():
     assert [p.title.split()[-1] for p in parts] == [str(i) for i in range(40) if i % 2 == 0 or i == 3]
     assert max(project.study.velocities.points["D"].value.__abs__()) / found.scales["velocities"].mu > 10
     assert "Начерчены планы скоростей" in " ".join(lettering(found))
-    (said,) = composition.left_out(project, every_sheet(project))
+    (said,) = map(str, composition.left_out(project, every_sheet(project)))
     assert said == "there is no room for 40 velocity plans: one in 2 is drawn"
     view = next(p.box for p in found.parts if p.draw == "kinematics.velocity_plans")
     for p, q in pairwise([*parts, next(p for p in found.parts if p.first > parts[-1].first)]):

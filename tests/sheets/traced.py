@@ -22,8 +22,9 @@ from tmm_sheets.construction.step import Helper, Step, value_at
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, PlacedFrame, Points, Polyline, Text, flat
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.composed import Composed
 from tmm_sheets.sheets.details import NAMES
-from tmm_sheets.sheets.sheet import Composed, every
+from tmm_sheets.sheets.sheet import every
 
 ROOMS = {
     "linkage": ("kinematics", "false_positions", "kinetics", "friction", "diagrams", "load_diagram", "synthesis", "given_position",

@@ -1,7 +1,7 @@
 """A sheet as its draughtsman sees it: lines, arrows, circles, curves, hatchings and lettering instead of marks.
 
-A :class:`~tmm_sheets.sheets.sheet.Composed` sheet has, besides its marks (see ``drawing/marks.py``), the views and titled parts of
-views they belong to and the groups that are one thing to the eye. :func:`elements` puts these together:
+A :class:`~tmm_sheets.sheets.composed.Composed` sheet has, besides its marks (see ``drawing/marks.py``), the views and titled parts
+of views they belong to and the groups that are one thing to the eye. :func:`elements` puts these together:
 
 - an arrow is one element of kind line (or arc), its tip the last point of ``points``; the head is in ``fills``;
 - a dimension line with its heads is one line, its number another element (text);
@@ -15,11 +15,10 @@ Points are complex, mm of the sheet, x to the right, y up (as everywhere in ``dr
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import ceil, pi
-from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
@@ -30,7 +29,7 @@ from tmm_sheets.drawing.canvas import MarkGroup
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Role, Text, Trace, View
-from tmm_sheets.sheets.sheet import Composed
+from tmm_sheets.sheets.composed import Composed
 
 Kind = Literal["line", "arc", "circle", "curve", "text", "hatch", "fill"]
 
@@ -148,11 +147,8 @@ def _within(view: View, mark: int) -> bool:
     return any(first <= mark < end for first, end in view.spans)
 
 
-def elements(sheet: Composed, symbols: Mapping[str, str] = MappingProxyType({})) -> tuple[Element, ...]:
-    """The elements of a sheet in drawing order, labels last, numbered from 1; every mark belongs to exactly one.
-
-    ``symbols`` are the letters of steps that are not called by their names, in lettering markup, by the path of the step.
-    """
+def elements(sheet: Composed) -> tuple[Element, ...]:
+    """The elements of a sheet in drawing order, labels last, numbered from 1; every mark belongs to exactly one."""
     found = views(sheet)
     of_mark = np.zeros(len(sheet.drawing.marks), np.int64)
     for n, view in enumerate(sheet.drawing.views):
@@ -163,7 +159,7 @@ def elements(sheet: Composed, symbols: Mapping[str, str] = MappingProxyType({}))
     for first, end, group in _groups(marks, sheet.groups):
         e = _element(len(out) + 1, found[of_mark[first]], marks[first:end], group)
         by = next((m.by for m in e.marks if m.by is not None and (m.by.step or m.by.name)), e.marks[0].by)
-        out.append(replace(e, name=e.name or _called(by, sheet, symbols), by=by))
+        out.append(replace(e, name=e.name or _called(by, sheet), by=by))
     return tuple(out)
 
 
@@ -305,10 +301,10 @@ def _around(texts: list[Text]) -> Points:
     return np.asarray(u * np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)]))
 
 
-def _called(by: Trace | None, sheet: Composed, symbols: Mapping[str, str]) -> str:
+def _called(by: Trace | None, sheet: Composed) -> str:
     """Name of what a step has left, with the position where its place is that of several; empty without a step."""
     if by is None or not (by.step or by.name):
         return ""
-    name = said(by.name or symbols.get(by.step) or by.step.rpartition("/")[2])
+    name = said(by.name or sheet.symbols.get(by.step) or by.step.rpartition("/")[2])
     frame = sheet.frames[by.frame].position if by.frame >= 0 else ""
     return f"{name}({by.position})" if by.position not in ("", frame) else name

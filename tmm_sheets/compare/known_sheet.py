@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING
 
 from tmm_sheets.compare.elements import Element, elements
 from tmm_sheets.errors import BadInput
-from tmm_sheets.sheets.sheet import Composed, composed
+from tmm_sheets.sheets.composed import Composed
+from tmm_sheets.sheets.sheet import ask_again, composed
 from tmm_sheets.words import tell, tell_n
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Plan
     from tmm_sheets.project import Project
 
 
@@ -26,8 +28,13 @@ class KnownSheet:
 def known_sheet(project: Project, n: int) -> KnownSheet:
     """Draw sheet ``n``, its elements called by the letters of the steps that left them."""
     sheet = composed(project, n)
-    plans = (plan for plans in project.plans.values() for plan in (plans or {}).values())
-    return KnownSheet(n, sheet, elements(sheet, {step.path: step.symbol for plan in plans for step in plan if step.symbol}))
+    return KnownSheet(n, sheet, elements(sheet))
+
+
+def plans_of(project: Project, known: KnownSheet) -> dict[str, Plan]:
+    """The plans of a project that was asked for all that a sheet shows, by their names."""
+    ask_again(project, known.n, known.sheet)
+    return {plan.name: plan for some in project.plans.values() for plan in (some or {}).values()}
 
 
 def sheet_numbers(project: Project, asked: int | None) -> range:

@@ -8,7 +8,7 @@ matter of four look-ups, so all candidate places of a label are judged at once.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -16,9 +16,9 @@ import numpy.typing as npt
 
 from tmm_sheets.drawing import owners
 from tmm_sheets.drawing.canvas import Canvas, Label
+from tmm_sheets.drawing.crowded import Crowded
 from tmm_sheets.drawing.lettering import advance, letter
 from tmm_sheets.drawing.marks import Box, Fill, Line, Mark, Points, Text, flat
-from tmm_sheets.words import tell
 
 CELL = 0.5
 """Size of a grid cell, mm."""
@@ -63,29 +63,6 @@ CLOSER: Around = np.concatenate(([0.0, 0.6, 1.4, 2.5], np.arange(4.0, 40.0))), n
 _MARGIN = CLEAR * np.array([-1.0, -1.0, 1.0, 1.0])[:, None]
 _FIRST_BEYOND = np.array([0, 0, 1, 1])[:, None]
 """A rectangle's cells: from the one its lower left corner is in to the one after that of its upper right corner."""
-
-
-@dataclass(frozen=True)
-class Crowded:
-    """A label that found no free place; the sheet reports it."""
-
-    text: str
-    at: complex
-
-    def __str__(self) -> str:
-        return tell('no free place for "{text}" at ({x:.0f}, {y:.0f}): it stands over lines').format(
-            text=self.text, x=self.at.real, y=self.at.imag
-        )
-
-
-@dataclass(frozen=True)
-class Shortened(Crowded):
-    """A text of the title block that was too long for its cell; what is ``left`` of it stands there."""
-
-    left: str
-
-    def __str__(self) -> str:
-        return tell('the title block has no room for all of "{text}": "{left}" stands there').format(text=self.text, left=self.left)
 
 
 def text_box(mark: Text) -> Points:

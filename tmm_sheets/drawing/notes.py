@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.drawing.canvas import Canvas, Note
+from tmm_sheets.drawing.crowded import Crowded
 from tmm_sheets.drawing.evenness import dense
-from tmm_sheets.drawing.labels import Crowded, Grid
+from tmm_sheets.drawing.labels import Grid
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 

@@ -70,7 +70,7 @@ def reader_of(project: Project, say: Callable[[str], None] = lambda _: None) -> 
     """What the sections of a note read: the project with its sheets drawn; those that cannot be are told among the problems."""
     from tmm_sheets.sheets import sheet
 
-    attempt = sheet.every(project, say)
+    attempt = sheet.every(project, say, steps=True)
     scales: dict[str, Any] = {}
     for composed in attempt.drawn.values():
         scales |= composed.scales

@@ -14,7 +14,7 @@ from tmm_sheets.note.cutting import bare, points_of, windowed
 from tmm_sheets.note.document import Figure, Sheet
 
 if TYPE_CHECKING:
-    from tmm_sheets.sheets.sheet import Composed
+    from tmm_sheets.sheets.composed import Composed
 
 WIDTH, HEIGHT = 182.0, 205.0
 """Place for a figure with its caption on a page, mm: within the frame, a little wider than the text."""

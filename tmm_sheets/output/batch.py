@@ -23,7 +23,7 @@ from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tmm_sheets import catalogue, files, nearest, typed, words
+from tmm_sheets import catalogue, files, kept, nearest, typed, words
 from tmm_sheets.errors import BadInput, CannotBuild, Stopped, reason_of
 from tmm_sheets.output.building import Order, build, folder_name
 from tmm_sheets.words import tell
@@ -64,6 +64,8 @@ def _one(task: Task, order: Order, parent: Path) -> Outcome:
     project = task.project
     warnings: tuple[str, ...] = ()
     words.set_reader(order.reader)
+    if not order.kept:
+        kept.forgo()
     try:
         variant = catalogue.read(project, order.corrected)
         warnings = tuple(variant.warnings)

@@ -11,42 +11,20 @@ import json
 import zipfile
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import cache
-from hashlib import blake2b
 from io import BytesIO
 from itertools import count
 from pathlib import Path
 from typing import Any
 
-from tmm_sheets import __version__, files
+from tmm_sheets import files
 from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.program import fingerprint
 from tmm_sheets.words import tell
 
 RECORD = ".tmm-sheets.json"
 SCHEMA = 1
 DAWN = (1980, 1, 1, 0, 0, 0)
 """The date of every member of an archive: the earliest a zip file knows, so that the same sheets are the same bytes."""
-
-
-def fingerprint(*parts: str | bytes) -> str:
-    """Digest of a sequence of texts and contents."""
-    digest = blake2b(digest_size=16)
-    for part in parts:
-        data = part.encode() if isinstance(part, str) else part
-        digest.update(len(data).to_bytes(8, "big"))
-        digest.update(data)
-    return digest.hexdigest()
-
-
-@cache
-def program() -> str:
-    """Fingerprint of this program: its version, its source and its templates. Other libraries are not looked at."""
-    from tmm_sheets.resources import template
-
-    package = Path(__file__).parents[1]
-    sources = sorted(p for p in package.rglob("*.py") if "_templates" not in p.parts)
-    templates = sorted(p for p in template("").rglob("*") if p.is_file())
-    return fingerprint(__version__, *(part for p in (*sources, *templates) for part in (p.name, p.read_bytes())))
 
 
 @dataclass

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -19,19 +19,18 @@ from tmm_sheets.output.build_store import (
     Folder,
     Outlet,
     current,
-    fingerprint,
     free_name,
     keep,
     of_hand,
-    program,
     record_of,
 )
+from tmm_sheets.program import fingerprint, program
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.marks import Drawing
     from tmm_sheets.project import Project
-    from tmm_sheets.sheets.sheet import Composed
+    from tmm_sheets.sheets.composed import Composed
     from tmm_sheets.task.variant import Variant
 
 BACKENDS = {form: f"tmm_sheets.backends.{form}" for form in ("dxf", "pdf", "svg", "png", "hpgl")}
@@ -58,7 +57,7 @@ class Order:
 
     ``force`` makes everything again, also what was changed by hand; ``archive`` puts each project into a zip file; ``one_file``
     puts all sheets into one PDF. ``language`` is that of the sheets whatever the projects say, empty for theirs; ``reader`` that of
-    the messages: an order may be carried out on another machine.
+    the messages: an order may be carried out on another machine. Without ``kept`` every sheet is composed, whatever is kept.
     """
 
     sheets: tuple[int, ...] = ()
@@ -70,6 +69,7 @@ class Order:
     one_file: bool = False
     language: str = ""
     reader: str = words.MESSAGES
+    kept: bool = True
 
     def targets(self, numbers: Sequence[int]) -> list[Target]:
         """The files of these sheets, format by format."""
@@ -150,7 +150,7 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
             keep(outlet, work.record, made, made_from, work.inputs if whole_passed else None, beside)
     paths = tuple(outlet.path(target.name) for target in done)
     sizes = {outlet.path(name): len(data) for name, data in made.items()}
-    return Built(paths, sizes, drawings, opened, problem, (*kept, *_warnings(opened, drawn)))
+    return Built(paths, sizes, drawings, opened, problem, (*kept, *_warnings(drawn)))
 
 
 @dataclass(frozen=True)
@@ -231,20 +231,17 @@ def _rendered(drawings: Mapping[int, Drawing], due: Sequence[Target], order: Ord
     return made, beside
 
 
-def _warnings(opened: Project, drawn: Mapping[int, Composed]) -> tuple[str, ...]:
-    """What is not as a sheet should be, sheet by sheet, then the plans that no sheet shows."""
-    told = [
+def _warnings(drawn: Mapping[int, Composed]) -> tuple[str, ...]:
+    """What is not as a sheet should be, sheet by sheet, then the dead positions and what no sheet shows."""
+    of = [
         tell("sheet {n}: {what}").format(n=n, what=what)
         for n, composed in drawn.items()
         for what in (*composed.leaving, *composed.crowded)
     ]
-    if drawn and opened.variant.crank is not None:
-        from tmm_sheets.sheets import composition, legibility
-
-        with suppress(CannotBuild):  # what does not assemble is told by every sheet that shows a position
-            told += map(str, opened.dead_positions)
-        told += (*composition.left_out(opened, drawn), *legibility.crowded(opened, drawn))
-    return tuple(told)
+    dead = dict.fromkeys(str(remark) for composed in drawn.values() for remark in composed.dead)
+    left_out = (str(remark) for composed in drawn.values() for remark in composed.left_out)
+    illegible = (str(remark) for composed in drawn.values() for remark in composed.illegible)
+    return (*of, *dead, *left_out, *illegible)
 
 
 def _watching(watch: Stopwatch, say: Callable[[str], None]) -> Callable[[int], AbstractContextManager[None]]:

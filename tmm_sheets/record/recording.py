@@ -42,7 +42,7 @@ def record(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, Any
     asked = list(numbers) or list(range(1, len(project.sheets) + 1))
     refused: dict[str, CannotBuild] = {}
     tree = results.told(project, None, refused=refused)
-    attempt = sheet.attempt(project, asked)
+    attempt = sheet.attempt(project, asked, steps=True)
     scales: dict[str, Scale] = {}
     for composed in attempt.drawn.values():
         scales |= composed.scales

@@ -12,7 +12,7 @@ from tmm_sheets.drawing.marks import Arc, Fill, Line, Polyline, Text
 if TYPE_CHECKING:
     from tmm_sheets.drawing.canvas import Part
     from tmm_sheets.drawing.marks import Mark, Points
-    from tmm_sheets.sheets.sheet import Composed
+    from tmm_sheets.sheets.composed import Composed
 
 DIGITS = 6
 """Decimals of a millimetre."""

@@ -20,11 +20,12 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets import false_positions, kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.arrangement import Arrangement, View, arrangement
 from tmm_sheets.sheets.frame import extent, needed, standard
 from tmm_sheets.sheets.solver import GAP, Need, Node, cut, joined, rounded_up, solve
-from tmm_sheets.words import tell, tell_n
+from tmm_sheets.words import marked, marked_n
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
@@ -607,18 +608,18 @@ def check(project: Project) -> None:
                 mertsalov.procedure(project)
 
 
-def left_out(project: Project, sheets: Iterable[int]) -> Iterator[str]:
+def left_out(project: Project, sheets: Iterable[int]) -> Iterator[Remark]:
     """What some sheets leave out of the velocity plans, and why, for the command line."""
     for view in (view for n in sheets for view in _kinematic(project, n) if view.draw == "kinematics.velocity_plans"):
         layout = kinematic_frames.velocities(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
         for i, times in layout.beyond:
-            yield tell("position {label} is next to a dead point: its velocity plan is not drawn, it is {times:.3g} times as large "
-                       "as usual").format(label=project.cycle.labels[i], times=times)
+            yield Remark(marked("position {label} is next to a dead point: its velocity plan is not drawn, it is {times:.3g} times "
+                                "as large as usual"), {"label": project.cycle.labels[i], "times": times})
         if layout.every > 1:
             count = len(project.cycle.drawn)
-            yield tell_n("there is no room for {count} velocity plan: one in {every} is drawn",
-                         "there is no room for {count} velocity plans: one in {every} is drawn", count).format(
-                             count=count, every=layout.every)
+            yield Remark(marked_n("there is no room for {count} velocity plan: one in {every} is drawn",
+                                  "there is no room for {count} velocity plans: one in {every} is drawn"),
+                         {"count": count, "every": layout.every}, count)
 
 
 def scales(project: Project, parts: set[str]) -> dict[str, tuple[Scale, int]]:

@@ -63,14 +63,7 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
     taken = _closed(inside, closed)
     seen, forces = 0, _of_forces(canvas, inside)
     whole, drawn = (_whole(canvas, inside, taken.shape, lettering) for lettering in (True, False))
-    views = [(view, *_functions(view)) for view in offered]
-    for view, function, sizes, near, left in sorted(views, key=lambda it: it[3] is None):
-        try:
-            wanted = sizes(project, canvas, view.options)
-        except CannotBuild:
-            continue  # what it shows cannot be had; the views that need it have said so
-        if not wanted:
-            continue
+    for view, wanted, function, near, left in _wanted(project, canvas, offered):
         for k in range(seen, len(canvas.parts)):
             taken |= _of_part(canvas, k, inside, taken.shape)
         seen = len(canvas.parts)
@@ -93,6 +86,28 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[View], inside: Box,
             canvas.of = view.draw
             canvas.begin(box, "", view.draw)
             function(project, canvas, box, view.options)
+
+
+def ask_again(project: Project, canvas: Canvas, offered: Sequence[View], placed: Sequence[tuple[str, Box]]) -> None:
+    """Ask the project for what the offered views show that were ``placed`` in these boxes."""
+    left = list(placed)
+    for view, _, function, _, _ in _wanted(project, canvas, offered):
+        k = next((k for k, (draw, _) in enumerate(left) if draw == view.draw), None)
+        if k is not None:
+            canvas.begin(left[k][1], "", view.draw)
+            function(project, canvas, left.pop(k)[1], view.options)
+
+
+def _wanted(project: Project, canvas: Canvas, offered: Sequence[View]) -> Iterator[tuple[View, Any, Any, Any, Any]]:
+    """The views that have something to show, those first that belong to another: sizes, and what draws and places them."""
+    views = [(view, *_functions(view)) for view in offered]
+    for view, function, sizes, near, left in sorted(views, key=lambda it: it[3] is None):
+        try:
+            wanted = sizes(project, canvas, view.options)
+        except CannotBuild:
+            continue  # what it shows cannot be had; the views that need it have said so
+        if wanted:
+            yield view, wanted, function, near, left
 
 
 def _functions(view: View) -> tuple[Callable[..., None], Callable[..., Any], Callable[..., Any] | None, Callable[..., Any] | None]:

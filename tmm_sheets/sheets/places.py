@@ -11,12 +11,12 @@ from math import ceil, floor, pi
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.construction.scale import handy
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import polyline_inside
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Arc, Line, Mark, Points, Text, flat
-from tmm_sheets.words import marked, tell
+from tmm_sheets.sheets.composed import Leaving
+from tmm_sheets.words import marked
 
 TOUCH = 2.0
 """So far lines of a view may come out of its box, mm: a quarter of the distance between views, and what indices need."""
@@ -25,36 +25,6 @@ BESIDE = 8.0
 TIE = "construction"
 """Line type of what ties views together: projection lines from one diagram into another."""
 SIDES = (marked("at the left"), marked("at the bottom"), marked("at the right"), marked("at the top"))
-OVER = {
-    "": marked('view "{title}" leaves its place by {by:.1f} mm {side}'),
-    ", into the one beside it": marked('view "{title}" leaves its place by {by:.1f} mm {side}, into the one beside it'),
-    ", over the frame": marked('view "{title}" leaves its place by {by:.1f} mm {side}, over the frame'),
-    ", into the title block": marked('view "{title}" leaves its place by {by:.1f} mm {side}, into the title block'),
-}
-"""What is said of a view by what it comes over."""
-
-
-@dataclass(frozen=True)
-class Leaving:
-    """A view that does not keep its place: its title, by how much, mm, on which side, and what it comes over there.
-
-    ``scales`` are the scale factors it is drawn with; a larger one makes it smaller.
-    """
-
-    title: str
-    by: float
-    side: str
-    over: str
-    scales: tuple[tuple[str, float], ...] = ()
-
-    def __str__(self) -> str:
-        smaller = [f"scales.{name} = {handy(mu * 1.01):g}" for name, mu in self.scales]
-        one = "".join(smaller) if len(smaller) < 2 else \
-            tell("{several} or {last}").format(several=", ".join(smaller[:-1]), last=smaller[-1])
-        what = tell(OVER[self.over]).format(title=self.title, by=self.by, side=tell(self.side))
-        hint = tell("try {scales} in the project file, or make its box larger in templates/sheets").format(scales=one) if smaller \
-            else tell("make its box larger in templates/sheets")
-        return f"{what}: {hint}"
 
 
 def leaving(canvas: Canvas, frame: Box, title_block: Box) -> list[Leaving]:

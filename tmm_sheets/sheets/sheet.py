@@ -1,81 +1,23 @@
-"""A sheet: frame, title block, the views its arrangement names, labels in free places; one Drawing comes out."""
+"""The sheets of a project, each as it was kept of an earlier time or composed now."""
 
 from __future__ import annotations
 
-import tomllib
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
-from functools import cache
-from importlib import import_module
-from importlib.util import find_spec
-from itertools import pairwise
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from tmm_sheets.box import Box
-from tmm_sheets.drawing import axis_numbers
-from tmm_sheets.drawing.canvas import Canvas, MarkGroup, Part
-from tmm_sheets.drawing.labels import Crowded, Shortened, place
-from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Drawing, PlacedFrame, View
-from tmm_sheets.drawing.title_block import draw_frame
-from tmm_sheets.errors import BadInput, CannotBuild, Problem, together
-from tmm_sheets.resources import template
-from tmm_sheets.sheets import places, titles
-from tmm_sheets.sheets.arrangement import arrangement
-from tmm_sheets.sheets.composition import DESIGNATION, arranged
-from tmm_sheets.words import marked, of_file, tell, tr
+from tmm_sheets import kept, words
+from tmm_sheets.errors import CannotBuild, together
+from tmm_sheets.program import fingerprint, maker
+from tmm_sheets.sheets import storing
+from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.scale import Scale
+    from tmm_sheets.drawing.canvas import Canvas
+    from tmm_sheets.drawing.marks import Drawing
     from tmm_sheets.project import Project
-
-WIDTH, HEIGHT = 841.0, 594.0
-"""A1 landscape, mm."""
-INSIDE = Box(20.0, 5.0, WIDTH - 5.0, HEIGHT - 5.0)
-"""Inside of the frame: 20 mm at the left for filing, 5 mm elsewhere (GOST 2.301)."""
-TITLE_BLOCK = Box(INSIDE.x1 - 185.0, INSIDE.y0, INSIDE.x1, INSIDE.y0 + 55.0)
-"""Place of the title block (GOST 2.104, form 1)."""
-
-KEYWORDS = (marked("TMM"), marked("theory of mechanisms and machines"), marked("course project"))
-
-
-@dataclass(frozen=True)
-class Composed:
-    """A finished sheet with what is worth telling about it.
-
-    ``parts`` are the views, from the mark each begins with, the last one stands for all labels; ``groups`` the marks that are one
-    thing (arrows, lettering). ``leaving`` are the views that do not keep their places,
-    ``frames`` say where each plan lies.
-    """
-
-    drawing: Drawing
-    scales: dict[str, Scale]
-    crowded: tuple[Crowded, ...]
-    parts: tuple[Part, ...] = ()
-    groups: tuple[MarkGroup, ...] = ()
-    leaving: tuple[places.Leaving, ...] = ()
-    frames: tuple[PlacedFrame, ...] = ()
-
-
-@contextmanager
-def _plainly(n: int) -> Iterator[None]:
-    yield
-
-
-def _drawer(arrangement: str, draw: str) -> Callable[..., None]:
-    """The function a view names: module.function of tmm_sheets.sheets."""
-    module, _, function = draw.partition(".")
-    try:
-        if find_spec(f"tmm_sheets.sheets.{module}") is None:
-            raise AttributeError(module)
-        found: Callable[..., None] = getattr(import_module(f"tmm_sheets.sheets.{module}"), function)
-    except (AttributeError, ValueError):
-        path = template(f"sheets/{arrangement}.toml")
-        raise BadInput(Problem(tell('there is no view "{draw}"').format(draw=draw), str(path), field="view.draw",
-                               hint=tell("a view is named module.function, as in the shipped arrangements"))) from None
-    return found
+    from tmm_sheets.sheets.composed import Composed
 
 
 T = TypeVar("T")
@@ -93,15 +35,26 @@ class Attempt(Generic[T]):
         return together(self.refused, "drawn", others or bool(self.drawn)) if self.refused else None
 
 
-def attempt(project: Project, numbers: Iterable[int],
-            around: Callable[[int], AbstractContextManager[None]] = _plainly) -> Attempt[Composed]:
-    """Draw sheets, each for itself and within ``around`` its number: one that cannot be drawn costs no other."""
-    return _attempt(project, numbers, around, composed)
+@contextmanager
+def _plainly(n: int) -> Iterator[None]:
+    yield
+
+
+def attempt(project: Project, numbers: Iterable[int], around: Callable[[int], AbstractContextManager[None]] = _plainly,
+            steps: bool = False) -> Attempt[Composed]:
+    """Draw sheets, each for itself and within ``around`` its number: one that cannot be drawn costs no other.
+
+    With ``steps`` the project has made all those that the sheets show, see :func:`composed`.
+    """
+    return _attempt(project, numbers, around, lambda project, n: composed(project, n, steps))
 
 
 def views(project: Project) -> Attempt[Canvas]:
     """The views of every sheet on a canvas, without the lettering that looks for its places."""
-    return _attempt(project, range(1, len(project.variant.drawable()) + 1), _plainly, lambda project, n: _viewed(project, n)[0])
+    from tmm_sheets.sheets import composing
+
+    numbers = range(1, len(project.variant.drawable()) + 1)
+    return _attempt(project, numbers, _plainly, lambda project, n: composing.viewed(project, n)[1])
 
 
 def _attempt(project: Project, numbers: Iterable[int], around: Callable[[int], AbstractContextManager[None]],
@@ -116,14 +69,15 @@ def _attempt(project: Project, numbers: Iterable[int], around: Callable[[int], A
     return found
 
 
-def every(project: Project, say: Callable[[str], None] = lambda _: None, numbers: Iterable[int] = ()) -> Attempt[Composed]:
+def every(project: Project, say: Callable[[str], None] = lambda _: None, numbers: Iterable[int] = (),
+          steps: bool = False) -> Attempt[Composed]:
     """Draw sheets of a project, all unless told; CannotBuild when none of them can be drawn."""
     @contextmanager
     def told(n: int) -> Iterator[None]:
         say(tell("sheet {n}").format(n=n))
         yield
 
-    found = attempt(project, numbers or range(1, len(project.variant.drawable()) + 1), told)
+    found = attempt(project, numbers or range(1, len(project.variant.drawable()) + 1), told, steps)
     problem = found.problem()
     if problem is not None and not found.drawn:
         raise problem
@@ -135,118 +89,34 @@ def compose(project: Project, n: int) -> Drawing:
     return composed(project, n).drawing
 
 
-def composed(project: Project, n: int) -> Composed:
-    """Draw sheet ``n`` and tell its scale factors and the labels that found no free place."""
-    canvas, fields = _viewed(project, n)
-    axis_numbers.clear(canvas)
-    canvas.begin(INSIDE, "", "labels")
-    crowded: list[Crowded] = [Shortened(text, TITLE_BLOCK.centre, left) for text, left in canvas.shortened.items()]
-    crowded += place(canvas, INSIDE)
-    if canvas.notes:
-        from tmm_sheets.drawing import notes
+def composed(project: Project, n: int, steps: bool = False) -> Composed:
+    """Sheet ``n`` (from 1) of a project, its scale factors and the labels that found no free place.
 
-        crowded += notes.place(canvas, INSIDE)
-    title = f"{fields['project']}. {fields['title']}"
-    drawing = Drawing(
-        WIDTH, HEIGHT, title, tuple(canvas.marks), project.variant.title_block.student or "tmm_sheets",
-        subject=" ".join(filter(None, (fields["designation"], fields["group"]))), keywords=", ".join(map(tr, KEYWORDS)),
-        views=_views(canvas), dimensions=tuple(canvas.dimensions), forms=tuple(canvas.forms))
-    left = places.leaving(canvas, INSIDE, TITLE_BLOCK)
-    return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left),
-                    tuple(canvas.frames))
-
-
-def _viewed(project: Project, n: int) -> tuple[Canvas, dict[str, str]]:
-    """The views of sheet ``n`` on a canvas, without the lettering that looks for its places; and what the title block says."""
-    plan = arranged(project, n)
-    if {"positions", "flywheel"} & {view.needs for view in plan.views}:
-        from tmm_sheets.sheets.kinematic_frames import check_number
-
-        check_number(project)
-    canvas = Canvas()
-    fields = _framed(project, n, canvas)
-    for view in plan.views:
-        canvas.of = view.draw
-        canvas.begin(view.box, "", view.draw)
-        _drawer(plan.name, view.draw)(project, canvas, view.box, view.options)
-    titles.lower(canvas)
-    if plan.offers:
-        from tmm_sheets.sheets import offers
-
-        offers.draw(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, DESIGNATION))
-    return canvas, fields
-
-
-def _framed(project: Project, n: int, canvas: Canvas) -> dict[str, str]:
-    """Draw frame and title block of sheet ``n``; gives what is filled in."""
-    block = project.variant.title_block
-    canvas.of = "title block"
-    canvas.begin(Box(0.0, 0.0, WIDTH, HEIGHT), "", "title block")
-    fields = {
-        "designation": f"{of_file(block.designation)} {_code(project, n)}".strip(),
-        "title": tr(arrangement(project.sheets[n - 1]).fitted(project.parts).title),
-        "project": of_file(project.variant.project.title),
-        "letter": of_file(block.letter),
-        "developed": block.student,
-        "checked": block.checker,
-        "supervisor": block.supervisor,
-        "institution": of_file(block.institution),
-        "group": of_file(block.group),
-    }
-    with canvas.as_role("frame"):
-        draw_frame(canvas, fields, block.form, block.first_sheet + n - 1, len(project.variant.sheets))
-    return fields
-
-
-def shortened(project: Project) -> list[str]:
-    """What is too long for the title blocks of a project's sheets, for the command line; draws nothing else."""
-    found = dict[str, str]()
-    for n in range(1, len(project.sheets) + 1):
-        canvas = Canvas()
-        _framed(project, n, canvas)
-        found |= canvas.shortened
-    return [str(Shortened(text, TITLE_BLOCK.centre, left)) for text, left in found.items()]
-
-
-def _code(project: Project, n: int) -> str:
-    """Code of sheet ``n`` in the designations: its arrangement's, the sheet's number where these do not rise over the project."""
-    codes = [arrangement(name).code for name in project.sheets]
-    rising = all(int(a[1:]) < int(b[1:]) for a, b in pairwise(codes)) if all(code[1:].isdecimal() for code in codes) else False
-    return tr(codes[n - 1]) if rising else tr("D{number}").format(number=n)
-
-
-@cache
-def _names() -> dict[str, str]:
-    """Names of views that have no title on the sheet."""
-    names: dict[str, str] = tomllib.loads(template("view_names.toml").read_text(encoding="utf-8"))
-    return names
-
-
-def _views(canvas: Canvas) -> tuple[View, ...]:
-    """The views of a sheet, each with its labels; what one draws before its first title belongs to that title.
-
-    Views of one name are numbered. Parts without marks or labels are no views.
+    The same sheet of the same inputs is composed once and kept (:mod:`tmm_sheets.kept`). Its steps are not: whoever reads those of
+    the project asks for ``steps``, and the views ask the project for what they show, whether or not they are drawn.
     """
-    labels = canvas.parts[-1].first
-    spans: list[list[tuple[int, int]]] = [
-        [(part.first, after.first)] if after.first > part.first else [] for part, after in pairwise(canvas.parts)]
-    for group in canvas.groups:
-        if 0 <= group.part < len(spans) and group.first >= labels:
-            spans[group.part].append((group.first, group.end))
-    found: list[tuple[Part, str, list[tuple[int, int]]]] = []
-    for part, own in zip(canvas.parts, spans, strict=False):
-        if part.title and found and found[-1][0].draw == part.draw and not found[-1][0].title:
-            own = found.pop()[2] + own
-        if own:
-            found.append((part, _said(part), own))
-    count = Counter[str]()
-    out = []
-    for part, name, own in found:
-        count[name] += 1
-        out.append(View(name if count[name] == 1 else f"{name}, {count[name]}", part.box, tuple(own)))
-    return tuple(out)
+    name = _name(project, n) if kept.folder() is not None else ""
+    if name and (data := kept.read(name)) is not None and (found := storing.loaded(data)) is not None:
+        if steps:
+            ask_again(project, n, found)
+        return found
+    from tmm_sheets.sheets import composing
+
+    made = composing.composed(project, n)
+    if name:
+        kept.write(name, storing.stored(made))
+    return made
 
 
-def _said(part: Part) -> str:
-    """Name of a view: the letters of its title."""
-    return "".join(run.text for run in letter(part.title, 5.0).runs) if part.title else tr(_names().get(part.draw, part.draw))
+def ask_again(project: Project, n: int, found: Composed) -> None:
+    """Let the project make the steps of a sheet that was kept."""
+    if n not in project.shown:
+        from tmm_sheets.sheets import composing
+
+        composing.ask_again(project, n, found.parts)
+
+
+def _name(project: Project, n: int) -> str:
+    """What a sheet is made of, as a name; empty for a project that no text tells."""
+    content = project.variant.content
+    return content and fingerprint("sheet", storing.FORM, maker(), words.paper(), words.reader(), content, str(n))

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 from pydantic import Field, PrivateAttr, ValidationError
 
@@ -89,10 +89,22 @@ class Variant(Table):
     _lines: TomlLines = PrivateAttr(default_factory=TomlLines)
     _data: dict[str, Any] = PrivateAttr(default_factory=dict)
     _text: str = PrivateAttr(default="")
+    _content: str = PrivateAttr(default="")
     _warnings: tuple[str, ...] = PrivateAttr(default=())
     _misprints: tuple[Misprint, ...] = PrivateAttr(default=())
     _called: str = PrivateAttr(default="")
     _shipped: bool = PrivateAttr(default=False)
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """A copy, with other values for some keys."""
+        copied = super().model_copy(update=update, deep=deep)
+        copied._content = f"{self._content}\n{update!r}" if update else self._content
+        return copied
+
+    @property
+    def content(self) -> str:
+        """All that it says, as a text: the project file, and what was put in the place of its values."""
+        return self._content
 
     @property
     def text(self) -> str:
@@ -268,7 +280,7 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
     variant._file = variant._called = file
     variant._lines = lines
     variant._data = data
-    variant._text = text
+    variant._text = variant._content = text
     variant._warnings = warnings
     variant._misprints = misprints
     return variant

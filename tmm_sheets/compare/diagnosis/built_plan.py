@@ -21,7 +21,7 @@ from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, hypotheses
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, of_position, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.findings import millimetres
-from tmm_sheets.compare.known_sheet import KnownSheet
+from tmm_sheets.compare.known_sheet import KnownSheet, plans_of
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import letter_of
@@ -122,7 +122,7 @@ Taken = Callable[[_Mistake, Sequence[_Mistake]], int]
 
 def errors_of(project: Project, known: KnownSheet) -> tuple[dict[str, Plan], Errors]:
     """The plans of a project by their names, and how those on a sheet are drawn again."""
-    plans = {plan.name: plan for some in project.plans.values() for plan in (some or {}).values()}
+    plans = plans_of(project, known)
     return plans, Errors([(plans[f.plan], f.mu[0]) for f in known.sheet.frames if f.plan in plans])
 
 

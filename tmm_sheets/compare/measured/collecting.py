@@ -23,7 +23,7 @@ def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
 
     found = Measurables()
     shown: set[str] = set()
-    attempt = sheet.every(project, say)
+    attempt = sheet.every(project, say, steps=True)
     problem = attempt.problem()
     if problem is not None:
         found.notes.append(str(problem))

@@ -17,7 +17,8 @@ from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.positions import Positions, passages, position_plan
 from tmm_sheets.methods.linkage.strokes import Floats
 from tmm_sheets.numbers import in_a_row, of_reader
-from tmm_sheets.words import tell, tell_n
+from tmm_sheets.remarks import Remark
+from tmm_sheets.words import marked, marked_n, tell, tell_n
 
 ASSEMBLY = "assembly"
 CLOSE = 0.02
@@ -40,16 +41,21 @@ class DeadPosition:
     passes: bool = False
 
     def __str__(self) -> str:
+        return str(self.remark)
+
+    @property
+    def remark(self) -> Remark:
+        """It as it is told."""
         angles = in_a_row(of_reader(f"{angle:.1f}") for angle in sorted(round(angle, 1) % 360 for angle in self.angles))
-        said = tell_n(
+        said = Remark(marked_n(
             "group {group} is stretched or folded at crank angle {angles} deg and can go on from there in two ways: it is drawn "
             "on the same side all round, where its links turn back at once",
             "group {group} is stretched or folded at crank angles {angles} deg and can go on from there in two ways: it is drawn "
-            "on the same side all round, where its links turn back at once",
-            len(self.angles)).format(group=self.group, angles=angles)
-        advice = (tell('to go on smoothly, write branch = "follow" in the group') if self.passes
-                  else tell("change a length, or let the crank swing"))
-        return f"{said}; {advice}"
+            "on the same side all round, where its links turn back at once"),
+            {"group": self.group, "angles": angles}, len(self.angles))
+        advice = Remark(marked('to go on smoothly, write branch = "follow" in the group') if self.passes
+                        else marked("change a length, or let the crank swing"))
+        return Remark("{said}; {advice}", {"said": said, "advice": advice})
 
 
 def check_turn(mechanism: Mechanism, moving: str = "") -> None:

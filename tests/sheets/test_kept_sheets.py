@@ -1,0 +1,160 @@
+"""A sheet that is kept is the sheet itself, in every format and for every reader; what was put in its place is none."""
+
+import json
+import subprocess
+import sys
+from dataclasses import fields, is_dataclass
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.project_files import FOUR_BAR, write
+from tmm_sheets import catalogue, kept, words
+from tmm_sheets.__main__ import run
+from tmm_sheets.output.building import BACKENDS
+from tmm_sheets.project import Project
+from tmm_sheets.remarks import Remark
+from tmm_sheets.sheets import composing, sheet, storing
+
+SHEETS = [(name, n) for name, count in (("lugansk/shaper", 4), ("press", 4), ("sixbar/8:3", 2), ("transport/press@07-ЭПС-718", 3))
+          for n in range(1, count + 1)]  # fmt: skip
+TREES = ("visor", "winder", "sieve")
+"""Projects of our own with remarks, trains, groups of class III."""
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    monkeypatch.setenv(kept.FOLDER, str(tmp_path / "kept"))
+    return tmp_path / "kept"
+
+
+def opened(name):
+    variant = catalogue.read(name)
+    words.set_paper(words.of_project(variant.project.language))
+    return Project(variant)
+
+
+def same(a, b):
+    """Whether two values are equal in all they consist of, numbers to the last bit."""
+    if isinstance(a, np.ndarray):
+        return isinstance(b, np.ndarray) and a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
+    if is_dataclass(a):
+        return type(a) is type(b) and all(same(getattr(a, f.name), getattr(b, f.name)) for f in fields(a))
+    if isinstance(a, tuple | list):
+        return type(a) is type(b) and len(a) == len(b) and all(map(same, a, b))
+    if hasattr(a, "items"):
+        return list(a) == list(b) and all(same(a[k], b[k]) for k in a)
+    if isinstance(a, complex):
+        return same(a.real, b.real) and same(a.imag, b.imag)
+    return (a == b or a != a != b != b) and isinstance(a, int) == isinstance(b, int)  # 1 and 1.0 are not written alike
+
+
+@pytest.mark.parametrize(("name", "n"), [*SHEETS, *((f"tests/projects/{tree}.toml", 1) for tree in TREES)])
+def test_it_is_the_sheet_itself(name, n):
+    with kept.unused():
+        made = sheet.composed(opened(name), n)
+    found = storing.loaded(storing.stored(made))
+    assert same(made, found)
+    for form in ("dxf", "pdf", "svg"):
+        writer = import_module(BACKENDS[form])
+        assert writer.render(found.drawing) == writer.render(made.drawing)
+
+
+def test_what_differs_is_seen():
+    """The comparison above can fail."""
+    assert not same((1.0, 2), (1.0, 2.0))
+    assert not same(np.array([0.0]), np.array([-0.0]))
+    assert not same({"a": 1}, {"a": 2})
+    assert not same(Remark("a"), Remark("b"))
+    assert same((1 + 2j, "a", np.float64(2)), (np.complex128(1 + 2j), "a", 2.0))
+
+
+def test_remarks_are_kept_as_they_are():
+    inner = Remark("group {name}", {"name": "2–3"})
+    several = Remark(("{count} plan", "{count} plans"), {"count": 3, "size": 1.5}, 3)
+    for remark in (inner, several, Remark("{what}!", {"what": inner})):
+        told = storing._remark(json.loads(json.dumps(storing._told(remark))))
+        assert told == remark
+        assert str(told) == str(remark)
+
+
+def test_the_second_time_nothing_is_composed(place, tmp_path, monkeypatch, capsys):
+    """Another format, a plot, a comparison of a drawing: all read what the first build has kept."""
+    assert run(["build", "lugansk/shaper", "--format", "dxf", "-o", str(tmp_path / "a")]) == 0
+    monkeypatch.setattr(composing, "composed", lambda *_: pytest.fail("composed a sheet that is kept"))
+    assert run(["build", "lugansk/shaper", "--format", "svg,pdf", "-o", str(tmp_path / "a")]) == 0
+    assert run(["plot", "lugansk/shaper", "--sheet", "2", "-o", str(tmp_path / "a")]) == 0
+    made = tmp_path / "a" / "sheet4.dxf"
+    assert run(["compare", "lugansk/shaper", "--sheet", "4", "--dxf", str(made), "-o", str(tmp_path / "a")]) == 0
+    assert len(list(place.iterdir())) in (4, 5)  # and the fingerprint of the program, unless it was known
+
+
+@pytest.mark.parametrize("words_", [["record", "--json", "-"], ["compare", "--template", "--all"],
+                                    ["build", "--format", "hpgl,svg,pdf,dxf"]])  # fmt: skip
+@pytest.mark.parametrize("name", ["sixbar/8:3", "tests/projects/pump.toml"])
+def test_every_reader_says_the_same(place, tmp_path, capsys, name, words_):
+    """Whether sheets are kept or not: to the byte."""
+    command, *others = words_
+    told = []
+    for k, more in enumerate((["--no-cache"], [], [])):
+        folder = ["-o", str(tmp_path / str(k))] if command in ("build", "compare") else []
+        assert run([command, name, *others, *folder, *more]) == 0
+        found = sorted((tmp_path / str(k)).glob("[!.]*")) if folder else []
+        said = capsys.readouterr()
+        told.append((said.out.replace(f"/{k}/", "//"), said.err, [(p.name, p.read_bytes()) for p in found]))
+        assert place.exists() == (k > 0)
+    assert told[0] == told[1] == told[2]
+
+
+def test_what_is_warned_of_is_kept(place, tmp_path, capsys):
+    path = write(tmp_path, FOUR_BAR, {"title_block": {"student": "A name too long for its cell " * 3}})
+    told = []
+    for k in range(2):
+        assert run(["build", path, "--format", "svg", "-o", str(tmp_path / str(k))]) == 0
+        told.append(capsys.readouterr().err)
+    assert "no room for all of" in told[0]
+    assert told[0] == told[1]
+
+
+@pytest.mark.parametrize("data", [b"", b"\0\0\0\2{}", b"\0\0\0\4null", b"\0\0\0\2[]", b"\xff" * 40, b"\0\0\0\1{" + bytes(64)])
+def test_other_bytes_are_no_sheet(data):
+    assert storing.loaded(data) is None
+
+
+def test_a_sheet_cut_short_is_none():
+    with kept.unused():
+        data = storing.stored(sheet.composed(opened("sixbar/8:3"), 1))
+    assert storing.loaded(data) is not None
+    for end in (10, len(data) // 3, len(data) // 2, len(data) - 16, len(data) - 8, len(data) - 1):
+        assert storing.loaded(data[:end]) is None
+    assert storing.loaded(data + bytes(16)) is None
+
+
+def test_what_a_sheet_is_made_of_names_it(monkeypatch):
+    variant = catalogue.read("press")
+    project = Project(variant)
+    block = variant.title_block.model_copy(update={"first_sheet": 7})
+    others = [Project(variant.model_copy(update={"title_block": block})),
+              Project(catalogue.read("lugansk/shaper")), Project(catalogue.read("press"))]  # fmt: skip
+    names = [sheet._name(project, 1), sheet._name(project, 2), *(sheet._name(other, 1) for other in others)]
+    assert names[-1] == names[0]
+    assert len(set(names[:-1])) == 4
+    with words.on_paper("uk"):
+        assert sheet._name(project, 1) not in names
+    monkeypatch.setattr(sheet, "maker", lambda: "another program")
+    assert sheet._name(project, 1) not in names
+
+
+def test_loading_imports_nothing_that_draws(place, tmp_path):
+    """Neither views nor methods nor the libraries of geometry."""
+    run(["build", "press", "--format", "svg", "-o", str(tmp_path)])
+    code = ("import sys\nfrom tmm_sheets.__main__ import run\n"
+            f"assert run(['build', 'press', '--format', 'svg', '--force', '-o', {str(tmp_path)!r}]) == 0\n"
+            "print(*(m for m in sys.modules if m.startswith(('tmm_sheets.', 'shapely', 'scipy'))), file=sys.stderr)")  # fmt: skip
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=Path(__file__).parents[2])
+    modules = told.stderr.splitlines()[-1].split()
+    assert not [m for m in modules if m.startswith(("shapely", "scipy", "tmm_sheets.methods.", "tmm_sheets.mechanism."))]
+    assert {m for m in modules if m.startswith("tmm_sheets.sheets.")} == {
+        f"tmm_sheets.sheets.{name}" for name in ("sheet", "storing", "composed")}  # fmt: skip

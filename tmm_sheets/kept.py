@@ -1,0 +1,127 @@
+"""What was made once and is kept for the next time, in the user's cache folder: bytes under a name that says what they are made of.
+
+Nothing depends on it. What is not there, is torn, or cannot be read is made again; what cannot be written (a full disk, a home that
+is read-only) is not kept, and nobody is told. Files appear whole, under names that two processes give to the same content only.
+Those not read for longest go when all together are too large.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
+from functools import cache
+from pathlib import Path
+from zlib import crc32
+
+FOLDER = "TMM_SHEETS_CACHE"
+"""Environment variable that names the folder; empty for none."""
+LARGEST = 256_000_000
+"""Bytes that all files together may have."""
+MARK = b"tmm-kept1\n"
+"""What every file begins with; its checksum and then its content follow."""
+SELDOM = 16
+"""How many files are written, about, between two looks at their size together."""
+PASSING = ".part"
+"""End of the name of a file that is being written."""
+LEFT = 86_400.0
+"""Seconds after which such a file belongs to nobody."""
+
+_used = ContextVar("used", default=True)
+
+
+@contextmanager
+def unused() -> Iterator[None]:
+    """Nothing is read there meanwhile, and nothing written."""
+    token = _used.set(False)
+    try:
+        yield
+    finally:
+        _used.reset(token)
+
+
+def used() -> bool:
+    """Whether anything is."""
+    return _used.get()
+
+
+def forgo() -> None:
+    """The same from here on: for a command that was told so."""
+    _used.set(False)
+
+
+def folder() -> Path | None:
+    """Where things are kept; None where nothing is."""
+    if not _used.get():
+        return None
+    told = os.environ.get(FOLDER)
+    return _folder() if told is None else Path(told) if told else None
+
+
+@cache
+def _folder() -> Path | None:
+    from platformdirs import user_cache_dir
+
+    found = Path(user_cache_dir("tmm-sheets", appauthor=False))
+    return found if found.is_absolute() else None  # nobody's home: not beside the drawings
+
+
+def read(name: str) -> bytes | None:
+    """What is kept under a name, which is made of letters and figures; None for nothing sound."""
+    place = folder()
+    if place is None:
+        return None
+    path = place / name
+    try:
+        data = path.read_bytes()
+    except (OSError, ValueError):
+        return None
+    at = len(MARK) + 4
+    if data[:len(MARK)] != MARK or len(data) < at or int.from_bytes(data[len(MARK):at], "big") != crc32(memoryview(data)[at:]):
+        return None
+    with suppress(OSError):
+        os.utime(path)  # what is read stays longer
+    return data[at:]
+
+
+def write(name: str, content: bytes) -> None:
+    """Keep something under a name, if that can be done."""
+    place = folder()
+    if place is None:
+        return
+    part = place / f"{name}.{os.getpid()}{PASSING}"
+    try:
+        place.mkdir(mode=0o700, parents=True, exist_ok=True)
+        part.write_bytes(MARK + crc32(content).to_bytes(4, "big") + content)
+        part.replace(place / name)
+    except (OSError, ValueError):
+        with suppress(OSError, ValueError):
+            part.unlink()
+        return
+    if crc32(name.encode()) % SELDOM == 0:
+        tidy(place)
+
+
+def tidy(place: Path, largest: int = LARGEST) -> None:
+    """Remove what was not read for longest until the rest is well below ``largest`` bytes, and what killed processes left."""
+    from time import time
+
+    found, size = [], 0
+    with suppress(OSError), os.scandir(place) as entries:
+        for entry in entries:
+            with suppress(OSError):
+                stat = entry.stat()
+                if entry.name.endswith(PASSING) and time() - stat.st_mtime > LEFT:
+                    os.unlink(entry.path)
+                else:
+                    found.append((stat.st_mtime, stat.st_size, entry.path))
+                    size += stat.st_size
+    if size <= largest:
+        return
+    for _, bytes_, path in sorted(found):
+        if size <= 0.75 * largest:
+            break
+        with suppress(OSError):
+            os.unlink(path)
+        size -= bytes_
