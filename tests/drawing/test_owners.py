@@ -14,6 +14,13 @@ A, B = Trace("vector", "plan/a", "1", 0), Trace("vector", "plan/b", "1", 0)
 LINES = [Line(0j, 60 + 0j, "vector", by=A), Line(10j, 60 + 10j, "vector", by=B)]
 
 
+def expecting(count, area, marks):
+    """A grid of some marks to which so many labels are to come."""
+    grid = labels.Grid(area, marks)
+    grid.expect(count)
+    return grid
+
+
 def reads(box, marks=LINES, anchor=30 + 0j, by=A):
     label = Label(anchor, "x", 3.5, by=by)
     return owners.Round(owners.Ink(marks), label, 60.0).reads(Box(*box))
@@ -137,7 +144,7 @@ def test_a_label_takes_another_place_that_leaves_room_for_the_other(room):
     canvas.label(100 + 100j, "1", 1j, 3.5)
     canvas.label(104 + 100j, "1000", 1j, 3.5)
     marks = [] if room else [Line(complex(60, y), complex(150, y), "main") for y in range(60, 160, 2)]
-    grid, ink = labels.Grid(Box(0, 0, 300, 200), marks, 2), owners.Ink(marks)
+    grid, ink = expecting(2, Box(0, 0, 300, 200), marks), owners.Ink(marks)
     found = [(canvas.labels[0], Box(119, 120, 121, 123.5), True), (canvas.labels[1], Box(78, 120, 87, 123.5), True)]
     for k, (label, box, _) in enumerate(found):
         grid.put(ink, k, label, box)
@@ -208,7 +215,7 @@ def test_leaders_that_cross_change_places():
     for x in (100, 104):
         canvas.label(complex(x, 100), "12", 1j, 3.5)
     left, right = Box(80, 120, 86, 123.5), Box(118, 120, 124, 123.5)
-    grid, ink = labels.Grid(Box(0, 0, 300, 200), [], 2), owners.Ink([])
+    grid, ink = expecting(2, Box(0, 0, 300, 200), []), owners.Ink([])
     found = [(canvas.labels[0], right, True), (canvas.labels[1], left, True)]
     for k, (label, box, _) in enumerate(found):
         grid.put(ink, k, label, box)
@@ -227,7 +234,7 @@ def test_labels_change_places_only_where_both_have_room():
     canvas.label(100 + 100j, "1", 1j, 3.5)
     canvas.label(104 + 100j, "1000", 1j, 3.5)
     canvas.line(123 + 110j, 123 + 130j, "main")  # beside the short one: the long one has no room there
-    grid, ink = labels.Grid(Box(0, 0, 300, 200), canvas.marks, 2), owners.Ink(canvas.marks)
+    grid, ink = expecting(2, Box(0, 0, 300, 200), canvas.marks), owners.Ink(canvas.marks)
     found = [(canvas.labels[0], Box(119, 120, 121, 123.5), True), (canvas.labels[1], Box(78, 120, 87, 123.5), True)]
     for k, (label, box, _) in enumerate(found):
         grid.put(ink, k, label, box)
@@ -263,7 +270,7 @@ def test_a_window_parts_no_label_from_what_it_names():
     (2.0, 80 + 66j, 1),  # through the letters
 ])  # fmt: skip
 def test_the_shelf_of_a_name_is_part_of_it(shelf, end, ill):
-    grid, ink = labels.Grid(Box(0.0, 0.0, 100.0, 100.0), [], 2), owners.Ink([])
+    grid, ink = expecting(2, Box(0.0, 0.0, 100.0, 100.0), []), owners.Ink([])
     grid.put(ink, 0, Label(65 + 80j, "II", 5.0, shelf=shelf), Box(60.0, 60.0, 70.0, 65.0))
     grid.put(ink, 1, Label(50 + 58j, "3, 4", 2.5), Box(end.real, end.imag, end.real + 5, end.imag + 2.5))
     assert min(grid.ill(1), 1) == ill

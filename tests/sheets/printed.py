@@ -126,7 +126,7 @@ def room_of(draw: str) -> str | None:
 def check(project: Project) -> tuple[int, list[Printed], float]:
     """How many numbers a project's sheets have, those that no step has, and the share of false numbers that some step has."""
     _ = results.assemble(project, None, refused={})
-    sheets = every(project).drawn
+    sheets = every(project, steps=True).drawn
     known = {room: Values(project, room, sheets) for room in ROOMS}
     chance = np.random.default_rng(1)
     total, lost, false, tried = 0, [], 0, 0

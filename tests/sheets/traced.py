@@ -74,7 +74,7 @@ def drawn(project: Project, rooms: Iterable[str]) -> dict[int, Composed]:
     modules = {module for room in rooms for module in ROOMS[room]}
     numbers = [n for n, name in enumerate(project.sheets, 1)
                if any(view.draw.partition(".")[0] in modules for view in arrangement(name).fitted(project.parts).views)]
-    return every(project, numbers=numbers).drawn if numbers else {}
+    return every(project, numbers=numbers, steps=True).drawn if numbers else {}
 
 
 def count(sheets: Iterable[Composed], rooms: Iterable[str]) -> dict[str, Counter[str]]:

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.drawing.canvas import SMALLEST, AxisNumber, Canvas
-from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.labels import bounds_of, text_boxes
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Fill, Text
 from tmm_sheets.drawing.owners import AT, STRONG, Ink, distance, enters
@@ -59,13 +59,8 @@ class _Sheet:
         self.half = np.array([0.0 if isinstance(m, Fill | Text) else line_type(m.style).width / 2 for m in canvas.marks])
         self.weight = np.where([getattr(m, "style", "") in STRONG for m in canvas.marks], HEAVY, 1)
         self.written = np.full((len(canvas.marks), 4), np.nan)
-        for n, mark in enumerate(canvas.marks):
-            if isinstance(mark, Text):
-                self._write(n, mark)
-
-    def _write(self, n: int, mark: Text) -> None:
-        z = text_box(mark)
-        self.written[n] = z.real.min(), z.imag.min(), z.real.max(), z.imag.max()
+        texts = [n for n, mark in enumerate(canvas.marks) if isinstance(mark, Text)]
+        self.written[texts] = bounds_of(text_boxes([mark for mark in canvas.marks if isinstance(mark, Text)]))
 
     def struck(self, box: Box, apart: float) -> int:
         """How many lines come nearer than ``apart`` to a rectangle; strong ones count more."""
@@ -74,6 +69,17 @@ class _Sheet:
         a, b = self.ink.a[near], self.ink.b[near]
         met = near[enters(a, b - a, box.x0 - away, box.y0 - away, box.x1 + away, box.y1 + away)]
         return int(self.weight[np.unique(self.ink.of[met])].sum())
+
+    def clear(self, places: Sequence[_Place], apart: float) -> list[_Place]:
+        """Those of some places that no line comes nearer to than ``apart``."""
+        if not places:
+            return []
+        x0, y0, x1, y1 = np.array([place.box for place in places]).T
+        near = self.ink.near(Box(x0.min(), y0.min(), x1.max(), y1.max()), 2.0)
+        away = apart + self.half[self.ink.of[near]]
+        a, b = self.ink.a[near], self.ink.b[near]
+        met = enters(a, b - a, x0[:, None] - away, y0[:, None] - away, x1[:, None] + away, y1[:, None] + away)
+        return [places[k] for k in np.flatnonzero(~np.asarray(met.any(axis=1))).tolist()]
 
     def plainly(self, box: Box, at: complex) -> bool:
         """Whether no line but those through a point comes near a rectangle beside it, nor runs through it, nor other lettering."""
@@ -108,7 +114,7 @@ class _Sheet:
             if place is not None:
                 mark = mark._replace(at=number.foot + place.corner, height=place.level[1])
                 self.canvas.marks[number.mark] = mark
-            self._write(number.mark, mark)
+            self.written[number.mark] = bounds_of(text_boxes([mark]))[0]
 
 
 def clear(canvas: Canvas) -> None:
@@ -175,7 +181,7 @@ def _apart(box: Box, other: Box) -> bool:
 def _free(sheet: _Sheet, number: AxisNumber) -> list[_Place]:
     """Places of a number that no line comes near, or where there is none those that no line enters."""
     for off, apart in ((OFF, CLEAR), (CLOSER, TOUCH)):
-        found = [place for place in _places(number, off) if not sheet.struck(place.box, apart)]
+        found = sheet.clear([*_places(number, off)], apart)
         if any(not sheet.crowded(number, place.box) for place in found):
             return found
     return found

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.labels import text_boxes
 from tmm_sheets.drawing.marks import Arc, Box, Text
 from tmm_sheets.drawing.owners import Ink, crossing, enters, sides, within
 
@@ -26,8 +26,8 @@ class Drawn:
     def __init__(self, canvas: Canvas, first: int, about: complex | None = None, but: Collection[int] = ()) -> None:
         marks = [m for n, m in enumerate(canvas.marks) if n >= first and n not in but]
         self.ink = Ink(m for m in marks if about is None or not (isinstance(m, Arc) and abs(m.centre - about) < 1e-6))
-        corners = [text_box(m) for m in marks if isinstance(m, Text)]
-        self.written = np.array([(z[k - 1], z[k]) for z in corners for k in range(len(z))]).reshape(-1, 2)
+        corners = text_boxes([m for m in marks if isinstance(m, Text)])
+        self.written = np.stack((np.roll(corners, 1, axis=1), corners), axis=2).reshape(-1, 2)
         self._a, self._b = np.concatenate(((self.ink.a, self.ink.b), self.written.T), axis=1)
         self._counts = np.repeat((1, 10), (len(self.ink.a), len(self.written)))
         self._sides = sides(self._a, self._b)

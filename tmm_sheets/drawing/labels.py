@@ -9,7 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import cached_property, lru_cache
+from itertools import chain
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +23,8 @@ from tmm_sheets.drawing.crowded import Crowded
 from tmm_sheets.drawing.lettering import advance, letter
 from tmm_sheets.drawing.marks import Box, Fill, Line, Mark, Points, Text, flat
 
+TOGETHER = 64
+"""So many labels have their places judged in one go."""
 CELL = 0.5
 """Size of a grid cell, mm."""
 HEAVY = {"main", "curve", "vector", "axis", "hidden", "text"}
@@ -67,23 +72,50 @@ _FIRST_BEYOND = np.array([0, 0, 1, 1])[:, None]
 
 def text_box(mark: Text) -> Points:
     """Corners of the rectangle round a run of text (slanted letters reach a little to the right of their advance)."""
-    u = complex(np.cos(mark.angle), np.sin(mark.angle))
-    w, h = advance(mark.text, mark.height), mark.height
-    drop = -0.3 * h if any(c in "рудцщфgjpqyβγζημξρφχψς,;()" for c in mark.text) else 0.0
-    return mark.at + u * np.array([complex(0, drop), complex(w, drop), complex(w + 0.15 * h, h), complex(0, h)])
+    corners = _corners(mark.text, mark.height)
+    return np.asarray(mark.at + (complex(np.cos(mark.angle), np.sin(mark.angle)) * corners if mark.angle else corners))
+
+
+def text_boxes(marks: Sequence[Text]) -> npt.NDArray[np.complex128]:
+    """The same of many, shape (n, 4)."""
+    if not marks:
+        return np.empty((0, 4), complex)
+    found = np.array([mark.at for mark in marks])[:, None] + np.array([_corners(mark.text, mark.height) for mark in marks])
+    for k in (k for k, mark in enumerate(marks) if mark.angle):
+        found[k] = text_box(marks[k])
+    return np.asarray(found)
+
+
+def bounds_of(corners: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
+    """Upright rectangles round corners of each row: x0, y0, x1, y1, shape (n, 4)."""
+    x, y = corners.real, corners.imag
+    return np.array([x.min(axis=1), y.min(axis=1), x.max(axis=1), y.max(axis=1)]).T
+
+
+@lru_cache(maxsize=10_000)
+def _corners(text: str, h: float) -> Points:
+    """The same of lettering that lies along the x axis from the origin on."""
+    w, drop = advance(text, h), -0.3 * h if any(c in "рудцщфgjpqyβγζημξρφχψς,;()" for c in text) else 0.0
+    return np.array([complex(0, drop), complex(w, drop), complex(w + 0.15 * h, h), complex(0, h)])
 
 
 def place(canvas: Canvas, area: Box) -> list[Crowded]:
-    """Set every requested label of the canvas inside ``area``; returns those that found no free place.
+    """Set every requested label of the canvas inside ``area``; returns those that found no free place."""
+    return set_labels(canvas, Grid(area, canvas.marks))
+
+
+def set_labels(canvas: Canvas, grid: Grid) -> list[Crowded]:
+    """The same on a grid of what is drawn, to which they come.
 
     What meets a leader that was set after it gets another place when all the others have theirs.
     """
-    grid = Grid(area, canvas.marks, len(canvas.labels), [part.box for part in canvas.parts])
+    first = len(canvas.marks)
+    grid.expect(len(canvas.labels), [part.box for part in canvas.parts])
     ink = owners.Ink([m for n, m in enumerate(canvas.marks) if n not in canvas.windows])
-    found = [_found(grid, ink, k, label) for k, label in enumerate(canvas.labels)]
+    found = [*_first(grid, ink, canvas.labels)]
     for around in (USUAL, USUAL, CLOSER):
         for k in range(len(found)):
-            if _ill(grid, ink, found, (k,)):
+            if not grid.quiet(k) and _ill(grid, ink, found, (k,)):
                 # One that has no better place gets it when the one it meets makes room, or changes places with it.
                 ways = ((k,), *(pair for q in grid.met(k) for pair in ((k, q), (q, k))))
                 done = any(_set_again(grid, ink, canvas.labels, found, some, around) for some in ways) or \
@@ -92,6 +124,7 @@ def place(canvas: Canvas, area: Box) -> list[Crowded]:
                     any(_made_room(grid, ink, canvas.labels, found, *pair) for pair in ways[1:])
     for label, box, _ in found:
         _draw(canvas, label, box)
+    grid.add(canvas.marks[first:])
     crowded = [Crowded(label.text, label.anchor) for label, (_, _, free) in zip(canvas.labels, found, strict=True) if not free]
     canvas.labels.clear()
     return crowded
@@ -103,63 +136,90 @@ class Grid:
     Places of labels that are not set are not numbers. ``views`` are the places of the parts that labels belong to.
     """
 
-    def __init__(self, area: Box, marks: list[Mark], labels: int = 0, views: Sequence[Box] = ()) -> None:
+    def __init__(self, area: Box, marks: Sequence[Mark]) -> None:
         self.area = area
-        self.views = views
         shape = (int(area.height / CELL) + 3, int(area.width / CELL) + 3)
-        heavy, light = np.zeros(shape, np.uint8), np.zeros(shape, np.uint8)
-        runs: dict[bool, list[Points]] = {True: [], False: []}
-        written: list[tuple[float, float, float, float]] = []
+        self._heavy, self._light = np.zeros(shape, np.uint8), np.zeros(shape, np.uint8)
+        self._corner = np.array([area.x0, area.y0] * 2)[:, None]
+        self.inside = np.array([area.x0 + 1, area.y0 + 1, area.x1 - 1, area.y1 - 1])[:, None]
+        self._last = np.array([shape[1], shape[0]] * 2)[:, None]
+        self.written = np.empty((0, 4))
+        self.add(marks)
+        self.expect()
+
+    def expect(self, labels: int = 0, views: Sequence[Box] = ()) -> None:
+        """So many labels are to come, to parts in these places."""
+        self.views = views
+        self.written = np.vstack((self.written, np.full((labels, 4), np.nan)))
+        self.boxes = self.written[len(self.written) - labels:]
+        self._led: dict[int, tuple[complex, complex]] = {}
+        self._lead(None)
+
+    def add(self, marks: Sequence[Mark]) -> None:
+        """Something more is drawn."""
+        runs: dict[bool, list[Sequence[complex] | Points]] = {True: [], False: []}
+        filled = list[tuple[float, float, float, float]]()
         for mark in marks:
-            if isinstance(mark, Text):
-                corners = text_box(mark)
-                self._box(heavy, corners)
-                written.append((corners.real.min(), corners.imag.min(), corners.real.max(), corners.imag.max()))
-            elif isinstance(mark, Line):
-                runs[mark.style in HEAVY].append(np.array([mark.a, mark.b]))
-            else:
+            if isinstance(mark, Line):
+                runs[mark.style in HEAVY].append((mark.a, mark.b))
+            elif not isinstance(mark, Text):
                 points = flat(mark)
                 if isinstance(mark, Fill):
-                    self._box(heavy, points)
+                    x, y = points.real.tolist(), points.imag.tolist()  # a few numbers: quicker without arrays
+                    filled.append((min(x), min(y), max(x), max(y)))
                 runs[isinstance(mark, Fill) or mark.style in HEAVY].append(points)
-        for kind, target in ((True, heavy), (False, light)):
+        written = bounds_of(text_boxes([mark for mark in marks if isinstance(mark, Text)]))
+        self._boxes(self._heavy, np.vstack((written, np.array(filled).reshape(-1, 4))))
+        for kind, target in ((True, self._heavy), (False, self._light)):
             if runs[kind]:
                 self._ink(target, _sampled(runs[kind]))
+        self.written = np.vstack((self.written, written))
+        for known in ("heavy", "light"):
+            vars(self).pop(known, None)
+
+    @cached_property
+    def heavy(self) -> npt.NDArray[np.int32]:
+        """What lettering must not touch."""
+        heavy = self._heavy
         # Main lines are up to a millimetre wide: their neighbours count as inked too.
         wide = heavy.copy()
         wide[1:] |= heavy[:-1]
         wide[:-1] |= heavy[1:]
         wide[:, 1:] |= heavy[:, :-1]
         wide[:, :-1] |= heavy[:, 1:]
-        self.heavy, self.light = _summed(wide), _summed(light)
-        self._corner = np.array([area.x0, area.y0] * 2)[:, None]
-        self.inside = np.array([area.x0 + 1, area.y0 + 1, area.x1 - 1, area.y1 - 1])[:, None]
-        self._last = np.array([shape[1], shape[0]] * 2)[:, None]
-        self.written = np.vstack((np.array(written).reshape(-1, 4), np.full((labels, 4), np.nan)))
-        self.boxes = self.written[len(written):]
-        self._led: dict[int, tuple[complex, complex]] = {}
-        self._lead(None)
+        return _summed(wide)
+
+    @cached_property
+    def light(self) -> npt.NDArray[np.int32]:
+        """What it had better not."""
+        return _summed(self._light)
 
     def put(self, ink: owners.Ink, k: int, label: Label, box: Box) -> None:
         """Label ``k`` is set; the shelf it may stand on is part of it."""
         self.boxes[k] = box._replace(y0=box.y0 - SHELF - CLEAR) if label.shelf else box
-        self._led.pop(k, None)
+        before = self._led.pop(k, None)
         if _led(label, box):
             self._led[k] = _way(label, box)
-        self._lead(ink)
+        if before is not None or k in self._led:
+            self._lead(ink)
 
     def lift(self, ink: owners.Ink, k: int) -> None:
         """Label ``k`` is taken off."""
         self.boxes[k] = np.nan
-        self._led.pop(k, None)
-        self._lead(ink)
+        if self._led.pop(k, None) is not None:
+            self._lead(ink)
 
     def _lead(self, ink: owners.Ink | None) -> None:
         self._whose = np.array(list(self._led), int)
         self._ends = np.array(list(self._led.values()), complex).reshape(-1, 2)
+        self._led_sides = owners.sides(*self._ends.T)
         self.leaders = _sampled(list(self._ends)) if len(self._ends) else np.empty(0, complex)
         if ink is not None:
             ink.lead(*self._ends.T)
+
+    def quiet(self, k: int) -> bool:
+        """Whether label ``k`` has no leader, and none is near it: nothing can be wrong with it that was not before."""
+        return k not in self._led and not len(owners.within(self._led_sides, Box(*self.boxes[k]), NEAR + owners.ROUNDING))
 
     def ill(self, k: int) -> int:
         """How many other leaders and how much other lettering the leader of label ``k`` meets; how many leaders its lettering."""
@@ -191,22 +251,21 @@ class Grid:
         ok = (i >= 0) & (i < target.shape[0]) & (j >= 0) & (j < target.shape[1])
         target[i[ok], j[ok]] = 1
 
-    def _box(self, target: npt.NDArray[np.uint8], corners: Points) -> None:
-        x, y = corners.real.tolist(), corners.imag.tolist()  # four numbers: quicker without arrays
-        i0, j0 = max(int((min(y) - self.area.y0) / CELL), 0), max(int((min(x) - self.area.x0) / CELL), 0)
-        i1, j1 = int((max(y) - self.area.y0) / CELL) + 1, int((max(x) - self.area.x0) / CELL) + 1
-        target[i0:max(i1, 0), j0:max(j1, 0)] = 1
+    def _boxes(self, target: npt.NDArray[np.uint8], sides: npt.NDArray[np.float64]) -> None:
+        cells = ((sides - self._corner.T) / CELL).astype(int) + _FIRST_BEYOND.T
+        for j0, i0, j1, i1 in np.maximum(cells, 0).tolist():
+            target[i0:i1, j0:j1] = 1
 
-    def free(self, sides: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
-        """Which rectangles lie inside the sheet, clear of heavy lines, lettering and the labels that are set."""
-        clear = x0, y0, x1, y1 = sides + _MARGIN
-        blocked = self.under(self.heavy, clear) > 0
+    def free(self, box: Box) -> bool:
+        """Whether a rectangle lies inside the sheet, clear of heavy lines, lettering and the labels that are set."""
+        sides = np.array(box)[:, None]
+        near = self.boxes[owners.within(self.boxes.T, box, CLEAR)]
+        return bool(self.clear(sides)[0] and not _meeting(sides + _MARGIN, near)[0])
+
+    def clear(self, sides: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Which rectangles lie inside the sheet, clear of heavy lines and lettering but for that of labels."""
+        blocked = self.under(self.heavy, sides + _MARGIN) > 0
         blocked |= (sides[:2] < self.inside[:2]).any(axis=0) | (sides[2:] > self.inside[2:]).any(axis=0)
-        b = self.boxes
-        b = b[(b[:, 2] > x0.min()) & (b[:, 0] < x1.max()) & (b[:, 3] > y0.min()) & (b[:, 1] < y1.max())]  # few are so near
-        if len(b):
-            beside = (x0[:, None] < b[:, 2]) & (x1[:, None] > b[:, 0])
-            blocked |= (beside & (y0[:, None] < b[:, 3]) & (y1[:, None] > b[:, 1])).any(axis=1)
         return np.asarray(~blocked)
 
     def under(self, table: npt.NDArray[np.int32], sides: npt.NDArray[np.float64]) -> npt.NDArray[np.int32]:
@@ -214,6 +273,17 @@ class Grid:
         cells = ((sides - self._corner) / CELL).astype(int) + _FIRST_BEYOND
         j0, i0, j1, i1 = np.minimum(np.maximum(cells, 0), self._last)
         return np.asarray(table[i1, j1] - table[i0, j1] - table[i1, j0] + table[i0, j0])
+
+    def covered(self, x0: npt.NDArray[np.float64], y0: npt.NDArray[np.float64], x1: npt.NDArray[np.float64],
+                y1: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Which rectangles have ink under them, (m, n): columns from ``x0`` to ``x1``, (n,), rows from ``y0`` to ``y1``, (m,)."""
+        j0, i0, j1, i1 = (
+            np.minimum(np.maximum(((at - self._corner[k]) / CELL).astype(int) + _FIRST_BEYOND[k], 0), self._last[k])
+            for k, at in enumerate((x0, y0, x1, y1)))
+        begin, end = j0.min(), j1.max() + 1
+        heavy, light = self.heavy[:, begin:end], self.light[:, begin:end]
+        band = (heavy[i1] - heavy[i0]) + (light[i1] - light[i0])
+        return np.asarray(band[:, j1 - begin] > band[:, j0 - begin])
 
 
 def _summed(cells: npt.NDArray[np.uint8]) -> npt.NDArray[np.int32]:
@@ -224,10 +294,10 @@ def _summed(cells: npt.NDArray[np.uint8]) -> npt.NDArray[np.int32]:
     return table
 
 
-def _sampled(lines: list[Points]) -> Points:
+def _sampled(lines: Sequence[Sequence[complex] | Points]) -> Points:
     """Points along polylines no further apart than half a cell, all lines in one go."""
     counts = np.array([len(p) for p in lines])
-    p = np.concatenate(lines)
+    p = np.fromiter(chain.from_iterable(lines), complex, int(counts.sum()))
     first = np.cumsum(counts) - counts
     steps = np.abs(np.diff(p, prepend=p[:1]))
     steps[first] = 1.0  # a gap between one line and the next: only their own points are looked up
@@ -240,40 +310,77 @@ def _sampled(lines: list[Points]) -> Points:
     return np.asarray(np.interp(t, along, p.real) + 1j * np.interp(t, along, p.imag))
 
 
+class _Lattice(NamedTuple):
+    """Places about a label's anchor before others are set: rectangles ``sides`` (x0, y0, x1, y1; shape (4, n)) and their ``cost``.
+
+    ``beyond`` is how far they leave the place of the label's view, mm, None where it has none. ``clear`` are those inside the sheet
+    and clear of heavy lines; all are within the box ``around`` them.
+    """
+
+    sides: npt.NDArray[np.float64]
+    cost: npt.NDArray[np.float64]
+    beyond: npt.NDArray[np.float64] | None
+    clear: npt.NDArray[np.bool_]
+    around: Box
+
+
+def _lattices(grid: Grid, labels: Sequence[Label], around: Around = USUAL) -> Iterator[_Lattice]:
+    """Places about the anchors of some labels, judged together."""
+    away, directions = around
+    turned = TURNING * np.abs(np.angle(directions)) / pi
+    units = np.array([directions * (label.away / abs(label.away)) if label.away else directions for label in labels])
+    w, h = np.array([_size(label) for label in labels]).T[:, :, None, None] / 2
+    # The rectangle's support along the direction keeps its nearest corner or side at the asked distance.
+    support = np.minimum(w / np.maximum(np.abs(units.real), 1e-9)[:, None], h / np.maximum(np.abs(units.imag), 1e-9)[:, None])
+    distances = away[:, None] + np.array([label.gap for label in labels])[:, None, None]
+    centres = np.array([label.anchor for label in labels])[:, None, None] + units[:, None] * (distances + support)
+    sides = np.array([centres.real - w, centres.imag - h, centres.real + w, centres.imag + h]).reshape(4, len(labels), -1)
+    flat_ = sides.reshape(4, -1)
+    light = grid.under(grid.light, flat_).reshape(sides.shape[1:])
+    clear = grid.clear(flat_).reshape(sides.shape[1:])
+    edges = [*sides[:2].min(axis=2), *sides[2:].max(axis=2)]
+    for k, label in enumerate(labels):
+        # A label that should do without a leader line gets one only when nothing near is free.
+        cost = distances[k] * 1.2 + (0.0 if label.leader else FAR * (away > NEAR)[:, None])
+        cost = (cost + turned if label.away else np.repeat(cost, len(directions), axis=1)).ravel()
+        beyond = None
+        if 0 <= label.part < len(grid.views) and (view := grid.views[label.part]).contains(label.anchor):
+            x0, y0, x1, y1 = sides[:, k] + _MARGIN
+            beyond = np.maximum.reduce([view.x0 - x0, view.y0 - y0, x1 - view.x1, y1 - view.y1])
+        yield _Lattice(sides[:, k], cost + label.thin * LIGHT * light[k], beyond, clear[k], Box(*(edge[k] for edge in edges)))
+
+
 class _Places:
     """Where a label may stand about its anchor: rectangles ``sides`` (x0, y0, x1, y1; shape (4, n)), their ``cost``, and
     numbers of the ``free`` ones, the cheapest first.
     """
 
-    def __init__(self, grid: Grid, label: Label, w: float, h: float, around: Around = USUAL) -> None:
+    def __init__(self, grid: Grid, label: Label, lattice: _Lattice) -> None:
         self.label, self._grid = label, grid
-        away, directions = around
-        units = directions if not label.away else directions * (label.away / abs(label.away))
-        distances = away + label.gap
-        # The rectangle's support along the direction keeps its nearest corner or side at the asked distance.
-        support = np.minimum(w / 2 / np.maximum(np.abs(units.real), 1e-9), h / 2 / np.maximum(np.abs(units.imag), 1e-9))
-        centres = (label.anchor + units[None, :] * (distances[:, None] + support[None, :])).ravel()
-        # A label that should do without a leader line gets one only when nothing near is free.
-        far = 0.0 if label.leader else FAR * (away > NEAR)
-        cost = (distances * 1.2 + far)[:, None]
-        cost = (cost + TURNING * np.abs(np.angle(directions)) / pi if label.away else np.repeat(cost, len(units), axis=1)).ravel()
-        sides = np.array([centres.real - w / 2, centres.imag - h / 2, centres.real + w / 2, centres.imag + h / 2])
-        x0, y0, x1, y1 = sides + _MARGIN
-        self.run_on = _beside(sides, grid.written, WORD * label.height)
-        cost = cost + label.thin * LIGHT * grid.under(grid.light, sides) + RUN_ON * self.run_on
-        self._strayed = np.zeros(len(cost), bool)
-        if 0 <= label.part < len(grid.views) and (view := grid.views[label.part]).contains(label.anchor):
-            beyond = np.maximum.reduce([view.x0 - x0, view.y0 - y0, x1 - view.x1, y1 - view.y1])
-            cost = cost + OUTSIDE * (beyond > 0)
+        self.sides, cost, beyond, clear, around = lattice
+        free = np.flatnonzero(clear)
+        near = grid.boxes[owners.within(grid.boxes.T, around, CLEAR)]
+        if len(free) and len(near):
+            free = free[~_meeting(self.sides[:, free] + _MARGIN, near)]
+        some = free if len(free) else np.arange(len(cost))  # what the others would cost nobody asks
+        there = self.sides[:, some]
+        gap = WORD * label.height
+        read_on = _beside(there, grid.written[owners.within(grid.written.T, around, gap)], gap)
+        more = cost[some] + RUN_ON * read_on
+        self._strayed = None
+        if beyond is not None:
+            more = more + OUTSIDE * (beyond[some] > 0)
             self._strayed = beyond > AWAY
-        free = np.flatnonzero(grid.free(sides))
-        if len(p := grid.leaders):
-            some = free if len(free) else np.arange(len(cost))  # what the others would cost nobody asks
-            x0, y0, x1, y1 = (side[some] for side in (x0, y0, x1, y1))
-            p = p[(p.real > x0.min()) & (p.real < x1.max()) & (p.imag > y0.min()) & (p.imag < y1.max())]
-            over = (p.real > x0[:, None]) & (p.real < x1[:, None]) & (p.imag > y0[:, None]) & (p.imag < y1[:, None])
-            cost[some] += COVERING * over.any(axis=1)
-        self.sides, self.cost = sides, cost
+        p = grid.leaders
+        x0, y0, x1, y1 = around.inset(-CLEAR)
+        p = p[(p.real > x0) & (p.real < x1) & (p.imag > y0) & (p.imag < y1)]
+        if len(p):
+            x0, y0, x1, y1 = (there + _MARGIN)[:, :, None]
+            more += COVERING * ((p.real > x0) & (p.real < x1) & (p.imag > y0) & (p.imag < y1)).any(axis=1)
+        self.cost = np.full(len(cost), np.inf)
+        self.cost[some] = more
+        self.run_on = np.zeros(len(cost), bool)
+        self.run_on[some] = read_on
         self.free = free[np.argsort(self.cost[free], kind="stable")]
 
     def read(self, here: owners.Round, leaders: bool = True) -> int | None:
@@ -300,7 +407,7 @@ class _Places:
     def ill(self, here: owners.Round, k: int) -> float:
         """Cost of what is wrong with the label at a place, 0 for nothing."""
         box = self.box(k)
-        far = STRAYED * bool(self._strayed[k])
+        far = STRAYED * bool(self._strayed is not None and self._strayed[k])
         if not _led(self.label, box):
             return far + (MISREAD if here.reads(box) else 0.0)
         over = _over(self._grid.written, *_way(self.label, box))
@@ -323,13 +430,19 @@ class _Places:
         return int(np.argmin(self.cost + 20.0 * self._grid.under(self._grid.heavy, self.sides)))
 
 
+def _meeting(sides: npt.NDArray[np.float64], boxes: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    """Which rectangles (x0, y0, x1, y1; shape (4, n)) overlap one of the ``boxes``, shape (m, 4)."""
+    x0, y0, x1, y1 = sides[:, :, None]
+    b = boxes.T
+    return np.asarray(((x0 < b[2]) & (x1 > b[0]) & (y0 < b[3]) & (y1 > b[1])).any(axis=1))
+
+
 def _beside(sides: npt.NDArray[np.float64], boxes: npt.NDArray[np.float64], gap: float) -> npt.NDArray[np.bool_]:
-    """Which rectangles (x0, y0, x1, y1; shape (4, n)) have one of the ``boxes`` on their level nearer than ``gap``."""
-    x0, y0, x1, y1 = sides
-    b = boxes[(boxes[:, 2] > x0.min() - gap) & (boxes[:, 0] < x1.max() + gap) & (boxes[:, 3] > y0.min()) & (boxes[:, 1] < y1.max())]
-    level = 0.4 * (y1 - y0)[:, None]  # an index of the one beside the bar of the other is not yet a word
-    near = (x0[:, None] - gap < b[:, 2]) & (x1[:, None] + gap > b[:, 0])
-    return np.asarray((near & (y0[:, None] + level < b[:, 3]) & (y1[:, None] - level > b[:, 1])).any(axis=1))
+    """Which of them have one of the boxes on their level nearer than ``gap``."""
+    x0, y0, x1, y1 = sides[:, :, None]
+    b = boxes.T
+    level = 0.4 * (y1 - y0)  # an index of the one beside the bar of the other is not yet a word
+    return np.asarray(((x0 - gap < b[2]) & (x1 + gap > b[0]) & (y0 + level < b[3]) & (y1 - level > b[1])).any(axis=1))
 
 
 def _size(label: Label) -> tuple[float, float]:
@@ -341,8 +454,19 @@ Found = tuple[Label, Box, bool]
 """A label, which may have moved, its place, whether there was room for it."""
 
 
-def _found(grid: Grid, ink: owners.Ink, k: int, label: Label, around: Around = USUAL) -> Found:
-    found = _placed(grid, ink, label, *_size(label), around)
+def _first(grid: Grid, ink: owners.Ink, labels: Sequence[Label]) -> Iterator[Found]:
+    """Set labels one after another."""
+    for begin in range(0, len(labels), TOGETHER):
+        some = labels[begin:begin + TOGETHER]
+        for k, (label, lattice) in enumerate(zip(some, _lattices(grid, some), strict=True), begin):
+            found = _placed(grid, ink, label, lattice, USUAL)
+            grid.put(ink, k, *found[:2])
+            yield found
+
+
+def _found(grid: Grid, ink: owners.Ink, k: int, label: Label, around: Around) -> Found:
+    (lattice,) = _lattices(grid, [label], around)
+    found = _placed(grid, ink, label, lattice, around)
     grid.put(ink, k, *found[:2])
     return found
 
@@ -365,11 +489,11 @@ def _set_again(grid: Grid, ink: owners.Ink, labels: list[Label], found: list[Fou
 
 def _made_room(grid: Grid, ink: owners.Ink, labels: list[Label], found: list[Found], k: int, q: int) -> bool:
     """Try the places of label ``k`` one after another until label ``q`` has a good one, too; else both stay where they were."""
-    before, label, (w, h) = [found[k], found[q]], labels[k], _size(labels[k])
+    before, label = [found[k], found[q]], labels[k]
     for n in (k, q):
         grid.lift(ink, n)
-    places = _Places(grid, label, w, h, CLOSER)
-    for at in places.apart(owners.Round(ink, label, 2 * (NEAR + label.gap) + w)):
+    places = _Places(grid, label, *_lattices(grid, [label], CLOSER))
+    for at in places.apart(owners.Round(ink, label, 2 * (NEAR + label.gap) + _size(label)[0])):
         found[k] = label, places.box(at), True
         grid.put(ink, k, *found[k][:2])
         found[q] = _found(grid, ink, q, labels[q], CLOSER)
@@ -391,8 +515,7 @@ def _exchanged(grid: Grid, ink: owners.Ink, found: list[Found], k: int, q: int) 
     for n, (label, own, _), to in ((k, before[0], before[1][1].centre), (q, before[1], before[0][1].centre)):
         half = complex(own.width, own.height) / 2
         box = Box((to - half).real, (to - half).imag, (to + half).real, (to + half).imag)
-        clear = bool(grid.free(np.array(box)[:, None])[0])
-        found[n] = label, box, clear and (_led(label, box) or not _reads(ink, label, box))
+        found[n] = label, box, grid.free(box) and (_led(label, box) or not _reads(ink, label, box))
         grid.put(ink, n, label, box)
     return _kept(grid, ink, found, (k, q), before, ill if found[k][2] and found[q][2] else 0)
 
@@ -418,18 +541,18 @@ def _draw(canvas: Canvas, label: Label, box: Box) -> None:
         canvas.groups[-1] = canvas.groups[-1]._replace(end=len(canvas.marks), part=label.part, anchor=label.anchor)
 
 
-def _placed(grid: Grid, ink: owners.Ink, label: Label, w: float, h: float, around: Around) -> tuple[Label, Box, bool]:
+def _placed(grid: Grid, ink: owners.Ink, label: Label, lattice: _Lattice, around: Around) -> Found:
     """Place of a label, which may have moved along the vector it names rather than have a leader; whether there is room for it."""
-    places = _Places(grid, label, w, h, around)
-    here = owners.Round(ink, label, 2 * (NEAR + label.gap) + w)
+    places, reach = _Places(grid, label, lattice), 2 * (NEAR + label.gap) + _size(label)[0]
+    here = owners.Round(ink, label, reach)
     k = places.read(here)
     if k is None or places.run_on[k] or _led(label, Box(*places.sides[:, k])):
         # Lettering that keeps off thin lines had better have a leader than stand over some.
         most = np.inf if label.thin <= 1.0 or k is None else float(places.cost[k]) + places.ill(here, k)
-        for anchor in here.along():
-            moved = replace(label, anchor=anchor)
-            others = _Places(grid, moved, w, h, around)
-            there = others.read(owners.Round(ink, moved, 2 * (NEAR + label.gap) + w), leaders=False)
+        moves = [replace(label, anchor=anchor) for anchor in here.along()]
+        for moved, other in zip(moves, _lattices(grid, moves, around) if moves else (), strict=True):
+            others = _Places(grid, moved, other)
+            there = others.read(owners.Round(ink, moved, reach), leaders=False)
             if there is not None and not others.run_on[there] and others.cost[there] < most:
                 return moved, Box(*others.sides[:, there]), True
     return label, Box(*places.sides[:, places.least() if k is None else k]), bool(len(places.free))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from itertools import chain, product
 
 import numpy as np
-import numpy.typing as npt
 
 from tmm_sheets.drawing.canvas import Canvas, Note
 from tmm_sheets.drawing.crowded import Crowded
@@ -36,9 +35,14 @@ TITLE, BESIDE_TITLE = 17.0, 40.0
 
 def place(canvas: Canvas, area: Box) -> list[Crowded]:
     """Set every note of the canvas inside ``area``; returns those that found no free place, which are left out."""
-    crowded = []
+    return set_notes(canvas, Grid(area, canvas.marks))
+
+
+def set_notes(canvas: Canvas, grid: Grid) -> list[Crowded]:
+    """The same on a grid of all that is drawn."""
+    crowded, area = [], grid.area
     for note in canvas.notes:
-        grid, ink = Grid(area, canvas.marks), _ink(canvas, note)
+        ink = _ink(canvas, note)
         pictures = _pictures(canvas, note)
         # Best between no picture of the view and its caption, if that is not far from the view.
         for apart, region, height in product((pictures, []), (note.box, area), HEIGHTS):
@@ -46,7 +50,9 @@ def place(canvas: Canvas, area: Box) -> list[Crowded]:
                      and (choice[0] < FAR or apart is not pictures)]
             if found:
                 _, corner, lines = min(found, key=lambda choice: choice[0])
+                first = len(canvas.marks)
                 _set(canvas, note, corner, lines, height)
+                grid.add(canvas.marks[first:])
                 break
         else:
             crowded.append(Crowded(note.said, note.box.centre))
@@ -106,25 +112,23 @@ def _choice(grid: Grid, region: Box, ink: Box, note: Note, height: float, count:
     w = max(line.width for line in laid) + 0.15 * height
     h = (len(laid) - 1) * LEADING * height + laid[0].ascent + laid[-1].descent
     box = note.box
-    x, y = np.meshgrid(np.arange(region.x0 + CLEAR, region.x1 - w - CLEAR, STEP),
-                       np.arange(region.y0 + CLEAR, region.y1 - h - CLEAR, STEP))
-    sides = np.array([x.ravel(), y.ravel(), x.ravel() + w, y.ravel() + h])
-    outside = np.maximum.reduce([ink.x0 - sides[2], ink.y0 - sides[3], sides[0] - ink.x1, sides[1] - ink.y1, np.zeros(x.size)])
-    cost = OUTSIDE * outside + np.abs(sides[1] - ink.y0) + 0.2 * np.abs(sides[0] + w / 2 - ink.centre.real)
-    cost += BESIDE_TITLE * (sides[3] > box.y1 - TITLE)
-    cost += height * LINES.index(count)
-    covered = grid.under(grid.heavy, _with_margin(sides)) + grid.under(grid.light, _with_margin(sides))
-    for b in apart:
-        covered += (sides[0] < b.x1) & (sides[1] < b.y1) & (sides[2] > b.x0) & (sides[3] > b.y0)
-    cost = np.where(covered > 0, np.inf, cost)
-    best = int(np.argmin(cost)) if cost.size else 0
-    if not cost.size or not np.isfinite(cost[best]):
+    left = np.arange(region.x0 + CLEAR, region.x1 - w - CLEAR, STEP)
+    below = np.arange(region.y0 + CLEAR, region.y1 - h - CLEAR, STEP)
+    if not left.size or not below.size:
         return None
-    return float(cost[best]), complex(sides[0, best], sides[1, best]), lines
-
-
-def _with_margin(sides: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    return np.asarray(sides + np.array([-APART, -CLEAR, APART, CLEAR])[:, None])
+    covered = grid.covered(left - APART, below - CLEAR, left + w + APART, below + h + CLEAR)
+    for b in apart:
+        covered |= ((below < b.y1) & (below + h > b.y0))[:, None] & ((left < b.x1) & (left + w > b.x0))
+    j, i = np.nonzero(~covered)
+    if not len(j):
+        return None
+    x, y = left[i], below[j]
+    outside = np.maximum.reduce([ink.x0 - (x + w), ink.y0 - (y + h), x - ink.x1, y - ink.y1, np.zeros(x.size)])
+    cost = OUTSIDE * outside + np.abs(y - ink.y0) + 0.2 * np.abs(x + w / 2 - ink.centre.real)
+    cost += BESIDE_TITLE * (y + h > box.y1 - TITLE)
+    cost += height * LINES.index(count)
+    best = int(np.argmin(cost))
+    return float(cost[best]), complex(x[best], y[best]), lines
 
 
 def _set(canvas: Canvas, note: Note, corner: complex, lines: list[str], height: float) -> None:

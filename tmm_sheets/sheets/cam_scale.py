@@ -47,9 +47,12 @@ def numbered(s: Stage, step: Step, first: int, along: Sequence[float], labels: S
     for k, t, _ in marks:
         s.position(k).line(step, path(t, -MARK), path(t, MARK), "thin", "point")
     ink = Drawn(s.canvas, first)
-    ways = product(np.arange(MARK + 1.0, furthest, 2.0), (side, -side))
-    rows = (_row(ink, closed, marks, path, way, float(off)) for off, way in ways)
-    _, boxes, beside = min(rows, key=lambda row: row[0] + 0.5 * (row[2] != side))
+    least, boxes, beside = np.inf, list[Box](), side
+    for off, at in product(map(float, np.arange(MARK + 1.0, furthest, 2.0)), (side, -side)):
+        other = 0.5 * (at != side)
+        row = _row(ink, closed, marks, path, at, off, least - other)
+        if row is not None and row[0] + other < least:
+            least, boxes, beside = row[0] + other, row[1], at
     for (k, t, text), box in zip(marks, boxes, strict=True):
         pen, end, begin = s.position(k).pen(step, "text"), box.centre, path(t, beside * MARK)
         way = (end - begin) / abs(end - begin)
@@ -61,11 +64,13 @@ def numbered(s: Stage, step: Step, first: int, along: Sequence[float], labels: S
 
 
 def _row(ink: Drawn, closed: Box, marks: Sequence[tuple[int, float, str]], path: Path, way: float,
-         off: float) -> tuple[float, list[Box], float]:
-    """A row at a side of the path: what it costs in lines crossed, places of the numbers, the side.
+         off: float, most: float) -> tuple[float, list[Box]] | None:
+    """A row at a side of the path: what it costs in lines crossed, places of the numbers; None if it costs ``most`` or more.
 
     A number moves on along the path, with those behind it, past what is drawn where it would stand.
     """
+    if 0.04 * off >= most:
+        return None
     laid = [letter(text, HEIGHT) for *_, text in marks]
     wide, high = max(each.width for each in laid), max(each.ascent + each.descent for each in laid)
     middle = 0.5 * (marks[0][1] + marks[-1][1])
@@ -93,7 +98,9 @@ def _row(ink: Drawn, closed: Box, marks: Sequence[tuple[int, float, str]], path:
         lines, before = min(tried)
         boxes.append(place(before))
         cost += lines + 0.05 * abs(before - mark)
-    return cost, boxes, way
+        if cost >= most:
+            return None
+    return cost, boxes
 
 
 def lengths(z: Points, centre: complex) -> list[float]:

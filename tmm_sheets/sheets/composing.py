@@ -15,7 +15,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.drawing import axis_numbers
 from tmm_sheets.drawing.canvas import Canvas, Part
 from tmm_sheets.drawing.crowded import Crowded, Shortened
-from tmm_sheets.drawing.labels import place
+from tmm_sheets.drawing.labels import Grid, set_labels
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Drawing, View
 from tmm_sheets.drawing.title_block import draw_frame
@@ -57,7 +57,7 @@ def _drawer(arrangement: str, draw: str) -> Callable[..., None]:
 
 
 def viewed(project: Project, n: int) -> tuple[Arrangement, Canvas, dict[str, str]]:
-    """Arrangement of sheet ``n``, its views on a canvas without the lettering that looks for its places, the title block's texts."""
+    """Arrangement of sheet ``n``, its views on a canvas without the lettering that looks for places, texts of the title block."""
     plan = arranged(project, n)
     if {"positions", "flywheel"} & {view.needs for view in plan.views}:
         from tmm_sheets.sheets.kinematic_frames import check_number
@@ -83,11 +83,12 @@ def composed(project: Project, n: int) -> Composed:
     axis_numbers.clear(canvas)
     canvas.begin(INSIDE, "", "labels")
     crowded: list[Crowded] = [Shortened(text, TITLE_BLOCK.centre, left) for text, left in canvas.shortened.items()]
-    crowded += place(canvas, INSIDE)
+    grid = Grid(INSIDE, canvas.marks)
+    crowded += set_labels(canvas, grid)
     if canvas.notes:
         from tmm_sheets.drawing import notes
 
-        crowded += notes.place(canvas, INSIDE)
+        crowded += notes.set_notes(canvas, grid)
     title = f"{fields['project']}. {fields['title']}"
     drawing = Drawing(
         WIDTH, HEIGHT, title, tuple(canvas.marks), project.variant.title_block.student or "tmm_sheets",
