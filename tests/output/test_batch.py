@@ -451,7 +451,7 @@ main()
 
 def waiting(*arguments):
     """The program, which waits where it would rename what it wrote."""
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMM_SHEETS_CACHE": ""}  # sheets that are kept are renamed, too
     return subprocess.Popen([sys.executable, "-c", WAITING, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                             text=True, env=environment)
 
