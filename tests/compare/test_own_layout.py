@@ -25,9 +25,11 @@ from tmm_sheets.compare.story import listed
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.drawing.marks import Line
 from tmm_sheets.project import Project
+from tmm_sheets.sheets.sheet import composed
 
 SHAPER = Project(read("lugansk/shaper"))
 KNOWN = known_sheet(SHAPER, 1)
+composed(SHAPER, 1, steps=True)  # its plans, too
 PRESS = Project(read("press"))
 VIEWS = {e.view.name: e.view for e in KNOWN.elements}
 ACCELERATIONS, POSITIONS = VIEWS["План ускорений (положение 2)"], VIEWS["Планы положений механизма"]

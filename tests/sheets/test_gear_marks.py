@@ -7,7 +7,7 @@ from tmm_sheets.catalogue import read
 from tmm_sheets.construction.step import value_at
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Text
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.sheet import attempt
+from tmm_sheets.sheets.sheet import composed
 
 SHEETS = [("lugansk/shaper", 3), ("press", 3), ("transport/press@07-ЭПС-718", 3), ("transport/crusher@12-СДМ-1908", 3)]
 VIEWS = ("gear.engagement", "gear.mesh", "gear-involute-1", "gear-involute-2", "gear-sliding", "gear-rack", "reducer-velocities",
@@ -19,7 +19,7 @@ OTHER = {"symbol", "table", "dimension", "hatch", "text", "frame"}
 def drawn(request):
     name, n = request.param
     project = Project(read(name))
-    sheet = attempt(project, [n]).drawn[n]
+    sheet = composed(project, n, steps=True)
     steps = {}
     for plans in project.plans.values():
         for plan in (plans or {}).values():

@@ -7,12 +7,14 @@ the machine), the start of the process included. Steps and marks are counted in 
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from tmm_sheets import kept
 from tmm_sheets.bench.processes import timed
 from tmm_sheets.errors import BadInput
 from tmm_sheets.explain import HEAVY
@@ -66,7 +68,7 @@ class Cost:
 def _child(program: str, arguments: list[str], folder: Path) -> tuple[dict[str, Any], float]:
     """What a program reports of a command, and the processor time, s."""
     report = folder / "report.json"
-    done, _, took = timed(program, [str(report), *arguments])
+    done, _, took = timed(program, [str(report), *arguments], {**os.environ, kept.FOLDER: ""})  # what is kept costs next to nothing
     if not report.exists():
         raise BadInput(
             tell("{command}: ended without a report").format(command=" ".join(arguments)), hint=done.stderr.strip()[-300:]

@@ -15,6 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from tmm_sheets import kept
 from tmm_sheets.bench.processes import timed
 from tmm_sheets.errors import BadInput
 from tmm_sheets.words import tell
@@ -83,7 +84,7 @@ def measure(project: str, say: Callable[[str], None], rounds: int = ROUNDS) -> W
 
 def _run(program: str, arguments: list[str]) -> TimedRun:
     # An installed program is compiled; where compiled files are not kept, the compiler would be timed.
-    environment = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"} | {kept.FOLDER: ""}
     watched = f"import sys; sys.argv[0] = {PLAIN!r}\n{program}\n{PEAK}"
     done, wall, processor = timed(watched, arguments, environment)
     if done.returncode:

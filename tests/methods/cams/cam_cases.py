@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from tmm_sheets.results import _plain
+from tmm_sheets.result_files import plain_numbers
 
 
 def cam_data(**changes):
@@ -41,7 +41,7 @@ def flat_data(**changes):
 
 def told(cam, *phi):
     """The results of a cam as numbers."""
-    return _plain(cam.results(*phi))
+    return plain_numbers(cam.results(*phi))
 
 
 def sine_motion(data, phi):

@@ -151,7 +151,8 @@ class Passages:
 
         def gap(i: int, phi: Any) -> tuple[Any, Any]:
             """One of both gaps and what is rounding beside it, shape (n,)."""
-            both = g.kind.gaps_at(self.plan(until, phi, until.groups[-1]), g)
+            with np.errstate(all="ignore"):  # beyond a guide that lies along another one points are anywhere
+                both = g.kind.gaps_at(self.plan(until, phi, until.groups[-1]), g)
             return np.broadcast_to(both[i], np.shape(phi)), np.broadcast_to(both[2], np.shape(phi))
 
         sweep = 2 * pi / SWEEP * np.arange(SWEEP)
