@@ -5,10 +5,11 @@ PROJECT ?= lugansk/shaper
 VENV := .venv
 BIN := $(VENV)/bin
 OUT := out/$(subst /,-,$(PROJECT))
+PYTEST = $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
 SOURCES := $(shell find tmm_sheets templates variants -type f -not -name '*.pyc' 2>/dev/null)
 
 .DEFAULT_GOAL := sheets
-.PHONY: help sheets test lint types wheel-test gallery gallery-check note-check gold messages docs picture clean distclean
+.PHONY: help sheets test trials lint types wheel-test gallery gallery-check note-check gold messages docs picture clean distclean
 
 sheets: $(OUT)/sheet1.pdf  ## the sheets of PROJECT (default lugansk/shaper) in out/; this is what plain "make" does
 
@@ -16,7 +17,10 @@ $(OUT)/sheet1.pdf: $(VENV)/.installed $(SOURCES)
 	$(BIN)/tmm-sheets build $(PROJECT) -o $(OUT)
 
 test: lint types  ## everything the tests prove: ruff, mypy, pytest
-	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
+	$(PYTEST)
+
+trials: $(VENV)/.tested  ## the long tests: every project, every language, random students, photographs, kills, clusters
+	$(PYTEST) -m trial
 
 lint: $(VENV)/.tested  ## style of the code (ruff)
 	$(BIN)/ruff check .

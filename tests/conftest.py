@@ -46,12 +46,19 @@ def pytest_unconfigure():
         shutil.rmtree(OWN_CACHE, ignore_errors=True)
 
 
-@pytest.fixture(autouse=True)
-def _nothing_kept(request):
-    """A test that changes the program has no use for sheets of the unchanged one, nor others for its own."""
-    if "monkeypatch" not in request.fixturenames:
-        yield
-        return
-    before, os.environ[kept.FOLDER] = os.environ[kept.FOLDER], ""
-    yield
-    os.environ[kept.FOLDER] = before
+SHARED = os.environ[kept.FOLDER]
+
+
+class _Patch(pytest.MonkeyPatch):
+    """A test that changes the program has no use for sheets of the unchanged one, nor others for its own: from then on it keeps none."""
+
+    def setattr(self, *args, **named):
+        if os.environ[kept.FOLDER] == SHARED:
+            self.setenv(kept.FOLDER, "")
+        super().setattr(*args, **named)
+
+
+@pytest.fixture
+def monkeypatch():
+    with _Patch.context() as patch:
+        yield patch

@@ -1,0 +1,15 @@
+"""A few of many cases belong to ``make test``, all the others to ``make trials``."""
+
+import pytest
+
+
+def few(cases, *kept):
+    """Cases for ``parametrize``: those ``kept`` as they are, each of the others marked as a trial.
+
+    Kept are the cases that differ in what the program does with them; a trial walks the same way once more.
+    """
+    cases = list(cases)
+    gone = [case for case in kept if case not in cases]
+    assert not gone, gone
+    return [case if case in kept else pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=pytest.mark.trial)
+            for case in cases]
