@@ -59,6 +59,22 @@ def test_list_json(capsys):
     assert entries["lugansk/shaper"]["sheets"] == ["kinematics_forces", "flywheel", "gear", "cam"]
 
 
+def test_headings_are_those_of_the_whole_files():
+    for entry in catalogue.entries():
+        variant = catalogue.read(entry.name)
+        assert entry == catalogue.Entry(entry.name, variant.project.title, variant.project.variant, variant.sheets)
+
+
+@pytest.mark.parametrize("arguments", [[], ["--help"], ["--version"], ["list"], ["build", "--help"]])
+def test_what_reads_no_project_loads_neither_models_nor_numbers(arguments):
+    code = f"import sys; from tmm_sheets.__main__ import run; run({arguments}); print(*sys.modules, sep='\\n')"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60,
+                          env={**os.environ, "PYTHONPATH": str(ROOT)})  # fmt: skip
+    loaded = set(done.stdout.splitlines())
+    assert "tmm_sheets.cli" in loaded
+    assert not loaded & {"numpy", "pydantic", "shapely", "ezdxf", "reportlab", "tmm_sheets.task.variant"}
+
+
 def test_show(capsys):
     assert run(["show", "lugansk/shaper"]) == 0
     out = capsys.readouterr().out

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import nearest, resources, typed
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.task import families
+from tmm_sheets.task import families, headings
 from tmm_sheets.words import either, tell
 
 if TYPE_CHECKING:
@@ -39,16 +38,13 @@ def shipped() -> tuple[str, ...]:
 
 def entries() -> tuple[Entry, ...]:
     """Every shipped project with its title, variant and sheets; only the heading of each file is looked at."""
-    found = []
-    for name in shipped():
-        family = families.of(name)
-        if family is not None:
-            variant = family.read(name)
-            found.append(Entry(name, variant.project.title, variant.project.variant, variant.sheets))
-            continue
-        heading = tomllib.loads(_path(name).read_text(encoding="utf-8"))["project"]
-        found.append(Entry(name, heading["title"], heading.get("variant", ""), tuple(heading["sheets"])))
-    return tuple(found)
+    return tuple(Entry(name, table["title"], table.get("variant", ""), tuple(table["sheets"]))
+                 for name, table in ((name, _heading(name)) for name in shipped()))
+
+
+def _heading(name: str) -> dict[str, Any]:
+    family = families.of(name)
+    return family.heading(name) if family is not None else headings.of(_path(name).read_text(encoding="utf-8"))
 
 
 def read(project: str, corrected: bool = False) -> Variant:

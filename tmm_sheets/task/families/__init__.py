@@ -3,6 +3,7 @@
 A module ``families/<family>.py`` answers for all project names ``<family>/...`` and has
 
 - ``names() -> tuple[str, ...]``: what ``list`` shows, each a name that can be read;
+- ``heading(name) -> dict``: the table ``[project]`` of one of these, filled in without the rest of the file;
 - ``read(name, corrected=False) -> Variant``: the project; with ``corrected`` the suggested values instead of suspected misprints.
 
 Its tables are ``variants/<family>/*.toml`` (no project files), its project files ``templates/schemes/<family>_*.toml``.
@@ -13,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from importlib import import_module
 from pkgutil import iter_modules
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 if TYPE_CHECKING:
     from tmm_sheets.task.variant import Variant
@@ -24,6 +25,9 @@ class Family(Protocol):
 
     def names(self) -> tuple[str, ...]:
         """Names to list."""
+
+    def heading(self, name: str) -> dict[str, Any]:
+        """Table ``[project]`` of one of these names."""
 
     def read(self, name: str, corrected: bool = False) -> Variant:
         """Project of a name of this family."""

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import resources
 from tmm_sheets.errors import BadInput
+from tmm_sheets.task import headings
 from tmm_sheets.task.misprint import Misprint
 from tmm_sheets.words import tell
 
@@ -43,6 +44,19 @@ class Doubt(Misprint):
 def names() -> tuple[str, ...]:
     """All fifty projects."""
     return tuple(f"sixbar/{task}:{variant}" for task in TASKS for variant in VARIANTS)
+
+
+def heading(name: str) -> dict[str, Any]:
+    """Table ``[project]`` of ``sixbar/T:V``.
+
+    Raises
+    ------
+    BadInput
+        when there is no such task or variant.
+    """
+    task, number = _parts(name)
+    table = tomllib.loads(headings.first(_table(task)))
+    return headings.of(_scheme("sixbar"), _named(task, number, table))
 
 
 def read(name: str, corrected: bool = False) -> Variant:
@@ -77,7 +91,7 @@ def _parts(name: str) -> tuple[int, int]:
 
 def project_file(task: int, number: int, corrected: bool = False) -> tuple[str, tuple[Doubt, ...]]:
     """Text of the project file of a variant, and its misprints."""
-    table = tomllib.loads((resources.variants() / f"sixbar/task{task:02d}.toml").read_text(encoding="utf-8"), parse_float=Decimal)
+    table = tomllib.loads(_table(task), parse_float=Decimal)
     values = {symbol: Decimal(row[number - 1]) for symbol, row in table["values"].items()} | table.get("dash", {})
     sources = {symbol: f"001, task {task}, variant {number}: {symbol}" for symbol in values}
     for symbol in table.get("dash", {}):
@@ -96,11 +110,23 @@ def project_file(task: int, number: int, corrected: bool = False) -> tuple[str, 
         **{f"{symbol}_source": source for symbol, source in sources.items()},
         **{key: str(value) for key, value in _derived(task, values).items()},
         **{key: value if isinstance(value, str) else str(value).replace("'", '"') for key, value in table["cycle"].items()},
-        "name": f"sixbar/{task}:{number}", "title": table["title"], "task": str(task), "variant": str(number),
-        "number": f"{task:02d}.{number:02d}",
+        **_named(task, number, table), "number": f"{task:02d}.{number:02d}",
     }  # fmt: skip
-    parts = (resources.template(f"schemes/{name}.toml").read_text(encoding="utf-8") for name in ("sixbar", f"sixbar_{task:02d}"))
+    parts = map(_scheme, ("sixbar", f"sixbar_{task:02d}"))
     return Template("\n".join(parts)).substitute(fields), misprints
+
+
+def _table(task: int) -> str:
+    return (resources.variants() / f"sixbar/task{task:02d}.toml").read_text(encoding="utf-8")
+
+
+def _scheme(name: str) -> str:
+    return resources.template(f"schemes/{name}.toml").read_text(encoding="utf-8")
+
+
+def _named(task: int, number: int, table: dict[str, Any]) -> dict[str, str]:
+    """What is filled into the heading."""
+    return {"name": f"sixbar/{task}:{number}", "title": table["title"], "task": str(task), "variant": str(number)}
 
 
 def _misprints(table: dict[str, Any], number: int, corrected: bool) -> tuple[Doubt, ...]:

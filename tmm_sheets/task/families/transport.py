@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import nearest, resources
 from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.task import headings
 from tmm_sheets.task.misprint import Misprint
 from tmm_sheets.words import marked, tell, tell_n
 
@@ -149,6 +150,18 @@ def names() -> tuple[str, ...]:
     return tuple(f"transport/{machine}@{examples[machine]}" for machine in MACHINES)
 
 
+def heading(name: str) -> dict[str, Any]:
+    """Table ``[project]`` of a machine and a cipher.
+
+    Raises
+    ------
+    BadInput
+        when there is no such cipher.
+    """
+    machine, _, code = name.removeprefix("transport/").partition("@")
+    return headings.of(_scheme(f"transport_{machine}"), _named(machine, cipher(code)))
+
+
 def read(name: str, corrected: bool = False) -> Variant:
     """Project of a machine and a cipher, e.g. ``transport/diesel@01-Т-27``.
 
@@ -195,18 +208,26 @@ def project_file(name: str, corrected: bool = False) -> tuple[str, tuple[str, ..
     values |= DERIVED[machine](values)
     refuse(machine, values)
     notes += NOTES[machine](values)
-    heading = {"name": f"transport/{machine}@{student.text}", "cipher": student.text, "digits": str(student)}
-    values |= {key: Value(value, 0.0, "") for key, value in heading.items()}
+    values |= {key: Value(value, 0.0, "") for key, value in (_named(machine, student) | {"digits": str(student)}).items()}
     cam = chosen(_data("cam")["row"], student.digits, corrected)
     parts = [_filled(scheme, values | {"n_cam": cam["n"]})
              for scheme in (f"transport_{machine}", f"transport_reducer_{machine}", "transport_gear")]
     return "".join((*parts, _cam(cam))), tuple(notes), doubts
 
 
+def _named(machine: str, student: Cipher) -> dict[str, str]:
+    """What is filled into the heading."""
+    return {"name": f"transport/{machine}@{student.text}", "cipher": student.text}
+
+
+def _scheme(name: str) -> str:
+    return resources.template(f"schemes/{name}.toml").read_text(encoding="utf-8")
+
+
 def _filled(scheme: str, values: Mapping[str, Value]) -> str:
     """A scheme with its numbers; behind each line what the numbers on it come from."""
     lines = []
-    for line in resources.template(f"schemes/{scheme}.toml").read_text(encoding="utf-8").splitlines():
+    for line in _scheme(scheme).splitlines():
         keys = Template(line).get_identifiers()
         filled, _, comment = Template(line).substitute({key: values[key].text for key in keys}).partition("#")
         filled = filled.rstrip()
