@@ -50,7 +50,7 @@ SHARED = os.environ[kept.FOLDER]
 
 
 class _Patch(pytest.MonkeyPatch):
-    """A test that changes the program has no use for sheets of the unchanged one, nor others for its own: from then on it keeps none."""
+    """Who changes the program has no use for sheets of the unchanged one, nor others for theirs: from then on nothing is kept."""
 
     def setattr(self, *args, **named):
         if os.environ[kept.FOLDER] == SHARED:
