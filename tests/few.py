@@ -3,13 +3,17 @@
 import pytest
 
 
+def seldom(*case):
+    """A case for ``parametrize`` that is tried by ``make trials`` alone."""
+    return pytest.param(*case, marks=pytest.mark.trial)
+
+
 def few(cases, *kept):
-    """Cases for ``parametrize``: those ``kept`` as they are, each of the others marked as a trial.
+    """Cases for ``parametrize``: those ``kept`` as they are, each of the others a trial.
 
     Kept are the cases that differ in what the program does with them; a trial walks the same way once more.
     """
     cases = list(cases)
     gone = [case for case in kept if case not in cases]
     assert not gone, gone
-    return [case if case in kept else pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=pytest.mark.trial)
-            for case in cases]
+    return [case if case in kept else seldom(*(case if isinstance(case, tuple) else (case,))) for case in cases]

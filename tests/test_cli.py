@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.few import seldom
 from tests.project_files import EVEN, SLIDER, from_file, write
 from tmm_sheets import __version__, catalogue
 from tmm_sheets.__main__ import run
@@ -146,10 +147,10 @@ def test_file_with_problems(tmp_path, capsys):
     ("changes", "said", "refused"),
     [
         ({"points.C": ["0 m", "-0.08 m"]}, "B passes through C", {1, 2}),
-        ({"gear.shift": [-0.5, 0.0]}, "undercut", {3}),
-        ({"gear.shift": [1.4, 0.0]}, "its flanks meet below the tip circle", {3}),
+        seldom({"gear.shift": [-0.5, 0.0]}, "undercut", {3}),
+        seldom({"gear.shift": [1.4, 0.0]}, "its flanks meet below the tip circle", {3}),
         ({"cam.roller": "9 mm"}, "cusp", {4}),
-        ({"cycle.force_position": "12"}, "there is no position 12", {1}),
+        seldom({"cycle.force_position": "12"}, "there is no position 12", {1}),
     ],
 )  # fmt: skip
 def test_what_cannot_be_built_costs_nothing_else(changes, said, refused, tmp_path, monkeypatch, capsys):

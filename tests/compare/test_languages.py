@@ -3,12 +3,15 @@
 import json
 import re
 from dataclasses import replace
+from functools import cache
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
 
 from tests.compare.languages import to_reader, told
 from tests.compare.simulation import Camera, paper, photograph
+from tests.few import few
 from tmm_sheets.backends import dxf
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.measured import measured_units
@@ -46,28 +49,37 @@ def spoiled(sheet):
 def drawings(spoiled, tmp_path_factory):
     """What each kind of comparison is given."""
     folder = tmp_path_factory.mktemp("drawings")
-    numbers = {e.id: e.value for e in measurables(Project(read(PROJECT)), lambda what: None).entries.values()}
-    rows = [f"{name};{1.3 * value if k == 4 else value:.5g}" for k, (name, value) in enumerate(numbers.items())]
-    (folder / "measured.csv").write_text("\n".join(("id;measured", *rows, "")), encoding="utf-8")
-    (folder / "mine.dxf").write_bytes(dxf.render(spoiled, "strokes"))
-    rng = np.random.default_rng(1)
-    camera = Camera(megapixels=8.0, tilt=0.1, curl=1.0, k1=-0.01, waves=(0.1, 0.1, 0.0), desk=110.0)
-    (folder / "photo.jpg").write_bytes(photograph(paper(spoiled, rng, 0.1, scale=6.0), spoiled, camera, rng, 6.0).data)
-    return {"measured": ("--measured", folder / "measured.csv"), "dxf": ("--sheet", 1, "--dxf", folder / "mine.dxf"),
-            "image": ("--sheet", 1, "--image", folder / "photo.jpg")}
+
+    @cache
+    def of(kind):
+        if kind == "measured":
+            numbers = {e.id: e.value for e in measurables(Project(read(PROJECT)), lambda what: None).entries.values()}
+            rows = [f"{name};{1.3 * value if k == 4 else value:.5g}" for k, (name, value) in enumerate(numbers.items())]
+            (folder / "measured.csv").write_text("\n".join(("id;measured", *rows, "")), encoding="utf-8")
+            return "--measured", folder / "measured.csv"
+        if kind == "dxf":
+            (folder / "mine.dxf").write_bytes(dxf.render(spoiled, "strokes"))
+            return "--sheet", 1, "--dxf", folder / "mine.dxf"
+        rng = np.random.default_rng(1)
+        camera = Camera(megapixels=8.0, tilt=0.1, curl=1.0, k1=-0.01, waves=(0.1, 0.1, 0.0), desk=110.0)
+        (folder / "photo.jpg").write_bytes(photograph(paper(spoiled, rng, 0.1, scale=6.0), spoiled, camera, rng, 6.0).data)
+        return "--sheet", 1, "--image", folder / "photo.jpg"
+
+    return of
 
 
 @pytest.fixture(scope="module")
-def reports(drawings, tmp_path_factory):
-    """Status, text, messages and JSON of each comparison by kind and language."""
+def report(drawings, tmp_path_factory):
+    """Status, text, messages and JSON of a comparison of a kind in a language."""
     folder = tmp_path_factory.mktemp("reports")
-    found = {}
-    for kind, arguments in drawings.items():
-        for language in LANGUAGES:
-            target = folder / f"{kind}-{language}.json"
-            status, out, err = told(language, "compare", PROJECT, *arguments, "--json", target, "-o", folder)
-            found[kind, language] = status, out, err, json.loads(target.read_text("utf-8"))
-    return found
+
+    @cache
+    def of(kind, language):
+        target = folder / f"{kind}-{language}.json"
+        status, out, err = told(language, "compare", PROJECT, *drawings(kind), "--json", target, "-o", folder)
+        return status, out, err, json.loads(target.read_text("utf-8"))
+
+    return of
 
 
 def plain(tree):
@@ -77,39 +89,46 @@ def plain(tree):
     return [plain(value) for value in tree] if isinstance(tree, list) else tree
 
 
-KINDS = pytest.mark.parametrize("kind", ["measured", "dxf", "image"])
+KINDS = ("measured", "dxf", "image")
+each = pytest.mark.parametrize("kind", few(KINDS, "measured", "dxf"))
 
 
-@KINDS
-def test_only_words_differ(reports, kind):
-    status, _, _, tree = reports[kind, "ru"]
+def of_photographs(language):
+    """Every kind in every language; of photographs, which take longest, in one."""
+    some = [case for case in product(KINDS, LANGUAGES) if case[0] != "image" or case[1] == language]
+    return pytest.mark.parametrize(("kind", "language"), few(product(KINDS, LANGUAGES), *some))
+
+
+@each
+def test_only_words_differ(report, kind):
+    status, _, _, tree = report(kind, "ru")
     assert status == 0
     for language in LANGUAGES:
-        assert reports[kind, language][0] == 0
-        assert plain(reports[kind, language][3]) == plain(tree)
-    texts = {reports[kind, language][1] for language in LANGUAGES}
+        assert report(kind, language)[0] == 0
+        assert plain(report(kind, language)[3]) == plain(tree)
+    texts = {report(kind, language)[1] for language in LANGUAGES}
     assert len(texts) == len(LANGUAGES)
 
 
-@KINDS
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_no_brace_is_left(reports, kind, language):
-    _, out, err, _ = reports[kind, language]
+@of_photographs("uk")
+def test_words_and_signs_are_the_readers(report, kind, language):
+    """No brace of a text is left, and no English; a point is written in English, a comma in Russian and Ukrainian."""
+    _, out, err, _ = report(kind, language)
     assert not BRACES.search(out + err)
-
-
-@KINDS
-@pytest.mark.parametrize("language", ["ru", "uk"])
-def test_no_english_is_left(reports, kind, language):
-    """Words in small Latin letters are names: of the project, of files, of options."""
-    _, out, err, _ = reports[kind, language]
+    told = re.sub(r"\S+\.(csv|dxf|jpg|json|png|pdf)", "", out)
+    sign, other = ".," if language == "en" else ",."
+    assert re.search(rf"\d\{sign}\d", told)
+    assert not re.search(rf"\d\{other}\d", told)
+    if language == "en":
+        return
+    # Words in small Latin letters are names: of the project, of files, of options.
     said = re.sub(r"--\w+|\S+\.(csv|dxf|jpg|json|png|pdf)|\S*/\S*", "", out + err)
     assert set(re.findall(r"(?<![A-Za-z_'′])[a-z]{4,}(?![0-9_])", said)) <= {"lugansk", "cam", "flat"}
 
 
-@KINDS
-def test_nothing_russian_is_left_in_english_but_what_stands_on_the_sheet(reports, sheet, kind):
-    _, out, err, _ = reports[kind, "en"]
+@each
+def test_nothing_russian_is_left_in_english_but_what_stands_on_the_sheet(report, sheet, kind):
+    _, out, err, _ = report(kind, "en")
     found = measurables(Project(read(PROJECT)), lambda what: None)
     names = {view.name for view in sheet.drawing.views} | {m.text for m in sheet.drawing.marks if hasattr(m, "text")}
     names |= {e.title for e in found.entries.values()} | {e.quantity for e in found.entries.values()}
@@ -125,22 +144,13 @@ def test_nothing_russian_is_left_where_the_sheet_is_english_too(drawings, kind, 
         sheet = composed(Project(read(PROJECT)), 1)
     if any(CYRILLIC.search(view.name) for view in sheet.drawing.views):
         pytest.skip("the sheets are Russian still")
-    arguments = drawings[kind]
+    arguments = drawings(kind)
     if kind == "dxf":
         (tmp_path / "mine.dxf").write_bytes(dxf.render(sheet.drawing))
         arguments = (*arguments[:-1], tmp_path / "mine.dxf")
     status, out, err = told("ru", "compare", PROJECT, *arguments, "-o", tmp_path, "--lang", "en")
     assert status == 0
     assert not CYRILLIC.search(out + err)
-
-
-def test_decimal_signs_are_the_readers(reports):
-    """A point in English, a comma in Russian and Ukrainian, of every kind of report."""
-    for kind in ("measured", "dxf", "image"):
-        for language, sign, other in (("en", ".", ","), ("ru", ",", "."), ("uk", ",", ".")):
-            said = re.sub(r"\S+\.(csv|dxf|jpg|json|png|pdf)", "", reports[kind, language][1])
-            assert re.search(rf"\d\{sign}\d", said)
-            assert not re.search(rf"\d\{other}\d", said), (kind, language)
 
 
 # --- the file of measured numbers -------------------------------------------------------------------------------------------
@@ -172,8 +182,7 @@ def test_a_template_has_the_headings_of_its_language(templates, language):
     assert ids == [line.split(";")[0] for line in templates["ru"].splitlines()[5:] if not line.startswith(("#", '"#'))]
 
 
-@pytest.mark.parametrize("language", LANGUAGES)
-@pytest.mark.parametrize("written", LANGUAGES)
+@pytest.mark.parametrize(("written", "language"), few(product(LANGUAGES, LANGUAGES), *pairwise([*LANGUAGES, LANGUAGES[0]])))
 def test_a_template_is_read_in_any_language(templates, written, language, tmp_path):
     """Headings, units and what is said in place of a number, whatever the language of the command."""
     number = "46.5" if written == "en" else "46,5"

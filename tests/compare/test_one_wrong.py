@@ -2,13 +2,14 @@
 
 import random
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
 
 from tests.compare.cad_plants import Way, compared, draw
 from tests.compare.one_wrong import done, shows, sort_of
+from tests.few import few
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.elements import elements
 from tmm_sheets.drawing.ink import letters
@@ -18,10 +19,10 @@ from tmm_sheets.sheets.sheet import composed
 SHEET = composed(Project(read("lugansk/shaper")), 4)
 EXACT = list(elements(SHEET))
 SORTS = ("line", "arrow", "arc", "circle", "dot", "curve")
+WAYS = ("shifted", "left out", "twice")
 
 
-@pytest.mark.parametrize("way", ["shifted", "left out", "twice"])
-@pytest.mark.parametrize("sort", SORTS)
+@pytest.mark.parametrize(("sort", "way"), few(product(SORTS, WAYS), *zip(SORTS, 2 * WAYS, strict=True)))
 def test_one_accusation(sort, way):
     for e in (e for e in EXACT if e.view.n and sort_of(e) == sort and (sort == "dot" or e.length > 8)):
         made = done(e, way, random.Random(1))

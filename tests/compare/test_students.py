@@ -3,10 +3,10 @@
 import pytest
 
 from tests.compare.students import OWN, trial
+from tests.few import seldom
 
 
-@pytest.mark.parametrize(("project", "first"), [
-    ("lugansk/shaper", 0), (str(OWN / "feeder.toml"), 14)])
+@pytest.mark.parametrize(("project", "first"), [("lugansk/shaper", 0), seldom(str(OWN / "feeder.toml"), 14)])
 def test_one_mistake(project, first):
     """Each kind once: a point, an angular velocity, a reading, a reduced moment, an ordinate, a force, the flywheel."""
     students = trial(project, 7, first)

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from tests.few import few
 from tests.record.printed import strangers
 from tests.record.replayer import Replay, number
 from tmm_sheets import catalogue, kept, results
@@ -20,7 +21,7 @@ OF_LINKAGE = ("dead-positions", "cycle", "positions", "velocities", "loads", "mo
 LINKAGE = ("positions", "velocities", "accelerations", "forces")
 
 
-@pytest.fixture(scope="module", params=PROJECTS)
+@pytest.fixture(scope="module", params=few(PROJECTS, "lugansk/shaper", "press", "sixbar/8:3", "lugansk/cam_flat"))
 def case(request):
     project = Project(catalogue.read(request.param))
     found, problem = recording.record(project)

@@ -1,10 +1,12 @@
 """Project files of mechanisms that stand in no manual: everything a shipped project can, from the file alone."""
 
+from operator import attrgetter
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.few import few
 from tests.project_files import EVEN, MASS, MOMENT, SLIDER, read
 from tmm_sheets import summary
 from tmm_sheets.__main__ import run
@@ -18,7 +20,10 @@ FILES = [path for path in sorted((Path(__file__).parents[1] / "projects").glob("
          if "[crank]" in path.read_text(encoding="utf-8")]
 
 
-@pytest.fixture(scope="module", params=FILES, ids=lambda path: path.stem)
+NAME = attrgetter("stem")
+
+
+@pytest.fixture(scope="module", params=FILES, ids=NAME)
 def project(request):
     return Project(variant.read(request.param))
 
@@ -62,6 +67,7 @@ def test_sheets_are_clean(project, sheet):
             assert not ((p.real > 651) & (p.imag < 60)).any(), "in the title block"
 
 
+@pytest.mark.parametrize("project", few(FILES, next(path for path in FILES if path.stem == "feeder")), indirect=True, ids=NAME)
 def test_other_positions_can_be_the_analysed_one(project):
     for label in project.cycle.labels[::3]:
         cycle = project.variant.cycle.model_copy(update={"force_position": label})

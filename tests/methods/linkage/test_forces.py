@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests import project_files as files
 from tests.methods.linkage import statics, truth
 from tests.methods.linkage.mechanisms import mechanisms, value
 from tests.methods.settings import every_kind, tried
@@ -261,8 +262,20 @@ def test_two_digit_links_lose_no_reaction(radial):
     assert {"h30", "h50", "h70", "h90", "h11,0"} == study.forces.arms.keys()
 
 
-def test_two_digit_links_in_everything_a_user_reads(radial):
+@pytest.fixture(scope="module")
+def two_cylinders():
+    """The first and the last cylinder of the five."""
+    data, links = files.from_file(str(RADIAL)), {"1", "2", "3", "10", "11"}
+    data["group"] = [g for g in data["group"] if links.issuperset(g["links"])]
+    for part, key in (("link", "name"), ("point", "link"), ("force", "link")):
+        data[part] = [row for row in data[part] if row[key] in links]
+    data["guide"] = [row for row in data["guide"] if row["name"] in {g["guide"] for g in data["group"]}]
+    return files.project(data)
+
+
+def test_two_digit_links_in_everything_a_user_reads(two_cylinders):
     """The numbers of both pairs stand in the results, the protocol, the table to fill in and on the sheet, each under its name."""
+    radial = two_cylinders
     from tmm_sheets import protocols, results
     from tmm_sheets.compare.measured.collecting import measurables
     from tmm_sheets.sheets import sheet
