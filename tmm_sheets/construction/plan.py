@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from tmm_sheets.construction.rules import DISTANCE
-from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.construction.step import Rule, Step, value_of
 from tmm_sheets.construction.tally import Tally
 
 
@@ -170,15 +170,20 @@ class Plan:
     def __iter__(self) -> Iterator[Step]:
         return iter(self.steps.values())
 
-    def check(self) -> tuple[str, tuple[str, ...]] | None:
-        """First step that cannot be built and the labels of the positions where it fails; None when all can."""
+    def check(self, values: Callable[[Step], Any] = value_of,
+              labels: tuple[str, ...] | None = None) -> tuple[str, tuple[str, ...]] | None:
+        """First step that cannot be built and the labels of the positions where it fails; None when all can.
+
+        The ``values`` of the steps may be those of other positions, with their ``labels``.
+        """
+        labels = self.labels if labels is None else labels
         for step in self:
-            value = np.asarray(step.value)
+            value = np.asarray(values(step))
             if value.dtype.kind not in "fc":
                 continue
             bad = np.isnan(value)
             if bad.any():
                 if value.ndim == 0:
-                    return step.name, self.labels
-                return step.name, tuple(label for label, b in zip(self.labels, bad, strict=True) if b)
+                    return step.name, labels
+                return step.name, tuple(label for label, b in zip(labels, bad, strict=True) if b)
         return None

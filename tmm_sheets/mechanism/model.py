@@ -302,6 +302,8 @@ class Mechanism:
     """what has been looked for with plans of this mechanism, by purpose"""
     courses: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
     """ways of assembly of its groups of class III round the turn, by the groups' names"""
+    recorded: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
+    """plans that all searches share, which do them again at other crank angles"""
 
     def search(self, purpose: str) -> Tally | None:
         """Count of the plans that search for something; None without a purpose, for a plan to be drawn or told."""

@@ -109,3 +109,28 @@ def test_watched_at_any_angles(name):
         for look, step in zip(looks, own, strict=True):
             np.testing.assert_allclose(look(phi), np.broadcast_to(step.value, phi.shape), rtol=1e-12, atol=1e-14)
     assert m.searches["trial"].plans == (2 if name == "lugansk/shaper" else m.searches["trial"].plans)
+
+
+def test_searches_share_one_recording():
+    """Dead positions, assembly, strokes: the plans are recorded by the first and done again by the others."""
+    project = Project(catalogue.read("lugansk/shaper"))
+    _ = project.study.forces
+    found = {search.purpose: search for search in project.searches}
+    assert {purpose: search.plans for purpose, search in found.items()} == {"dead points": 2, "assembly": 0, "strokes of forces": 0}
+    assert all(search.steps > 0 for search in found.values())
+
+
+def test_steps_made_and_evaluated(monkeypatch):
+    """What solve makes for the positions of the shaper, its scale with it: no more than this."""
+    from tmm_sheets import results
+    from tmm_sheets.construction.step import Step
+
+    made, init = [], Step.__init__
+
+    def counted(step, *args, **kwargs):
+        init(step, *args, **kwargs)
+        made.append(step)
+
+    monkeypatch.setattr(Step, "__init__", counted)
+    results.assemble(Project(catalogue.read("lugansk/shaper")), ["positions"])
+    assert (sum(step.evaluated for step in made), len(made)) == (119, 161)

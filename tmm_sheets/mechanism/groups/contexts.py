@@ -6,7 +6,7 @@ the mechanism and ``G`` a group, left open here because a group has a kind.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 if TYPE_CHECKING:
@@ -34,6 +34,10 @@ class PositionPlan(Protocol[M, G]):
     false: dict[str, Plan]
     angle: Any
     where: str
+
+    @property
+    def value(self) -> Callable[[Step], Any]:
+        """Value of a step at the crank's angles."""
 
     @property
     def mechanism(self) -> M:

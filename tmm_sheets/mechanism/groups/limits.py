@@ -64,7 +64,7 @@ def _rounded(length: float, to: Callable[[float], int]) -> str:
 
 def span(pos: PositionPlan[Any, Any], p: str, q: str) -> Any:
     """Distance of two points of the position plan, m, shape (n,)."""
-    return np.abs(pos.points[q].value - pos.points[p].value)
+    return np.abs(pos.value(pos.points[q]) - pos.value(pos.points[p]))
 
 
 def rounding(length: float, *points: Any) -> Any:

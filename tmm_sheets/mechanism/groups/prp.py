@@ -79,7 +79,7 @@ class PRPKind(GroupKind):
 
     def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
         a, b = g.guides
-        return [AssemblyLimit(1.0, lambda pos: sine(pos.guide_directions[a].value, pos.guide_directions[b].value) - TOUCH,
+        return [AssemblyLimit(1.0, lambda pos: sine(pos.value(pos.guide_directions[a]), pos.value(pos.guide_directions[b])) - TOUCH,
                               lambda lack: tell("the guides {a} and {b} are parallel there").format(a=a, b=b),
                               lambda pos: tell("turn one of the guides so that they cross at every position"), measured=False)]
 

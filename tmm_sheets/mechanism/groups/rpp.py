@@ -135,7 +135,7 @@ class RPPKind(GroupKind):
 
     def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
         i, j = g.links
-        return [AssemblyLimit(1.0, lambda pos: sine(pos.directions[i].value, pos.directions[j].value) - TOUCH,
+        return [AssemblyLimit(1.0, lambda pos: sine(pos.value(pos.directions[i]), pos.value(pos.directions[j])) - TOUCH,
                               lambda lack: tell("the slot of link {link} is parallel to its guide {guide}").format(
                                   link=j, guide=g.guides[0]),
                               lambda pos: tell('try slot = "90 deg"'), measured=False)]

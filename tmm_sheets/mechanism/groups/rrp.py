@@ -107,10 +107,11 @@ class RRPKind(GroupKind):
         rod = f"{p}{g.inner}"
 
         def away(pos: Positions) -> Any:
-            return np.abs(ar.cross(pos.guide_directions[guide].value, pos.guide_points[guide].value - pos.points[p].value))
+            return np.abs(ar.cross(pos.value(pos.guide_directions[guide]),
+                                   pos.value(pos.guide_points[guide]) - pos.value(pos.points[p])))
 
         def margin(pos: Positions) -> Any:
-            return unrounded(length - away(pos), rounding(length, pos.points[p].value, pos.guide_points[guide].value))
+            return unrounded(length - away(pos), rounding(length, pos.value(pos.points[p]), pos.value(pos.guide_points[guide])))
 
         return [AssemblyLimit(m.crank.length, margin,
                               lambda lack: tell(

@@ -109,7 +109,7 @@ class RRRKind(GroupKind):
             return tell("try {first} = {second} = {least} or longer").format(first=first, second=second, least=more(high / 2))
 
         def around(pos: Positions) -> Any:
-            return rounding(l1 + l2, pos.points[p].value, pos.points[q].value)
+            return rounding(l1 + l2, pos.value(pos.points[p]), pos.value(pos.points[q]))
 
         return [
             AssemblyLimit(m.crank.length, lambda pos: unrounded(l1 + l2 - span(pos, p, q), around(pos)),

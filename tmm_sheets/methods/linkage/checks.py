@@ -14,8 +14,9 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups.limits import SWEEP, TOUCH, AssemblyLimit
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import Cycle
-from tmm_sheets.methods.linkage.positions import Positions, passages, position_plan
+from tmm_sheets.methods.linkage.positions import Positions, passages
 from tmm_sheets.methods.linkage.strokes import Floats
+from tmm_sheets.methods.linkage.watched import Watched
 from tmm_sheets.numbers import in_a_row, of_reader
 from tmm_sheets.remarks import Remark
 from tmm_sheets.words import marked, marked_n, tell, tell_n
@@ -92,7 +93,8 @@ def check_assembly(mechanism: Mechanism, cycle: Cycle) -> tuple[DeadPosition, ..
     if said:
         # What lies upstream decides what the groups after it need: only the first advice is sure.
         raise CannotBuild("\n".join(said), hints[0])
-    missing = position_plan(mechanism, cycle.phi, cycle.labels, purpose=ASSEMBLY).plan.check()
+    numbered = search.watched.positions(cycle.phi)
+    missing = numbered.plan.check(numbered.value, cycle.labels)
     if missing:
         name, labels = missing
         raise CannotBuild(tell("{point} cannot be constructed at positions {labels}").format(point=name, labels=", ".join(labels)))
@@ -157,7 +159,7 @@ class _Search:
     """Margins of all limits over the turn, one column per angle."""
 
     def __init__(self, mechanism: Mechanism, cycle: Cycle, limits: list[AssemblyLimit]) -> None:
-        self.mechanism = mechanism
+        self.watched = Watched(mechanism, ASSEMBLY)
         self.cycle = cycle
         self.limits = limits
         step = 2 * np.pi / SWEEP
@@ -179,7 +181,7 @@ class _Search:
         return self._margins(self.cycle.period * there_and_back)[0]
 
     def _margins(self, turned: Floats) -> tuple[Positions, Floats]:
-        pos = position_plan(self.mechanism, self.cycle.world(turned), purpose=ASSEMBLY)
+        pos = self.watched.positions(self.cycle.world(turned))
         with np.errstate(invalid="ignore"):
             rows = [np.broadcast_to(limit.margin(pos), turned.shape) for limit in self.limits]
         return pos, np.array(rows, dtype=np.float64).reshape(len(rows), len(turned))

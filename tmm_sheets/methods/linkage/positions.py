@@ -5,6 +5,7 @@ Source: manual 000, section 3.1; manual 002, section 1.1.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, cast
 
@@ -30,6 +31,7 @@ class Positions:
     with an offset, the foot of the perpendicular from the pivot on the slot. ``sines`` are, by the first link of a group next to
     the crank, those of the angle between its lines in the plans of velocities, where they are known better than the lines;
     ``turnings`` tell how it turns, by the same, where it has change points.
+    ``value`` reads that of a step: of a plan recorded for a search also what it is at other angles than its own.
     ``special`` are Assur's special points of groups of class III by their names, ``false`` the plans of their false positions by
     the groups' names.
     """
@@ -49,6 +51,7 @@ class Positions:
     turnings: dict[str, Turning] = field(default_factory=dict)
     special: dict[str, SpecialPoint] = field(default_factory=dict)
     false: dict[str, Plan] = field(default_factory=dict)
+    value: Callable[[Step], Any] = value_of
 
     @property
     def phi(self) -> Any:

@@ -136,8 +136,9 @@ class MotionPolygon:
         self.reference[link] = (big_q, big_b, q, b)
 
     def turns_with(self, link: str, other: str) -> None:
-        """Rate of turning of a link that does not turn against another."""
-        self.rates[link] = self.plan.add(f"{self.RATE}{link}", self.SAME, self.rates[other])
+        """Rate of turning of a link that does not turn against another: nobody reads of it in a search."""
+        same = self.rates[other]
+        self.rates[link] = same if self.plan.search is not None else self.plan.add(f"{self.RATE}{link}", self.SAME, same)
 
     def further_points(self, link: str) -> None:
         """Vectors of the points of a link that its group did not need: by similarity, or by turning round one of them."""

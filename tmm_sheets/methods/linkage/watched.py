@@ -1,11 +1,12 @@
-"""A mechanism looked at at any crank angles by a search: its plans are recorded once and done again at other angles."""
+"""A mechanism looked at at any crank angles by searches: its plans are recorded once for all, and done again at other angles."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cached_property
 from time import perf_counter
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
 
 OfAngles = Callable[[Any], Any]
 """Values at crank angles, rad in the world frame, in the shape of these."""
+RECORDED = "watched"
+"""Under which a mechanism keeps them."""
 
 
 class Watched:
@@ -26,7 +29,6 @@ class Watched:
     def __init__(self, mechanism: Mechanism, purpose: str) -> None:
         self.mechanism = mechanism
         self.purpose = purpose
-        self._first: _Plans | None = None
 
     def point(self, name: str) -> OfAngles:
         """Place of a point, m."""
@@ -44,6 +46,15 @@ class Watched:
         """Angular velocity of a link, rad/s."""
         return self._of(lambda plans: plans.velocities.omega[link])
 
+    def positions(self, phi: Any) -> Positions:
+        """Position plan whose values are those at crank angles."""
+        plans = self._plans(phi)
+        if plans.positions.chosen:
+            return plans.positions
+        steps = list(plans.positions.plan)
+        done = dict(zip(map(id, steps), self._done(Replay(steps, [plans.row]), phi), strict=True))
+        return replace(plans.positions, angle=phi, value=lambda step: done[id(step)])
+
     def _of(self, pick: Callable[[_Plans], Step]) -> OfAngles:
         replay: Replay | None = None
 
@@ -55,17 +66,26 @@ class Watched:
                 replay = None if plans.positions.chosen else found  # those are chosen by the angles they are recorded for
             else:
                 found = replay
-            begin = perf_counter()
-            (value,) = found([phi])
-            self.mechanism.searches[self.purpose].again(len(found), perf_counter() - begin)
+            (value,) = self._done(found, phi)
             return np.broadcast_to(value, np.shape(phi))
 
         return values
 
+    def _done(self, replay: Replay, phi: Any) -> list[Any]:
+        """Values at crank angles, counted."""
+        begin = perf_counter()
+        values = replay([phi])
+        tally = self.mechanism.search(self.purpose)
+        assert tally is not None
+        tally.again(len(replay), perf_counter() - begin)
+        return values
+
     def _plans(self, phi: Any) -> _Plans:
-        if self._first is None or self._first.positions.chosen:
-            self._first = _Plans(self.mechanism, self.purpose, phi)
-        return self._first
+        """The plans of all searches, or others for these angles where something is chosen by them."""
+        known = self.mechanism.recorded
+        if RECORDED not in known or known[RECORDED].positions.chosen:
+            known[RECORDED] = _Plans(self.mechanism, self.purpose, phi)
+        return cast("_Plans", known[RECORDED])
 
 
 class _Plans:
