@@ -21,12 +21,12 @@ from babel.messages.extract import extract_from_file
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
 
-from tmm_sheets.words import DOMAIN, LANGUAGES
+from tmm_sheets.words import DOMAIN, LANGUAGES, name_of
 
 ROOT = Path(__file__).parents[1]
 LOCALE = ROOT / "templates" / "locale"
-KEYWORDS = {"tr": None, "tell": None, "marked": None, "tr_in": ((1, "c"), 2), "tr_n": (1, 2), "tell_n": (1, 2),
-            "marked_n": (1, 2)}
+KEYWORDS = {"tr": None, "tell": None, "marked": None, "tr_in": ((1, "c"), 2), "of_language": ((1, "c"), 2), "tr_n": (1, 2),
+            "tell_n": (1, 2), "marked_n": (1, 2)}
 CYRILLIC = re.compile("[\u0400-\u04ff]")
 NEVER = datetime(2026, 1, 1, tzinfo=UTC)
 """Date in the headers: a catalogue depends on its texts only."""
@@ -94,10 +94,17 @@ def of_title_blocks() -> Iterator[tuple[str, str, str]]:
     yield "tmm_sheets/drawing/title_block.py", "Head", "title block"
 
 
+def of_languages() -> Iterator[tuple[str, str, None]]:
+    """English names of the languages."""
+    for language in LANGUAGES:
+        yield "templates/locale", name_of(language), None
+
+
 def collected() -> Catalog:
     """Every text there is, without translations."""
     found = Catalog(domain=DOMAIN, project="tmm-sheets", version="", charset="utf-8", creation_date=NEVER, revision_date=NEVER)
-    for file, text, context in (*of_program(), *of_commands(), *of_title_blocks(), *of_projects(), *of_templates()):
+    every = (*of_program(), *of_commands(), *of_title_blocks(), *of_projects(), *of_templates(), *of_languages())
+    for file, text, context in every:
         found.add(text, locations=[(file, None)], context=context)
     return found
 
@@ -199,7 +206,7 @@ def main(arguments: list[str]) -> None:
         table |= json.loads(Path(path).read_text("utf-8"))
     for template in (collected(), of_click()):
         domain = str(template.domain)
-        for language in LANGUAGES if domain == DOMAIN else LANGUAGES[:2]:
+        for language in LANGUAGES if domain == DOMAIN else LANGUAGES[:-1]:
             catalogue = updated(language, template)
             add(catalogue, table, language)
             write(language, catalogue, domain)

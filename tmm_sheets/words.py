@@ -20,9 +20,11 @@ from string import Formatter
 
 from tmm_sheets.resources import template
 
-LANGUAGES = ("ru", "uk", "en")
-"""Languages that there are catalogues of; the code itself is written in the last."""
-SHEETS, MESSAGES = "ru", "en"
+CODE = "en"
+"""Language that the code itself is written in."""
+LANGUAGES = (*sorted(path.name for path in template("locale").iterdir() if path.name != CODE), CODE)
+"""Languages that there are catalogues of: a folder is a language."""
+SHEETS, MESSAGES = "ru", CODE
 """Language of sheets when neither project nor command tells one, and of messages when the locale names none of them."""
 DOMAIN = "tmm_sheets"
 
@@ -101,12 +103,13 @@ def of_locale(environment: Mapping[str, str] = os.environ) -> str:
 
 
 def _first(asked: Sequence[str]) -> str:
-    names = {"russian": "ru", "ukrainian": "uk", "english": "en"}  # Windows
     for name in asked:
         short = name.replace("-", "_").split("_")[0].split(".")[0].lower()
-        short = names.get(short, short)
         if short in LANGUAGES:
             return short
+        for language in LANGUAGES if len(short) > 3 else ():  # Windows writes the name out
+            if short == name_of(language).lower():
+                return language
     return MESSAGES
 
 
@@ -207,6 +210,33 @@ def every(text: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(_catalogue(language).gettext(text) for language in LANGUAGES))
 
 
+def of_language(context: str, text: str, language: str) -> str:
+    """What a catalogue says of its own language; ``text`` is what is true of English."""
+    return _catalogue(language).pgettext(context, text)
+
+
 def decimal_sign(language: str = "") -> str:
     """What stands before the decimals in a language; on the paper if none is told."""
-    return "." if (language or _paper.get()) == "en" else ","
+    return of_language("decimal sign", ".", language or _paper.get())
+
+
+def name_of(language: str) -> str:
+    """English name of a language."""
+    return of_language("English name of the language", "English", language)
+
+
+def is_latin(language: str) -> bool:
+    """Whether a language is written in the letters of most symbols."""
+    return of_language("script: Latin, Cyrillic, Greek", "Latin", language) == "Latin"
+
+
+def plural_form(forms: Sequence[str], n: int, language: str) -> str:
+    """The form that goes with a number by the rule of a catalogue; of other numbers of forms the last for all but one."""
+    rule, count = _plurals(language)
+    return forms[rule(n)] if len(forms) == count else forms[0 if n == 1 else -1]
+
+
+@cache
+def _plurals(language: str) -> tuple[Callable[[int], int], int]:
+    rule: Callable[[int], int] = getattr(_catalogue(language), "plural", lambda n: int(n != 1))
+    return rule, len({rule(n) for n in range(200)})

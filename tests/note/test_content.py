@@ -275,10 +275,10 @@ def test_an_own_mechanism_without_forces(tmp_path):
 
 def test_plural_forms():
     forms = ["лист", "листа", "листов"]
-    said = {n: phrases.plural(n, forms, "ru") for n in (1, 2, 5, 11, 12, 21, 22, 25, 111, 112, 101)}
+    said = {n: words.plural_form(forms, n, "ru") for n in (1, 2, 5, 11, 12, 21, 22, 25, 111, 112, 101)}
     assert said == {1: "лист", 2: "листа", 5: "листов", 11: "листов", 12: "листов", 21: "лист", 22: "листа", 25: "листов",
                     111: "листов", 112: "листов", 101: "лист"}  # fmt: skip
-    assert [phrases.plural(n, ["sheet", "sheets"], "en") for n in (1, 2)] == ["sheet", "sheets"]
+    assert [words.plural_form(["sheet", "sheets"], n, "en") for n in (1, 2)] == ["sheet", "sheets"]
 
 
 def test_number_nodes_know_their_step(note):

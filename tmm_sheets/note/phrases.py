@@ -36,7 +36,7 @@ from tmm_sheets.note.document import (
 from tmm_sheets.note.formula import Fenced, Fraction, Node, Row, Sign, letters, letters_of
 from tmm_sheets.resources import template
 from tmm_sheets.task import units
-from tmm_sheets.words import tell
+from tmm_sheets.words import plural_form, tell
 
 
 def folder(language: str) -> Path:
@@ -345,7 +345,7 @@ class Writer:
             return [self._reference(name[1:], n, scope)]
         if name.startswith("#"):
             key, _, forms = name[1:].partition(" ")
-            return [plural(int(_count(_found(scope, key))), forms.split("|"), self.language)]
+            return [plural_form(forms.split("|"), int(_count(_found(scope, key))), self.language)]
         value = _found(scope, name)
         if value is None:
             raise _Wrong(tell('there is no field "{name}" here; there are {known}').format(
@@ -433,15 +433,6 @@ def _left(node: Node) -> Node | None:
 
 def _count(value: Any) -> float:
     return value.value if isinstance(value, Number) else len(value) if isinstance(value, list | tuple) else float(str(value))
-
-
-def plural(n: int, forms: list[str], language: str) -> str:
-    """The form that goes with a number: one, few, many; of two forms the second for all but one."""
-    if len(forms) < 3 or language == "en":
-        return forms[0] if n == 1 else forms[-1]
-    if n % 10 == 1 and n % 100 != 11:
-        return forms[0]
-    return forms[1] if n % 10 in (2, 3, 4) and n % 100 not in (12, 13, 14) else forms[2]
 
 
 @cache

@@ -40,6 +40,7 @@ from tmm_sheets.note.phrases import Said
 from tmm_sheets.numbers import degrees_and_minutes, fixed, is_zero, number
 from tmm_sheets.record.recording import book_of, unit
 from tmm_sheets.task import units
+from tmm_sheets.words import is_latin
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
@@ -479,7 +480,7 @@ def marked(sentence: str, step: str, position: str, language: str, names: Collec
             continue
         if m["word"] and sentence[m.end() : m.end() + 1].isalpha() and _cyrillic(sentence[m.end()]):
             continue
-        if m["word"] and language == "en" and not _lettered(m["word"], sentence[: m.start()], names):
+        if m["word"] and is_latin(language) and not _lettered(m["word"], sentence[: m.start()], names):
             continue
         if m.start() > at:
             yield sentence[at : m.start()]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import inf
-from typing import Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -54,7 +54,12 @@ from tmm_sheets.task.values import (
     si,
     whole,
 )
-from tmm_sheets.words import both, marked, tell
+from tmm_sheets.words import LANGUAGES, both, marked, tell
+
+if TYPE_CHECKING:
+    Language = str
+else:
+    Language = Literal[LANGUAGES]
 
 _SHARE = marked("expected a number above 0, 1 at most")
 
@@ -73,7 +78,7 @@ class HeadingTable(Table):
 
     name: Name = Field(description=marked('name of the project, "family/name"'))
     title: str = Field(description=marked("title as it stands on the sheets"))
-    language: Literal["ru", "uk", "en"] | None = None
+    language: Language | None = None
     """language of the sheets; `ru` unless told here or by `--lang`"""
     variant: str = ""
     """the variant of the task, as it stands in `show` and in the results"""

@@ -27,7 +27,7 @@ from tmm_sheets.compare.report import Report
 from tmm_sheets.compare.story import listed
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.numbers import decimal, told
-from tmm_sheets.words import marked, on_paper, paper, tell
+from tmm_sheets.words import marked, name_of, on_paper, paper, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -38,7 +38,6 @@ DRAWN_AT = {2.0: "1:2", 2.5: "1:2.5", 4.0: "1:4", 5.0: "1:5", 10.0: "1:10", 0.5:
 """Scales of GOST 2.302 by mm of the sheet per mm drawn."""
 UNIT_NAMES = {1000.0: marked("metres"), 25.4: marked("inches"), 10.0: marked("centimetres"), 1.0: marked("millimetres")}
 """Units by mm."""
-LANGUAGE_NAMES = {"ru": marked("Russian"), "uk": marked("Ukrainian"), "en": marked("English")}
 
 
 def compare(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
@@ -95,7 +94,7 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     with on_paper(language):
         found = _examined(type(project)(project.variant), sheet, path, views, pencil, say, ink, said)
     note = tell("the drawing is lettered in {language}; it was compared with the sheet in that language")
-    return replace(found, notes=(*found.notes, note.format(language=tell(LANGUAGE_NAMES[language]))))
+    return replace(found, notes=(*found.notes, note.format(language=tell(name_of(language)))))
 
 
 def _examined(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
