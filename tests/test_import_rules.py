@@ -53,30 +53,30 @@ RULES = {
     "compare.measured": (f"catalogue compare construction drawing sheets {METHODS}", "project"),
     "compare.cad": ("backends compare construction drawing sheets", "project"),
     "compare.photo": ("compare drawing sheets", "project"),
-    "bench": (f"backends catalogue construction drawing explain mechanism {METHODS} output project results sheets task", ""),
-    "stress": ("construction mechanism methods.linkage", ""),
+    "lab.bench": (f"backends catalogue construction drawing explain mechanism {METHODS} output project results sheets task", ""),
+    "lab.stress": ("construction mechanism methods.linkage", ""),
     "spoken": ("completion", ""),
     "completion": ("catalogue drawing note output project protocols record results", ""),
-    "cli": ("backends bench catalogue compare drawing explain note output project protocols record result_files results sheets "
-            "spoken stress summary task", ""),
+    "cli": ("backends catalogue compare drawing explain lab note output project protocols record result_files results "
+            "sheets spoken summary task", ""),
     "__main__": ("cli completion spoken", ""),
     **dict.fromkeys(NEUTRAL.split(), ("", "")),
 }
 """What each room may import besides itself and the neutral modules; a row holds for all below it that has none of its own."""
 
 LIBRARIES = {
-    "ezdxf": "backends.dxf backends.dxf_frame bench.plain compare.cad.cad_file",
-    "reportlab": "backends.pdf bench.plain compare.story_pdf",
-    "matplotlib": "backends.png bench.plots", "pydantic": "task.values task.schema task.messages task.variant",
+    "ezdxf": "backends.dxf backends.dxf_frame lab.bench.plain compare.cad.cad_file",
+    "reportlab": "backends.pdf lab.bench.plain compare.story_pdf",
+    "matplotlib": "backends.png lab.bench.plots", "pydantic": "task.values task.schema task.messages task.variant",
     "pydantic_core": "task.messages", "cv2": "compare.photo", "pypdfium2": "compare.photo",
-    "shapely": "drawing sheets methods bench compare",
+    "shapely": "drawing sheets methods lab.bench compare",
     "typst": "note.typst_writer", "docx": "note.docx_writer",
 }  # fmt: skip
 """Large libraries and the modules or rooms they belong to."""
 
 LATE = ("numpy", "shapely")
 """Libraries the command line must not wait for: numpy is imported at the top only where numbers are made, shapely nowhere."""
-NUMBERS = "mechanism construction drawing methods sheets backends compare bench stress project record note"
+NUMBERS = "mechanism construction drawing methods sheets backends compare lab project record note"
 
 
 def within(module, rooms):

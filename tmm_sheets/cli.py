@@ -724,8 +724,8 @@ def bench(target: str | None, folder: Path | None, quick: bool, summary: bool, p
         click.echo(_prices(cost, whole))
         return
     from tmm_sheets import files
-    from tmm_sheets.bench import records
-    from tmm_sheets.bench import run as benchmark
+    from tmm_sheets.lab.bench import records
+    from tmm_sheets.lab.bench import run as benchmark
     from tmm_sheets.progress import Progress
 
     if folder is not None:
@@ -734,7 +734,7 @@ def bench(target: str | None, folder: Path | None, quick: bool, summary: bool, p
         measure = benchmark.compare if peers else benchmark.run
         found = measure(quick, lambda what: progress.say(f"{what} ..."))
     if peers:
-        from tmm_sheets.bench import peers as by_others
+        from tmm_sheets.lab.bench import peers as by_others
 
         text = (by_others.summary if summary else by_others.table)(found)
     else:
@@ -746,7 +746,7 @@ def bench(target: str | None, folder: Path | None, quick: bool, summary: bool, p
     elif target is not None:
         made[Path(target)] = (records.as_json(found) + "\n").encode()
     if folder is not None:
-        from tmm_sheets.bench import plots
+        from tmm_sheets.lab.bench import plots
 
         made |= {folder / name: data for name, data in plots.diagrams(found).items()}
     files.write_all(made)
@@ -761,10 +761,10 @@ def _prices(cost: str | None, whole: str | None) -> str:
             progress.say(f"{what} ...")
 
         if cost is not None:
-            from tmm_sheets.bench import costs
+            from tmm_sheets.lab.bench import costs
 
             return costs.table(cost, say)
-        from tmm_sheets.bench import whole as sheets
+        from tmm_sheets.lab.bench import whole as sheets
 
         return sheets.table(sheets.measure(str(whole), say))
 
@@ -775,8 +775,8 @@ def _prices(cost: str | None, whole: str | None) -> str:
 @option("--case", "single", type=click.IntRange(0), metavar="N", help="Only this case of the seed, again.")
 def stress(cases: int, seed: int, single: int | None) -> None:
     """Try hard random mechanisms: the worst of every invariant against its bound."""
+    from tmm_sheets.lab.stress import report
     from tmm_sheets.progress import Progress
-    from tmm_sheets.stress import report
 
     if single is not None:
         worst = report.run_one(seed, single)

@@ -13,9 +13,9 @@ import pytest
 from tests.methods.linkage import shaper_truth, statics
 from tests.methods.linkage import truth as other
 from tmm_sheets.__main__ import run
-from tmm_sheets.bench import costs, diagrams, emission, linkages, plain, plots, profiles, reducers, truth, whole
-from tmm_sheets.bench.records import Bench, BenchRecord, as_json, fastest, table
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.lab.bench import costs, diagrams, emission, linkages, plain, plots, profiles, reducers, truth, whole
+from tmm_sheets.lab.bench.records import Bench, BenchRecord, as_json, fastest, table
 
 
 def measured(*modules):
@@ -172,7 +172,7 @@ def test_diagrams(records):
 
 
 def test_command(tmp_path, monkeypatch, capsys, records):
-    monkeypatch.setattr("tmm_sheets.bench.run.run", lambda quick, say: [replace(r, seconds=1.0) for r in records[:3]])
+    monkeypatch.setattr("tmm_sheets.lab.bench.run.run", lambda quick, say: [replace(r, seconds=1.0) for r in records[:3]])
     assert run(["bench", "--quick", "--json", str(tmp_path / "b.json"), "--plot", str(tmp_path / "plots")]) == 0
     assert "positions of the four-bar" in capsys.readouterr().out
     assert json.loads((tmp_path / "b.json").read_text())["schema"] == 1

@@ -13,6 +13,7 @@ import pytest
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets.construction import rules
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.lab.stress.invariants import State
 from tmm_sheets.mechanism.groups import RRP
 from tmm_sheets.mechanism.groups.dead_centres import PIN_ANGLE
 from tmm_sheets.mechanism.groups.hints import Outline
@@ -25,7 +26,6 @@ from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.velocities import velocity_plan
 from tmm_sheets.sheets import linkage
-from tmm_sheets.stress.invariants import State
 
 REACH, AHEAD = 0.12, 0.7
 ROD, ROCKER, FRAME, SECOND, AT = 0.28, 0.24, 0.3, 0.35, 0.2

@@ -14,12 +14,12 @@ from tmm_sheets.__main__ import run
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import primitive
+from tmm_sheets.lab.stress import invariants, report, truth
+from tmm_sheets.lab.stress.cases import BOUNDS, SCENES, memory, run_case
+from tmm_sheets.lab.stress.invariants import State
 from tmm_sheets.mechanism.groups import PRP, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, StructuralGroup
 from tmm_sheets.methods.linkage import accelerations, forces, positions, velocities, zhukovsky
-from tmm_sheets.stress import invariants, report, truth
-from tmm_sheets.stress.cases import BOUNDS, SCENES, memory, run_case
-from tmm_sheets.stress.invariants import State
 
 CASES = 10 * len(SCENES)
 

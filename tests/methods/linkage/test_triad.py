@@ -14,6 +14,7 @@ import pytest
 from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets import catalogue
 from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.lab.stress.draw import chain
 from tmm_sheets.mechanism.groups import TRIAD, three_legs
 from tmm_sheets.mechanism.groups.hints import Leg
 from tmm_sheets.mechanism.groups.triad import TriadGroup
@@ -22,7 +23,6 @@ from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.methods.linkage.checks import check_turn
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.project import Project
-from tmm_sheets.stress.draw import chain
 from tmm_sheets.task import variant
 
 SIEVE = Path(__file__).parents[2] / "projects" / "sieve.toml"

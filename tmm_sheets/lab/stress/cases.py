@@ -10,12 +10,10 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.mechanism.groups import RRP, RRR, TRIAD
-from tmm_sheets.mechanism.model import Guide, Link, Mechanism, StructuralGroup
-from tmm_sheets.stress import truth
-from tmm_sheets.stress.change_points import folding, in_a_row, scene
-from tmm_sheets.stress.draw import chain, crank_of, loaded
-from tmm_sheets.stress.invariants import (
+from tmm_sheets.lab.stress import truth
+from tmm_sheets.lab.stress.change_points import folding, in_a_row, scene
+from tmm_sheets.lab.stress.draw import chain, crank_of, loaded
+from tmm_sheets.lab.stress.invariants import (
     OneFunction,
     Residual,
     State,
@@ -28,6 +26,8 @@ from tmm_sheets.stress.invariants import (
     rigidity,
     statics,
 )
+from tmm_sheets.mechanism.groups import RRP, RRR, TRIAD
+from tmm_sheets.mechanism.model import Guide, Link, Mechanism, StructuralGroup
 
 ANGLES = 24
 """Crank angles of a case."""

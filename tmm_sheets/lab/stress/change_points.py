@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.limit_angles import PI, at_rest, cos_sin, direction
+from tmm_sheets.lab.stress.draw import crank_of, loaded
+from tmm_sheets.lab.stress.invariants import Residual, State, by_plans_and_lever, cross, statics
+from tmm_sheets.lab.stress.truth import DIGITS, Vector, motion, vector
 from tmm_sheets.mechanism.groups import RRP, RRR
 from tmm_sheets.mechanism.model import Guide, Link, Mechanism, StructuralGroup
-from tmm_sheets.stress.draw import crank_of, loaded
-from tmm_sheets.stress.invariants import Residual, State, by_plans_and_lever, cross, statics
-from tmm_sheets.stress.truth import DIGITS, Vector, motion, vector
 
 COUNT = 6
 """Crank angles about each change point."""

@@ -20,8 +20,8 @@ import numpy.typing as npt
 from mpmath import mp
 
 from tmm_sheets import typed
-from tmm_sheets.bench import truth
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.lab.bench import truth
 from tmm_sheets.mechanism.model import Mechanism
 
 PointArrays = dict[str, Any]

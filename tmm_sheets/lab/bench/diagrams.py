@@ -12,8 +12,8 @@ import numpy as np
 from mpmath import mp
 
 from tmm_sheets import catalogue
-from tmm_sheets.bench.records import Bench
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.lab.bench.records import Bench
 from tmm_sheets.methods.flywheel.energy_mass import highest
 from tmm_sheets.methods.flywheel.flywheel import Flywheel
 from tmm_sheets.methods.flywheel.mertsalov import Mertsalov

@@ -1,4 +1,4 @@
-"""A cold build of all sheets against the same display lists written with plain library calls (:mod:`tmm_sheets.bench.plain`).
+"""A cold build of all sheets against the same display lists written with plain library calls (:mod:`tmm_sheets.lab.bench.plain`).
 
 The two take turns, each in a fresh process: ``build`` reads the project, solves, composes and writes; the plain writer gets
 finished display lists and only writes. The least wall and processor times of several rounds count, the start of Python included.
@@ -16,8 +16,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from tmm_sheets import kept
-from tmm_sheets.bench.processes import timed
 from tmm_sheets.errors import BadInput
+from tmm_sheets.lab.bench.processes import timed
 from tmm_sheets.words import tell
 
 ROUNDS = 7

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from mpmath import mp
 
 from tmm_sheets import catalogue
-from tmm_sheets.bench.records import Bench
+from tmm_sheets.lab.bench.records import Bench
 from tmm_sheets.methods.cams.cam_profile import RollerCam, cam
 from tmm_sheets.methods.gears.gear_engagement import divisions, involute_plan
 from tmm_sheets.methods.gears.gear_geometry import GearWheel

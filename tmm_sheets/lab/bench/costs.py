@@ -15,9 +15,9 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from tmm_sheets import kept
-from tmm_sheets.bench.processes import timed
 from tmm_sheets.errors import BadInput
 from tmm_sheets.explain import HEAVY
+from tmm_sheets.lab.bench.processes import timed
 from tmm_sheets.words import tell
 
 RUNS = 3

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from io import BytesIO
 from typing import Any
 
-from tmm_sheets.bench.records import BenchRecord
+from tmm_sheets.lab.bench.records import BenchRecord
 
 LEAST = 2.0**-54
 """Stands for an error of zero, which has no place on a log scale: half of the rounding unit."""

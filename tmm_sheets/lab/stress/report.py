@@ -6,8 +6,8 @@ from collections.abc import Callable
 from math import inf, isnan
 
 from tmm_sheets import typed
+from tmm_sheets.lab.stress.cases import BOUNDS, CHUNK, Worst, memory, run_case
 from tmm_sheets.numbers import of_reader
-from tmm_sheets.stress.cases import BOUNDS, CHUNK, Worst, memory, run_case
 from tmm_sheets.words import tell
 
 MEMORY = "memory of a million positions, MB"

@@ -18,13 +18,13 @@ from math import pi
 import numpy as np
 
 from tmm_sheets import __version__
-from tmm_sheets.bench import peer_programs, truth
-from tmm_sheets.bench.linkages import CRANK, ROCKER_DYAD, SLIDER_DYAD, SLIDER_GUIDE, shaper, study_of
-from tmm_sheets.bench.peer_programs import PointArrays, Program, Turn
-from tmm_sheets.bench.records import Bench, BenchRecord, told
 from tmm_sheets.construction.function import Function
 from tmm_sheets.construction.program import depending
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.lab.bench import peer_programs, truth
+from tmm_sheets.lab.bench.linkages import CRANK, ROCKER_DYAD, SLIDER_DYAD, SLIDER_GUIDE, shaper, study_of
+from tmm_sheets.lab.bench.peer_programs import PointArrays, Program, Turn
+from tmm_sheets.lab.bench.records import Bench, BenchRecord, told
 from tmm_sheets.mechanism.groups import RRP
 from tmm_sheets.mechanism.model import Guide, Link, LinkPoint, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.study import Study

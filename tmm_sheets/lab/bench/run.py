@@ -6,8 +6,8 @@ from collections.abc import Callable
 from importlib import import_module
 
 from tmm_sheets import typed
-from tmm_sheets.bench.records import Bench, BenchRecord
 from tmm_sheets.errors import BadInput
+from tmm_sheets.lab.bench.records import Bench, BenchRecord
 from tmm_sheets.words import tell
 
 FIELDS = ("linkages", "diagrams", "profiles", "reducers", "emission")
@@ -40,7 +40,7 @@ def run(quick: bool, say: Callable[[str], None], fields: tuple[str, ...] = FIELD
                        hint=typed.install("bench")) from None
     bench = Bench(quick, say)
     for field in fields:
-        import_module(f"tmm_sheets.bench.{field}").rows(bench)
+        import_module(f"tmm_sheets.lab.bench.{field}").rows(bench)
     return bench.records
 
 

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets import catalogue
-from tmm_sheets.bench import truth
-from tmm_sheets.bench.records import Bench
+from tmm_sheets.lab.bench import truth
+from tmm_sheets.lab.bench.records import Bench
 from tmm_sheets.mechanism.groups import RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.numbering import even_cycle

@@ -9,7 +9,7 @@ from math import pi, sin
 from typing import Any
 
 from tmm_sheets import catalogue
-from tmm_sheets.bench.records import Bench
+from tmm_sheets.lab.bench.records import Bench
 from tmm_sheets.methods.gears.tooth_search import TIERS, ToothSet, search
 
 LIMITS = (30, 40, 60, 90, 120)

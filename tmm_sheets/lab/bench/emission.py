@@ -6,8 +6,8 @@ from functools import partial
 from importlib import import_module
 
 from tmm_sheets import catalogue
-from tmm_sheets.bench.records import Bench
 from tmm_sheets.drawing.marks import Drawing
+from tmm_sheets.lab.bench.records import Bench
 from tmm_sheets.output.building import BACKENDS
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import compose
