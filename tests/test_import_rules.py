@@ -53,6 +53,7 @@ RULES = {
     "compare.measured": (f"catalogue compare construction drawing sheets {METHODS}", "project"),
     "compare.cad": ("backends compare construction drawing sheets", "project"),
     "compare.photo": ("compare drawing sheets", "project"),
+    "lab": ("", ""),
     "lab.bench": (f"backends catalogue construction drawing explain mechanism {METHODS} output project results sheets task", ""),
     "lab.stress": ("construction mechanism methods.linkage", ""),
     "spoken": ("completion", ""),
