@@ -66,7 +66,7 @@ RULES = {
 """What each room may import besides itself and the neutral modules; a row holds for all below it that has none of its own."""
 
 LIBRARIES = {
-    "ezdxf": "backends.dxf backends.dxf_frame lab.bench.plain compare.cad.cad_file",
+    "ezdxf": "backends.dxf backends.dxf_frame_making lab.bench.plain compare.cad.cad_file",
     "reportlab": "backends.pdf lab.bench.plain compare.story_pdf",
     "matplotlib": "backends.png lab.bench.plots", "pydantic": "task.values task.schema task.messages task.variant",
     "pydantic_core": "task.messages", "cv2": "compare.photo", "pypdfium2": "compare.photo",

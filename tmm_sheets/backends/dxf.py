@@ -4,7 +4,7 @@ Live by default: lettering is TEXT fitted to its length, the title block has att
 and its line type draws the dashes, a view is a group. With ``text="strokes"`` lettering and dashes go out as separate strokes: the
 same picture in every program, with or without fonts.
 
-ezdxf makes the header, tables, objects and the layout (``dxf_frame.py``); the entities are written here and spliced in.
+Header, tables, objects and the layout are as ezdxf writes them (``dxf_frame.py``); the entities are written here and spliced in.
 """
 
 from __future__ import annotations
@@ -18,8 +18,9 @@ from pathlib import Path
 from typing import Literal
 
 from tmm_sheets.backends.dxf_entities import entity, extents, letter_strokes, short
-from tmm_sheets.backends.dxf_frame import FONT_FILE, STYLE, DxfFrame, SheetParts, frame
+from tmm_sheets.backends.dxf_frame import FONT_FILE, STYLE, DxfFrame, SheetParts
 from tmm_sheets.backends.dxf_frame import weight as weight
+from tmm_sheets.backends.dxf_frame_file import frame
 from tmm_sheets.backends.dxf_live import LiveSheet, clean
 from tmm_sheets.drawing.dashes import strokes
 from tmm_sheets.drawing.ink import check
