@@ -2,11 +2,13 @@
 
 import re
 from decimal import Decimal
+from itertools import product
 
 import numpy as np
 import pytest
 
 from tests import catalogues
+from tests.few import few
 from tests.project_files import EVEN, SLIDER, write
 from tmm_sheets import words
 from tmm_sheets.__main__ import run
@@ -81,8 +83,8 @@ COMMANDS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("arguments", COMMANDS, ids=" ".join)
-@pytest.mark.parametrize("spoken", ["ru", "uk"])
+@pytest.mark.parametrize(("arguments", "spoken"), few(
+    product(COMMANDS, ("ru", "uk")), *zip(COMMANDS, (*4 * ("ru", "uk"), "ru"), strict=True)))
 def test_commands(arguments, spoken, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     run([*arguments, "--lang", spoken])

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests import catalogues
+from tests.few import seldom
 from tests.project_files import EVEN, SLIDER, write
 from tmm_sheets import catalogue, typed
 from tmm_sheets.__main__ import run
@@ -79,7 +80,7 @@ def test_it_runs(arguments, desk, quoted, capsys):
         started(command)
 
 
-@pytest.mark.parametrize("name", ["b.toml", "my own.toml"])
+@pytest.mark.parametrize("name", [seldom("b.toml"), "my own.toml"])
 def test_measured_numbers(name, desk, quoted, capsys):
     """The template of a copy is not passed off as the task's: what is told to be typed judges it against the copy."""
     found, _ = quoted("compare", name, "--template", status=0)

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tomllib
 from contextvars import ContextVar
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -23,9 +24,14 @@ from tmm_sheets.task import variant
 ROOT = Path(__file__).parents[1]
 COMMANDS = ((), *((name,) for name in cli.commands.commands))
 CYRILLIC = re.compile("[\u0400-\u04ff]")
-TEMPLATE = catalogues.collected()
 BOTH = [*((language, catalogues.DOMAIN) for language in words.LANGUAGES), ("ru", catalogues.CLICK), ("uk", catalogues.CLICK)]
 either = pytest.mark.parametrize(("language", "domain"), BOTH)
+
+
+@cache
+def template():
+    """All texts of the program and its templates."""
+    return catalogues.collected()
 
 
 def run(*arguments):
@@ -54,13 +60,13 @@ def texts(catalogue):
 @pytest.mark.parametrize("language", words.LANGUAGES)
 def test_no_text_is_missing_or_idle(language):
     there = catalogues.read(language)
-    assert set(texts(there)) == set(texts(TEMPLATE))
+    assert set(texts(there)) == set(texts(template()))
     assert catalogues.missing(there) == []
 
 
 def test_no_text_hides_from_the_catalogues():
     """What collects the texts does not look into f-strings."""
-    known = {text[0] if isinstance(text, tuple) else text for _, text in texts(TEMPLATE)}
+    known = {text[0] if isinstance(text, tuple) else text for _, text in texts(template())}
     asked = catalogues.KEYWORDS.keys() - {"tr_in", "of_language"}  # these begin with the context
     for path in (ROOT / "tmm_sheets").rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
@@ -240,7 +246,7 @@ def test_an_error_names_its_value_once(monkeypatch):
 
 
 def test_english_messages_have_no_cyrillic():
-    assert [m.id for m in TEMPLATE if m.id and any(f.startswith("tmm_sheets/") for f, _ in m.locations)
+    assert [m.id for m in template() if m.id and any(f.startswith("tmm_sheets/") for f, _ in m.locations)
             and CYRILLIC.search("".join(m.id)) and not catalogues.read("en").get(m.id, m.context).string] == []  # fmt: skip
 
 

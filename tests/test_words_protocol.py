@@ -5,6 +5,7 @@ import re
 import pytest
 
 from tests.catalogues import read
+from tests.few import few
 from tmm_sheets import catalogue, protocols, results, words
 from tmm_sheets.compare.measured import collecting
 from tmm_sheets.construction import rules
@@ -20,7 +21,7 @@ RUSSIAN_ONLY = re.compile("[ыэъё]", re.IGNORECASE)
 NUMBER = re.compile(r"\d+(?:[.,]\d+)?")
 
 
-@pytest.fixture(scope="module", params=PROJECTS)
+@pytest.fixture(scope="module", params=few(PROJECTS, "lugansk/cam_flat", "transport/crusher@12-СДМ-1908"))
 def protocol(request):
     """Lines in each language, without the scale factors behind the titles, and the names in its file."""
     found = {}

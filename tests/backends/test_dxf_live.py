@@ -1,6 +1,7 @@
 """Sheets as CAD programs work with them, read by ezdxf; how long lettering is says the TrueType font itself (fontTools)."""
 
 from collections import Counter
+from functools import cache
 from io import StringIO
 from math import cos, degrees, pi, sin
 
@@ -21,7 +22,11 @@ from tmm_sheets.resources import template
 from tmm_sheets.sheets.sheet import composed
 
 SHAPER = Project(catalogue.read("lugansk/shaper"))
-SHEETS = {n: composed(SHAPER, n).drawing for n in (1, 2, 3, 4)}
+
+
+@cache
+def drawing_of(n):
+    return composed(SHAPER, n).drawing
 
 
 def opened(data):
@@ -30,7 +35,7 @@ def opened(data):
 
 @pytest.fixture(scope="module", params=[1, 2, 3, 4])
 def sheet(request):
-    return SHEETS[request.param], opened(dxf.render(SHEETS[request.param]))
+    return drawing_of(request.param), opened(dxf.render(drawing_of(request.param)))
 
 
 def everywhere(doc):
@@ -51,7 +56,7 @@ def test_audit_finds_nothing(sheet):
 
 
 def test_handles_are_unique_and_below_the_next_free_one():
-    lines = dxf.render(SHEETS[3]).decode("utf-8").splitlines()
+    lines = dxf.render(drawing_of(3)).decode("utf-8").splitlines()
     tags = [(code.strip(), value) for code, value in zip(lines[::2], lines[1::2], strict=True)]
     seed = int(tags[tags.index(("9", "$HANDSEED")) + 1][1], 16)
     start = tags.index(("2", "CLASSES"))
@@ -63,7 +68,7 @@ def test_handles_are_unique_and_below_the_next_free_one():
 
 
 def test_first_sheet_is_small():
-    assert len(dxf.render(SHEETS[1])) <= 400_000
+    assert len(dxf.render(drawing_of(1))) <= 400_000
 
 
 def test_all_lettering_can_be_found(sheet):
@@ -98,7 +103,7 @@ def test_lettering_is_as_long_as_in_the_font(sheet):
 
 
 def test_circles_and_axes_are_whole_and_of_their_line_types():
-    drawing, doc = SHEETS[3], opened(dxf.render(SHEETS[3]))
+    drawing, doc = drawing_of(3), opened(dxf.render(drawing_of(3)))
     dashed = [m for m in drawing.marks if isinstance(m, Line | Arc | Polyline) and line_type(m.style).pattern]
     assert sum(isinstance(m, Arc) for m in dashed) >= 4
     own = [e for e in everywhere(doc) if doc.layers.get(e.dxf.layer).dxf.linetype != "Continuous"]
@@ -110,7 +115,7 @@ def test_circles_and_axes_are_whole_and_of_their_line_types():
 
 def test_dimensions_measure_what_they_say():
     gear = SHAPER.gear
-    doc = opened(dxf.render(SHEETS[3]))
+    doc = opened(dxf.render(drawing_of(3)))
     said = {}
     for d in doc.modelspace().query("DIMENSION"):
         name, _, number = d.dxf.text.partition(" = ")
@@ -143,7 +148,7 @@ def test_a_dimension_drawn_by_hand_has_its_places():
 
 def test_title_block_is_filled_in_and_read_again(tmp_path):
     path = tmp_path / "sheet.dxf"
-    path.write_bytes(dxf.render(SHEETS[1]))
+    path.write_bytes(dxf.render(drawing_of(1)))
     doc = ezdxf.readfile(path)
     (block,) = doc.modelspace().query("INSERT[name=='TITLE_BLOCK']")
     (turned,) = doc.modelspace().query("INSERT[name=='DESIGNATION']")
@@ -212,7 +217,7 @@ def test_every_entity_is_in_the_group_of_its_view(sheet):
 
 def test_names_of_views_that_tables_do_not_take():
     mark = Line(10 + 10j, 20 + 20j, "main")
-    view = View('a/b: <c>, "d"=1|2', SHEETS[1].views[0].box, ((0, 1),))
+    view = View('a/b: <c>, "d"=1|2', drawing_of(1).views[0].box, ((0, 1),))
     doc = opened(dxf.render(Drawing(841, 594, "", (mark,), views=(view,))))
     assert not doc.audit().has_issues
     ((name, _),) = doc.groups

@@ -245,6 +245,7 @@ def test_the_plain_writer_draws_the_same(tmp_path):
     assert (tmp_path / "sheet1.pdf").read_bytes().startswith(b"%PDF")
 
 
+@pytest.mark.trial
 def test_whole():
     found = whole.measure("lugansk/cam_flat", lambda what: None, rounds=1)
     assert found.entities > 1000

@@ -39,6 +39,7 @@ def worst(found):
     return float(np.abs(found.map.to_sheet(shot().place(INSIDE)) - INSIDE).max())
 
 
+@pytest.mark.trial
 def test_three_sides_make_a_frame_and_the_hidden_part_is_not_missing():
     found = rectification.rectify(Picture(without_its_left_side()), known(), Path("photo.jpg"))
     assert found.check.acceptable

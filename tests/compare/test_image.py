@@ -145,6 +145,7 @@ def test_mirrored_picture_is_refused():
         frame_search.find(seen, rectification.frame_lines(known()))
 
 
+@pytest.mark.trial
 def test_wrong_sheet_is_told(tmp_path):
     file = tmp_path / "photo.png"
     file.write_bytes(png.render(sheet().drawing, 75))

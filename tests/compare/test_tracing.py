@@ -1,6 +1,7 @@
 """Elements measured in ink that was put where it is known to be: ends, strokes in common, displacements, ink too much."""
 
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 
 import cv2
@@ -31,9 +32,14 @@ def line(number, a, b, style="main", role="link"):
     return Element(number, VIEW, "", "line", np.array([a, b]), style, by=By(role, "", ""))
 
 
+@cache
+def bare():
+    return np.random.default_rng(3).integers(0, 5, (ROWS, COLUMNS)).astype(np.uint8)
+
+
 def paper():
     """Bare paper with some grain."""
-    return np.random.default_rng(3).integers(0, 5, (ROWS, COLUMNS)).astype(np.uint8)
+    return bare().copy()
 
 
 def draw(ink, a, b, style="main", dark=180):

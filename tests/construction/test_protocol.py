@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests import project_files as files
+from tests.few import seldom
 from tests.methods.linkage import truth
 from tmm_sheets import catalogue, protocols
 from tmm_sheets.construction import rules
@@ -147,8 +148,9 @@ def holds(relation, texts):
     return abs(rest) <= allowed * (1 + 1e-3) + 1e-9
 
 
-@pytest.mark.parametrize("name", ["lugansk/shaper", "lugansk/engine", "press", "sixbar/3:1", "transport/diesel@01-Т-27",
-                                  "lugansk/cam_flat", "lugansk/cam_rocker"])  # fmt: skip
+@pytest.mark.parametrize("name", [
+    "lugansk/shaper", seldom("lugansk/engine"), "press", seldom("sixbar/3:1"), seldom("transport/diesel@01-Т-27"),
+    "lugansk/cam_flat", seldom("lugansk/cam_rocker")])
 def test_the_arithmetic_of_all_sentences(name):
     """Every sum and product that a sentence states is right within the rounding of its numbers, signs included."""
     checked, ordinate = 0, ""

@@ -1,10 +1,12 @@
 """Dimensions that had lines through their lettering: S0 of a tappet's zone, the teeth of a pinion in a ring."""
 
 from cmath import phase
+from itertools import product
 
 import numpy as np
 import pytest
 
+from tests.few import few
 from tests.project_files import project
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Text
@@ -25,8 +27,12 @@ def through(drawing, view, text):
     return int(enters((ink.a - first.at) * back, (ink.b - ink.a) * back, *box).sum())
 
 
-@pytest.mark.parametrize("eccentricity", [None, "0 mm", "10 mm", "-10 mm"])
-@pytest.mark.parametrize("changes", [{}, {"sense": "counter-clockwise"}, {"stroke": "12 mm", "pressure_angle": "25 deg"}])
+OTHERS = ({}, {"sense": "counter-clockwise"}, {"stroke": "12 mm", "pressure_angle": "25 deg"})
+ECCENTRICITIES = (None, "0 mm", "10 mm", "-10 mm")
+
+
+@pytest.mark.parametrize(("changes", "eccentricity"), few(
+    product(OTHERS, ECCENTRICITIES), *zip((*OTHERS, {}), ECCENTRICITIES, strict=True)))
 def test_first_distance_of_a_tappet(eccentricity, changes):
     own = project({"cam": TAPPET | changes | ({"eccentricity": eccentricity} if eccentricity else {})})
     assert through(composed(own, 1).drawing, "cam_zone.of_tappet", "S_0") == 0

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from tests import project_files as files
+from tests.few import few, seldom
 from tests.methods.linkage import shaper_truth
 from tmm_sheets import catalogue, protocols, results
 from tmm_sheets.__main__ import run
@@ -69,7 +70,7 @@ def test_the_flywheel_falls_by_what_the_crank_gains(name):
 
 @BOTH
 @pytest.mark.parametrize("side", [-1, 1])
-@pytest.mark.parametrize("step", [1e-6, 0.1, 20.0])
+@pytest.mark.parametrize("step", [1e-6, seldom(0.1), seldom(20.0)])
 def test_just_above_and_below_zero(name, side, step):
     """By the drawn construction, and in the limit: each with the sign of what is missing there, and said where they differ."""
     bare = project(name, 0.0).flywheel
@@ -115,7 +116,7 @@ def test_the_sheet_says_it_in_words_and_draws_no_wheel(name):
     assert any("|ab|" in w or "ab=" in w for w in words)
 
 
-@BOTH
+@pytest.mark.parametrize("name", few(SHEET, "lugansk/shaper"))
 def test_results_check_protocol_and_compare(name, tmp_path, capsys):
     file = files.write(tmp_path, *with_crank(name, 600.0))
     assert run(["solve", file, "--json", "-", "--part", "flywheel"]) == 0
@@ -166,7 +167,7 @@ def test_letters_of_points_between_two_numbers():
     assert len({lettered(n) for n in range(20000)}) == 20000
 
 
-@pytest.mark.parametrize("points", [41, 101, 721])
+@pytest.mark.parametrize("points", [seldom(41), 101, seldom(721)])
 def test_any_number_of_diagram_points(points):
     p = digitised(points)
     f = p.flywheel

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.few import few
 from tests.project_files import EVEN, FOUR_BAR, MOMENT, SLIDER, merged, project, write
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
@@ -47,7 +48,7 @@ SHAPES = {
 }
 
 
-@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("shape", few(SHAPES, "coupler point behind", "tall"))
 def test_mechanisms_of_every_shape_keep_their_places(shape):
     mechanism, *place = SHAPES[shape]
     for position in range(0, 12, 3):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests import project_files as files
+from tests.few import seldom
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import CannotBuild
@@ -169,8 +170,9 @@ def test_the_ink_fills_the_place_at_the_need():
 # --- nothing but rounding -----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("name", "label"), [("transport/compressor@00-В-000", None), ("sixbar/3:1", "0"), ("sixbar/3:1", "12"),
-                                             ("sixbar/2:1", "12"), ("lugansk/engine", "0"), ("lugansk/engine", "6")])  # fmt: skip
+@pytest.mark.parametrize(("name", "label"), [
+    ("transport/compressor@00-В-000", None), ("sixbar/3:1", "0"), seldom("sixbar/3:1", "12"), seldom("sixbar/2:1", "12"),
+    seldom("lugansk/engine", "0"), seldom("lugansk/engine", "6")])
 def test_no_rounding_noise_on_the_sheets(name, label):
     """No number on the sheets of linkages is smaller than 1e-7 unless it is 0; there is no minus zero."""
     v = catalogue.read(name)

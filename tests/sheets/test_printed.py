@@ -2,13 +2,16 @@
 
 import pytest
 
+from tests.few import few
 from tests.sheets.printed import OWN, PROJECTS, check
 from tmm_sheets.catalogue import read
 from tmm_sheets.project import Project
 
 SHIPPED = [name for name in PROJECTS if name not in OWN]
+VISOR = next(name for name in OWN if "visor" in name)
 
-@pytest.mark.parametrize("name", [*SHIPPED, next(name for name in OWN if "visor" in name)])
+
+@pytest.mark.parametrize("name", few([*SHIPPED, VISOR], "lugansk/shaper", "press", "lugansk/cam_rocker", VISOR))
 def test_every_printed_number_is_that_of_a_step(name):
     total, lost, false = check(Project(read(name)))
     assert total > 200

@@ -4,11 +4,13 @@ a moment, a position or a link. The truth is the same machine under plain names:
 
 import re
 import tomllib
+from functools import cache
 
 import numpy as np
 import pytest
 
 from tests.attack import SOURCES
+from tests.few import few
 from tests.project_files import merged, project
 from tmm_sheets import results
 from tmm_sheets.project import Project
@@ -24,6 +26,7 @@ OWN = re.compile(r"F[0-9]{2}|[GQZ][0-9]+|[FM]и[0-9]+|W[0-9]+")
 """Signs that loads of the machine have already, and its own plain names: two loads with one sign are refused."""
 
 
+@cache
 def signs():
     """Names and letters of the steps of all plans of many projects; of those that differ by a number alone, one."""
     found = {}
@@ -34,9 +37,6 @@ def signs():
         for name in (re.sub(r"[{}_^|]", "", text) for s in steps for text in (s.name, s.symbol)):
             found.setdefault(re.sub(r"\d+", "0", name), name)
     return sorted(found.values())
-
-
-SIGNS = signs()
 
 
 def machine(points, guides, loads, labels, links):
@@ -86,8 +86,13 @@ def truth():
     return solved(machine(PLAIN, PLAIN, PLAIN, PLAIN, LINKS))[1]
 
 
-def chunks(names, size):
+def chunks(kind, size):
+    """The signs that may be names of a kind, so many at a time, filled up with plain ones."""
+    names = [s for s in signs() if SPELT[kind](s)]
     return [names[k : k + size] + PLAIN[: max(0, k + size - len(names))] for k in range(0, len(names), size)]
+
+
+tenths = pytest.mark.parametrize("tenth", few(range(10), 3))
 
 
 def fitting(kind, names, taken=()):
@@ -95,16 +100,18 @@ def fitting(kind, names, taken=()):
     return [name if SPELT[kind](name) and name not in taken else plain for name, plain in zip(names, PLAIN, strict=True)]
 
 
-@pytest.mark.parametrize("names", chunks([s for s in SIGNS if SPELT["position"](s)], MANY), ids=" ".join)
-def test_points_guides_loads_and_positions_with_signs_of_plans(names, truth):
-    points = fitting("point", names, {"A", "B", "C", "D", "S2", "S3"})
-    loads = fitting("force", names, {"Fc", "Mt", "M10", *filter(OWN.fullmatch, names)})
-    p, found = solved(machine(points, fitting("guide", names), loads, fitting("position", names, set("0123456")), LINKS))
-    assert found == truth
-    assert not [key for key in recording.book_of(p).steps if "@" in key.partition("/")[2]]
+@tenths
+def test_points_guides_loads_and_positions_with_signs_of_plans(tenth, truth):
+    for names in chunks("position", MANY)[tenth::10]:
+        points = fitting("point", names, {"A", "B", "C", "D", "S2", "S3"})
+        loads = fitting("force", names, {"Fc", "Mt", "M10", *filter(OWN.fullmatch, names)})
+        p, found = solved(machine(points, fitting("guide", names), loads, fitting("position", names, set("0123456")), LINKS))
+        assert found == truth, names
+        assert not [key for key in recording.book_of(p).steps if "@" in key.partition("/")[2]], names
 
 
-@pytest.mark.parametrize("names", chunks([s for s in SIGNS if SPELT["link"](s)], len(LINKS)), ids=" ".join)
-def test_links_with_signs_of_plans(names, truth):
-    links = [name if name not in {"0", "1", "10", "11"} else plain for name, plain in zip(names, LINKS, strict=False)]
-    assert solved(machine(PLAIN, PLAIN, PLAIN, PLAIN, links))[1] == truth
+@tenths
+def test_links_with_signs_of_plans(tenth, truth):
+    for names in chunks("link", len(LINKS))[tenth::10]:
+        links = [name if name not in {"0", "1", "10", "11"} else plain for name, plain in zip(names, LINKS, strict=False)]
+        assert solved(machine(PLAIN, PLAIN, PLAIN, PLAIN, links))[1] == truth, names

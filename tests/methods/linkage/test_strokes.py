@@ -5,12 +5,13 @@ acceleration, weight, the two reactions that ``solve`` tells), its power from th
 """
 
 import random
-from itertools import pairwise
+from itertools import pairwise, product
 from math import pi
 
 import numpy as np
 import pytest
 
+from tests.few import few
 from tests.methods.linkage.mechanisms import mechanism
 from tests.project_files import CRANK, MOMENT, merged, project
 from tmm_sheets.errors import CannotBuild
@@ -174,9 +175,9 @@ def ciphers(count):
         count -= 1
 
 
-def test_the_load_of_200_presses_never_drives_the_slider():
+def test_the_load_of_60_presses_never_drives_the_slider():
     twice = 0
-    for code, p in ciphers(200):
+    for code, p in ciphers(60):
         force, speed = slider_load(p, TURN)
         power = (force * np.conj(speed)).real
         noise = 1e-9 * np.abs(force).max() * np.abs(speed).max()
@@ -185,7 +186,7 @@ def test_the_load_of_200_presses_never_drives_the_slider():
         way = p.cycle.strokes.length
         assert -power.mean() * 2 * pi / p.mechanism.crank.speed == pytest.approx(0.5 * 0.4 * way * 1e6, rel=2e-2), code
         twice += len(p.cycle.strokes.runs) > 2
-    assert 20 < twice < 80
+    assert 6 < twice < 24
 
 
 @pytest.mark.parametrize("code", ["05-ЭПС-731", "07-ЭПС-718", "00-ЭПС-409"])
@@ -239,8 +240,8 @@ DOWN = {"output": "C", "working_sense": "-y"}
 CYCLES = {"even": EVEN, "dead": {"start": "dead", "working": 7, "idle": 5} | DOWN, "output": EVEN | DOWN}
 
 
-@pytest.mark.parametrize("x", [0.45, 0.52])
-@pytest.mark.parametrize("sense", ["clockwise", "counter-clockwise"])
+@pytest.mark.parametrize(("x", "sense"), few(
+    product((0.45, 0.52), ("clockwise", "counter-clockwise")), (0.45, "clockwise"), (0.52, "counter-clockwise")))
 @pytest.mark.parametrize("stroke", ["working", "idle", "both"])
 @pytest.mark.parametrize("working", ["+y", "-y"])
 @pytest.mark.parametrize(("direction", "sign"), [("against motion", -1), ("along motion", 1)])

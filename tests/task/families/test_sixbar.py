@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.few import few
 from tmm_sheets import resources
 from tmm_sheets.catalogue import read
 from tmm_sheets.errors import BadInput
@@ -234,7 +235,7 @@ def stroke(task, d):
     return 2 * (d["l3"] * np.sin(end) if task == 2 else d["b"] * np.tan(end))
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", few(NAMES, *NAMES[::6]))
 def test_power_balance_over_the_turn(name):
     """The mean driving moment is the work of the resistance over the working stroke: the weights do none in a whole turn."""
     task, d = data(name)
