@@ -228,16 +228,15 @@ def test_a_wrong_formula_is_caught(monkeypatch, what):
 
 def test_lines_that_fall_together_are_caught(monkeypatch):
     """The arithmetic of before: what lines tell that fall together is rounding times a condition of 8e15."""
-    def exceeded(invariant):
-        values = (dict(run_case(11, case)[1]).get(invariant, 0.0) for case in range(CASES))
-        return sum(not value <= BOUNDS[invariant][0] for value in values)
+    def exceeded(*invariants):
+        cases = [dict(run_case(11, case)[1]) for case in range(0, CASES, 3)]
+        return [sum(not values.get(name, 0.0) <= BOUNDS[name][0] for values in cases) for name in invariants]
 
     monkeypatch.setattr(velocities.MotionPolygon, "known", lambda self, group: self.positions.known_sine(group))
-    assert exceeded("velocity through a change point") >= 40
-    assert exceeded("acceleration through a change point") >= 40
+    assert min(exceeded("velocity through a change point", "acceleration through a change point")) >= 13
     monkeypatch.undo()
     monkeypatch.setattr(invariants, "limits_of_forces", lambda *of: {})
-    assert exceeded("moment through a change point") > 30
+    assert exceeded("moment through a change point")[0] > 10
 
 
 # --- the command -----------------------------------------------------------------------------------------------------
