@@ -8,6 +8,7 @@ import ast
 import inspect
 import re
 from collections.abc import Iterator, Mapping
+from functools import cache
 from math import degrees
 from pathlib import Path
 from types import ModuleType, NoneType, UnionType
@@ -53,6 +54,7 @@ def code(*words: Any) -> str:
 # --- keys of the project file ---------------------------------------------------------------------------------------
 
 
+@cache
 def meanings(model: type[schema.Table]) -> dict[str, str]:
     """What the strings under the keys of a table say, by key."""
     (tree,) = ast.parse(inspect.getsource(model)).body

@@ -5,6 +5,7 @@ from math import cos, sin, sqrt
 
 import pytest
 
+from tests.few import few
 from tests.project_files import CAM, CRANK, FLYWHEEL, FORCE, GEAR, MASS, REDUCER, SLIDER, WORKING, project, write
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput
@@ -32,7 +33,7 @@ FILES = {
 LINKAGE_PARTS = {"positions", "velocities", "accelerations", "forces"}
 
 
-@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize("name", few(FILES, *list(FILES)[::2]))
 def test_every_command_on_it(name, tmp_path, capsys):
     made_of, sheets, parts = FILES[name]
     file = write(tmp_path, *made_of)

@@ -4,10 +4,12 @@ import os
 import shutil
 import subprocess
 import sys
+from itertools import product
 from pathlib import Path
 
 import pytest
 
+from tests.few import few
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.note import note as writing
@@ -61,8 +63,8 @@ INPUTS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("make", [os.mkfifo, loop])
-@pytest.mark.parametrize("arguments", INPUTS, ids=" ".join)
+@pytest.mark.parametrize(("arguments", "make"), few(
+    product(INPUTS, (os.mkfifo, loop)), *zip(INPUTS, 5 * (os.mkfifo, loop), strict=True)))
 def test_what_is_no_file_is_told_by_name(arguments, make, capsys):
     name = "x.plt" if "x.plt" in arguments else "x"
     make(Path(name))

@@ -313,6 +313,7 @@ def test_the_wrong_sheet_is_told_and_the_right_one_named(tmp_path):
     assert "it looks like sheet 2: use --sheet 2" in e.value.problems[0].hint
 
 
+@pytest.mark.trial
 def test_a_drawing_of_something_else(tmp_path):
     rng = np.random.default_rng(1)
     z = rng.uniform(0, 800, 60) + 1j * rng.uniform(0, 500, 60)

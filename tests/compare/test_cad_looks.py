@@ -35,6 +35,7 @@ def some(style, kind, length):
 MAIN, THIN, CENTRE = some("main", "line", 15)[:2], some("thin", "line", 20)[:2], some("centre", "line", 70)[:2]
 
 
+@pytest.mark.trial
 def test_right_types_and_widths(tmp_path):
     found = compared(EXACT, tmp_path, turn=0.002j, unit=6, block=True)
     assert found.outcome.looks == ()
@@ -76,6 +77,7 @@ def test_what_is_wrong_is_told_in_a_row_for_each_view_and_kind(tmp_path):
     assert [e.pattern for e in space.entities if e.handle == named["handle"]] == ["dash-two-dots"]
 
 
+@pytest.mark.trial
 def test_a_wrong_line_that_is_out_of_place_too(tmp_path):
     line = THIN[0]
     found = compared([replace(e, points=e.points + 2j * np.exp(1j * np.angle(np.diff(e.points)[0])), style="main")

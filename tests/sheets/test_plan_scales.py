@@ -107,6 +107,7 @@ def test_points_that_share_a_dot():
 # --- many positions ---------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.trial
 def test_forty_plans_are_as_large_as_their_lettering_allows():
     """With 36 working positions the letters of all plans take more than the place: every second plan is drawn, and it is said."""
     project = files.project(files.from_file(CONVEYOR), {"cycle.working": 36})

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.few import seldom
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import text_box
@@ -26,7 +27,7 @@ def tables(project, monkeypatch):
     return found, scales["velocities"].mu
 
 
-@pytest.mark.parametrize("name", ["screen", "loom", "lugansk/engine", "tests/projects/conveyor.toml"])
+@pytest.mark.parametrize("name", ["screen", seldom("loom"), "lugansk/engine", seldom("tests/projects/conveyor.toml")])
 def test_every_speed_has_its_segment(name, monkeypatch):
     project = Project(read(name))
     ((_, lengths), (_, speeds)), mu = tables(project, monkeypatch)
