@@ -187,6 +187,19 @@ def test_why(capsys):
     assert length.startswith("crank.length  l_{AB} = 0.08 m  given")
 
 
+def test_why_tells_the_values_of_the_force_position(capsys):
+    project = Project(catalogue.read("lugansk/shaper"))
+    k = project.force_index
+    assert k > 0
+    steps = {"positions/B": project.study.positions.points["B"], "velocities/b": project.study.velocities.points["B"]}
+    assert run(["why", "lugansk/shaper", "velocities.points.B"]) == 0
+    lines = {line.split()[0]: line for line in capsys.readouterr().out.splitlines()}
+    for name, step in steps.items():
+        value = complex(step.value[k])
+        assert f" = ({value.real:.6g}, {value.imag:.6g}) " in lines[name]
+    assert lines["velocities.points.B"].endswith(f"position {project.cycle.labels[k]}")
+
+
 @pytest.mark.parametrize(("result", "given", "value"), [("cycle.omega1", "crank.speed", "-7.53982 rad/s"),
                                                           ("cycle.phi", "cycle.working", "rad, position 2")])
 def test_why_of_the_cycle(result, given, value, capsys):
