@@ -238,6 +238,7 @@ def test_a_wrong_letter_drawn_with_strokes(tmp_path):
     assert (found["verdict"], found["what"]) == ("red", 'the letters are not those of "H = 142"')
 
 
+@pytest.mark.trial
 def test_a_layout_of_ones_own(tmp_path):
     """Views that stand elsewhere are compared there; an error in one of them is still found."""
     rng = random.Random(5)

@@ -153,6 +153,7 @@ def test_wrong_sheet_is_told(tmp_path):
         image.compare(project(), 3, file)
 
 
+@pytest.mark.trial
 def test_own_png_has_no_deviation(tmp_path):
     file = tmp_path / "sheet.png"
     file.write_bytes(png.render(sheet().drawing, 150))

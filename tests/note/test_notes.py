@@ -63,6 +63,12 @@ PLANTED = [
 ]
 
 
+@pytest.fixture(scope="module")
+def note():
+    """A short one that faults are planted in."""
+    return composed(opened("lugansk/cam_flat"))
+
+
 @pytest.mark.parametrize(("kind", "block"), PLANTED)
 def test_a_planted_fault_is_found(note, kind, block):
     planted = replace(note, body=(*note.body, Heading(1, "", "Пример"), block))
