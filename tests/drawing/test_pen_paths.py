@@ -99,6 +99,20 @@ def test_passes_cover_a_thick_bent_line(corners, pen):
     assert band.buffer(-0.01).difference(ink.buffer(0.05)).area == 0
 
 
+def test_areas_that_are_alike_are_filled_once():
+    from tmm_sheets.drawing import passes
+
+    passes._filled.cache_clear()
+    head = np.array([0, -4 + 0.7j, -4 - 0.7j])
+    first = list(of_area(head, 0.2))
+    for place, turn in ((30 + 20j, 1j), (7 - 3j, np.exp(0.3j)), (0, -1)):
+        found = list(of_area(place + turn * head, 0.2))
+        assert len(found) == len(first) > 2
+        for way, own in zip(found, first, strict=True):
+            np.testing.assert_allclose(way, place + turn * own, atol=1e-5)
+    assert passes._filled.cache_info().misses == 1
+
+
 def test_passes_fill_an_area_but_for_its_acute_tips():
     arrow = np.array([0, -6 + 1j, -6 - 1j])
     area = shapely.Polygon(np.column_stack((arrow.real, arrow.imag)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from math import ceil
 from typing import Any
 
@@ -17,6 +18,7 @@ ROUND = 6  # chords in a quarter of the round end of a pass
 CORNER = 0.045  # mm a corner may stay white before the pen goes into it on purpose
 BLEED = 0.02  # mm the outermost pass of an area goes over its edge, so that corners come out sharper
 SPOT = 0.01  # mm: white spots narrower than twice this are left
+ALIKE = 6  # decimals of a millimetre to which polygons are alike
 SAGITTA = 0.004  # mm a pass may cut corners: a sixth of a plotter step
 
 
@@ -39,7 +41,25 @@ def of_line(points: Points, width: float, pen: float) -> Iterator[Points]:
 
 
 def of_area(points: Points, pen: float) -> Iterator[Points]:
-    """Passes of a pen that fill a polygon: along its edge, then inwards; into acute corners as far as the round pen can."""
+    """Passes of a pen that fill a polygon: along its edge, then inwards; into acute corners as far as the round pen can.
+
+    Heads of arrows and dots are alike all over a sheet: polygons that differ by place and direction only are filled alike.
+    """
+    shape = points - points[0]
+    far = complex(shape[np.argmax(np.abs(shape))])
+    turn = far / abs(far) if far else 1.0 + 0j
+    ways = _filled(tuple(np.round(shape / turn, ALIKE).tolist()), pen)
+    yield from (points[0] + turn * way for way in ways)
+    if not ways:  # thinner than the pen
+        yield _diagonal(points, pen)
+
+
+@lru_cache(maxsize=256)
+def _filled(shape: tuple[complex, ...], pen: float) -> tuple[Points, ...]:
+    return tuple(_passes(np.array(shape), pen))
+
+
+def _passes(points: Points, pen: float) -> Iterator[Points]:
     import shapely
 
     area = shapely.make_valid(shapely.Polygon(_xy(points)))
@@ -47,8 +67,7 @@ def of_area(points: Points, pen: float) -> Iterator[Points]:
     while not (inner := area.buffer(-depth, join_style="mitre", mitre_limit=20)).is_empty:
         passes += _rings(inner)
         depth += SPACING * pen
-    if not passes:  # thinner than the pen
-        yield _diagonal(points, pen)
+    if not passes:
         return
     edge = np.concatenate(passes)
     for corner in points.tolist():

@@ -21,7 +21,8 @@ from tmm_sheets.drawing.passes import of_area, of_line
 from tmm_sheets.drawing.plotters import Pen, Plotter
 
 STEP = 0.025  # mm
-SWEEPS = 4  # times the order is gone through to shorten it
+SWEEPS = 5  # times the order is gone through to shorten it
+WORTH = 1.0  # plotter steps that a change of the order has to save
 Step = tuple[int, int]
 Path = tuple[Step, ...]
 
@@ -206,19 +207,26 @@ def ordered(paths: list[Path], start: Step = (0, 0)) -> list[Path]:
     order, turned = _nearest_next(starts, ends, complex(*start))
     first, last = np.where(turned, ends, starts)[order], np.where(turned, starts, ends)[order]
     turned = turned[order]
+    leap = np.append(np.abs(first[1:] - last[:-1]), 0.0)  # from the end of each path to the next one
     for _ in range(SWEEPS):
         better = False
         for i in range(len(order)):
             before = last[i - 1] if i else complex(*start)
+            reached = abs(first[i] - before)
+            if 2 * reached <= WORTH:  # no turn gains more than twice the way to what it begins with
+                continue
             # Turning i .. j round joins what was before i to the end of j, and the beginning of i to what comes after j.
-            now = np.append(np.abs(first[i + 1 :] - last[i:-1]), 0.0)
-            then = np.append(np.abs(first[i + 1 :] - first[i]), 0.0)
-            gain = abs(first[i] - before) + now - np.abs(last[i:] - before) - then
+            gain = leap[i:] - np.abs(last[i:] - before)
+            gain[:-1] -= np.abs(first[i + 1 :] - first[i])
             j = i + int(np.argmax(gain))
-            if gain[j - i] > 1.0:  # a plotter step
+            if reached + gain[j - i] > WORTH:
                 part = slice(i, j + 1)
                 first[part], last[part] = last[part][::-1].copy(), first[part][::-1].copy()
                 order[part], turned[part] = order[part][::-1].copy(), ~turned[part][::-1]
+                leap[i:j] = leap[i:j][::-1].copy()
+                leap[j] = abs(first[j + 1] - last[j]) if j + 1 < len(order) else 0.0
+                if i:
+                    leap[i - 1] = abs(first[i] - before)
                 better = True
         if not better:
             break
