@@ -9,7 +9,7 @@ PYTEST = $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
 SOURCES := $(shell find tmm_sheets templates variants -type f -not -name '*.pyc' 2>/dev/null)
 
 .DEFAULT_GOAL := sheets
-.PHONY: help sheets test trials lint types wheel-test gallery gallery-check note-check gold messages docs picture clean distclean
+.PHONY: help sheets test trials lint types wheel-test gallery gallery-check note-check gold messages docs figures picture clean distclean
 
 sheets: $(OUT)/sheet1.pdf  ## the sheets of PROJECT (default lugansk/shaper) in out/; this is what plain "make" does
 
@@ -52,6 +52,9 @@ messages: $(VENV)/.tested  ## collect the texts of the program into the catalogu
 
 docs: $(VENV)/.tested  ## the tables of docs/ that are made from the program
 	$(BIN)/python -m tests.docs
+
+figures: $(VENV)/.tested  ## the figures of docs/accuracy.md that take a minute or two, measured here and now
+	$(BIN)/python -m tests.figures
 
 picture: sheets  ## the picture of sheet 1 in the READMEs (needs pdftoppm)
 	pdftoppm -r 40 -png -gray -singlefile $(OUT)/sheet1.pdf templates/pictures/sheet1

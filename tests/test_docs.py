@@ -12,7 +12,7 @@ from pathlib import Path
 import click
 import pytest
 
-from tests import docs
+from tests import docs, figures
 from tmm_sheets import __main__, catalogue, cli, resources
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
@@ -227,6 +227,20 @@ def test_no_option_is_named_that_no_command_has():
 def test_made_parts_are_current(paper):
     assert docs.current(TEXTS[paper]) == TEXTS[paper], "run: make docs"
     assert len(re.findall(r"<!-- made", TEXTS[paper])) == len(docs.PART.findall(TEXTS[paper])) == TEXTS[paper].count("<!-- end -->")
+
+
+def test_the_figures_tell_where_they_come_from():
+    assert figures.faults(TEXTS["docs/accuracy.md"]) == [], "run: make figures"
+
+
+def test_figures_without_a_source_are_found():
+    part = "<!-- figure: stress -->\n```\ntmm-sheets stress\n```\n\n*2026-11-28, 0123abcd, 2 processors*\n\n| a |\n<!-- end -->\n"
+    missing = [f"{name} stands nowhere" for name in figures.FIGURES if name != "stress"]
+    assert figures.faults(part) == missing
+    assert figures.faults(part.replace("*", "")) == ["stress does not say when and where it ran", *missing]
+    assert figures.faults(part.replace("sheets stress", "sheets bench")) == [*missing, "stress is another command now"]
+    assert figures.faults(part.replace("figure: stress", "figure: luck"))[:2] == ["no command makes luck", "methods stands nowhere"]
+    assert figures.faults(part + "x" * figures.LONGEST)[-1].endswith(f"at most {figures.LONGEST}")
 
 
 def test_every_table_of_the_project_file_is_told():

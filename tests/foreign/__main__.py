@@ -1,8 +1,8 @@
 """The foreign trial: takes pictures, runs `compare` on each and prints a table by difficulty.
 
-    python -m tests.foreign --pictures 400 --seed 1 --jobs 2 -o DIR [--only wood,folds] [--keep] [--first I --count N] [--most 12]
+    python -m tests.foreign --pictures 400 --seed 1 --jobs 2 [-o DIR] [--only wood,folds] [--keep] [--first I --count N] [--most 12]
 
-Outcomes are kept in DIR/outcomes.jsonl, line by line: a trial that was broken off goes on where it stopped.
+With -o outcomes are kept in DIR/outcomes.jsonl, line by line: a trial that was broken off goes on where it stopped.
 `--take` only takes the pictures, `--judge FILE ...` only judges some that were kept.
 """
 
@@ -14,9 +14,11 @@ import statistics
 from collections import Counter
 from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import nullcontext
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from tests.foreign import drawing, judge, scene
@@ -112,7 +114,7 @@ def main() -> None:
     parser.add_argument("--pictures", type=int, default=400)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=1)
-    parser.add_argument("-o", "--output", type=Path, required=True)
+    parser.add_argument("-o", "--output", type=Path)
     parser.add_argument("--only", default="", help="difficulties, separated by commas: " + ", ".join(scene.DIFFICULTIES))
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--count", type=int)
@@ -124,26 +126,32 @@ def main() -> None:
     only = tuple(part for part in asked.only.split(",") if part)
     if unknown := set(only) - set(scene.DIFFICULTIES):
         parser.error(f"no such difficulty: {', '.join(sorted(unknown))}; there are {', '.join(scene.DIFFICULTIES)}")
-    asked.output.mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory() if asked.output is None else nullcontext(asked.output) as folder:
+        trial(asked, only, Path(folder))
+
+
+def trial(asked: argparse.Namespace, only: tuple[str, ...], folder: Path) -> None:
+    """Take pictures, judge them, or both."""
+    folder.mkdir(parents=True, exist_ok=True)
     if asked.judge:
         print(
             table(
                 [
-                    asdict(judge.judge(file, asked.output / "drawings", asked.output / "reports" if asked.keep else None))
+                    asdict(judge.judge(file, folder / "drawings", folder / "reports" if asked.keep else None))
                     for file in asked.judge
                 ]
             )
         )
         return
     numbers = range(asked.first, min(asked.pictures, asked.first + asked.count) if asked.count is not None else asked.pictures)
-    log = asked.output / "outcomes.jsonl"
+    log = folder / "outcomes.jsonl"
     rows = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()] if log.exists() else []
     done = {row["name"] for row in rows}
     left = [number for number in numbers if f"{number:03d}_{scene.scene(number, asked.seed, only).difficulty}" not in done]
     for project, sheet in {scene.scene(number, asked.seed, only).sheet for number in left}:
-        drawing.read(project, sheet, asked.output / "drawings")  # before processes want them at once
+        drawing.read(project, sheet, folder / "drawings")  # before processes want them at once
     work = partial(
-        _one, seed=asked.seed, only=only, folder=asked.output, keep=asked.keep or asked.take, take=asked.take, most=asked.most
+        _one, seed=asked.seed, only=only, folder=folder, keep=asked.keep or asked.take, take=asked.take, most=asked.most
     )
     with ProcessPoolExecutor(asked.jobs) as pool, log.open("a", encoding="utf-8") as out:
         for row in pool.map(work, left):
