@@ -44,9 +44,12 @@ def last(n: int) -> Callable[[str], str]:
 
 
 def methods(said: str) -> str:
-    """Method, range, error, time; files have no error, and accelerations hold the plans before them."""
-    rows = (line for line in said.splitlines() if not re.search(r"- \.\. -|\| (positions|velocities) of ", line))
-    return columns("\n".join(rows), 1, 2, 3, 4)
+    """Field, method, range, error; files have no error, accelerations hold the plans before them, times hang on the machine."""
+    rows = columns("\n".join(line for line in said.splitlines() if not re.search(r"- \.\. -|\| (positions|velocities) of ", line)),
+                   0, 1, 2, 3).splitlines()
+    fields = [row.split("|")[1] for row in rows]
+    return "\n".join(row if k < 3 or field != fields[k - 1] else f"| |{row.split('|', 2)[2]}"
+                     for k, (row, field) in enumerate(zip(rows, fields, strict=True)))
 
 
 def peers(said: str) -> str:
@@ -57,9 +60,13 @@ def peers(said: str) -> str:
 
 def invariants(said: str) -> str:
     """Invariant, worst, bound."""
-    rows = [m for line in said.splitlines() if (m := re.match(r"(.{40})\s*(\d+)\s+(\S+)\s+(\S+)\s", line))]
-    return "\n".join(("| invariant | cases | worst | bound |", "|---|---|---|---|",
-                      *(f"| {m[1].strip()} | {m[2]} | {m[3]} | {m[4]} |" for m in rows)))
+    rows = re.findall(r"^(.+?) {2,}\d+ +(\S+) +(\S+) ", said, re.MULTILINE)
+    return "\n".join(("| invariant | worst | bound |", "|---|---|---|", *(f"| {' | '.join(row)} |" for row in rows)))
+
+
+def cost(said: str) -> str:
+    """Command without the project, processor time, its share, steps, large libraries."""
+    return columns(said, 0, 1, 2, 3, 6).replace(" lugansk/shaper", "")
 
 
 def counted(said: str) -> str:
@@ -68,10 +75,9 @@ def counted(said: str) -> str:
 
 
 def together(said: str) -> str:
-    """The table of the foreign trial without the lines of each difficulty."""
+    """The line of the foreign trial for all pictures, under its heads."""
     head, *rest = said.splitlines()
-    at = next(k for k, line in enumerate(rest) if line.startswith("all "))
-    return block("\n".join(line.rstrip() for line in ("picture".ljust(12) + head[12:], *rest[at:])))
+    return block("\n".join(line[12:] for line in (head, *rest) if line is head or line.startswith("all ")))
 
 
 @dataclass(frozen=True)
@@ -91,18 +97,18 @@ class Figure:
 
 FIVE = "lugansk/shaper lugansk/engine press sixbar/3:2 sixbar/6:3"
 STUDENTS = f"tests.compare.hypotheses {FIVE}"
-LAYOUTS = "tests.compare.own_layouts 5 --slips --projects lugansk/shaper press sixbar/3:1"
+LAYOUTS = "tests.compare.own_layouts 6 --slips --quiet --projects lugansk/shaper press sixbar/3:1"
 FIGURES = {
     "methods": Figure("tmm_sheets bench --summary", methods),
     "peers": Figure("tmm_sheets bench --peers --summary", peers, long=True),
     "stress": Figure("tmm_sheets stress", invariants),
-    "cost": Figure("tmm_sheets bench --cost lugansk/shaper", lambda said: columns(said, 0, 1, 2, 3, 5)),
+    "cost": Figure("tmm_sheets bench --cost lugansk/shaper", cost),
     "whole": Figure("tmm_sheets bench --whole lugansk/shaper", lambda said: columns(said, 0, 3, 4, 5)),
-    "students": Figure(f"{STUDENTS} --students 4 --seed 441", last(2), long=True),
-    "sound": Figure(f"{STUDENTS} --sound --students 2 --seed 445", last(1), long=True),
-    "cad": Figure("tests.compare.cad_plants 4", last(1), long=True),
+    "students": Figure(f"{STUDENTS} --students 8 --seed 441", last(2), long=True),
+    "sound": Figure(f"{STUDENTS} --sound --students 5 --seed 445", last(1), long=True),
+    "cad": Figure("tests.compare.cad_plants 12", last(1), long=True),
     "layouts": Figure(f"{LAYOUTS} --seed 711", counted, long=True),
-    "photographs": Figure("tests.foreign --pictures 14 --seed 301", together, long=True),
+    "photographs": Figure("tests.foreign --pictures 8 --seed 301", together, long=True),
     "photograph": Figure("tests.compare.trial --time", last(1)),
 }
 
