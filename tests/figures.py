@@ -44,8 +44,8 @@ def last(n: int) -> Callable[[str], str]:
 
 
 def methods(said: str) -> str:
-    """Field, method, range, error; files have no error, accelerations hold the plans before them, times hang on the machine."""
-    rows = columns("\n".join(line for line in said.splitlines() if not re.search(r"- \.\. -|\| (positions|velocities) of ", line)),
+    """Field, method, range, error; files have no error, forces hold the plans before them, times hang on the machine."""
+    rows = columns("\n".join(line for line in said.splitlines() if not re.search(r"- \.\. -|\| (positions|velocities|accelerations) of ", line)),
                    0, 1, 2, 3).splitlines()
     fields = [row.split("|")[1] for row in rows]
     return "\n".join(row if k < 3 or field != fields[k - 1] else f"| |{row.split('|', 2)[2]}"
@@ -54,8 +54,8 @@ def methods(said: str) -> str:
 
 def peers(said: str) -> str:
     """Accelerations alone: positions and velocities are in them."""
-    rows = said.splitlines()
-    return "\n".join(line for k, line in enumerate(rows) if line.startswith("|") and (k < 2 or "| accelerations |" in line))
+    head, line, *rows = (row for row in said.splitlines() if row.startswith("|"))
+    return columns("\n".join((head, line, *(row for row in rows if "| accelerations |" in row))), 0, 2, 3, 4, 5)
 
 
 def invariants(said: str) -> str:
@@ -65,13 +65,13 @@ def invariants(said: str) -> str:
 
 
 def cost(said: str) -> str:
-    """Command without the project, processor time, its share, steps, large libraries."""
-    return columns(said, 0, 1, 2, 3, 6).replace(" lugansk/shaper", "")
+    """Command without the project, processor time, steps, own modules."""
+    return columns(said, 0, 1, 3, 5).replace(" lugansk/shaper", "")
 
 
 def counted(said: str) -> str:
     """The counts that a trial prints last, as a line."""
-    return block(re.sub(r"[{}']", "", said.strip().splitlines()[-1]))
+    return block(re.sub(r"[{']", "", said.strip().splitlines()[-1]).replace("}", ";"))
 
 
 def together(said: str) -> str:
