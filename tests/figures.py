@@ -45,8 +45,8 @@ def last(n: int) -> Callable[[str], str]:
 
 def methods(said: str) -> str:
     """Field, method, range, error; files have no error, forces hold the plans before them, times hang on the machine."""
-    rows = columns("\n".join(line for line in said.splitlines() if not re.search(r"- \.\. -|\| (positions|velocities|accelerations) of ", line)),
-                   0, 1, 2, 3).splitlines()
+    left_out = re.compile(r"- \.\. -|\| (positions|velocities|accelerations) of ")
+    rows = columns("\n".join(line for line in said.splitlines() if not left_out.search(line)), 0, 1, 2, 3).splitlines()
     fields = [row.split("|")[1] for row in rows]
     return "\n".join(row if k < 3 or field != fields[k - 1] else f"| |{row.split('|', 2)[2]}"
                      for k, (row, field) in enumerate(zip(rows, fields, strict=True)))

@@ -37,7 +37,8 @@ RULES = {
     "result_files": ("", ""),
     "catalogue": ("task", ""),
     "summary": ("mechanism project task", ""),
-    "explain": ("construction drawing", "project"),
+    "explain": ("askers construction drawing", "project"),
+    "askers": ("construction sheets", "drawing"),
     "protocols": ("construction sheets", "project"),
     "record": ("construction drawing project results sheets", ""),
     "sheets": ("construction drawing mechanism.structure", f"project mechanism {METHODS}"),
@@ -59,7 +60,7 @@ RULES = {
     "lab.stress": ("construction mechanism methods.linkage", ""),
     "spoken": ("completion", ""),
     "completion": ("catalogue drawing note output project protocols record results", ""),
-    "cli": ("backends catalogue compare drawing explain lab note output project protocols record result_files results "
+    "cli": ("askers backends catalogue compare drawing explain lab note output project protocols record result_files results "
             "sheets spoken summary task", ""),
     "__main__": ("cli completion spoken", ""),
     **dict.fromkeys(NEUTRAL.split(), ("", "")),

@@ -243,6 +243,8 @@ def _listed(file: str) -> list[str]:
 
 
 def _build_one(project: str, order: Order, output: Path | None, explain: bool, with_note: bool) -> None:
+    from contextlib import nullcontext
+
     from tmm_sheets.explain import Stopwatch
     from tmm_sheets.output.building import build as build_project
     from tmm_sheets.progress import Progress
@@ -252,7 +254,9 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool, w
         variant = _read(project, order.corrected)
     folder = _folder(variant, output)
     outlet = order.outlet(folder)
-    with Progress() as progress:
+    if explain:
+        from tmm_sheets.askers import listening
+    with Progress() as progress, listening() if explain else nullcontext() as askers:
         if with_note:
             from tmm_sheets.note import note as writing
 
@@ -276,10 +280,10 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool, w
     if unchanged:
         told = tell("{n} of {m} files unchanged (--force makes them again)").format(n=unchanged, m=len(built.paths))
         click.echo(f"{variant.called}: {told}", err=True)
-    if explain:
+    if askers is not None:
         from tmm_sheets import explain as report
 
-        click.echo(report.text(built.opened, built.drawings, watch))
+        click.echo(report.text(built.opened, built.drawings, watch, askers))
     if built.refused is not None:
         raise built.refused
 

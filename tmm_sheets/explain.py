@@ -1,4 +1,4 @@
-"""What a build did: plans built and not built, steps evaluated and skipped, marks, modules, and the time for each."""
+"""What a build did: plans built and not built, steps evaluated and skipped and who asked for them, marks, modules, times."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from tmm_sheets.numbers import of_reader
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
+    from tmm_sheets.askers import Askers
     from tmm_sheets.drawing.marks import Drawing
     from tmm_sheets.project import Project
 
@@ -36,7 +37,7 @@ class Stopwatch:
             self.phases[name] = self.phases.get(name, 0.0) + perf_counter() - start
 
 
-def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch) -> str:
+def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch, askers: Askers) -> str:
     """The report as plain text; "condition" is that of the flattest crossing computed: 1/sin of the angle between its lines."""
     from tmm_sheets.construction import condition
 
@@ -63,7 +64,18 @@ def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch) ->
     lines += ["", "{:26}{:>8}".format(tell("phase"), tell("ms"))]
     lines += [f"{name:26}{of_reader(f'{1000 * seconds:.1f}'):>8}" for name, seconds in watch.phases.items()]
     lines.append("{:26}{:>8}".format(tell("together"), of_reader(f"{1000 * sum(watch.phases.values()):.1f}")))
+    lines += _asked(project, drawings, askers)
     return "\n".join(lines)
+
+
+def _asked(project: Project, drawings: Mapping[int, Drawing], askers: Askers) -> Iterator[str]:
+    """A line for each evaluated step: who asked for it."""
+    steps = [step for plans in project.plans.values() for plan in (plans or {}).values() for step in (*plan, *plan.asides.values())]
+    found = askers.told(steps, drawings)
+    if found:
+        yield from ("", "{:40}{}".format(tell("step"), tell("asked for")))
+    for step, asker in found.items():
+        yield f"{step.path or step.name:39} {asker.said}"
 
 
 def _evenness(drawings: Mapping[int, Drawing]) -> Iterator[str]:
