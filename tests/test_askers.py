@@ -2,7 +2,7 @@
 
 import pytest
 
-from tmm_sheets import catalogue
+from tmm_sheets import catalogue, kept
 from tmm_sheets.__main__ import run
 from tmm_sheets.askers import listening
 from tmm_sheets.construction.step import Step
@@ -27,7 +27,8 @@ EXCEPTIONS = {
 
 
 @pytest.mark.parametrize("name", ["lugansk/shaper", "press", "sixbar/5:5"])
-def test_what_is_evaluated_is_shown(name):
+def test_what_is_evaluated_is_shown(name, monkeypatch):
+    monkeypatch.setenv(kept.FOLDER, "")  # a sheet that is kept evaluates nothing
     project = Project(catalogue.read(name))
     with listening() as found:
         drawn = every(project).drawn
