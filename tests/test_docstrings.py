@@ -9,7 +9,7 @@ import pytest
 ROOT = Path(__file__).parents[1] / "tmm_sheets"
 ROOMS = (
     "mechanism", "task", "methods/linkage", "methods/gears", "methods/cams", "methods/integration.py", "drawing", "backends",
-    "output", "stress", "bench", "compare/cad", "compare/photo", "catalogue.py", "errors.py", "explain.py", "files.py",
+    "output", "lab/stress", "lab/bench", "compare/cad", "compare/photo", "catalogue.py", "errors.py", "explain.py", "files.py", "askers.py",
     "numbers.py", "project.py", "protocols.py", "resources.py", "results.py", "summary.py", "texts.py",
 )  # fmt: skip
 """Rooms and modules whose docstrings are done; those of the command line are its help."""
