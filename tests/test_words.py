@@ -192,6 +192,27 @@ def alone(*arguments, **environment):
                           encoding="utf-8", env={**kept, "PYTHONPATH": str(ROOT), **environment})  # fmt: skip
 
 
+def test_a_folder_is_a_language(tmp_path):
+    for name in ("uk", "en", "de", ".git"):
+        (tmp_path / name).mkdir()
+    (tmp_path / ".DS_Store").write_text("")
+    (tmp_path / "notes.txt").write_text("")
+    assert words.languages(tmp_path) == ("de", "uk", "en")
+
+
+@pytest.mark.parametrize(("asked", "language"), [
+    ("English_United States.1252", "en"), ("Russian_Russia.1251", "ru"), ("Ukrainian_Ukraine", "uk"), ("German_Germany", "en")])
+def test_names_of_windows_with_a_language_without_words(monkeypatch, asked, language):
+    """Such a language says in English what it is called, too."""
+    monkeypatch.setattr(words, "LANGUAGES", ("de", *words.LANGUAGES))
+    assert words.of_locale({"LANG": asked}) == language
+
+
+def test_forms_of_a_number_follow_the_catalogue():
+    assert [words.plural_form(["a", "b", "c"], n, "uk") for n in (0, 1, 2, 5, 11, 21, 104, 111)] == list("cabccabc")
+    assert [words.plural_form(["a", "b"], n, "ru") for n in (1, 2, 21)] == list("abb")  # no third form: the last for all but one
+
+
 def test_a_process_of_its_own_speaks_the_locale():
     assert alone("solve", LANG="ru_RU.UTF-8").stderr.startswith("Применение:")
     assert alone("solve", LANG="ru_RU.UTF-8", LC_ALL="C").stderr.startswith("Usage:")

@@ -16,13 +16,21 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from decimal import Decimal
 from functools import cache
+from pathlib import Path
 from string import Formatter
 
 from tmm_sheets.resources import template
 
 CODE = "en"
 """Language that the code itself is written in."""
-LANGUAGES = (*sorted(path.name for path in template("locale").iterdir() if path.name != CODE), CODE)
+
+
+def languages(folder: Path) -> tuple[str, ...]:
+    """Languages of a folder of catalogues, the code's own last; a file that lies there too is none."""
+    return (*sorted(path.name for path in folder.glob("[a-z]*") if path.is_dir() and path.name != CODE), CODE)
+
+
+LANGUAGES = languages(template("locale"))
 """Languages that there are catalogues of: a folder is a language."""
 SHEETS, MESSAGES = "ru", CODE
 """Language of sheets when neither project nor command tells one, and of messages when the locale names none of them."""
@@ -107,7 +115,7 @@ def _first(asked: Sequence[str]) -> str:
         short = name.replace("-", "_").split("_")[0].split(".")[0].lower()
         if short in LANGUAGES:
             return short
-        for language in LANGUAGES if len(short) > 3 else ():  # Windows writes the name out
+        for language in reversed(LANGUAGES) if len(short) > 3 else ():  # Windows writes the name out; one without words is English
             if short == name_of(language).lower():
                 return language
     return MESSAGES
@@ -210,6 +218,7 @@ def every(text: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(_catalogue(language).gettext(text) for language in LANGUAGES))
 
 
+@cache
 def of_language(context: str, text: str, language: str) -> str:
     """What a catalogue says of its own language; ``text`` is what is true of English."""
     return _catalogue(language).pgettext(context, text)
