@@ -125,7 +125,6 @@ class Place:
     sides: tuple[tuple[str, float], ...]
 
 
-
 @dataclass(frozen=True)
 class Passages:
     """Change points of a mechanism; ``plan`` makes its plan of positions at crank angles, rad, as far as before a group.
@@ -141,8 +140,16 @@ class Passages:
         known, key = self.m.courses, f"{PURPOSE} {g.name}"
         if key not in known:
             gaps = g.kind.gaps(self.m, g)
-            known[key] = gaps.angles if gaps is not None else self._searched(g) if g.kind.two_ways else ()
+            known[key] = gaps.angles if gaps is not None else self._joined(g, self._searched(g)) if g.kind.two_ways else ()
         return tuple(known[key])
+
+    def _joined(self, g: StructuralGroup, found: tuple[float, ...]) -> tuple[float, ...]:
+        """Angles found, but where a group before it has its change point that very angle: what is one has one angle.
+
+        Between two that differ by the rounding of the search each group would be on another side of what both pass at once.
+        """
+        before = [a for x in self.m.groups[: self.m.groups.index(g)] for a in self.angles(x)]
+        return tuple(next((a for a in before if abs(np.angle(np.exp(1j * (a - x)))) < TOGETHER), x) for x in found)
 
     def _searched(self, g: StructuralGroup) -> tuple[float, ...]:
         """Angles at which a gap of a group that hangs on others touches zero."""
