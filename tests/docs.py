@@ -30,7 +30,7 @@ from tmm_sheets.methods.linkage import positions as positions_module
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import frame
 from tmm_sheets.sheets.arrangement import arrangement
-from tmm_sheets.sheets.frame import Frame
+from tmm_sheets.sheets.frame import PlanFrame
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import messages, schema, units, variant
 from tmm_sheets.task.cam_keys import FOLLOWER_KEYS
@@ -264,7 +264,7 @@ def walk() -> str:
     scale = sheet.scales["positions"]
     (circle,) = {m.centre for m in sheet.drawing.marks if isinstance(m, Arc) and m.style == "thin" and m.of == VIEW
                  and abs(m.radius - task.crank.length / scale.mu) < 1e-9}
-    there = Frame(scale, circle)(z)
+    there = PlanFrame(scale, circle)(z)
     crank = next(m for m in sheet.drawing.marks if isinstance(m, Line) and (m.style, m.of) == ("main", "position plan 2")
                  and abs(cross(m.b - m.a, there - m.a)) < 1e-6)
     written = [f"{x:.4f}" for x in (crank.a.real, crank.a.imag, crank.b.real, crank.b.imag)]

@@ -32,7 +32,7 @@ def test_what_is_evaluated_is_shown(name, monkeypatch):
     project = Project(catalogue.read(name))
     with listening() as found:
         drawn = every(project).drawn
-    steps = [s for plans in project.plans.values() for plan in (plans or {}).values() for s in (*plan, *plan.asides.values())]
+    steps = [s for plans in project.plans.values() for plan in (plans or {}).values() for s in (*plan, *plan.auxiliaries.values())]
     told = found.told(steps, {n: composed.drawing for n, composed in drawn.items()})
     assert {step for step in steps if step.evaluated and isinstance(step.seconds, list)} <= told.keys()
     assert all(asker.said for asker in told.values())

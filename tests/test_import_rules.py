@@ -11,12 +11,12 @@ import pytest
 
 ROOT = Path(__file__).parents[1] / "tmm_sheets"
 MODULES = {".".join(p.relative_to(ROOT).with_suffix("").parts): p for p in ROOT.rglob("*.py")}
-NEUTRAL = "box errors files kept nearest numbers program remarks resources progress texts typed words __init__"
+NEUTRAL = "box encodings errors files kept numbers program quoting remarks resources progress spelling words __init__"
 METHODS = "methods.linkage methods.flywheel methods.gears methods.cams methods.integration"
 
 RULES = {
     # room: (what it imports at run time, what else it names in annotations)
-    "mechanism": ("construction.tally", "construction mechanism.groups"),
+    "mechanism": ("construction.search_count", "construction mechanism.groups"),
     "mechanism.groups": ("construction mechanism", ""),
     "mechanism.structure": ("mechanism", ""),
     "construction": ("", ""),
@@ -58,11 +58,11 @@ RULES = {
     "lab": ("", ""),
     "lab.bench": (f"backends catalogue construction drawing explain mechanism {METHODS} output project results sheets task", ""),
     "lab.stress": ("construction mechanism methods.linkage", ""),
-    "spoken": ("completion", ""),
+    "localized_cli": ("completion", ""),
     "completion": ("catalogue drawing note output project protocols record results", ""),
     "cli": ("askers backends catalogue compare drawing explain lab note output project protocols record result_files results "
-            "sheets spoken summary task", ""),
-    "__main__": ("cli completion spoken", ""),
+            "localized_cli sheets summary task", ""),
+    "__main__": ("cli completion localized_cli", ""),
     **dict.fromkeys(NEUTRAL.split(), ("", "")),
 }
 """What each room may import besides itself and the neutral modules; a row holds for all below it that has none of its own."""

@@ -12,7 +12,7 @@ import pytest
 from tests import catalogues
 from tests.few import seldom
 from tests.project_files import EVEN, SLIDER, write
-from tmm_sheets import catalogue, typed
+from tmm_sheets import catalogue, quoting
 from tmm_sheets.__main__ import run
 from tmm_sheets.cli import commands
 
@@ -31,16 +31,16 @@ def desk(tmp_path, monkeypatch):
 
 @pytest.fixture
 def quoted(monkeypatch, capsys):
-    """Runs a command; the commands that its output quotes. None stands there that was not put together by ``typed``."""
+    """Runs a command; the commands that its output quotes. None stands there that was not put together by ``quoting``."""
     made = []
     for name in ("command", "install"):
-        before = getattr(typed, name)
+        before = getattr(quoting, name)
 
         def noted(*arguments, before=before):
             made.append(before(*arguments))
             return made[-1]
 
-        monkeypatch.setattr(typed, name, noted)
+        monkeypatch.setattr(quoting, name, noted)
 
     def start(*arguments, status=2):
         made.clear()
@@ -147,10 +147,10 @@ def test_case_of_a_stress_run(quoted, capsys):
 @pytest.mark.parametrize("extra", ["compare", "note", "bench", "cluster", "peers", "ocr"])
 def test_extras(extra):
     """What pip is told to install are packages, those of the extra: the program's own name may be somebody else's there."""
-    words = shlex.split(typed.install(extra))
+    words = shlex.split(quoting.install(extra))
     assert words[:2] == ["pip", "install"]
     assert not any("tmm" in word or "[" in word for word in words)
-    started(typed.install(extra))
+    started(quoting.install(extra))
 
 
 @pytest.mark.parametrize(("arguments", "module", "extra"), [
@@ -166,7 +166,7 @@ def test_a_package_that_is_missing(arguments, module, extra, desk, quoted, monke
     monkeypatch.setattr(importlib.util, "find_spec", lambda name, *rest: None if name == module else find(name, *rest))
     monkeypatch.setitem(sys.modules, module, None)
     found, _ = quoted(*arguments, status=1 if module == "typst" else 2)
-    assert found == [typed.install(extra)]
+    assert found == [quoting.install(extra)]
 
 
 def test_options_that_are_told_exist():
@@ -178,6 +178,6 @@ def test_options_that_are_told_exist():
 
 
 def test_words_of_a_shell():
-    assert typed.quoted(["a/b:1", "x@01-Т-27", "my own.toml", "$x", ""]) == "a/b:1 x@01-Т-27 'my own.toml' '$x' ''"
+    assert quoting.quoted(["a/b:1", "x@01-Т-27", "my own.toml", "$x", ""]) == "a/b:1 x@01-Т-27 'my own.toml' '$x' ''"
     for words in (["a b"], ["'"], ['"'], ["*"], ["it's"], ["проект 1.toml"]):
-        assert shlex.split(typed.quoted(words)) == words
+        assert shlex.split(quoting.quoted(words)) == words

@@ -76,9 +76,9 @@ def run(arguments: list[str]) -> int:
 
 
 def _run(arguments: list[str]) -> int:
-    from tmm_sheets import spoken
+    from tmm_sheets import localized_cli
 
-    with spoken.chosen(arguments):
+    with localized_cli.chosen(arguments):
         return _carried_out(arguments)
 
 

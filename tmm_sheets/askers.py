@@ -11,8 +11,8 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import TYPE_CHECKING, NamedTuple
 
+from tmm_sheets.construction.search_count import SearchCount
 from tmm_sheets.construction.step import Step, ordered, parents
-from tmm_sheets.construction.tally import Tally
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ class Askers:
 
 def _for(step: Step) -> str:
     """What a step is made for."""
-    if isinstance(step.seconds, Tally):
+    if isinstance(step.seconds, SearchCount):
         return tell("search: {purpose}").format(purpose=tell(step.seconds.purpose))
     return tell("for {step}").format(step=step.path or step.name)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets import nearest, resources, typed
+from tmm_sheets import quoting, resources, spelling
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.task import families, headings
 from tmm_sheets.words import either, tell
@@ -79,8 +79,8 @@ def located(project: str) -> Path:
     path = Path(project)
     if os.path.lexists(path):
         return path
-    near = nearest.near(project, (*map(str, files_beside(path)), *shipped()), 3)
-    listing = tell("{command} shows the shipped projects").format(command=typed.command("list"))
+    near = spelling.near(project, (*map(str, files_beside(path)), *shipped()), 3)
+    listing = tell("{command} shows the shipped projects").format(command=quoting.command("list"))
     hint = tell("did you mean {near}?").format(near=either(near)) if near else listing
     if project.endswith(SUFFIX):
         raise BadInput(Problem(tell("no such file"), project, hint=hint))

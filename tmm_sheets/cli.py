@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tmm_sheets import __version__, kept, nearest, words
+from tmm_sheets import __version__, kept, spelling, words
 from tmm_sheets.box import Box
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of, together
-from tmm_sheets.spoken import Group, Option, argument, option
+from tmm_sheets.localized_cli import Group, Option, argument, option
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def _among(known: tuple[str, ...]) -> Callable[[click.Context, click.Parameter, 
         for part in parts:
             if part not in known:
                 said = tell("'{part}' is not one of {known}").format(part=part, known=', '.join(known))
-                near = nearest.near(part, known)
+                near = spelling.near(part, known)
                 raise click.BadParameter(f"{said}; " + tell("did you mean {near}?").format(near=near[0]) if near else said)
         return parts
 
@@ -230,15 +230,15 @@ def _listed(file: str) -> list[str]:
     """Lines of a list of projects, of standard input for -."""
     import sys
 
-    from tmm_sheets import files, texts
+    from tmm_sheets import encodings, files
 
     hint = tell("a list names a project in each line, in UTF-8")
     try:
         data = sys.stdin.buffer.read() if file == "-" else files.content(Path(file))
-        return texts.cleaned(texts.decoded(data).text).splitlines()
+        return encodings.cleaned(encodings.decoded(data).text).splitlines()
     except OSError as e:
         raise BadInput(Problem(tell("cannot be read: {why}").format(why=reason_of(e)), file, hint=hint)) from None
-    except texts.NotText as e:
+    except encodings.NotText as e:
         raise BadInput(Problem(str(e), file, e.line, hint=hint)) from None
 
 

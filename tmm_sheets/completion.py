@@ -24,7 +24,7 @@ from click.shell_completion import (
 )
 
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.typed import PROGRAM
+from tmm_sheets.quoting import PROGRAM
 
 if TYPE_CHECKING:
     import click

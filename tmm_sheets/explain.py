@@ -46,7 +46,7 @@ def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch, as
     for name, plans in project.plans.items():
         lines.append((tell("{part}: not built") if plans is None else tell("{part}: built")).format(part=name))
         for plan in (plans or {}).values():
-            steps = [*plan, *plan.asides.values()]
+            steps = [*plan, *plan.auxiliaries.values()]
             done = [step for step in steps if step.evaluated]
             ms = 1000 * sum(step.spent for step in done)
             worst = condition.worst(plan)
@@ -70,7 +70,8 @@ def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch, as
 
 def _asked(project: Project, drawings: Mapping[int, Drawing], askers: Askers) -> Iterator[str]:
     """A line for each evaluated step: who asked for it."""
-    steps = [step for plans in project.plans.values() for plan in (plans or {}).values() for step in (*plan, *plan.asides.values())]
+    steps = [step for plans in project.plans.values() for plan in (plans or {}).values()
+             for step in (*plan, *plan.auxiliaries.values())]
     found = askers.told(steps, drawings)
     if found:
         yield from ("", "{:40}{}".format(tell("step"), tell("asked for")))

@@ -11,7 +11,7 @@ from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
-    from tmm_sheets.construction.tally import Tally
+    from tmm_sheets.construction.search_count import SearchCount
     from tmm_sheets.mechanism.groups.three_legs import Course
     from tmm_sheets.mechanism.groups.triad import TriadGroup
     from tmm_sheets.mechanism.model import Mechanism
@@ -364,7 +364,7 @@ class Project:
         return {part: _plans_of(made[part]) if part in made else None for part in PLANNED}
 
     @property
-    def searches(self) -> tuple[Tally, ...]:
+    def searches(self) -> tuple[SearchCount, ...]:
         """What was looked for with plans that nobody draws, and how many it took."""
         return tuple(self.mechanism.searches.values()) if "mechanism" in vars(self) else ()
 

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
-from tmm_sheets import nearest
+from tmm_sheets import spelling
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.words import either, tell, tr
 
@@ -61,7 +61,7 @@ def _internal(name: str) -> bool:
 def _unknown(project: Project, name: str, found: Collection[str], shown: Mapping[int, Sequence[str]], everything: bool) -> BadInput:
     """That there is no such plan, with those that may be meant, or those that are drawn, sheet by sheet."""
     drawn = [plan for of_sheet in shown.values() for plan in of_sheet]
-    near = nearest.near(name, found if everything or _internal(name) else drawn, 6) or nearest.near(name, found, 6)
+    near = spelling.near(name, found if everything or _internal(name) else drawn, 6) or spelling.near(name, found, 6)
     if near:
         hint = tell("did you mean {near}?").format(near=either(near))
     elif everything:

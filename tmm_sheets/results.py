@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.construction.step import Part, Step, Told
+from tmm_sheets.construction.step import Part, Reported, Step
 from tmm_sheets.errors import BadInput, CannotBuild, together
 from tmm_sheets.numbers import Sizes, clean, in_a_row, listed
 from tmm_sheets.project import LINKAGE
@@ -320,14 +320,14 @@ def _cycle(project: Project, study: Study) -> dict[str, Any]:
     angle, crank = study.positions.angle, study.mechanism.crank.link
     return {
         "labels": list(study.labels),
-        "phi": Told(angle) if isinstance(angle, Step) else study.positions.phi,
-        "omega1": Told(study.velocities.omega[crank]),
-        "epsilon1": Told(study.accelerations.epsilon[crank]),
+        "phi": Reported(angle) if isinstance(angle, Step) else study.positions.phi,
+        "omega1": Reported(study.velocities.omega[crank]),
+        "epsilon1": Reported(study.accelerations.epsilon[crank]),
     }
 
 
 @dataclass(frozen=True)
-class Spread(Told):
+class Spread(Reported):
     """A step told for some of ``count`` positions, all unless ``rows`` says which; the same for each where it depends on none."""
 
     count: int = 1
@@ -342,7 +342,7 @@ class Spread(Told):
         return spread if self.rows is None else spread[list(self.rows)]
 
 
-def _all(study: Study, steps: Mapping[str, Step], part: Part = "") -> dict[str, Told]:
+def _all(study: Study, steps: Mapping[str, Step], part: Part = "") -> dict[str, Reported]:
     return {name: Spread(step, part, (), len(study.labels)) for name, step in steps.items()}
 
 

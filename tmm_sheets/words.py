@@ -121,7 +121,7 @@ def _first(asked: Sequence[str]) -> str:
     return MESSAGES
 
 
-class Text(str):
+class CatalogueText(str):
     """A text of a catalogue: the numbers that are filled in are written as its language writes them.
 
     This is the one place where a sentence gets its decimal comma: whoever says something fills in numbers as they are, and what
@@ -150,8 +150,8 @@ class _Written(Formatter):
         return text.replace(".", self.sign) if isinstance(value, _FRACTIONS) else text
 
 
-def _text(text: str, language: str) -> Text:
-    found = Text(text)
+def _text(text: str, language: str) -> CatalogueText:
+    found = CatalogueText(text)
     found.language = language
     return found
 

@@ -11,7 +11,7 @@ from tests.methods.linkage import truth as other
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.lab.bench import peer_programs, peers, plots
-from tmm_sheets.lab.bench.peer_programs import Program, Turn
+from tmm_sheets.lab.bench.peer_programs import PeerProgram, Turn
 from tmm_sheets.lab.bench.records import Bench, as_json
 
 NAMES = [name for name, _ in peers.MECHANISMS]
@@ -75,7 +75,7 @@ class Shifted(peers.Ours):
         return {**runs, "accelerations": shifted}
 
 
-class Poor(Program):
+class Poor(PeerProgram):
     """Gives one hinge of the velocities, fails in the accelerations, and knows no shaper."""
 
     name = "poor"

@@ -20,8 +20,8 @@ import numpy as np
 
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.cad import cad_file, layout, matching
-from tmm_sheets.compare.cad.laying import lay
 from tmm_sheets.compare.cad.line_fit import lines
+from tmm_sheets.compare.cad.registration import register
 from tmm_sheets.compare.elements import Element, elements
 from tmm_sheets.compare.known_sheet import KnownSheet
 from tmm_sheets.compare.placing import Placing
@@ -246,7 +246,7 @@ def compared(data: bytes, sheet, found):
         path = Path(folder) / "drawing.dxf"
         path.write_bytes(data)
         ink = cad_file.read(path)
-    laid = lay([KnownSheet(1, sheet, tuple(found))], ink)
+    laid = register([KnownSheet(1, sheet, tuple(found))], ink)
     space = laid.space.placed(laid.placing)
     places = layout.find(found, space)
     return matching.match(found, space, places.moves, 0.25)

@@ -20,7 +20,7 @@ import numpy as np
 
 from tests.compare.students import OWN, PENCIL, READING, Hand, opened
 from tmm_sheets.compare.measured.chain import judge
-from tmm_sheets.compare.measured.judged import Judged
+from tmm_sheets.compare.measured.judged import JudgedValue
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables
 from tmm_sheets.compare.measured.measured_file import Filled
 from tmm_sheets.construction.step import Step
@@ -322,7 +322,7 @@ class Student:
     project: str
     number: int
     slips: tuple[Slip, ...]
-    judged: list[Judged]
+    judged: list[JudgedValue]
     without: tuple[Mapping[str, float], ...]
     """What the same hand measured without the first slip, without the second ..., by the numbers' ids."""
 
@@ -334,12 +334,12 @@ class Student:
     @property
     def seen(self) -> bool:
         """Whether each mistake puts a number so far off that it can be told, beside the other one too."""
-        def off(by: float, j: Judged) -> bool:
+        def off(by: float, j: JudgedValue) -> bool:
             return abs(by) > VISIBLE * j.tolerance
 
         if len(self.slips) == 1:
             return any(off(j.deviation, j) or j.starts for j in self.judged)
-        def written(j: Judged, value: float) -> float:
+        def written(j: JudgedValue, value: float) -> float:
             """Of what is told without a sign it shows nothing."""
             return value if j.entry.signed or j.entry.kind in ("angle", "sense") else abs(value)
 

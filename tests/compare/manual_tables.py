@@ -21,7 +21,7 @@ from tests.manuals.test_shaper_tables import ERRATA as SHAPER_ERRATA
 from tmm_sheets import catalogue
 from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.collecting import measurables
-from tmm_sheets.compare.measured.judged import Judged
+from tmm_sheets.compare.measured.judged import JudgedValue
 from tmm_sheets.compare.measured.measurable import Measurables
 from tmm_sheets.compare.measured.measured_file import Filled, read
 from tmm_sheets.project import Project
@@ -54,7 +54,7 @@ class Outcome:
     """A cell with its judgement."""
 
     cell: Cell
-    judged: Judged
+    judged: JudgedValue
 
 
 def rows(name: str) -> list[dict[str, str]]:

@@ -22,7 +22,7 @@ import numpy as np
 from tmm_sheets import catalogue
 from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.collecting import measurables
-from tmm_sheets.compare.measured.judged import Judged
+from tmm_sheets.compare.measured.judged import JudgedValue
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine
 from tmm_sheets.construction import error
@@ -175,7 +175,8 @@ class Hand:
         return Filled(lines)
 
 
-def compared(found: Measurables, rng: np.random.Generator, plants: tuple[Plant, ...] = (), sigma: float = SIGMA) -> list[Judged]:
+def compared(found: Measurables, rng: np.random.Generator, plants: tuple[Plant, ...] = (),
+             sigma: float = SIGMA) -> list[JudgedValue]:
     """Draw, measure and judge."""
     return judge(Hand(found, rng, plants, sigma).filled(), found, PENCIL, READING)
 
@@ -265,7 +266,7 @@ KINDS: Mapping[str, Callable[[Measurables, np.random.Generator], Plant | None]] 
 # --- verdicts ---------------------------------------------------------------------------------------------------------------
 
 
-def touched(j: Judged, plant: Plant, found: Measurables) -> bool:
+def touched(j: JudgedValue, plant: Plant, found: Measurables) -> bool:
     """True for a number that the mistake was made in or that depends on the step it was made in, at its position."""
     if plant.entry:
         return j.entry.id == plant.entry
@@ -274,7 +275,7 @@ def touched(j: Judged, plant: Plant, found: Measurables) -> bool:
     return any(s is step and (np.size(step.value) == 1 or plan.labels[k] == plant.label) for s, k, g in j.rows if g)
 
 
-def named(j: Judged, plant: Plant) -> bool:
+def named(j: JudgedValue, plant: Plant) -> bool:
     """True for a number that tells of this very mistake."""
     return (j.mistake is not None and j.mistake.step.name == plant.step) or j.entry.id == plant.entry
 
@@ -290,7 +291,7 @@ class Student:
     seen: bool
     named: bool
     step: bool
-    second: list[Judged]
+    second: list[JudgedValue]
 
     def __str__(self) -> str:
         wrong = "; ".join(map(str, self.plants))

@@ -9,9 +9,9 @@ from tmm_sheets.compare.photo.arrow_heads import exchanged, with_heads
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.line_ends import with_ends
+from tmm_sheets.compare.photo.masking import fill
 from tmm_sheets.compare.photo.profiles import SCALE
-from tmm_sheets.compare.photo.traces import Trace
-from tmm_sheets.compare.photo.wiping import fill
+from tmm_sheets.compare.photo.traces import InkTrace
 
 A, B = 300 + 300j, 330 + 320j
 WAY = (B - A) / abs(B - A)
@@ -39,7 +39,7 @@ def heads(known, drawn, at=(), letters=(), blur=0.0, grey=True):
         ink = cv2.GaussianBlur(ink, (0, 0), blur * SCALE)
     if not grey:
         ink = np.where(ink > ink.max() / 4, np.uint8(255), np.uint8(0))
-    traces = [Trace(e, "measured", at=e.points) for e in known]
+    traces = [InkTrace(e, "measured", at=e.points) for e in known]
     return with_heads(traces, ink, owners, words, np.zeros((594, 841), bool))
 
 
@@ -146,7 +146,8 @@ def test_a_vector_drawn_elsewhere_leaves_its_place_to_the_helper_line(under, dra
     draw(ink, A, A + (B - A) * turn, "vector")
     if drawn:
         fill_head(ink, A + (B - A) * turn, float(np.angle(WAY * turn)))
-    traces = [Trace(vector, "measured", at=vector.points, head="absent"), Trace(helper, "beside", turn=0.1, deviation=4, at=there)]
+    traces = [InkTrace(vector, "measured", at=vector.points, head="absent"),
+              InkTrace(helper, "beside", turn=0.1, deviation=4, at=there)]
     found = exchanged(traces, ink, owners, words, np.zeros((594, 841), bool))
     assert (found[0].status, found[1].status) == status
     assert found[0].head == head
@@ -191,7 +192,7 @@ def test_thin_lines_fade_in_the_hub_of_many_positions(positions, short):
     owners = Owners(ROWS, COLUMNS)
     for e in lines:
         owners.add(e, e.points)
-    t = with_ends([Trace(lines[0], "measured", at=lines[0].points)], ink, owners, np.zeros_like(ink), 40)[0]
+    t = with_ends([InkTrace(lines[0], "measured", at=lines[0].points)], ink, owners, np.zeros_like(ink), 40)[0]
     assert ("too short at its beginning" in judge(t, 0.25, 0.15).what) == short
 
 
@@ -214,7 +215,7 @@ def test_a_faint_head_is_not_missed(dark, head):
     draw(ink, A, B, "vector")
     owners = Owners(ROWS, COLUMNS)
     owners.add(e, e.points)
-    found = with_heads([Trace(e, "measured", at=e.points)], ink, owners, np.zeros_like(ink), np.zeros((594, 841), bool))
+    found = with_heads([InkTrace(e, "measured", at=e.points)], ink, owners, np.zeros_like(ink), np.zeros((594, 841), bool))
     assert found[0].head in (head, "unknown") if dark else found[0].head == head
 
 
@@ -338,7 +339,7 @@ def test_a_stroke_as_broad_as_a_head_hides_it(wide, head):
 @pytest.mark.parametrize(("deviation", "said"), [(0.0, "no arrow head here"), (3.0, "3.0 mm too far up")])
 def test_of_a_vector_drawn_elsewhere_no_head_is_missed_in_its_place(deviation, said):
     e = arrow(1, 300 + 300j, 340 + 300j)
-    t = Trace(e, "measured", shift=1j * deviation, deviation=deviation, at=e.points + 1j * deviation, head="absent")
+    t = InkTrace(e, "measured", shift=1j * deviation, deviation=deviation, at=e.points + 1j * deviation, head="absent")
     assert judge(t, 0.25, 0.15).what == said
 
 
@@ -366,7 +367,7 @@ def test_a_thin_line_elsewhere_is_not_the_vector_that_was_left_out(by, status):
         draw(ink, *k.points, k.style)
     for place, way in THEIRS:
         fill_head(ink, place, way)
-    traces = [Trace(e, "measured", deviation=abs(by), at=there.points), *(Trace(k, "measured", at=k.points) for k in SOUND)]
+    traces = [InkTrace(e, "measured", deviation=abs(by), at=there.points), *(InkTrace(k, "measured", at=k.points) for k in SOUND)]
     assert with_heads(traces, ink, owners, np.zeros_like(ink), np.zeros((594, 841), bool))[0].status == status
 
 
@@ -387,7 +388,7 @@ def test_the_head_of_a_vector_whose_point_was_moved_stands_there(ends, head):
     for k in (e, other):
         owners.add(k, k.points)
         draw(ink, *(k.points + (np.array(ends) if k is other else 0)), k.style)
-    traces = [Trace(e, "measured", at=e.points), Trace(other, "measured", at=other.points + np.array(ends))]
+    traces = [InkTrace(e, "measured", at=e.points), InkTrace(other, "measured", at=other.points + np.array(ends))]
     assert with_heads(traces, ink, owners, np.zeros_like(ink), np.zeros((594, 841), bool))[0].head == head
 
 

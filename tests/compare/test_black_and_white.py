@@ -5,25 +5,25 @@ import pytest
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.photo.black_and_white import eaten, eats, without_grey
+from tmm_sheets.compare.photo.black_and_white import eats, lost_to_threshold, without_grey
 from tmm_sheets.compare.photo.judging import judge
-from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.marks import Provenance as By
 from tmm_sheets.drawing.marks import Text
-from tmm_sheets.drawing.marks import Trace as By
 
 VIEW = ElementView(0, "view", Box(0, 0, 841, 594))
 
 
 def found(status, style="thin", length=60.0, covered=1.0, deviation=0.0, **more):
     e = Element(1, VIEW, "", "line", np.array([100, 100 + length], complex), style, by=By("link", "", ""))
-    return Trace(e, status, 1j * deviation, deviation=deviation, covered=covered, at=e.points, **more)
+    return InkTrace(e, status, 1j * deviation, deviation=deviation, covered=covered, at=e.points, **more)
 
 
 def lettering(status, text, moved=0j):
     mark = Text(100 + 100j, text, 5.0)
     e = Element(1, VIEW, text, "text", text_box(mark), "text", text=text, height=5.0, marks=(mark,))
-    return Trace(e, status, moved, deviation=abs(moved), at=e.points + moved if moved else None)
+    return InkTrace(e, status, moved, deviation=abs(moved), at=e.points + moved if moved else None)
 
 
 @pytest.mark.parametrize(("levels", "only"), [
@@ -74,7 +74,7 @@ BLACK_ON_WHITE, PAPER = np.repeat(np.array([255, 0], np.uint8), [900, 100])[None
     (BLACK_ON_WHITE, 10, 11.8, "lines"), (PAPER, 10, 3.5, "nothing")])  # fmt: skip
 def test_what_a_picture_eats(grey, broken, scale, some):
     traces = [found("measured")] * 90 + [found("measured", covered=0.8)] * broken
-    assert eaten(grey, traces, scale) == some
+    assert lost_to_threshold(grey, traces, scale) == some
 
 
 @pytest.mark.parametrize(("trace", "judged"), [

@@ -15,9 +15,9 @@ from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint
 from tmm_sheets.compare.known_sheet import known_sheet
 from tmm_sheets.compare.photo import built_photo, tracing
 from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.masking import paint
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.sheet_map import PAPER
-from tmm_sheets.compare.photo.wiping import paint
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.project import Project
 
@@ -165,7 +165,7 @@ def test_ink_that_crosses_a_line_is_none_along_it():
 ])
 def test_a_line_that_is_in_its_place_speaks_against_a_mistake_that_leads_it_elsewhere(by, found, stays):
     was = next(e for e in KNOWN.elements if e.kind == "line" and e.role == "vector" and e.length > 20)
-    f = judge(tracing.Trace(was, **{"status": "measured", **found}), 0.25, 0.15)
+    f = judge(tracing.InkTrace(was, **{"status": "measured", **found}), 0.25, 0.15)
     way = (was.points[1] - was.points[0]) / was.length
     assert built_photo._stays(f, was.points + np.array(by) * way) is stays
 
@@ -176,8 +176,8 @@ def test_a_line_that_is_in_its_place_speaks_against_a_mistake_that_leads_it_else
 ])
 def test_a_line_that_would_run_off_the_paper_is_not_called_missing(by, told):
     was = next(e for e in KNOWN.elements if e.kind == "line" and e.role == "vector")
-    f = judge(tracing.Trace(replace(was, points=was.points + by), "missing"), 0.25, 0.15)
-    first = judge(tracing.Trace(was, "missing"), 0.25, 0.15)
+    f = judge(tracing.InkTrace(replace(was, points=was.points + by), "missing"), 0.25, 0.15)
+    first = judge(tracing.InkTrace(was, "missing"), 0.25, 0.15)
     judged = built_photo._judged(f, first, SimpleNamespace(uncertainty=0.15), 0.25)
     assert (judged.verdict, judged.what) == ("red", told)
     assert PAPER.contains(judged.at)  # or its number would stand off the overlay
@@ -199,9 +199,9 @@ SEEN = {"status": "measured", "ends": (0.0, 0.0)}
     (0.6j, {"status": "measured"}, {"status": "measured"}, "amber"),
 ])
 def test_what_was_measured_in_its_place_is_not_elsewhere(by, here, there, told):
-    first = judge(tracing.Trace(VECTOR, **here), 0.25, 0.15)
+    first = judge(tracing.InkTrace(VECTOR, **here), 0.25, 0.15)
     now = replace(VECTOR, points=VECTOR.points + by * WAY)
-    f = built_photo._judged(judge(tracing.Trace(now, **there), 0.25, 0.15), first, SimpleNamespace(uncertainty=0.15), 0.25)
+    f = built_photo._judged(judge(tracing.InkTrace(now, **there), 0.25, 0.15), first, SimpleNamespace(uncertainty=0.15), 0.25)
     assert f.verdict == told
     assert f.element is VECTOR
     assert ("as follows from the mistake" in f.what) == (told != "green")
@@ -209,10 +209,10 @@ def test_what_was_measured_in_its_place_is_not_elsewhere(by, here, there, told):
 
 @pytest.mark.parametrize(("against", "contradicted"), [(2, True), (1, True), (0, False)])
 def test_lines_in_their_places_speak_against_a_mistake(against, contradicted):
-    red = judge(tracing.Trace(VECTOR, "missing"), 0.25, 0.15)
+    red = judge(tracing.InkTrace(VECTOR, "missing"), 0.25, 0.15)
     step = errors_of(SHAPER, KNOWN)[0]["accelerations"]["k"]
     built = None, [PlanPoint(step, z, z + 3j * WAY) for z in VECTOR.points]
-    stays = judge(tracing.Trace(VECTOR, "measured"), 0.25, 0.15)
+    stays = judge(tracing.InkTrace(VECTOR, "measured"), 0.25, 0.15)
     assert built_photo._contradicted(built, [red] * 3 + [stays] * against) is contradicted
     assert not built_photo._contradicted(built, [red] * 7 + [stays] * min(against, 1))
 

@@ -8,14 +8,14 @@ import pytest
 from tests.compare.test_view_search import ALONG, OPPOSITE, STAR, TWO, view
 from tmm_sheets.compare.cad import cad_built
 from tmm_sheets.compare.cad.line_fit import lines
-from tmm_sheets.compare.diagnosis.built_plan import Drawing, _share
+from tmm_sheets.compare.diagnosis.built_plan import StudentDrawing, _share
 from tmm_sheets.compare.placing import Placing
 
 
 def share(vectors, ink, move):
     """Share of a plan of these vectors that is drawn in some lines, both of our sheet; the drawing is placed by ``move``."""
     theirs = lines(move(np.array(ends)) for ends in ink)
-    drawing = Drawing(lambda line: cad_built._inked(theirs, move, line), lambda z: z, [], move.scale,
+    drawing = StudentDrawing(lambda line: cad_built._inked(theirs, move, line), lambda z: z, [], move.scale,
                       lambda line: cad_built._goes_on(theirs, move, line))
     return _share(SimpleNamespace(vectors=view(0, vectors)[1]), drawing, ())
 

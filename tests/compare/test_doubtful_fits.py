@@ -11,12 +11,12 @@ from tests.compare.test_image import N, grey, known, rectified, shot
 from tmm_sheets.compare.elements import grown
 from tmm_sheets.compare.photo import frame_quads, rectification, tracing
 from tmm_sheets.compare.photo.frame_quads import homographies
-from tmm_sheets.compare.photo.hidden import at as hidden_at
 from tmm_sheets.compare.photo.judging import judge
-from tmm_sheets.compare.photo.photograph import Picture
+from tmm_sheets.compare.photo.masking import fill
+from tmm_sheets.compare.photo.occlusion import at as hidden_at
+from tmm_sheets.compare.photo.photograph import Photograph
 from tmm_sheets.compare.photo.refusal import refusal
 from tmm_sheets.compare.photo.sheet_map import CORNERS, projected
-from tmm_sheets.compare.photo.wiping import fill
 from tmm_sheets.errors import CannotBuild
 
 INSIDE = (np.linspace(90, 820, 12)[None, :] + 1j * np.linspace(20, 570, 9)[:, None]).ravel()
@@ -41,7 +41,7 @@ def worst(found):
 
 @pytest.mark.trial
 def test_three_sides_make_a_frame_and_the_hidden_part_is_not_missing():
-    found = rectification.rectify(Picture(without_its_left_side()), known(), Path("photo.jpg"))
+    found = rectification.rectify(Photograph(without_its_left_side()), known(), Path("photo.jpg"))
     assert found.check.acceptable
     assert worst(found) < 0.8
     traces, _ = tracing.trace(known(), found.ink, found.hidden)
@@ -151,7 +151,7 @@ def test_a_frame_found_elsewhere_is_fitted_as_finely_as_the_first(monkeypatch):
     tried = []
     monkeypatch.setattr(rectification.frame_search, "find", nothing)
     monkeypatch.setattr(rectification._Attempts, "finer", lambda attempts: tried.append(attempts.best))
-    found = rectification.rectify(Picture(without_its_left_side()), known(), Path("photo.jpg"))
+    found = rectification.rectify(Photograph(without_its_left_side()), known(), Path("photo.jpg"))
     assert tried[0] is None
     assert tried[-1].check is found.check
 

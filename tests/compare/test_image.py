@@ -16,7 +16,7 @@ from tmm_sheets.compare.elements import elements
 from tmm_sheets.compare.photo import frame_fit, frame_search, image, rectification, tracing
 from tmm_sheets.compare.photo.image_report import image_report
 from tmm_sheets.compare.photo.judging import judge
-from tmm_sheets.compare.photo.photograph import Picture, read
+from tmm_sheets.compare.photo.photograph import Photograph, read
 from tmm_sheets.compare.report_pages import page
 from tmm_sheets.drawing.marks import Arc
 from tmm_sheets.errors import BadInput, CannotBuild
@@ -64,7 +64,7 @@ def shot(**changes):
 
 @cache
 def rectified():
-    return rectification.rectify(Picture(grey()), known(), Path("photo.jpg"))
+    return rectification.rectify(Photograph(grey()), known(), Path("photo.jpg"))
 
 
 def test_places_after_rectification():
@@ -217,4 +217,4 @@ def test_blurred_picture_is_refused(monkeypatch):
     monkeypatch.setattr(frame_search, "find", lambda *_: found)
     assert frame_fit.fit_frame(grey(), frame_fit.initial_map(found.corners, found.sides, grey().shape)).smear < rectification.SOFT
     with pytest.raises(CannotBuild, match="blurred: edges of lines are smeared over"):
-        rectification.rectify(Picture(cv2.GaussianBlur(grey(), (0, 0), 2.6)), known(), Path("photo.jpg"))
+        rectification.rectify(Photograph(cv2.GaussianBlur(grey(), (0, 0), 2.6)), known(), Path("photo.jpg"))

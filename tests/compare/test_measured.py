@@ -16,9 +16,9 @@ from tests.few import seldom
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.compare.measured.chain import judge
-from tmm_sheets.compare.measured.displaced_step import covariance
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, read
 from tmm_sheets.compare.measured.measured_lengths import NAME
+from tmm_sheets.compare.measured.misplaced_point import covariance
 from tmm_sheets.construction.step import value_at
 from tmm_sheets.project import Project
 

@@ -6,9 +6,9 @@ import pytest
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.photo.judging import judge
-from tmm_sheets.compare.photo.meeting_ends import without_joins
-from tmm_sheets.compare.photo.traces import Trace
-from tmm_sheets.drawing.marks import Trace as By
+from tmm_sheets.compare.photo.meeting_ends import ignore_junction_ends
+from tmm_sheets.compare.photo.traces import InkTrace
+from tmm_sheets.drawing.marks import Provenance as By
 
 VIEW = ElementView(1, "plan", Box(0, 0, 841, 594))
 LINE = Element(1, VIEW, "A–B", "line", np.array([100 + 300j, 150 + 300j]), "main")
@@ -33,9 +33,9 @@ JOINT, AWAY, WHEEL, DOT = ring(1.6), ring(1.6, 104 + 300j), ring(20.0), ring(0.5
     ([JOINT], np.nan, False),
 ])
 def test_an_end_that_meets_others_may_be_off_as_a_pencil_makes_it(others, by, right):
-    for t, ends in ((Trace(LINE, "measured", ends=(by, 1.2), at=LINE.points), (0.0 if right else by, 1.2)),
-                    (Trace(LINE, "measured", ends=(np.nan, by), at=LINE.points), (np.nan, by))):  # nothing is at B
-        found, = without_joins([t], [LINE, *others])
+    for t, ends in ((InkTrace(LINE, "measured", ends=(by, 1.2), at=LINE.points), (0.0 if right else by, 1.2)),
+                    (InkTrace(LINE, "measured", ends=(np.nan, by), at=LINE.points), (np.nan, by))):  # nothing is at B
+        found, = ignore_junction_ends([t], [LINE, *others])
         assert found.ends == pytest.approx(ends, nan_ok=True)
 
 
@@ -45,4 +45,4 @@ def test_an_end_that_meets_others_may_be_off_as_a_pencil_makes_it(others, by, ri
 ])
 def test_a_dashed_line_may_lack_its_last_dash(style, by, verdict):
     e = Element(1, VIEW, "", "line", LINE.points, style, by=By("link", "", ""))
-    assert judge(Trace(e, "measured", ends=(0.0, by), at=e.points), 0.25, 0.15).verdict == verdict
+    assert judge(InkTrace(e, "measured", ends=(0.0, by), at=e.points), 0.25, 0.15).verdict == verdict

@@ -11,7 +11,7 @@ from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.photo import numbers_read
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.sheet_map import PAPER
-from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.errors import BadInput
 
@@ -46,7 +46,7 @@ def test_numbers_are_shown_upright_and_once_more_where_they_differ():
         return one
 
     ink = np.zeros((round(PAPER.height * SCALE), round(PAPER.width * SCALE)), np.float32)
-    traces = [Trace(e, "lettering"), Trace(e, "hidden")]
+    traces = [InkTrace(e, "lettering"), InkTrace(e, "hidden")]
     answers = (["16,1"], ["26,1", "26,1"], ["26,1", "16,1"], ["26,1", "36,1"])
     of = [numbers_read.readings(traces, ink, read(said)) for said in answers]
     assert [(o.asked, o.unread, dict(o.otherwise)) for o in of] == [(1, 0, {}), (1, 0, {200: "26,1"}), (1, 0, {}), (1, 1, {})]
@@ -69,7 +69,7 @@ def test_a_swapped_digit_is_read():
     traces = []
     for k, (ours, theirs) in enumerate(zip(wanted, written, strict=True)):
         at, angle = 200 + (100 + 60 * k) * 1j, 0.0 if k < 3 else np.pi / 2
-        traces.append(Trace(lettering(ours, at, angle)[0], "lettering"))
+        traces.append(InkTrace(lettering(ours, at, angle)[0], "lettering"))
         for p in letters(lettering(theirs, at, angle)[1]):
             xy = np.column_stack((p.real * SCALE - 0.5, (PAPER.y1 - p.imag) * SCALE - 0.5))
             cv2.polylines(ink, [np.round(xy * 16).astype(np.int32)], False, 255, 2, cv2.LINE_AA, 4)

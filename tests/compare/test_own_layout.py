@@ -12,9 +12,9 @@ from tests.compare.cad_plants import Way, draw
 from tests.compare.hypotheses import Slip
 from tests.compare.own_layouts import Drawn, follows, is_there, taken
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare.cad import cad_built, cad_drawing, cad_file, cad_report, cad_story, laying, titles, view_search
+from tmm_sheets.compare.cad import cad_built, cad_drawing, cad_file, cad_report, cad_story, registration, titles, view_search
 from tmm_sheets.compare.cad.line_fit import lines
-from tmm_sheets.compare.diagnosis.built_plan import Drawing, built_otherwise, errors_of, possible
+from tmm_sheets.compare.diagnosis.built_plan import StudentDrawing, built_otherwise, errors_of, possible
 from tmm_sheets.compare.diagnosis.drawn_plan import between, drawn_plan, drawn_positions, rebuilt
 from tmm_sheets.compare.diagnosis.replay import replay
 from tmm_sheets.compare.known_sheet import known_sheet
@@ -72,17 +72,17 @@ def test_the_unit_a_file_declares_is_a_hint(compared, declared, unit, at):
     """AutoCAD declares inches for a drawing in millimetres: how high the letters are tells the size."""
     _, found, _ = compared
     drawn = found.laid.space.placed(Placing(complex(1 / unit / at)))
-    sizes = laying._sizes(KNOWN, drawn, declared)
+    sizes = registration._sizes(KNOWN, drawn, declared)
     assert sizes[0] == pytest.approx(unit * at)
     assert len(sizes) < 4
 
 
 def test_in_a_wrong_unit_no_plan_has_a_scale_factor_somebody_takes(compared):
     _, found, _ = compared
-    assert laying._handy(found.laid) > laying.SURELY_HANDY
+    assert registration._handy(found.laid) > registration.SURELY_HANDY
     odd = {v: replace(one, placing=Placing(one.placing.turn / 1.27)) for v, one in found.laid.views.items()}
-    assert laying._handy(replace(found.laid, views=odd)) < 0.2
-    assert laying._handy(replace(found.laid, views={})) == 1
+    assert registration._handy(replace(found.laid, views=odd)) < 0.2
+    assert registration._handy(replace(found.laid, views={})) == 1
 
 
 @pytest.mark.parametrize(("scale", "declared", "said"), [
@@ -103,7 +103,7 @@ def test_a_layout_of_ones_own_in_a_frame_and_turned(compared, tmp_path):
     path.write_bytes(draw(frame + views, Way(np.exp(1j * np.pi / 6), 70 - 20j, 1), random.Random(3)))
     shaped = {e.view for e in KNOWN.elements if e.role in view_search.SHAPES}
     few = replace(KNOWN, elements=tuple(e for e in KNOWN.elements if e.view in right or e.view not in shaped))
-    laid = laying.lay([few], cad_file.read(path))
+    laid = registration.register([few], cad_file.read(path))
     assert not laid.placing.mirrored
     assert laid.placing.degrees == pytest.approx(-30, abs=0.01)
     assert laid.placing.scale == pytest.approx(1, abs=1e-4)
@@ -114,14 +114,14 @@ def test_a_layout_of_ones_own_in_a_frame_and_turned(compared, tmp_path):
 def test_the_lettering_tells_how_a_drawing_is_turned_else_its_lines(compared):
     _, found, _ = compared
     space = found.laid.space
-    assert laying._askew(space) == 0
+    assert registration._askew(space) == 0
     for degrees, said in ((30, 30), (45, 45), (117, 27), (0.3, 0), (-20, -20), (90, 0)):
         turned = space.placed(Placing(np.exp(1j * np.radians(degrees))))
-        assert (np.degrees(laying._askew(turned)) - said + 45) % 90 == pytest.approx(45, abs=0.01)
+        assert (np.degrees(registration._askew(turned)) - said + 45) % 90 == pytest.approx(45, abs=0.01)
     upright = replace(space, writings=(), strokes=tuple(s for s in space.strokes if abs(np.diff(s.points).imag).max() < 1e-6))
-    assert laying._askew(upright) == 0
-    assert np.degrees(laying._askew(upright.placed(Placing(np.exp(1j * np.pi / 6))))) == pytest.approx(30)
-    assert laying._askew(replace(space, writings=(), strokes=())) == 0
+    assert registration._askew(upright) == 0
+    assert np.degrees(registration._askew(upright.placed(Placing(np.exp(1j * np.pi / 6))))) == pytest.approx(30)
+    assert registration._askew(replace(space, writings=(), strokes=())) == 0
 
 
 def test_a_view_that_is_turned_is_told_so_once(compared):
@@ -154,7 +154,7 @@ def test_a_plan_drawn_twice_is_named(again):
     theirs = lines(now)
 
     def seen(view):
-        return Drawing(lambda line: cad_built._inked(theirs, Placing(), line), lambda z: z, [])
+        return StudentDrawing(lambda line: cad_built._inked(theirs, Placing(), line), lambda z: z, [])
 
     other = [v for v in KNOWN.elements if v.view.n and v.view != view]
     (found, _), = built_otherwise(SHAPER, KNOWN, {view: list(drawn.vectors)}, seen, absent={e.view for e in other}).values()
@@ -229,7 +229,7 @@ def test_positions_built_otherwise_are_named(project, known, words, at):
     wrong = {view: [e for e, z in zip(drawn.vectors, now, strict=True) if abs(z - e.points).max() > 1]}
 
     def seen(view):
-        return Drawing(lambda line: cad_built._inked(theirs, Placing(), line), lambda z: z, [])
+        return StudentDrawing(lambda line: cad_built._inked(theirs, Placing(), line), lambda z: z, [])
 
     (found, points), = built_otherwise(project, known, wrong, seen, positions=True).values()
     assert (found.mistake.words, found.mistake.step) == (words, made.step)
@@ -267,7 +267,7 @@ def test_a_short_arrow_in_a_small_view_has_no_shaft_beyond_its_tip():
 @pytest.mark.parametrize(("title", "other"), [("Положение 9", True), ("ПЛАН СКОРОСТЕЙ ПОЛ. 9", True), ("Положение 3", False),
                                               ("План сил звена 9", False)])
 def test_a_title_of_another_position_may_be_the_position_alone(title, other):
-    assert titles.namesakes(titles.Said.of("План скоростей, положение 3"), titles.Said.of(title)) == other
+    assert titles.namesakes(titles.DrawnTitle.of("План скоростей, положение 3"), titles.DrawnTitle.of(title)) == other
 
 
 def test_the_picture_shows_the_exact_plan_and_what_was_built(compared):

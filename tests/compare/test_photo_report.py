@@ -11,8 +11,8 @@ from tmm_sheets.compare.findings import called, counted
 from tmm_sheets.compare.legend import around, legend
 from tmm_sheets.compare.photo import image_report, overlay
 from tmm_sheets.compare.photo.judging import judge
-from tmm_sheets.compare.photo.traces import Trace
-from tmm_sheets.drawing.marks import Trace as By
+from tmm_sheets.compare.photo.traces import InkTrace
+from tmm_sheets.drawing.marks import Provenance as By
 
 PLAN, TABLE = (ElementView(n, name, Box(0, 0, 841, 594)) for n, name in enumerate(("plan", "table"), 1))
 
@@ -20,7 +20,7 @@ PLAN, TABLE = (ElementView(n, name, Box(0, 0, 841, 594)) for n, name in enumerat
 def finding(status, view=PLAN, deviation=0.0, kind="line", name=""):
     e = Element(1, view, name, kind, np.array([0, 20 + 0j]), "main")
     at = None if kind == "text" else e.points + 1j * deviation
-    return judge(Trace(e, status, shift=1j * deviation, deviation=deviation, at=at), 0.25, 0.15)
+    return judge(InkTrace(e, status, shift=1j * deviation, deviation=deviation, at=at), 0.25, 0.15)
 
 
 @pytest.mark.parametrize(("off", "said"), [
@@ -37,14 +37,14 @@ def test_what_may_be_right_is_not_called_wrong(off, said):
     ("link", "thin", 10, 1.0, "red"), ("vector", "main", 10, 0.6, "amber"), ("link", "thin", 10, 0.3, "green")])  # fmt: skip
 def test_rules_of_tables_and_short_helper_lines_are_told_when_off_for_sure(role, style, length, by, verdict):
     e = Element(1, PLAN, "", "line", np.array([0, length + 0j]), style, by=By(role, "", ""))
-    assert judge(Trace(e, "measured", shift=1j * by, deviation=by, at=e.points + 1j * by), 0.25, 0.15).verdict == verdict
+    assert judge(InkTrace(e, "measured", shift=1j * by, deviation=by, at=e.points + 1j * by), 0.25, 0.15).verdict == verdict
 
 
 @pytest.mark.parametrize(("free", "style", "verdict"), [(0.7, "thin", "green"), (0.9, "thin", "amber"), (0.7, "main", "amber"),
                                                         (0.5, "main", "green")])  # fmt: skip
 def test_a_thin_line_among_others_takes_their_edge(free, style, verdict):
     e = Element(1, PLAN, "", "line", np.array([0, 40 + 0j]), style, by=By("link", "", ""))
-    assert judge(Trace(e, "measured", shift=0.6j, deviation=0.6, at=e.points + 0.6j, free=free), 0.25, 0.15).verdict == verdict
+    assert judge(InkTrace(e, "measured", shift=0.6j, deviation=0.6, at=e.points + 0.6j, free=free), 0.25, 0.15).verdict == verdict
 
 
 @pytest.mark.parametrize(("name", "said"), [

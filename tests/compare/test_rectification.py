@@ -12,7 +12,7 @@ from tests.few import seldom
 from tmm_sheets import catalogue
 from tmm_sheets.backends import png
 from tmm_sheets.compare.elements import elements
-from tmm_sheets.compare.photo import fit_check, frame_search, map_fit, patches, profiles, rectification
+from tmm_sheets.compare.photo import block_match, fit_check, frame_search, map_fit, profiles, rectification
 from tmm_sheets.compare.photo.fit_check import FitCheck
 from tmm_sheets.compare.photo.frame_fit import FrameFit, initial_map, sides_near
 from tmm_sheets.compare.photo.frame_search import FoundFrame
@@ -320,7 +320,7 @@ def test_circles_are_not_taken_for_their_neighbours():
     m = Map(0j, 1.0, homography(profiles.pixels(CORNERS, 4.0), CORNERS))
     points = np.concatenate(rings)
     lines = profiles.ProfileLines(points, np.ones(len(points), complex), np.repeat(np.arange(len(rings)), [len(r) for r in rings]))
-    seen = patches.patches(m, m, picture, lines, 4.0)
+    seen = block_match.patches(m, m, picture, lines, 4.0)
     about = np.abs(seen.sheet - centre) < 90
     assert about.sum() >= 10
     assert np.abs(m.to_sheet(seen.picture) - seen.sheet - 2.1)[about].max() < 0.4

@@ -5,9 +5,9 @@ import pytest
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, DrawnStroke, Writing
-from tmm_sheets.compare.cad.titles import Said, Titles, in_common, likeness, namesakes
+from tmm_sheets.compare.cad.titles import DrawnTitle, Titles, in_common, likeness, namesakes
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.drawing.marks import Trace
+from tmm_sheets.drawing.marks import Provenance
 
 NAMES = ("Планы положений механизма", "План скоростей, положение 2", "План скоростей, положение 12", "План ускорений (положение 2)",
          "План сил группы 2–3", "План сил звена 1", "План скоростей, положение 1′, 9")
@@ -24,7 +24,7 @@ def drawing(lines, writings=()):
 
 def titles(lines=(), writings=()):
     """Of a sheet whose first view shows positions 2 and 5."""
-    links = [Element(k, VIEWS[0], "", "line", np.array([0j, 1 + 0j]), "main", by=Trace("link", position=p))
+    links = [Element(k, VIEWS[0], "", "line", np.array([0j, 1 + 0j]), "main", by=Provenance("link", position=p))
              for k, p in enumerate("25")]
     return Titles(links, VIEWS, drawing(lines, writings))
 
@@ -46,20 +46,20 @@ def test_what_a_title_names(text, views):
 
 
 def test_a_position_is_no_word_beside_its_number():
-    assert Said.of("План скоростей, положение 2") == Said(frozenset({"план", "скор"}), frozenset({"2"}), True)
-    assert Said.of("Планы положений механизма").words == {"план", "поло", "меха"}
-    assert Said.of("position 3").numbers == {"3"}
-    assert Said.of("") == Said(frozenset(), frozenset())
-    assert likeness(Said.of("План сил"), Said.of("")) == 0
+    assert DrawnTitle.of("План скоростей, положение 2") == DrawnTitle(frozenset({"план", "скор"}), frozenset({"2"}), True)
+    assert DrawnTitle.of("Планы положений механизма").words == {"план", "поло", "меха"}
+    assert DrawnTitle.of("position 3").numbers == {"3"}
+    assert DrawnTitle.of("") == DrawnTitle(frozenset(), frozenset())
+    assert likeness(DrawnTitle.of("План сил"), DrawnTitle.of("")) == 0
 
 
 def test_namesakes_differ_in_their_numbers_only():
-    own = Said.of("План скоростей, положение 2")
-    assert namesakes(own, Said.of("План скоростей, положение 3"))
-    assert namesakes(own, Said.of("Положение 3"))
-    assert not namesakes(own, Said.of("Положение 2"))
-    assert not namesakes(own, Said.of("План сил звена"))
-    assert in_common(own, Said.of("Положение 3")) == 1
+    own = DrawnTitle.of("План скоростей, положение 2")
+    assert namesakes(own, DrawnTitle.of("План скоростей, положение 3"))
+    assert namesakes(own, DrawnTitle.of("Положение 3"))
+    assert not namesakes(own, DrawnTitle.of("Положение 2"))
+    assert not namesakes(own, DrawnTitle.of("План сил звена"))
+    assert in_common(own, DrawnTitle.of("Положение 3")) == 1
 
 
 LEFT, RIGHT = [[0, 40 + 10j], [40 + 10j, 20 + 30j]], [[100, 140 + 5j], [120 + 2.5j, 120 + 60j]]

@@ -15,13 +15,13 @@ from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.masking import fill
 from tmm_sheets.compare.photo.own_place import strips
 from tmm_sheets.compare.photo.profiles import SCALE
-from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.compare.photo.tracing import trace
-from tmm_sheets.compare.photo.wiping import fill
+from tmm_sheets.drawing.marks import Provenance as By
 from tmm_sheets.drawing.marks import Text
-from tmm_sheets.drawing.marks import Trace as By
 from tmm_sheets.drawing.styles import line_type
 
 ROWS, COLUMNS = 594 * 6, 841 * 6
@@ -179,7 +179,7 @@ def test_thin_lines_drawn_over_are_a_remark_and_none_in_a_soft_picture():
 def test_how_far_a_line_may_end_from_its_end(role, style, off, verdict):
     """Guides, supports and curves end where the hand stopped, dashed lines a dash before; links and vectors end in points."""
     e = line(1, 240 + 300j, 300 + 300j, style, role)
-    assert judge(Trace(e, "measured", ends=(0.0, off), at=e.points), 0.25, 0.15).verdict == verdict
+    assert judge(InkTrace(e, "measured", ends=(0.0, off), at=e.points), 0.25, 0.15).verdict == verdict
 
 
 @pytest.mark.parametrize(("off", "end", "what"), [
@@ -189,7 +189,7 @@ def test_how_far_a_line_may_end_from_its_end(role, style, off, verdict):
 ])
 def test_a_short_line_may_be_turned_a_little_but_not_end_elsewhere(off, end, what):
     e = line(1, 290 + 300j, 300 + 300j, "thin", "construction")
-    assert judge(Trace(e, "measured", turn=off / 5, deviation=off, ends=(0.0, end), at=e.points), 0.25, 0.15).what == what
+    assert judge(InkTrace(e, "measured", turn=off / 5, deviation=off, ends=(0.0, end), at=e.points), 0.25, 0.15).what == what
 
 
 @pytest.mark.parametrize(("gap", "short"), [(1.6, True), (0.0, False)])
@@ -219,14 +219,14 @@ def test_what_is_a_little_off_among_others_is_not_judged(kind, free, off, verdic
     """
     z = SLIDER if kind == "curve" else 300 + 300j + np.array([0, 40])
     e = Element(1, VIEW, "", kind, z, "thin", radius=20.0)
-    f = judge(Trace(e, "measured", 1j * off, deviation=off, at=z + 1j * off, free=free), 0.25, 0.15)
+    f = judge(InkTrace(e, "measured", 1j * off, deviation=off, at=z + 1j * off, free=free), 0.25, 0.15)
     assert f.verdict == verdict
     assert f.unknown == (verdict == "green" and off > 0.4)
 
 
 def test_an_end_that_is_short_is_told_though_others_run_along():
     e = line(1, 240 + 300j, 300 + 300j)
-    f = judge(Trace(e, "measured", 0.6j, deviation=0.6, at=e.points + 0.6j, free=0.4, ends=(0.0, -4.0)), 0.25, 0.15)
+    f = judge(InkTrace(e, "measured", 0.6j, deviation=0.6, at=e.points + 0.6j, free=0.4, ends=(0.0, -4.0)), 0.25, 0.15)
     assert (f.verdict, f.what) == ("red", "4.0 mm too short at its end")
 
 
@@ -777,7 +777,7 @@ def test_the_edge_of_a_joint_is_seen_between_lines_that_leave_it_closely(free, r
         owners.add(line(k + 1, CORNER, CORNER + w, "thin"), np.array([CORNER, CORNER + w]))
     for a, b in pairwise(CORNER + aside + radius * circle):
         draw(ink, a, b)
-    t = Trace(e, "measured", shift=0.45j, deviation=0.45, at=e.points, free=0.3)
+    t = InkTrace(e, "measured", shift=0.45j, deviation=0.45, at=e.points, free=0.3)
     (found,) = with_edges([t], ink, owners, np.zeros_like(ink))
     assert (found.growth, abs(found.shift - aside)) == (pytest.approx(growth, abs=0.1), pytest.approx(0, abs=0.1))
     f = judge(found, 0.25, 0.15)
@@ -790,7 +790,7 @@ def test_the_edge_of_a_joint_is_seen_between_lines_that_leave_it_closely(free, r
 def test_a_small_circle_a_little_off_is_told_where_no_others_are_and_a_construction_hangs_on_it(step, free, said):
     e, _ = joint(step)
     for off, verdict in ((0.5, said), (0.9, "red")):
-        t = Trace(e, "measured", shift=off + 0j, deviation=off, at=e.points + off, free=free)
+        t = InkTrace(e, "measured", shift=off + 0j, deviation=off, at=e.points + off, free=free)
         assert judge(t, 0.25, 0.15).verdict == verdict
 
 
@@ -815,7 +815,7 @@ def test_a_line_that_others_cover_must_be_seen_to_the_dot_where_it_ends(end, dot
         draw(ink, one.points[0], to, one.style)
     (strip,) = strips([e], ink, owners, np.zeros((1, 1), bool))
     alone = tracing._alone(strip, np.array([CORNER] if dotted else [], complex))
-    traces = [Trace(one, "measured", at=one.points, darkness=usual, covered=1.0) for one in (e, along)]
+    traces = [InkTrace(one, "measured", at=one.points, darkness=usual, covered=1.0) for one in (e, along)]
     nothing = np.zeros_like(ink)
     found = tracing._doubted(traces, {} if alone is None else {1: alone}, ink, nothing, nothing, owners, 10)
     assert [t.status for t in found] == [status, "measured"]
@@ -825,7 +825,7 @@ def test_a_line_that_others_cover_must_be_seen_to_the_dot_where_it_ends(end, dot
 def test_a_line_whose_place_is_far_paler_than_its_kind_is_not_there(dark, status):
     """Ends of a hatching stand in its place."""
     known = [line(k, 200 + 10j * k, 260 + 10j * k) for k in range(3)]
-    traces = [Trace(e, "measured", at=e.points, darkness=d, covered=1.0) for e, d in zip(known, (dark, 100, 100), strict=True)]
+    traces = [InkTrace(e, "measured", at=e.points, darkness=d, covered=1.0) for e, d in zip(known, (dark, 100, 100), strict=True)]
     nothing, owners = np.zeros((ROWS, COLUMNS), np.uint8), Owners(ROWS, COLUMNS)
     found = tracing._doubted(traces, {}, nothing, nothing, nothing, owners, 10)
     assert [t.status for t in found] == [status, "measured", "measured"]
@@ -863,4 +863,4 @@ def test_a_line_that_others_hide_up_to_bare_paper_before_its_end_is_short(short,
 ])  # fmt: skip
 def test_a_line_of_which_little_is_seen_was_turned_about_an_end_that_stays(begin, end, covered, swung):
     e = line(1, CORNER, CORNER + 40)
-    assert displacement._swung(Trace(e, "measured", covered=covered, at=e.points + np.array([begin, end]))) is swung
+    assert displacement._swung(InkTrace(e, "measured", covered=covered, at=e.points + np.array([begin, end]))) is swung

@@ -9,11 +9,11 @@ import pytest
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, DrawnStroke, Writing
-from tmm_sheets.compare.cad.laying import Laid, _to_size
+from tmm_sheets.compare.cad.registration import Registration, _to_size
 from tmm_sheets.compare.cad.view_search import FoundView, Search, _Try, distinct
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.placing import Placing
-from tmm_sheets.drawing.marks import Trace
+from tmm_sheets.drawing.marks import Provenance
 
 STAR = ((0j, 60 + 10j), (0j, -30 + 45j), (60 + 10j, -30 + 45j), (0j, 12 - 40j), (12 - 40j, 60 + 10j))
 OPPOSITE = ((0j, 40 + 40j), (0j, -40 - 40j), (0j, 48j), (0j, -48j), (40 + 40j, 48j), (-40 - 40j, -48j))
@@ -26,7 +26,7 @@ def view(n, vectors, name="План скоростей", mu=0.4):
     """A view of our sheet and its vectors, from its pole in the middle."""
     at = 150j * n
     of = ElementView(n, f"{name}, положение {n}", Box.around(np.array(vectors).ravel() + at), mu)
-    return of, [Element(100 * n + k, of, f"p–{k}", "line", np.array([a, b]) + at, "vector", by=Trace("vector"))
+    return of, [Element(100 * n + k, of, f"p–{k}", "line", np.array([a, b]) + at, "vector", by=Provenance("vector"))
                 for k, (a, b) in enumerate(vectors)]
 
 
@@ -135,7 +135,7 @@ def test_a_number_may_be_one_of_several_that_are_not_equally_high(times):
     texts = [replace(e, kind="text", text=text, height=height) for text, height in heights]
     written = tuple(Writing(text, 0j, height * times, 9.0, 0.0, 0) for text, height in (heights[0], *heights[2::2]))
     space = DrawingSpace("", (), (), written, ())
-    laid = Laid(SimpleNamespace(elements=texts), space, Placing(), 1.0, {of: FoundView(Placing(), 1.0)})
+    laid = Registration(SimpleNamespace(elements=texts), space, Placing(), 1.0, {of: FoundView(Placing(), 1.0)})
     assert _to_size(laid).placing.scale == 1 / times
 
 

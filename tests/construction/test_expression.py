@@ -12,7 +12,7 @@ from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.given import Given, GivenNumber, GivenPoint
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Rule, Step, Told
+from tmm_sheets.construction.step import Reported, Rule, Step
 from tmm_sheets.methods.flywheel.flywheel import ACCELERATION, PLOT
 from tmm_sheets.methods.linkage.velocities import ANGULAR_VELOCITY, RIGID, SIMILAR
 
@@ -64,7 +64,7 @@ def test_given_numbers_are_numbers_and_know_their_place():
     assert GivenPoint(1 + 2j, "frame.points.D").name == "frame.points.D"
     step = Step("x", Rule("sum", lambda a, b: a + b, ("number", "number"), "number", ""), (Given(np.ones(3), "cycle.phi"), length))
     assert step.value.tolist() == [1.08, 1.08, 1.08]
-    assert Told(Step("z", rules.GIVEN, (3 + 4j,)), "abs").value == 5.0
+    assert Reported(Step("z", rules.GIVEN, (3 + 4j,)), "abs").value == 5.0
 
 
 SMOOTH = Rule("smooth curve", lambda *y: Curve(np.arange(len(y), dtype=float), np.array([np.imag(p) for p in y]),

@@ -1,7 +1,7 @@
 import pytest
 
 from tmm_sheets.drawing.layers import layer, layers, roles
-from tmm_sheets.drawing.marks import Line, Role, Text, Trace
+from tmm_sheets.drawing.marks import Line, Provenance, Role, Text
 from tmm_sheets.drawing.styles import line_types
 
 
@@ -14,10 +14,10 @@ def test_every_role_has_a_layer_and_names_are_one_layer_each():
 
 
 @pytest.mark.parametrize(("mark", "name"), [
-    (Line(0j, 1j, "main", "", Trace("link")), "LINK"), (Line(0j, 1j, "thin", "", Trace("link")), "LINK_THIN"),
-    (Line(0j, 1j, "axis", "", Trace("table")), "TABLE_MEDIUM"), (Line(0j, 1j, "axis"), "AXIS"),
+    (Line(0j, 1j, "main", "", Provenance("link")), "LINK"), (Line(0j, 1j, "thin", "", Provenance("link")), "LINK_THIN"),
+    (Line(0j, 1j, "axis", "", Provenance("table")), "TABLE_MEDIUM"), (Line(0j, 1j, "axis"), "AXIS"),
     (Line(0j, 1j, "thin", "title block"), "FRAME_THIN"), (Text(0j, "а", 5.0, 0.0, "title block"), "TEXT"),
-    (Line(0j, 1j, "centre"), "AXIS_CENTRE"), (Line(0j, 1j, "text", "", Trace("text")), "TEXT"),
+    (Line(0j, 1j, "centre"), "AXIS_CENTRE"), (Line(0j, 1j, "text", "", Provenance("text")), "TEXT"),
 ])  # fmt: skip
 def test_layer_of_a_mark(mark, name):
     assert layer(mark).name == name
@@ -28,4 +28,4 @@ def test_every_line_type_has_a_layer_without_a_role():
     with pytest.raises(ValueError, match="'dotted' is not in"):
         layer(Line(0j, 1j, "dotted"))
     with pytest.raises(ValueError, match="role 'ghost' is not in"):
-        layer(Line(0j, 1j, "main", "", Trace("ghost")))
+        layer(Line(0j, 1j, "main", "", Provenance("ghost")))

@@ -7,10 +7,10 @@ from tests.few import seldom
 from tmm_sheets import catalogue
 from tmm_sheets.drawing import labels, owners
 from tmm_sheets.drawing.canvas import Canvas, Label
-from tmm_sheets.drawing.marks import Box, Line, Text, Trace
+from tmm_sheets.drawing.marks import Box, Line, Provenance, Text
 from tmm_sheets.project import Project
 
-A, B = Trace("vector", "plan/a", "1", 0), Trace("vector", "plan/b", "1", 0)
+A, B = Provenance("vector", "plan/a", "1", 0), Provenance("vector", "plan/b", "1", 0)
 """Two vectors: 10 mm apart, level."""
 LINES = [Line(0j, 60 + 0j, "vector", by=A), Line(10j, 60 + 10j, "vector", by=B)]
 
@@ -135,7 +135,7 @@ def test_the_letter_of_an_arm_moves_along_it_and_that_of_a_point_does_not(by, mo
     canvas = Canvas()
     with canvas.traced("construction", "plan/h", "1", 0):
         canvas.line(100 + 100j, 180 + 100j)
-    ink, label = owners.Ink(canvas.marks), Label(140 + 100j, "h", 2.5, by=Trace(by, "plan/h", "1", 0))
+    ink, label = owners.Ink(canvas.marks), Label(140 + 100j, "h", 2.5, by=Provenance(by, "plan/h", "1", 0))
     assert bool(owners.Round(ink, label, 60.0).along()) is moves
 
 

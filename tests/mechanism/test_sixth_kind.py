@@ -151,7 +151,7 @@ class Balanced(Triangle):
     def dead_positions(self, m, g, plan, centre):
         side = plan.add("E′", rules.ALONG, centre, plan.add("u", rules.GIVEN_DIRECTION, 1j), REACH)
         left = plan.add("W′", rules.ALONG, centre, plan.add("w", rules.GIVEN_DIRECTION, -1 + 0j), REACH)
-        return plan.aside("φ′", PIN_ANGLE, centre, side), plan.aside("φ″", PIN_ANGLE, centre, left)
+        return plan.auxiliary("φ′", PIN_ANGLE, centre, side), plan.auxiliary("φ″", PIN_ANGLE, centre, left)
 
 
 def test_dead_positions():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tmm_sheets.box import Box
-from tmm_sheets.drawing.marks import Arc, Line, Polyline, Text, Trace, flat
+from tmm_sheets.drawing.marks import Arc, Line, Polyline, Provenance, Text, flat
 from tmm_sheets.note.cutting import bare, windowed
 from tmm_sheets.note.pictures import LETTERS, READABLE, SMALLEST, scale
 
@@ -44,7 +44,7 @@ def test_letters_are_in_the_window_or_not_shown():
 
 def test_tables_titles_and_remarks_are_not_part_of_a_drawing():
     drawing = [Line(0j, 100 + 50j, "main"), Text(50 + 52j, "1", 3.5)]
-    table = [Line(200 + 0j, 250 + 0j, "main", by=Trace("table")), Line(200 + 30j, 250 + 30j, "main", by=Trace("table"))]
+    table = [Line(200 + 0j, 250 + 0j, "main", by=Provenance("table")), Line(200 + 30j, 250 + 30j, "main", by=Provenance("table"))]
     cell, title = Text(210 + 10j, "12", 3.5), Text(20 + 90j, "Title", 5.0)
     assert bare([*drawing, *table, cell, title]) == drawing
     assert bare([title]) == [title]

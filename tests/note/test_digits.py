@@ -10,7 +10,7 @@ from tests.note.printed_formulas import equalities, line_of
 from tmm_sheets.construction import expression as e
 from tmm_sheets.note.alphabets import equation
 from tmm_sheets.note.digits import read, shown
-from tmm_sheets.note.reader import Quantity, Reader
+from tmm_sheets.note.reader import NoteQuantity, Reader
 from tmm_sheets.numbers import degrees_and_minutes, rounded_angle
 
 A, B, C, D = (e.Argument(i) for i in range(4))
@@ -18,9 +18,9 @@ A, B, C, D = (e.Argument(i) for i in range(4))
 
 def printed(tree, values, units=(), unit="", result=None):
     """The line of numbers of a formula."""
-    quantities = [Quantity("abcd"[i], v, units[i] if units else "", f"plan/{i}") for i, v in enumerate(values)]
+    quantities = [NoteQuantity("abcd"[i], v, units[i] if units else "", f"plan/{i}") for i, v in enumerate(values)]
     gives = float(np.real(e.evaluate(tree, values))) if result is None else result
-    said = Reader(None, "ru", None, {}).written("y", tree, quantities, Quantity("", gives, unit, "plan/y"))
+    said = Reader(None, "ru", None, {}).written("y", tree, quantities, NoteQuantity("", gives, unit, "plan/y"))
     return line_of(equation(said.numbers))
 
 

@@ -15,7 +15,7 @@ import pytest
 
 from tests.few import seldom
 from tests.project_files import from_file, write
-from tmm_sheets import catalogue, typed
+from tmm_sheets import catalogue, quoting
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput
 from tmm_sheets.output import batch, building
@@ -563,8 +563,8 @@ def test_dask_cluster_of_two_workers(tmp_path):
 def test_dask_that_is_not_there(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "distributed", None)
     assert run(["build", *CAMS, "--dask", "tcp://127.0.0.1:9", "-o", str(tmp_path)]) == 2
-    assert typed.install("cluster") in capsys.readouterr().err
-    assert "distributed" in typed.install("cluster")
+    assert quoting.install("cluster") in capsys.readouterr().err
+    assert "distributed" in quoting.install("cluster")
 
 
 def test_bar():

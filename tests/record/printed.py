@@ -54,7 +54,7 @@ def known(project: Project, factors: dict[str, float]) -> np.ndarray[Any, Any]:
     found = [*sizes(project.variant.model_dump(warnings=False)), *sizes([*factors.values()])]
     for plans in project.plans.values():
         for plan in (plans or {}).values():
-            for step in (*plan, *plan.asides.values()):
+            for step in (*plan, *plan.auxiliaries.values()):
                 if step.evaluated:
                     found += sizes(step.value)
                     found += (s for a in step.args if not isinstance(a, Step | str) for s in sizes(value_of(a)))

@@ -235,7 +235,7 @@ def test_searches_are_counted(numbers):
         patch.setattr(replay.Replay, "__call__", again)
         sheet.every(project, numbers=numbers)
         drawn = sum(step.evaluated for of in project.plans.values() for plan in (of or {}).values()
-                    for step in (*plan, *plan.asides.values(), *plan.conditions.values()))
+                    for step in (*plan, *plan.auxiliaries.values(), *plan.conditions.values()))
     searched = sum(search.steps for search in project.searches)
     assert searched > 100
     assert drawn + searched == total

@@ -9,7 +9,7 @@ from tests import project_files
 from tmm_sheets import kept as stored
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing import labels, owners
-from tmm_sheets.drawing.marks import Line, Trace
+from tmm_sheets.drawing.marks import Line, Provenance
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import friction, kinetic_frames, kinetics, linkage, moments
 from tmm_sheets.sheets.sheet import composed
@@ -78,13 +78,13 @@ def test_a_class_iii_scheme_shows_the_arms_of_its_equation_about_the_special_poi
 
 def test_an_arm_among_those_of_a_sum_is_known_by_its_name():
     """All arms about a point come from one sum: the letter of one is no letter of the next."""
-    first, second = (Line(0j, z, "thin", by=Trace("construction", "moments/ΣM", "2", 0, name))
+    first, second = (Line(0j, z, "thin", by=Provenance("construction", "moments/ΣM", "2", 0, name))
                      for z, name in ((20 + 0j, "hG2"), (20j, "hG3")))
     ink = owners.Ink([first, second])
-    assert ink.of_step(Trace("text", "moments/ΣM", "2", 0, "hG2")) == [0]
-    assert ink.of_step(Trace("text", "moments/ΣM", "2", 0, "hG4")) == [0, 1]  # no line of this name
-    assert ink.of_step(Trace("text", "moments/ΣM", "2", 0)) == [0, 1]
-    assert ink.of_step(Trace("text", "moments/ΣM", "3", 0, "hG2")) == []
+    assert ink.of_step(Provenance("text", "moments/ΣM", "2", 0, "hG2")) == [0]
+    assert ink.of_step(Provenance("text", "moments/ΣM", "2", 0, "hG4")) == [0, 1]  # no line of this name
+    assert ink.of_step(Provenance("text", "moments/ΣM", "2", 0)) == [0, 1]
+    assert ink.of_step(Provenance("text", "moments/ΣM", "3", 0, "hG2")) == []
 
 
 def test_pairs_with_friction_have_the_names_of_the_structure():

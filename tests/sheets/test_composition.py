@@ -14,17 +14,17 @@ from tmm_sheets.drawing.marks import Arc, Text
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import friction, kinematic_frames, kinetic_frames, linkage
 from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.border_solver import BorderNode, Need, cut, joined, rounded_up, solve
 from tmm_sheets.sheets.composing import INSIDE
 from tmm_sheets.sheets.composition import OF_FORCE, SHOWN, TITLE_BLOCK, _reaching, arranged
 from tmm_sheets.sheets.frame import fit_frame
 from tmm_sheets.sheets.sheet import composed
-from tmm_sheets.sheets.solver import Need, Node, cut, joined, rounded_up, solve
 
 ROOM = Box(0.0, 0.0, 400.0, 300.0)
 
 
 def leaves(*needs):
-    return [Node(need, leaf=i, area=60000.0) for i, need in enumerate(needs)]
+    return [BorderNode(need, leaf=i, area=60000.0) for i, need in enumerate(needs)]
 
 
 def drawn(need, box):
@@ -55,7 +55,7 @@ def test_what_lies_gets_a_wide_place_and_what_stands_a_high_one():
 
 def test_places_do_not_overlap_and_fill_the_room():
     column = joined(1, leaves(Need((2.0, 1.0)), Need((1.0, 2.0))), [1, 1])
-    tree = joined(0, [column, Node(Need(), leaf=2, area=40000.0)], [1, 1])
+    tree = joined(0, [column, BorderNode(Need(), leaf=2, area=40000.0)], [1, 1])
     found = solve(tree, ROOM)
     assert sorted(found) == [0, 1, 2]
     boxes = list(found.values())

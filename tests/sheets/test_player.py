@@ -12,7 +12,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Arc, Fill, Line
-from tmm_sheets.sheets.frame import Frame
+from tmm_sheets.sheets.frame import PlanFrame
 from tmm_sheets.sheets.player import play, stage
 
 MM = Scale("μ", 0.5, "м/мм")
@@ -28,10 +28,10 @@ def plan():
 
 
 FRAMES = {
-    "plain": (Frame(MM, 100 + 50j), lambda x, y: complex(100 + 2 * x, 50 + 2 * y)),
-    "turned": (Frame(MM, 100 + 50j, turn=pi / 2), lambda x, y: complex(100 - 2 * y, 50 + 2 * x)),
-    "mirrored": (Frame(MM, 100 + 50j, turn=pi, mirror=True), lambda x, y: complex(100 - 2 * x, 50 + 2 * y)),
-    "two scales": (Frame(MM, 100 + 50j, along=Scale("μ", 0.1, "")), lambda x, y: complex(100 + 10 * x, 50 + 2 * y)),
+    "plain": (PlanFrame(MM, 100 + 50j), lambda x, y: complex(100 + 2 * x, 50 + 2 * y)),
+    "turned": (PlanFrame(MM, 100 + 50j, turn=pi / 2), lambda x, y: complex(100 - 2 * y, 50 + 2 * x)),
+    "mirrored": (PlanFrame(MM, 100 + 50j, turn=pi, mirror=True), lambda x, y: complex(100 - 2 * x, 50 + 2 * y)),
+    "two scales": (PlanFrame(MM, 100 + 50j, along=Scale("μ", 0.1, "")), lambda x, y: complex(100 + 10 * x, 50 + 2 * y)),
 }
 
 

@@ -33,7 +33,7 @@ def signs():
     for text in SOURCES.values():
         p = Project(variant.parse(text, "own.toml"))
         results.told(p, None, refused={})
-        steps = [s for of in p.plans.values() for plan in (of or {}).values() for s in (*plan, *plan.asides.values())]
+        steps = [s for of in p.plans.values() for plan in (of or {}).values() for s in (*plan, *plan.auxiliaries.values())]
         for name in (re.sub(r"[{}_^|]", "", text) for s in steps for text in (s.name, s.symbol)):
             found.setdefault(re.sub(r"\d+", "0", name), name)
     return sorted(found.values())

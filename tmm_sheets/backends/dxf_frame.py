@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import NamedTuple
 
-from tmm_sheets.drawing.layers import Layer, layers, roles
+from tmm_sheets.drawing.layers import LayerStyle, layers, roles
 from tmm_sheets.drawing.styles import line_type
 
 STYLE = "lc_opengost-br"
@@ -71,7 +71,7 @@ class DxfFrame(NamedTuple):
         pieces = re.split(f"({'|'.join(map(re.escape, told))})", self.text)
         return "".join(told.get(piece, piece) for piece in pieces)
 
-    def _layer(self, layer: Layer, handle: str) -> str:
+    def _layer(self, layer: LayerStyle, handle: str) -> str:
         look = line_type(layer.style)
         return self.layer.format(handle=handle, name=layer.name, description=layer.description, colour=look.colour,
                                  linetype=look.linetype, weight=weight(look.width))

@@ -28,7 +28,7 @@ from tmm_sheets.drawing import dashes
 from tmm_sheets.drawing.canvas import MarkGroup
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Role, Text, Trace, View
+from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Provenance, Role, Text, View
 from tmm_sheets.sheets.composed import Composed
 
 Kind = Literal["line", "arc", "circle", "curve", "text", "hatch", "fill"]
@@ -98,7 +98,7 @@ class Element:
     fills: tuple[Points, ...] = ()
     pieces: tuple[Points, ...] = ()
     marks: tuple[Mark, ...] = field(default=(), repr=False)
-    by: Trace | None = None
+    by: Provenance | None = None
 
     @cached_property
     def length(self) -> float:
@@ -301,7 +301,7 @@ def _around(texts: list[Text]) -> Points:
     return np.asarray(u * np.array([complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)]))
 
 
-def _called(by: Trace | None, sheet: Composed) -> str:
+def _called(by: Provenance | None, sheet: Composed) -> str:
     """Name of what a step has left, with the position where its place is that of several; empty without a step."""
     if by is None or not (by.step or by.name):
         return ""

@@ -17,12 +17,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from unicodedata import normalize
 
-from tmm_sheets import files, texts
+from tmm_sheets import encodings, files
 from tmm_sheets.compare.known_sheet import sheet_numbers
-from tmm_sheets.compare.marking import KINDS, Scheme
+from tmm_sheets.compare.marking import KINDS, MarkingScheme
 from tmm_sheets.compare.report import Report
 from tmm_sheets.compare.report_pages import page
-from tmm_sheets.compare.story import Story, Table
+from tmm_sheets.compare.story import Story, StoryTable
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.numbers import told
 from tmm_sheets.words import tell, tell_n
@@ -64,7 +64,7 @@ class Student:
         """Faults of each kind in all files together."""
         return {kind: sum(f.faults.get(kind, 0) for f in self.files) for kind in KINDS}
 
-    def mark(self, scheme: Scheme) -> float | None:
+    def mark(self, scheme: MarkingScheme) -> float | None:
         """The mark by a scheme; None where no file could be judged."""
         return scheme.mark(self.faults) if any(not f.refused for f in self.files) else None
 
@@ -75,7 +75,7 @@ class Student:
 
 
 def compare(folder: Path, project: str, opened: Callable[[str], Project], by_kind: Mapping[str, Callable[..., Report]],
-            scheme: Scheme | None, say: Callable[[str], None]) -> Report:
+            scheme: MarkingScheme | None, say: Callable[[str], None]) -> Report:
     """Compare the work of every student in a folder.
 
     Parameters
@@ -146,9 +146,9 @@ def _projects(path: Path, works: Mapping[str, object]) -> dict[str, str]:
     if not path.is_file():
         return {}
     try:
-        text = texts.cleaned(texts.decoded(files.content(path)).text)
+        text = encodings.cleaned(encodings.decoded(files.content(path)).text)
         data = tomllib.loads(text)
-    except (OSError, tomllib.TOMLDecodeError, texts.NotText) as e:
+    except (OSError, tomllib.TOMLDecodeError, encodings.NotText) as e:
         raise BadInput(Problem(str(e), str(path), hint=tell('a line for each student: "Petrenko" = "sixbar/3:2"'))) from None
     lines = text.splitlines()
     problems = []
@@ -216,7 +216,7 @@ def _faults(tree: Mapping[str, Any]) -> tuple[dict[str, int], tuple[str, ...]]:
 # --- the report -------------------------------------------------------------------------------------------------------------
 
 
-def _report(folder: Path, students: Sequence[Student], scheme: Scheme | None) -> Report:
+def _report(folder: Path, students: Sequence[Student], scheme: MarkingScheme | None) -> Report:
     tables = [*_tables(students, scheme)]
     said = tell("{student}, {file}: {why}")
     refused = [said.format(student=s.name, file=f.file, why="; ".join(map(str.strip, f.refused.splitlines())))
@@ -230,7 +230,7 @@ def _report(folder: Path, students: Sequence[Student], scheme: Scheme | None) ->
     return Report(_text(story), _tree(students, scheme), pages, (), story)
 
 
-def _tables(students: Sequence[Student], scheme: Scheme | None) -> Iterator[Table]:
+def _tables(students: Sequence[Student], scheme: MarkingScheme | None) -> Iterator[StoryTable]:
     head = [tell("student"), tell("project"), tell("files"), *_kinds()]
     if scheme is not None:
         head += [tell("mark"), *([tell("grade")] if scheme.grades else [])]
@@ -243,27 +243,27 @@ def _tables(students: Sequence[Student], scheme: Scheme | None) -> Iterator[Tabl
             row += ["–" if mark is None else told(f"{mark:.4g}"), *([scheme.grade(mark) if mark is not None else "–"]
                                                                    if scheme.grades else [])]
         rows.append(tuple(row))
-    yield Table(tell("Students"), tuple(head), tuple(rows))
+    yield StoryTable(tell("Students"), tuple(head), tuple(rows))
     if scheme is not None:
         yield _marks(students, scheme)
     made = [(s.name, m) for s in students for m in s.mistakes]
     files = [(s, f) for s in students for f in s.files]
-    yield Table(tell("Reports"), (tell("student"), tell("file"), *_kinds()),
+    yield StoryTable(tell("Reports"), (tell("student"), tell("file"), *_kinds()),
                 tuple((s.name, f.file, *(str(f.faults.get(kind, 0)) for kind in KINDS)) for s, f in files),
                 pages=tuple("" if f.report is None else f"{s.name}/{f.file}.html" for s, f in files))
     if made:
-        yield Table(tell("Mistakes of each"), (tell("student"), tell("mistake")), tuple(made))
+        yield StoryTable(tell("Mistakes of each"), (tell("student"), tell("mistake")), tuple(made))
         most = _most_made(students)[:MOST]
-        yield Table(tell("Mistakes most made"), (tell("students"), tell("mistake")), tuple((str(n), m) for m, n in most))
+        yield StoryTable(tell("Mistakes most made"), (tell("students"), tell("mistake")), tuple((str(n), m) for m, n in most))
 
 
-def _marks(students: Sequence[Student], scheme: Scheme) -> Table:
+def _marks(students: Sequence[Student], scheme: MarkingScheme) -> StoryTable:
     """How the marks came about: what the faults of each kind that cost anything cost each student."""
     kinds = [(kind, said) for kind, said in zip(KINDS, _kinds(), strict=True) if scheme.costs.get(kind)]
     rows = [(s.name, told(f"{scheme.full:g}"), *(scheme.counted(kind, s.faults[kind]) for kind, _ in kinds), told(f"{mark:.4g}"))
             for s in students if (mark := s.mark(scheme)) is not None]
     head = (tell("student"), tell("without faults"), *(said for _, said in kinds), tell("mark"))
-    return Table(tell("How the marks came about"), head, tuple(rows))
+    return StoryTable(tell("How the marks came about"), head, tuple(rows))
 
 
 def _kinds() -> tuple[str, ...]:
@@ -300,7 +300,7 @@ def _text(story: Story) -> str:
     return "\n".join(out)
 
 
-def _tree(students: Sequence[Student], scheme: Scheme | None) -> dict[str, Any]:
+def _tree(students: Sequence[Student], scheme: MarkingScheme | None) -> dict[str, Any]:
     def marked(s: Student) -> dict[str, Any]:
         if scheme is None:
             return {}

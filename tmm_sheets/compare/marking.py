@@ -29,7 +29,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from tmm_sheets import files, nearest, texts
+from tmm_sheets import encodings, files, spelling
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.numbers import told
 from tmm_sheets.words import tell
@@ -39,7 +39,7 @@ KINDS = ("mistake", "red", "amber", "missing_view", "missing_table", "unjudged")
 
 
 @dataclass(frozen=True)
-class Scheme:
+class MarkingScheme:
     """A scheme of marks: those of a faultless work, what each fault costs, caps by kind, and grades, the highest first."""
 
     full: float
@@ -67,7 +67,7 @@ class Scheme:
         return next((name for least, name in self.grades if mark >= least), self.grades[-1][1] if self.grades else "")
 
 
-def read(path: Path) -> Scheme:
+def read(path: Path) -> MarkingScheme:
     """Read a scheme.
 
     Raises
@@ -76,11 +76,11 @@ def read(path: Path) -> Scheme:
         If it cannot be read, or something in it is unknown, missing or no number; every problem with its line and field.
     """
     try:
-        text = texts.cleaned(texts.decoded(files.content(path)).text)
+        text = encodings.cleaned(encodings.decoded(files.content(path)).text)
         data = tomllib.loads(text)
     except OSError as e:
         raise BadInput(Problem(tell("cannot be read: {why}").format(why=e.strerror or e), str(path))) from None
-    except (tomllib.TOMLDecodeError, texts.NotText) as e:
+    except (tomllib.TOMLDecodeError, encodings.NotText) as e:
         raise BadInput(Problem(str(e), str(path), hint=tell("a scheme of marks is a TOML file: see docs/comparing.md"))) from None
     reading = _Reading(str(path), text.splitlines(), [])
     scheme = reading.scheme(data)
@@ -95,7 +95,7 @@ class _Reading:
     lines: list[str]
     problems: list[Problem]
 
-    def scheme(self, data: dict[str, Any]) -> Scheme:
+    def scheme(self, data: dict[str, Any]) -> MarkingScheme:
         self._known(data, ("full", "costs", "at_most", "grade"), "")
         full = self._number(data, "full", "")
         if full is None and "full" not in data:
@@ -104,7 +104,8 @@ class _Reading:
         if "costs" not in data:
             hint = tell("a table of what each fault costs: {kinds}").format(kinds=", ".join(KINDS))
             self._wrong("costs", tell("is missing"), hint)
-        return Scheme(full or 0.0, costs, self._numbers(data.get("at_most", {}), "at_most"), self._grades(data.get("grade", [])))
+        return MarkingScheme(full or 0.0, costs, self._numbers(data.get("at_most", {}), "at_most"),
+                             self._grades(data.get("grade", [])))
 
     def _numbers(self, table: Any, name: str) -> dict[str, float]:
         if not isinstance(table, dict):
@@ -133,7 +134,7 @@ class _Reading:
 
     def _known(self, table: Mapping[str, Any], keys: tuple[str, ...], where: str) -> None:
         for key in table.keys() - set(keys):
-            near = nearest.near(key, keys)
+            near = spelling.near(key, keys)
             hint = (tell('did you mean "{key}"?').format(key=near[0]) if near else
                     tell("known are {keys}").format(keys=", ".join(keys)))
             self._wrong(f"{where}{key}", tell("is not known here"), hint)

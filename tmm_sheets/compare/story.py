@@ -21,7 +21,7 @@ class Photo:
 
 
 @dataclass(frozen=True)
-class Picture:
+class StoryPicture:
     """A part of a sheet, mm, y up: our lines, theirs, those that are wrong, and places with their numbers.
 
     ``photo`` shows theirs where they are no lines.
@@ -42,7 +42,7 @@ class Picture:
 
 
 @dataclass(frozen=True)
-class Mistake:
+class ToldMistake:
     """Something done wrong: in which view, what, in how many words it needs, how bad ("red", "amber"), and what it looks like.
 
     ``named`` where ``what`` is what was done, not how many lines are off; ``again`` is said instead where a view before has that.
@@ -52,13 +52,13 @@ class Mistake:
     what: str
     verdict: str
     details: tuple[str, ...] = ()
-    picture: Picture | None = None
+    picture: StoryPicture | None = None
     named: bool = False
     again: str = ""
 
 
 @dataclass(frozen=True)
-class Table:
+class StoryTable:
     """A table with a heading; columns are as wide as their texts need. ``verdicts`` of its rows, if they have any, colour them.
 
     ``pages`` are those that the second cells of its rows lead to, from the folder of the reports; "" for none.
@@ -77,12 +77,12 @@ class Story:
 
     title: str
     about: tuple[str, ...]
-    mistakes: tuple[Mistake, ...] = ()
-    tables: tuple[Table, ...] = ()
+    mistakes: tuple[ToldMistake, ...] = ()
+    tables: tuple[StoryTable, ...] = ()
     unjudged: tuple[str, ...] = field(default_factory=tuple)
 
 
-def listed(mistakes: Sequence[Mistake]) -> list[str]:
+def listed(mistakes: Sequence[ToldMistake]) -> list[str]:
     """Mistakes for the terminal, a line each; what was done is told once, with all views where it shows."""
     where: dict[tuple[str, str], list[str]] = {}
     for m in mistakes:

@@ -11,7 +11,7 @@ from urllib.parse import quote
 import numpy as np
 
 from tmm_sheets.compare.numbering import numbered
-from tmm_sheets.compare.story import Mistake, Picture, Story, Table, clipped
+from tmm_sheets.compare.story import Story, StoryPicture, StoryTable, ToldMistake, clipped
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import reader, tell
 
@@ -60,14 +60,14 @@ def _parts(story: Story, folder: str) -> Iterator[str]:
         yield "</ul>"
 
 
-def _mistake(m: Mistake) -> str:
+def _mistake(m: ToldMistake) -> str:
     details = "".join(f"<li>{escape(line)}</li>" for line in m.details)
     said = (f'<div><p class="where">{escape(m.where)}</p><h3>{escape(m.again or m.what)}</h3>'
             + (f"<ul>{details}</ul>" if details else "") + "</div>")
     return f'<article class="{m.verdict}">{said}{_picture(m.picture) if m.picture is not None else ""}</article>'
 
 
-def _table(table: Table, folder: str) -> str:
+def _table(table: StoryTable, folder: str) -> str:
     head = "".join(f"<th>{escape(c)}</th>" for c in table.head)
     rows = "\n".join((f'<tr class="{verdict}">' if verdict else "<tr>") + "".join(
         f'<td><a href="{escape(quote(f"{folder}/{page}"))}">{escape(c)}</a></td>' if page and k == 1 else f"<td>{escape(c)}</td>"
@@ -76,7 +76,7 @@ def _table(table: Table, folder: str) -> str:
             "</tbody></table></div>")
 
 
-def _picture(p: Picture) -> str:
+def _picture(p: StoryPicture) -> str:
     box = p.box
     scale = min(LONGEST / max(box.width, box.height, 1.0), 6.0)
     wide, high = box.width * scale, box.height * scale

@@ -18,7 +18,7 @@ from reportlab.platypus import KeepTogether, LongTable, Paragraph, SimpleDocTemp
 
 from tmm_sheets.backends.pdf import CREATOR, FONT
 from tmm_sheets.compare.numbering import numbered
-from tmm_sheets.compare.story import Mistake, Picture, Story, Table, clipped
+from tmm_sheets.compare.story import Story, StoryPicture, StoryTable, ToldMistake, clipped
 from tmm_sheets.compare.story_html import OURS, THEIRS, WRONG
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.resources import template
@@ -79,7 +79,7 @@ def _said(text: str) -> str:
 _LIKE = {"\u0305": "", "\u0304": "", "\u202f": " ", "\xa0": " ", "…": "...", "‑": "-", "−": "-", "“": '"', "”": '"', "„": '"'}
 
 
-def _mistake(m: Mistake) -> Any:
+def _mistake(m: ToldMistake) -> Any:
     what = _said(m.again or m.what)
     parts: list[Any] = [Spacer(0, 5), Paragraph(_said(m.where), WHERE),
                         Paragraph(f'<font color="{SIDES[m.verdict].hexval().replace("0x", "#")}">■</font> {what}'
@@ -94,7 +94,7 @@ def _has(letter: str) -> bool:
     return ord(letter) in pdfmetrics.getFont(FONT).face.charToGlyph
 
 
-def _table(table: Table) -> Any:
+def _table(table: StoryTable) -> Any:
     cells = [[Paragraph(_said(c), SMALL) for c in row] for row in (table.head, *table.rows)]
     longest = [min(max(len(row[k]) for row in (table.head, *table.rows)), 40) + 2 for k in range(len(table.head))]
     # No column narrower than its longest word.
@@ -110,7 +110,7 @@ def _table(table: Table) -> Any:
         ("TOPPADDING", (0, 0), (-1, -1), 1.5), ("BOTTOMPADDING", (0, 0), (-1, -1), 2.5)]))
 
 
-def _picture(p: Picture) -> Drawing:
+def _picture(p: StoryPicture) -> Drawing:
     box = p.box
     scale = min(WIDE / max(box.width, 1.0), HIGH / max(box.height, 1.0), 1.6 * mm)
     drawing = Drawing(box.width * scale, box.height * scale)

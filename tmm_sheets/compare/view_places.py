@@ -22,7 +22,7 @@ from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
-from tmm_sheets import files, nearest, texts
+from tmm_sheets import encodings, files, spelling
 from tmm_sheets.compare.elements import ElementView
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.errors import BadInput, Problem
@@ -64,10 +64,10 @@ def read(path: Path, views: Sequence[ElementView]) -> tuple[ViewPlace, ...]:
         If it cannot be read, names a view the sheet does not have, or lacks points; it tells every problem.
     """
     try:
-        data = tomllib.loads(texts.cleaned(texts.decoded(files.content(path)).text))
+        data = tomllib.loads(encodings.cleaned(encodings.decoded(files.content(path)).text))
     except OSError as e:
         raise BadInput(Problem(tell("cannot be read: {why}").format(why=e.strerror or e), str(path))) from None
-    except (tomllib.TOMLDecodeError, texts.NotText) as e:
+    except (tomllib.TOMLDecodeError, encodings.NotText) as e:
         raise BadInput(Problem(str(e), str(path), hint=tell("it is a TOML file with a [[view]] table for each view"))) from None
     tables = data.get("view")
     if not isinstance(tables, list) or not tables or not all(isinstance(t, dict) for t in tables):
@@ -117,7 +117,7 @@ class _Table:
         view = _named(self.values.get("name"), views)
         if view is None:
             names = [v.name for v in views]
-            near = nearest.near(str(self.values.get("name")), names, 3, 0.4)
+            near = spelling.near(str(self.values.get("name")), names, 3, 0.4)
             self._wrong("name", tell('the sheet has no view "{view}"').format(view=self.values.get("name")),
                         tell("it has {views}").format(views=", ".join(f'"{n}"' for n in near or names)))
         return view

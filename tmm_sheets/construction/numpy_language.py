@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.program import GIVEN, NUMBER, REAL, Language, Program, Value, ufunc, written
+from tmm_sheets.construction.program import GIVEN, NUMBER, REAL, Language, Program, ProgramValue, ufunc, written
 
 _OTHERS = {"complex": "packed({0}, {1})", "re": "{0}.real", "im": "{0}.imag"}
 
@@ -53,7 +53,7 @@ class NumPy(Language):
                     self.rows += 1
                 self.row[n] = free.pop()
 
-    def name(self, number: int, value: Value) -> str:
+    def name(self, number: int, value: ProgramValue) -> str:
         """Name of a value."""
         if value.does == NUMBER:
             self.constants.append(value.constant)
@@ -62,7 +62,7 @@ class NumPy(Language):
             return f"x{value.constant}"
         return f"r{self.row[number]}" if number in self.row else f"z{number}" if value.varies else f"h{number}"
 
-    def line(self, value: Value, result: str, operands: Sequence[str]) -> str:
+    def line(self, value: ProgramValue, result: str, operands: Sequence[str]) -> str:
         """The line of an operation."""
         if value.function is not None:
             of = [name if self._whole(i) else f"single({name})" for i, name in zip(value.of, operands, strict=True)]
@@ -80,7 +80,7 @@ class NumPy(Language):
         return value.varies or value.gives != "real"
 
 
-def _in_row(value: Value) -> bool:
+def _in_row(value: ProgramValue) -> bool:
     return value.varies and value.does in REAL and value.function is None
 
 

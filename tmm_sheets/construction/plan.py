@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.rules import DISTANCE
+from tmm_sheets.construction.search_count import SearchCount
 from tmm_sheets.construction.step import Rule, Step, value_of
-from tmm_sheets.construction.tally import Tally
 
 
 def symbol(name: str) -> str:
@@ -64,7 +64,7 @@ class Plan:
     search
         count of a search that makes this plan only to look at its numbers; None for a plan that is drawn or told.
 
-    ``asides`` are steps that no pencil makes: numbers that spare rounding (see :attr:`Rule.beyond_paper`). They are no part of the
+    ``auxiliaries`` are steps that no pencil makes: numbers that spare rounding (:attr:`Rule.beyond_paper`). They are no part of the
     drawing order and are told by the record alone. ``conditions`` tell how flat its crossings are, once somebody has asked.
 
     A plan's own names ("M", "p") are its own whatever a point or a force of the task is called: a step that is :meth:`named` after
@@ -72,7 +72,7 @@ class Plan:
     """
 
     def __init__(self, name: str, title: str, unit: str, labels: tuple[str, ...] = ("",), pole: str | None = None,
-                 search: Tally | None = None) -> None:
+                 search: SearchCount | None = None) -> None:
         self.name = name
         self.title = title
         self.unit = unit
@@ -80,7 +80,7 @@ class Plan:
         self.pole = pole
         self.search = search
         self.steps: dict[str, Step] = {}
-        self.asides: dict[str, Step] = {}
+        self.auxiliaries: dict[str, Step] = {}
         self.conditions: dict[str, Step] = {}
         self.segments: list[Segment] = []
         self.reserved: frozenset[str] = frozenset()
@@ -104,13 +104,13 @@ class Plan:
         self.steps[name] = step
         return step
 
-    def aside(self, name: str, rule: Rule, *args: Any, symbol: str = "") -> Step:
+    def auxiliary(self, name: str, rule: Rule, *args: Any, symbol: str = "") -> Step:
         """Record a number that no pencil knows, once; of others made of other steps the name takes a prime."""
-        while name in self.asides and not _same(self.asides[name], rule, args):
+        while name in self.auxiliaries and not _same(self.auxiliaries[name], rule, args):
             name += "′"
-        if name not in self.asides:
-            self.asides[name] = self._step(name, rule, args, None, symbol)
-        return self.asides[name]
+        if name not in self.auxiliaries:
+            self.auxiliaries[name] = self._step(name, rule, args, None, symbol)
+        return self.auxiliaries[name]
 
     def once(self, name: str, rule: Rule, *args: Any, symbol: str = "") -> Step:
         """Record a step once, whoever asks first; of others made of other steps the name takes a prime."""
@@ -120,11 +120,11 @@ class Plan:
 
     def length(self, tail: Step, head: Step) -> Step:
         """Length between two points as it is read off the plan, whoever asks first."""
-        return self.aside(f"|{tail.name} {head.name}|", DISTANCE, tail, head)
+        return self.auxiliary(f"|{tail.name} {head.name}|", DISTANCE, tail, head)
 
-    def adopt(self, step: Step) -> None:
+    def add_existing(self, step: Step) -> None:
         """Take a step made elsewhere as one that no pencil makes."""
-        self.asides[step.name] = step
+        self.auxiliaries[step.name] = step
         step.__dict__["plan"] = self.name
         if self.search is not None:
             step.__dict__["seconds"] = self.search

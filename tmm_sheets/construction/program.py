@@ -36,7 +36,7 @@ PACKED = ("complex", "re", "im")
 
 
 @dataclass(frozen=True)
-class Value:
+class ProgramValue:
     """A value of a program: given, a number, or what an operation ``does`` to values with smaller numbers.
 
     ``varies`` is False for what is the same at all positions. ``constant`` is a number's value, or of a given its place among
@@ -64,7 +64,7 @@ class Program:
     lose digits (squares of sines).
     """
 
-    values: tuple[Value, ...]
+    values: tuple[ProgramValue, ...]
     rows: tuple[Any, ...]
     chosen: Mapping[str, Any]
     results: Mapping[str, Parts]
@@ -80,11 +80,11 @@ class Language(ABC):
     """How one operation is written; a program is written line by line, see :func:`written`."""
 
     @abstractmethod
-    def name(self, number: int, value: Value) -> str:
+    def name(self, number: int, value: ProgramValue) -> str:
         """Name of a value: of an operation's result, of an input or of a constant."""
 
     @abstractmethod
-    def line(self, value: Value, result: str, operands: Sequence[str]) -> str:
+    def line(self, value: ProgramValue, result: str, operands: Sequence[str]) -> str:
         """The line that computes a value from others under their names."""
 
 
@@ -166,7 +166,7 @@ def _without_rest(p: Program) -> Program:
         if i in asked:
             asked.update(p.values[i].of)
     place = {old: new for new, old in enumerate(sorted(asked))}
-    values = tuple(Value(v.does, tuple(place[i] for i in v.of), v.gives, v.varies, v.constant, v.function)
+    values = tuple(ProgramValue(v.does, tuple(place[i] for i in v.of), v.gives, v.varies, v.constant, v.function)
                    for i, v in enumerate(p.values) if i in asked)
     return Program(values, p.rows, p.chosen, {name: tuple(place[i] for i in parts) for name, parts in p.results.items()},
                    tuple(dict.fromkeys(place[i] for i in p.guards)))
@@ -179,10 +179,10 @@ def _without_rest(p: Program) -> Program:
 class _List:
     """Values so far; one that is there already is not made again, and nothing is done to constants alone."""
 
-    values: list[Value] = field(default_factory=list)
+    values: list[ProgramValue] = field(default_factory=list)
     known: dict[Any, int] = field(default_factory=dict)
 
-    def _enter(self, key: Any, value: Value) -> int:
+    def _enter(self, key: Any, value: ProgramValue) -> int:
         if key not in self.known:
             self.known[key] = len(self.values)
             self.values.append(value)
@@ -190,16 +190,16 @@ class _List:
 
     def given(self, place: int, gives: Type, varies: bool) -> int:
         """An input."""
-        return self._enter((GIVEN, place), Value(GIVEN, (), gives, varies, place))
+        return self._enter((GIVEN, place), ProgramValue(GIVEN, (), gives, varies, place))
 
     def number(self, x: float) -> int:
         """A constant."""
         x = float(x) + 0.0  # -0.0 is 0.0
-        return self._enter((NUMBER, x) if x == x else (NUMBER, "nan"), Value(NUMBER, (), "real", False, x))
+        return self._enter((NUMBER, x) if x == x else (NUMBER, "nan"), ProgramValue(NUMBER, (), "real", False, x))
 
     def thing(self, x: Any, gives: Type = "other") -> int:
         """A constant that is no real number: a curve, a table."""
-        return self._enter((NUMBER, id(x)), Value(NUMBER, (), gives, False, x))
+        return self._enter((NUMBER, id(x)), ProgramValue(NUMBER, (), gives, False, x))
 
     def constant(self, i: int) -> float | None:
         """The number that a real value is always; None where it is not."""
@@ -209,7 +209,7 @@ class _List:
     def done(self, does: str, *of: int, gives: Type = "real", function: Callable[..., Any] | None = None) -> int:
         """An operation, as it is."""
         key = (does, *(sorted(of) if does in "+*" else of))
-        return self._enter(key, Value(does, of, gives, any(self.values[i].varies for i in of), None, function))
+        return self._enter(key, ProgramValue(does, of, gives, any(self.values[i].varies for i in of), None, function))
 
     def real(self, does: str, *of: int) -> int:
         """An operation on real numbers, or something simpler that gives the same."""

@@ -78,7 +78,7 @@ class SortSizes:
 
 def sizes_of(plan: Plan) -> SortSizes:
     """Sizes of the sorts of quantities of a plan, for :func:`sentence`."""
-    return SortSizes((*plan, *plan.asides.values()))
+    return SortSizes((*plan, *plan.auxiliaries.values()))
 
 
 def _sort(step: Step) -> str:

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from tmm_sheets.construction.expression import Expression, trace
 from tmm_sheets.construction.given import FoundNumber, Given
-from tmm_sheets.construction.tally import Tally
+from tmm_sheets.construction.search_count import SearchCount
 
 Complex = npt.NDArray[np.complex128]
 Kind = Literal["point", "direction", "vector", "force", "length", "ordinate", "angle", "number", "inclination", "curve"]
@@ -108,7 +108,7 @@ class Step:
     args: tuple[Any, ...] = field(repr=False)  # a step prints without the whole construction before it
     say: str | None = None
     symbol: str = ""
-    seconds: list[float] | Tally = field(default_factory=list, repr=False)
+    seconds: list[float] | SearchCount = field(default_factory=list, repr=False)
     plan: str = ""
 
     @property
@@ -191,7 +191,7 @@ Part = Literal["", "x", "y", "abs", "angle"]
 
 
 @dataclass(frozen=True)
-class Told:
+class Reported:
     """A result that is told: a step's value, or a part of it, at the positions with these labels (all unless told)."""
 
     step: Step

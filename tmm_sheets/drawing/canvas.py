@@ -14,7 +14,21 @@ from typing import Any, Literal, NamedTuple, TypeVar, cast
 import numpy as np
 
 from tmm_sheets.drawing.lettering import Lettering, fitted, letter, size_for
-from tmm_sheets.drawing.marks import Arc, Box, Dimension, Fill, Form, Line, Mark, PlacedFrame, Points, Polyline, Role, Text, Trace
+from tmm_sheets.drawing.marks import (
+    Arc,
+    Box,
+    Dimension,
+    Fill,
+    Form,
+    Line,
+    Mark,
+    PlacedFrame,
+    Points,
+    Polyline,
+    Provenance,
+    Role,
+    Text,
+)
 
 Align = Literal["left", "centre", "right"]
 SMALLEST = 2.5
@@ -48,7 +62,7 @@ class Label:
     leader: bool = True
     of: str = ""
     part: int = -1
-    by: Trace | None = None
+    by: Provenance | None = None
     shelf: float = 0.0
     thin: float = 1.0
 
@@ -71,7 +85,7 @@ class AxisNumber(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Note:
+class PlacedNote:
     """A remark to a view in words; the sheet finds it a free place, in ``box`` or near it, when all labels are set.
 
     ``of`` and ``part`` are those of the canvas when the note was asked for. ``signs`` are what it ends with, a list that may become
@@ -173,11 +187,11 @@ class Canvas:
     scales: dict[str, Any] = field(default_factory=dict)
     chosen: set[str] = field(default_factory=set)
     of: str = ""
-    by: Trace | None = None
+    by: Provenance | None = None
     frames: list[PlacedFrame] = field(default_factory=list)
     parts: list[Part] = field(default_factory=list)
     groups: list[MarkGroup] = field(default_factory=list)
-    notes: list[Note] = field(default_factory=list)
+    notes: list[PlacedNote] = field(default_factory=list)
     dimensions: list[Dimension] = field(default_factory=list)
     forms: list[Form] = field(default_factory=list)
     shortened: dict[str, str] = field(default_factory=dict)
@@ -191,13 +205,13 @@ class Canvas:
     def tracing(self, role: Role, step: str = "", position: str = "", frame: int = -1, name: str = "") -> Canvas:
         """The same canvas for marks of one role that come from that step, see :class:`Trace`."""
         other = copy(self)
-        other.by = Trace(role, step, position, frame, name)
+        other.by = Provenance(role, step, position, frame, name)
         return other
 
     @contextmanager
     def traced(self, role: Role, step: str = "", position: str = "", frame: int = -1, name: str = "") -> Iterator[None]:
         """The marks drawn inside have this role and come from that step, see :class:`Trace`."""
-        before, self.by = self.by, Trace(role, step, position, frame, name)
+        before, self.by = self.by, Provenance(role, step, position, frame, name)
         try:
             yield
         finally:
@@ -340,7 +354,7 @@ class Canvas:
     def put(self, laid: Lettering, at: complex, angle: float = 0.0, markup: str = "") -> None:
         """Set laid out lettering with the left end of its baseline at ``at``."""
         u, first = rect(1, angle), len(self.marks)
-        by = Trace("text", *self.by[1:]) if self.by is not None else Trace("text")
+        by = Provenance("text", *self.by[1:]) if self.by is not None else Provenance("text")
         # Programs that read a PDF back know upright rectangles only: those of slanting letters and indices overlap sooner.
         loose = LOOSE if abs(sin(2 * angle)) > 1e-6 else 0.0
         for run in laid.runs:
@@ -360,7 +374,7 @@ class Canvas:
 
     def note(self, box: Box, text: str, signs: Iterable[str] = (), about: Any = None) -> None:
         """Ask for a remark in words to the view in ``box``; see :class:`Note`."""
-        self.notes.append(Note(text, box, self.of, len(self.parts) - 1, tuple(signs), about))
+        self.notes.append(PlacedNote(text, box, self.of, len(self.parts) - 1, tuple(signs), about))
 
     def title(self, box: Box, text: str, factor: str = "", height: float = 5.0) -> Box:
         """Title of a view centred at the top of its place, the scale factor under it and no larger; returns what is left below."""

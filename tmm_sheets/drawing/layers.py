@@ -17,7 +17,7 @@ BY_STYLE = {"main": "symbol", "thin": "symbol", "centre": "axis", "hidden": "lin
 """Roles of marks that tell none, by line type; other line types are called after the role."""
 
 
-class Layer(NamedTuple):
+class LayerStyle(NamedTuple):
     """A layer: ``name`` is the same in every language, ``style`` is its line type."""
 
     name: str
@@ -41,18 +41,18 @@ def roles() -> Mapping[str, Mapping[str, str]]:
 
 
 @cache
-def layers() -> Mapping[tuple[str, str], Layer]:
+def layers() -> Mapping[tuple[str, str], LayerStyle]:
     """Every layer there may be, by role and line type; the role's usual one first."""
     found = {}
     for role, row in roles().items():
         usual = row["style"]
         for style in (usual, *(name for name in line_types() if name != usual)):
             name = role.upper() if style == usual else f"{role.upper()}_{line_type(style).layer}"
-            found[role, style] = Layer(name, role, style)
+            found[role, style] = LayerStyle(name, role, style)
     return MappingProxyType(found)
 
 
-def layer(mark: Mark) -> Layer:
+def layer(mark: Mark) -> LayerStyle:
     """The layer of a mark.
 
     Raises

@@ -21,7 +21,7 @@ Role = Literal["vector", "construction", "point", "curve", "axis", "link", "symb
 """What a mark is on the sheet."""
 
 
-class Trace(NamedTuple):
+class Provenance(NamedTuple):
     """Where a mark comes from.
 
     ``step`` is "plan/name" of the construction step that left it, ``position`` the label of the position, ``frame`` the number of
@@ -64,7 +64,7 @@ class Line(NamedTuple):
     b: complex
     style: str
     of: str = ""
-    by: Trace | None = None
+    by: Provenance | None = None
 
 
 class Arc(NamedTuple):
@@ -76,7 +76,7 @@ class Arc(NamedTuple):
     end: float
     style: str
     of: str = ""
-    by: Trace | None = None
+    by: Provenance | None = None
 
 
 class Polyline(NamedTuple):
@@ -86,7 +86,7 @@ class Polyline(NamedTuple):
     style: str
     closed: bool = False
     of: str = ""
-    by: Trace | None = None
+    by: Provenance | None = None
 
 
 class Text(NamedTuple):
@@ -97,7 +97,7 @@ class Text(NamedTuple):
     height: float
     angle: float = 0.0
     of: str = ""
-    by: Trace | None = None
+    by: Provenance | None = None
 
 
 class Fill(NamedTuple):
@@ -106,7 +106,7 @@ class Fill(NamedTuple):
     points: Points
     style: str
     of: str = ""
-    by: Trace | None = None
+    by: Provenance | None = None
 
 
 Mark = Line | Arc | Polyline | Text | Fill

@@ -6,7 +6,7 @@ from itertools import chain, product
 
 import numpy as np
 
-from tmm_sheets.drawing.canvas import Canvas, Note
+from tmm_sheets.drawing.canvas import Canvas, PlacedNote
 from tmm_sheets.drawing.crowded import Crowded
 from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.labels import Grid
@@ -80,7 +80,7 @@ def wrapped(text: str, height: float, count: int) -> list[str]:
         room += height
 
 
-def _pictures(canvas: Canvas, note: Note) -> list[Box]:
+def _pictures(canvas: Canvas, note: PlacedNote) -> list[Box]:
     """Rectangles round the pictures that a view has several of, each with its caption."""
     if note.part < 0:
         return []
@@ -90,7 +90,7 @@ def _pictures(canvas: Canvas, note: Note) -> list[Box]:
     return [Box.around(z) for z in drawn if len(z)]
 
 
-def _ink(canvas: Canvas, note: Note) -> Box:
+def _ink(canvas: Canvas, note: PlacedNote) -> Box:
     """What is drawn of a view, in all its parts; its place where there is nothing, or nobody said what belongs to it."""
     if note.part < 0:
         return note.box
@@ -101,7 +101,7 @@ def _ink(canvas: Canvas, note: Note) -> Box:
     return Box.around(drawn) if len(drawn) else note.box
 
 
-def _choice(grid: Grid, region: Box, ink: Box, note: Note, height: float, count: int,
+def _choice(grid: Grid, region: Box, ink: Box, note: PlacedNote, height: float, count: int,
             apart: list[Box]) -> tuple[float, complex, list[str]] | None:
     """The best free place in ``region``, ``apart`` from some boxes, for a note of so many lines: cost, corner, lines.
 
@@ -131,7 +131,7 @@ def _choice(grid: Grid, region: Box, ink: Box, note: Note, height: float, count:
     return float(cost[best]), complex(x[best], y[best]), lines
 
 
-def _set(canvas: Canvas, note: Note, corner: complex, lines: list[str], height: float) -> None:
+def _set(canvas: Canvas, note: PlacedNote, corner: complex, lines: list[str], height: float) -> None:
     canvas.of = note.of
     baseline = corner + 1j * letter(lines[-1], height).descent
     for k, line in enumerate(lines, 1):

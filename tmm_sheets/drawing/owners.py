@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.drawing.canvas import Label
-from tmm_sheets.drawing.marks import Box, Line, Mark, Polyline, Text, Trace, flat
+from tmm_sheets.drawing.marks import Box, Line, Mark, Polyline, Provenance, Text, flat
 
 AT = 0.3
 """Lines that pass this near the anchor meet there: a letter at a point is nearer to all of them than to any other, mm."""
@@ -89,7 +89,7 @@ class Ink:
         return (np.concatenate((self.a[here], a[near])), np.concatenate((self.b[here], b[near])),
                 np.concatenate((self.of[here], np.full(n, self.drawn))), np.concatenate((self.strong[here], np.zeros(n, bool))))
 
-    def of_step(self, by: Trace) -> list[int]:
+    def of_step(self, by: Provenance) -> list[int]:
         """Numbers of the marks of the same step, position and frame; one arm among those of a sum has a name of its own."""
         return (by.name and self._steps.get(by[1:])) or self._steps.get(by[1:4], [])
 

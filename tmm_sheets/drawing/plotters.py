@@ -9,7 +9,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, Literal
 
-from tmm_sheets import files, nearest, texts
+from tmm_sheets import encodings, files, spelling
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.resources import template
 from tmm_sheets.words import tell
@@ -78,10 +78,10 @@ def plotter(name: str = DEFAULT) -> Plotter:
     path = template(f"plotters/{name}.toml") if name in names() else Path(name)
     if not path.is_file():
         said = tell("no plotter '{name}': neither a file nor one of {names}").format(name=name, names=', '.join(names()))
-        near = nearest.near(name, names())
+        near = spelling.near(name, names())
         raise ValueError(f"{said}; " + tell("did you mean {near}?").format(near=near[0]) if near else said)
     try:
-        return _plotter(path.stem, tomllib.loads(texts.cleaned(texts.decoded(files.content(path)).text)))
+        return _plotter(path.stem, tomllib.loads(encodings.cleaned(encodings.decoded(files.content(path)).text)))
     except ValueError as e:
         raise ValueError(f"{path}: {e}") from None
 

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 
-from tmm_sheets.construction.tally import Tally
+from tmm_sheets.construction.search_count import SearchCount
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -214,11 +214,11 @@ class GroupKind(ABC):
         return str(g.inner)
 
     def ram(self, g: StructuralGroup) -> str | None:
-        """The guided link with a slot for the other's stone."""
+        """The guided link with a slot for the other's slider block."""
         return None
 
     def rocker(self, g: StructuralGroup) -> str | None:
-        """The link that turns about the second outer hinge and guides the other's stone."""
+        """The link that turns about the second outer hinge and guides the other's slider block."""
         return None
 
 
@@ -298,16 +298,16 @@ class Mechanism:
     points: tuple[LinkPoint, ...]
     links: dict[str, Link]
     frame: str = "0"
-    searches: dict[str, Tally] = field(default_factory=dict, compare=False, repr=False)
+    searches: dict[str, SearchCount] = field(default_factory=dict, compare=False, repr=False)
     """what has been looked for with plans of this mechanism, by purpose"""
     courses: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
     """ways of assembly of its groups of class III round the turn, by the groups' names"""
     recorded: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
     """plans that all searches share, which do them again at other crank angles"""
 
-    def search(self, purpose: str) -> Tally | None:
+    def search(self, purpose: str) -> SearchCount | None:
         """Count of the plans that search for something; None without a purpose, for a plan to be drawn or told."""
-        return self.searches.setdefault(purpose, Tally(purpose)) if purpose else None
+        return self.searches.setdefault(purpose, SearchCount(purpose)) if purpose else None
 
     @property
     def pairs(self) -> tuple[Pair, ...]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from tmm_sheets import typed
+from tmm_sheets import quoting
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.words import both, tell
 
@@ -34,7 +34,7 @@ def check(formats: Iterable[str]) -> None:
         if missing:
             names = both([{"docx": "python-docx"}.get(name, name) for name in missing])
             raise CannotBuild(tell("the note as {form} needs {names}").format(form=form.upper(), names=names),
-                              typed.install("note"))
+                              quoting.install("note"))
 
 
 def run_on(variant: Variant, say: Callable[[str], None] = lambda _: None) -> Variant:

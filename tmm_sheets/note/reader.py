@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
     from tmm_sheets.note.pictures import Pictures
     from tmm_sheets.project import Project
-    from tmm_sheets.record.book import Book
+    from tmm_sheets.record.step_index import StepIndex
 
 FINEST = 6
 """Digits that the greatest of a kind would have with the decimals of the least of them."""
@@ -57,7 +57,7 @@ class Differs(CannotBuild):
 
 
 @dataclass(frozen=True)
-class Quantity:
+class NoteQuantity:
     """A letter with its number: what an operand of a formula is, ``unit`` as the record writes it."""
 
     symbol: str
@@ -80,7 +80,7 @@ class Reader:
     _book: Any = None
 
     @property
-    def book(self) -> Book:
+    def book(self) -> StepIndex:
         """Steps and plans as recorded so far."""
         if self._book is None:
             self._book = book_of(self.project)
@@ -198,18 +198,18 @@ class Reader:
         plan = self.book.plans.get(self.book.plan(step)) if step in self.book else None
         return unit(step, plan) if plan is not None else step.rule.unit
 
-    def quantity(self, step: Step, k: int | None = None, symbol: str = "", unit_: str | None = None) -> Quantity:
+    def quantity(self, step: Step, k: int | None = None, symbol: str = "", unit_: str | None = None) -> NoteQuantity:
         """A step as an operand."""
         n = self.of(step, k, unit_)
-        return Quantity(symbol or symbol_of(step), n.value, self.unit_of(step) if unit_ is None else unit_, n.step, n.position)
+        return NoteQuantity(symbol or symbol_of(step), n.value, self.unit_of(step) if unit_ is None else unit_, n.step, n.position)
 
-    def givens(self, unit: str = "") -> list[Quantity]:
+    def givens(self, unit: str = "") -> list[NoteQuantity]:
         """Given numbers that some step takes, each once, those of a unit or all."""
-        found: dict[str, Quantity] = {}
+        found: dict[str, NoteQuantity] = {}
         for step in self.book.steps.values():
             for a in step.args:
                 if isinstance(a, GivenNumber) and a.symbol and (not unit or a.unit == unit):
-                    found.setdefault(a.symbol, Quantity(a.symbol, float(a), a.unit, a.name))
+                    found.setdefault(a.symbol, NoteQuantity(a.symbol, float(a), a.unit, a.name))
         return list(found.values())
 
     def length(self, a: str, b: str) -> str:
@@ -255,29 +255,30 @@ class Reader:
             return None
         result = self.of(step, k)
         unit_ = self.unit_of(step) if as_unit is None else as_unit
-        return self.written(head, tree, quantities, Quantity("", result.value, unit_, result.step, result.position))
+        return self.written(head, tree, quantities, NoteQuantity("", result.value, unit_, result.step, result.position))
 
-    def _operand(self, a: Any, k: int | None) -> Quantity | None:
+    def _operand(self, a: Any, k: int | None) -> NoteQuantity | None:
         if isinstance(a, Step):
             value = value_at(a, self.at(a, k))
             if np.ndim(value) or np.iscomplexobj(value) or not isinstance(value, int | float | np.number | np.ndarray):
                 return None
-            return Quantity(self.letters_of(a), float(value), self.unit_of(a), self.id(a), self.position(a, self.at(a, k)))
+            return NoteQuantity(self.letters_of(a), float(value), self.unit_of(a), self.id(a), self.position(a, self.at(a, k)))
         if isinstance(a, Given):
             value = a.value if np.ndim(a.value) == 0 else a.value[min(self.k if k is None else k, len(a.value) - 1)]
             if isinstance(value, str) or not isinstance(value, int | float | np.number):
                 return None
-            return Quantity(self._given(a), float(value), a.unit, a.name)
+            return NoteQuantity(self._given(a), float(value), a.unit, a.name)
         if isinstance(a, GivenNumber):
-            return Quantity(self._given(a), float(a), a.unit, a.name)
+            return NoteQuantity(self._given(a), float(a), a.unit, a.name)
         if isinstance(a, int | float | np.number):
-            return Quantity(number(float(a), 6), float(a))
+            return NoteQuantity(number(float(a), 6), float(a))
         return None
 
     def _given(self, a: Given | GivenNumber) -> str:
         return str(phrases.words(self.language).get("symbols", {}).get(a.name) or a.symbol or a.name)
 
-    def written(self, symbol: str, tree: expression.Expression, quantities: Sequence[Quantity], result: Quantity | None) -> Said:
+    def written(self, symbol: str, tree: expression.Expression, quantities: Sequence[NoteQuantity],
+                result: NoteQuantity | None) -> Said:
         """A formula from its expression and the quantities in the places of its arguments; without ``result`` letters only."""
         in_letters = [Operand(letters(q.symbol), None, bool(_SUM.search(q.symbol))) for q in quantities]
         head = letters(symbol)
@@ -305,7 +306,7 @@ class Reader:
         worked_out = () if isinstance(tree, expression.Argument) else (*_items(of_tree(tree, in_numbers)), Sign("="))
         return Said(formula, Row((*worked_out, *gives)), tuple(explained))
 
-    def _figures(self, q: Quantity, of: Digits) -> Operand:
+    def _figures(self, q: NoteQuantity, of: Digits) -> Operand:
         source = Number(shown(q.value, of.number), q.step, q.value, q.position, of.number)
         node = figures(source) if q.step else Figures(source.text)
         as_angle = None
@@ -314,7 +315,7 @@ class Reader:
             as_angle = Figures(text, Number(text, q.step, q.value, q.position))
         return Operand(node, as_angle, q.value < 0 and source.text != "0")
 
-    def result(self, q: Quantity) -> tuple[Node, ...]:
+    def result(self, q: NoteQuantity) -> tuple[Node, ...]:
         """A result with its unit; an angle in degrees and minutes too."""
         n = Number(shown(q.value, q.digits), q.step, q.value, q.position, q.digits)
         unit_ = self.unit(q.unit)
@@ -324,7 +325,7 @@ class Reader:
             found = (*found, Sign("="), Figures(text, Number(text, q.step, q.value, q.position)))
         return found
 
-    def of_turns(self, path: str, turns: str, omega: Quantity) -> Said | None:
+    def of_turns(self, path: str, turns: str, omega: NoteQuantity) -> Said | None:
         """Formula of the angular velocity of a speed that the project file gives by its turns; None where it is given in rad/s."""
         value: Any = self.project.variant.data
         for key in path.split("."):
@@ -333,13 +334,13 @@ class Reader:
         tree: Any = {"1/s": 2 * pi * expression.Argument(0), "rpm": pi * expression.Argument(0) / 30}.get(units.common(name))
         if tree is None:
             return None
-        return self.written(omega.symbol, tree, [Quantity(turns, float(number_), name, path)], omega)
+        return self.written(omega.symbol, tree, [NoteQuantity(turns, float(number_), name, path)], omega)
 
     def checked(
         self,
         symbol: str,
         build: Callable[..., Any],
-        quantities: Sequence[Quantity],
+        quantities: Sequence[NoteQuantity],
         step: Step,
         k: int | None = None,
         unit_: str | None = None,
@@ -358,7 +359,7 @@ class Reader:
         if isfinite(value) and abs(abs(value) - abs(n.value)) > 1e-6 * size:
             raise Differs(f"{symbol} of {n.step} is {n.value}, the note's formula gives {value}")
         given = self.unit_of(step) if unit_ is None else unit_
-        return self.written(symbol, tree, quantities, Quantity("", copysign(n.value, value), given, n.step, n.position))
+        return self.written(symbol, tree, quantities, NoteQuantity("", copysign(n.value, value), given, n.step, n.position))
 
     # --- sentences
 

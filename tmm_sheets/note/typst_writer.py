@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from tmm_sheets import typed
+from tmm_sheets import quoting
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.note.alphabets import TYPST, characters, spelt, string
 from tmm_sheets.note.arranging import Measured, arranged, sticky
@@ -102,7 +102,7 @@ def _compiler(source: str, files: Mapping[str, bytes]) -> Iterator[Any]:
     try:
         import typst
     except ImportError:
-        raise CannotBuild(tell("the note as PDF needs the package typst"), typed.install("note")) from None
+        raise CannotBuild(tell("the note as PDF needs the package typst"), quoting.install("note")) from None
 
     with TemporaryDirectory(prefix="tmm-note-") as folder:
         root = Path(folder)

@@ -23,7 +23,7 @@ from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tmm_sheets import catalogue, files, kept, nearest, typed, words
+from tmm_sheets import catalogue, files, kept, quoting, spelling, words
 from tmm_sheets.errors import BadInput, CannotBuild, Stopped, reason_of
 from tmm_sheets.output.building import Order, build, folder_name
 from tmm_sheets.words import tell
@@ -203,7 +203,7 @@ def run_on_dask(projects: Sequence[str], order: Order, parent: Path, address: st
         from distributed import Client
         from distributed import as_completed as finished
     except ImportError:
-        raise BadInput(tell("--dask needs dask.distributed"), hint=typed.install("cluster")) from None
+        raise BadInput(tell("--dask needs dask.distributed"), hint=quoting.install("cluster")) from None
     try:
         client = Client(address, timeout=20)
     except (OSError, ValueError) as e:
@@ -236,7 +236,7 @@ def chosen(projects: Sequence[str], families: Sequence[str], lists: Sequence[Ite
             found = [name for name in shipped if family == "all" or name == family or name.startswith(f"{family}/")]
             if not found:
                 known = dict.fromkeys(name.partition("/")[0] for name in shipped)
-                near = nearest.near(family, known)
+                near = spelling.near(family, known)
                 hint = tell('did you mean "{near}"?').format(near=near[0]) if near else tell(
                     "shipped are {known}; all takes every project").format(known=", ".join(known))
                 raise BadInput(tell('no family "{family}"').format(family=family), hint=hint)

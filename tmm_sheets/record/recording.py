@@ -15,8 +15,8 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Step, value_at, value_of
 from tmm_sheets.errors import CannotBuild, together
 from tmm_sheets.record import formulas, sheets, values
-from tmm_sheets.record.book import Book
 from tmm_sheets.record.results_map import leaves
+from tmm_sheets.record.step_index import StepIndex
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
@@ -83,13 +83,13 @@ def _sheet(value: dict[str, Any], level: int) -> str:
     return _lines(value, level) if "marks" in value else _lines(value, 4)
 
 
-def book_of(project: Project) -> Book:
+def book_of(project: Project) -> StepIndex:
     """The plans of a project that are drawn or told, all their steps with them."""
-    return Book(plan for of_part in project.plans.values() for plan in (of_part or {}).values()
-                if any(step.evaluated for step in (*plan, *plan.asides.values())))
+    return StepIndex(plan for of_part in project.plans.values() for plan in (of_part or {}).values()
+                if any(step.evaluated for step in (*plan, *plan.auxiliaries.values())))
 
 
-def _plan(project: Project, book: Book, name: str) -> dict[str, Any]:
+def _plan(project: Project, book: StepIndex, name: str) -> dict[str, Any]:
     plan = book.plans[name]
     labels = plan.labels if len(plan.labels) > 1 else ()
     cycle = project.cycle if labels and project.variant.cycle is not None else None
@@ -102,12 +102,12 @@ def _plan(project: Project, book: Book, name: str) -> dict[str, Any]:
     return found | {"steps": book.of[name]}
 
 
-def _steps(book: Book, scales: dict[str, Scale]) -> dict[str, Any]:
+def _steps(book: StepIndex, scales: dict[str, Scale]) -> dict[str, Any]:
     said = {name: _Telling(plan, scales.get(plan.name)) for name, plan in book.plans.items()}
     return {key: _step(book, said[book.plan(step)], key, step) for key, step in book.steps.items()}
 
 
-def _step(book: Book, telling: _Telling, key: str, step: Step) -> dict[str, Any]:
+def _step(book: StepIndex, telling: _Telling, key: str, step: Step) -> dict[str, Any]:
     plan, value = telling.plan, step.value
     n = len(plan.labels)
     found: dict[str, Any] = {
@@ -118,7 +118,7 @@ def _step(book: Book, telling: _Telling, key: str, step: Step) -> dict[str, Any]
     return found | telling.told(step)
 
 
-def _argument(book: Book, a: Any, n: int) -> dict[str, Any]:
+def _argument(book: StepIndex, a: Any, n: int) -> dict[str, Any]:
     step: Step | None = a if isinstance(a, Step) else getattr(a, "step", None)
     return values.given(a, n) if step is None else {"step": book.id(step)}
 
@@ -187,7 +187,7 @@ def _helper(h: Helper) -> dict[str, Any]:
     return found if h.kind == "line" else found | {"radius": values.written(float(h.radius))}
 
 
-def _results(behind: Mapping[str, Any], book: Book) -> Iterable[tuple[str, dict[str, Any]]]:
+def _results(behind: Mapping[str, Any], book: StepIndex) -> Iterable[tuple[str, dict[str, Any]]]:
     for path, told in behind.items():
         if hasattr(told, "step") and told.step in book:
             part = {"part": told.part} if told.part else {}

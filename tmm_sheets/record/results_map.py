@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from tmm_sheets.construction.step import Step, Told
+from tmm_sheets.construction.step import Reported, Step
 
 SECTIONS = ("cycle", "positions", "velocities", "accelerations", "forces", "flywheel", "gear", "reducer", "train", "cam")
 """Parts of the results whose numbers are steps."""
@@ -23,15 +23,15 @@ def leaves(tree: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 def _leaves(path: str, value: Any) -> Iterator[tuple[str, Any]]:
     if isinstance(value, Step):
-        yield path, Told(value)
-    elif isinstance(value, Told):
+        yield path, Reported(value)
+    elif isinstance(value, Reported):
         yield path, value
     elif isinstance(value, Mapping):
         for key, v in value.items():
             if key not in WITHOUT_STEPS:
                 yield from _leaves(f"{path}.{key}", v)
     elif isinstance(value, list | tuple):
-        if any(isinstance(v, Step | Told | Mapping) for v in value):
+        if any(isinstance(v, Step | Reported | Mapping) for v in value):
             for i, v in enumerate(value):
                 yield from _leaves(f"{path}[{i}]", v)
         elif any(not _text(v) for v in value):

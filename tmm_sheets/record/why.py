@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets import nearest, results
+from tmm_sheets import results, spelling
 from tmm_sheets.construction import protocol
 from tmm_sheets.construction.given import Given, GivenNumber, GivenPoint
-from tmm_sheets.construction.step import Step, Told, value_at
+from tmm_sheets.construction.step import Reported, Step, value_at
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.numbers import in_a_row, listed
 from tmm_sheets.project import LINKAGE
-from tmm_sheets.record.book import Book, chain
 from tmm_sheets.record.recording import book_of, unit
 from tmm_sheets.record.results_map import leaves
+from tmm_sheets.record.step_index import StepIndex, chain
 from tmm_sheets.words import either, marked, tell, tell_n
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def lines(project: Project, result: str) -> Iterator[str]:
     if result not in found:
         raise _unknown(project, result, found)
     told = found[result]
-    if not isinstance(told, Told):
+    if not isinstance(told, Reported):
         raise BadInput(tell("{result} has no step behind it: it is a number of the program").format(result=result))
     _ = told.value
     book = book_of(project)
@@ -73,7 +73,7 @@ def _no_part(project: Project, result: str, part: str) -> BadInput:
         known = [name for name, _ in leaves(results.told(project, None, refused={}))]
     except CannotBuild:
         known = []
-    near = nearest.near(result, (*known, *project.parts), 6)
+    near = spelling.near(result, (*known, *project.parts), 6)
     hint = tell("did you mean {near}?").format(near=either(near)) if near else tell("it has {parts}").format(
         parts=", ".join(project.parts))
     return BadInput(tell('{project} has no part "{part}"').format(project=project.variant.called, part=part), hint=hint)
@@ -81,7 +81,7 @@ def _no_part(project: Project, result: str, part: str) -> BadInput:
 
 def _unknown(project: Project, result: str, known: Any) -> BadInput:
     name, names = project.variant.called, list(known)
-    near = nearest.near(result, names, 6, 0.5)
+    near = spelling.near(result, names, 6, 0.5)
     hint = tell("did you mean {near}?").format(near=either(near)) if near else tell("there are {names}").format(
         names=", ".join(names[:12]) + (" ..." if len(names) > 12 else ""))
     return BadInput(tell('{project} has no result "{result}"').format(project=name, result=result), hint=hint)
@@ -95,12 +95,12 @@ def _position(project: Project) -> str:
     return cycle.force_position or project.cycle.labels[0]
 
 
-def _index(step: Step, at: str, book: Book) -> int:
+def _index(step: Step, at: str, book: StepIndex) -> int:
     labels = book.plans[book.plan(step)].labels if step in book else ("",)
     return labels.index(at) if at in labels else 0
 
 
-def _given(arg: GivenNumber | GivenPoint | Given, at: str, book: Book, step: Step) -> str:
+def _given(arg: GivenNumber | GivenPoint | Given, at: str, book: StepIndex, step: Step) -> str:
     k = _index(step, at, book)
     value: Any = arg.value if isinstance(arg, Given) else arg
     if isinstance(arg, Given) and (arg.over == "curve" or np.ndim(value) > 1 or (np.ndim(value) == 1 and k >= len(value))):
@@ -119,7 +119,7 @@ def _given(arg: GivenNumber | GivenPoint | Given, at: str, book: Book, step: Ste
     return f"{arg.name}  {arg.symbol or '-'} = {shown}  {origin}"
 
 
-def _line(step: Step, at: str, book: Book) -> str:
+def _line(step: Step, at: str, book: StepIndex) -> str:
     k = _index(step, at, book)
     plan = book.plans.get(book.plan(step)) if step in book else None
     name = book.id(step) if step in book else step.name
@@ -133,7 +133,7 @@ def _from(step: Step, k: int, plan: Any) -> str:
     return protocol.sentence(step, k, to_mm, plan.unit if plan is not None else "")
 
 
-def _of_part(told: Told) -> str:
+def _of_part(told: Reported) -> str:
     words = {
         "x": marked(", projection on x"),
         "y": marked(", projection on y"),
@@ -144,7 +144,7 @@ def _of_part(told: Told) -> str:
     return tell(words[told.part])
 
 
-def _shown(told: Told, at: str, book: Book) -> str:
+def _shown(told: Reported, at: str, book: StepIndex) -> str:
     value = told.value
     plan = book.plans.get(book.plan(told.step)) if told.step in book else None
     told_unit = "rad" if told.part == "angle" else unit(told.step, plan) if plan is not None else told.step.rule.unit

@@ -15,7 +15,7 @@ from tmm_sheets.words import marked, tell
 
 
 @dataclass(frozen=True)
-class View:
+class ViewPlace:
     """A place on a sheet and what is drawn there: ``draw`` is module.function of tmm_sheets.sheets.
 
     ``others`` are its places in other ways to arrange the same views, by their names; without one it is where it is.
@@ -56,15 +56,15 @@ ANYWHERE = Box(0.0, 0.0, 0.0, 0.0)
 class Arrangement:
     """What stands where on one sheet, from ``templates/sheets/<name>.toml``.
 
-    ``offers`` are views for the room that is left, by :mod:`tmm_sheets.sheets.offers`, the ones most wanted first.
+    ``offers`` are views for the room that is left, by :mod:`tmm_sheets.sheets.optional_views`, the ones most wanted first.
     """
 
     name: str
     title: str
     code: str
-    views: tuple[View, ...]
+    views: tuple[ViewPlace, ...]
     without: dict[str, str] = field(default_factory=dict)
-    offers: tuple[View, ...] = ()
+    offers: tuple[ViewPlace, ...] = ()
 
     def ways(self) -> Iterator[Arrangement]:
         """The arrangement itself, then the other ways to arrange its views, those that move different views also together."""
@@ -126,9 +126,9 @@ def arrangement(name: str) -> Arrangement:
         return replace(other, name=name, title=data.get("title", other.title), code=data.get("code", other.code), views=views,
                        without={})
     try:
-        views = tuple(View(v.pop("draw"), _box(v.pop("box")), others={name: _box(at) for name, at in v.pop("or", {}).items()},
+        views = tuple(ViewPlace(v.pop("draw"), _box(v.pop("box")), others={name: _box(at) for name, at in v.pop("or", {}).items()},
                            options=v) for v in data.get("view", []))
-        offers = tuple(View(v.pop("draw"), ANYWHERE, options=v) for v in data.get("offer", []))
+        offers = tuple(ViewPlace(v.pop("draw"), ANYWHERE, options=v) for v in data.get("offer", []))
         return Arrangement(name, data["title"], data.get("code", ""), views, dict(data.get("without", {})), offers)
     except (KeyError, TypeError, ValueError) as e:
         raise BadInput(Problem(tell("expected title and [[view]] tables with draw and box, found {found!r}").format(found=e),

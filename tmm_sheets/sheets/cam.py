@@ -19,7 +19,7 @@ from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.tables import needs, widened
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.frame import OVER
-from tmm_sheets.sheets.player import Stage, placed, play
+from tmm_sheets.sheets.player import PlayerStage, placed, play
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def for_cams(view: View) -> View:
     return drawn
 
 
-def axes(s: Stage, step: Step | str, x: float, y: tuple[float, float], before: float = 3.0) -> None:
+def axes(s: PlayerStage, step: Step | str, x: float, y: tuple[float, float], before: float = 3.0) -> None:
     """Axes of a diagram of a step, reaching to ``x`` and from ``y[0]`` to ``y[1]``, mm from its origin."""
     o = s.frame(0j)
     pen = s.pen(step, "axis")
@@ -200,7 +200,7 @@ def _relations(m: FollowerMotion) -> list[str]:
     ]
 
 
-def _diagram(s: Stage, step: Step, up: float, down: float, end: float, symbol: str, head: str) -> None:
+def _diagram(s: PlayerStage, step: Step, up: float, down: float, end: float, symbol: str, head: str) -> None:
     """Axes of one diagram with the letter of its quantity and its scale factor."""
     canvas, o = s.canvas, s.frame(0j)
     axes(s, step, end + 13.0, (-down, up + 10.0), 3.0 if down else 0.0)
@@ -209,7 +209,7 @@ def _diagram(s: Stage, step: Step, up: float, down: float, end: float, symbol: s
     canvas.label(o + end + 12.0, tr("{symbol}, rad").format(symbol="φ"), 1j, 3.5, 1.5, leader=False)
 
 
-def _ordinates(s: Stage, m: FollowerMotion, steps: list[Step]) -> None:
+def _ordinates(s: PlayerStage, m: FollowerMotion, steps: list[Step]) -> None:
     """Ordinates of the numbered positions, their numbers on the other side of the axis."""
     points = np.array([complex(step.value) for step in steps])
     kept = distinct(m.law.labels, points.real)
@@ -223,7 +223,7 @@ def _ordinates(s: Stage, m: FollowerMotion, steps: list[Step]) -> None:
         s.canvas.number(complex(at), complex(at + shift), m.law.labels[k], height, pitch, first=k == 0)
 
 
-def _auxiliary_circle(s: Stage, m: FollowerMotion) -> None:
+def _auxiliary_circle(s: PlayerStage, m: FollowerMotion) -> None:
     """Auxiliary circles of the law with their division points carried to the ordinates."""
     canvas, centre = s.canvas, s.at("M")
     half = m.law.parts + 1
@@ -257,7 +257,7 @@ def _auxiliary_circle(s: Stage, m: FollowerMotion) -> None:
         canvas.label(centre + rect(0.6 * radius, pi - angle), name, 1j * rect(1, pi - angle), 3.5, 0.6, leader=False)
 
 
-def _integration(upper: Stage, lower: Stage, m: FollowerMotion, symbol: str, ends: list[Step],
+def _integration(upper: PlayerStage, lower: PlayerStage, m: FollowerMotion, symbol: str, ends: list[Step],
                  pole: str, distance: str, down: float) -> None:
     """Rays from the pole of the upper diagram, rectangles of equal area, chords of the lower diagram."""
     plan, canvas, origin = m.plan, upper.canvas, upper.frame(0j)
@@ -308,11 +308,11 @@ class OverAngle:
         o = complex(room.x0 + (room.width - length) / 2, room.y0 - low + (room.height - (high - low)) / 2)
         return cls(across, tall, unit, o, length, low, high)
 
-    def placed(self, canvas: Canvas, plan: Plan) -> Stage:
+    def placed(self, canvas: Canvas, plan: Plan) -> PlayerStage:
         """A plan as this diagram: abscissae in radians, ordinates in its unit."""
         return placed(canvas, plan, self.o, (radians(self.across.mu), self.unit * self.tall.mu))
 
-    def axes(self, s: Stage, step: Step, beyond: tuple[float, float], text: str, above: float) -> None:
+    def axes(self, s: PlayerStage, step: Step, beyond: tuple[float, float], text: str, above: float) -> None:
         """Axes of the diagram of a step, so far beyond it, mm, with the sign of its ordinates."""
         axes(s, step, self.length + beyond[0], (self.low, self.high + beyond[1]))
         s.canvas.text(self.o + complex(2.5, self.high + above), text, 3.5)

@@ -19,7 +19,7 @@ from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets import cam_scale
 from tmm_sheets.sheets.cam import ANGLE, distinct, for_cams, in_degrees, in_mm, lines_of_text, raised
 from tmm_sheets.sheets.frame import ratio, standard
-from tmm_sheets.sheets.player import Stage, placed, play
+from tmm_sheets.sheets.player import PlayerStage, placed, play
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -306,7 +306,7 @@ def _radii(cam: Cam) -> list[list[str]]:
                    for k in distinct(inv.plan.labels, inv.phi)]
 
 
-def _circles(s: Stage, picture: _ProfilePicture) -> None:
+def _circles(s: PlayerStage, picture: _ProfilePicture) -> None:
     """Circles r0, e and l0 with their radii, drawn where the cam dwells: no follower line is there."""
     cam, origin, scale, canvas = picture.cam, picture.origin, picture.scale, s.canvas
     radii = [("r_0", cam.r0, 0.3)]
@@ -347,7 +347,7 @@ def _arcs(inv: Inversion, right: float) -> list[tuple[complex, float]]:
     return list(furthest.values())
 
 
-def _inverted(s: Stage, picture: _ProfilePicture) -> None:
+def _inverted(s: PlayerStage, picture: _ProfilePicture) -> None:
     """Follower lines or arms in the inverted motion, and arcs about O through the marks of the path."""
     cam = picture.cam
     inv, right = cam.inversion, cam.right
@@ -366,13 +366,13 @@ def _inverted(s: Stage, picture: _ProfilePicture) -> None:
         here.pen(inv.centres, "construction").arc(picture.origin, radius, ends[0], ends[1], "construction")
 
 
-def _rod(s: Stage, picture: _ProfilePicture) -> None:
+def _rod(s: PlayerStage, picture: _ProfilePicture) -> None:
     """Translating follower in position 0: roller, rod, guide."""
     inv = picture.cam.inversion
     _guided(s.position(0).pen(inv.axis, "symbol"), picture, s.position(0).at(inv.axis))
 
 
-def _path(s: Stage, picture: _ProfilePicture, first: int, table: Box) -> None:
+def _path(s: PlayerStage, picture: _ProfilePicture, first: int, table: Box) -> None:
     """Marks of the follower's path with the numbers of all positions, away from the arcs through them and from the table."""
     inv, side = picture.cam.inversion, picture.cam.right
     marks = [s.position(k).at(inv.axis) for k in range(len(inv.plan.labels))]
@@ -400,7 +400,7 @@ def _guided(canvas: Canvas, picture: _ProfilePicture, low: complex) -> None:
         canvas.hatch(a, b, 1 if side < 0 else -1)
 
 
-def _rocker(s: Stage, picture: _ProfilePicture) -> None:
+def _rocker(s: PlayerStage, picture: _ProfilePicture) -> None:
     """Rocker in position 0, circle l0 with the axes of the inverted positions, marks of the path, triangle OAB."""
     cam, at, canvas = picture.cam, picture.at, s.canvas
     inv = cam.inversion
@@ -431,7 +431,7 @@ def _rocker(s: Stage, picture: _ProfilePicture) -> None:
                  1j * (a0 - picture.origin), 3.5, 0.6)
 
 
-def _flat(s: Stage, picture: _ProfilePicture) -> None:
+def _flat(s: PlayerStage, picture: _ProfilePicture) -> None:
     """Flat follower in position 0 and the plates of the inverted positions, whose envelope is the profile."""
     cam, at = picture.cam, picture.at
     inv = cam.inversion
@@ -442,7 +442,7 @@ def _flat(s: Stage, picture: _ProfilePicture) -> None:
     _rod(s, picture)
 
 
-def _second_disc(s: Stage, course: Stage, picture: _ProfilePicture) -> None:
+def _second_disc(s: PlayerStage, course: PlayerStage, picture: _ProfilePicture) -> None:
     """Centre profile and profile of the second disc, its roller, and what keeps both rollers at their distance."""
     cam, at, canvas = picture.cam, picture.at, s.canvas
     dense, inv = cam.dense, cam.inversion
@@ -473,7 +473,7 @@ def _second_disc(s: Stage, course: Stage, picture: _ProfilePicture) -> None:
         canvas.label(second, "B′_0", u + 0.6, 3.5, picture.roller + 1.0)
 
 
-def _phase_angles(s: Stage, picture: _ProfilePicture) -> None:
+def _phase_angles(s: PlayerStage, picture: _ProfilePicture) -> None:
     """Angles of the phases from the line of position 0, the cam's and the inverted sense of rotation."""
     cam, origin, scale, start, canvas = picture.cam, picture.origin, picture.scale, picture.start, s.canvas
     reach = scale.mm(cam.r0)

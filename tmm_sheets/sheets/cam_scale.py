@@ -9,10 +9,10 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.step import Step
-from tmm_sheets.drawing.clear import Drawn, spread
+from tmm_sheets.drawing.free_space import Drawn, spread
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.sheets.player import Stage
+from tmm_sheets.sheets.player import PlayerStage
 
 HEIGHT, BETWEEN, CLEAR = 2.5, 0.8, 0.4
 """Height of the numbers, what is left between them and round them, mm."""
@@ -36,7 +36,7 @@ def at_marks(along: Sequence[float], labels: Sequence[str]) -> list[tuple[int, f
     return [(k, t, ", ".join(names)) for k, t, names in found]
 
 
-def numbered(s: Stage, step: Step, first: int, along: Sequence[float], labels: Sequence[str], path: Path, side: float,
+def numbered(s: PlayerStage, step: Step, first: int, along: Sequence[float], labels: Sequence[str], path: Path, side: float,
              closed: Box, furthest: float = 48.0) -> None:
     """Marks across the path, and their numbers in a row beside it where the least is drawn: rather at ``side`` of it, 1 or -1.
 

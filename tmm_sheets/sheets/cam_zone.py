@@ -17,7 +17,7 @@ from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets import clear_dimensions
 from tmm_sheets.sheets.cam import ANGLE, OverAngle, centred, distinct, for_cams, lines_of_text, raised
 from tmm_sheets.sheets.frame import ratio, standard
-from tmm_sheets.sheets.player import Stage, placed, play
+from tmm_sheets.sheets.player import PlayerStage, placed, play
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -150,7 +150,7 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     lines_of_text(canvas, box, measured)
 
 
-def _rays(s: Stage, z: Zone, letter_of: str, axis: float | None = None) -> None:
+def _rays(s: PlayerStage, z: Zone, letter_of: str, axis: float | None = None) -> None:
     """Rays from the cam's axis to the points of all positions, those of the fall with their part of the curve.
 
     They stand off from the velocities of B by the pressure angles: from ``axis``, rad, where the follower moves along a line (the
@@ -237,7 +237,7 @@ def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     canvas.lines(complex(box.x1 - text + 6.0, box.y1 - 40.0), measured, 8.0)
 
 
-def _permitted(s: Stage, cam: RockerCam, picture: Box, scale: Scale) -> None:
+def _permitted(s: PlayerStage, cam: RockerCam, picture: Box, scale: Scale) -> None:
     """The allowed zone, the rays under the permitted pressure angle and the borders that touch the curve, inside the picture."""
     z, canvas, at = cam.zone, s.canvas, s.frame
     corners = [complex(picture.x0, picture.y0), complex(picture.x1, picture.y0),
@@ -259,7 +259,7 @@ def _permitted(s: Stage, cam: RockerCam, picture: Box, scale: Scale) -> None:
         s.dot(touch, 0.7, "main", tip)
 
 
-def _rocker_positions(s: Stage, cam: RockerCam) -> None:
+def _rocker_positions(s: PlayerStage, cam: RockerCam) -> None:
     """Path of the roller's axis, the rocker in the numbered positions of the rise, the segments in all of them."""
     z, labels, canvas, at = cam.zone, cam.zone.plan.labels, s.canvas, s.frame
     pivot, starts, tips = complex(z.plan["A"].value), np.asarray(z.axis.value), np.asarray(z.points.value)
@@ -279,7 +279,7 @@ def _rocker_positions(s: Stage, cam: RockerCam) -> None:
             canvas.label(complex(at(tips[k])), f"{labels[k]}_D", complex(tips[k] - starts[k]), 2.5, 0.6, thin=CLEAR)
 
 
-def _rocker_and_axis(s: Stage, cam: RockerCam, picture: Box, letter_of: str) -> None:
+def _rocker_and_axis(s: PlayerStage, cam: RockerCam, picture: Box, letter_of: str) -> None:
     """The rocker, the cam's axis in the zone's apex, both main dimensions and the permitted angles at the roller."""
     z, canvas = cam.zone, s.canvas
     pivot = complex(z.plan["A"].value)

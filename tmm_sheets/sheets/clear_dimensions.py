@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas, lettered
-from tmm_sheets.drawing.clear import Drawn
+from tmm_sheets.drawing.free_space import Drawn
 from tmm_sheets.drawing.lettering import letter
 
 CLEAR = 0.4

@@ -21,7 +21,7 @@ from tmm_sheets.drawing.marks import Drawing, View
 from tmm_sheets.drawing.title_block import draw_frame
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.resources import template
-from tmm_sheets.sheets import composition, legibility, places, titles
+from tmm_sheets.sheets import composition, legibility, titles, view_overflow
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.composed import Composed
 from tmm_sheets.sheets.composition import DESIGNATION, arranged
@@ -71,9 +71,9 @@ def viewed(project: Project, n: int) -> tuple[Arrangement, Canvas, dict[str, str
         _drawer(plan.name, view.draw)(project, canvas, view.box, view.options)
     titles.lower(canvas)
     if plan.offers:
-        from tmm_sheets.sheets import offers
+        from tmm_sheets.sheets import optional_views
 
-        offers.draw(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, DESIGNATION))
+        optional_views.draw(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, DESIGNATION))
     return plan, canvas, fields
 
 
@@ -94,7 +94,7 @@ def composed(project: Project, n: int) -> Composed:
         WIDTH, HEIGHT, title, tuple(canvas.marks), project.variant.title_block.student or "tmm_sheets",
         subject=" ".join(filter(None, (fields["designation"], fields["group"]))), keywords=", ".join(map(tr, KEYWORDS)),
         views=_views(canvas), dimensions=tuple(canvas.dimensions), forms=tuple(canvas.forms))
-    left = places.leaving(canvas, INSIDE, TITLE_BLOCK)
+    left = view_overflow.leaving(canvas, INSIDE, TITLE_BLOCK)
     project.shown.add(n)
     return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left),
                     tuple(canvas.frames), _symbols(project, drawing), _dead(project, plan),
@@ -109,9 +109,9 @@ def ask_again(project: Project, n: int, parts: Iterable[Part]) -> None:
         canvas.begin(view.box, "", view.draw)
         _drawer(plan.name, view.draw)(project, canvas, view.box, view.options)
     if plan.offers:
-        from tmm_sheets.sheets import offers
+        from tmm_sheets.sheets import optional_views
 
-        offers.ask_again(project, canvas, plan.offers, placed)
+        optional_views.ask_again(project, canvas, plan.offers, placed)
     project.shown.add(n)
     _ = _dead(project, plan), [*composition.left_out(project, [n])], [*legibility.crowded(project, [n])]
 

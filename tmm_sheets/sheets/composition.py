@@ -22,9 +22,9 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets import false_positions, kinematic_frames, kinetic_frames
-from tmm_sheets.sheets.arrangement import Arrangement, View, arrangement
+from tmm_sheets.sheets.arrangement import Arrangement, ViewPlace, arrangement
+from tmm_sheets.sheets.border_solver import GAP, BorderNode, Need, cut, joined, rounded_up, solve
 from tmm_sheets.sheets.frame import extent, needed, standard
-from tmm_sheets.sheets.solver import GAP, Need, Node, cut, joined, rounded_up, solve
 from tmm_sheets.words import marked, marked_n
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ class _Way:
     """One way to arrange the views of a sheet: each view, or a part of one, with its node."""
 
     plan: Arrangement
-    parts: list[list[tuple[View, Node]]]
+    parts: list[list[tuple[ViewPlace, BorderNode]]]
 
     @classmethod
     def of(cls, project: Project, plan: Arrangement) -> _Way:
@@ -127,14 +127,14 @@ class _Way:
         return tree.cost(room.width, room.height), placed
 
 
-def _in_columns(parts: list[tuple[View, Node]]) -> Node:
+def _in_columns(parts: list[tuple[ViewPlace, BorderNode]]) -> BorderNode:
     """The parts of a view one under another, in as many columns as their boxes begin at."""
     lefts = dict.fromkeys(view.box.x0 for view, _ in parts)
     columns = [[node for view, node in parts if view.box.x0 == x] for x in lefts]
     return joined(0, [joined(1, nodes, [1.0] * len(nodes)) for nodes in columns], [1.0] * len(columns))
 
 
-def _name(view: View) -> tuple[str, Any]:
+def _name(view: ViewPlace) -> tuple[str, Any]:
     """What tells a view of a sheet from the others."""
     return view.draw, view.options.get("group")
 
@@ -149,17 +149,17 @@ def _kept(box: Box, place: Box) -> bool:
     return max(abs(a - b) for a, b in zip(box, place, strict=True)) <= 3.0
 
 
-def _leaves(node: Node) -> Iterator[Node]:
+def _leaves(node: BorderNode) -> Iterator[BorderNode]:
     if node.need is not None:
         yield node
     for child in node.children:
         yield from _leaves(child)
 
 
-def _fixed(box: Box) -> Node:
+def _fixed(box: Box) -> BorderNode:
     """What keeps the size it has."""
     size = (box.width, box.height)
-    return Node(Need(least=size, most=size, drawn=lambda w, h: w * h), area=box.width * box.height)
+    return BorderNode(Need(least=size, most=size, drawn=lambda w, h: w * h), area=box.width * box.height)
 
 
 def _designated(box: Box) -> bool:
@@ -171,7 +171,7 @@ def _below_designation(box: Box) -> Box:
     return box._replace(y1=min(box.y1, DESIGNATION.y0)) if _designated(box) else box
 
 
-def _placed(view: View, node: Node, found: dict[int, Box]) -> View:
+def _placed(view: ViewPlace, node: BorderNode, found: dict[int, Box]) -> ViewPlace:
     """A view in its new place; one of several parts with the places of these as its option ``places``."""
     if view.draw not in NEEDS:
         return view
@@ -179,11 +179,11 @@ def _placed(view: View, node: Node, found: dict[int, Box]) -> View:
     return replace(view, box=_around(parts), options={**view.options, "places": parts} if len(parts) > 1 else view.options)
 
 
-def _parts(project: Project, view: View) -> list[tuple[View, Node]]:
+def _parts(project: Project, view: ViewPlace) -> list[tuple[ViewPlace, BorderNode]]:
     """Nodes of a view, which may stand for several one under another; none for one with nothing to draw."""
     if view.draw == "kinetics.groups":
         places = kinetic_frames.places_of_groups(view.box, len(project.mechanism.groups), int(view.options.get("columns", 1)), 0.0)
-        return [part for i, place in enumerate(places) for part in _parts(project, View(
+        return [part for i, place in enumerate(places) for part in _parts(project, ViewPlace(
             "kinetics.group", place, {"scheme": 0.45, "group": i + 1}))]
     if "cam" in view.needs and not _of_cam(project, view):
         return []
@@ -218,17 +218,17 @@ def _reaching(box: Box, z: Any, d: Any, inset: tuple[float, float, float, float]
     return Need((size[0], size[1]), (around[0], around[1]), (max(least[0], short[0]), max(least[1], short[1])))
 
 
-def _leaf(box: Box, need: Need, share: float = 1.0) -> Node:
-    return Node(need, area=share * box.width * box.height)
+def _leaf(box: Box, need: Need, share: float = 1.0) -> BorderNode:
+    return BorderNode(need, area=share * box.width * box.height)
 
 
-def _positions(project: Project, view: View) -> Node:
+def _positions(project: Project, view: ViewPlace) -> BorderNode:
     around = kinematic_frames.positions_around(project, view.options)
     z, d = kinematic_frames.positions_reach(project)
     return _leaf(view.box, _reaching(view.box, z, d, around, (max(110.0, 0.75 * view.box.width), 90.0)), MAIN)
 
 
-def _velocities(project: Project, view: View) -> Node:
+def _velocities(project: Project, view: ViewPlace) -> BorderNode:
     spans, longest = kinematic_frames.velocity_spans(project, view.options)
     finest = longest / kinematic_frames.LONGEST
     around = kinematic_frames.MARGIN, kinematic_frames.HEAD
@@ -252,7 +252,7 @@ def _velocities(project: Project, view: View) -> Node:
     return _leaf(view.box, Need(least=(0.7 * view.box.width, 0.7 * view.box.height), drawn=drawn), 3)
 
 
-def _accelerations(project: Project, view: View) -> Node:
+def _accelerations(project: Project, view: ViewPlace) -> BorderNode:
     real = kinematic_frames.plan_extent(project.study.accelerations.plan, project.force_index)
     left, below, right, above = kinematic_frames.ACCELERATIONS
     around = left + right, below + above
@@ -262,7 +262,7 @@ def _accelerations(project: Project, view: View) -> Node:
     return _leaf(view.box, _readable(need, max(real.width, real.height), points, OF_POINT), 0.8)
 
 
-def _false_positions(project: Project, view: View) -> Node | None:
+def _false_positions(project: Project, view: ViewPlace) -> BorderNode | None:
     found, nth = false_positions.triads(project), int(view.options.get("group", 1))
     if nth > len(found):
         return None
@@ -270,7 +270,7 @@ def _false_positions(project: Project, view: View) -> Node | None:
     return _leaf(view.box, _reaching(view.box, *reach, false_positions.AROUND, (110.0, 90.0)))
 
 
-def _group(project: Project, view: View) -> Node | None:
+def _group(project: Project, view: ViewPlace) -> BorderNode | None:
     """Loaded scheme and force plans: side by side, or the plans one under another, or the scheme over them: what fills most."""
     k, forces = project.force_index, project.study.forces
     nth = int(view.options.get("group", 1))
@@ -288,7 +288,7 @@ def _readable(need: Need, size: float, forces: int, each: float) -> Need:
     """Need of a figure of such a size, in its unit, that has room along it for so many forces, ``each`` of a length, mm.
 
     Where only its width and height are measured, arrows round a small figure take the same place as round a large one. What
-    is small beside its own forces and their arms, stones in a slot, is no larger at any factor that has room for these.
+    is small beside its own forces and their arms, slider blocks in a slot, is no larger at any factor that has room for these.
     """
     if not forces or not size > LINKS * max(need.span):
         return need
@@ -299,8 +299,8 @@ def _readable(need: Need, size: float, forces: int, each: float) -> Need:
     return replace(need, least=(wide, high))
 
 
-def _parted(box: Box, share: float, scheme: Need, plans: list[Need]) -> Node:
-    def node(axis: int, inner: int) -> Node:
+def _parted(box: Box, share: float, scheme: Need, plans: list[Need]) -> BorderNode:
+    def node(axis: int, inner: int) -> BorderNode:
         each = (1.0 - share) / len(plans)
         of_plans = joined(inner, [_leaf(box, need, each) for need in plans], [1.0] * len(plans), 4.0)
         return joined(axis, [_leaf(box, scheme, share), of_plans], [share, 1.0 - share], 4.0)
@@ -341,7 +341,7 @@ OF_VALUE = 24.0
 """Room of one force with its value in the line under a force plan, mm, about."""
 
 
-def _crank(project: Project, view: View) -> Node:
+def _crank(project: Project, view: ViewPlace) -> BorderNode:
     k = project.force_index
     share = float(view.options.get("scheme", 0.5))
     reach = kinetic_frames.crank_scheme(project, k, kinetic_frames.on_crank(project, k))
@@ -350,7 +350,7 @@ def _crank(project: Project, view: View) -> Node:
     return _parted(view.box, share, scheme, [plan])
 
 
-def _lever(project: Project, view: View) -> Node:
+def _lever(project: Project, view: ViewPlace) -> BorderNode:
     k = project.force_index
     reach = kinetic_frames.lever_scheme(project, k, kinetic_frames.on_lever(project, k))
     # Every force and its arm hangs on it: no view has more labels.
@@ -359,34 +359,35 @@ def _lever(project: Project, view: View) -> Node:
     return _leaf(view.box, _readable(need, max(points.width, points.height), len(kinetic_frames.on_lever(project, k)), ON_LEVER), 3)
 
 
-def _rows(project: Project, view: View, count: int, head: float, row: tuple[float, float], widths: tuple[float, float]) -> Node:
+def _rows(project: Project, view: ViewPlace, count: int, head: float, row: tuple[float, float],
+          widths: tuple[float, float]) -> BorderNode:
     """Need of a table with so many rows under its heading: rows from the least height to the usual one."""
     need = Need(least=(widths[0], head + row[0] * count), most=(widths[1], head + row[1] * count), drawn=lambda w, h: w * h)
-    return Node(need, area=need.least[0] * need.most[1])
+    return BorderNode(need, area=need.least[0] * need.most[1])
 
 
-def _structure(project: Project, view: View) -> Node:
+def _structure(project: Project, view: ViewPlace) -> BorderNode:
     return _rows(project, view, len(project.mechanism.groups) + 1, 26.0, (7.0, 7.0), (122.0, 170.0))
 
 
-def _motion_table(project: Project, view: View) -> Node | None:
+def _motion_table(project: Project, view: ViewPlace) -> BorderNode | None:
     if not project.diagrams:
         return None
     count = len(project.cycle.labels) + (2 if view.options.get("links") else 1)
     return _rows(project, view, count, 9.0, (5.6 if count <= 26 else 4.0, 7.0), (100.0, 170.0))
 
 
-def _velocity_tables(project: Project, view: View) -> Node:
+def _velocity_tables(project: Project, view: ViewPlace) -> BorderNode:
     over = 2 if view.options.get("stacked") else 1
     count = over * (len(project.cycle.drawn) + 2)
     return _rows(project, view, count, 10.0 * over, (4.6, 7.5), (0.8 * view.box.width, inf))
 
 
-def _results(project: Project, view: View) -> Node:
+def _results(project: Project, view: ViewPlace) -> BorderNode:
     return _rows(project, view, 4, 0.0, (7.0, 9.0), (128.0, 170.0))
 
 
-def _values(project: Project, view: View) -> Node:
+def _values(project: Project, view: ViewPlace) -> BorderNode:
     points, links = len(project.study.positions.points), len(project.mechanism.links)
     loads = len(project.applied)
     count = 1 + ceil((points - len(project.mechanism.fixed)) / 2) + 1 + links + (1 + loads if loads else 0)
@@ -394,30 +395,30 @@ def _values(project: Project, view: View) -> Node:
     return _rows(project, view, count, 8.0 * tables, (4.6, 7.0), (140.0, 200.0))
 
 
-def _motion(project: Project, view: View) -> Node | None:
+def _motion(project: Project, view: ViewPlace) -> BorderNode | None:
     if not project.diagrams:
         return None
     return _leaf(view.box, Need(least=(180.0, 150.0), drawn=lambda w, h: 0.75 * w * h), 0.5)
 
 
-def _loads(project: Project, view: View) -> Node | None:
+def _loads(project: Project, view: ViewPlace) -> BorderNode | None:
     pressures = {f.name for f in project.variant.force if f.bore is not None}
     if all(f.name in pressures for f in project.applied):
         return None
     return _leaf(view.box, Need(least=(150.0, 70.0), most=(inf, 110.0), drawn=lambda w, h: 0.7 * w * h))
 
 
-def _synthesis(project: Project, view: View) -> Node | None:
+def _synthesis(project: Project, view: ViewPlace) -> BorderNode | None:
     return _fixed(view.box) if project.variant.synthesis is not None else None
 
 
-def _friction(project: Project, view: View) -> Node:
+def _friction(project: Project, view: ViewPlace) -> BorderNode:
     from tmm_sheets.sheets import friction
 
     return _leaf(view.box, _reaching(view.box, *friction.scheme(project), friction.AROUND, (150.0, 90.0)))
 
 
-def _friction_pairs(project: Project, view: View) -> Node:
+def _friction_pairs(project: Project, view: ViewPlace) -> BorderNode:
     from tmm_sheets.sheets import friction
 
     @cache
@@ -427,26 +428,26 @@ def _friction_pairs(project: Project, view: View) -> Node:
     return _leaf(view.box, Need(least=(200.0, 120.0), drawn=lambda w, h: in_place(int(w), int(h))), 1.5)
 
 
-def _friction_power(project: Project, view: View) -> Node:
+def _friction_power(project: Project, view: ViewPlace) -> BorderNode:
     return _leaf(view.box, Need(least=(170.0, 76.0), most=(inf, 130.0), drawn=lambda w, h: 0.7 * w * h), 0.5)
 
 
-def _friction_table(project: Project, view: View) -> Node:
+def _friction_table(project: Project, view: ViewPlace) -> BorderNode:
     from tmm_sheets.sheets.friction import ROWS
 
     found = project.study.forces.friction
     return _rows(project, view, len(found.pairs) + 1 if found else 1, 34.0, (5.0, ROWS[0]), (0.7 * view.box.width, inf))
 
 
-def _friction_positions(project: Project, view: View) -> Node:
+def _friction_positions(project: Project, view: ViewPlace) -> BorderNode:
     from tmm_sheets.sheets.friction import ROWS
 
     return _rows(project, view, len(project.cycle.labels) + 1, 12.0, (4.6, ROWS[1]), (0.7 * view.box.width, inf))
 
 
-def _cam(least: tuple[float, float], share: float) -> Callable[[Project, View], Node | None]:
+def _cam(least: tuple[float, float], share: float) -> Callable[[Project, ViewPlace], BorderNode | None]:
     """Need of a view of the cam that takes what room there is; shares of its box below which it cannot be read."""
-    def node(project: Project, view: View) -> Node | None:
+    def node(project: Project, view: ViewPlace) -> BorderNode | None:
         w, h = view.box.width, view.box.height
         need = Need(least=(least[0] * w, least[1] * h), drawn=lambda w, h: share * w * h)
         return _leaf(view.box, need)
@@ -454,7 +455,7 @@ def _cam(least: tuple[float, float], share: float) -> Callable[[Project, View], 
     return node
 
 
-def _tappet_zone(project: Project, view: View) -> Node | None:
+def _tappet_zone(project: Project, view: ViewPlace) -> BorderNode | None:
     """A curve S(S′) with the numbers of all positions on it, which must be so high that they can be read."""
     from tmm_sheets.sheets import cam_zone
 
@@ -469,7 +470,7 @@ def _tappet_zone(project: Project, view: View) -> Node | None:
     return _leaf(view.box, need)
 
 
-def _pressure(project: Project, view: View) -> Node | None:
+def _pressure(project: Project, view: ViewPlace) -> BorderNode | None:
     """A graph over the whole turn: beyond its width more height is of no use, and its ordinates are to stand apart."""
     from tmm_sheets.sheets import cam
 
@@ -479,7 +480,7 @@ def _pressure(project: Project, view: View) -> Node | None:
     return _leaf(view.box, Need(least=(120.0, 80.0), drawn=drawn))
 
 
-def _spring(project: Project, view: View) -> Node | None:
+def _spring(project: Project, view: ViewPlace) -> BorderNode | None:
     """A graph with its lines beside it or under it, where they leave it the height to be read."""
     from tmm_sheets.sheets import cam
 
@@ -489,13 +490,13 @@ def _spring(project: Project, view: View) -> Node | None:
     return _leaf(view.box, Need(least=(0.8 * view.box.width, 80.0), drawn=drawn))
 
 
-def _of_cam(project: Project, view: View) -> bool:
+def _of_cam(project: Project, view: ViewPlace) -> bool:
     """Whether a view is meant for this kind of cam."""
     traits = project.cam.traits
     return bool(traits.issuperset(view.options.get("when", ())) and traits.isdisjoint(view.options.get("unless", ())))
 
 
-def _profile(project: Project, view: View) -> Node | None:
+def _profile(project: Project, view: ViewPlace) -> BorderNode | None:
     from tmm_sheets.sheets import cam_profile
 
     cam = project.cam
@@ -524,7 +525,7 @@ def _profile(project: Project, view: View) -> Node | None:
     return _leaf(view.box, Need(least=(180.0, 180.0), drawn=lambda w, h: in_place(int(w), int(h))))
 
 
-def _roller(project: Project, view: View) -> Node | None:
+def _roller(project: Project, view: ViewPlace) -> BorderNode | None:
     from tmm_sheets.sheets import cam_profile
 
     cam: Any = project.cam  # one with a roller: others have no such view
@@ -542,17 +543,17 @@ def _roller(project: Project, view: View) -> Node | None:
     return _leaf(view.box, Need(least=(cam_profile.roller_width(cam), 104.0), drawn=lambda w, h: in_place(int(w), int(h))), 0.5)
 
 
-def _of_gears(name: str) -> Callable[[Project, View], Node | None]:
+def _of_gears(name: str) -> Callable[[Project, ViewPlace], BorderNode | None]:
     """Need of a view of gears, whose modules only their own sheets import."""
 
-    def need(project: Project, view: View) -> Node | None:
-        found: Callable[[Project, View], Node | None] = getattr(import_module("tmm_sheets.sheets.gear_needs"), name)
+    def need(project: Project, view: ViewPlace) -> BorderNode | None:
+        found: Callable[[Project, ViewPlace], BorderNode | None] = getattr(import_module("tmm_sheets.sheets.gear_sizes"), name)
         return found(project, view)
 
     return need
 
 
-NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
+NEEDS: dict[str, Callable[[Project, ViewPlace], BorderNode | None]] = {
     "kinematics.position_plans": _positions, "kinematics.velocity_plans": _velocities,
     "kinematics.acceleration_plan": _accelerations, "kinematics.structure": _structure,
     "kinematics.velocity_tables": _velocity_tables, "kinetics.group": _group, "kinetics.crank": _crank,
@@ -590,7 +591,7 @@ NEEDS: dict[str, Callable[[Project, View], Node | None]] = {
 # --- what follows from the places, without drawing ------------------------------------------------------------------------
 
 
-def _kinematic(project: Project, n: int) -> tuple[View, ...]:
+def _kinematic(project: Project, n: int) -> tuple[ViewPlace, ...]:
     """Views of sheet ``n`` (from 1) in their places if kinematic plans are among them; other sheets are not looked into."""
     views = arrangement(project.sheets[n - 1]).fitted(project.parts).views
     return arranged(project, n).views if any(view.draw.startswith("kinematics.") for view in views) else ()

@@ -19,7 +19,7 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import PlacedFrame, Text
 from tmm_sheets.sheets import linkage
 from tmm_sheets.sheets.frame import together
-from tmm_sheets.sheets.player import Stage
+from tmm_sheets.sheets.player import PlayerStage
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -88,7 +88,7 @@ def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     with canvas.as_role("symbol"):
         canvas.window(window.centre, half)
         place = placed(canvas, it.frame, it.centre, window.centre, times)
-        _enlarged(Stage(canvas, it.plan, project.force_index, canvas.frames[place], place), it, window.centre, half)
+        _enlarged(PlayerStage(canvas, it.plan, project.force_index, canvas.frames[place], place), it, window.centre, half)
         radius = _free_radius(canvas, it)
         # The sign of a vector that lies in the circle stands in the detail: on the plan it would need a leader out of the corner.
         inside = {sign for sign, *ends in it.vectors if all(abs(it.points[name] - it.centre) < radius for name in ends)}
@@ -139,7 +139,7 @@ def _free_radius(canvas: Canvas, it: Corner) -> float:
     return next((r for r in usual + 0.5 * np.arange(8) if not any(b.min() < r + 0.2 and b.max() > r - 0.2 for b in boxes)), usual)
 
 
-def _enlarged(s: Stage, it: Corner, middle: complex, half: float) -> None:
+def _enlarged(s: PlayerStage, it: Corner, middle: complex, half: float) -> None:
     """Vectors and letters of a corner inside a circle of a radius, mm."""
     at = {name: s.at(name) for name in it.points}
     for sign, tail, head in it.vectors:

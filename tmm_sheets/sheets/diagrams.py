@@ -18,7 +18,7 @@ from tmm_sheets.drawing.tables import LEAST, needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import NOISE, enough
 from tmm_sheets.sheets import graphs
-from tmm_sheets.sheets.frame import Frame, pick
+from tmm_sheets.sheets.frame import PlanFrame, pick
 from tmm_sheets.sheets.kinetic_frames import balancing_sign
 from tmm_sheets.sheets.linkage import indexed, shapes
 from tmm_sheets.words import marked, tell, tr, tr_in
@@ -32,7 +32,7 @@ GRAPH_SIZES = (280.0, 110.0), (240.0, 96.0), (200.0, 84.0), (170.0, 76.0)
 
 
 @dataclass(frozen=True)
-class Curve:
+class DiagramCurve:
     """A quantity over the cycle: ``symbol`` in sheet markup, its step, its values at the sampled angles and at the positions."""
 
     symbol: str
@@ -49,7 +49,7 @@ class DiagramQuantity:
     key: str
     letter: str
     unit: str
-    curves: tuple[Curve, ...]
+    curves: tuple[DiagramCurve, ...]
 
 
 def _columns(project: Project, options: graphs.Options) -> list[tuple[DiagramQuantity, ...]]:
@@ -167,7 +167,7 @@ def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Option
     mean = project.flywheel.driving_plan["M"] if project.variant.flywheel is not None and not rubbing else \
         project.study.mean_driving(course, every)
     sign = balancing_sign(project)
-    moment = DiagramQuantity("graph-M", sign, tr("N·m"), (Curve("", step, every, values, at),))
+    moment = DiagramQuantity("graph-M", sign, tr("N·m"), (DiagramCurve("", step, every, values, at),))
     # Where the balancing moment is called as the driving one is, the constant one is its mean.
     known = project.variant.flywheel is not None and not project.reduced.resisting
     constant = f"M_{{{tr_in('index of moment and work', 'r')}}}" if known else tr("M_d")
@@ -238,7 +238,7 @@ def _of_links(project: Project, names: list[str]) -> tuple[DiagramQuantity, ...]
 
 def _quantities(project: Project, outputs: list[Output], units: Iterable[tuple[str, str, str]]) -> tuple[DiagramQuantity, ...]:
     turned = project.motion.turned
-    curves = [[Curve(here.symbol, here, turned, _row(between, turned), _row(here, project.study.turned))
+    curves = [[DiagramCurve(here.symbol, here, turned, _row(between, turned), _row(here, project.study.turned))
                for here, between in zip(one.at_positions, one.between, strict=True)] for one in outputs]
     return tuple(_quantity(*of, list(row)) for of, row in zip(units, zip(*curves, strict=True), strict=True))
 
@@ -256,7 +256,7 @@ def _row(step: Step, turned: Any) -> Any:
     return np.where(np.abs(values) <= NOISE * np.max(np.abs(b - q) / np.abs(big_b - big_q)), 0.0, values)
 
 
-def _quantity(key: str, sign: str, unit: str, curves: list[Curve]) -> DiagramQuantity:
+def _quantity(key: str, sign: str, unit: str, curves: list[DiagramCurve]) -> DiagramQuantity:
     """A single curve gives the ordinate its name, several are named where they run."""
     if len(curves) == 1:
         return DiagramQuantity(key, curves[0].symbol, unit, tuple(curves))
@@ -281,7 +281,7 @@ def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQ
     canvas.of = q.key
     if level is None:
         canvas.begin(box, tr("Graph of {quantity}").format(quantity=q.letter))
-    at = Frame(scale, o, angle)
+    at = PlanFrame(scale, o, angle)
     frames = [canvas.placed(c.step.plan, "", o, at.mu) for c in q.curves]
     axis = (q.curves[0].step.path, "", frames[0])
     with canvas.traced("axis", *axis):

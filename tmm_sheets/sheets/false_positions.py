@@ -13,7 +13,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.sheets import linkage
 from tmm_sheets.sheets.frame import fit_frame
-from tmm_sheets.sheets.player import Stage, play, stage
+from tmm_sheets.sheets.player import PlayerStage, play, stage
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
                   a + 0.4 * (b - a))
 
 
-def _locus(s: Stage, there: list[tuple[Step, ...]], found: Step) -> None:
+def _locus(s: PlayerStage, there: list[tuple[Step, ...]], found: Step) -> None:
     """Smooth curve through the points of the locus, the true one among them."""
     half = len(there) // 2
     z = [s.at(steps[2]) for steps in there]
@@ -85,7 +85,7 @@ def _locus(s: Stage, there: list[tuple[Step, ...]], found: Step) -> None:
     s.curve(there[-1][2], sum(w * v for w, v in zip(weights, values, strict=True)))
 
 
-def _normals(s: Stage, pos: Positions, special: SpecialPoint) -> None:
+def _normals(s: PlayerStage, pos: Positions, special: SpecialPoint) -> None:
     """Normals of two legs produced to the special point."""
     w = special.step
     for leg in special.pair:

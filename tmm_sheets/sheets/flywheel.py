@@ -28,7 +28,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import decimals_for, enough, fixed, is_zero, number
 from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.frame import ratio, standard, together
-from tmm_sheets.sheets.player import Stage, play, stage
+from tmm_sheets.sheets.player import PlayerStage, play, stage
 from tmm_sheets.words import tell, tr, tr_in
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.wheel import RimWheel
     from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
     from tmm_sheets.project import Project
-    from tmm_sheets.sheets.arrangement import Arrangement, View
+    from tmm_sheets.sheets.arrangement import Arrangement, ViewPlace
 
 TANGENTS = ("flywheel.force_graph", "flywheel.total_work", "flywheel.energy_mass", "flywheel.results", "crank_speed.graph")
 """Views of a flywheel by the energy-mass diagram."""
@@ -82,7 +82,7 @@ def apart(project: Any, plan: Arrangement) -> Arrangement:
     border = upper.box.y1 - needs - max(spare, 0.0) * (len(parts) - 1) / (len(parts) + 1)
     places = {upper.draw: upper.box._replace(y0=border), lower.draw: lower.box._replace(y1=border - gap)}
 
-    def placed(view: View) -> View:
+    def placed(view: ViewPlace) -> ViewPlace:
         energy = {"energy": [*places[lower.draw]]} if "energy" in view.options else {}
         return replace(view, box=places.get(view.draw, view.box), options={**view.options, **energy})
 
@@ -229,7 +229,8 @@ def _clear_of(line: Any, level: float, length: float) -> complex:
     return next((z for z, way in zip(places, ways, strict=True) if way > CLEAR), places[int(np.argmax(ways))])
 
 
-def axes(fw: Flywheel, of: Stage, step: Step | str, g: graphs.Graph, low: float, high: float, ordinate: str, side: Any) -> None:
+def axes(fw: Flywheel, of: PlayerStage, step: Step | str, g: graphs.Graph, low: float, high: float, ordinate: str,
+         side: Any) -> None:
     """Axes of the graph of a step over the cycle, and the numbers of the positions beneath where ``side`` is positive."""
     angle, r, pen = fw.scales.angle, fw.reduced, of.pen(step, "axis")
     graphs.axes(pen, g, angle.mm(r.period), low, high, ordinate)
@@ -241,7 +242,7 @@ def _down_to_axis(line: Any) -> Any:
     return np.concatenate(([line[0].real + 0j], line, [line[-1].real + 0j]))
 
 
-def uprights(s: Stage, step: str) -> None:
+def uprights(s: PlayerStage, step: str) -> None:
     """Ordinates of the points of a graph, one for each position."""
     for k in range(len(s.plan.labels)):
         play(s.position(k), [step], "thin")
@@ -259,7 +260,7 @@ def _moment_curve(fw: Flywheel) -> Any:
     return np.concatenate(stretches)
 
 
-def _rays(s: Stage, fw: Flywheel, intervals: list[str]) -> None:
+def _rays(s: PlayerStage, fw: Flywheel, intervals: list[str]) -> None:
     """Ordinates in the middles of the intervals, carried over to the ordinate axis, and the rays from the pole to them."""
     plan = s.plan
     heights = {f"{name}{fw.mark}": float(plan[f"m{name}"].value.imag) for name in intervals}
@@ -615,7 +616,7 @@ def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     """
     fw = with_tangents(project)
     psi = fw.psi
-    slope = {name: float(fw.energy_mass_plan.asides[f"tg ψ_{name}"].value) for name in ("max", "min")}
+    slope = {name: float(fw.energy_mass_plan.auxiliaries[f"tg ψ_{name}"].value) for name in ("max", "min")}
     drawn = tr("|ab| = {length} mm") if fw.ab_mm >= 0 else tr("ab = {length} mm (a below b)")
     tangent = tr("tan ψ_{name} = μ_J/(2μ_E)·ω_1^2(1 {sign} δ/2)^2 = {slope};  ψ_{name} = {angle}°")
     digits = decimals_for([slope["max"] - slope["min"]], 4)

@@ -35,7 +35,7 @@ class ScaleBook(Protocol):
 
 
 @dataclass(frozen=True)
-class Frame:
+class PlanFrame:
     """Place of a plan on the sheet, see :class:`~tmm_sheets.drawing.marks.PlacedFrame`.
 
     ``origin`` is where the plan's zero lies, mm; ``along`` is the scale factor of abscissae where it differs from that of
@@ -139,7 +139,7 @@ OVER = 8.0
 
 
 def fit_frame(project: Project, canvas: ScaleBook, name: str, symbol: str, unit: str, points: Any, offsets: Any, box: Box,
-              finest: float = 0.0) -> Frame:
+              finest: float = 0.0) -> PlanFrame:
     """Smallest handy scale factor with which everything fits the place; its middle comes to the place's, but not far from the top.
 
     ``points`` are in the plan's unit, ``offsets`` reach from each of them in millimetres of paper whatever the scale
@@ -152,7 +152,7 @@ def fit_frame(project: Project, canvas: ScaleBook, name: str, symbol: str, unit:
         need = plans.mu if plans is not None else 1.0
     scale = pick(project, canvas, name, symbol, unit, need if name in project.variant.scales else max(need, finest))
     drawn = extent([scale.mm(z) + d])
-    return Frame(scale, box.centre - drawn.centre + raised(box, drawn.height))
+    return PlanFrame(scale, box.centre - drawn.centre + raised(box, drawn.height))
 
 
 def raised(box: Box, height: float) -> complex:

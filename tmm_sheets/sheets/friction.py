@@ -19,9 +19,9 @@ from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, is_zero, number
 from tmm_sheets.sheets import diagrams, graphs, linkage
-from tmm_sheets.sheets.frame import Frame, fit_frame, ratio, standard
+from tmm_sheets.sheets.frame import PlanFrame, fit_frame, ratio, standard
 from tmm_sheets.sheets.kinetic_frames import balancing_sign
-from tmm_sheets.sheets.player import Stage, play, stage
+from tmm_sheets.sheets.player import PlayerStage, play, stage
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ def mechanism(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
         _reaction(project, s, step, index, force, ARROW)
 
 
-def _on_crank(project: Project, s: Stage) -> None:
+def _on_crank(project: Project, s: PlayerStage) -> None:
     """How the crank turns, and the moment that drives it."""
     k, study, c = project.force_index, project.study, project.mechanism.crank
     pivot, away = s.at(c.pivot), linkage.clear_of_crank(s, study.positions)
@@ -117,7 +117,7 @@ def _on_crank(project: Project, s: Stage) -> None:
         symbols.rotation_arrow(s.pen(moment, "symbol"), pivot, DRIVE, away, float(moment.at(k)), balancing_sign(project))
 
 
-def _reaction(project: Project, s: Stage, step: Step, index: str, force: complex, length: float) -> None:
+def _reaction(project: Project, s: PlayerStage, step: Step, index: str, force: complex, length: float) -> None:
     """Arrow of a reaction from the point of its line, the circle of friction that it touches."""
     line = _line(project, index)
     play(s, [line] if index in _friction(project).touches else (), "thin")
@@ -172,7 +172,7 @@ def pairs(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         for n, (index, step, force) in enumerate(row):
             place = Box(left.x0 + n * box.width / columns, y, left.x0 + (n + 1) * box.width / columns, top)
             at = complex(project.study.positions.points[_hinge(of, index)].at(k))
-            frame = Frame(scale, complex(place.centre.real, top - (NAME + float(up)) * shrunk) - scale.mm(at))
+            frame = PlanFrame(scale, complex(place.centre.real, top - (NAME + float(up)) * shrunk) - scale.mm(at))
             if index in of.moments:
                 _turning(project, canvas, place, frame, index, step, force)
             else:
@@ -193,7 +193,7 @@ def _reach(of: Friction, index: str, force: complex, k: int, scale: Scale, half:
     return max(z.imag for z in ends), -min(z.imag for z in ends)
 
 
-def _turning(project: Project, canvas: Canvas, box: Box, frame: Frame, index: str, step: Step, force: complex) -> None:
+def _turning(project: Project, canvas: Canvas, box: Box, frame: PlanFrame, index: str, step: Step, force: complex) -> None:
     """A journal, its circle of friction, the reaction that touches it, the relative turning."""
     of, k, pos = _friction(project), project.force_index, project.study.positions
     hinge, turn = _hinge(of, index), of.turning[index]
@@ -210,7 +210,7 @@ def _turning(project: Project, canvas: Canvas, box: Box, frame: Frame, index: st
                                float(np.real(turn.at(k))), f"ω_{{{index}}}")
 
 
-def _sliding(project: Project, canvas: Canvas, box: Box, frame: Frame, index: str, step: Step, force: complex,
+def _sliding(project: Project, canvas: Canvas, box: Box, frame: PlanFrame, index: str, step: Step, force: complex,
              half: float) -> None:
     """A block on its guide of this half length, the normal, the reaction that deviates from it, the velocity of sliding."""
     of, k, pos = _friction(project), project.force_index, project.study.positions
@@ -342,6 +342,6 @@ def power(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     values = [np.broadcast_to(np.real(of.total.value), np.shape(at)) for of, at in
               ((course, every), (_friction(project), project.cycle.turned))]
     sign, unit = tr("N_f, W").split(", ")
-    curve = diagrams.Curve("", step, every, *values)
+    curve = diagrams.DiagramCurve("", step, every, *values)
     diagrams.single(project, canvas, box, tr("Power of friction in the pairs"),
                     diagrams.DiagramQuantity("graph-N", sign, unit, (curve,)))

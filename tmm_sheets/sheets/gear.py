@@ -11,16 +11,16 @@ import numpy as np
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import STANDARD, Scale, fit
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, lettered
-from tmm_sheets.drawing.clear import Drawn
 from tmm_sheets.drawing.clipping import arcs_inside, segment_inside
+from tmm_sheets.drawing.free_space import Drawn
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box, Line
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets import gear_radii
 from tmm_sheets.sheets.clear_dimensions import around, crossed
-from tmm_sheets.sheets.frame import Frame, proportion, ratio, standard
+from tmm_sheets.sheets.frame import PlanFrame, proportion, ratio, standard
 from tmm_sheets.sheets.gear_marks import CIRCLES, Window, gap, hatch_between, ruled_table
-from tmm_sheets.sheets.player import Stage, placed, play, stage
+from tmm_sheets.sheets.player import PlayerStage, placed, play, stage
 from tmm_sheets.words import tr
 
 EDGE = 24.0
@@ -127,7 +127,7 @@ class _GearPicture:
         self.box = canvas.title(box, tr("Gear meshing"), ratio(self.mu))
         self.pole = self.pole_of_broken() if self.broken else self.beside(
             self.pole_of_ring() if gear.internal else self.pole_of_pair())
-        self.at = Frame(self.mu, self.pole)
+        self.at = PlanFrame(self.mu, self.pole)
         self.stage = stage(canvas, gear.engagement, 0, self.at)
         self.tooth = {w.number: stage(canvas, gear.tooth(w), 0, self.at) for w in gear.wheels}
         if gear.internal:  # the ring ends a little over its centre
@@ -487,7 +487,7 @@ class _Detail:
         # Farther from the pole the teeth sink below the edges, and of each only pieces would be seen.
         wide = min(place.width, MOST * gear.p / mu.mu) / 2
         self.window = Window(canvas, Box(self.pole.real - wide, max(inner.y0, low), self.pole.real + wide, min(inner.y1, high)))
-        self.at = Frame(mu, self.pole)
+        self.at = PlanFrame(mu, self.pole)
         self.stage = stage(canvas, gear.engagement, 0, self.at)
 
     def draw(self) -> None:
@@ -610,12 +610,12 @@ def _turned(way: int) -> tuple[float, bool]:
     return (0.0, False) if way > 0 else (pi, True)
 
 
-def _along(canvas: Canvas, gear: Any, plan: Plan, pole: complex, scale: Scale, way: int) -> Stage:
+def _along(canvas: Canvas, gear: Any, plan: Plan, pole: complex, scale: Scale, way: int) -> PlayerStage:
     """A plan with the line of action laid along the abscissa, N1N2 to the right or to the left."""
     return placed(canvas, plan, pole, scale.mu, -phase(way * complex(gear.engagement["N1N2"].value)))
 
 
-def _axis_line(s: Stage, gear: Any, origin: complex, whole: float, pole: float, scale: Scale, way: int) -> None:
+def _axis_line(s: PlayerStage, gear: Any, origin: complex, whole: float, pole: float, scale: Scale, way: int) -> None:
     """The line of action as an abscissa with its points, the pole so far from its beginning at the left."""
     canvas = s.canvas
     s.line("K", origin - 6, origin + whole + 8, "axis", "axis")
@@ -637,7 +637,7 @@ def _sliding_scale(worst: float, height: float) -> tuple[Scale, float]:
     return mu, 1 / mu.mu
 
 
-def _theta(s: Stage, gear: Any, lowest: float, way: int) -> None:
+def _theta(s: PlayerStage, gear: Any, lowest: float, way: int) -> None:
     """Both curves, cut where they leave the place on their way to minus infinity."""
     x = _ways(gear, s.plan)
     for i, onward in ((1, 1), (2, -1)):  # from where each comes up from below

@@ -10,12 +10,12 @@ import numpy as np
 
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas, in_role
-from tmm_sheets.drawing.clear import spread
 from tmm_sheets.drawing.clipping import arcs_inside, chords, polyline_inside, segment_inside
+from tmm_sheets.drawing.free_space import spread
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box, Role
 from tmm_sheets.drawing.tables import LEAST, needs
-from tmm_sheets.sheets.player import Stage
+from tmm_sheets.sheets.player import PlayerStage
 
 CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "centre"), ("rb", "r_{b%d}", "thin"),
            ("rf", "r_{f%d}", "thin"))
@@ -47,13 +47,13 @@ class Window:
     def __init__(self, canvas: Canvas, box: Box) -> None:
         self.canvas, self.box = canvas, box
 
-    def line(self, s: Stage, step: Step | str, a: complex, b: complex, style: str = "thin", role: Role = "axis") -> None:
+    def line(self, s: PlayerStage, step: Step | str, a: complex, b: complex, style: str = "thin", role: Role = "axis") -> None:
         """Straight stroke that belongs to a step."""
         inside = segment_inside(self.box, a, b)
         if inside:
             s.line(step, *inside, style, role)
 
-    def curve(self, s: Stage, step: Step | str, points: Any, style: str, role: Role = "curve") -> None:
+    def curve(self, s: PlayerStage, step: Step | str, points: Any, style: str, role: Role = "curve") -> None:
         """Curve of a step through points."""
         for part in polyline_inside(self.box, np.asarray(points)):
             s.pen(step, role).polyline(part, style)
@@ -64,7 +64,7 @@ class Window:
         corners = complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)
         self.canvas.tracing("frame").polyline(corners, "thin", closed=True)
 
-    def breaks(self, s: Stage, wheel: Any) -> None:
+    def breaks(self, s: PlayerStage, wheel: Any) -> None:
         """Break lines where the edge of the picture cuts a wheel (GOST 2.303: thin, with a kink)."""
         centre = s.at(f"O{wheel.number}")
         inner, outer = (abs(complex(s.frame(r)) - complex(s.frame(0))) for r in (wheel.ra, wheel.outside))
@@ -77,7 +77,7 @@ class Window:
                 points += [at - 2.0 * u, at - (1.0 - 3.0j) * u, at + (1.0 - 3.0j) * u, at + 2.0 * u]
             s.pen(f"O{wheel.number}", "symbol").polyline(np.array([*points, b + OVER * u]), "thin")
 
-    def circles(self, s: Stage, wheels: Iterable[Any], share: float | None = None, leave: tuple[str, ...] = ()) -> None:
+    def circles(self, s: PlayerStage, wheels: Iterable[Any], share: float | None = None, leave: tuple[str, ...] = ()) -> None:
         """What is seen of the circles of some wheels, but for those to ``leave``.
 
         With a ``share`` they are named beside the right edge, the names spread to keep apart; others at that share of their

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.drawing.canvas import KEPT_OFF
-from tmm_sheets.drawing.clear import Drawn
 from tmm_sheets.drawing.clipping import arcs_inside
+from tmm_sheets.drawing.free_space import Drawn
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Dimension
 from tmm_sheets.drawing.owners import enters

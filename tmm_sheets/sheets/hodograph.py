@@ -13,7 +13,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.numbers import is_zero
 from tmm_sheets.sheets import diagrams, graphs
-from tmm_sheets.sheets.frame import Frame, extent
+from tmm_sheets.sheets.frame import PlanFrame, extent
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def bearing(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     scale = Scale("μ_F", handy(max(real.width / inside.width, real.height / inside.height)), tr("N/mm"))
     canvas.of = "hodograph"
     canvas.title(box, tr("Hodograph of the reaction F_{{{index}}}").format(index=name[1:]), str(scale))
-    frame = Frame(scale, inside.centre - scale.mm(real.centre))
+    frame = PlanFrame(scale, inside.centre - scale.mm(real.centre))
     placed = canvas.placed(step.plan, "", frame.origin, frame.mu)
     # Round a turn it is closed: a load that jumps where the cycle begins anew is drawn like one that jumps within.
     drawn, ends = frame(course if project.cycle.swings else np.append(course, course[:1])), frame(at)

@@ -17,7 +17,7 @@ from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
-    from tmm_sheets.sheets.player import Stage
+    from tmm_sheets.sheets.player import PlayerStage
 
 GAP = 25.0
 """Distance of a diagram's abscissa from the path: room for position numbers, mm."""
@@ -107,7 +107,7 @@ def _angles(project: Project) -> Any:
     return np.unique(np.concatenate((np.linspace(0, cycle.period, turns * (SAMPLES - 1) + 1), cycle.turned)))
 
 
-def draw(project: Project, s: Stage) -> None:
+def draw(project: Project, s: PlayerStage) -> None:
     """The diagrams of a project beside the paths of its position plans."""
     shown = indicators(project)
     if not shown:

@@ -13,7 +13,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets import indicator, linkage
-from tmm_sheets.sheets.frame import SHORTEST, Frame, ScaleBook, extent, fit_frame, pick, raised, together
+from tmm_sheets.sheets.frame import SHORTEST, PlanFrame, ScaleBook, extent, fit_frame, pick, raised, together
 from tmm_sheets.words import tell, tell_n, tr
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def graph_below(project: Project) -> bool:
     return strokes.origin.imag < real.centre.imag
 
 
-def positions(project: Project, canvas: ScaleBook, box: Box, options: dict[str, Any]) -> Frame:
+def positions(project: Project, canvas: ScaleBook, box: Box, options: dict[str, Any]) -> PlanFrame:
     """Frame of the position plans: all positions, the way of the crank and what sticks out of them on paper.
 
     ``graph`` = false leaves the force graph over them out.
@@ -257,13 +257,13 @@ def other_stroke(project: Project) -> int:
     return cycle.drawn[int(np.argmax(np.cos(turned - there)))][0]
 
 
-def accelerations(project: Project, canvas: ScaleBook, box: Box) -> Frame:
+def accelerations(project: Project, canvas: ScaleBook, box: Box) -> PlanFrame:
     """Frame of the acceleration plan at the analysed position."""
     real = plan_extent(project.study.accelerations.plan, project.force_index)
     inside = box.inset(*ACCELERATIONS)
     need = max(real.width / inside.width, real.height / inside.height)
     scale = pick(project, canvas, "accelerations", "μ_a", tr("(m/s²)/mm"), need)
-    return Frame(scale, inside.centre - scale.mm(real.centre) + raised(inside, scale.mm(real.height)))
+    return PlanFrame(scale, inside.centre - scale.mm(real.centre) + raised(inside, scale.mm(real.height)))
 
 
 TOGETHER_READ, ABOUT = 12, 12.0

@@ -23,8 +23,8 @@ from tmm_sheets.drawing.tables import needs, size_in, widened
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import decimals_for, fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, graphs, indicator, kinematic_frames, linkage
-from tmm_sheets.sheets.frame import SHORTEST, Frame, joined, pick, together
-from tmm_sheets.sheets.player import Stage, play, stage
+from tmm_sheets.sheets.frame import SHORTEST, PlanFrame, joined, pick, together
+from tmm_sheets.sheets.player import PlayerStage, play, stage
 from tmm_sheets.words import tr, tr_in
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def _nominal(project: Project, canvas: Canvas, box: Box) -> None:
                         last=project.cycle.labels[cycle.working], angle=number(abs(degrees(strokes.begin)), 2)))
 
 
-def _way_of_crank(project: Project, s: Stage) -> None:
+def _way_of_crank(project: Project, s: PlayerStage) -> None:
     """The circle of the crank pin; of a crank that only swings the arc it goes through, and a little more."""
     cycle, c = project.cycle, project.mechanism.crank
     if not cycle.swings:
@@ -111,7 +111,7 @@ BEYOND_SWING = 5.0
 """How far the arc of a crank that swings is drawn beyond both of its ends, mm."""
 
 
-def _paths(project: Project, s: Stage, room: Box) -> None:
+def _paths(project: Project, s: PlayerStage, room: Box) -> None:
     """Paths of the hinges and of the centres of mass, thin, through many positions."""
     turned = project.cycle.ring
     pos = project.study_at(turned, tuple(map(str, range(len(turned))))).positions
@@ -131,7 +131,7 @@ def _free_points(m: Mechanism) -> Iterator[str]:
         yield from (name for name in g.kind.carried(g) if name not in on)
 
 
-def _guide_line(pos: Positions, s: Stage, name: str, room: Box) -> None:
+def _guide_line(pos: Positions, s: PlayerStage, name: str, room: Box) -> None:
     """Centre line of a fixed guide over the path of its slider and beyond, as far as there is room: not into the title."""
     u, q = (complex(of[name].at(0)) for of in (pos.guide_directions, pos.guide_points))
     on = [point for g in pos.mechanism.groups for point, guide in g.kind.guided(g) if guide == name]
@@ -142,7 +142,7 @@ def _guide_line(pos: Positions, s: Stage, name: str, room: Box) -> None:
         s.pen(pos.guide_directions[name], "axis").line(*inside, "centre")
 
 
-def _position_numbers(project: Project, s: Stage) -> None:
+def _position_numbers(project: Project, s: PlayerStage) -> None:
     """Position numbers at the crank pin and the hinges, and as marks on the paths of the sliders."""
     pos, m = project.study.positions, project.mechanism
     sliding = on_fixed_guides(m)
@@ -167,7 +167,7 @@ def _hinges(m: Mechanism, sliding: Container[str]) -> Iterator[str]:
         yield from (name for name in g.kind.carried(g) if name not in sliding)
 
 
-def _hinge_numbers(project: Project, s: Stage, name: str, middle: complex) -> None:
+def _hinge_numbers(project: Project, s: PlayerStage, name: str, middle: complex) -> None:
     """Small hinges at a point in all positions but the highlighted one, their numbers away from ``middle``, mm."""
     for i, _ in project.cycle.drawn:
         here = s.position(i)
@@ -182,7 +182,7 @@ def _upper_side(u: complex) -> complex:
     return n if n.imag > 1e-9 or (n.imag > -1e-9 and u.imag < 0) else -1j * u
 
 
-def _path_mark(s: Stage, name: str, n: complex) -> None:
+def _path_mark(s: PlayerStage, name: str, n: complex) -> None:
     """Stroke across a path at a point."""
     s.pen(name, "point").line(s.at(name) - 2.0 * n, s.at(name) + 2.0 * n, "axis")
 
@@ -192,7 +192,7 @@ def on_fixed_guides(m: Mechanism) -> dict[str, str]:
     return {point: guide for g in m.groups for point, guide in g.kind.guided(g) if m.guides[guide].link == m.frame}
 
 
-def own_path(project: Project, s: Stage, name: str, n: complex) -> None:
+def own_path(project: Project, s: PlayerStage, name: str, n: complex) -> None:
     """Marks of the only slider on a path: numbers of the working stroke on side ``n`` of it, of the idle one on the other."""
     cycle = project.cycle
     z = np.asarray(s.frame(project.study.positions.points[name].value))
@@ -231,7 +231,7 @@ CROWDED = 2.8
 """Distance of two marks, mm, below which their numbers do not fit side by side."""
 
 
-def _shared_path(project: Project, s: Stage, name: str, n: complex) -> None:
+def _shared_path(project: Project, s: PlayerStage, name: str, n: complex) -> None:
     """Marks of one of several sliders on one path: all its numbers on its own side, those of one place together."""
     drawn = [i for i, _ in project.cycle.drawn]
     for same in together([s.position(i).at(name) for i in drawn], 1.0):
@@ -242,7 +242,7 @@ def _shared_path(project: Project, s: Stage, name: str, n: complex) -> None:
         here.letters(name, text, n, 2.5, 0.6, here.at(name) + (2.0 if s.k not in place else 5.5) * n, False)
 
 
-def _point_letters(project: Project, s: Stage) -> None:
+def _point_letters(project: Project, s: PlayerStage) -> None:
     """Letters of the points, those of moving ones with the number of the position, and symbols of the centres of mass."""
     m = project.mechanism
     masses = {link.centre for link in m.links.values() if link.mass}
@@ -255,7 +255,7 @@ def _point_letters(project: Project, s: Stage) -> None:
         s.letters(step, text, 0j if moving else 1 - 0.5j, 3.5, symbols.HINGE + 1.2)
 
 
-def _rotations(project: Project, s: Stage) -> None:
+def _rotations(project: Project, s: PlayerStage) -> None:
     """Arrows of angular velocity, and of angular acceleration, of the crank and of every bar that turns."""
     study, k, m = project.study, project.force_index, project.mechanism
     pos, c = study.positions, m.crank
@@ -286,7 +286,7 @@ CLEAR = 3.0
 """Distance of an arrow of rotation from other links and arrows that is enough, mm."""
 
 
-def _along_bar(s: Stage, pos: Positions, shape: linkage.Shape) -> Any:
+def _along_bar(s: PlayerStage, pos: Positions, shape: linkage.Shape) -> Any:
     """Points along the line of a link, a millimetre apart."""
     z = [s.at(pos.points[name]) for name in (linkage.along_bar(s, pos, shape) if shape.bar else (str(shape.block),))]
     return np.concatenate([z, *(np.linspace(a, b, 2 + int(abs(b - a))) for a, b in pairwise(z))])
@@ -300,7 +300,7 @@ def _along_arrow(arrow: _Arrow) -> Any:
     return about + u * np.append(radius * np.exp(1j * np.linspace(-half, half, 12)), radius + np.array([2.0, 4.0]))
 
 
-def _free_arrows(shape: linkage.Shape, s: Stage, pos: Positions, busy: Any) -> tuple[_Arrow, _Arrow]:
+def _free_arrows(shape: linkage.Shape, s: PlayerStage, pos: Positions, busy: Any) -> tuple[_Arrow, _Arrow]:
     """Arrows of velocity and acceleration of a bar: the first places clear of ``busy`` points, or the clearest.
 
     Those of a rocker go round its pivot, those of a link that moves stand on each side of it, outwards first.
@@ -323,7 +323,7 @@ def _free_arrows(shape: linkage.Shape, s: Stage, pos: Positions, busy: Any) -> t
     return max(places, key=room)
 
 
-def _strokes(project: Project, s: Stage) -> None:
+def _strokes(project: Project, s: PlayerStage) -> None:
     """Working and idle angles of the crank between its dead positions."""
     cycle, c = project.cycle, project.mechanism.crank
     assert cycle.strokes is not None
@@ -341,7 +341,7 @@ def _strokes(project: Project, s: Stage) -> None:
         s.canvas.angle_mark(pivot, *arc, text, 3.5, share)
 
 
-def _named_angles(project: Project, s: Stage) -> None:
+def _named_angles(project: Project, s: PlayerStage) -> None:
     """Crank and slotted link in the positions that the angles φ_1k and φ_2k belong to, and these angles from position 0 on."""
     plan, cycle, c = project.motion.named_angles, project.cycle, project.mechanism.crank
     if plan is None:
@@ -400,7 +400,7 @@ def _free_share(canvas: Canvas, centre: complex, arcs: list[_Arc], own: _Arc, te
     return float(min(np.linspace(0.06, 0.94, 45), key=over))
 
 
-def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
+def _force_graph(project: Project, s: PlayerStage, box: Box, below: bool) -> None:
     """Force over the path: the path marks carried over onto the abscissa, ordinates over every mark.
 
     A stroke too short for that on the plans has an abscissa of its own, enlarged.
@@ -473,7 +473,7 @@ def _force_graph(project: Project, s: Stage, box: Box, below: bool) -> None:
         canvas.number(complex(x, y0), complex(x + 0.8, y0 + 1.0), text, 2.5, pitch)
 
 
-def _over_way(project: Project, s: Stage, along: Any, diagram: tuple[Any, Any], y0: float, mu: float) -> tuple[Any, Any]:
+def _over_way(project: Project, s: PlayerStage, along: Any, diagram: tuple[Any, Any], y0: float, mu: float) -> tuple[Any, Any]:
     """A diagram of a force over the path, from the axis and back to it, mm, and the angles where it acts, rad."""
     turned, values = diagram
     strokes = project.cycle.strokes
@@ -526,7 +526,7 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
         canvas.of = f"velocity plan {label}"
         if many:
             canvas.begin(place, tr("Velocity polygon, position {label}").format(label=label))
-        s = stage(canvas, plan, index, Frame(layout.scale, middle - layout.scale.mm(span.centre)))
+        s = stage(canvas, plan, index, PlanFrame(layout.scale, middle - layout.scale.mm(span.centre)))
         for name in _draw_plan(s, "p", symbols_at=not many):
             tiny.setdefault(name, []).append(label)
         canvas.text(complex(middle.real, place.y0 + spare / 2 + 2.0), caption.format(label=label), height, "centre")
@@ -555,7 +555,7 @@ def _left_out(project: Project, canvas: Canvas, box: Box, layout: kinematic_fram
         canvas.note(box, tr("One velocity polygon of every {count} positions is drawn").format(count=layout.every))
 
 
-def _draw_plan(s: Stage, pole: str, symbols_at: bool = False) -> list[str]:
+def _draw_plan(s: PlayerStage, pole: str, symbols_at: bool = False) -> list[str]:
     """One velocity or acceleration plan: helper lines, vectors with arrow heads, letters of the points.
 
     Returns the signs of the vectors that are too short to be drawn; their ends have their letters at one point.
@@ -576,7 +576,7 @@ def _draw_plan(s: Stage, pole: str, symbols_at: bool = False) -> list[str]:
     return list(dict.fromkeys(tiny.values()))
 
 
-def _vectors(s: Stage, size: float, symbols_at: bool) -> dict[tuple[str, str], str]:
+def _vectors(s: PlayerStage, size: float, symbols_at: bool) -> dict[tuple[str, str], str]:
     """Vectors of a plan of some size, with their signs if asked; those too short to be drawn are told by their ends."""
     tiny = {}
     for seg in s.plan.segments:
@@ -592,7 +592,7 @@ def _vectors(s: Stage, size: float, symbols_at: bool) -> dict[tuple[str, str], s
     return tiny
 
 
-def _place_of_sign(s: Stage, seg: Segment) -> complex:
+def _place_of_sign(s: PlayerStage, seg: Segment) -> complex:
     """Where the sign of a vector stands: where no shorter vector from the same point covers it, off the vectors it crosses."""
     a, b = complex(s.value(seg.tail)), complex(s.value(seg.head))
     others = [(complex(s.value(other.tail)), complex(s.value(other.head))) for other in s.plan.segments if other is not seg]
@@ -650,7 +650,7 @@ def second_accelerations(project: Project, canvas: Canvas, box: Box, options: di
     inside = box.inset(*kinematic_frames.ACCELERATIONS).inset(6.0, 5.0)
     scale = Scale("μ_a", handy(max(real.width / inside.width, real.height / inside.height)), tr("(m/s²)/mm"))
     canvas.title(box, kinematic_frames.title_of_accelerations(project, k), str(scale))
-    tiny = _draw_plan(stage(canvas, acc.plan, k, Frame(scale, inside.centre - scale.mm(real.centre))), "π", symbols_at=True)
+    tiny = _draw_plan(stage(canvas, acc.plan, k, PlanFrame(scale, inside.centre - scale.mm(real.centre))), "π", symbols_at=True)
     if tiny:
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
 
@@ -695,7 +695,7 @@ def enlarged_velocities(project: Project, canvas: Canvas, box: Box, options: dic
     said = tr("{scale} (enlarged {times})").format(scale=scale, times=times(larger))
     canvas.title(box, tr("Velocity polygon, position {label}").format(label=project.cycle.labels[k]),
                  said if letter(said, 5.0).width <= box.width - 2.0 else str(scale))
-    frame = Frame(scale, inside.centre - scale.mm(real.centre))
+    frame = PlanFrame(scale, inside.centre - scale.mm(real.centre))
     tiny = _draw_plan(stage(canvas, plan, k, frame), "p", symbols_at=True)
     if tiny:
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
@@ -762,7 +762,7 @@ def _segment(tail: Step, head: Step) -> str:
 
 
 def _lengths_on_rockers(project: Project, canvas: Canvas) -> list[tuple[str, Any]]:
-    """Segments of rockers with a slot: the coincident point's velocity, the way to the stone, velocities of carried hinges."""
+    """Segments of rockers with a slot: the coincident point's velocity, the way to the block, velocities of carried hinges."""
     vel = project.study.velocities
     pos = vel.positions
     mu_v, mu_l = canvas.scales["velocities"], canvas.scales["positions"]

@@ -20,7 +20,7 @@ from tmm_sheets.drawing.tables import widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, decimals_for, fixed, is_zero, number
 from tmm_sheets.sheets import flat_crossings, linkage
-from tmm_sheets.sheets.frame import SHORTEST, Frame, fit_frame, joined, together
+from tmm_sheets.sheets.frame import SHORTEST, PlanFrame, fit_frame, joined, together
 from tmm_sheets.sheets.kinetic_frames import (
     AROUND,
     CRANK,
@@ -54,7 +54,7 @@ from tmm_sheets.sheets.kinetic_frames import (
     turned_vectors,
     with_arms,
 )
-from tmm_sheets.sheets.player import Stage, play, stage
+from tmm_sheets.sheets.player import PlayerStage, play, stage
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
@@ -197,7 +197,7 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     _link_couples(project, s, drawn)
 
 
-def _link_couples(project: Project, s: Stage, drawn: Iterable[linkage.Shape]) -> None:
+def _link_couples(project: Project, s: PlayerStage, drawn: Iterable[linkage.Shape]) -> None:
     """Couples of the links round their centres of mass, or their first points; moments of friction round their hinges."""
     round_hinge: dict[str, int] = {}
     for shape in drawn:
@@ -211,12 +211,12 @@ def _link_couples(project: Project, s: Stage, drawn: Iterable[linkage.Shape]) ->
                 _turning(s, s.at(hinge), 6.0 + 4.0 * round_hinge[hinge], 1 - 1j, c)
 
 
-def _turning(s: Stage, at: complex, radius: float, towards: complex, couple: Couple) -> None:
+def _turning(s: PlayerStage, at: complex, radius: float, towards: complex, couple: Couple) -> None:
     """Arrow of a couple."""
     symbols.rotation_arrow(s.pen(couple.step, "symbol"), at, radius, towards, couple.value, couple.symbol)
 
 
-def _link_numbers(s: Stage, pos: Positions, drawn: Iterable[linkage.Shape]) -> None:
+def _link_numbers(s: PlayerStage, pos: Positions, drawn: Iterable[linkage.Shape]) -> None:
     """Numbers of the links, near the first ends of bars: their middles are left to forces and arms."""
     for shape in drawn:
         names = linkage.along_bar(s, pos, shape) if shape.bar else (str(shape.block),)
@@ -252,7 +252,7 @@ def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup
         _fitted(canvas, complex(box.centre.real, box.y0), "; ".join(said), 3.5, box.width - 4.0)
 
 
-def draw_forces(s: Stage, shown: Iterable[Shown], share: float = 1.0) -> None:
+def draw_forces(s: PlayerStage, shown: Iterable[Shown], share: float = 1.0) -> None:
     """Arrows with their tails at the points they act at, a ``share`` of their usual length."""
     for force, arrow in arrows(shown, share):
         tail, u = s.frame(force.at), force.along
@@ -261,7 +261,7 @@ def draw_forces(s: Stage, shown: Iterable[Shown], share: float = 1.0) -> None:
         pen.label(tail + arrow - 2.0 * u, force.symbol, u + 0.35j * u, 3.5, 2.0)
 
 
-def draw_arms(s: Stage, about: complex, shown: Sequence[Shown], points: Iterable[complex] = ()) -> None:
+def draw_arms(s: PlayerStage, about: complex, shown: Sequence[Shown], points: Iterable[complex] = ()) -> None:
     """Perpendiculars from a point to the lines of action; equal arms once. Their signs keep clear of ``points``, mm."""
     seen, centre = list[complex](), s.frame(about)
     feet = [s.frame(force.foot(about)) for force in shown]
@@ -327,7 +327,7 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
 
 
 def _over_equation(project: Project, canvas: Canvas, box: Box, fp: ForcePlan,
-                   texts: tuple[list[str], list[str]]) -> tuple[Frame, list[str], float]:
+                   texts: tuple[list[str], list[str]]) -> tuple[PlanFrame, list[str], float]:
     """A force polygon's frame, the lines of its equation and values, and their height.
 
     Where there is room over the polygon it goes up rather than that they stand in smaller letters than those of its neighbours;
@@ -335,7 +335,7 @@ def _over_equation(project: Project, canvas: Canvas, box: Box, fp: ForcePlan,
     """
     k, points, name = project.force_index, list(polygon(fp, project.force_index)[0].values()), fp.plan.name
 
-    def placed(lines: int) -> tuple[Frame, list[str], float]:
+    def placed(lines: int) -> tuple[PlanFrame, list[str], float]:
         left, below, right, above = AROUND
         inside = box.inset(left, below + LINE * (lines - LINES), right, above)
         frame = fit_frame(project, canvas, name, "μ_F", tr("N/mm"), points, [0j] * len(points), inside, finest(fp, k))
@@ -375,7 +375,7 @@ def heads_apart(sides: Sequence[tuple[complex, complex]]) -> list[float | None]:
     return sizes
 
 
-def _draw_sides(s: Stage, sides: Sequence[tuple[str, Step, Step, bool]], centre: complex) -> dict[tuple[str, str], str]:
+def _draw_sides(s: PlayerStage, sides: Sequence[tuple[str, Step, Step, bool]], centre: complex) -> dict[tuple[str, str], str]:
     """Sides of a force polygon with their signs outside it; those too short to be drawn are told by their vertices."""
     tiny = {}
     heads = heads_apart([(s.at(tail), s.at(head)) for _, tail, head, _ in sides])
@@ -455,7 +455,7 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     _force_plan(project, canvas, right, forces.plans[c.link], k)
 
 
-def _crank_couples(project: Project, s: Stage, box: Box, at: complex, away: complex) -> None:
+def _crank_couples(project: Project, s: PlayerStage, box: Box, at: complex, away: complex) -> None:
     """Couples on the crank, its inertia couple among them, as arrows and with their values."""
     k, forces = project.force_index, project.study.forces
     said = []
@@ -502,7 +502,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     draw_forces(s, shown)
 
 
-def _turned_letters(s: Stage, turned: Stage, points: Mapping[str, Step], vectors: list[Segment]) -> None:
+def _turned_letters(s: PlayerStage, turned: PlayerStage, points: Mapping[str, Step], vectors: list[Segment]) -> None:
     """Dots of the turned plan's points and their letters with a prime; those of one place together.
 
     ``points`` are those that forces hang on; the other vertices are those of the velocity plan itself, which is ``turned``.

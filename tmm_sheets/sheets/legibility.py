@@ -16,7 +16,7 @@ from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
-    from tmm_sheets.sheets.arrangement import View
+    from tmm_sheets.sheets.arrangement import ViewPlace
 
 APART = 3.0
 """Length of a group's links, or of the lever, that one force on it needs at least to be told from the next one, mm."""
@@ -45,7 +45,7 @@ def crowded(project: Project, sheets: Iterable[int]) -> Iterator[Remark]:
                              {"n": n, "count": letters, "about": kinematic_frames.ABOUT})
 
 
-def _placed(project: Project, n: int) -> tuple[View, ...]:
+def _placed(project: Project, n: int) -> tuple[ViewPlace, ...]:
     """Views of a sheet in their places, where views are among them that may crowd."""
     try:
         plan = arrangement(project.sheets[n - 1]).fitted(project.parts)
@@ -55,7 +55,7 @@ def _placed(project: Project, n: int) -> tuple[View, ...]:
         return ()
 
 
-def _letters(project: Project, view: View) -> int:
+def _letters(project: Project, view: ViewPlace) -> int:
     """How many letters of the acceleration plan stand together."""
     try:
         scale = kinematic_frames.accelerations(project, SimpleNamespace(scales={}, chosen=set()), view.box).scale
@@ -64,10 +64,10 @@ def _letters(project: Project, view: View) -> int:
     return kinematic_frames.crowd(project.study.accelerations.plan, project.force_index, scale.mu)
 
 
-def _sizes(project: Project, view: View) -> Iterator[tuple[Remark, float, int]]:
+def _sizes(project: Project, view: ViewPlace) -> Iterator[tuple[Remark, float, int]]:
     """What a view shows, its size on the sheet, mm, and how many forces it has.
 
-    What is small beside its own forces and their arms, stones in a slot or a lever in a dead position, is so at any scale factor.
+    What is small beside its own forces and their arms, blocks in a slot or a lever in a dead position, is so at any scale factor.
     """
     k, kept = project.force_index, SimpleNamespace(scales={}, chosen=set())
     if view.draw == "kinetics.lever":

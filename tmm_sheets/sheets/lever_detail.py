@@ -15,7 +15,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.clipping import chord
-from tmm_sheets.drawing.marks import Fill, Line, Trace
+from tmm_sheets.drawing.marks import Fill, Line, Provenance
 from tmm_sheets.numbers import number
 from tmm_sheets.sheets.details import mark, next_name, placed
 
@@ -80,7 +80,7 @@ def crowd(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         if canvas.frames[n].view == found.part:
             places[n] = placed(canvas, canvas.frames[n], found.centre, middle, times)
 
-    def of(by: Trace | None) -> Canvas:
+    def of(by: Provenance | None) -> Canvas:
         return canvas.tracing("symbol") if by is None else canvas.tracing("symbol", by.step, by.position, places[by.frame], by.name)
 
     with canvas.as_role("symbol"):
@@ -116,7 +116,7 @@ def _times(found: Crowd, half: float) -> float:
 
 
 def _enlarged(canvas: Canvas, found: Crowd, at: Callable[[complex], complex], middle: complex, half: float,
-              of: Callable[[Trace | None], Canvas]) -> None:
+              of: Callable[[Provenance | None], Canvas]) -> None:
     """Lines, arrows and dots of the lever that are seen in the window; heads and dots keep their sizes."""
     end = canvas.parts[found.part + 1].first if found.part + 1 < len(canvas.parts) else len(canvas.marks)
     marks, first = canvas.marks[:end], canvas.parts[found.part].first

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.sheets.player import Stage
+from tmm_sheets.sheets.player import PlayerStage
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.groups.hints import Outline
@@ -26,7 +26,7 @@ class Shape:
 
     ``over`` are the points of blocks that slide along the bar, which reaches to them; ``arms`` are further lines by the names
     of their ends: guides of the link that do not lie along its bar. ``carried`` is, for a block with a slot of its own, the
-    point of the stone in it and the slot's direction.
+    point of the slider block in it and the slot's direction.
     """
 
     link: str
@@ -40,7 +40,7 @@ class Shape:
 
     @property
     def ends(self) -> tuple[str, str]:
-        """Points whose line tells the direction of a bar: its ends, or foot and stone of a rocker beside its pivot."""
+        """Points whose line tells the direction of a bar: its ends, or foot and slider block of a rocker beside its pivot."""
         return (self.bar[0], self.bar[-1]) if len(self.bar) > 1 else (self.arms[1][0], self.arms[1][1])
 
 
@@ -91,14 +91,14 @@ def traced(m: Mechanism, link: str) -> list[str]:
 
 
 def _carried(pos: Positions, link: str) -> tuple[str, Step] | None:
-    """The stone that slides in a block and the direction of its slot."""
+    """The slider block that slides in a block and the direction of its slot."""
     m = pos.mechanism
     slots = (name for name, guide in m.guides.items() if guide.link == link)
     return next(((point, pos.guide_directions[name]) for name in slots for g in m.groups
                  for point, guide in g.kind.guided(g) if guide == name), None)
 
 
-def along_bar(s: Stage, pos: Positions, shape: Shape) -> tuple[str, ...]:
+def along_bar(s: PlayerStage, pos: Positions, shape: Shape) -> tuple[str, ...]:
     """Points of a bar in order along it (a rocker's end may lie beyond or before the block)."""
     names = (*shape.bar, *shape.over)
     if len(names) == 1:
@@ -123,7 +123,7 @@ def crank_pins(pos: Positions) -> tuple[str, ...]:
     return shapes(pos)[0].bar[1:]
 
 
-def number_links(s: Stage, pos: Positions) -> None:
+def number_links(s: PlayerStage, pos: Positions) -> None:
     """Numbers of the links beside the middles of their bars and at their blocks."""
     for shape in shapes(pos):
         link = pos.directions[shape.link]
@@ -135,7 +135,7 @@ def number_links(s: Stage, pos: Positions) -> None:
             s.letters(link, shape.link, complex(s.value(link)), 5.0, 6.0, s.at(pos.points[shape.block]))
 
 
-def clear_of_crank(s: Stage, pos: Positions) -> complex:
+def clear_of_crank(s: PlayerStage, pos: Positions) -> complex:
     """Unit vector from the crank's pivot into the widest angle between its arms, opposite a single arm."""
     pivot = s.at(pos.points[pos.mechanism.crank.pivot])
     return widest_gap(s.at(pos.points[name]) - pivot for name in crank_pins(pos))
@@ -149,7 +149,7 @@ def widest_gap(lines: Iterable[complex], digits: int = 15) -> complex:
     return complex(np.cos(middle), np.sin(middle))
 
 
-def outlines(s: Stage, pos: Positions, shape: Shape) -> list[tuple[str, ...]]:
+def outlines(s: PlayerStage, pos: Positions, shape: Shape) -> list[tuple[str, ...]]:
     """Points of the lines a link is drawn with: one bar, spokes of a crank with several pins, or the sides of a plate; its arms."""
     names = shape.bar
     if len(names) == 1:
@@ -168,13 +168,13 @@ def outlines(s: Stage, pos: Positions, shape: Shape) -> list[tuple[str, ...]]:
 
 
 BEYOND = 0.04
-"""How far a slotted link runs on beyond the farthest place of its stone, in parts of its length."""
+"""How far a slotted link runs on beyond the farthest place of its slider block, in parts of its length."""
 
 
 def free_ends(pos: Positions) -> dict[str, tuple[NDArray[Any] | None, NDArray[Any] | None]]:
-    """Ends of bars along which stones slide, m, at the positions: they keep their lengths all round the turn.
+    """Ends of bars along which slider blocks slide, m, at the positions: they keep their lengths all round the turn.
 
-    Before and behind along the direction of the link; None where a hinge is the end. With its centre of mass between the stones it
+    Before and behind along the direction of the link; None where a hinge is the end. With its centre of mass between the blocks it
     is a uniform bar (manual 001: l_O3S3 is half of the rocker), unless that is too short for them.
     """
     found: dict[str, tuple[NDArray[Any] | None, NDArray[Any] | None]] = {}
@@ -204,7 +204,7 @@ def _centre(pos: Positions, shape: Shape, base: Any, u: Any) -> float | None:
 
 
 def _ends(fixed: list[float], sliding: list[Any], centre: float | None) -> tuple[float | None, float | None]:
-    """Places of the free ends of a bar with its fixed points and its stones, whose places vary, along it."""
+    """Places of the free ends of a bar with its fixed points and its slider blocks, whose places vary, along it."""
     if not sliding:
         return None, None
     low, high = (float(f([f(way) for way in sliding])) for f in (np.min, np.max))
@@ -216,10 +216,10 @@ def _ends(fixed: list[float], sliding: list[Any], centre: float | None) -> tuple
     return first if before else None, last if behind else None
 
 
-def draw(s: Stage, pos: Positions, style: str, only: Collection[str] | None = None) -> None:
+def draw(s: PlayerStage, pos: Positions, style: str, only: Collection[str] | None = None) -> None:
     """Links of the mechanism at a position: with all symbols in style main, as bare lines otherwise.
 
-    The whole mechanism is drawn with slotted links in their full lengths, single links end at their stones.
+    The whole mechanism is drawn with slotted links in their full lengths, single links end at their slider blocks.
     """
     ends = free_ends(pos) if only is None else {}
     drawn = [shape for shape in shapes(pos) if only is None or shape.link in only]
@@ -236,7 +236,7 @@ def draw(s: Stage, pos: Positions, style: str, only: Collection[str] | None = No
         _draw_pairs(s, pos, at, whole=only is None)
 
 
-def _draw_bar(s: Stage, pos: Positions, shape: Shape, hinges: list[complex], style: str,
+def _draw_bar(s: PlayerStage, pos: Positions, shape: Shape, hinges: list[complex], style: str,
               ends: tuple[NDArray[Any] | None, NDArray[Any] | None]) -> None:
     """A bar interrupted at hinges, in a bare plan from end to end; ``ends`` are free ones beyond its points."""
     if style == "main":
@@ -252,7 +252,7 @@ def _draw_bar(s: Stage, pos: Positions, shape: Shape, hinges: list[complex], sty
             s.line(pos.directions[shape.link], nearest + gap * (free - nearest) / abs(free - nearest), free, style, "symbol")
 
 
-def _corners(s: Stage, pos: Positions, shape: Shape) -> None:
+def _corners(s: PlayerStage, pos: Positions, shape: Shape) -> None:
     """Marks of rigid angles between the bar of a link and its arms: without them they would be read as two links in a hinge."""
     lines, done = outlines(s, pos, shape), set[frozenset[tuple[str, ...]]]()
     for arm in shape.arms:
@@ -269,7 +269,7 @@ def _corners(s: Stage, pos: Positions, shape: Shape) -> None:
                 symbols.rigid_corner(s.pen(pos.directions[shape.link], "symbol"), z, u, v)
 
 
-def _draw_block(s: Stage, pos: Positions, shape: Shape, style: str) -> None:
+def _draw_block(s: PlayerStage, pos: Positions, shape: Shape, style: str) -> None:
     """A block with its slot, or a ram, and what is fastened to it; small and alone in a bare plan."""
     block = pos.points[str(shape.block)]
     pen = s.pen(block, "symbol")
@@ -286,7 +286,7 @@ def _draw_block(s: Stage, pos: Positions, shape: Shape, style: str) -> None:
         _arms(s, pos, shape, half)
 
 
-def _draw_pairs(s: Stage, pos: Positions, at: Mapping[str, complex], *, whole: bool) -> None:
+def _draw_pairs(s: PlayerStage, pos: Positions, at: Mapping[str, complex], *, whole: bool) -> None:
     """Hinges, small circles at traced points, and fixed pivots; of single groups only those that are pairs of the mechanism.
 
     The point of a ram where guide and slot meet is a hinge only where a group hangs on it.
@@ -308,8 +308,8 @@ RAM = 21.0
 """Half length of the body of a kind 5 group's guided link, mm."""
 
 
-def block_size(pos: Positions, shape: Shape, s: Stage) -> tuple[float, float]:
-    """Length along its guide and width of a block, mm: one with a slot or with a stone at its pin is larger."""
+def block_size(pos: Positions, shape: Shape, s: PlayerStage) -> tuple[float, float]:
+    """Length along its guide and width of a block, mm: one with a slot or with a slider block at its pin is larger."""
     if shape.carried is not None:
         name, direction = shape.carried
         way = ((pos.points[name].value - pos.points[str(shape.block)].value) * np.conj(direction.value)).real
@@ -321,7 +321,7 @@ def block_size(pos: Positions, shape: Shape, s: Stage) -> tuple[float, float]:
     return symbols.BLOCK
 
 
-def _slot(canvas: Canvas, s: Stage, pos: Positions, shape: Shape, style: str) -> None:
+def _slot(canvas: Canvas, s: PlayerStage, pos: Positions, shape: Shape, style: str) -> None:
     """Walls of the slot in a block, through its whole width."""
     assert shape.carried is not None
     name, direction = shape.carried
@@ -333,7 +333,7 @@ def _slot(canvas: Canvas, s: Stage, pos: Positions, shape: Shape, style: str) ->
         canvas.line(z + side * wall - half * v, z + side * wall + half * v, style)
 
 
-def _arms(s: Stage, pos: Positions, shape: Shape, half: float) -> None:
+def _arms(s: PlayerStage, pos: Positions, shape: Shape, half: float) -> None:
     """What ties a point of a block that lies along its guide beside it, its centre of mass for one, to the block."""
     z, u = s.at(pos.points[str(shape.block)]), complex(s.value(pos.directions[shape.link]))
     for p in pos.mechanism.points:
@@ -350,7 +350,7 @@ def _base_direction(pos: Positions, name: str) -> complex:
     return 1j if len(ys) > 1 and mine == max(ys) and mine > min(ys) and name != pos.mechanism.crank.pivot else -1j
 
 
-def _ram(canvas: Canvas, s: Stage, pos: Positions, shape: Shape, style: str) -> None:
+def _ram(canvas: Canvas, s: PlayerStage, pos: Positions, shape: Shape, style: str) -> None:
     """Guided link of a kind 5 group: a body on the guide with the slot in which the block slides."""
     g = next(g for g in pos.mechanism.groups if shape.link in g.links)
     z, pin = s.at(pos.points[str(shape.block)]), s.at(pos.points[g.outer[0]])
@@ -367,7 +367,7 @@ def _ram(canvas: Canvas, s: Stage, pos: Positions, shape: Shape, style: str) -> 
     line(z - half * u - thick * v, z + half * u - thick * v, style)
 
 
-def draw_guides(s: Stage, pos: Positions, only: Collection[str] | None = None) -> None:
+def draw_guides(s: PlayerStage, pos: Positions, only: Collection[str] | None = None) -> None:
     """Fixed guides of the blocks and rams, hatched on the side away from the link."""
     m = pos.mechanism
     for g in m.groups:

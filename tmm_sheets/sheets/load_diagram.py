@@ -13,7 +13,7 @@ from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import graphs
-from tmm_sheets.sheets.frame import Frame, pick
+from tmm_sheets.sheets.frame import PlanFrame, pick
 from tmm_sheets.sheets.linkage import indexed
 from tmm_sheets.words import tr
 
@@ -44,7 +44,7 @@ def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     length = angle.mm(cycle.period)
     title = tr("Technological load (taken)") if _accepted(project, shown) else tr("Technological load")
     canvas.title(box, title, f"{scale}, {angle}")
-    at = Frame(scale, complex(start, inside.y0 - low / scale.mu), angle)
+    at = PlanFrame(scale, complex(start, inside.y0 - low / scale.mu), angle)
     if (said := _many_strokes(project, shown)) is not None:
         canvas.text(complex(box.centre.real, inside.y1 + 1.0), said, size_for([said], box.width, 3.5), "centre")
     frame, o = canvas.placed("loads", "", at.origin, at.mu), at.origin
@@ -86,7 +86,7 @@ def _many_strokes(project: Project, shown: list[Applied]) -> str | None:
         point=strokes.output, times=times(len(strokes.runs)), begin=a, end=b)
 
 
-def _sign(canvas: Canvas, f: Applied, turned: Any, at: Frame) -> None:
+def _sign(canvas: Canvas, f: Applied, turned: Any, at: PlanFrame) -> None:
     """Sign of one of several loads over the middle of where it is at least half its greatest."""
     acting = turned[f.magnitude(turned) >= 0.5 * f.magnitude(turned).max()]
     middle = float(acting[len(acting) // 2]) if len(acting) else pi
@@ -98,7 +98,7 @@ def _size(of: tuple[float, str]) -> tuple[float, str]:
     return abs(of[0]), of[1]
 
 
-def _positions(project: Project, canvas: Canvas, shown: list[Applied], at: Frame, frame: int) -> None:
+def _positions(project: Project, canvas: Canvas, shown: list[Applied], at: PlanFrame, frame: int) -> None:
     """Numbers of the positions under the axis, and ordinates of the largest load over those inside the turn."""
     cycle = project.cycle
     pitch = abs(complex(at(cycle.period) - at(0.0))) / len(cycle.labels)

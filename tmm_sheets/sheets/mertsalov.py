@@ -22,7 +22,7 @@ from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.numbers import decimals_for, enough, fixed, number, size
 from tmm_sheets.sheets import flywheel, graphs
 from tmm_sheets.sheets.kinetic_frames import flat
-from tmm_sheets.sheets.player import Stage, stage
+from tmm_sheets.sheets.player import PlayerStage, stage
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     fw = procedure(project)
     s = fw.scales
     _, second, _, sign = _signs(options)
-    mu_e = Scale(f"μ_{{{flat(second)}}}", float(fw.energy_plan.asides["μ_T"].value), tr("J/mm"))
+    mu_e = Scale(f"μ_{{{flat(second)}}}", float(fw.energy_plan.auxiliaries["μ_T"].value), tr("J/mm"))
     graphs.heading(canvas, box, options, tr("Graphs of {inertia}(φ_1) and {energy}(φ_1)").format(inertia=sign, energy=second),
                    f"{s.inertia}, {mu_e}")
     canvas.of = fw.inertia_plan.name
@@ -109,7 +109,7 @@ def _terms(fw: Mertsalov) -> tuple[list[tuple[str, Step, Any]], list[str]]:
     return [term for term in found if term[2].max() > LOW], [name for name, _, part in found if not part.max() > LOW]
 
 
-def _tangent(fw: Mertsalov, of: Stage, box: Box, head: float) -> None:
+def _tangent(fw: Mertsalov, of: PlayerStage, box: Box, head: float) -> None:
     """Tangent of the graph of inertia at the position of the force analysis, which gives the acceleration of the crank there."""
     step = fw.position_acceleration["ψ"]
     psi = float(of.value(step))

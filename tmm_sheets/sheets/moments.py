@@ -118,7 +118,7 @@ def _guided(project: Project, g: StructuralGroup) -> Iterator[str]:
 
 
 def _passed_on(project: Project, total: Step) -> Iterator[str]:
-    """Couples in a sum that a stone passes on from its own loads, such as friction in its hinge: the scheme shows only these."""
+    """Couples in a sum that a block passes on from its own loads, such as friction in its hinge: the scheme shows only these."""
     k, own = project.force_index, [id(couple) for couple in project.study.forces.couples.values()]
     for couple in total.args[3::3]:
         if isinstance(couple, Step) and couple.args and id(couple.args[0]) in own and (

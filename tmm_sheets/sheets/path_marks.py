@@ -11,7 +11,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.sheets import kinematics, linkage
-from tmm_sheets.sheets.frame import Frame
+from tmm_sheets.sheets.frame import PlanFrame
 from tmm_sheets.sheets.player import stage
 from tmm_sheets.words import tr
 
@@ -53,7 +53,7 @@ def enlarged(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]
     z = scale.mm(np.asarray(pos.points[name].value)) / along
     middle = complex(z.real.min() + z.real.max(), z.imag.min() + z.imag.max()) / 2
     at = complex(box.centre.real, box.y0 + BESIDE + 1.0)
-    s = stage(canvas, pos.plan, None, Frame(scale, at - middle, turn=-float(np.angle(along))))
+    s = stage(canvas, pos.plan, None, PlanFrame(scale, at - middle, turn=-float(np.angle(along))))
     half = float(np.ptp(z.real)) / 2 + BEYOND - 2.0
     s.pen(pos.points[name], "axis").line(at - half, at + half, "centre")
     kinematics.own_path(project, s, name, 1j)

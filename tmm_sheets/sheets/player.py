@@ -16,14 +16,14 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Step, value_at
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import PlacedFrame, Role
-from tmm_sheets.sheets.frame import Frame
+from tmm_sheets.sheets.frame import PlanFrame
 
-Place = Frame | PlacedFrame
+Place = PlanFrame | PlacedFrame
 """Place of a plan on the sheet."""
 
 
 @dataclass(frozen=True)
-class Stage:
+class PlayerStage:
     """A plan at one position (or at all, ``k`` None), placed on the sheet: ``frame`` turns its points into those of the sheet,
     ``number`` is that frame's among the canvas's frames.
     """
@@ -39,7 +39,7 @@ class Stage:
         """Label of the position."""
         return _label(self.plan, self.k)
 
-    def position(self, k: int) -> Stage:
+    def position(self, k: int) -> PlayerStage:
         """The same plan in the same place, at another position."""
         return replace(self, k=k)
 
@@ -90,20 +90,20 @@ def _label(plan: Plan, k: int | None) -> str:
     return plan.labels[k] if k is not None and len(plan.labels) > 1 else ""
 
 
-def stage(canvas: Canvas, plan: Plan, k: int | None, frame: Place) -> Stage:
+def stage(canvas: Canvas, plan: Plan, k: int | None, frame: Place) -> PlayerStage:
     """Place a plan on the sheet, at position ``k`` or, with None, one for all positions; its frame is noted on the canvas."""
     number = canvas.placed(plan.name, _label(plan, k), complex(frame.origin), frame.mu, frame.turn, frame.mirror)
-    return Stage(canvas, plan, k, frame, number)
+    return PlayerStage(canvas, plan, k, frame, number)
 
 
 def placed(canvas: Canvas, plan: Plan, origin: complex, mu: float | tuple[float, float], turn: float = 0.0,
-           mirror: bool = False) -> Stage:
+           mirror: bool = False) -> PlayerStage:
     """Place a plan of all positions with its zero at ``origin``, by the numbers of its :class:`PlacedFrame`."""
     number = canvas.placed(plan.name, "", origin, mu, turn, mirror)
-    return Stage(canvas, plan, None, canvas.frames[number], number)
+    return PlayerStage(canvas, plan, None, canvas.frames[number], number)
 
 
-def helpers(s: Stage, step: Step) -> tuple[Helper, ...]:
+def helpers(s: PlayerStage, step: Step) -> tuple[Helper, ...]:
     """Helper lines that a step leaves at the stage's position, in the unit of the plan; none where it cannot be built."""
     if step.rule.helpers is None:
         return ()
@@ -113,7 +113,7 @@ def helpers(s: Stage, step: Step) -> tuple[Helper, ...]:
     return step.rule.helpers(args, value)
 
 
-def play(s: Stage, steps: Iterable[Step | str] | None = None, style: str = "construction", cut: float = 3.0,
+def play(s: PlayerStage, steps: Iterable[Step | str] | None = None, style: str = "construction", cut: float = 3.0,
          over: float = 0.0, only: str = "") -> None:
     """Draw the helper lines of steps, of all in the plan unless told, in order.
 
@@ -130,7 +130,7 @@ def play(s: Stage, steps: Iterable[Step | str] | None = None, style: str = "cons
                 pen.arc_mark(s.frame(h.a), s.frame(h.b), cut, style)
 
 
-def _ends(s: Stage, step: Step, h: Helper) -> str:
+def _ends(s: PlayerStage, step: Step, h: Helper) -> str:
     """A helper line from the point of another step is called by both."""
     starts = (a for a in step.args if isinstance(a, Step) and a.rule.gives in ("point", "vector"))
     return next((f"{a.name}–{step.name}" for a in starts if a.at(s.k or 0) == h.a), "")

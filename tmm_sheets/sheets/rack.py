@@ -10,13 +10,13 @@ import numpy as np
 
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas
-from tmm_sheets.drawing.clear import Drawn
+from tmm_sheets.drawing.free_space import Drawn
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
-from tmm_sheets.sheets.frame import Frame, ratio, standard
+from tmm_sheets.sheets.frame import PlanFrame, ratio, standard
 from tmm_sheets.sheets.gear_marks import Window, distance, gap
-from tmm_sheets.sheets.player import Stage, stage
+from tmm_sheets.sheets.player import PlayerStage, stage
 from tmm_sheets.words import tr
 
 MARGIN = 16.0
@@ -61,10 +61,10 @@ def generating(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
     picture.dimensions(canvas.tracing("dimension"))
 
 
-def _turned(canvas: Canvas, plan: Plan, wheel: Any, at: Frame) -> Stage:
+def _turned(canvas: Canvas, plan: Plan, wheel: Any, at: PlanFrame) -> PlayerStage:
     """The engagement with a wheel's centre where the rack's plan has it."""
     centre = complex(plan[f"O{wheel.number}"].value)
-    return stage(canvas, plan, 0, Frame(at.scale, at(-centre)))
+    return stage(canvas, plan, 0, PlanFrame(at.scale, at(-centre)))
 
 
 class _RackPicture:
@@ -86,7 +86,7 @@ class _RackPicture:
         low = self.pole.imag - (centre if centre <= min(room, MOST * body) else min(room, USUAL * body))
         self.window = Window(canvas, Box(inner.x0 + LEFT, low, inner.x1 - MARGIN, inner.y1))
         # the plan's origin is the wheel's centre
-        self.at = Frame(scale, self.pole - scale.mm(1j * self.rack.r))
+        self.at = PlanFrame(scale, self.pole - scale.mm(1j * self.rack.r))
         self.stage = stage(canvas, gear.generating, None, self.at)
 
     def height(self, y: float) -> float:

@@ -13,14 +13,14 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.clear import spread
+from tmm_sheets.drawing.free_space import spread
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import GAP, LEAST, needs, widened
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.frame import ratio, standard
 from tmm_sheets.sheets.gear_marks import LARGE, LETTERS, ROW, ruled_table
-from tmm_sheets.sheets.player import Stage, placed, play
+from tmm_sheets.sheets.player import PlayerStage, placed, play
 from tmm_sheets.sheets.reducer_equations import unsigned
 from tmm_sheets.words import tr
 
@@ -214,14 +214,14 @@ class SchemeViews:
         self.vectors(s, {name: value for name, value in ends.items() if name[0].islower()})
         self.lines(s)
 
-    def vectors(self, s: Stage, ends: Mapping[str, complex]) -> None:
+    def vectors(self, s: PlayerStage, ends: Mapping[str, complex]) -> None:
         """Velocities of the points, from the line of zero velocity to their ends."""
         for name, value in ends.items():
             s.vector(name.upper(), name)
             way = 1 if value.real > 0 else -1
             self.canvas.label(s.at(name), name, away=complex(way, 0.4), height=3.5, gap=1.2)
 
-    def lines(self, s: Stage) -> None:
+    def lines(self, s: PlayerStage) -> None:
         """Line of each link through the ends of the velocities of all its points."""
         plan = self.reducer.velocities
         points = [step for step in plan if step.rule.gives == "point"]
@@ -232,7 +232,7 @@ class SchemeViews:
             away = 1j * (b - a) * (-1 if (b - a).real > 0 else 1)
             self.canvas.label(a + 0.62 * (b - a), link_name(step.name), away=away, height=5, gap=1.2)
 
-    def heights(self, s: Stage, points: Sequence[str]) -> None:
+    def heights(self, s: PlayerStage, points: Sequence[str]) -> None:
         """Points of the scheme carried over to the line of zero velocity; those of one height have one line."""
         names: dict[float, list[str]] = {}
         for name in points:

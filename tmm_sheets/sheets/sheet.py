@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 from tmm_sheets import kept, words
 from tmm_sheets.errors import CannotBuild, together
 from tmm_sheets.program import fingerprint, maker
-from tmm_sheets.sheets import storing
+from tmm_sheets.sheets import sheet_storage
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ def composed(project: Project, n: int, steps: bool = False) -> Composed:
     the project asks for ``steps``, and the views ask the project for what they show, whether or not they are drawn.
     """
     name = _name(project, n) if kept.folder() is not None else ""
-    if name and (data := kept.read(name)) is not None and (found := storing.loaded(data)) is not None:
+    if name and (data := kept.read(name)) is not None and (found := sheet_storage.loaded(data)) is not None:
         if steps:
             ask_again(project, n, found)
         return found
@@ -104,7 +104,7 @@ def composed(project: Project, n: int, steps: bool = False) -> Composed:
 
     made = composing.composed(project, n)
     if name:
-        kept.write(name, storing.stored(made))
+        kept.write(name, sheet_storage.stored(made))
     return made
 
 
@@ -119,4 +119,4 @@ def ask_again(project: Project, n: int, found: Composed) -> None:
 def _name(project: Project, n: int) -> str:
     """What a sheet is made of, as a name; empty for a project that no text tells."""
     content = project.variant.content
-    return content and fingerprint("sheet", storing.FORM, maker(), words.paper(), words.reader(), content, str(n))
+    return content and fingerprint("sheet", sheet_storage.FORM, maker(), words.paper(), words.reader(), content, str(n))

@@ -12,8 +12,8 @@ from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.sheets.frame import Frame, fit_frame
-from tmm_sheets.sheets.player import Stage, stage
+from tmm_sheets.sheets.frame import PlanFrame, fit_frame
+from tmm_sheets.sheets.player import PlayerStage, stage
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def sizes_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> li
     return [(width, max(high, tall)) for width, tall in ((200.0, 90.0), (180.0, 70.0), (170.0, 60.0))]
 
 
-def _frame(project: Project, canvas: Canvas, box: Box, points: list[complex], around: tuple[complex, ...]) -> Frame:
+def _frame(project: Project, canvas: Canvas, box: Box, points: list[complex], around: tuple[complex, ...]) -> PlanFrame:
     z = [p for p in points for _ in around]
     return fit_frame(project, canvas, "synthesis", "μ_l", tr("m/mm"), z, list(around) * len(points), box)
 
@@ -84,7 +84,7 @@ def _quick_return(project: Project, canvas: Canvas, box: Box) -> None:
     canvas.dimension(left.at("D"), right.at("D"), 5.0, "H")
 
 
-def _hinge(s: Stage, name: str, letters: str, away: complex, gap: float) -> None:
+def _hinge(s: PlayerStage, name: str, letters: str, away: complex, gap: float) -> None:
     """A small hinge at a point with its letters."""
     symbols.hinge(s.pen(name, "symbol"), s.at(name), "main", 1.0)
     s.letters(name, letters, away, gap=gap)

@@ -167,7 +167,7 @@ def _diagrams(of: Givens, plan: Plan, load: ForceTable | MomentTable, tables: Se
             found.append(LoadDiagram(acting, y, turns))
             continue
         label = f"{load.name}({'φ' if angle else 's'}){'′' * n}"
-        acts = y if rule is None else plan.aside(f"y {label}", rule, y, *numbers)
+        acts = y if rule is None else plan.auxiliary(f"y {label}", rule, y, *numbers)
         smooth = of.number(float(load.curve == "smooth"), "", "", *path, "curve")
         found.append(LoadDiagram(acting, plan.add(label, DIAGRAM, x, acts, smooth, turns if angle else 0.0), turns))
     return tuple(found)

@@ -7,8 +7,8 @@ import unicodedata
 from collections.abc import Iterator
 from typing import Any
 
+from tmm_sheets.encodings import cleaned
 from tmm_sheets.task.toml_lines import KeyPath
-from tmm_sheets.texts import cleaned
 from tmm_sheets.words import marked, tell
 
 Found = tuple[KeyPath, str, str]

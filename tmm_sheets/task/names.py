@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from tmm_sheets import nearest
+from tmm_sheets import spelling
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.task.toml_lines import KeyPath
 from tmm_sheets.words import marked, tell, tell_n
@@ -129,7 +129,7 @@ class _Names:
     def known(self, path: KeyPath, name: Any, among: set[str], refusal: str, **where: str) -> Iterator[Found]:
         if not isinstance(name, str) or name in among:
             return
-        near = nearest.near(name, sorted(among))
+        near = spelling.near(name, sorted(among))
         yield (path, tell(refusal).format(name=name, **where), tell('did you mean "{near}"?').format(near=near[0]) if near else
                tell("known here are {known}").format(known=", ".join(sorted(among))) if among else tell("known here are none"))
 
@@ -228,10 +228,10 @@ class _Names:
             yield from self.known((*here, "outer"), leg.get("outer"), self.points, marked('unknown point "{name}"'))
             yield from self.guide_use((*here, "guide"), leg.get("guide"))
             if "slot" in leg and nth != 1:
-                yield (*here, "slot"), tell("only the second leg may be a stone in a slot"), tell(
+                yield (*here, "slot"), tell("only the second leg may be a slider block in a slot"), tell(
                     "change the order of the legs; a group with two slots is not built")
-            stone = [] if "slot" in leg else [link]
-            yield from self.define((*here, "corner"), leg.get("corner"), triangle, *stone)
+            block = [] if "slot" in leg else [link]
+            yield from self.define((*here, "corner"), leg.get("corner"), triangle, *block)
             if isinstance(leg.get("outer"), str):
                 self.on[link].add(leg["outer"])
             if isinstance(leg.get("guide"), str):
@@ -269,7 +269,7 @@ class _Names:
             if i < len(outer):
                 self.on[link].add(outer[i])
         if kind == 3 and len(links) == len(outer) == 2:
-            # The rocker's line passes through the pin of the stone: it may give a direction, but is no point of the rocker.
+            # The rocker's line passes through the pin of the slider block: it may give a direction, but is no point of the rocker.
             self.aims[links[1]] = {outer[0]}
 
     def slide(self, kind: int, links: list[str], guides: list[str]) -> None:

@@ -137,7 +137,7 @@ class CrankTable(Table):
 
 
 class GuideTable(Table):
-    """``[[guide]]``: a straight guide for a slider or a stone, on the frame or (with ``link``) on a moving link.
+    """``[[guide]]``: a straight guide for a slider or a slider block, on the frame or (with ``link``) on a moving link.
 
     In SI ``through`` is a point's name or coordinates in m, ``direction`` in rad.
     """
@@ -158,7 +158,7 @@ class GuideTable(Table):
 class LegTable(Table):
     """``[[group.leg]]``: a leg of a group of kind 6.
 
-    A rod (``outer``, ``length``), a slider (``guide``) or a stone (``outer``, ``slot``).
+    A rod (``outer``, ``length``), a slider (``guide``) or a slider block (``outer``, ``slot``).
     """
 
     corner: Name = Field(description=marked("corner of the triangle the leg belongs to"))
@@ -169,7 +169,7 @@ class LegTable(Table):
     guide: Name | None = None
     """a slider's guide; the corner moves along it"""
     slot: Angle | None = None
-    """the leg is a stone on the outer point in a slot of the triangle through the corner: the slot's direction against the line
+    """the leg is a block on the outer point in a slot of the triangle through the corner: the slot's direction against the line
     from the first corner to the second; for the second leg only
     """
 

@@ -13,7 +13,7 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import Any
 
-from tmm_sheets import nearest
+from tmm_sheets import spelling
 from tmm_sheets.words import marked, tell
 
 _NOT_THAT = marked("{expected}, not {given}; write for example {example}")
@@ -199,7 +199,7 @@ def _about_unit(plain: str, written: str, quantity: Quantity) -> str:
     if others:
         return tell("{unit} is a unit of {other}; write for example {example}").format(
             unit=repr(written), other=tell(others[0]), example=_quoted(quantity))
-    near = nearest.near(plain, quantity.units)
+    near = spelling.near(plain, quantity.units)
     if near:
         return tell("unknown unit {unit}, did you mean {near}?").format(unit=repr(written), near=repr(near[0]))
     known = ", ".join(u for u in quantity.units if u.isascii())

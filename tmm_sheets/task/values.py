@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, WrapValidator
 
-from tmm_sheets import nearest, resources
+from tmm_sheets import resources, spelling
 from tmm_sheets.task import units
 from tmm_sheets.words import marked, tell
 
@@ -302,5 +302,5 @@ def or_word(word: str) -> WrapValidator:
 
 def meant(word: str, known: list[str]) -> tuple[str, str]:
     """A hint at the word that was meant, empty when none is near; all words that are known."""
-    near = nearest.near(word, known)
+    near = spelling.near(word, known)
     return (tell('did you mean "{near}"?').format(near=near[0]) if near else "", ", ".join(known))

@@ -15,7 +15,7 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, PrivateAttr, ValidationError
 
-from tmm_sheets import files, texts, typed, words
+from tmm_sheets import encodings, files, quoting, words
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
 from tmm_sheets.task import synthesis_refs, units
 from tmm_sheets.task.bare_values import BareValue, quoted
@@ -140,7 +140,7 @@ class Variant(Table):
         """A command for this project as it is typed: what was asked of the project is asked again."""
         asked = words.asked()
         corrected = any(m.corrected for m in self._misprints)
-        return typed.command(name, self._called, *arguments, *(("--corrected",) if corrected else ()),
+        return quoting.command(name, self._called, *arguments, *(("--corrected",) if corrected else ()),
                              *(("--lang", asked) if asked else ()))
 
     def shipped_as(self, name: str) -> Variant:
@@ -233,16 +233,16 @@ def read(path: Path | str) -> Variant:
         data = files.content(Path(path), LARGEST)
     except FileNotFoundError:
         raise BadInput(Problem(tell("no such file"), file, hint=tell("{command} shows the shipped projects").format(
-            command=typed.command("list")))) from None
+            command=quoting.command("list")))) from None
     except IsADirectoryError:
         raise BadInput(Problem(tell("expected a project file, this is a folder"), file)) from None
     except OSError as e:
         raise BadInput(Problem(tell("cannot be read: {why}").format(why=reason_of(e)), file)) from None
     try:
-        text, note = texts.decoded(data)
-    except texts.NotText as e:
+        text, note = encodings.decoded(data)
+    except encodings.NotText as e:
         raise BadInput(Problem(str(e), file, e.line, hint=tell("save the file in the encoding UTF-8"))) from None
-    return parse(texts.cleaned(text), file, (note,) if note else ())
+    return parse(encodings.cleaned(text), file, (note,) if note else ())
 
 
 def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple[Misprint, ...] = ()) -> Variant:

@@ -9,7 +9,7 @@ from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data
 from tmm_sheets.construction import expression
 from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.step import Step, Told, value_of
+from tmm_sheets.construction.step import Reported, Step, value_of
 from tmm_sheets.methods.cams.cam_profile import cam
 
 TABLE = [[0, 0], [0.25, 1], [0.5, 0.2], [0.5, -0.3], [0.75, -1], [1, 0]]
@@ -50,7 +50,7 @@ def leaves(tree):
 
 def test_every_number_of_the_results_is_a_step(made):
     for results in (made.results(), made.results(np.array([0.0, 0.3, 2.5, 7.0, -1.0]))):
-        assert all(isinstance(leaf, Step | Told | bool) for leaf in leaves(results))
+        assert all(isinstance(leaf, Step | Reported | bool) for leaf in leaves(results))
 
 
 def test_plans_have_names_of_their_own_and_hold_every_step_of_the_results(made):

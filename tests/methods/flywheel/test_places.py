@@ -16,7 +16,7 @@ def test_masses_have_the_places_of_the_file(turned_over):
     r = p.reduced.numbered
     _ = r.inertia, p.reduced.crank, p.study.loads[2]
     for plan in (r.plan, p.reduced.crank_plan, p.study.loads[2]):
-        for step in (*plan.asides.values(), *plan):
+        for step in (*plan.auxiliaries.values(), *plan):
             for a in step.args:
                 if isinstance(a, GivenNumber) and a.name.startswith("link["):
                     link = a.symbol.strip("J_{}Sm")

@@ -11,7 +11,7 @@ from tmm_sheets.construction import expression
 from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.step import Step, Told, value_of
+from tmm_sheets.construction.step import Reported, Step, value_of
 from tmm_sheets.project import Project
 from tmm_sheets.task import variant
 
@@ -82,12 +82,12 @@ def test_arguments_are_steps_and_given_numbers(project):
 def test_arguments_come_first_and_names_are_unique(project):
     plans, study = project.flywheel.plans, project.study
     earlier = (*project.cycle.plans.values(), *project.applied.plans.values(), study.positions.plan, study.velocities.plan)
-    before = {id(s) for plan in earlier for s in (*plan.asides.values(), *plan)}
+    before = {id(s) for plan in earlier for s in (*plan.auxiliaries.values(), *plan)}
 
     def known(a, plan):
         """Whether it stands before, or is an aside, which is made of such only."""
         return not isinstance(a, Step) or id(a) in before or (
-            any(of.asides.get(a.name) is a for name, of in plans.items()
+            any(of.auxiliaries.get(a.name) is a for name, of in plans.items()
             if of is plan or name.startswith("abscissae@")) and all(known(b, plan) for b in a.args))
 
     # Reductions stand before the diagrams, whatever of these their angles were chosen by.
@@ -112,9 +112,9 @@ def test_every_number_of_the_results_is_a_step(project):
         elif isinstance(value, list):
             for x in value:
                 walk(x, path)
-        elif isinstance(value, Step | Told):
+        elif isinstance(value, Step | Reported):
             leaves.append(path)
-            assert id(value.step if isinstance(value, Told) else value) in known, path
+            assert id(value.step if isinstance(value, Reported) else value) in known, path
         else:
             assert isinstance(value, str | bool | None), (path, value)
 

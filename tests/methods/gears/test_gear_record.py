@@ -11,7 +11,7 @@ from tmm_sheets.construction import arithmetic, expression
 from tmm_sheets.construction.given import Given, GivenNumber
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import sentences
-from tmm_sheets.construction.step import Step, Told, value_of
+from tmm_sheets.construction.step import Reported, Step, value_of
 from tmm_sheets.methods.gears import fillets, gear_engagement, gear_formulas, gear_teeth, planetary, rack, reducer_formulas
 from tmm_sheets.methods.gears.gear_pair import gear_pair, settled
 from tmm_sheets.methods.gears.reducer import reducer
@@ -99,7 +99,7 @@ def test_every_result_is_a_step(name):
     found = dict(leaves(built(name).results()))
     assert len(found) > 25
     for path, leaf in found.items():
-        assert isinstance(leaf, Told), path
+        assert isinstance(leaf, Reported), path
         assert np.all(np.isreal(leaf.value)), path
 
 

@@ -67,7 +67,7 @@ def test_shaper_position_2(shaper, name, printed):
 
 
 def test_arms_of_position_2(shaper):
-    """h50 from moments of link 5 about D, h45 and h23 are zero: the stones carry no couple."""
+    """h50 from moments of link 5 about D, h45 and h23 are zero: the slider blocks carry no couple."""
     arms = shaper.study.forces.arms
     assert f"{abs(value(arms['h50'], 2)):.5f}" == "0.11338"
     assert abs(value(arms["h45"], 2)) < 1e-15
@@ -171,7 +171,7 @@ def test_drives_by_a_moment_when_there_is_no_gear():
     # The force turns the wheel about A with the arm of the base circle.
     np.testing.assert_allclose(moment, cross(0.05j, force), rtol=1e-12)
     np.testing.assert_allclose(abs(moment / force), 0.05 * np.cos(np.radians(20)), rtol=1e-12)
-    # Without the tooth force the frame carries what comes from the stone and the weight of the crank alone.
+    # Without the tooth force the frame carries what comes from the slider block and the weight of the crank alone.
     np.testing.assert_allclose(with_moment.study.forces.reactions["F10"].value,
                                -with_moment.study.forces.reactions["F12"].value + 4.2j * 9.81, rtol=1e-13)
 

@@ -38,7 +38,7 @@ def studied(name):
 def over_positions(study):
     """Steps whose values differ from position to position, by their paths, with the group of quantities they belong to."""
     for plan in study.plans.values():
-        for step in (*plan, *plan.asides.values()):
+        for step in (*plan, *plan.auxiliaries.values()):
             value = np.asarray(step.value)
             if value.shape == (N,) and not step.rule.beyond_paper and step.name != "Δ":  # that is nothing but rounding
                 yield step, (plan.name.partition("-")[0], step.rule.gives, step.rule.unit)

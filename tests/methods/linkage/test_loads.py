@@ -350,7 +350,7 @@ def test_angles_that_differ_by_rounding_are_one():
 # --- moments ---------------------------------------------------------------------------------------------------------
 
 ROCKER = {"group": [{"kind": 3, "links": ["4", "5"], "outer": ["A", "D"]}]}
-"""A stone on the crank pin and a rocker about D, 0.3 m from O: it swings by asin(0.1 / 0.3) to both sides."""
+"""A slider block on the crank pin and a rocker about D, 0.3 m from O: it swings by asin(0.1 / 0.3) to both sides."""
 
 
 def swing(phi):

@@ -43,15 +43,15 @@ def test_inclination_of_rods():
 @pytest.mark.parametrize(("name", "link", "pivot", "length"), [
     ("sixbar/3:2", "3", "O3", 2 * 0.316), ("sixbar/8:3", "5", "O5", None), ("sixbar/5:5", "3", "O3", None)])
 def test_slotted_links_keep_their_length(name, link, pivot, length):
-    """One length all round the turn, beyond every place of the stone; a bar from its pivot on is twice l_OS long."""
+    """One length all round the turn, beyond every place of the slider block; a bar from its pivot on is twice l_OS long."""
     p = project(name)
     pos = p.study.positions
     _, end = linkage.free_ends(pos)[link]
     far = np.abs(end - pos.mechanism.fixed[pivot])
     assert np.ptp(far) < 1e-12
-    stones = [np.abs(pos.points[str(g.outer[0])].value - pos.mechanism.fixed[pivot]).max()
+    blocks = [np.abs(pos.points[str(g.outer[0])].value - pos.mechanism.fixed[pivot]).max()
               for g in pos.mechanism.groups if link in g.links]
-    assert far[0] > max(stones)
+    assert far[0] > max(blocks)
     centre = abs(pos.points[pos.mechanism.links[link].centre].at(0) - pos.mechanism.fixed[pivot])
     other = 0.0 if name != "sixbar/5:5" else abs(pos.points["B"].at(0) - pos.mechanism.fixed[pivot])
     assert far[0] == pytest.approx(2 * centre + other, abs=1e-12)

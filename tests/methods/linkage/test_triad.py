@@ -120,7 +120,7 @@ def powers(project, k, z, h, w):
         return complex((values[2] - values[0]) / (2 * h) * w), complex((values[2] - 2 * values[1] + values[0]) / h**2 * w**2)
 
     def turning(link):
-        """Angular velocity and acceleration from two points of a link; a stone turns with its slot."""
+        """Angular velocity and acceleration from two points of a link; a slider block turns with its slot."""
         pairs = [p.name.rstrip("′") for p in m.pairs if link in p.links and p.motion == "rotation"]
         names = dict.fromkeys([*pairs, *(p.name for p in m.points if p.link == link)])
         if len(names) < 2:
@@ -297,7 +297,7 @@ SCREEN = Path(__file__).parents[3] / "variants" / "screen.toml"
     ('length = "0.42 m"', 'slot = "10 deg"\nlength = "0.42 m"',
      "expected a leg with outer and length, with guide, or with outer and slot"),
     ('length = "0.45 m"\n\n[[group.leg]]                   # rocker 4', 'slot = "0 deg"\n\n[[group.leg]]',
-     "only the second leg may be a stone in a slot"),
+     "only the second leg may be a slider block in a slot"),
     ('direction = "-25 deg"', "", 'a group of kind 6 needs "direction"'),
     ('corner = "F"', 'corner = "D"', 'the point "D" is there already'),
     ('name = "S3"', 'name = "W3"', 'the point "W3" is there already'),

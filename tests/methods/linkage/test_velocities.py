@@ -137,7 +137,7 @@ def test_names_that_look_like_other_names():
 
 
 def test_two_groups_on_one_guide_link():
-    """A stone on a rocker and a slider in a slot of it: the rocker's point under the pin is drawn once."""
+    """A slider block on a rocker and a slider in a slot of it: the rocker's point under the pin is drawn once."""
     m = mechanism(
         StructuralGroup(RPR, ("2", "3"), ("B", "C")),
         StructuralGroup(RPP, ("4", "5"), ("B",), "S", (), ("rocker",), slot=1.0),

@@ -98,8 +98,8 @@ def test_against_the_whole_system(kinds):
     check()
 
 
-def test_stone_with_an_inertia_of_its_own():
-    """A stone turns with its rocker: its couple works too (it hangs at the rocker's points)."""
+def test_block_with_an_inertia_of_its_own():
+    """A slider block turns with its rocker: its couple works too (it hangs at the rocker's points)."""
     m = mechanism(StructuralGroup(RPR, ("2", "3"), ("B", "C")), fixed={"C": -0.26j})
     m = replace(m, links=m.links | {"2": Link("2", inertia=0.5)})
     study = Study(m, even_cycle(m, 0.7, 4), np.zeros(1), ("0",), 0.0, tuple, None)

@@ -53,7 +53,7 @@ def state(m: Mechanism, phi) -> State:
 
 
 def base(m, s, link, start, towards):
-    """Direction start..towards on a link; towards the pin of a stone: along the slot, also when there is an offset."""
+    """Direction start..towards on a link; towards the pin of a slider block: along the slot, also when there is an offset."""
     for g in m.groups:
         if g.kind.number == 3 and link in g.links and towards == g.outer[0]:
             return s.links[link]

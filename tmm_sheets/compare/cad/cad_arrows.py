@@ -15,8 +15,8 @@ import numpy.typing as npt
 from tmm_sheets.compare.cad.cad_comparison import BEYOND, Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
+from tmm_sheets.compare.cad.displaced_lines import FARTHEST
 from tmm_sheets.compare.cad.line_fit import lines
-from tmm_sheets.compare.cad.misplaced import FARTHEST
 from tmm_sheets.compare.cad.overlaps import left, overlaps, pieces
 from tmm_sheets.compare.findings import shifted, turned
 from tmm_sheets.compare.report import verdict

@@ -13,7 +13,7 @@ from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.line_fit import KnownLines
 from tmm_sheets.compare.diagnosis import built_plan
-from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, Drawing
+from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, StudentDrawing
 from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.elements import Element, ElementView, sampled
@@ -49,10 +49,11 @@ def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, mo
 
     heads = heads_in(space)
 
-    def seen(view: ElementView) -> Drawing:
+    def seen(view: ElementView) -> StudentDrawing:
         move = moves.get(view, Placing())
 
-        return Drawing(lambda line: _inked(space.lines, move, line), lambda z: space.lines.nearest(np.asarray(move(z)), NEAR)[2],
+        return StudentDrawing(lambda line: _inked(space.lines, move, line),
+                              lambda z: space.lines.nearest(np.asarray(move(z)), NEAR)[2],
                        move.back(tips).tolist(), move.scale, lambda line: _goes_on(space.lines, move, line),
                        lambda arrow: _headed(heads, move, arrow))
 

@@ -12,9 +12,9 @@ from tmm_sheets.compare.cad import cad_built, cad_file, cad_overlay, cad_report,
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.cad_language import lettered
-from tmm_sheets.compare.cad.laying import Laid, fitting, lay
-from tmm_sheets.compare.cad.lost_views import lost_views
 from tmm_sheets.compare.cad.matching import match
+from tmm_sheets.compare.cad.rebuilt_views import lost_views
+from tmm_sheets.compare.cad.registration import Registration, fitting, register
 from tmm_sheets.compare.cad.view_search import AS_DRAWN
 from tmm_sheets.compare.diagnosis.drawn_plan import rebuilt, vanished
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
@@ -62,7 +62,7 @@ def compare(project: Project, sheet: int | None, path: Path, views: Path | None,
 
 
 def examine(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
-            say: Callable[[str], None] = lambda _: None) -> cad_report.Examined:
+            say: Callable[[str], None] = lambda _: None) -> cad_report.ExaminedDrawing:
     """Compare a DXF drawing with a sheet of a project.
 
     Parameters
@@ -98,10 +98,10 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
 
 
 def _examined(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
-              say: Callable[[str], None], ink: CadInk, known: Sequence[KnownSheet]) -> cad_report.Examined:
+              say: Callable[[str], None], ink: CadInk, known: Sequence[KnownSheet]) -> cad_report.ExaminedDrawing:
     """The contents of a drawing compared with the sheets known, in its language."""
     say(tell("laying it over the sheet"))
-    laid = lay(known, ink)
+    laid = register(known, ink)
     given = view_places.read(views, views_of(laid.known.sheet)) if views is not None else ()
     space = laid.space.placed(laid.placing)
     say(tell("placing the views"))
@@ -131,7 +131,7 @@ def _examined(project: Project, sheet: int | None, path: Path, views: Path | Non
     if not _of_this_sheet(outcome, places.own):  # one mistake may lead everything elsewhere
         _refuse(project, laid, outcome, ink, sheet, path)
     notes = (*ink.notes, *_how(laid, ink.unit), *places.notes, *outcome.notes)
-    return cad_report.Examined(laid, space, places, outcome, notes, {view: plan for view, (plan, _) in built.items()})
+    return cad_report.ExaminedDrawing(laid, space, places, outcome, notes, {view: plan for view, (plan, _) in built.items()})
 
 
 def _by_chance(outcome: CadOutcome, shaped: Mapping[ElementView, float]) -> set[ElementView]:
@@ -157,7 +157,7 @@ def _matched(known: Sequence[Element], now: Sequence[Element], absent: Collectio
     return replace(outcome, findings=tuple(map(finding, known, now)))
 
 
-def _how(laid: Laid, unit: float | None) -> Iterator[str]:
+def _how(laid: Registration, unit: float | None) -> Iterator[str]:
     """What was done to a drawing to lay it over the sheet."""
     degrees = laid.placing.degrees
     if laid.placing.mirrored:
@@ -215,7 +215,7 @@ def _of_this_sheet(outcome: CadOutcome, own: bool) -> bool:
     return _green(found) >= LOST or any(len(of_view) > 10 and _green(of_view) > 0.7 for of_view in by_view.values())
 
 
-def _refuse(project: Project, laid: Laid, outcome: CadOutcome, ink: CadInk, asked: int | None, path: Path) -> None:
+def _refuse(project: Project, laid: Registration, outcome: CadOutcome, ink: CadInk, asked: int | None, path: Path) -> None:
     """Say that the drawing is not of this sheet, and of which it may be."""
     hint = tell("is it the right project and variant? a drawing with a layout of its own can be told with --views where its "
                 "views are")

@@ -94,7 +94,7 @@ class LookFinding:
 
 @dataclass(frozen=True)
 class AbsentKind:
-    """That a view leaves out so many elements of a kind (of :data:`~tmm_sheets.compare.cad.cad_absent.KINDS`), or positions."""
+    """That a view leaves out so many elements of a kind (of :data:`~tmm_sheets.compare.cad.omissions.KINDS`), or positions."""
 
     view: ElementView
     kind: str

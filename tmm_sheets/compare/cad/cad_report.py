@@ -9,11 +9,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Protocol
 
-from tmm_sheets.compare.cad import cad_absent
+from tmm_sheets.compare.cad import omissions
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
-from tmm_sheets.compare.cad.laying import Laid
 from tmm_sheets.compare.cad.layout import Layout
+from tmm_sheets.compare.cad.registration import Registration
 from tmm_sheets.compare.cad.view_search import SHAPES
 from tmm_sheets.compare.diagnosis.hypotheses import WORDS
 from tmm_sheets.compare.elements import Element, ElementView
@@ -30,7 +30,7 @@ VIEW_GONE = 0.15
 
 
 @dataclass(frozen=True)
-class Examined:
+class ExaminedDrawing:
     """A drawing compared with a sheet.
 
     Attributes
@@ -43,12 +43,12 @@ class Examined:
     built : plans that were built on a wrong step, with what that was
     """
 
-    laid: Laid
+    laid: Registration
     space: DrawingSpace
     places: Layout
     outcome: CadOutcome
     notes: tuple[str, ...]
-    built: Mapping[ElementView, Built] = field(default_factory=dict)
+    built: Mapping[ElementView, BuiltView] = field(default_factory=dict)
 
     @cached_property
     def exact(self) -> tuple[Element, ...]:
@@ -80,7 +80,7 @@ def _turned(move: Placing) -> str:
             tell("drawn turned by 90° clockwise"))[quarter]
 
 
-class Built(Protocol):
+class BuiltView(Protocol):
     """What was done wrong in a plan, in words."""
 
     def said(self) -> str:
@@ -126,7 +126,7 @@ def _found_by(entities: Sequence[Entity]) -> str:
     return said.format(entity=entities[0], n=len(entities) - 1)
 
 
-def text(name: str, path: Path, found: Examined, pencil: float) -> str:
+def text(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> str:
     """The report for the terminal on a drawing of project ``name``; ``pencil`` is the tolerance, mm."""
     laid, outcome = found.laid, found.outcome
     lost = gone(outcome)
@@ -147,7 +147,7 @@ def text(name: str, path: Path, found: Examined, pencil: float) -> str:
     return "\n".join([*out, summary(outcome, lost)])
 
 
-def tables(found: Examined, lost: set[ElementView]) -> list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
+def tables(found: ExaminedDrawing, lost: set[ElementView]) -> list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
     """Title, head and rows: of what deviates, what is extra, and what has another type or width of line."""
     return [
         (tell("deviations"), _said("no.", "view", "element", "deviation", "verdict", "in the drawing"), _deviations(found, lost)),
@@ -180,7 +180,7 @@ def _left_out(outcome: CadOutcome, lost: set[ElementView]) -> list[str]:
     by_view: dict[ElementView, list[str]] = {}
     for x in outcome.absent:
         if x.view not in lost:
-            by_view.setdefault(x.view, []).append(cad_absent.said(x.kind, x.count))
+            by_view.setdefault(x.view, []).append(omissions.said(x.kind, x.count))
     said = tell('not drawn, and not judged, in view "{view}": {what}')
     return [said.format(view=v.name, what=", ".join(what)) for v, what in by_view.items()]
 
@@ -206,7 +206,7 @@ def summary(outcome: CadOutcome, lost: set[ElementView]) -> str:
         unlike=len({n for look in outcome.looks for n in look.elements}))
 
 
-def _deviations(found: Examined, lost: set[ElementView]) -> list[tuple[str, ...]]:
+def _deviations(found: ExaminedDrawing, lost: set[ElementView]) -> list[tuple[str, ...]]:
     """A row for every element that is not green, except those of missing views."""
     entities = found.laid.space.entities
     return [(str(f.element.number), f.element.view.name, called(f.element), f.what, said_verdict(f.verdict),
@@ -224,7 +224,7 @@ def _extras(outcome: CadOutcome) -> list[tuple[str, ...]]:
     return rows
 
 
-def _looks(found: Examined) -> list[tuple[str, ...]]:
+def _looks(found: ExaminedDrawing) -> list[tuple[str, ...]]:
     """A row for every group of lines of a wrong type or width."""
     rows: list[tuple[str, ...]] = []
     for k, look in enumerate(found.outcome.looks, 1):
@@ -245,7 +245,7 @@ def _rounded(x: float | None) -> float | None:
     return None if x is None else round(x, 4)
 
 
-def tree(name: str, path: Path, found: Examined, pencil: float) -> dict[str, Any]:
+def tree(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> dict[str, Any]:
     """The report for JSON on a drawing of project ``name``; ``pencil`` is the tolerance, mm."""
     laid, places, outcome = found.laid, found.places, found.outcome
     lost = sorted(gone(outcome), key=lambda v: v.n)

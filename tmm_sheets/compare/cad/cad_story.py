@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from tmm_sheets.compare.cad import cad_absent, cad_report
+from tmm_sheets.compare.cad import cad_report, omissions
 from tmm_sheets.compare.cad.cad_findings import CadFinding
 from tmm_sheets.compare.elements import ElementView, drawn
 from tmm_sheets.compare.findings import called, counted, millimetres, worst
-from tmm_sheets.compare.story import Mistake, Picture, Story, Table, clipped
+from tmm_sheets.compare.story import Story, StoryPicture, StoryTable, ToldMistake, clipped
 from tmm_sheets.numbers import told
 from tmm_sheets.words import tell, tell_n
 
@@ -21,17 +21,18 @@ SHOWN = 10
 """Most findings of a view that are told in words beside its picture; the table has all."""
 
 
-def story(name: str, path: Path, found: cad_report.Examined, pencil: float) -> Story:
+def story(name: str, path: Path, found: cad_report.ExaminedDrawing, pencil: float) -> Story:
     """The report on a drawing of project ``name``; ``pencil`` is the tolerance, mm."""
     outcome, lost = found.outcome, cad_report.gone(found.outcome)
     title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=found.laid.known.n, file=path.name)
     tolerance = tell("tolerance {tolerance} mm").format(tolerance=told(f"{pencil:g}"))
     about = (tolerance, cad_report.summary(outcome, lost), *found.notes)
-    tables = [Table(said[:1].upper() + said[1:], head, tuple(rows)) for said, head, rows in cad_report.tables(found, lost) if rows]
+    tables = [StoryTable(said[:1].upper() + said[1:], head, tuple(rows)) for said, head, rows in cad_report.tables(found, lost)
+              if rows]
     return Story(title, about, tuple(mistakes(found, lost)), tuple(tables), tuple(_unjudged(found, lost)))
 
 
-def mistakes(found: cad_report.Examined, lost: set[ElementView]) -> list[Mistake]:
+def mistakes(found: cad_report.ExaminedDrawing, lost: set[ElementView]) -> list[ToldMistake]:
     """What is wrong, view by view: those built on a wrong step first, then those with the most red."""
     of_view: dict[ElementView, list[CadFinding]] = {}
     for f in worst(found.outcome.findings):
@@ -51,11 +52,12 @@ def mistakes(found: cad_report.Examined, lost: set[ElementView]) -> list[Mistake
     order = sorted(of_view, key=place)
     one_by_one = [_mistake(found, v, of_view[v], first.get(found.built[v].said()) if v in found.built else None) for v in order]
     named = sum(m.named for m in one_by_one)
-    whole = [Mistake(tell("the whole drawing"), found.mirrored, "red", named=True)] if found.mirrored else []
+    whole = [ToldMistake(tell("the whole drawing"), found.mirrored, "red", named=True)] if found.mirrored else []
     return [*whole, *one_by_one[:named], *turned, *one_by_one[named:]]
 
 
-def _mistake(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFinding], first: ElementView | None) -> Mistake:
+def _mistake(found: cad_report.ExaminedDrawing, view: ElementView, bad: Sequence[CadFinding],
+             first: ElementView | None) -> ToldMistake:
     """What is wrong in a view, its picture beside it; ``first`` is the view in which the same was done, of one that is built so."""
     red = sum(f.verdict == "red" for f in bad)
     built = found.built.get(view)
@@ -76,11 +78,11 @@ def _mistake(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFin
             said.append(told_all.format(by=millimetres(max(f.deviation for f in after)),
                                         lines=", ".join(dict.fromkeys(f.element.name for f in after))))
         details = [*said, *details]
-    return Mistake(view.name, what, "red" if red else "amber", tuple(details), _picture(found, view, bad),
+    return ToldMistake(view.name, what, "red" if red else "amber", tuple(details), _picture(found, view, bad),
                    named=built is not None, again=again[:1].upper() + again[1:])
 
 
-def _picture(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFinding]) -> Picture | None:
+def _picture(found: cad_report.ExaminedDrawing, view: ElementView, bad: Sequence[CadFinding]) -> StoryPicture | None:
     """The view: ours where the drawing has it, theirs, what is wrong in it."""
     ours = tuple(p for f, e in zip(found.outcome.findings, found.exact, strict=True) if e.view == view and not f.absent
                  for p in drawn(e))
@@ -97,13 +99,13 @@ def _picture(found: cad_report.Examined, view: ElementView, bad: Sequence[CadFin
     after = [f for f in lines if f.follows and f.element.name]
     dots = [f for f in after if f.element.kind == "circle"]
     places += [(f.at, 0.0, f.element.name) for f in dots or after]
-    picture = Picture(ours, (), tuple(wrong), tuple(places))
+    picture = StoryPicture(ours, (), tuple(wrong), tuple(places))
     box = picture.box
     theirs = clipped([s.points for s in found.space.strokes], box)
-    return Picture(ours, theirs, clipped(wrong, box), tuple(places))
+    return StoryPicture(ours, theirs, clipped(wrong, box), tuple(places))
 
 
-def _unjudged(found: cad_report.Examined, lost: set[ElementView]) -> list[str]:
+def _unjudged(found: cad_report.ExaminedDrawing, lost: set[ElementView]) -> list[str]:
     """What could not be judged, and why."""
     beside = cad_report.tables_and_texts(found.outcome)
     out = [tell('view "{view}": it was not found in the drawing').format(view=v.name)
@@ -112,7 +114,7 @@ def _unjudged(found: cad_report.Examined, lost: set[ElementView]) -> list[str]:
     by_view: dict[str, list[str]] = {}
     for x in found.outcome.absent:
         if x.view not in lost:
-            by_view.setdefault(x.view.name, []).append(cad_absent.said(x.kind, x.count))
+            by_view.setdefault(x.view.name, []).append(omissions.said(x.kind, x.count))
     out += [tell('view "{view}": not drawn: {what}').format(view=name, what=", ".join(what)) for name, what in by_view.items()]
     skipped = Counter(f.what for f in found.outcome.findings if f.verdict is None and not f.absent and f.element.view not in lost)
     out += [tell("not compared: {what} ({n})").format(n=n, what=what) for what, n in skipped.items()]

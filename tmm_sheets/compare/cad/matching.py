@@ -4,9 +4,9 @@ The order of the steps keeps ink from being mistaken for that of another element
 
 1. Elements with ink everywhere along them, within the tolerance, are right, whatever entities the ink is of. They claim it.
 2. For each of the others the line, circle or curve that was drawn for it is sought in the rest: shifted, turned, too long,
-   with a gap (``misplaced.py``).
+   with a gap (``displaced_lines.py``).
 3. Ink that no element claims is the excess of one that does, or it is extra.
-4. The ink of every element should have its line type and width (``cad_looks.py``).
+4. The ink of every element should have its line type and width (``line_styles.py``).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.compare.cad import cad_absent, cad_arrows, cad_extras, cad_lettering, cad_looks, cad_symbols, misplaced
+from tmm_sheets.compare.cad import cad_arrows, cad_extras, cad_lettering, cad_symbols, displaced_lines, line_styles, omissions
 from tmm_sheets.compare.cad.cad_comparison import JOINT, Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
@@ -42,24 +42,24 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     """
     state = Comparison(elements, space, moves, tolerance)
     say(tell("comparing lines"))
-    cad_absent.positions_left_out(state)
+    omissions.positions_left_out(state)
     _not_compared(state)
-    cad_absent.lines_left_out(state)
+    omissions.lines_left_out(state)
     _right(state)
     say(tell("comparing lettering"))
     cad_lettering.lettering(state)
     cad_symbols.hatching(state)
     say(tell("looking for what was meant"))
     rest = left(state.theirs, state.claimed())
-    misplaced.circles(state, rest)
-    misplaced.straight(state, rest)
-    misplaced.elsewhere(state, rest)
-    misplaced.curves(state, left(state.theirs, state.claimed()))
-    misplaced.incomplete(state)
+    displaced_lines.circles(state, rest)
+    displaced_lines.straight(state, rest)
+    displaced_lines.elsewhere(state, rest)
+    displaced_lines.curves(state, left(state.theirs, state.claimed()))
+    displaced_lines.incomplete(state)
     cad_symbols.filled(state)
     cad_arrows.arrows(state)
     cad_symbols.heads_of_dimensions(state)
-    cad_absent.others_left_out(state)
+    omissions.others_left_out(state)
     _leading_elsewhere(state)
     say(tell("looking for what is extra"))
     extras = cad_extras.extra(state)
@@ -67,9 +67,9 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
         if n not in state.found:
             state.found[n] = state.finding(n, 0.0, "")
     say(tell("comparing line types and widths"))
-    looks, notes = cad_looks.looks(state)
+    looks, notes = line_styles.looks(state)
     found = tuple(state.found[n] for n in range(len(state.elements)))
-    return CadOutcome(found, extras, looks, notes, cad_absent.remarks(found))
+    return CadOutcome(found, extras, looks, notes, omissions.remarks(found))
 
 
 def _not_compared(state: Comparison) -> None:

@@ -42,7 +42,7 @@ WORD = re.compile(rf"[^\W\d_]{{{LEAST},}}")
 
 
 @dataclass(frozen=True)
-class Said:
+class DrawnTitle:
     """What a title says: words by their beginnings, numbers whole; "position" beside a number is no word."""
 
     words: frozenset[str]
@@ -50,7 +50,7 @@ class Said:
     at_position: bool = False
 
     @classmethod
-    def of(cls, text: str) -> Said:
+    def of(cls, text: str) -> DrawnTitle:
         """A title read."""
         text = text.casefold()
         at = POSITION.search(text)
@@ -69,7 +69,7 @@ class Title:
     """A text that names views: where it stands, its words, and the views."""
 
     box: Box
-    said: Said
+    said: DrawnTitle
     names: frozenset[ElementView]
 
 
@@ -89,7 +89,7 @@ class Titles:
         for e in elements:
             if e.view in shown and e.role == "link" and e.position:
                 shown[e.view].add(e.position)
-        own = {v: Said.of(v.name) for v in views}
+        own = {v: DrawnTitle.of(v.name) for v in views}
         self.titles = [t for w in space.writings if len(normal(w.text)) > LETTERS and (t := _named(w, own, shown)) is not None]
 
     @cached_property
@@ -142,7 +142,7 @@ class Titles:
         return float(length[np.isin(self.figures, list(self.over))].sum()) / whole if whole else 0.0
 
 
-def likeness(own: Said, said: Said, shown: Iterable[str] = ()) -> float:
+def likeness(own: DrawnTitle, said: DrawnTitle, shown: Iterable[str] = ()) -> float:
     """How much a title is that of a view, 0 .. 1; the view may show several positions."""
     mine = own.numbers or frozenset(shown)
     agree = ONE_SIDED if bool(mine) != bool(said.numbers) and (own.numbers or said.numbers) else 1.0
@@ -154,19 +154,19 @@ def likeness(own: Said, said: Said, shown: Iterable[str] = ()) -> float:
     return agree * both / max(len(own.words) + len(said.words) - both, 1)
 
 
-def in_common(own: Said, said: Said) -> int:
+def in_common(own: DrawnTitle, said: DrawnTitle) -> int:
     """How many words two titles have in common, a position for one."""
     return _shared(own, said) + (own.at_position and said.at_position)
 
 
-def namesakes(own: Said, said: Said) -> bool:
+def namesakes(own: DrawnTitle, said: DrawnTitle) -> bool:
     """Whether two titles differ in their numbers only."""
     if not own.numbers or not said.numbers or own.numbers & said.numbers:
         return False
     return not said.words or _shared(own, said) > 0.6 * min(len(own.words), len(said.words))
 
 
-def _shared(own: Said, said: Said) -> int:
+def _shared(own: DrawnTitle, said: DrawnTitle) -> int:
     return sum(any(_same(a, b) for b in own.words) for a in said.words)
 
 
@@ -175,9 +175,9 @@ def _same(a: str, b: str) -> bool:
     return a.startswith(b) or b.startswith(a)
 
 
-def _named(w: Writing, own: Mapping[ElementView, Said], shown: Mapping[ElementView, Iterable[str]]) -> Title | None:
+def _named(w: Writing, own: Mapping[ElementView, DrawnTitle], shown: Mapping[ElementView, Iterable[str]]) -> Title | None:
     """A text as a title; None where it names no view."""
-    said = Said.of(w.text)
+    said = DrawnTitle.of(w.text)
     like = {v: likeness(mine, said, shown[v]) for v, mine in own.items()}
     best = max(like.values(), default=0.0)
     if best < NAMED:

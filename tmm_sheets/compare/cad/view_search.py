@@ -19,7 +19,7 @@ from tmm_sheets.compare.cad.cad_ink import DrawingSpace, DrawnStroke, normal
 from tmm_sheets.compare.cad.cad_text import meant
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines, refine
 from tmm_sheets.compare.cad.overlaps import runs
-from tmm_sheets.compare.cad.titles import Said, Titles, in_common, likeness, namesakes
+from tmm_sheets.compare.cad.titles import DrawnTitle, Titles, in_common, likeness, namesakes
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.placing import HINGE, Placing, moved
 from tmm_sheets.construction.scale import HANDY
@@ -196,16 +196,16 @@ class Search:
         self.words: dict[str, list[complex]] = {}
         for w in space.writings:
             self.words.setdefault(meant(w.text), []).append(w.at)
-        self.own = {v: Said.of(v.name) for v in views}
+        self.own = {v: DrawnTitle.of(v.name) for v in views}
         self.shown = {v: positions(self.whole(v)).keys() for v in self.views}
-        self.said = [(Said.of(w.text), w.at) for w in space.writings if len(normal(w.text)) > 4]
+        self.said = [(DrawnTitle.of(w.text), w.at) for w in space.writings if len(normal(w.text)) > 4]
         self.titles = Titles(elements, shaped(elements), space) if titles is None else titles
         self.space, self.free = space, free
         self.left = np.unique(free.owner)
         strokes = [space.strokes[k].points for k in self.left.tolist()]
         self.tips = np.concatenate([z[[0, -1]] for z in strokes]) if strokes else np.zeros(0, complex)
         self.scales: dict[float | None, float] = {v.mu: p.scale for v, p in known.items() if v.mu is not None}
-        self.owners: Mapping[Said, ElementView] = {}
+        self.owners: Mapping[DrawnTitle, ElementView] = {}
         """Views whose titles are known: they are those of no others."""
         self.placed = {v: self.titles.at(p(lines([e.points for e in main_lines([e for e in elements if e.view == v])]).points(2.0)),
                                          NEAR) for v, p in known.items() if self.titles.over}
@@ -309,7 +309,7 @@ class Search:
         like = likeness(own, said, self.shown[v]) if said is not None else 0.0
         return said is not None and (bool(own.numbers & said.numbers) if own.numbers else like > CALLED)
 
-    def title(self, v: ElementView, placing: Placing) -> Said | None:
+    def title(self, v: ElementView, placing: Placing) -> DrawnTitle | None:
         """The nearest title that may be that of a view; one that has more words of the view's own may be farther off."""
         own = self.own[v]
         box, titles = self._titles(self.forms[v][0], placing)
@@ -453,7 +453,7 @@ class Search:
             self._own_ink[v] = None if of is None else self.space.lines.only(of[self.space.lines.owner])
         return self._own_ink[v]
 
-    def _titles(self, form: _Form, placing: Placing) -> tuple[Box, list[tuple[Said, complex]]]:
+    def _titles(self, form: _Form, placing: Placing) -> tuple[Box, list[tuple[DrawnTitle, complex]]]:
         """The rectangle round a view, and the titles that may be its own; in a larger view they may be farther off."""
         box = Box.around(placing(form.points))
         return box, [(said, at) for said, at in self.said if box.contains(at, TITLE * max(placing.scale, 1.0))]

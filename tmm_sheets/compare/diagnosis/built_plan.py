@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from tmm_sheets.compare.diagnosis.acting import acting
 from tmm_sheets.compare.diagnosis.drawn_plan import DRAWN, SHOWS, DrawnPlan, PlanPoint, between, drawn_plan, drawn_positions
+from tmm_sheets.compare.diagnosis.drawn_senses import acting
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, hypotheses
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, of_position, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
@@ -101,7 +101,7 @@ class _Found:
 
 
 @dataclass(frozen=True)
-class Drawing:
+class StudentDrawing:
     """A view of a drawing, by mm of our sheet: what share of a line has ink, which places, the ends of its lines; and its scale.
 
     ``goes_on`` tells whether ink goes on beyond the end of a line, the second of two points; in pencil lines that tells nothing.
@@ -127,7 +127,7 @@ def errors_of(project: Project, known: KnownSheet) -> tuple[dict[str, Plan], Err
 
 
 def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementView, Sequence[Element]],
-                    seen: Callable[[ElementView], Drawing], made: Sequence[Hypothesis] = (),
+                    seen: Callable[[ElementView], StudentDrawing], made: Sequence[Hypothesis] = (),
                     absent: Collection[ElementView] = (), positions: bool = False) -> dict[
                         ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]:
     """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet.
@@ -247,7 +247,7 @@ def _alike(mistake: Hypothesis, others: Sequence[_Mistake], drawn: DrawnPlan, of
     return [h for h, n in zip(same, arrows, strict=True) if n == max(arrows)][:TOLD]
 
 
-def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float, before: Sequence[_Mistake],
+def _explained(drawn: DrawnPlan, errors: Errors, drawing: StudentDrawing, usual: float, before: Sequence[_Mistake],
                gain: Callable[[_Mistake, bool], float]) -> _Found | None:
     """The mistake with which most of a plan has ink, if that is much more than has ink without it, ``usual``.
 
@@ -284,7 +284,7 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: Drawing, usual: float,
     return best if most > _ink(drawn, drawing, drawn.points) + NEW_INK else None
 
 
-def _is_drawn(arrow: Element, drawing: Drawing) -> bool:
+def _is_drawn(arrow: Element, drawing: StudentDrawing) -> bool:
     """Whether an arrow is drawn: its head, and of a straight one its line."""
     return drawing.headed(arrow) and not (arrow.kind == "line" and drawing.inked(arrow.points[[0, -1]]) < WHOLE)
 
@@ -296,7 +296,7 @@ def _best(found: Sequence[_Found], gain: Callable[[_Mistake], float]) -> list[tu
     return [(more, f) for more, f in gains if f.share >= AS_GOOD * best]
 
 
-def _points_off(drawn: DrawnPlan, drawing: Drawing) -> Iterator[_Mistake]:
+def _points_off(drawn: DrawnPlan, drawing: StudentDrawing) -> Iterator[_Mistake]:
     """One of the points of a plan at the end of a line of the drawing, with how far off that is."""
     tips = np.array(drawing.tips, dtype=complex)
     near = tips[np.abs(tips - complex(np.mean([p.was for p in drawn.points]))) < FARTHEST].tolist()
@@ -312,7 +312,7 @@ def _points_off(drawn: DrawnPlan, drawing: Drawing) -> Iterator[_Mistake]:
                                (Change(p.step, displaced(by), drawn.k),))
 
 
-def _share(drawn: DrawnPlan, drawing: Drawing, points: Sequence[PlanPoint]) -> float:
+def _share(drawn: DrawnPlan, drawing: StudentDrawing, points: Sequence[PlanPoint]) -> float:
     """Share of a plan's vectors, by length, that are drawn where its points come to lie; what becomes too short is not drawn."""
     there = whole = 0.0
     lines = [(max(length, e.length), line) for e in drawn.vectors for line in [between(e, points)]
@@ -331,7 +331,7 @@ def _covers(other: Points, line: Points) -> bool:
     return bool(0 <= beyond.real <= 1 and abs(beyond.imag) * abs(other[1] - other[0]) < ASIDE)
 
 
-def _ink(drawn: DrawnPlan, drawing: Drawing, points: Sequence[PlanPoint]) -> int:
+def _ink(drawn: DrawnPlan, drawing: StudentDrawing, points: Sequence[PlanPoint]) -> int:
     """How much ink a plan's vectors have together where its points come to lie, in places of a millimetre."""
     some = np.concatenate([sampled(between(e, points), 0.5)[0] for e in drawn.vectors if abs(np.diff(between(e, points))[0]) > 0.5])
     return len(np.unique(np.round(some[drawing.ink(some)])))

@@ -19,13 +19,13 @@ from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.measured import measured_units as units
 from tmm_sheets.compare.measured.evidence import CURVED, Evidence, Explanation, place_of
 from tmm_sheets.compare.measured.explaining import explanation
-from tmm_sheets.compare.measured.judged import Judged, Place
+from tmm_sheets.compare.measured.judged import JudgedValue, Place
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angle_apart
 from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, factor_of
 from tmm_sheets.compare.measured.own_numbers import OwnNumbers
-from tmm_sheets.compare.measured.own_steps import OwnValue
 from tmm_sheets.compare.measured.plan_scales import wrong_scales
-from tmm_sheets.compare.measured.whole_table import Whole, mark, whole_table
+from tmm_sheets.compare.measured.student_recompute import OwnValue
+from tmm_sheets.compare.measured.systematic_error import SystematicError, mark, whole_table
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.numbers import rounded, told
@@ -51,7 +51,7 @@ EXACT = 1e-6
 """Tolerance of what is neither drawn nor computed: numbers of teeth."""
 
 
-def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> list[Judged]:
+def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> list[JudgedValue]:
     """Judge every filled line, in the order of the sheets."""
     errors = found.errors(filled.factors, pencil, reading)
     numbers = {name: i for i, name in enumerate(found.entries)}
@@ -59,7 +59,7 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     lines = sorted(filled.lines, key=lambda line: numbers[line.entry.id])
     written = judged = [_judged(line, found, filled.factors, errors, reading) for line in lines]
     labels = next((plan.labels for plan, _ in found.plans if plan.name == "positions"), ())
-    wholes: list[Whole] = []
+    wholes: list[SystematicError] = []
     while len(wholes) < WHOLES and (whole := whole_table(judged, labels)) is not None:
         wholes.append(whole)
         lines = [whole.line(line) for line in lines]
@@ -88,7 +88,7 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
     return judged
 
 
-def _origin(j: Judged, computed: Mapping[int, list[Judged]]) -> Judged:
+def _origin(j: JudgedValue, computed: Mapping[int, list[JudgedValue]]) -> JudgedValue:
     """The number in which the error of another one starts: that which it follows from or, of the numbers it was rightly computed
     from, the worst one; itself where nothing else is known to be wrong.
     """
@@ -98,7 +98,7 @@ def _origin(j: Judged, computed: Mapping[int, list[Judged]]) -> Judged:
     return j.follows or j
 
 
-def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float], errors: Errors, reading: float) -> Judged:
+def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float], errors: Errors, reading: float) -> JudgedValue:
     e = line.entry
     ratio = found.scales[e.scale].mu / factor_of(line, found.scales, factors) if e.scale else 1.0
     size = ratio if e.kind == "length" else 1.0
@@ -124,7 +124,7 @@ def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float]
         tolerance = float("inf")
     measured = line.value if e.signed or e.kind == "angle" else abs(line.value)
     deviation = angle_apart(measured, exact, e.signed) if e.kind == "angle" else measured - exact
-    judged = Judged(line, exact, deviation, max(tolerance, EXACT), rows, size=size, reading=own)
+    judged = JudgedValue(line, exact, deviation, max(tolerance, EXACT), rows, size=size, reading=own)
     judged.remark = _remark(judged, measured, tolerance)
     return judged
 
@@ -145,7 +145,7 @@ def _of_squares(e: Measurable, errors: Errors, reading: float, ratio: float) -> 
     return second
 
 
-def _remark(judged: Judged, measured: float, tolerance: float) -> str:
+def _remark(judged: JudgedValue, measured: float, tolerance: float) -> str:
     """What is recognised at sight: a degenerate construction, a wrong sign, a slip of the pen."""
     if tolerance == float("inf"):
         return tell("the construction degenerates here: no tolerance")
@@ -158,7 +158,7 @@ def _remark(judged: Judged, measured: float, tolerance: float) -> str:
     return _slip(measured, judged.exact, tolerance, judged.entry.unit)
 
 
-def _way_round(judged: Judged) -> str:
+def _way_round(judged: JudgedValue) -> str:
     """That something points or turns the other way."""
     if judged.entry.kind == "sense":
         return tell("it turns the other way")
@@ -186,13 +186,13 @@ def _slip(measured: float, exact: float, tolerance: float, unit: str) -> str:
 # --- arithmetic --------------------------------------------------------------------------------------------------------------
 
 
-def _check_arithmetic(judged: list[Judged], filled: Filled, found: Measurables) -> dict[int, list[Judged]]:
+def _check_arithmetic(judged: list[JudgedValue], filled: Filled, found: Measurables) -> dict[int, list[JudgedValue]]:
     """Compute results again from the numbers they should have come from: only rounding may stand between them.
 
     A result that is exact but for rounding is right, wherever it came from. Returns the numbers that each result, by its id(),
     was rightly computed from.
     """
-    computed: dict[int, list[Judged]] = {}
+    computed: dict[int, list[JudgedValue]] = {}
     by_id = {j.entry.id: j for j in judged}
     for result, check in found.checks.items():
         j = by_id.get(result)
@@ -221,7 +221,7 @@ def _check_arithmetic(judged: list[Judged], filled: Filled, found: Measurables) 
     return computed
 
 
-def _own_gives(own: Iterable[Judged], value: float) -> str:
+def _own_gives(own: Iterable[JudgedValue], value: float) -> str:
     """That a number does not follow from some of the student's own, which give another value."""
     numbers = ", ".join(f"{j.entry.quantity} = {told(rounded(j.line.value, 5))}" for j in own)
     said = tell("does not follow from your own {numbers}: that gives {value}")
@@ -231,7 +231,7 @@ def _own_gives(own: Iterable[Judged], value: float) -> str:
 # --- chains -------------------------------------------------------------------------------------------------------------------
 
 
-def _chains(evidence: Evidence, own: OwnNumbers, computed: Mapping[int, list[Judged]]) -> None:
+def _chains(evidence: Evidence, own: OwnNumbers, computed: Mapping[int, list[JudgedValue]]) -> None:
     """Explain the red numbers one after another in the order of drawing, each by the mistake that explains most along with it."""
     judged = evidence.judged
     open_ = np.array([j.verdict == "red" for j in judged])
@@ -258,13 +258,13 @@ def _chains(evidence: Evidence, own: OwnNumbers, computed: Mapping[int, list[Jud
             j.follows = _own_reason(own, j, computed)
 
 
-def _told(evidence: Evidence, start: Judged, found: Explanation, beyond: float) -> list[int]:
+def _told(evidence: Evidence, start: JudgedValue, found: Explanation, beyond: float) -> list[int]:
     """Tell a mistake at the number it was looked for; the numbers that follow from it."""
     start.mistake, start.wrong = found.mistake, found.wrong
     return list(_follow(evidence, start, found, beyond))
 
 
-def _shows(evidence: Evidence, start: Judged, found: Explanation) -> Judged | None:
+def _shows(evidence: Evidence, start: JudgedValue, found: Explanation) -> JudgedValue | None:
     """The number that shows most of the second of two mistakes, where that was made if one does; None where none does."""
     by = np.where(np.isfinite(found.shares), np.abs(found.shares), 0.0) / evidence.tolerance
     judged, at = evidence.judged, found.wrong[0].at
@@ -274,7 +274,7 @@ def _shows(evidence: Evidence, start: Judged, found: Explanation) -> Judged | No
     return judged[best] if best is not None and by[best] > 1 else None
 
 
-def _wrong_row(start: Judged, judged: Sequence[Judged]) -> None:
+def _wrong_row(start: JudgedValue, judged: Sequence[JudgedValue]) -> None:
     """A number that explains nothing else may be that of a neighbouring row: of the same plan, or of the next position."""
     e, i = start.entry, judged.index(start)
     if not e.terms:
@@ -291,7 +291,7 @@ def _wrong_row(start: Judged, judged: Sequence[Judged]) -> None:
             return
 
 
-def _follow(evidence: Evidence, start: Judged, found: Explanation, beyond: float) -> Iterator[int]:
+def _follow(evidence: Evidence, start: JudgedValue, found: Explanation, beyond: float) -> Iterator[int]:
     """Take from all numbers what a mistake makes of them; those that are in order then follow from the number it starts with."""
     before_all, after_all = evidence.left.copy(), evidence.after(found.shares)
     evidence.accept(found)
@@ -324,7 +324,7 @@ def _beyond_chance(count: int) -> float:
     return max(2.0, normal.inv_cdf(1 - CHANCE / (2 * max(count, 1))) / normal.inv_cdf(0.975))
 
 
-def _own_reason(own: OwnNumbers, j: Judged, computed: Mapping[int, list[Judged]]) -> Judged | None:
+def _own_reason(own: OwnNumbers, j: JudgedValue, computed: Mapping[int, list[JudgedValue]]) -> JudgedValue | None:
     """The mistake that a red number follows from by the student's own earlier numbers; None when it does not follow from them."""
     made = own.steps.value(j)
     if made is None or not isfinite(made.tolerance):
@@ -357,7 +357,7 @@ def _against_own(own: OwnNumbers, left: set[int]) -> None:
             seen |= {place_of(step, k) for step, k, _ in j.entry.terms}
 
 
-def _contradicts(j: Judged, made: OwnValue, beyond: float) -> bool:
+def _contradicts(j: JudgedValue, made: OwnValue, beyond: float) -> bool:
     """Whether a number does not follow from those it was made of; a right one is no mistake where they are wrong."""
     apart, doubt = abs(j.deviation - made.expected), CURVED * made.expected
     if apart <= beyond * hypot(j.reading, doubt) or apart <= beyond * hypot(made.tolerance, doubt):

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind
 from tmm_sheets.compare.diagnosis.replay import Again, Change, replay
-from tmm_sheets.compare.measured.judged import Judged, Mistake, Place
+from tmm_sheets.compare.measured.judged import JudgedValue, Mistake, Place
 from tmm_sheets.compare.measured.plan_scales import is_scaled
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, ordered
@@ -68,7 +68,7 @@ class Evidence:
     ``labels`` are those of the positions of the linkage.
     """
 
-    def __init__(self, judged: list[Judged], errors: Errors, labels: Sequence[str]) -> None:
+    def __init__(self, judged: list[JudgedValue], errors: Errors, labels: Sequence[str]) -> None:
         self.judged = judged
         self.errors = errors
         self.labels = labels
@@ -197,7 +197,7 @@ class Evidence:
                            drawn=h.drawn, spoils=tuple(spoilt.tolist()))
 
     @staticmethod
-    def proves(j: Judged, h: Hypothesis) -> bool:
+    def proves(j: JudgedValue, h: Hypothesis) -> bool:
         """Whether a number that is in order proves that something was not done: it shows where that was done.
 
         Further on it may have been gone on with otherwise, by lengths without their senses.
@@ -213,7 +213,7 @@ class Evidence:
         return np.array([0.0 if j.entry.kind != "result" and j.entry.plan == h.on_paper else
                          self.changed(j, value, h.drawn) - self.predicted[i] for i, j in ((i, self.judged[i]) for i in lines)])
 
-    def changed(self, j: Judged, value: Callable[[Step], Any], drawn: Sequence[tuple[str, float]] = ()) -> float:
+    def changed(self, j: JudgedValue, value: Callable[[Step], Any], drawn: Sequence[tuple[str, float]] = ()) -> float:
         """How much a number changes in a drawing, and by the scale factors of its plan that were found so far or are given."""
         times = dict(drawn).get(j.entry.scale, self.drawn.get(j.entry.scale, 1.0)) if is_scaled(j) else 1.0
         return times * (j.exact + j.changed(value)) - j.exact

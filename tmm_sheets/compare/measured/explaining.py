@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from tmm_sheets.compare.measured.displaced_step import NEARLY, displaced_step
-from tmm_sheets.compare.measured.done_otherwise import ENOUGH, done_otherwise
+from tmm_sheets.compare.measured.discrete_mistake import ENOUGH, done_otherwise
 from tmm_sheets.compare.measured.evidence import Evidence, Explanation, loss
-from tmm_sheets.compare.measured.two_mistakes import two_mistakes
+from tmm_sheets.compare.measured.misplaced_point import NEARLY, displaced_step
+from tmm_sheets.compare.measured.mistake_pairs import two_mistakes
 
 
 def explanation(evidence: Evidence, i: int) -> Explanation | None:

@@ -33,7 +33,7 @@ class Mistake:
 
 
 @dataclass(eq=False)
-class Judged:
+class JudgedValue:
     """A measured number with its judgement, in its own unit.
 
     ``follows`` is the number in which its chain of errors starts, itself not included; ``starts`` is True for such a number.
@@ -46,7 +46,7 @@ class Judged:
     deviation: float
     tolerance: float
     rows: list[tuple[Step, int, complex]]
-    follows: Judged | None = None
+    follows: JudgedValue | None = None
     starts: bool = False
     mistake: Mistake | None = None
     wrong: tuple[Hypothesis, ...] = ()

@@ -18,7 +18,7 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from tmm_sheets import files, nearest, texts, typed
+from tmm_sheets import encodings, files, quoting, spelling
 from tmm_sheets.compare.measured import measured_units as units
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, plain
 from tmm_sheets.construction.scale import Scale
@@ -190,12 +190,12 @@ def _bytes(path: Path, project: Project) -> bytes:
 
 def _decoded(data: bytes, name: str, notes: list[str]) -> str:
     try:
-        text, note = texts.decoded(data)
-    except texts.NotText as e:
+        text, note = encodings.decoded(data)
+    except encodings.NotText as e:
         raise BadInput(Problem(str(e), name, e.line, hint=tell("save it as CSV, UTF-8"))) from None
     if note:
         notes.append(f"{name}: {note}")
-    return texts.cleaned(text)
+    return encodings.cleaned(text)
 
 
 def _check_project(text: str, name: str, project: Project) -> None:
@@ -212,7 +212,7 @@ def _check_project(text: str, name: str, project: Project) -> None:
             from tmm_sheets import catalogue
 
             known = catalogue.is_shipped(other) or Path(other).is_file()
-            hints = ([typed.command("compare", other, "--measured", name)] if known else []) + [own]
+            hints = ([quoting.command("compare", other, "--measured", name)] if known else []) + [own]
             raise BadInput(Problem(said, name, number, hint="\n    ".join(hints)))
 
 
@@ -291,7 +291,7 @@ def _columns(rows: list[Row], name: str, found: Measurables, notes: list[str]) -
 
 def _missing(heading: str, head: Sequence[str], name: str, number: int) -> Problem:
     """That a column is missing; it may be called nearly so, in any language."""
-    near = [other for one in every(heading) for other in nearest.near(one, [h.lower() for h in head])]
+    near = [other for one in every(heading) for other in spelling.near(one, [h.lower() for h in head])]
     hint = tell('did you mean "{near}"? rename it').format(near=near[0]) if near else tell("there are {headings}").format(
         headings=", ".join(filter(None, head)))
     said = tell('the column "{heading}" is missing').format(heading=tell(heading))
@@ -402,7 +402,7 @@ def _factor(key: str, written: str, found: Measurables, filled: Filled, used: se
     known = {plain(scale): scale for scale in used}
     wanted = plain(key).partition("/")[2]
     if wanted not in known:
-        near = nearest.near(wanted, sorted(known))
+        near = spelling.near(wanted, sorted(known))
         raise _Refused(tell("unknown scale factor {key}").format(key=key),
                        tell("did you mean {near}?").format(near=f"{FACTOR}/{near[0]}") if near else "", "id")
     filled.factors[known[wanted]] = _like(_positive(written), found.scales[known[wanted]])
@@ -439,7 +439,7 @@ def _known(key: str, found: Measurables) -> str:
 def _entry(key: str, found: Measurables, filled: Filled, name: str, number: int) -> Measurable:
     known = _known(key, found)
     if not known:
-        near = nearest.near(key, found.entries, 2)
+        near = spelling.near(key, found.entries, 2)
         said = tell("did you mean {near} or {other}?") if len(near) > 1 else tell("did you mean {near}?")
         hint = said.format(near=near[0], other=near[-1]) if near else ""
         raise _Refused(tell("unknown quantity {key}").format(key=key), hint, "id")

@@ -12,7 +12,7 @@ from tmm_sheets.compare import story
 from tmm_sheets.compare.measured import measured_file
 from tmm_sheets.compare.measured.chain import EXACT, MOST, judge
 from tmm_sheets.compare.measured.collecting import measurables
-from tmm_sheets.compare.measured.judged import Judged, Mistake
+from tmm_sheets.compare.measured.judged import JudgedValue, Mistake
 from tmm_sheets.compare.measured.measured_units import said as said_unit
 from tmm_sheets.compare.measured.plan_pictures import PlanPictures
 from tmm_sheets.compare.report import Report, said_verdict
@@ -77,7 +77,7 @@ HEAD = ("", marked("pos."), marked("quantity"), marked("exact"), marked("measure
         marked("verdict"))
 
 
-def _text(judged: list[Judged], filled: measured_file.Filled) -> str:
+def _text(judged: list[JudgedValue], filled: measured_file.Filled) -> str:
     head = tuple(map(tell, HEAD))
     rows: list[tuple[str, ...]] = []
     titles: dict[int, str] = {}
@@ -103,7 +103,7 @@ def _text(judged: list[Judged], filled: measured_file.Filled) -> str:
 MARKS = {"green": " ", "amber": "?", "red": "!"}
 
 
-def _row(j: Judged) -> tuple[str, ...]:
+def _row(j: JudgedValue) -> tuple[str, ...]:
     e = j.entry
     percent = "–" if j.percent is None or abs(j.percent) >= 1000 or abs(j.exact) < j.tolerance else told(decimal(j.percent, 1))
     tolerance = f"±{told(rounded(j.tolerance, 2))}" if EXACT < j.tolerance < float("inf") else "0" if j.tolerance <= EXACT else "–"
@@ -120,49 +120,50 @@ def _row(j: Judged) -> tuple[str, ...]:
             "; ".join(said))
 
 
-def _with_unit(j: Judged) -> str:
+def _with_unit(j: JudgedValue) -> str:
     """The measured number; one that no sheet has in the notation of computers."""
     x = j.line.value
     written = told(rounded(x, 5) if x == 0 or 1e-7 < abs(x) < 1e9 else plain(x, 3))
     return f"{written} {said_unit(j.entry.unit)}" if j.entry.unit else written
 
 
-def _exact(j: Judged) -> str:
+def _exact(j: JudgedValue) -> str:
     """Exact value, no digits far below the tolerance."""
     return "0" if abs(j.exact) < 0.01 * j.tolerance else told(rounded(j.exact, 4))
 
 
-def _deviation(j: Judged) -> str:
+def _deviation(j: JudgedValue) -> str:
     x = 0.0 if abs(j.deviation) < 0.01 * j.tolerance else j.deviation
     text = told(rounded(x, 2 if abs(x) < 10 else 3))
     return text if x <= 0 else f"+{text}"
 
 
-def _place(j: Judged) -> str:
+def _place(j: JudgedValue) -> str:
     return f"{j.entry.title}, {j.row}"
 
 
-def _story(title: str, judged: list[Judged], filled: measured_file.Filled, notes: tuple[str, ...],
+def _story(title: str, judged: list[JudgedValue], filled: measured_file.Filled, notes: tuple[str, ...],
            pictures: PlanPictures) -> story.Story:
     """The report as it is read: the mistakes, the numbers plan by plan."""
-    tables = tuple(story.Table(of, tuple(map(tell, HEAD[1:])), tuple(_row(j)[1:] for j in some), tuple(j.verdict for j in some))
+    tables = tuple(story.StoryTable(of, tuple(map(tell, HEAD[1:])), tuple(_row(j)[1:] for j in some),
+                                     tuple(j.verdict for j in some))
                    for of, some in ((of, list(some)) for of, some in groupby(judged, lambda j: j.entry.title)))
     return story.Story(title, (_counted(judged, filled), *_advice(judged), *notes), tuple(_mistakes(judged, pictures)), tables)
 
 
-def _summary(judged: list[Judged], filled: measured_file.Filled) -> list[str]:
+def _summary(judged: list[JudgedValue], filled: measured_file.Filled) -> list[str]:
     mistakes = [line for i, m in enumerate(_mistakes(judged), 1)
                 for line in (f"{i}. {m.where}: {m.what}", *(f"   {line}" for line in m.details))]
     many = _too_many(judged)
     return [_counted(judged, filled), *(_advice(judged) if many else []), *mistakes, *([] if many else _advice(judged))]
 
 
-def _own(judged: list[Judged]) -> dict[str, int]:
+def _own(judged: list[JudgedValue]) -> dict[str, int]:
     """How many numbers got each verdict, of those that follow from no mistake."""
     return {v: sum(j.verdict == v for j in judged if j.follows is None) for v in ("green", "amber", "red")}
 
 
-def _counted(judged: list[Judged], filled: measured_file.Filled) -> str:
+def _counted(judged: list[JudgedValue], filled: measured_file.Filled) -> str:
     said = tell_n("{n} number: {green} green, {amber} amber, {red} red, {follow} following from an earlier mistake; {empty} "
                   "left empty",
                   "{n} numbers: {green} green, {amber} amber, {red} red, {follow} following from an earlier mistake; {empty} "
@@ -171,14 +172,14 @@ def _counted(judged: list[Judged], filled: measured_file.Filled) -> str:
     return said.format(n=len(judged), **_own(judged), follow=sum(j.follows is not None for j in judged), empty=filled.empty)
 
 
-def _starts(judged: list[Judged]) -> list[Judged]:
+def _starts(judged: list[JudgedValue]) -> list[JudgedValue]:
     """The mistakes, in the order of drawing."""
     return sorted((j for j in judged if j.starts), key=lambda j: j.order)
 
 
-def _grouped(judged: list[Judged]) -> list[list[Judged]]:
+def _grouped(judged: list[JudgedValue]) -> list[list[JudgedValue]]:
     """The mistakes as they are told: what nothing explains is one where it is off at several positions alike."""
-    groups: dict[object, list[Judged]] = {}
+    groups: dict[object, list[JudgedValue]] = {}
     for j in _starts(judged):
         plain = not j.wrong and j.mistake is None
         groups.setdefault((j.entry.title, j.entry.quantity) if plain else id(j), []).append(j)
@@ -186,17 +187,17 @@ def _grouped(judged: list[Judged]) -> list[list[Judged]]:
     return sorted((some for parts in split for some in parts), key=lambda some: some[0].order)
 
 
-def _everywhere(some: list[Judged]) -> story.Mistake:
+def _everywhere(some: list[JudgedValue]) -> story.ToldMistake:
     """One quantity that is off at several positions."""
     first = some[0].entry
     what = tell_n("off at {n} position, and nothing before it explains that: computed or read in another way?",
                   "off at {n} positions, and nothing before it explains that: computed or read in another way?", len(some))
     each = tell("({position}) {measured} instead of {exact}")
     said = [each.format(position=j.entry.label, measured=_with_unit(j), exact=_exact(j)) for j in some]
-    return story.Mistake(f"{first.title}, {first.quantity}", what.format(n=len(some)), some[0].verdict, ("; ".join(said),))
+    return story.ToldMistake(f"{first.title}, {first.quantity}", what.format(n=len(some)), some[0].verdict, ("; ".join(said),))
 
 
-def _mistakes(judged: list[Judged], pictures: PlanPictures | None = None) -> Iterator[story.Mistake]:
+def _mistakes(judged: list[JudgedValue], pictures: PlanPictures | None = None) -> Iterator[story.ToldMistake]:
     for j, *more in _grouped(judged)[:MOST]:
         if more:
             yield _everywhere([j, *more])
@@ -210,16 +211,16 @@ def _mistakes(judged: list[Judged], pictures: PlanPictures | None = None) -> Ite
             some = ", ".join(f.row for f in after[:6]) + (" ..." if len(after) > 6 else "")
             said = tell_n("{n} follows from it: {numbers}", "{n} follow from it: {numbers}", len(after))
             details.append(said.format(n=len(after), numbers=some))
-        yield story.Mistake(_place(j), _what(j), j.verdict, tuple(details),
+        yield story.ToldMistake(_place(j), _what(j), j.verdict, tuple(details),
                             pictures.picture(j) if pictures is not None else None)
 
 
-def _too_many(judged: list[Judged]) -> bool:
+def _too_many(judged: list[JudgedValue]) -> bool:
     """Whether nearly everything is wrong: the single mistakes are guesses then."""
     return len(_grouped(judged)) > MOST
 
 
-def _advice(judged: list[Judged]) -> list[str]:
+def _advice(judged: list[JudgedValue]) -> list[str]:
     """What to do now."""
     starts, own = len(_grouped(judged)), _own(judged)
     if _too_many(judged):
@@ -233,7 +234,7 @@ def _advice(judged: list[Judged]) -> list[str]:
     return [] if own["amber"] else [tell("All within a pencil's reach.")]
 
 
-def _what(j: Judged) -> str:
+def _what(j: JudgedValue) -> str:
     if j.wrong:
         return tell("; or: ").join(dict.fromkeys(h.said() for h in j.wrong))
     said = tell("{measured} instead of {exact}, {times} times the tolerance") if j.tolerance > EXACT else tell(
@@ -243,7 +244,7 @@ def _what(j: Judged) -> str:
     return "; ".join(part for part in (text, _where(j), j.remark) if part)
 
 
-def _step(j: Judged) -> str | None:
+def _step(j: JudgedValue) -> str | None:
     """Name of the step that was done wrong."""
     step = j.wrong[0].step if j.wrong else j.mistake.step if j.mistake is not None else None
     return None if step is None else step.name
@@ -255,7 +256,7 @@ def _sentence(mistake: Mistake) -> str:
     return sentence(mistake.step, mistake.place[1], (lambda x: x / mu) if mu else float, "mm" if mu else "")
 
 
-def _where(j: Judged) -> str:
+def _where(j: JudgedValue) -> str:
     """Which step was drawn wrong, if one was, and by how much where that is a point on paper."""
     if j.mistake is None:
         return ""
@@ -265,7 +266,7 @@ def _where(j: Judged) -> str:
     return tell("point {point} lies {distance} mm off").format(point=name, distance=told(rounded(off, 2)))
 
 
-def _off(j: Judged) -> float | None:
+def _off(j: JudgedValue) -> float | None:
     """How far a point was misplaced, mm; None for what is no point on paper."""
     m = j.mistake
     return None if m is None or not m.mu or m.step.rule.gives not in ("point", "vector") else abs(complex(*m.moved)) / m.mu
@@ -274,11 +275,11 @@ def _off(j: Judged) -> float | None:
 # --- tree ------------------------------------------------------------------------------------------------------------------
 
 
-def _tree(name: str, judged: list[Judged], filled: measured_file.Filled, pencil: float, reading: float) -> dict[str, Any]:
+def _tree(name: str, judged: list[JudgedValue], filled: measured_file.Filled, pencil: float, reading: float) -> dict[str, Any]:
     own = [j for j in judged if j.follows is None]
     first = {id(j): some[0] for some in _grouped(judged) for j in some}
 
-    def said(j: Judged) -> str:
+    def said(j: JudgedValue) -> str:
         if j.wrong:
             return j.wrong[0].said()
         alike = [other for other in own if other.starts and first[id(other)] is j]

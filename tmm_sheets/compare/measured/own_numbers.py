@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.compare.measured.own_steps import OwnSteps
+from tmm_sheets.compare.measured.student_recompute import OwnSteps
 
 if TYPE_CHECKING:
-    from tmm_sheets.compare.measured.judged import Judged
+    from tmm_sheets.compare.measured.judged import JudgedValue
     from tmm_sheets.construction.error import Errors
 
 Floats = npt.NDArray[np.float64]
@@ -27,7 +27,7 @@ Floats = npt.NDArray[np.float64]
 class OwnNumbers:
     """Expected deviations of the numbers of a file, by those before them; ``judged`` are the numbers in the order of drawing."""
 
-    def __init__(self, judged: Sequence[Judged], errors: Errors) -> None:
+    def __init__(self, judged: Sequence[JudgedValue], errors: Errors) -> None:
         # What is measured on a step comes before what is computed from it.
         self.judged = [judged[i] for i in sorted(range(len(judged)),
                                                  key=lambda i: (judged[i].order, judged[i].entry.kind == "result", i))]
@@ -39,14 +39,14 @@ class OwnNumbers:
         self._root = np.linalg.cholesky(_covariance(self.judged, errors, self._tolerances))
         self._independent = _solved(self._root, self._deviations)
 
-    def expected(self, j: Judged) -> tuple[float, float]:
+    def expected(self, j: JudgedValue) -> tuple[float, float]:
         """Deviation from the exact value that the earlier numbers let expect, and how far it may be from that; own unit."""
         r = self._rank[id(j)]
         own, unit = float(self._root[r, r]), float(self._units[r])
         expected = float(self._deviations[r] - self._independent[r] * own)
         return expected * unit, own * unit if np.isfinite(self._tolerances[r]) else float("inf")
 
-    def reasons(self, j: Judged) -> list[tuple[Judged, float]]:
+    def reasons(self, j: JudgedValue) -> list[tuple[JudgedValue, float]]:
         """Earlier numbers with the greatest influence on what is expected of a number, the greatest first.
 
         With each, what it contributes to the expected deviation.
@@ -68,13 +68,13 @@ SQUARE = 0.3
 """Share of itself that an energy may be off by for its error to be told by its gradient."""
 
 
-def _informative(j: Judged) -> bool:
+def _informative(j: JudgedValue) -> bool:
     """Whether a number tells something of others: it has a tolerance, is no mere sense, no energy of what nearly rests."""
     nearly_rests = j.entry.squares and j.tolerance > SQUARE * abs(j.exact)
     return bool(np.isfinite(j.tolerance)) and j.entry.kind != "sense" and not nearly_rests
 
 
-def _covariance(judged: Sequence[Judged], errors: Errors, tolerances: Floats) -> Floats:
+def _covariance(judged: Sequence[JudgedValue], errors: Errors, tolerances: Floats) -> Floats:
     """Covariance of the deviations in units of the tolerances, one row and column for each number.
 
     A result that was written down is what is gone on with: the error of computing it belongs to its step, and only rounding

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
-from tmm_sheets.compare.measured.judged import Judged
+from tmm_sheets.compare.measured.judged import JudgedValue
 from tmm_sheets.compare.measured.measurable import Measurables
-from tmm_sheets.compare.story import Picture
+from tmm_sheets.compare.story import StoryPicture
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.plan import Plan
@@ -48,12 +48,12 @@ class _Tie:
 class PlanPictures:
     """Pictures of the plans behind the mistakes; ``errors`` are those the numbers were judged with."""
 
-    def __init__(self, judged: Sequence[Judged], found: Measurables, errors: Errors) -> None:
+    def __init__(self, judged: Sequence[JudgedValue], found: Measurables, errors: Errors) -> None:
         self.judged, self.errors = judged, errors
         self.plans: Mapping[str, tuple[Plan, float]] = {
             plan.name: (plan, 1.0 if plan.unit == "mm" else found.scales[key].mu) for plan, key in found.plans}
 
-    def picture(self, start: Judged) -> Picture | None:
+    def picture(self, start: JudgedValue) -> StoryPicture | None:
         """The plan that a mistake shows in at its position; None where that is no plan of points."""
         plan, mu = self.plans.get(start.entry.plan, (None, 1.0))
         if plan is None or start.entry.kind not in ("length", "angle"):
@@ -77,10 +77,10 @@ class PlanPictures:
         off = [_line(wrong, pair) for pair in lines if np.abs(_line(wrong, pair) - _line(at, pair)).max() > SHOWS]
         head = start.entry.terms[-1][0]
         places = ((drawn.get(head, wrong[head]), 0.03 * float(size), letter_of(head)),) if head in at else ()
-        return Picture(tuple(_line(at, pair) for pair in lines),
+        return StoryPicture(tuple(_line(at, pair) for pair in lines),
                        tuple(_line(drawn, pair) for pair in lines if pair[0] in drawn and pair[1] in drawn), tuple(off), places)
 
-    def _ties(self, start: Judged, at: Mapping[Step, complex]) -> list[_Tie]:
+    def _ties(self, start: JudgedValue, at: Mapping[Step, complex]) -> list[_Tie]:
         """Numbers of the plan at the position, as they are at our scale factor."""
         some = [j for j in self.judged if (j.entry.plan, j.entry.label) == (start.entry.plan, start.entry.label)
                 and len(j.entry.terms) == 2 and (j.entry.is_distance or j.entry.is_way) and np.isfinite(j.tolerance)]
@@ -88,7 +88,7 @@ class PlanPictures:
                 for j in some for (tail, _, _), (head, _, _) in [j.entry.terms] if tail in at and head in at]
 
 
-def _changes(start: Judged) -> Iterable[Change]:
+def _changes(start: JudgedValue) -> Iterable[Change]:
     """What was done wrong, to be drawn again."""
     if start.wrong:
         return start.wrong[0].changes

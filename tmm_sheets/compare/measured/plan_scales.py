@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
-from tmm_sheets.compare.measured.judged import Judged
+from tmm_sheets.compare.measured.judged import JudgedValue
 from tmm_sheets.construction.step import Step
 from tmm_sheets.numbers import told
 
@@ -17,9 +17,9 @@ SIMILAR_SCALES = 0.15
 """Difference of two scale factors, as a share, below which all lengths must tell of it."""
 
 
-def wrong_scales(judged: list[Judged]) -> list[Judged]:
+def wrong_scales(judged: list[JudgedValue]) -> list[JudgedValue]:
     """Mark the lengths of plans that were drawn with another scale factor than stated; returns what is left to explain."""
-    plans: dict[str, list[Judged]] = {}
+    plans: dict[str, list[JudgedValue]] = {}
     for j in judged:
         if is_scaled(j):
             plans.setdefault(j.entry.scale, []).append(j)
@@ -27,7 +27,7 @@ def wrong_scales(judged: list[Judged]) -> list[Judged]:
     return [j for j in judged if id(j) not in marked]
 
 
-def is_scaled(j: Judged) -> bool:
+def is_scaled(j: JudgedValue) -> bool:
     """Whether a number is a length that a plan's scale factor makes longer, as it was stated."""
     return bool(j.entry.kind == "length" and j.entry.scale and j.line.factor is None)
 
@@ -60,7 +60,7 @@ def drawn_to(times: float, step: Step, scale: str) -> Hypothesis:
     return Hypothesis("scale", "plan scale", step, (), other=told(f"{times:.3g}"), drawn=((scale, times),))
 
 
-def _drawn_to_another_scale(of_plan: list[Judged], judged: list[Judged]) -> list[Judged]:
+def _drawn_to_another_scale(of_plan: list[JudgedValue], judged: list[JudgedValue]) -> list[JudgedValue]:
     """Lengths of a plan that another scale factor explains, marked as such; none when it does not."""
     found = times_as_long(*(np.array(x) for x in zip(*((j.line.value, j.exact, j.tolerance) for j in of_plan), strict=True)))
     off = [j for j in of_plan if abs(j.exact) > 5 * j.tolerance and j.verdict == "red"]
@@ -77,7 +77,7 @@ def _drawn_to_another_scale(of_plan: list[Judged], judged: list[Judged]) -> list
     return scaled
 
 
-def _has_reason(off: list[Judged], judged: list[Judged]) -> bool:
+def _has_reason(off: list[JudgedValue], judged: list[JudgedValue]) -> bool:
     """True when something drawn earlier, on which this plan depends, is red already."""
     first, plan = min(j.order for j in off), off[0].entry.plan
     sources = {id(step) for j in off for step, _, g in j.rows if g}

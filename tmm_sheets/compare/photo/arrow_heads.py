@@ -21,12 +21,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo.hidden import Mask, at
 from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.occlusion import Mask, at
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.thin_strokes import thin_vectors, vector
-from tmm_sheets.compare.photo.traces import Head, Trace
+from tmm_sheets.compare.photo.thin_strokes import construction_only, vector
+from tmm_sheets.compare.photo.traces import Head, InkTrace
 from tmm_sheets.drawing.styles import line_type
 
 LEAST = 2.4
@@ -380,7 +380,7 @@ def _usual(ink: Any, known: Any) -> Floats | None:
     return np.where(np.isnan(own), np.nanmin(own), own)
 
 
-def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hidden: Mask) -> list[Trace]:
+def with_heads(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any, hidden: Mask) -> list[InkTrace]:
     """Look for the heads of arrows.
 
     Parameters
@@ -403,7 +403,7 @@ def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hi
     paper = _Paper(ink, owners, words, hidden, [(complex(f[0]), complex(f[1:].mean())) for t in traces for f in t.element.fills])
     found = {k: _head(t, paper) for k, t in enumerate(traces) if _wanted(t)}
     usual = [end for head, end in found.values() if head == "there" and end is not None and not end.lies_on]
-    thin = thin_vectors(traces, ink, hidden)
+    thin = construction_only(traces, ink, hidden)
     seen = [traces[k].element for k, (head, _) in found.items() if head == "there"]
     out = list(traces)
     for k, (head, end) in found.items():
@@ -412,7 +412,7 @@ def with_heads(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hi
         broad = end is not None and not end.lies_on and end.across > BROADER * _across_about(t.element, usual) > 0
         if t.element.number in thin and (head != "there" or shares):
             # What lies elsewhere is a thin line of its own.
-            out[k] = replace(t, head="left out") if t.deviation <= AWAY else Trace(t.element, "missing")
+            out[k] = replace(t, head="left out") if t.deviation <= AWAY else InkTrace(t.element, "missing")
         else:
             elsewhere = head == "absent" and (broad or shares or _moved_tip(t.element, traces))
             out[k] = replace(t, head="unknown" if elsewhere else head)
@@ -429,7 +429,7 @@ def _across_about(e: Element, ends: Sequence[_End]) -> float:
     return float(np.median([end.across for end in about[:NEAREST]]))
 
 
-def _moved_tip(e: Element, traces: Sequence[Trace]) -> bool:
+def _moved_tip(e: Element, traces: Sequence[InkTrace]) -> bool:
     """Whether another line that ends at the tip of a vector was found to end elsewhere: the point was moved, the head with it."""
     lines = (t for t in traces if t.at is not None and t.element is not e and t.element.kind == "line")
     ends = (pair for t in lines if t.at is not None for pair in zip(t.element.points[[0, -1]], t.at[[0, -1]], strict=True))
@@ -443,7 +443,7 @@ def _together(e: Element, other: Element, end: int) -> bool:
     return bool(alike and abs(e.points[end] - other.points[end]) < TOGETHER)
 
 
-def exchanged(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, hidden: Mask) -> list[Trace]:
+def exchanged(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any, hidden: Mask) -> list[InkTrace]:
     """The traces in the same order; a vector without a head and a line under it that was found beside have changed places if the
     head is there: the vector was drawn elsewhere, and what lies in its place is the helper line.
 
@@ -480,7 +480,7 @@ def _runs_under(e: Element, vector: Element) -> bool:
     return bool((np.maximum(beyond, np.abs(along.imag)) * abs(way) < UNDER).all())
 
 
-def _wanted(t: Trace) -> bool:
+def _wanted(t: InkTrace) -> bool:
     """Whether it is a vector that was found, long enough for its head to be told from it."""
     e = t.element
     return bool(vector(t) and _length(e) >= LEAST and e.length > _length(e) + SHORTEST and abs(e.fills[0][0] - e.points[-1]) < 0.1)
@@ -497,7 +497,7 @@ def _half_width(e: Element) -> float:
     return float(np.abs(((e.fills[0] - e.fills[0][0]) / way).imag).max() * abs(way))
 
 
-def _head(t: Trace, paper: _Paper) -> tuple[Head, _End | None]:
+def _head(t: InkTrace, paper: _Paper) -> tuple[Head, _End | None]:
     """What there is of a head at the tip, and at the other end when there is none; and what there is about the tip."""
     assert t.at is not None
     way = (t.at[1] - t.at[0]) / abs(t.at[1] - t.at[0])

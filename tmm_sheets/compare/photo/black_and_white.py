@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from tmm_sheets.compare.photo.stations import expected_ink
-from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.styles import line_type
 
 BLACK, WHITE, GREY = 64, 192, 0.25
@@ -31,7 +31,7 @@ SURE, LARGE, NOTHING = 0.85, 30.0, 0.1
 LETTERS = 3
 """Letters that are not eaten all; of lettering that stands elsewhere one less."""
 
-Eaten = Literal["nothing", "ends", "lines"]
+LostToThreshold = Literal["nothing", "ends", "lines"]
 """What a picture eats of thin lines, and of letters with them."""
 
 
@@ -42,21 +42,21 @@ def without_grey(grey: Any) -> bool:
     return black > 0 and 1 - black - white < GREY * black
 
 
-def eaten(grey: Any, traces: Sequence[Trace], scale: float) -> Eaten:
+def lost_to_threshold(grey: Any, traces: Sequence[InkTrace], scale: float) -> LostToThreshold:
     """What a picture of so many pixels per mm eats, by it and by what was found in it."""
     if not without_grey(grey):
         return "nothing"
     return "lines" if eats(traces) else "ends" if scale < FINE else "nothing"
 
 
-def eats(traces: Sequence[Trace]) -> bool:
+def eats(traces: Sequence[InkTrace]) -> bool:
     """Whether thin lines are in pieces all over the sheet."""
     thin = [t.covered < BROKEN for t in traces if t.status == "measured" and t.element.length > LONG and _thin(t)
             and expected_ink(t.element) == 1.0]  # fmt: skip
     return bool(thin) and float(np.mean(thin)) > MANY
 
 
-def may_be_eaten(t: Trace, tolerance: float, some: Eaten) -> bool:
+def may_be_lost(t: InkTrace, tolerance: float, some: LostToThreshold) -> bool:
     """Whether what was found of an element, other than its ends, may be the fault of a picture that eats ``some`` of thin lines."""
     if some == "ends":
         small = _thin(t) and t.status == "measured" and tolerance < t.deviation <= 2 * tolerance
@@ -76,11 +76,11 @@ def may_be_eaten(t: Trace, tolerance: float, some: Eaten) -> bool:
     return t.status == "covered"
 
 
-def whole(t: Trace) -> Trace:
+def whole(t: InkTrace) -> InkTrace:
     """A trace without the ends by which a thin line is too short."""
     begin, end = (np.nan if by < 0 else by for by in t.ends)
     return replace(t, ends=(begin, end)) if _thin(t) else t
 
 
-def _thin(t: Trace) -> bool:
+def _thin(t: InkTrace) -> bool:
     return t.element.kind != "text" and line_type(t.element.style).width <= THIN

@@ -9,21 +9,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.compare.diagnosis import built_plan
-from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, Drawing
+from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, StudentDrawing
 from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint, between, rebuilt, vanished
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import KnownSheet
 from tmm_sheets.compare.photo import tracing
-from tmm_sheets.compare.photo.hidden import Mask
-from tmm_sheets.compare.photo.hidden import at as hidden_at
 from tmm_sheets.compare.photo.ink_levels import line_level
 from tmm_sheets.compare.photo.judging import PhotoFinding, judge
-from tmm_sheets.compare.photo.light import without_taken
+from tmm_sheets.compare.photo.occlusion import Mask
+from tmm_sheets.compare.photo.occlusion import at as hidden_at
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.photo.sheet_map import PAPER
-from tmm_sheets.compare.photo.traces import ExtraInk, Trace
+from tmm_sheets.compare.photo.traces import ExtraInk, InkTrace
+from tmm_sheets.compare.photo.washed_out import mask_washed_out
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import tell
@@ -83,8 +83,9 @@ def built_otherwise(project: Project, known: KnownSheet, findings: Sequence[Phot
         if f.verdict == "red" and f.element.kind == "line" and f.trace.at is not None:
             tips.setdefault(f.element.view, []).extend(f.trace.at[[0, -1]].tolist())
 
-    def seen(view: ElementView) -> Drawing:
-        return Drawing(lambda line: inked(ink, line, level, hidden), lambda z: sample(near, pixels(z)) > level, tips.get(view, []))
+    def seen(view: ElementView) -> StudentDrawing:
+        return StudentDrawing(lambda line: inked(ink, line, level, hidden), lambda z: sample(near, pixels(z)) > level,
+                              tips.get(view, []))
 
     built = built_plan.built_otherwise(project, known, wrong, seen)
     of = {view: [f for f in findings if f.element.view == view] for view in built}
@@ -143,7 +144,7 @@ def as_built(findings: Sequence[PhotoFinding], built: Built, found: Rectified, p
     now = [rebuilt(e, built[e.view][1]) if e.view in built else e for e in elements]
     traces, extra = tracing.trace([e for e in now if not vanished(e)], found.ink, found.hidden)
     if found.uneven is not None:
-        traces = without_taken(traces, found.uneven)
+        traces = mask_washed_out(traces, found.uneven)
     of = {t.element.number: judge(t, pencil, found.uncertainty, found.soft, found.eats) for t in traces}
     return [_judged(of.get(f.element.number), f, found, pencil) for f in findings], extra
 
@@ -157,7 +158,7 @@ def _judged(f: PhotoFinding | None, first: PhotoFinding, found: Rectified, penci
     was = first.element
     if f is None:
         said, tolerance = tell("without length, as follows from the mistake"), pencil + found.uncertainty
-        return PhotoFinding(was, verdict(was.length, tolerance), was.length, said, was.middle, Trace(was, "small"), tolerance)
+        return PhotoFinding(was, verdict(was.length, tolerance), was.length, said, was.middle, InkTrace(was, "small"), tolerance)
     now, f = f.element, replace(f, element=was)
     off = float(np.abs(now.points - was.points).max()) if len(now.points) == len(was.points) else 0.0
     if off <= f.tolerance or was.kind == "text" or f.trace.status not in ("measured", "shared", "missing", "beside") or f.unknown:

@@ -12,7 +12,7 @@ from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
 from tmm_sheets.compare.photo.stations import ENOUGH, LEAST, STEP, Stations, expected_ink, fit, measured, shrunk, smoothed
-from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.compare.photo.traces import InkTrace
 
 FAR = 6.0  # mm from its place within which a displaced element is sought
 THERE = 0.8  # share of its ink in its own place from which on an element is not sought elsewhere
@@ -42,7 +42,7 @@ BARE, BARE_LENGTH = 0.35, 2.5
 """Share of an element without ink, and mm of that not hidden by others, beyond which it is missing."""
 
 
-def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, owners: Owners, level: float) -> Trace:
+def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, owners: Owners, level: float) -> InkTrace:
     """The trace of an element that was not found in its own place.
 
     Parameters
@@ -67,7 +67,7 @@ def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, owners: 
     here = smoothed(sample(ink, at[:, about]), owners.others(e.number, near)) > level
     if here[:, np.abs(offsets[about]) <= 0.2].any(1).mean() > THERE * expected:
         # There is ink where it belongs, only it cannot be told from others'.
-        return Trace(e, "dense", covered=float(here.any(1).mean()), at=e.points)
+        return InkTrace(e, "dense", covered=float(here.any(1).mean()), at=e.points)
     profile, unknown = smoothed(sample(left, at)), sample(wiped, at) > 100
     found = _elsewhere(e, s, profile, unknown, offsets, level)
     if found is not None:
@@ -76,11 +76,11 @@ def displaced(e: Element, s: Stations, left: Any, wiped: Any, ink: Any, owners: 
     bare = ~here.any(1)
     hidden = unknown[:, about].all(1)
     if bare.mean() > BARE * expected and (bare & ~hidden).sum() * (e.length / len(bare)) > BARE_LENGTH:
-        return Trace(e, "missing", covered=float(1 - bare.mean()))
-    return Trace(e, "dense", covered=float(1 - bare.mean()), at=e.points)
+        return InkTrace(e, "missing", covered=float(1 - bare.mean()))
+    return InkTrace(e, "dense", covered=float(1 - bare.mean()), at=e.points)
 
 
-def rather_elsewhere(t: Trace, s: Stations, left: Any, wiped: Any, ink: Any, owners: Owners, level: float) -> Trace | None:
+def better_match(t: InkTrace, s: Stations, left: Any, wiped: Any, ink: Any, owners: Owners, level: float) -> InkTrace | None:
     """The trace of an element that is darker or more complete elsewhere than what was taken for it in its own place, or None.
 
     ``t`` and ``s`` are its trace there and its stations, ``owners`` tells who is drawn where; the rest is as for :func:`displaced`.
@@ -107,7 +107,7 @@ def rather_elsewhere(t: Trace, s: Stations, left: Any, wiped: Any, ink: Any, own
     return None
 
 
-def _swung(t: Trace) -> bool:
+def _swung(t: InkTrace) -> bool:
     """Whether a straight line that was found elsewhere has one end in its place: then little of it is enough to know it by."""
     if t.element.kind != "line" or t.at is None or t.covered < SURE:
         return False
@@ -115,7 +115,7 @@ def _swung(t: Trace) -> bool:
     return bool(off.min() <= PIVOT < off.max() / 2)
 
 
-def beside(t: Trace, s: Stations, ink: Any, lines: Any, taken: Any, owners: Owners, level: float) -> Trace | None:
+def beside(t: InkTrace, s: Stations, ink: Any, lines: Any, taken: Any, owners: Owners, level: float) -> InkTrace | None:
     """The trace of a straight line that lies in one stroke with others, where ink of none has its whole length beside; or None.
 
     ``lines`` is where what was found is drawn, 255 there, ``taken`` the same with room to spare; the rest is as for
@@ -174,7 +174,7 @@ def _about(e: Element, s: Stations) -> tuple[Floats, Any]:
 
 
 def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Floats, level: float,
-               least: float = KNOWN) -> Trace | None:
+               least: float = KNOWN) -> InkTrace | None:
     """The element where the ink that is left fits it best, None when nothing fits; ``least`` of it, a share, must be seen."""
     expected, reach = expected_ink(e), float(offsets[-1])
     hit = _hit(profile, level)

@@ -17,11 +17,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo.hidden import Mask, at
 from tmm_sheets.compare.photo.ink_levels import NO_GREY
+from tmm_sheets.compare.photo.occlusion import Mask, at
 from tmm_sheets.compare.photo.profiles import SCALE, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import PAPER, Floats
-from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.marks import Points
 
 REACH, FAR = 1.7, 6.0
@@ -75,7 +75,7 @@ RAYS = np.exp(2j * np.pi * np.arange(16) / 16) * np.linspace(0, ALONE, 6)[:, Non
 def displaced_dots(
     some: Sequence[Element], rods: Sequence[Points], lines: Any, taken: Any, ink: Any, words: Any, hidden: Mask, usual: float,
     astray: Sequence[Points] = (), bars: Any = None,
-) -> list[Trace]:
+) -> list[InkTrace]:
     """Traces of dots that stand beside their places.
 
     Parameters
@@ -124,7 +124,7 @@ def displaced_dots(
             at_home = not (np.abs(lost - e.centre) <= ASIDE).any()
             seen = UNKNOWN if isnan(there) else there / usual
             found.setdefault(spot, []).append(_Meant(at_home, not leads, seen, abs(spot - e.centre), e))
-    return [Trace(e, "beside", spot - e.centre, deviation=abs(spot - e.centre), at=np.asarray(e.points + spot - e.centre))
+    return [InkTrace(e, "beside", spot - e.centre, deviation=abs(spot - e.centre), at=np.asarray(e.points + spot - e.centre))
             for spot, those in found.items() for e in _meant(those)]
 
 

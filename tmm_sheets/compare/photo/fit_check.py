@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.compare.photo.block_match import APART, patches
 from tmm_sheets.compare.photo.map_fit import Seen, fit_map
-from tmm_sheets.compare.photo.patches import APART, patches
 from tmm_sheets.compare.photo.profiles import ProfileLines, peaks, profiles
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats, Map
 from tmm_sheets.drawing.marks import Points

@@ -15,13 +15,13 @@ from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
-from tmm_sheets.compare.photo import built_photo, light, numbers_read, placed_views, rectification, tracing
-from tmm_sheets.compare.photo.black_and_white import eaten
+from tmm_sheets.compare.photo import built_photo, numbers_read, placed_views, rectification, tracing, washed_out
+from tmm_sheets.compare.photo.black_and_white import lost_to_threshold
 from tmm_sheets.compare.photo.fit_check import MATCH
 from tmm_sheets.compare.photo.image_report import image_report
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
 from tmm_sheets.compare.photo.judging import PhotoFinding, judge, tolerance_of
-from tmm_sheets.compare.photo.photograph import Picture, read
+from tmm_sheets.compare.photo.photograph import Photograph, read
 from tmm_sheets.compare.photo.rectification import LONGEST, Rectified, rectify
 from tmm_sheets.compare.photo.refusal import refusal
 from tmm_sheets.compare.photo.stations import as_lines
@@ -58,7 +58,7 @@ COARSELY = marked(
 
 
 @dataclass(frozen=True)
-class Examined:
+class ExaminedPicture:
     """A picture that was measured.
 
     Attributes
@@ -92,7 +92,7 @@ def compare(
 def examine(
     project: Project, n: int, path: Path, views: Path | None = None, pencil: float = 0.25,
     say: Callable[[str], None] = lambda _: None, read_numbers: bool = False,
-) -> Examined:
+) -> ExaminedPicture:
     """Measure a photograph of sheet ``n``, and look for what was done wrong.
 
     Parameters
@@ -146,13 +146,13 @@ def examine(
         raise refusal(picture.grey, found, known, path, n)
     say(tell("measuring the elements"))
     traces, extra = tracing.trace(known, found.ink, found.hidden)
-    uneven = light.uneven_places(picture.grey, found.map)
-    seen = light.without_taken(traces, uneven)
-    if dim := light.taken(traces, seen):
+    uneven = washed_out.uneven_places(picture.grey, found.map)
+    seen = washed_out.mask_washed_out(traces, uneven)
+    if dim := washed_out.taken(traces, seen):
         found, traces = replace(found, uneven=uneven), seen
         where = ", ".join(f"({z.real:.0f}; {z.imag:.0f})" for z in dim)
         notes = (*notes, tell(UNEVEN).format(file=path.name, places=where))
-    if (some := eaten(picture.grey, traces, found.scale)) != "nothing":
+    if (some := lost_to_threshold(picture.grey, traces, found.scale)) != "nothing":
         found = replace(found, eats=some)
         notes = (*notes, tell(EATEN).format(file=path.name))
     findings = [judge(t, pencil, found.uncertainty, found.soft, found.eats) for t in traces]
@@ -169,10 +169,10 @@ def examine(
     if reader is not None:
         say(tell("reading the numbers"))
         readings = numbers_read.readings(traces, found.ink, reader)
-    return Examined(found, findings, extra, {view: plan for view, (plan, _) in built.items()}, readings, notes)
+    return ExaminedPicture(found, findings, extra, {view: plan for view, (plan, _) in built.items()}, readings, notes)
 
 
-def _corrected(picture: Picture, found: Rectified, known: Sequence[Element]) -> Rectified:
+def _corrected(picture: Photograph, found: Rectified, known: Sequence[Element]) -> Rectified:
     """The map corrected once more, by the lines of views that were placed; as it was when too few of them match."""
     lines = as_lines([e for e in known if e.length < LONGEST])
     better, _, match = rectification.refine(found.map, found.sides, found.ink, lines, line_level(found.ink), highest=HIGHEST)

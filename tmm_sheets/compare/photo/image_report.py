@@ -19,15 +19,15 @@ from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
 from tmm_sheets.compare.elements import ElementView, dashed
 from tmm_sheets.compare.findings import called, origin, table
 from tmm_sheets.compare.photo import image_story, overlay
-from tmm_sheets.compare.photo.hidden import Mask
+from tmm_sheets.compare.photo.finding_clusters import FindingCluster, places
 from tmm_sheets.compare.photo.judging import SOFT_TOLERANCE, PhotoFinding
 from tmm_sheets.compare.photo.numbers_read import Readings
-from tmm_sheets.compare.photo.places import Place, places
+from tmm_sheets.compare.photo.occlusion import Mask
 from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.compare.report import Report, said_verdict
-from tmm_sheets.compare.story import Story, Table, listed
+from tmm_sheets.compare.story import Story, StoryTable, listed
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
 
@@ -52,7 +52,7 @@ class _Judged:
     extra: Sequence[ExtraInk]
 
     @cached_property
-    def places(self) -> list[Place]:
+    def places(self) -> list[FindingCluster]:
         return places(self.findings, self.extra)
 
     @cached_property
@@ -61,7 +61,7 @@ class _Judged:
         return {f.element.number: p.number for p in self.places for f in p.findings}
 
     @cached_property
-    def ink_alone(self) -> list[Place]:
+    def ink_alone(self) -> list[FindingCluster]:
         """Places where only ink is too much."""
         return [p for p in self.places if not p.findings]
 
@@ -122,7 +122,7 @@ def image_report(
     title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=n, file=path.name)
     files = {f"compare_sheet_{n}.{suffix}": data for suffix, data in _overlays(found, judged, title).items()}
     verdicts = [str(p.verdict) for p in judged.places]
-    tables = (Table(tell("Everything that is off"), head, tuple(rows), tuple(verdicts)),) if rows else ()
+    tables = (StoryTable(tell("Everything that is off"), head, tuple(rows), tuple(verdicts)),) if rows else ()
     story = Story(title, (summary, *extra_places, tolerance, *notes), mistakes,
                   tables, (*hidden, *unread))
     return Report("\n".join(lines), tree, files, notes, story)

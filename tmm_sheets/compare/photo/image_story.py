@@ -13,10 +13,10 @@ from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
 from tmm_sheets.compare.elements import ElementView, drawn
 from tmm_sheets.compare.findings import called, counted, shifted
 from tmm_sheets.compare.photo import overlay
+from tmm_sheets.compare.photo.finding_clusters import FindingCluster, may_be_either
 from tmm_sheets.compare.photo.judging import PhotoFinding
-from tmm_sheets.compare.photo.places import Place, may_be_either
 from tmm_sheets.compare.photo.rectification import Rectified
-from tmm_sheets.compare.story import Mistake, Photo, Picture
+from tmm_sheets.compare.story import Photo, StoryPicture, ToldMistake
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import either, tell
 
@@ -32,10 +32,10 @@ PIXELS = 860.0
 """Longer side of a picture: twice as many pixels as it has on a page."""
 
 
-def mistakes(found: Rectified, findings: Iterable[PhotoFinding], places: Iterable[Place],
-             built: Mapping[ElementView, BuiltPlan]) -> tuple[Mistake, ...]:
+def mistakes(found: Rectified, findings: Iterable[PhotoFinding], places: Iterable[FindingCluster],
+             built: Mapping[ElementView, BuiltPlan]) -> tuple[ToldMistake, ...]:
     """What is off: views that were built on a mistake first, then those that have the most red; ink alone is left to the table."""
-    of_view: dict[ElementView, list[Place]] = {}
+    of_view: dict[ElementView, list[FindingCluster]] = {}
     for p in places:
         if p.findings:
             of_view.setdefault(p.findings[0].element.view, []).append(p)
@@ -46,8 +46,8 @@ def mistakes(found: Rectified, findings: Iterable[PhotoFinding], places: Iterabl
     return tuple(_mistake(found, v, of_view[v], exact[v], built.get(v)) for v in order)
 
 
-def _mistake(found: Rectified, view: ElementView, places: Sequence[Place], exact: Sequence[Any],
-             built: BuiltPlan | None) -> Mistake:
+def _mistake(found: Rectified, view: ElementView, places: Sequence[FindingCluster], exact: Sequence[Any],
+             built: BuiltPlan | None) -> ToldMistake:
     red = any(p.verdict == "red" for p in places)
     details = [tell("no. {number}, {element}: {what}").format(
         number=p.number, element=called(p.findings[0].element), what=said(p)) for p in places[:SHOWN]]
@@ -62,14 +62,14 @@ def _mistake(found: Rectified, view: ElementView, places: Sequence[Place], exact
         here = Box.around(np.array([p.at for p in places]), ABOUT)
         exact = [z for z in exact if all(map(here.contains, z.tolist()))]
     reach = max(ROUND, *(0.02 * float(np.ptp(z.real) + np.ptp(z.imag)) for z in exact)) if exact else ROUND
-    picture = Picture(tuple(exact), (), wrong, tuple((p.at, reach, str(p.number)) for p in places))
+    picture = StoryPicture(tuple(exact), (), wrong, tuple((p.at, reach, str(p.number)) for p in places))
     box = picture.box
     seen = Photo(box, overlay.piece(found.ink, found.level, box, PIXELS / max(box.width, box.height)))
-    return Mistake(view.name, what, "red" if red else "amber", tuple(details), replace(picture, photo=seen),
+    return ToldMistake(view.name, what, "red" if red else "amber", tuple(details), replace(picture, photo=seen),
                    named=built is not None)
 
 
-def said(p: Place) -> str:
+def said(p: FindingCluster) -> str:
     """What is off at a place, in words."""
     if not p.findings:
         return _of_ink(p)
@@ -98,7 +98,7 @@ def _named(some: Iterable[PhotoFinding], first: PhotoFinding) -> str:
     return ", ".join([*names[:OTHERS], *["…"] * (len(names) > OTHERS)])
 
 
-def _of_ink(p: Place) -> str:
+def _of_ink(p: FindingCluster) -> str:
     """Where ink is that belongs to nothing, and how much."""
     where = tell("{width} x {height} mm about x = {x}, y = {y}")
     middle = p.box.centre
@@ -109,7 +109,7 @@ def _of_ink(p: Place) -> str:
     return f"{words}; " + tell("it may be {element}, drawn elsewhere").format(element=either(names))
 
 
-def shown(p: Place) -> tuple[Points, ...]:
+def shown(p: FindingCluster) -> tuple[Points, ...]:
     """The lines to be drawn as wrong: where the hand has them, else where they ought to be, of ink in pieces its extent."""
     if not p.findings:
         return (np.append(p.box.corners, p.box.corners[:1]),) if len(p.ink) > 1 else ()

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.photo.masking import fixed
 from tmm_sheets.compare.photo.profiles import SCALE, pixels, sample
-from tmm_sheets.compare.photo.wiping import fixed
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 

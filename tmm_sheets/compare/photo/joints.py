@@ -16,7 +16,7 @@ from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.styles import line_type
 
 RADII = 1.0, 3.0
@@ -43,7 +43,7 @@ def joint(e: Element) -> bool:
     return e.kind == "circle" and bool(e.step) and not e.fills and RADII[0] < e.radius < RADII[1]
 
 
-def with_edges(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any) -> list[Trace]:
+def with_edges(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any) -> list[InkTrace]:
     """The traces, those of joints that were found in their places with the radius and the middle that their outer edges have.
 
     Parameters
@@ -61,7 +61,7 @@ def with_edges(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any) ->
     return [_by_edge(t, seen[t.element.number], usual) if t.element.number in seen else t for t in traces]
 
 
-def _by_edge(t: Trace, edge: tuple[float, complex], usual: float) -> Trace:
+def _by_edge(t: InkTrace, edge: tuple[float, complex], usual: float) -> InkTrace:
     """The trace of a joint by its ``edge``: how much too far out it is, mm, of which so much is ``usual``, and how far aside.
 
     Where its line was lost among others, it is known by its edge only if that is too far out.

@@ -11,10 +11,10 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.findings import Finding, millimetres, of_radius, shifted, turned
-from tmm_sheets.compare.photo.black_and_white import Eaten, may_be_eaten, whole
+from tmm_sheets.compare.photo.black_and_white import LostToThreshold, may_be_lost, whole
+from tmm_sheets.compare.photo.fragmented_lines import HALF
 from tmm_sheets.compare.photo.joints import joint
-from tmm_sheets.compare.photo.torn import HALF
-from tmm_sheets.compare.photo.traces import Trace, open_line
+from tmm_sheets.compare.photo.traces import InkTrace, open_line
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.numbers import told
@@ -47,7 +47,7 @@ the edge of theirs, a thin line more so."""
 class PhotoFinding(Finding):
     """A trace judged: the deviation that counts most, and the ``tolerance`` for it, mm."""
 
-    trace: Trace
+    trace: InkTrace
     tolerance: float
 
     @property
@@ -86,7 +86,7 @@ class _Deviation(NamedTuple):
         return self.off / self.allowed
 
 
-def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False, eats: Eaten = "nothing") -> PhotoFinding:
+def judge(t: InkTrace, pencil: float, uncertainty: float, soft: bool = False, eats: LostToThreshold = "nothing") -> PhotoFinding:
     """Judge a trace.
 
     Parameters
@@ -101,9 +101,9 @@ def judge(t: Trace, pencil: float, uncertainty: float, soft: bool = False, eats:
     eats
         What the picture eats of thin lines (see ``black_and_white``): what that may be the reason of is not judged.
     """
-    if may_be_eaten(t, tolerance := tolerance_of(pencil, uncertainty, soft), eats):
+    if may_be_lost(t, tolerance := tolerance_of(pencil, uncertainty, soft), eats):
         said = tell("not measurable: eaten by the black and white picture")
-        return PhotoFinding(t.element, "green", 0.0, said, t.element.middle, Trace(t.element, "eaten"), tolerance)
+        return PhotoFinding(t.element, "green", 0.0, said, t.element.middle, InkTrace(t.element, "eaten"), tolerance)
     return _with_head(_in_pieces(_line(t if eats == "nothing" else whole(t), pencil, uncertainty, soft)))
 
 
@@ -145,11 +145,11 @@ def _with_head(f: PhotoFinding) -> PhotoFinding:
     return f
 
 
-def _line(t: Trace, pencil: float, uncertainty: float, soft: bool) -> PhotoFinding:
+def _line(t: InkTrace, pencil: float, uncertainty: float, soft: bool) -> PhotoFinding:
     """Judge what was found of a line or of lettering, heads aside."""
     e, tolerance = t.element, tolerance_of(pencil, uncertainty, soft)
     if t.status == "measured" and t.deviation > tolerance and not loose_ends(e) and all(by > LOOSE for by in t.ends):
-        t = Trace(e, "missing")  # what lies there and goes on at both ends is another line
+        t = InkTrace(e, "missing")  # what lies there and goes on at both ends is another line
     middle = complex(e.points[len(e.points) // 2]) if e.kind != "line" else complex(e.points.mean())
     if t.status == "measured":
         ends = [*_ends(t, pencil, tolerance, soft)]
@@ -198,7 +198,7 @@ def _loosely_judged(e: Element) -> bool:
     return e.role in FORM_ROLES or about_letters or (e.kind == "line" and e.style in LOOSE_STYLES and e.length <= SHORT)
 
 
-def _crowded(t: Trace, tolerance: float) -> bool:
+def _crowded(t: InkTrace, tolerance: float) -> bool:
     """Whether a line or a joint seems off in its place for the ink of others near most of it; a small outline by any ink there."""
     e = t.element
     thin = e.kind == "line" and e.style in LOOSE_STYLES
@@ -214,7 +214,7 @@ def _tiny(e: Element) -> bool:
     return e.kind == "curve" and abs(e.points[0] - e.points[-1]) < 1e-6 and half <= TINY
 
 
-def _of_tiny(t: Trace, tolerance: float, whole: _Deviation) -> list[_Deviation]:
+def _of_tiny(t: InkTrace, tolerance: float, whole: _Deviation) -> list[_Deviation]:
     """How far a small closed outline is off: its middle, and all of it where that is more than two sides by a pencil each."""
     if whole.off > 2 * tolerance:
         return [whole._replace(allowed=2 * tolerance)]
@@ -222,7 +222,7 @@ def _of_tiny(t: Trace, tolerance: float, whole: _Deviation) -> list[_Deviation]:
     return [_Deviation(by, tolerance, whole.place, shifted(t.shift) if by > tolerance else "")]
 
 
-def _displacement(t: Trace, tolerance: float, middle: complex) -> _Deviation:
+def _displacement(t: InkTrace, tolerance: float, middle: complex) -> _Deviation:
     """How far the line as a whole is off, at the place where it is farthest off."""
     z = t.element.points
     place = complex(z[int(np.abs(t.at - z).argmax())]) if t.at is not None and len(t.at) == len(z) else middle
@@ -236,7 +236,7 @@ _END = {
 """What an end is said to be: the first or the second, too long or too short."""
 
 
-def _ends(t: Trace, pencil: float, tolerance: float, soft: bool) -> Iterator[_Deviation]:
+def _ends(t: InkTrace, pencil: float, tolerance: float, soft: bool) -> Iterator[_Deviation]:
     """How far the ends that could be seen are off."""
     e, loose = t.element, loose_ends(t.element)
     dash = sum(map(abs, line_type(e.style).pattern))
@@ -252,7 +252,7 @@ def _ends(t: Trace, pencil: float, tolerance: float, soft: bool) -> Iterator[_De
         yield _Deviation(off, allowed, complex(at), said)
 
 
-def _similarity_in_words(t: Trace, tolerance: float) -> str:
+def _similarity_in_words(t: InkTrace, tolerance: float) -> str:
     """Growth, shift and turn of a line, as far as each matters."""
     e = t.element
     half = 0.5 * e.length if e.kind == "line" else float(np.abs(e.points - e.points.mean()).max())

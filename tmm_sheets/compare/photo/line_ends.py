@@ -20,7 +20,7 @@ from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.judging import LOOSE_STYLES
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.traces import Trace, open_line
+from tmm_sheets.compare.photo.traces import InkTrace, open_line
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
@@ -58,7 +58,7 @@ class _Way(NamedTuple):
     normals: Points
 
 
-def with_ends(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, level: float) -> list[Trace]:
+def with_ends(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any, level: float) -> list[InkTrace]:
     """Find the ends of lines.
 
     Parameters
@@ -97,7 +97,7 @@ def with_ends(traces: Sequence[Trace], ink: Any, owners: Owners, words: Any, lev
     return out
 
 
-def _ways(t: Trace) -> tuple[_Way, _Way]:
+def _ways(t: InkTrace) -> tuple[_Way, _Way]:
     """The ways over the beginning and over the end of a line that was found."""
     assert t.at is not None
     reach = min(FAR, 0.4 * t.element.length)

@@ -13,7 +13,7 @@ import numpy as np
 
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.joints import joint
-from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.marks import Points
 
 SAME = 0.7
@@ -24,7 +24,7 @@ ANOTHER_WAY = 0.1
 """Sine of the angle from which on a line that ends there has a direction of its own."""
 
 
-def without_joins(traces: Sequence[Trace], elements: Sequence[Element]) -> list[Trace]:
+def ignore_junction_ends(traces: Sequence[InkTrace], elements: Sequence[Element]) -> list[InkTrace]:
     """The traces; an end that is off by no more than meeting others makes it is right.
 
     Parameters

@@ -14,10 +14,10 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, grown
+from tmm_sheets.compare.photo.masking import fill, paint
 from tmm_sheets.compare.photo.profiles import SCALE, pixels
 from tmm_sheets.compare.photo.sheet_map import PAPER
-from tmm_sheets.compare.photo.traces import Status, Trace
-from tmm_sheets.compare.photo.wiping import fill, paint
+from tmm_sheets.compare.photo.traces import InkTrace, Status
 from tmm_sheets.drawing.marks import Points
 
 MOVED, LEAST = 15.0, 2.5
@@ -36,8 +36,8 @@ TOGETHER, ALIKE = 25.0, 1.5
 """mm between lettering that may have been moved together, and mm by which it was not moved quite alike."""
 
 
-def with_places(traces: Sequence[Trace], lines: Iterable[Trace], small: Sequence[Element], ink: Any, hidden: Any,
-                level: float) -> list[Trace]:
+def with_places(traces: Sequence[InkTrace], lines: Iterable[InkTrace], small: Sequence[Element], ink: Any, hidden: Any,
+                level: float) -> list[InkTrace]:
     """Traces of lettering, those of what is not in its place with the place where it may stand.
 
     Parameters
@@ -71,7 +71,7 @@ def with_places(traces: Sequence[Trace], lines: Iterable[Trace], small: Sequence
     return list(_with_others(traces, [_candidates(t, taken, words, ink, level) for t in traces]))
 
 
-def _candidates(t: Trace, taken: Any, words: Sequence[Element], ink: Any, level: float) -> Points:
+def _candidates(t: InkTrace, taken: Any, words: Sequence[Element], ink: Any, level: float) -> Points:
     """Where ink of the size of lettering stands near it, the most like it first: how far from its place, mm."""
     import cv2
 
@@ -111,7 +111,7 @@ def _candidates(t: Trace, taken: Any, words: Sequence[Element], ink: Any, level:
     return np.array([by for _, by in sorted(found, key=lambda f: f[0]) if abs(by) >= LEAST], complex)
 
 
-def _with_others(few: Sequence[Trace], by: Sequence[Points]) -> Iterator[Trace]:
+def _with_others(few: Sequence[InkTrace], by: Sequence[Points]) -> Iterator[InkTrace]:
     """The traces with their places: of several candidates that by which most of the lettering near it was moved as well."""
     middles = np.array([t.element.middle for t in few])
     for t, own in zip(few, by, strict=True):

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets import typed
+from tmm_sheets import quoting
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo.profiles import SCALE, pixels
-from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.errors import BadInput
 from tmm_sheets.words import tell
 
@@ -58,7 +58,7 @@ def reader() -> Reader:
         With the command that installs it.
     """
     if find_spec("rapidocr") is None or find_spec("onnxruntime") is None:
-        raise BadInput(tell("reading numbers needs rapidocr, which is not installed"), hint=typed.install("compare", "ocr"))
+        raise BadInput(tell("reading numbers needs rapidocr, which is not installed"), hint=quoting.install("compare", "ocr"))
     from rapidocr import RapidOCR
 
     engine = RapidOCR(params={"Global.use_det": False, "Global.use_cls": False, "Global.log_level": "critical"})
@@ -70,7 +70,7 @@ def reader() -> Reader:
     return read
 
 
-def readings(traces: Iterable[Trace], ink: Any, read: Reader) -> Readings:
+def readings(traces: Iterable[InkTrace], ink: Any, read: Reader) -> Readings:
     """Read the numbers of a sheet whose lettering is there; ``ink`` is the darkness of the rectified picture."""
     asked = unread = 0
     otherwise = {}

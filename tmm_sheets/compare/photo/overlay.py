@@ -15,8 +15,8 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.compare.legend import around, legend
 from tmm_sheets.compare.numbering import Numbered, numbered
+from tmm_sheets.compare.photo.masking import fixed
 from tmm_sheets.compare.photo.sheet_map import PAPER
-from tmm_sheets.compare.photo.wiping import fixed
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import tell
 

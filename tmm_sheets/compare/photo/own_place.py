@@ -9,13 +9,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo.hidden import Mask, at
 from tmm_sheets.compare.photo.ink_owner import Owners
-from tmm_sheets.compare.photo.narrow_forks import may_part
+from tmm_sheets.compare.photo.narrow_divergence import may_part
+from tmm_sheets.compare.photo.occlusion import Mask, at
 from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
 from tmm_sheets.compare.photo.stations import ENOUGH, STEP, Stations, expected_ink, fit, measured, shrunk, smoothed, stations
-from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
@@ -76,7 +76,7 @@ def _across(some: Sequence[tuple[Element, Stations]], ink: Any, owners: Owners) 
         first += count
 
 
-def in_place(strip: Strip, level: float) -> Trace | None:
+def in_place(strip: Strip, level: float) -> InkTrace | None:
     """The trace of an element in its own place, or None when it is not there; ``level`` is the darkness of ink."""
     e, s, profile, others = strip
     width = line_type(e.style).width
@@ -93,7 +93,7 @@ def in_place(strip: Strip, level: float) -> Trace | None:
         # Others lie beside or on it nearly everywhere: whether it is there can be told, but hardly where.
         inked = (np.where(np.abs(OFFSETS) <= reach[:, None], profile, 0).max(1) > level).mean()
         if inked > 0.75 * expected:
-            return _shared(strip, o, use, level) or Trace(e, "dense", covered=float(inked), at=e.points)
+            return _shared(strip, o, use, level) or InkTrace(e, "dense", covered=float(inked), at=e.points)
         return None
     if use.sum() < 3 or use.sum() < 0.45 * expected * free.sum():
         return None
@@ -116,7 +116,7 @@ def in_place(strip: Strip, level: float) -> Trace | None:
         use = (strength > level) & free
         x = fit(base, o, use, 0.3)
         if _at_home(profile, base @ x):
-            return Trace(e, "dense", covered=float(there.mean()), at=e.points)
+            return InkTrace(e, "dense", covered=float(there.mean()), at=e.points)
     t = replace(measured(e, s, base @ x, free, float(share / expected)), darkness=float(np.median(strength[use])),
                 free=float(free.mean()))
     if shrunk(e, t):
@@ -149,7 +149,7 @@ def _at_home(profile: Any, o: Floats) -> bool:
     return bool(away.any() and (here > AS_DARK * found)[away].mean() > 0.7)
 
 
-def _shared(strip: Strip, o: Floats, use: Any, level: float) -> Trace | None:
+def _shared(strip: Strip, o: Floats, use: Any, level: float) -> InkTrace | None:
     """The trace of an element in one stroke with others: the stroke against where all of them together ought to be."""
     import cv2
 

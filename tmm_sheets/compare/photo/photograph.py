@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets import files, typed
+from tmm_sheets import files, quoting
 from tmm_sheets.compare.photo import pdf_page
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.numbers import told
@@ -39,7 +39,7 @@ PNG, WITH_ALPHA = b"\x89PNG\r\n\x1a\n", (b"\4", b"\6")
 SHOW = marked("expected a photograph or scan as JPG, PNG or PDF")
 
 
-class Picture(NamedTuple):
+class Photograph(NamedTuple):
     """Pixels, 255 for white, row 0 at the top, and what was remarkable about the file."""
 
     grey: Grey
@@ -55,10 +55,10 @@ def need_opencv() -> None:
         With the command that installs it.
     """
     if find_spec("cv2") is None:
-        raise BadInput(tell("comparing a photograph needs OpenCV, which is not installed"), hint=typed.install("compare"))
+        raise BadInput(tell("comparing a photograph needs OpenCV, which is not installed"), hint=quoting.install("compare"))
 
 
-def read(path: Path) -> Picture:
+def read(path: Path) -> Photograph:
     """Read a photograph.
 
     Raises
@@ -100,7 +100,7 @@ def read(path: Path) -> Picture:
                       "a file"),
         )
     _refuse_large(grey.shape[1], grey.shape[0], path)
-    return Picture(grey, notes)
+    return Photograph(grey, notes)
 
 
 def _refuse_large(width: int, height: int, path: Path, side: int = LONGEST_SIDE) -> None:
@@ -168,7 +168,7 @@ def _page(data: bytes, path: Path) -> tuple[Grey, tuple[str, ...]]:
     """The first page of a PDF."""
     if find_spec("pypdfium2") is None:
         raise BadInput(tell("reading a PDF needs pypdfium2, which is not installed"),
-                       hint=tell("{command}, or save the page as PNG").format(command=typed.install("compare")))  # fmt: skip
+                       hint=tell("{command}, or save the page as PNG").format(command=quoting.install("compare")))  # fmt: skip
     try:
         made, pixels = pdf_page.drawn(data, PDF_DPI, MOST_PIXELS, 30e6)
     except pdf_page.NotDrawn:

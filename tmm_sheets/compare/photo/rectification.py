@@ -20,15 +20,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo import fit_check, frame_fit, frame_search, patches
-from tmm_sheets.compare.photo.black_and_white import Eaten
-from tmm_sheets.compare.photo.bulges import about, bulge_notes, over_bulges
+from tmm_sheets.compare.photo import block_match, fit_check, frame_fit, frame_search
+from tmm_sheets.compare.photo.black_and_white import LostToThreshold
 from tmm_sheets.compare.photo.fit_check import MATCH, FitCheck
 from tmm_sheets.compare.photo.frame_search import FoundFrame
-from tmm_sheets.compare.photo.hidden import Mask, hidden_places
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
+from tmm_sheets.compare.photo.local_distortion import about, bulge_notes, over_bulges
 from tmm_sheets.compare.photo.map_fit import SIDE, Seen, fit_map, fit_waves
-from tmm_sheets.compare.photo.photograph import Picture
+from tmm_sheets.compare.photo.occlusion import Mask, hidden_places
+from tmm_sheets.compare.photo.photograph import Photograph
 from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, inked
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, RELIEF, Floats, Map
 from tmm_sheets.compare.photo.stations import as_lines
@@ -103,9 +103,9 @@ class Rectified:
     soft : whether the picture is not sharp
     check : what is to be said of the fit
     hidden : where the sheet does not show, see ``hidden.hidden_places``, or bulges
-    bulging : where the paper bulges and the map does not follow, see ``bulges``
+    bulging : where the paper bulges and the map does not follow, see ``local_distortion``
     eats : what it eats of thin lines, see ``black_and_white``
-    uneven : where the light takes letters away, if it took some, see ``light``
+    uneven : where the light takes letters away, if it took some, see ``washed_out``
     """
 
     ink: Any
@@ -121,7 +121,7 @@ class Rectified:
     check: FitCheck
     hidden: Mask
     bulging: Mask
-    eats: Eaten = "nothing"
+    eats: LostToThreshold = "nothing"
     uneven: Mask | None = None
 
 
@@ -131,7 +131,7 @@ def frame_lines(known: Sequence[Element]) -> ProfileLines:
 
 
 def rectify(
-    picture: Picture, known: Sequence[Element], path: Path, say: Callable[[str], None] = lambda _: None, by_lines: bool = True,
+    picture: Photograph, known: Sequence[Element], path: Path, say: Callable[[str], None] = lambda _: None, by_lines: bool = True,
 ) -> Rectified:
     """Rectify a photographed sheet.
 
@@ -333,7 +333,7 @@ class _Attempts:
         weight = weights(self.lines)
         for steps in (ROUGHLY, ROUGHLY[-1:]):
             for size, far in steps:
-                seen = patches.patches(m, straight, ink, self.lines, COARSE, size)
+                seen = block_match.patches(m, straight, ink, self.lines, COARSE, size)
                 count = len(seen.weight) // 2
                 # As much as a fifth of the frame's points, as in _by_patches; each patch as much as some points of lines.
                 own = sides._replace(weight=sides.weight * np.sqrt(0.4 * count / max(float(sides.weight.sum()), 1.0)))
@@ -356,7 +356,7 @@ class _Attempts:
         """Where to start when whole patches of the sheet are too far off for their lines to be told from their neighbours."""
         m = straight
         for degree in PATCHED if self.by_lines else ():
-            seen = patches.patches(m, straight, ink, self.lines, COARSE)
+            seen = block_match.patches(m, straight, ink, self.lines, COARSE)
             count = len(seen.weight) // 2
             if count < LEAST_PATCHES or float(np.abs(m.to_sheet(seen.picture) - seen.sheet).max()) < OFF:
                 break

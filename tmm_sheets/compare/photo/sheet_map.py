@@ -47,7 +47,7 @@ class Map:
     surface : B-spline of the height of paper that is not smooth, mm, instead of relief, sides and waves (see ``surface``)
     stretch : B-splines of what such paper is displaced by in x and in y, mm
     drawn_in : the same of what it is drawn in by, for it keeps its length where it rises and falls (see ``drawn_in``)
-    local : finer B-splines of what is displaced where the paper bulges (see ``bulges``), mm
+    local : finer B-splines of what is displaced where the paper bulges (see ``local_distortion``), mm
     """
 
     middle: complex

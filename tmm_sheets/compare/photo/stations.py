@@ -10,7 +10,7 @@ import numpy as np
 from tmm_sheets.compare.elements import Element, sampled
 from tmm_sheets.compare.photo.profiles import ProfileLines
 from tmm_sheets.compare.photo.sheet_map import PAPER, Floats
-from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
@@ -136,17 +136,17 @@ def fit(base: Floats, o: Floats, use: Any, loose: float, prior: float = 0.02) ->
     return np.asarray(x)
 
 
-def shrunk(e: Element, t: Trace) -> bool:
+def shrunk(e: Element, t: InkTrace) -> bool:
     """Whether a circle was found so much smaller than it belongs that it is no circle."""
     return e.kind in ("circle", "arc") and t.growth < -SHRUNK * e.radius
 
 
-def measured(e: Element, s: Stations, o: Floats, use: Any, covered: float) -> Trace:
+def measured(e: Element, s: Stations, o: Floats, use: Any, covered: float) -> InkTrace:
     """The trace of an element whose line is ``o`` mm off along its normals, at the stations in ``use``."""
     full = np.linalg.lstsq(s.raw[use], o[use], rcond=0.1)[0]
     o = (s.raw @ full)[use]
     z = e.points
     middle = e.centre if e.kind == "circle" else s.points.mean()
     moved = z + (full[0] + 1j * full[1]) + (z - middle) / s.half * (full[3] + 1j * full[2])
-    return Trace(e, "measured", complex(full[0], full[1]), float(full[2] / s.half), float(full[3]), float(np.abs(o).max()),
+    return InkTrace(e, "measured", complex(full[0], full[1]), float(full[2] / s.half), float(full[3]), float(np.abs(o).max()),
                  covered=covered, at=np.asarray(moved))  # fmt: skip

@@ -13,11 +13,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo.hidden import Mask, at
 from tmm_sheets.compare.photo.ink_levels import NO_GREY
 from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.occlusion import Mask, at
 from tmm_sheets.compare.photo.profiles import pixels, sample
-from tmm_sheets.compare.photo.traces import Trace
+from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.styles import line_type
 
 THICK = 0.35
@@ -50,7 +50,7 @@ class _Stroke(NamedTuple):
         return float(np.median(self.across))
 
 
-def thin_vectors(traces: Sequence[Trace], ink: Any, hidden: Mask) -> set[int]:
+def construction_only(traces: Sequence[InkTrace], ink: Any, hidden: Mask) -> set[int]:
     """Numbers of the vectors in whose places there is no more than a thin line.
 
     Parameters
@@ -70,13 +70,13 @@ def thin_vectors(traces: Sequence[Trace], ink: Any, hidden: Mask) -> set[int]:
     return {s.element.number for s in strokes if _thin(s, [o for o in strokes if o is not s])}
 
 
-def vector(t: Trace) -> bool:
+def vector(t: InkTrace) -> bool:
     """Whether it is a straight vector that was found."""
     e, found = t.element, t.status in ("measured", "shared") and t.at is not None
     return found and e.style == "vector" and e.kind == "line" and len(e.fills) == 1
 
 
-def _stroke(t: Trace, ink: Any, thick: Owners, hidden: Mask) -> _Stroke | None:
+def _stroke(t: InkTrace, ink: Any, thick: Owners, hidden: Mask) -> _Stroke | None:
     assert t.at is not None
     length = abs(t.at[-1] - t.at[0])
     way = (t.at[-1] - t.at[0]) / length

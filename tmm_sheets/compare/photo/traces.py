@@ -23,7 +23,7 @@ def open_line(e: Element) -> bool:
 
 
 @dataclass(frozen=True)
-class Trace:
+class InkTrace:
     """What was found of an element.
 
     Attributes

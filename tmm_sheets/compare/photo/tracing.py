@@ -4,7 +4,7 @@ Each element is first looked for in its own place, no farther than half way to t
 is found is wiped out of the picture with a pencil's width to spare, and so are lettering and arrow heads. Elements not found are
 sought in the ink that is left, some millimetres away, turned or of another size (``displacement``). Ink left after that belongs to
 nothing (``extra_ink``). Lines that coincide in one stroke are measured together: what the eye cannot tell apart is not told apart.
-One that leaves the stroke at a small angle is told by its end (``forks``). The circles of joints are told by their outer edges
+One that leaves the stroke at a small angle is told by its end (``diverging_lines``). The circles of joints are told by outer edges
 (``joints``).
 
 The displacement of an element is a similarity, two shifts, a turn and a growth, of which only what shows along its normals is
@@ -23,27 +23,27 @@ import numpy as np
 from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo import moved_labels
 from tmm_sheets.compare.photo.arrow_heads import exchanged, with_heads
-from tmm_sheets.compare.photo.displacement import beside, displaced, rather_elsewhere
+from tmm_sheets.compare.photo.coincident_lines import coincident_lines
+from tmm_sheets.compare.photo.displacement import beside, better_match, displaced
+from tmm_sheets.compare.photo.diverging_lines import diverging_line
 from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.extra_ink import extra_ink, without_creases
-from tmm_sheets.compare.photo.forks import parted
-from tmm_sheets.compare.photo.hidden import Mask, at, share_hidden, widened
+from tmm_sheets.compare.photo.fragmented_lines import in_pieces, torn_widths
 from tmm_sheets.compare.photo.ink_levels import NO_GREY, ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.ink_reassignment import reassign_ink
 from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.line_ends import with_ends
-from tmm_sheets.compare.photo.meeting_ends import without_joins
-from tmm_sheets.compare.photo.narrow_forks import branch
-from tmm_sheets.compare.photo.one_owner import with_owners
-from tmm_sheets.compare.photo.one_stroke import others_in_stroke
+from tmm_sheets.compare.photo.masking import ROOM, fill, fixed, paint, wipe_found, wipe_small
+from tmm_sheets.compare.photo.meeting_ends import ignore_junction_ends
+from tmm_sheets.compare.photo.narrow_divergence import narrow_divergence
+from tmm_sheets.compare.photo.occlusion import Mask, at, share_hidden, widened
+from tmm_sheets.compare.photo.overlap_resolution import resolve_overlaps
 from tmm_sheets.compare.photo.own_place import Strip, in_place, strips, uncovered
 from tmm_sheets.compare.photo.profiles import SCALE, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
 from tmm_sheets.compare.photo.stations import LEAST, expected_ink, measurable, stations
-from tmm_sheets.compare.photo.torn import in_pieces, torn_widths
-from tmm_sheets.compare.photo.traces import ExtraInk, Status, Trace
-from tmm_sheets.compare.photo.twins import with_twins
-from tmm_sheets.compare.photo.wiping import ROOM, fill, fixed, paint, wipe_found, wipe_small
+from tmm_sheets.compare.photo.traces import ExtraInk, InkTrace, Status
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Points, Text
 from tmm_sheets.drawing.styles import line_type
@@ -72,7 +72,7 @@ BESIDE = 0.9  # mm about lines whose ink is theirs
 BAR = 1.5  # mm about lettering within which its bars are
 
 
-def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> tuple[list[Trace], list[ExtraInk]]:
+def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> tuple[list[InkTrace], list[ExtraInk]]:
     """Measure elements in a rectified picture, and find the ink that belongs to none.
 
     Parameters
@@ -82,7 +82,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     ink
         Darkness, see :func:`~tmm_sheets.compare.photo.rectification.straighten`.
     hidden
-        Where the sheet does not show, see :func:`~tmm_sheets.compare.photo.hidden.hidden_places`.
+        Where the sheet does not show, see :func:`~tmm_sheets.compare.photo.occlusion.hidden_places`.
 
     Returns
     -------
@@ -96,7 +96,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         owners.add(e, e.points)
     if hidden is None:
         hidden = np.zeros((1, 1), bool)
-    out_of_sight = {e.number: Trace(e, "hidden") for e in elements if share_hidden(e, hidden) > OUT_OF_SIGHT}
+    out_of_sight = {e.number: InkTrace(e, "hidden") for e in elements if share_hidden(e, hidden) > OUT_OF_SIGHT}
     shown = [e for e in elements if e.number not in out_of_sight]
     small = [e for e in shown if not measurable(e)]
     dots = np.array([e.centre for e in small if e.kind == "circle" and e.fills], complex)
@@ -117,18 +117,18 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         covers = cv2.resize(hidden.astype(np.uint8), ink.shape[::-1], interpolation=cv2.INTER_NEAREST) * np.uint8(255)
         left[covers > 0] = 0
     left[wiped > 0] = 0
-    found = with_twins(found + _displaced(absent, ink, left, wiped, owners, pale))
+    found = coincident_lines(found + _displaced(absent, ink, left, wiped, owners, pale))
     found = _doubted(found, alone, ink, left, wiped, owners, pale)
     before = {t.element.number: t for t in found}
     found = _beside_strokes(found, small, ink, owners, pale)
     words = _places_of_lettering(elements, ink)
     found = with_edges(found, ink, owners, words)
     open_lines = [t for t in found if t.status == "measured" and t.element.kind != "circle"]
-    ended = without_joins(with_ends(open_lines, ink, owners, words, pale), elements)
+    ended = ignore_junction_ends(with_ends(open_lines, ink, owners, words, pale), elements)
     ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
     lines = {t.element.number: t for t in (*found, *ended)}
     headed = exchanged(with_heads(list(lines.values()), ink, owners, words, hidden), ink, owners, words, hidden)
-    headed = with_owners(headed, before)
+    headed = reassign_ink(headed, before)
     out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
     unseen = [t for t in out.values() if t.status in ("absent lettering", "part of lettering")
               or (t.status == "lettering" and t.covered < GAPPY)]  # fmt: skip
@@ -137,7 +137,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     near = {"missing": widened(hidden)} | dict.fromkeys(("absent lettering", "part of lettering"), widened(hidden, WASHED_OUT))
     for t in [t for t in out.values() if t.status in near]:
         if share_hidden(t.element, near[t.status]) > NEARLY:
-            out[t.element.number] = Trace(t.element, "hidden")
+            out[t.element.number] = InkTrace(t.element, "hidden")
     for e in elements:  # a hand may have written here
         if e.kind == "text":
             fill(words, grown(e.points, 0.8 * e.height + 1.0))
@@ -147,7 +147,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     return [out[e.number] for e in elements], extra_ink(left, level, words, wiped, PALE * min(_usual(found).values(), default=0.0))
 
 
-def _shown_ends(t: Trace, hidden: Mask) -> tuple[float, float]:
+def _shown_ends(t: InkTrace, hidden: Mask) -> tuple[float, float]:
     """The ends of a line, unknown where they are hidden."""
     begin, end = (math.nan if at(z, hidden) else by for z, by in zip(t.element.points[[0, -1]], t.ends, strict=True))
     return begin, end
@@ -162,11 +162,11 @@ class _Alone(NamedTuple):
 
 def _in_their_places(
     lines: Sequence[Element], dots: Points, ink: Any, owners: Owners, level: float, hidden: Mask,
-) -> tuple[list[Trace], list[Element], dict[int, _Alone]]:
+) -> tuple[list[InkTrace], list[Element], dict[int, _Alone]]:
     """Traces of the lines that are where they belong, the lines that are not, and the places of the former where they are alone, by
     number, if those may show that others' ink was taken for theirs; ``dots`` are middles.
     """
-    found: list[Trace] = []
+    found: list[InkTrace] = []
     absent: list[Element] = []
     alone: dict[int, _Alone] = {}
     for strip in strips(lines, ink, owners, hidden):
@@ -200,13 +200,13 @@ def _alone(strip: Strip, dots: Points, found: bool = True) -> _Alone | None:
     return None
 
 
-def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owners: Owners, level: float) -> list[Trace]:
+def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owners: Owners, level: float) -> list[InkTrace]:
     """Traces of lines that are not in their places, the longest first; each is wiped out where it is found."""
     found = []
     for e in sorted(absent, key=lambda e: -e.length):
         t = displaced(e, stations(e, e.kind != "line"), left, wiped, ink, owners, level)
         if _edge(t):
-            t = Trace(e, "dense", covered=t.covered, at=e.points)
+            t = InkTrace(e, "dense", covered=t.covered, at=e.points)
         found.append(t)
         if t.at is not None:
             owners.add(e, t.at)
@@ -215,14 +215,14 @@ def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owner
     return found
 
 
-def _edge(t: Trace) -> bool:
+def _edge(t: InkTrace) -> bool:
     """Whether what was found elsewhere is so near its place that it is the edge of another's ink."""
     return t.status == "measured" and t.deviation < AWAY and t.element.kind != "circle"
 
 
 def _doubted(
-    found: Sequence[Trace], alone: Mapping[int, _Alone], ink: Any, left: Any, wiped: Any, owners: Owners, level: float,
-) -> list[Trace]:
+    found: Sequence[InkTrace], alone: Mapping[int, _Alone], ink: Any, left: Any, wiped: Any, owners: Owners, level: float,
+) -> list[InkTrace]:
     """The traces; those of lines paler than others of their kind, with gaps, or not seen where they are ``alone``, are looked for
     elsewhere once more.
     """
@@ -238,7 +238,7 @@ def _doubted(
         if covered:
             t = replace(t, status="covered", covered=0.0, darkness=0.0)
         if covered or (t.darkness and (t.darkness < PALE * dark or t.covered < GAPS)):
-            better = rather_elsewhere(t, stations(t.element, t.element.kind != "line"), left, wiped, ink, owners, level)
+            better = better_match(t, stations(t.element, t.element.kind != "line"), left, wiped, ink, owners, level)
             believed = better is not None and not _edge(better) and not (covered and better.darkness < PALE * dark)
             if believed and better is not None and better.at is not None:
                 owners.add(t.element, better.at)
@@ -249,7 +249,7 @@ def _doubted(
     return out
 
 
-def _usual(found: Sequence[Trace]) -> dict[float, float]:
+def _usual(found: Sequence[InkTrace]) -> dict[float, float]:
     """How dark lines of each width usually are; those of one style may nearly all lie under others."""
     widths: dict[float, list[float]] = {}
     for t in found:
@@ -258,7 +258,7 @@ def _usual(found: Sequence[Trace]) -> dict[float, float]:
     return {width: float(np.median(values)) for width, values in widths.items()}
 
 
-def _beside_strokes(found: Sequence[Trace], small: Sequence[Element], ink: Any, owners: Owners, level: float) -> list[Trace]:
+def _beside_strokes(found: Sequence[InkTrace], small: Sequence[Element], ink: Any, owners: Owners, level: float) -> list[InkTrace]:
     """The traces; of lines that cannot be told from others it is seen whether a line like them lies beside."""
     # No more of letters than their places: what stands between their edges and paper on both sides is no letter.
     lines, words = np.zeros_like(ink), _places_of_lettering(small, ink)
@@ -270,22 +270,23 @@ def _beside_strokes(found: Sequence[Trace], small: Sequence[Element], ink: Any, 
             paint(lines, t.element, t.at, 0)
             paint(taken, t.element, t.at, CLOSE)
     usual = _usual(found)
-    moved: dict[int, Trace] = {}
+    moved: dict[int, InkTrace] = {}
     for t in found:
         if t.element.kind == "line" and (t.status in ("shared", "dense") or t.parts):
             other = beside(t, stations(t.element, False), ink, lines, taken, owners, level)
             dark = usual.get(line_type(t.element.style).width, 0.0)
             # Paler lines were rubbed out, or are the edges of others.
             if other is None or other.darkness <= PALE * dark:
-                other = (parted(t, ink, words, owners, dark) or branch(t, ink, words, owners, dark)) if dark else None
+                other = (diverging_line(t, ink, words, owners, dark)
+                         or narrow_divergence(t, ink, words, owners, dark)) if dark else None
             if other is not None:
                 moved[t.element.number] = other
-    for number in others_in_stroke(list(moved.values()), ink, owners, words, level):
+    for number in resolve_overlaps(list(moved.values()), ink, owners, words, level):
         del moved[number]
     return [moved.get(t.element.number, t) for t in found]
 
 
-def _dots(small: Sequence[Element], found: Sequence[Trace], ink: Any, words: Any, hidden: Mask) -> list[Trace]:
+def _dots(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, words: Any, hidden: Mask) -> list[InkTrace]:
     """Traces of the dots that stand beside their places."""
     dots = [e for e in small if e.kind == "circle" and e.fills]
     usual = _usual(found)
@@ -306,7 +307,7 @@ def _dots(small: Sequence[Element], found: Sequence[Trace], ink: Any, words: Any
     return displaced_dots(dots, rods, lines, taken, ink, words, hidden, max(usual.values()), astray, _bars(small, ink))
 
 
-def _astray(t: Trace) -> bool:
+def _astray(t: InkTrace) -> bool:
     """Whether a line is not in its place."""
     return t.status in ("missing", "covered", "beside") or (t.status == "measured" and t.deviation > AWAY)
 
@@ -336,13 +337,13 @@ def _places_of_lettering(elements: Sequence[Element], ink: Any) -> Any:
     return out
 
 
-def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level: float) -> dict[int, Trace]:
+def _presence(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, level: float) -> dict[int, InkTrace]:
     """Traces by number of what is not measured: whether there is any ink in the place of lettering; the rest is not looked at.
 
     Each run of letters, a letter or its index, is looked for by itself. The ink of lines that run through its place does not
     count, bars over letters among them, nor does a place that they fill.
     """
-    out = {e.number: Trace(e, "small", covered=1.0) for e in small}
+    out = {e.number: InkTrace(e, "small", covered=1.0) for e in small}
     # What the form has outside its frame is cut off with the margin, and nobody's mistake; a dash is too little to be missed.
     words = [e for e in small if e.kind == "text" and FRAME.contains(e.middle) and any(map(str.isalnum, e.text))]
     if not words:
@@ -370,5 +371,5 @@ def _presence(small: Sequence[Element], found: Sequence[Trace], ink: Any, level:
     for e in words:
         mine = of == e.number
         status: Status = "absent lettering" if not there[mine].any() else "part of lettering" if gone[mine].any() else "lettering"
-        out[e.number] = Trace(e, status, covered=float(columns[mine & clear].min(initial=1.0)))
+        out[e.number] = InkTrace(e, status, covered=float(columns[mine & clear].min(initial=1.0)))
     return out

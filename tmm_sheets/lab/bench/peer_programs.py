@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from mpmath import mp
 
-from tmm_sheets import typed
+from tmm_sheets import quoting
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.lab.bench import truth
 from tmm_sheets.mechanism.model import Mechanism
@@ -43,7 +43,7 @@ class Turn:
         return 2 * pi / self.n
 
 
-class Program(ABC):
+class PeerProgram(ABC):
     """A program that moves linkages.
 
     Raises
@@ -70,7 +70,7 @@ def _library(name: str) -> Any:
         return import_module(name)
     except ImportError as e:
         if e.name == name:
-            raise CannotBuild(f"not installed: {typed.install('peers')}") from None
+            raise CannotBuild(f"not installed: {quoting.install('peers')}") from None
         raise
 
 
@@ -84,7 +84,7 @@ def _version(name: str) -> str:
 # --- pylinkage --------------------------------------------------------------------------------------------------------
 
 
-class Pylinkage(Program):
+class Pylinkage(PeerProgram):
     """pylinkage steps from position to position, compiled if numba is installed."""
 
     name = _version("pylinkage")
@@ -155,7 +155,7 @@ class Pylinkage(Program):
 # --- kinepy -----------------------------------------------------------------------------------------------------------
 
 
-class Kinepy(Program):
+class Kinepy(PeerProgram):
     """kinepy solves all positions at once; its own tool takes differences of them for velocities and accelerations."""
 
     name = _version("kinepy")
@@ -239,7 +239,7 @@ class Kinepy(Program):
 # --- mechanism --------------------------------------------------------------------------------------------------------
 
 
-class Loops(Program):
+class Loops(PeerProgram):
     """mechanism closes vector loops by iteration, position by position, with scipy's fsolve."""
 
     name = _version("mechanism")
@@ -317,4 +317,4 @@ class Loops(Program):
         return vectors, {k: joint for k, joint in joints.items() if joint in used}, loops, np.array(guess)
 
 
-PROGRAMS: tuple[type[Program], ...] = (Pylinkage, Kinepy, Loops)
+PROGRAMS: tuple[type[PeerProgram], ...] = (Pylinkage, Kinepy, Loops)

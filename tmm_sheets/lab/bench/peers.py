@@ -23,7 +23,7 @@ from tmm_sheets.construction.program import depending
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.lab.bench import peer_programs, truth
 from tmm_sheets.lab.bench.linkages import CRANK, ROCKER_DYAD, SLIDER_DYAD, SLIDER_GUIDE, shaper, study_of
-from tmm_sheets.lab.bench.peer_programs import PointArrays, Program, Turn
+from tmm_sheets.lab.bench.peer_programs import PeerProgram, PointArrays, Turn
 from tmm_sheets.lab.bench.records import Bench, BenchRecord, told
 from tmm_sheets.mechanism.groups import RRP
 from tmm_sheets.mechanism.model import Guide, Link, LinkPoint, Mechanism, StructuralGroup
@@ -86,7 +86,7 @@ def _moving(m: Mechanism, points: Iterable[str]) -> list[str]:
     return [name for name in points if name not in m.fixed and name not in centres]
 
 
-class Ours(Program):
+class Ours(PeerProgram):
     """tmm-sheets, by one function written from the recorded plans."""
 
     name = f"tmm-sheets {__version__}"
@@ -106,7 +106,7 @@ class Ours(Program):
         return lambda: {**still, **f(phi)}
 
 
-PROGRAMS: tuple[type[Program], ...] = (Ours, *peer_programs.PROGRAMS)
+PROGRAMS: tuple[type[PeerProgram], ...] = (Ours, *peer_programs.PROGRAMS)
 
 
 class _Judge:
@@ -135,7 +135,7 @@ class _Judge:
         return off / max(abs(value) for goal in goals for value in goal.values())
 
 
-def rows(bench: Bench, programs: Iterable[type[Program]] = PROGRAMS) -> None:
+def rows(bench: Bench, programs: Iterable[type[PeerProgram]] = PROGRAMS) -> None:
     """Every program on every mechanism, for each quantity and count of positions."""
     programs = tuple(programs)
     for mechanism, build in MECHANISMS:
@@ -147,7 +147,7 @@ def rows(bench: Bench, programs: Iterable[type[Program]] = PROGRAMS) -> None:
                 _rows_of(bench, program, mechanism, m, turn, judge)
 
 
-def _rows_of(bench: Bench, program: type[Program], mechanism: str, m: Mechanism, turn: Turn, judge: _Judge) -> None:
+def _rows_of(bench: Bench, program: type[PeerProgram], mechanism: str, m: Mechanism, turn: Turn, judge: _Judge) -> None:
     """Every quantity of one program on one mechanism."""
     # They print, and warn of what their libraries deprecate: neither is ours to show.
     with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib import import_module
 
-from tmm_sheets import typed
+from tmm_sheets import quoting
 from tmm_sheets.errors import BadInput
 from tmm_sheets.lab.bench.records import Bench, BenchRecord
 from tmm_sheets.words import tell
@@ -37,7 +37,7 @@ def run(quick: bool, say: Callable[[str], None], fields: tuple[str, ...] = FIELD
         import mpmath  # noqa: F401
     except ImportError:
         raise BadInput(tell("bench needs mpmath: the errors are told against a truth of 30 digits and more"),
-                       hint=typed.install("bench")) from None
+                       hint=quoting.install("bench")) from None
     bench = Bench(quick, say)
     for field in fields:
         import_module(f"tmm_sheets.lab.bench.{field}").rows(bench)

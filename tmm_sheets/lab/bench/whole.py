@@ -42,7 +42,7 @@ class TimedRun:
 
 
 @dataclass(frozen=True)
-class Whole:
+class ColdBuild:
     """A build, the plain writer and the mere import of the libraries; how many entities each writes in DXF."""
 
     project: str
@@ -52,7 +52,7 @@ class Whole:
     imports: TimedRun
 
 
-def measure(project: str, say: Callable[[str], None], rounds: int = ROUNDS) -> Whole:
+def measure(project: str, say: Callable[[str], None], rounds: int = ROUNDS) -> ColdBuild:
     """Time rounds of both.
 
     Raises
@@ -79,7 +79,7 @@ def measure(project: str, say: Callable[[str], None], rounds: int = ROUNDS) -> W
                 if k >= 0:  # the round before the first compiles the modules and fills the caches
                     runs[key].append(found)
     best = {key: TimedRun(*(min(values) for values in zip(*map(astuple, of), strict=True))) for key, of in runs.items()}
-    return Whole(project, entities, best["build"], best["plain"], best["imports"])
+    return ColdBuild(project, entities, best["build"], best["plain"], best["imports"])
 
 
 def _run(program: str, arguments: list[str]) -> TimedRun:
@@ -152,7 +152,7 @@ def _plain(drawing: Any) -> dict[str, Any]:
     return {"width": drawing.width, "height": drawing.height, "strokes": lines, "texts": texts, "letters": letters}
 
 
-def table(found: Whole) -> str:
+def table(found: ColdBuild) -> str:
     """The comparison as a Markdown table, that of docs/accuracy.md."""
     plain = tell("the same {entities} entities by plain library calls").format(entities=found.entities)
     rows = [(tell("`build {project}`, cold").format(project=found.project), found.build), (plain, found.plain),

@@ -205,7 +205,7 @@ def rrp(d: Draft, links: tuple[str, str]) -> None:
 
 
 def rpr(d: Draft, links: tuple[str, str]) -> None:
-    """A stone and its rocker, often with an offset; the slot nearly across the line of the pivots where it is meant to be hard."""
+    """A block and its rocker, often with an offset; the slot nearly across the line of the pivots where it is meant to be hard."""
     p, owner = d.moving()
     way = rect(d.length(), d.angle())
     if d.hard == "pin by the pivot":
@@ -247,7 +247,7 @@ def prp(d: Draft, links: tuple[str, str]) -> None:
 
 
 def rpp(d: Draft, links: tuple[str, str]) -> None:
-    """A stone in a slot of a slider; the slot nearly along the guide where it is meant to be hard."""
+    """A slider block in a slot of a slider; the slot nearly along the guide where it is meant to be hard."""
     p, owner = d.moving()
     guide, through, u, _ = d.guide(d.at[p], owner)
     slot = d.side() * (pi / 2 if d.coin() else d.between(0.3, pi - 0.3))
@@ -267,7 +267,7 @@ BUILD = {1: rrr, 2: rrp, 3: rpr, 4: prp, 5: rpp}
 
 
 def triad(d: Draft, links: tuple[str, ...]) -> None:
-    """A triangle on three legs, the first on a moving point, the others on anything; the second now and then a stone in a slot."""
+    """A triangle on three legs, the first on a moving point, the others on anything; the second now and then a block in a slot."""
     triangle, first, second, third = links
     p, owner = d.moving()
     theta, sides, angle = d.angle(), (d.length(), d.length()), d.side() * d.between(0.0, 2.5)

@@ -151,7 +151,7 @@ class OneFunction(State):
 
     def evaluate(self, *plans: Plan) -> None:
         """Values of all steps at once."""
-        fill((step for plan in plans for step in (*plan, *plan.asides.values())), self.phi.size)
+        fill((step for plan in plans for step in (*plan, *plan.auxiliaries.values())), self.phi.size)
 
     def by_steps(self, steps: Iterable[Step]) -> list[Any]:
         """Values that the steps themselves come to."""
@@ -194,14 +194,14 @@ def _rod_reach(s: State, g: StructuralGroup) -> tuple[Any, Any]:
     return g.lengths[0] - np.abs(cross(u, through - p)), s.reach + np.abs(through - p) + g.lengths[0]
 
 
-def _stone_on_rocker(s: State, g: StructuralGroup) -> Iterator[Residual]:
+def _block_on_rocker(s: State, g: StructuralGroup) -> Iterator[Residual]:
     u, r = s.u[g.links[1]], s.z[g.outer[0]] - s.z[g.outer[1]]
     yield "closure on guides", np.abs(cross(u, r) + g.side * g.offset) / s.reach
-    # The stone stays on its side of the rocker's pivot.
+    # The slider block stays on its side of the rocker's pivot.
     yield "assembly side", np.maximum(0, -dot(u, r)) / s.reach
 
 
-def _stone_reach(s: State, g: StructuralGroup) -> tuple[Any, Any]:
+def _block_reach(s: State, g: StructuralGroup) -> tuple[Any, Any]:
     return np.abs(s.z[g.outer[1]] - s.z[g.outer[0]]) - g.offset, s.reach + g.offset
 
 
@@ -210,7 +210,7 @@ def _on_two_guides(s: State, g: StructuralGroup) -> Iterator[Residual]:
     return iter(())
 
 
-def _stone_in_slot(s: State, g: StructuralGroup) -> Iterator[Residual]:
+def _block_in_slot(s: State, g: StructuralGroup) -> Iterator[Residual]:
     yield "closure on guides", np.abs(cross(s.u[g.links[0]], s.z[str(g.inner)] - s.z[g.outer[0]])) / s.reach
 
 
@@ -232,8 +232,8 @@ def _triangle(s: State, g: StructuralGroup) -> Iterator[Residual]:
 
 
 LOOPS: dict[GroupKind, Loop] = {
-    RRR: Loop(_two_rods, _two_rods_reach), RRP: Loop(_rod_on_guide, _rod_reach), RPR: Loop(_stone_on_rocker, _stone_reach),
-    PRP: Loop(_on_two_guides), RPP: Loop(_stone_in_slot), TRIAD: Loop(_triangle),
+    RRR: Loop(_two_rods, _two_rods_reach), RRP: Loop(_rod_on_guide, _rod_reach), RPR: Loop(_block_on_rocker, _block_reach),
+    PRP: Loop(_on_two_guides), RPP: Loop(_block_in_slot), TRIAD: Loop(_triangle),
 }
 
 

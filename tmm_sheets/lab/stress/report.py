@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import inf, isnan
 
-from tmm_sheets import typed
+from tmm_sheets import quoting
 from tmm_sheets.lab.stress.cases import BOUNDS, CHUNK, Worst, memory, run_case
 from tmm_sheets.numbers import of_reader
 from tmm_sheets.words import tell
@@ -59,7 +59,7 @@ def table(worst: dict[str, Worst], seed: int) -> str:
     for row in rows:
         cells = (f"{cell:{'>' if i in NUMBERS else '<'}{w}}" for i, (cell, w) in enumerate(zip(row, widths, strict=False)))
         lines.append("  ".join([*cells, row[6]]))
-    again = typed.command("stress", "--seed", str(seed), "--case", str(_nearest(worst)))
+    again = quoting.command("stress", "--seed", str(seed), "--case", str(_nearest(worst)))
     return "\n".join([*lines, tell("one case again: {command}").format(command=again)])
 
 

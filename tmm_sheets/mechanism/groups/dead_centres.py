@@ -212,7 +212,7 @@ REACH = Rule("reach of crank and rod in line", lambda rod, crank, sign: np.abs(r
 
 def reaches(plan: Plan, rod: float, crank: float) -> tuple[tuple[str, Step], ...]:
     """How far from the crank pivot the rod ends, with crank and rod stretched and folded, with the prime of each."""
-    return tuple((prime, plan.aside(f"r{prime}", REACH, rod, crank, sign)) for prime, sign in (("′", 1.0), ("″", -1.0)))
+    return tuple((prime, plan.auxiliary(f"r{prime}", REACH, rod, crank, sign)) for prime, sign in (("′", 1.0), ("″", -1.0)))
 
 
 def fold_and_stretch(m: Mechanism, plan: Plan, rod: float, centre: Step, ends: tuple[Step, Step]) -> tuple[Step, Step] | None:
@@ -224,5 +224,5 @@ def fold_and_stretch(m: Mechanism, plan: Plan, rod: float, centre: Step, ends: t
     if np.isnan(far) or np.isnan(near) or not abs(far) or not abs(near):
         return None
     length = m.crank.length
-    return (plan.aside("φ′", IN_LINE_ANGLE, centre, ends[0], 1.0, length),
-            plan.aside("φ″", IN_LINE_ANGLE, centre, ends[1], -1.0 if rod > length else 1.0, length))
+    return (plan.auxiliary("φ′", IN_LINE_ANGLE, centre, ends[0], 1.0, length),
+            plan.auxiliary("φ″", IN_LINE_ANGLE, centre, ends[1], -1.0 if rod > length else 1.0, length))

@@ -53,7 +53,7 @@ class Outline:
     """A link as a bar through points, or as a block at a point along a direction.
 
     ``aim`` is a further point that the bar's line passes through, ``arms`` are further lines by the names of their ends;
-    ``slot`` is the direction of the slot in a ram, ``slotted`` says that a block may carry the slot of another group's stone.
+    ``slot`` is the direction of the slot in a ram, ``slotted`` says that a block may carry the slot of another group's block.
     """
 
     link: str
@@ -80,7 +80,7 @@ class Leg:
     """A leg: its link and the ``corner`` of the triangle it belongs to.
 
     ``outer`` is its outer hinge, ``length`` m from there to the corner; or ``guide`` the outer guide it slides along; or, with
-    ``outer`` and ``slot``, it is a stone in a slot of the triangle through the corner, turned by ``slot``, rad, from the line of
+    ``outer`` and ``slot``, it is a block in a slot of the triangle through the corner, turned by ``slot``, rad, from the line of
     the first corner to the second.
     """
 
@@ -102,7 +102,7 @@ class Leg:
         return self.corner if self.slot is None else self.outer
 
     def index(self, triangle: str, carrier: str) -> str:
-        """Index of the motion that it leaves the triangle: against its outer hinge, its stone, or the ``carrier`` of its guide."""
+        """Index of the motion that it leaves the triangle: against its outer hinge, its block, or the ``carrier`` of its guide."""
         if self.guide:
             return against(self.corner, carrier)
         return f"{self.corner if self.slot is None else on_link(self.outer, triangle)}{self.outer}"

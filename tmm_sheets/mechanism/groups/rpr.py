@@ -42,7 +42,7 @@ class RPRKind(GroupKind):
         p, q = g.outer
         if g.offset:
             # The guide line passes the pivot at the offset: its foot is where the tangent from the pin touches that circle.
-            given = pos.points[p], pos.points[q], pos.plan.aside(f"e {g.name}", OFFSET, g.offset), g.side
+            given = pos.points[p], pos.points[q], pos.plan.auxiliary(f"e {g.name}", OFFSET, g.offset), g.side
             foot = pos.plan.add(pos.plan.free(f"{q}₁"), rules.TANGENT, *given)
             pos.points[foot.name] = foot
             pos.feet[g.links[1]] = foot.name
@@ -166,12 +166,12 @@ class RPRKind(GroupKind):
             return None
         pivot = plan.add(q, rules.GIVEN, m.fixed[q])
         a, b = (plan.add(f"{c.pin}{prime}", rules.TANGENT, pivot, centre, c.length, side) for prime, side in (("′", 1), ("″", -1)))
-        return plan.aside("φ′", PIN_ANGLE, centre, a), plan.aside("φ″", PIN_ANGLE, centre, b)
+        return plan.auxiliary("φ′", PIN_ANGLE, centre, a), plan.auxiliary("φ″", PIN_ANGLE, centre, b)
 
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         (i, j), (p, q) = g.links, g.outer
         foot = pos.feet.get(j)
-        # With an offset the slot passes the pivot: an arm to its foot, and the slot from there to the stone.
+        # With an offset the slot passes the pivot: an arm to its foot, and the slot from there to the slider block.
         rocker = Outline(j, (q, p), p) if foot is None else Outline(j, (q,), p, ((q, foot), (foot, p)))
         return [Outline(i, block=p, along=pos.directions[j]), rocker]
 

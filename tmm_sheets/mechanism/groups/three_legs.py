@@ -1,7 +1,7 @@
 """A triangle on three legs in numbers: where it can stand, and how one way of assembly goes on as the crank turns.
 
 A leg keeps a corner of the triangle on a circle (hinged at both ends) or on a line (a slider), or a line of the triangle through a
-point (a stone in a slot). The triangle stands by its first corner k, m, and the unit direction u from there to its second. A method
+point (a block in a slot). The triangle stands by its first corner k, m, and the unit direction u from there to its second. A method
 of false positions finds the same on paper: two legs and the triangle move by themselves, the third corner draws its locus, and
 where the locus crosses the circle or the guide of the third leg the group is put together. Here the crossing is refined by Newton's
 method on the three conditions themselves, so that it is as exact as the lengths. The ways of assembly are up to six; which one is

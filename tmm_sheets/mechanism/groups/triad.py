@@ -1,7 +1,7 @@
 """Kind 6, a group of class III, order 3: a triangle on three legs.
 
 Each leg is hinged to a corner of the triangle and turns about an outer hinge or slides along an outer guide; the second may be a
-stone that is hinged outside and slides in a slot of the triangle. Positions by the method of false positions (метод ложных
+slider block that is hinged outside and slides in a slot of the triangle. Positions by the method of false positions (метод ложных
 положений): without its third leg the group moves by itself, the third corner draws its locus, which the circle or the guide of the
 third leg cuts. Velocities and accelerations by Assur's special point (особая точка Ассура), where the normals of two legs meet:
 seen as a point of the triangle its velocity follows from both legs at once. Forces by the moments of the whole group about it.
@@ -61,7 +61,7 @@ class TriadGroup(StructuralGroup):
         return "–".join(leg.form for leg in self.legs)
 
     def false_points(self, plan: Plan) -> list[tuple[Step, ...]]:
-        """Steps of its false positions: the corners, and the slot's direction instead of the second of a stone's."""
+        """Steps of its false positions: the corners, and the slot's direction instead of the second of a slider block's."""
         return [tuple(plan[f"{leg.corner}{sign(n)}"] for leg in self.legs) for n in FALSE]
 
 
@@ -198,8 +198,8 @@ class TriadKind(GroupKind):
                               choice=f"way of assembly whose triangle is nearest to {np.degrees(triad.near):g} deg at crank angle "
                                      f"{np.degrees(triad.when):g} deg, followed round the turn")
                         for what, value in (("crank angles", way.angles), ("place", way.k), ("direction", way.u)))
-        near = (plan.aside(f"k {g.name}", NEAR_PLACE, pos.angle, angles, k),
-                plan.aside(f"u {g.name}", NEAR_DIRECTION, pos.angle, angles, u))
+        near = (plan.auxiliary(f"k {g.name}", NEAR_PLACE, pos.angle, angles, k),
+                plan.auxiliary(f"u {g.name}", NEAR_DIRECTION, pos.angle, angles, u))
         held = self._held(pos, triad)
         if plan.search is None:
             self._false_positions(pos, triad, near, held)
@@ -220,7 +220,7 @@ class TriadKind(GroupKind):
     @staticmethod
     def _held(pos: Positions, g: TriadGroup) -> tuple[Any, ...]:
         """What holds the triangle, leg by leg, see :data:`three_legs.Legs`."""
-        third = pos.plan.aside(f"c {g.name}", CORNER, g.sides[1], g.angle)
+        third = pos.plan.auxiliary(f"c {g.name}", CORNER, g.sides[1], g.angle)
         found: list[Any] = []
         for leg, corner in zip(g.legs, (0.0, g.sides[0], third), strict=True):
             if leg.guide:
@@ -247,7 +247,7 @@ class TriadKind(GroupKind):
             at = sign(n)
             first = plan.add(f"{a.corner}{at}", FALSE_CORNER, *near, n * size, *held, say=tr(
                 "Leg {leg} takes a false position: point {{name}}.").format(leg=a.link))
-            side = plan.aside(f"side {first.name}", FALSE_SIDE, *near, n * size, *held)
+            side = plan.auxiliary(f"side {first.name}", FALSE_SIDE, *near, n * size, *held)
             name = f"{b.corner}{at}"
             if a.form == "RR":
                 plan.add(f"{a.outer}{first.name}", rules.RAY, held[1], first)

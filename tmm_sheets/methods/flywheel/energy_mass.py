@@ -116,7 +116,7 @@ def energy_mass_plan(labels: tuple[str, ...], energy: Step, inertia: Step, conta
     plan.add("points", PROJECT, energy, inertia)
     for name, rule, intercept in (("max", UPPER_ANGLE, "a"), ("min", LOWER_ANGLE, "b")):
         angle = plan.add(f"ψ_{name}", rule, mu_j, mu_e, omega, delta)
-        plan.aside(f"tg ψ_{name}", SLOPE_OF_ANGLE, angle, symbol=f"tg ψ_{{{name}}}")
+        plan.auxiliary(f"tg ψ_{name}", SLOPE_OF_ANGLE, angle, symbol=f"tg ψ_{{{name}}}")
         direction = plan.add(f"t_{name}", UNDER_ANGLE, angle)
         touching = plan.add(f"T_{name}", TOUCH, *contact(name, float(angle.value)))
         plan.add(intercept, LINE_LINE, touching, direction, 0j, 1j,

@@ -23,7 +23,7 @@ from tmm_sheets.construction.given import Given, named
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import GIVEN_INERTIA, GIVEN_NUMBER, taken
 from tmm_sheets.construction.scale import HANDY, Scale, fit, handy
-from tmm_sheets.construction.step import Helper, Rule, Step, Told
+from tmm_sheets.construction.step import Helper, Reported, Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT, STOPS, AtAngles, ConvergedWheel, speed, too_light
 from tmm_sheets.methods.flywheel.running import Energy, Running, steady
@@ -576,7 +576,7 @@ class Flywheel(ABC):
         if self.inertia_angle is not self.scales.angle:
             mu = named(self.inertia_angle.mu, "scales.mu_phi", "μ_φ", "rad/mm")
             turn = named(self.inertia_turn, "cycle", "2π", "rad")
-            plan.add("x_J", ABSCISSA, plan.aside("φ1 of a turn", FIRST_TURN, phi, turn), mu)
+            plan.add("x_J", ABSCISSA, plan.auxiliary("φ1 of a turn", FIRST_TURN, phi, turn), mu)
         return plan
 
     @property
@@ -592,7 +592,7 @@ class Flywheel(ABC):
         phi = plan.add("φ", GIVEN_NUMBER, Given(self.edges, "borders of the intervals", "φ_1", "rad", choice=choice))
         x = plan.add("x", ABSCISSA, phi, self.mu("angle"))
         for k, name in enumerate(self.borders):
-            plan.aside(f"x_{name}", BORDER_AT, x, k)
+            plan.auxiliary(f"x_{name}", BORDER_AT, x, k)
         return plan
 
     @cached_property
@@ -696,7 +696,7 @@ class Flywheel(ABC):
     def work_plan(self) -> Plan:
         """Graphical integration of the moment: see :func:`integrate` for the names of its steps; ``A(φ)`` is the smooth curve."""
         plan, of = Plan(f"work{self.where}", tr("Graph of work"), "mm"), self.intervals_plan
-        across = [self.borders_plan.asides[f"x_{name}"] for name in self.borders]
+        across = [self.borders_plan.auxiliaries[f"x_{name}"] for name in self.borders]
         ends = integrate(plan, "", across, [of[f"y{name}"] for name in self.intervals], self.pole,
                          borders=self.borders, intervals=self.intervals, mark=self.mark)
         plan.add("A(φ)", SMOOTH, *ends, *(of[f"{side}{name}"] for side in "+−" for name in self.intervals))
@@ -1167,7 +1167,7 @@ class Flywheel(ABC):
     @property
     def drawn(self) -> dict[str, Any]:
         """Lengths and angles as they stand on the sheet, mm and rad."""
-        return {"ab": self.ab, "H": Told(self.work_plan["P"], "abs")}
+        return {"ab": self.ab, "H": Reported(self.work_plan["P"], "abs")}
 
     def results(self) -> dict[str, Any]:
         """The results in SI units, as ``solve`` tells them: numbers are steps."""

@@ -21,7 +21,7 @@ from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import DISTANCE
 from tmm_sheets.construction.scale import Scale
-from tmm_sheets.construction.step import Rule, Step, Told
+from tmm_sheets.construction.step import Reported, Rule, Step
 from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT, AtAngles, ConvergedWheel, highest, limit_segment
 from tmm_sheets.methods.flywheel.flywheel import FROM_PAPER, OF_EXCESS, OF_SEGMENT, PLOT, DiagramSpace, Flywheel
 from tmm_sheets.methods.flywheel.running import Running
@@ -118,7 +118,7 @@ class Mertsalov(Flywheel):
         """
         plan = Plan(f"first-energy{self.where}", tr("Graph of the kinetic energy of the first group of links"), "mm", self.labels)
         convert = self.mu("inertia"), self.omega1, self.mu("energy")
-        plan.aside("μ_T", ENERGY_SCALE, *convert[:2])
+        plan.auxiliary("μ_T", ENERGY_SCALE, *convert[:2])
         second = plan.add("T_II", CONVERT, self.inertia_plan["J"], *convert)
         first = plan.add("T_I", LAY_BELOW, self.total_plan["ΔE"], second)
         plan.add("points", PLOT, self.across, first)
@@ -282,7 +282,7 @@ class Mertsalov(Flywheel):
     @property
     def drawn(self) -> dict[str, Any]:
         """Lengths as they stand on the sheet, mm."""
-        return {**super().drawn, "axis": Told(self.speed_plan["O"], "y")}
+        return {**super().drawn, "axis": Reported(self.speed_plan["O"], "y")}
 
     def results(self) -> dict[str, Any]:
         """The results in SI units, as ``solve`` tells them: numbers are steps."""

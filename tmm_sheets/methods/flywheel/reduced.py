@@ -258,7 +258,7 @@ class Reduced:
         assert tally is not None
         for plan in tried.plans:
             tally.plans += 1
-            for step in (*plan, *plan.asides.values()):
+            for step in (*plan, *plan.auxiliaries.values()):
                 if step.evaluated:
                     tally.append(sum(step.seconds))
 

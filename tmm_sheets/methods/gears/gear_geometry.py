@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Step, Told
+from tmm_sheets.construction.step import Reported, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears.gear_formulas import FILLET, GearData, addendum, dedendum
 from tmm_sheets.methods.gears.gear_steps import geometry_plan
@@ -128,7 +128,7 @@ class PairGeometry:
         names += ["p", "pb", "eps_alpha", *(f"{k}{i}" for i in (1, 2) for k in ("tau", "phi_alpha", "r_low", "rho_f"))]
         names += ["x_sum"] if "x_sum" in self.geometry else []
         names += ["tips_clear"] if self.internal else []
-        return {name: Told(self.geometry[name]) for name in names}
+        return {name: Reported(self.geometry[name]) for name in names}
 
 
 def impossible(plan: Plan) -> Iterator[tuple[str, str]]:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit_standard
-from tmm_sheets.construction.step import Told
+from tmm_sheets.construction.step import Reported
 from tmm_sheets.methods.gears import gear_engagement as ge
 from tmm_sheets.methods.gears import gear_teeth as gt
 from tmm_sheets.methods.gears import rack
@@ -185,8 +185,8 @@ class GearPair(PairGeometry):
         """The ``gear`` section of ``solve --json``; ``theta1``, ``theta2`` at the divisions, undefined where infinite."""
         out = super().results()
         for i in (1, 2):
-            out[f"theta{i}"] = Told(self.sliding[f"theta{i}"])
-            out[f"theta{i}_greatest"] = Told(self.worst_sliding[f"theta{i}"])
+            out[f"theta{i}"] = Reported(self.sliding[f"theta{i}"])
+            out[f"theta{i}_greatest"] = Reported(self.worst_sliding[f"theta{i}"])
         return out
 
     @property

@@ -109,7 +109,7 @@ def record_cut(wheel: GearWheel, side: int, engagement: Plan, tooth: Plan) -> St
     if "flank" in tooth and tooth["flank"].rule is CUT:
         return tooth["flank"]
     # Beside a tooth with a fillet it is the picture of the cutting alone.
-    add, name = (tooth.aside, "cut") if "flank" in tooth else (tooth.add, "flank")
+    add, name = (tooth.auxiliary, "cut") if "flank" in tooth else (tooth.add, "flank")
     m, tip = (add(name, rack.TAKEN, step) for name, step in (("m", of("m")), ("r_a", wheel.step("ra"))))
     return add(name, CUT, engagement[f"O{wheel.number}"], tooth["axis"], float(side), m,
                of("alpha"), wheel.depth, of("c"), wheel.step("z"), wheel.step("x"), tip)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets.construction.given import GivenNumber
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Step, Told
+from tmm_sheets.construction.step import Reported, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears import reducer_speeds
 from tmm_sheets.methods.gears.planetary import SCHEMES, Driver
@@ -212,18 +212,19 @@ class Reducer:
         first = {n: of for k in range(self.data.stages)
                  for n, of in zip(stage_numbers(self.data, k), stage_numbers(self.data, 0), strict=True)}
         return {
-            "ratio_asked": Told(chosen["u_asked"]), "ratio": Told(chosen["u"]), "deviation": Told(chosen["u_deviation"]),
-            "ratio_planetary": Told(chosen["u_planetary"]),
-            **({"ratio_simple": Told(chosen["u_simple"])} if self.simple else {}),
-            "teeth": {f"z{w.number}": Told(chosen[f"z{first.get(w.number, w.number)}"]) for w in self.wheels},
-            "q": Told(conditions["q"]),
-            "efficiency": Told(chosen["eta"]), "efficiency_planetary": Told(chosen["eta_planetary"]),
-            "diameters_w": {f"d{w.number}": Told(w.d) for w in self.wheels},
-            "speeds_rpm": {f"n{link}": Told(n) for link, n in self.links.items()},
-            "conditions": {name: Told(conditions[name]) for name in ("coaxiality", "assembly", "neighbourhood")},
+            "ratio_asked": Reported(chosen["u_asked"]), "ratio": Reported(chosen["u"]),
+            "deviation": Reported(chosen["u_deviation"]),
+            "ratio_planetary": Reported(chosen["u_planetary"]),
+            **({"ratio_simple": Reported(chosen["u_simple"])} if self.simple else {}),
+            "teeth": {f"z{w.number}": Reported(chosen[f"z{first.get(w.number, w.number)}"]) for w in self.wheels},
+            "q": Reported(conditions["q"]),
+            "efficiency": Reported(chosen["eta"]), "efficiency_planetary": Reported(chosen["eta_planetary"]),
+            "diameters_w": {f"d{w.number}": Reported(w.d) for w in self.wheels},
+            "speeds_rpm": {f"n{link}": Reported(n) for link, n in self.links.items()},
+            "conditions": {name: Reported(conditions[name]) for name in ("coaxiality", "assembly", "neighbourhood")},
             "runners_up": [
-                {"teeth": {name: Told(plan[name]) for name in self.teeth_names}, "ratio": Told(plan["u"]),
-                 "deviation": Told(plan["u_deviation"]), "efficiency": Told(plan["eta"])}
+                {"teeth": {name: Reported(plan[name]) for name in self.teeth_names}, "ratio": Reported(plan["u"]),
+                 "deviation": Reported(plan["u_deviation"]), "efficiency": Reported(plan["eta"])}
                 for plan in self.sets[1:]
             ],
         }

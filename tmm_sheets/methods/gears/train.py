@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Step, Told
+from tmm_sheets.construction.step import Reported, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears import reducer_speeds
 from tmm_sheets.methods.gears.train_steps import DISTANCE, FRAME, Kinematics, Mesh, Picture, distance_of, is_wheel
@@ -135,9 +135,9 @@ class Train:
     def results(self) -> dict[str, Any]:
         """The ``train`` section of ``solve --json``: speeds in 1/min, distances in millimetres."""
         plan = self.kinematics
-        return {"teeth": {name: Told(plan[f"z{name}"]) for name in self.names if is_wheel(name)},
-                "distances": {step.name: Told(step) for step in plan if step.rule is DISTANCE},
-                "speeds_rpm": {f"n{name}": Told(plan[f"n{name}"]) for name in self.names}}
+        return {"teeth": {name: Reported(plan[f"z{name}"]) for name in self.names if is_wheel(name)},
+                "distances": {step.name: Reported(step) for step in plan if step.rule is DISTANCE},
+                "speeds_rpm": {f"n{name}": Reported(plan[f"n{name}"]) for name in self.names}}
 
 
 def _check_speeds(train: Train) -> None:

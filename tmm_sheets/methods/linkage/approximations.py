@@ -11,8 +11,8 @@ from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import GIVEN_NUMBER
+from tmm_sheets.construction.search_count import SearchCount
 from tmm_sheets.construction.step import Helper, Rule
-from tmm_sheets.construction.tally import Tally
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.linkage.forces import Kinetostatics
 from tmm_sheets.methods.linkage.friction import Coefficients, Friction, Rows, friction, order
@@ -78,7 +78,7 @@ def _rows(of: Friction, found: Kinetostatics) -> Rows:
     return rows
 
 
-Statics = Callable[[Friction, Tally | None], Kinetostatics]
+Statics = Callable[[Friction, SearchCount | None], Kinetostatics]
 
 
 def with_friction(given: Coefficients, vel: Velocities, sliding: Sliding, statics: Statics) -> Kinetostatics:

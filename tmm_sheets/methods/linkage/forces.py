@@ -31,7 +31,7 @@ from tmm_sheets.numbers import Sizes
 from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.tally import Tally
+    from tmm_sheets.construction.search_count import SearchCount
     from tmm_sheets.methods.linkage.friction import Friction
 
 WEIGHT = Rule("weight", lambda m, g: -1j * m * g, ("number", "number"), "force",
@@ -155,7 +155,7 @@ class Kinetostatics:
 
     def negative(self, step: Step) -> Step:
         """A number with the other sign, which is not drawn."""
-        return self.plan.aside(f"−{step.name}", NEGATIVE, step)
+        return self.plan.auxiliary(f"−{step.name}", NEGATIVE, step)
 
     @staticmethod
     def contact(j: str, k: str, at: Step, vector: Step, couple: Step | None = None) -> Load:
@@ -183,7 +183,7 @@ class Kinetostatics:
 
     def arm_about(self, about: Step, at: Step, vector: Step) -> Step:
         """Signed arm of a force about a point as it is read off a scheme, m; whoever asks first."""
-        return self.plan.aside(f"h({about.name}, {vector.name})", FORCE_ARM, about, at, vector)
+        return self.plan.auxiliary(f"h({about.name}, {vector.name})", FORCE_ARM, about, at, vector)
 
     def tangential(self, j: str, k: str, total: Step, centre: str, at: str) -> Step:
         """Part of F_jk at a point across its line to the centre of the moments, from their sum."""
@@ -403,7 +403,7 @@ def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: 
 
 def kinetostatics(pos: Positions, acc: Accelerations, loads: dict[str, list[Load]], couples: dict[str, list[Step]],
                   driver: GearForce | None, plan: Plan | None = None, friction: Friction | None = None,
-                  search: Tally | None = None, limits: dict[str, Given] | None = None) -> Kinetostatics:
+                  search: SearchCount | None = None, limits: dict[str, Given] | None = None) -> Kinetostatics:
     """Force plans of all groups from the farthest to the crank; ``driver`` None means a pure balancing moment.
 
     ``friction`` that acts besides; ``search`` counts plans that are only an approximation; ``limits`` are known next to change

@@ -18,8 +18,8 @@ import numpy as np
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.search_count import SearchCount
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.construction.tally import Tally
 from tmm_sheets.mechanism.groups.force_plan import OPPOSITE_COUPLE
 from tmm_sheets.mechanism.model import Mechanism, Pair
 from tmm_sheets.methods.linkage.sliding import Sliding, ordered
@@ -122,7 +122,7 @@ def order(m: Mechanism, pair: Pair) -> tuple[str, str]:
     return (k, j) if j == m.frame else (j, k)
 
 
-def friction(given: Coefficients, vel: Velocities, sliding: Sliding, rows: Rows, search: Tally | None = None) -> Friction:
+def friction(given: Coefficients, vel: Velocities, sliding: Sliding, rows: Rows, search: SearchCount | None = None) -> Friction:
     """Record the friction that assumed reactions bring."""
     m = vel.positions.mechanism
     plan = Plan("friction", tr("Friction in the pairs"), "m", vel.positions.plan.labels, search=search or vel.positions.plan.search)

@@ -306,17 +306,17 @@ class Applied:
         if not isinstance(law, StrokeLaw):
             (d,) = self.diagrams
             if isinstance(d.curve, Given):
-                return plan.aside(name, STEADY, d.curve, turned, *(() if self.sign is None else (self.sign,)))
-            return plan.aside(name, AT_ANGLE, d.curve, turned, d.turns, float(side))
+                return plan.auxiliary(name, STEADY, d.curve, turned, *(() if self.sign is None else (self.sign,)))
+            return plan.auxiliary(name, AT_ANGLE, d.curve, turned, d.turns, float(side))
         ahead, signs = law.strokes(value_of(turned), side)
         sense = Given(ahead, f"sense of {self.name}", choice="which way its diagram is passed")
         terms: list[Any] = []
         for n, (run, sign) in enumerate(signs):
             d = next(d for d in self.diagrams if d.table is law.tables[run])
-            ordinate: Any = d.curve if isinstance(d.curve, Given) else plan.aside(
+            ordinate: Any = d.curve if isinstance(d.curve, Given) else plan.auxiliary(
                 f"{self.name}{mark} ({n + 1})", ON_WAY, d.curve, self._way(plan, pos, turned, ahead), sense)
             terms += [Given(sign, f"sign of {self.name}", choice="strokes it acts on, against or along the motion"), ordinate]
-        return plan.aside(name, SIGNED_SUM, *terms)
+        return plan.auxiliary(name, SIGNED_SUM, *terms)
 
     def _way(self, plan: Plan, pos: Positions, turned: Any, ahead: Any) -> Any:
         """Travelled fractions, as a step where they follow from the positions."""
@@ -328,7 +328,7 @@ class Applied:
             x = motion.fraction(value_of(turned))
             return Given(np.where(ahead < 0, np.where(x < NEAR, 1.0, x), x), f"way of link {self.link}", choice="turns counted on")
         step = pos.directions[path.name] if path.turning else pos.points[path.name]
-        return plan.aside(f"s {path.name} {self.name}", path.rule, step, *path.numbers)
+        return plan.auxiliary(f"s {path.name} {self.name}", path.rule, step, *path.numbers)
 
     def vector(self, turned: Any, side: int = 0) -> Any:
         """Force vectors, N, complex, in the shape of the angles ``turned``, rad."""

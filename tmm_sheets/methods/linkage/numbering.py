@@ -19,7 +19,7 @@ from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
 from tmm_sheets.methods.linkage.cycle import Cycle, Strokes
 from tmm_sheets.methods.linkage.dead_positions import dead_positions
-from tmm_sheets.methods.linkage.output_way import BY_ANGLE, way_of
+from tmm_sheets.methods.linkage.output_travel import BY_ANGLE, way_of
 from tmm_sheets.methods.linkage.positions import passages
 from tmm_sheets.methods.linkage.strokes import Floats, Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.methods.linkage.watched import OfAngles, Watched
@@ -180,7 +180,7 @@ def swing_cycle(m: Mechanism, start: float, end: float, positions: int, *, zero:
         named[label] = (angle, 0.0, angle)
     order = sorted(named, key=lambda label: named[label][0])
     numbering = Plan("cycle", tr("Numbering of the positions"), "rad", tuple(order))
-    width = numbering.aside("φ_к", TURNED, GivenNumber(start, "cycle.start", "φ_0", "rad"),
+    width = numbering.auxiliary("φ_к", TURNED, GivenNumber(start, "cycle.start", "φ_0", "rad"),
                             GivenNumber(end, "cycle.end", "", "rad"), m.crank.sense, symbol=tr("φ_s"))
     rows = [Given(np.array([named[label][k] for label in order], dtype=np.float64), name, "", unit)
             for k, name, unit in ((1, "numbers of the positions", ""), (2, "cycle.extra", "rad"))]
@@ -246,7 +246,7 @@ def _dead_of(m: Mechanism, output: str, axis: complex, round_about: bool = False
                        for value, name in ((sense * begin, "cycle.start"), (working_stroke(whole)[1], "working stroke")))
         return DeadPoints(None, start, wide, whole, watched)
     # The constructed angles are put in the place of the found ones.
-    step = plan.aside("φ_рх", TURNED, *found, sense, symbol=tr("φ_w"))
+    step = plan.auxiliary("φ_рх", TURNED, *found, sense, symbol=tr("φ_w"))
     width = step.value
     places = {begin: 0.0, begin + 2 * np.pi: 2 * np.pi, end: width, end + 2 * np.pi: width + 2 * np.pi}
 

@@ -112,7 +112,7 @@ def beside(told: Callable[[Floats], dict[str, Any]], needed: str) -> Beside | No
 
 
 @dataclass(frozen=True)
-class Place:
+class PassagePlace:
     """Positions next to one change point that are on one smooth way through it.
 
     ``which`` are their numbers, ``x`` their angles from the change point, rad, ``sides`` the sides of the groups that pass it, by
@@ -209,7 +209,7 @@ class Passages:
             return _sides(phi, self.angles(g), g.side, g.at, cut, self.m.crank.sense)
         return gaps.branch(phi, g.side, g.at, cut, self.m.crank.sense, follow=True) * np.sign(gaps.root(phi))
 
-    def places(self, angle: float, phi: Any, groups: tuple[StructuralGroup, ...], reach: float) -> list[Place]:
+    def places(self, angle: float, phi: Any, groups: tuple[StructuralGroup, ...], reach: float) -> list[PassagePlace]:
         """Positions within ``reach``, rad, of a change point at an ``angle`` that ``groups`` pass, by the ways they are on."""
         phi = np.atleast_1d(np.asarray(phi, dtype=float))
         x = np.angle(np.exp(1j * (phi - angle)))
@@ -223,7 +223,7 @@ class Passages:
         for k in near:
             ways.setdefault(tuple(float(row[k]) for row in rows), []).append(int(k))
         names = [g.name for g in groups]
-        return [Place(angle, np.array(which), x[which], tuple(zip(names, way, strict=True))) for way, which in ways.items()]
+        return [PassagePlace(angle, np.array(which), x[which], tuple(zip(names, way, strict=True))) for way, which in ways.items()]
 
     def row(self, g: StructuralGroup, phi: Any, what: str, told: Callable[[Mechanism, Any], Any], *, zero: bool = False) -> Given:
         """What is ``told`` of a mechanism at angles, at those of ``phi``, rad, next to change points of a group; NaN elsewhere.
@@ -247,7 +247,7 @@ class Passages:
                 row[place.which[inside]] = -np.inf if found is None else found.at(what, x) * (x if zero else 1.0)
         return Given(row, f"{what} of group {g.name}", choice=CHOICE)
 
-    def _told(self, g: StructuralGroup, place: Place, what: str, told: Callable[[Mechanism, Any], Any], zero: bool,
+    def _told(self, g: StructuralGroup, place: PassagePlace, what: str, told: Callable[[Mechanism, Any], Any], zero: bool,
               x: Floats) -> dict[str, Any]:
         m = replace(self.m, crank=replace(self.m.crank, speed=1.0, sense=1.0, acceleration=0.0))
         at = told(alone(m, g, {name: side * np.sign(x) for name, side in place.sides}), place.angle + x)

@@ -98,7 +98,7 @@ class Positions:
             return ()
         self.sines[group.links[0]] = found.sine
         for step in found.steps:
-            self.plan.adopt(step)
+            self.plan.add_existing(step)
         if found.turning is not None:
             self.turnings[group.links[0]] = found.turning
         return found.known

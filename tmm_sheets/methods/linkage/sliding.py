@@ -1,6 +1,6 @@
 """Sliding pairs: velocity of one link on the other, and the Coriolis acceleration it brings.
 
-Both are taken at the pair's own point, for link j on link k: the stone on its rocker, the slider on what carries its guide.
+Both are taken at the pair's own point, for link j on link k: the slider block on its rocker, the slider on what carries its guide.
 Source: manual 000, sections 3.3 and 3.4.
 """
 
@@ -43,7 +43,7 @@ class Sliding:
 
 
 def ordered(m: Mechanism, pair: Pair) -> tuple[str, str]:
-    """The link of a sliding pair that slides and the one it slides on: what was there before, or the rocker of a stone."""
+    """The link of a sliding pair that slides and the one it slides on: what was there before, or the rocker of a slider block."""
     a, b = pair.links
     placed = [m.frame, m.crank.link]
     for g in m.groups:

@@ -27,7 +27,7 @@ from tmm_sheets.methods.linkage.zhukovsky import Lever, lever
 from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.tally import Tally
+    from tmm_sheets.construction.search_count import SearchCount
     from tmm_sheets.methods.linkage.friction import Coefficients, Friction
 
 
@@ -131,7 +131,7 @@ class Study:
         """Force plans of all groups and the crank."""
         loads, couples, _ = self.loads
 
-        def statics(friction: Friction | None = None, search: Tally | None = None) -> Kinetostatics:
+        def statics(friction: Friction | None = None, search: SearchCount | None = None) -> Kinetostatics:
             return kinetostatics(self.positions, self.accelerations, loads, couples, self.driver, friction=friction, search=search)
 
         if self.friction is None:
@@ -171,14 +171,14 @@ class Study:
 
     def drive(self, loss: Step) -> tuple[Step, Step]:
         """Power of the drive over the positions, W: ``N``, and ``N_0`` without the power ``loss`` of friction, not above zero."""
-        power = self.balance.aside("N", POWER_OF_DRIVE, self.balance["M"], self.mechanism.crank.speed)
-        return power, self.balance.aside("N_0", WITHOUT_FRICTION, power, loss)
+        power = self.balance.auxiliary("N", POWER_OF_DRIVE, self.balance["M"], self.mechanism.crank.speed)
+        return power, self.balance.auxiliary("N_0", WITHOUT_FRICTION, power, loss)
 
     def mean_driving(self, course: Step, turned: Any) -> Step:
         """Mean moment of the crank over the cycle, N m: step ``M_д``, by trapezia from its values at angles ``turned``, rad."""
         width = np.diff(turned, prepend=turned[0], append=turned[-1])
         weights = Given((width[1:] + width[:-1]) / 2 / self.cycle.period, "weights of the trapezia", over="curve")
-        return self.balance.aside("M_д", MEAN, course, weights)
+        return self.balance.auxiliary("M_д", MEAN, course, weights)
 
 
 ALONG_LINE = Rule("size along a line", lambda force, u: (force * np.conjugate(u)).real, ("force", "direction"), "number",

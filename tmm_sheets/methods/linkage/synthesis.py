@@ -1,6 +1,6 @@
 """Geometric synthesis: lengths from the conditions of a task (геометрический синтез).
 
-A quick-return mechanism (crank AB with a stone on the rocker CD) from the coefficient of travel time K, the stroke of the
+A quick-return mechanism (crank AB with a slider block on the rocker CD) from the coefficient of travel time K, the stroke of the
 rocker's end and the distance of the pivots; a crank and slider of an engine from its speed, the mean velocity of the piston
 and the ratio of rod and crank. Source: manual 000, section 2.
 """
@@ -113,7 +113,7 @@ class Synthesis:
     def written(self, place: str, name: str, share: float, symbol: str) -> Step:
         """A length as it is used at a place of the project file: a part of a found one, as it is written there."""
         used = self.plan[f"{name}′"] if f"{name}′" in self.plan else self.plan[name]
-        return self.plan.aside(place, AS_WRITTEN, GivenNumber(share, place), used, symbol=symbol)
+        return self.plan.auxiliary(place, AS_WRITTEN, GivenNumber(share, place), used, symbol=symbol)
 
     @property
     def derivation(self) -> list[str]:

@@ -122,7 +122,7 @@ class MotionPolygon:
         turning = self.positions.turnings.get(group.links[0])
         if turning is None:
             return self.positions.known_sine(group)
-        way = self.plan.aside(f"{self.RATE}l {group.name}", *self.way(turning, group), group.lengths[0])
+        way = self.plan.auxiliary(f"{self.RATE}l {group.name}", *self.way(turning, group), group.lengths[0])
         return (*self.positions.known_sine(group), way)
 
     def way(self, turning: Turning, group: StructuralGroup) -> tuple[Any, ...]:

@@ -45,7 +45,7 @@ BALANCE = Rule("balance of the lever", _balance, ("point", "point", "direction")
 
 
 @dataclass(frozen=True)
-class Hung:
+class LeverForce:
     """A force hung on the lever: symbol, point of the turned plan, force N, signed arm m/s (counter-clockwise positive)."""
 
     symbol: str
@@ -61,7 +61,7 @@ class Lever:
     plan: Plan
     velocities: Velocities
     points: dict[str, Step] = field(default_factory=dict)
-    hung: list[Hung] = field(default_factory=list)
+    hung: list[LeverForce] = field(default_factory=list)
     balancing: Step | None = None
     contact: Step | None = None
     line: Step | None = None
@@ -95,7 +95,7 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
         if at is pole:
             return  # a force at a point at rest has no arm
         arm = plan.add(plan.named(f"h {name or sign}"), rules.ARM, pole, at, force, symbol=f"h {sign}" if name else "")
-        result.hung.append(Hung(sign, at, force, arm))
+        result.hung.append(LeverForce(sign, at, force, arm))
         terms.extend((at, force))
 
     for load in loads:
@@ -135,12 +135,12 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
                      symbol=tr("{force} on the lever").format(force=driver.name))
     result.contact = contact
     arm = plan.add(plan.named(f"h {driver.name}"), rules.ARM, pole, contact, force)
-    result.hung.append(Hung(symbol(driver.name), contact, force, arm))
+    result.hung.append(LeverForce(symbol(driver.name), contact, force, arm))
     return result
 
 
 def _turning(vel: Velocities, link: str) -> str | None:
-    """The link whose turning a link shares (a stone turns with its rocker), itself where it turns alone; None at rest."""
+    """The link whose turning a link shares (a slider block turns with its rocker), itself where it turns alone; None at rest."""
     omega = vel.omega[link]
     while omega.rule is SAME and isinstance(omega.args[0], Step):
         omega = omega.args[0]
@@ -153,7 +153,7 @@ def _long_reference(vel: Velocities, link: str) -> tuple[str, str, Step, Step]:
     m = vel.positions.mechanism
     far = max((p for p in m.points if p.link == link and p.start == big_q), key=lambda p: abs(p.distance), default=None)
     lengths = {name: length for g in m.groups for name, length in zip(g.links, g.lengths, strict=False)}
-    # The pin of a stone is no lasting point of its rocker, a hinge at the other end of a rod is.
+    # The pin of a slider block is no lasting point of its rocker, a hinge at the other end of a rod is.
     if far is None or abs(far.distance) <= lengths.get(link, 0.0):
         return big_q, big_b, q, b
     return big_q, far.name, q, vel.points[far.name]

@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_sheets.note.document import Text
 from tmm_sheets.note.phrases import Scope, words
-from tmm_sheets.note.reader import Quantity, Reader
+from tmm_sheets.note.reader import NoteQuantity, Reader
 from tmm_sheets.note.sections.forces import scale_text
 
 MINUTE = radians(1 / 60)
@@ -47,7 +47,7 @@ def scope(r: Reader) -> Scope:
             if said is not None:
                 found.formulas[f"{name.removeprefix('cam-')}/{step.name}"] = said
     if table.speed is not None:
-        turning = r.of_turns("cam.speed", "n", Quantity("ω", float(table.speed), "rad/s", "cam.speed"))
+        turning = r.of_turns("cam.speed", "n", NoteQuantity("ω", float(table.speed), "rad/s", "cam.speed"))
         if turning is not None:
             found.formulas["speed"] = turning
     sizes: dict[str, float] = {}

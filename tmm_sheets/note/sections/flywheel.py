@@ -13,7 +13,7 @@ from tmm_sheets.construction.step import value_at
 from tmm_sheets.note.document import Symbol, Text
 from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Scope, words
-from tmm_sheets.note.reader import Quantity, Reader
+from tmm_sheets.note.reader import NoteQuantity, Reader
 from tmm_sheets.note.sections.forces import scale_text
 from tmm_sheets.numbers import is_zero
 
@@ -70,11 +70,11 @@ def scope(r: Reader) -> Scope:
     drawn = fw.driving_plan["M"]
     mu = fw.scales.moment
     constant = float(np.real(drawn.value))
-    ordinate = Quantity("y_{K}", constant / mu.mu, "mm", "driving-moment/dK")
+    ordinate = NoteQuantity("y_{K}", constant / mu.mu, "mm", "driving-moment/dK")
     found.formulas["driving"] = r.checked(
         "M_{д}" if fw.reduced.resisting else "M_{с}",
         lambda y, m: y * m,
-        [ordinate, Quantity("μ_{M}", mu.mu, "N m/mm", "scales.mu_M")],
+        [ordinate, NoteQuantity("μ_{M}", mu.mu, "N m/mm", "scales.mu_M")],
         drawn,
     )
     for name, scale in vars(fw.scales).items():
@@ -104,11 +104,11 @@ def _reduction(r: Reader, found: Scope) -> None:
     fw = r.project.flywheel
     at = fw.reduced.numbered
     plan = at.plan
-    omega = Quantity("ω_{1}", fw.omega1, "rad/s", "crank.speed")
-    terms: list[Quantity] = []
+    omega = NoteQuantity("ω_{1}", fw.omega1, "rad/s", "crank.speed")
+    terms: list[NoteQuantity] = []
     for name, step in at.terms.items():
         value = float(np.real(value_at(step, r.at(step, None))))
-        terms.append(Quantity(_term(name), value, "J", r.id(step), r.label))
+        terms.append(NoteQuantity(_term(name), value, "J", r.id(step), r.label))
     inertia = at.inertia
     if terms:
 
@@ -128,7 +128,7 @@ def _reduction(r: Reader, found: Scope) -> None:
             )
     moment = at.moment()
     n = r.of(moment)
-    power = Quantity("ΣN", n.value * fw.omega1, "W", r.id(moment), n.position)
+    power = NoteQuantity("ΣN", n.value * fw.omega1, "W", r.id(moment), n.position)
     found.formulas["M"] = r.checked("M_{пр}", lambda p, w: p / w, [power, omega], moment)
 
 

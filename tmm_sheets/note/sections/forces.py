@@ -15,7 +15,7 @@ from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.note.document import Number, Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Said, Scope, bare, words
-from tmm_sheets.note.reader import Differs, Quantity, Reader
+from tmm_sheets.note.reader import Differs, NoteQuantity, Reader
 from tmm_sheets.note.sections.task import pressure_of
 from tmm_sheets.numbers import is_zero
 
@@ -110,27 +110,27 @@ def _vector(loads: dict[str, Any], role: str) -> Step | None:
     return loads[role].vector if role in loads else None
 
 
-def _inertia(r: Reader, name: str, place: str, couple: Step) -> Quantity:
+def _inertia(r: Reader, name: str, place: str, couple: Step) -> NoteQuantity:
     """Moment of inertia that a couple was computed with, given in that ``place``: of the crank with a flywheel that of both."""
     of = couple.args[0]
     step = r.id(of) if isinstance(of, Step) else place
-    return Quantity(f"J_{{S{name}}}", abs(float(value_at(of, r.k))), "kg*m2", step)
+    return NoteQuantity(f"J_{{S{name}}}", abs(float(value_at(of, r.k))), "kg*m2", step)
 
 
-def _couple_formula(r: Reader, found: Scope, name: str, inertia: Quantity, couple: Step) -> None:
+def _couple_formula(r: Reader, found: Scope, name: str, inertia: NoteQuantity, couple: Step) -> None:
     epsilon = r.project.study.accelerations.epsilon[name]
     value = abs(float(value_at(epsilon, r.k)))
     if not is_zero(value, 1.0):
-        turned = Quantity(f"ε_{{{name}}}", value, "rad/s2", r.id(epsilon), r.label)
+        turned = NoteQuantity(f"ε_{{{name}}}", value, "rad/s2", r.id(epsilon), r.label)
         found.formulas["couple"] = r.checked(f"M_{{и{name}}}", lambda x, y: x * y, [inertia, turned], couple)
 
 
 def _weight_formulas(r: Reader, found: Scope, link: Any, place: str, loads: dict[str, Any], moved: Step) -> None:
     """Weight and inertia force of one link, whose mass is given in that ``place``, as formulas."""
     name = link.name
-    mass = Quantity(f"m_{{{name}}}", float(link.mass), "kg", place)
-    g = Quantity("g", r.project.gravity, "m/s2", "forces.gravity")
-    a = Quantity(f"a_{{{link.centre}}}", abs(value_at(moved, r.k)), "m/s2", r.id(moved), r.label)
+    mass = NoteQuantity(f"m_{{{name}}}", float(link.mass), "kg", place)
+    g = NoteQuantity("g", r.project.gravity, "m/s2", "forces.gravity")
+    a = NoteQuantity(f"a_{{{link.centre}}}", abs(value_at(moved, r.k)), "m/s2", r.id(moved), r.label)
     found.formulas["inertia"] = r.checked(f"F_{{и{name}}}", lambda x, y: x * y, [mass, a], loads["inertia"].vector)
     if "weight" in loads:
         found.formulas["weight"] = r.checked(f"G_{{{name}}}", lambda x, y: x * y, [mass, g], loads["weight"].vector)
@@ -164,9 +164,9 @@ def _from_diagram(r: Reader, load: Any) -> dict[str, Any]:
         return {"diagram": True}
     area = pi * float(given.bore) ** 2 / 4
     quantities = [
-        Quantity("D", 1e3 * float(given.bore), "mm", f"force[{i}].bore"),
-        Quantity(pressure_of(given.name), 1e-6 * (force / area + float(given.ambient)), "MPa", r.id(load.vector), r.label),
-        Quantity("p_{0}", 1e-6 * float(given.ambient), "MPa", f"force[{i}].ambient"),
+        NoteQuantity("D", 1e3 * float(given.bore), "mm", f"force[{i}].bore"),
+        NoteQuantity(pressure_of(given.name), 1e-6 * (force / area + float(given.ambient)), "MPa", r.id(load.vector), r.label),
+        NoteQuantity("p_{0}", 1e-6 * float(given.ambient), "MPa", f"force[{i}].ambient"),
     ]
     said = r.checked(letters_of(given.name), lambda d, p, around: pi * d**2 / 4 * (p - around if given.ambient else p), quantities,
                      load.vector)  # fmt: skip
@@ -190,13 +190,14 @@ def _terms(r: Reader, total: Step) -> Iterator[tuple[str, complex, complex, floa
             yield letters_of(couple.name), 0j, 0j, value, couple, 0.0
 
 
-def _sum(r: Reader, total: Step, symbol: str, result: Step, length: Quantity | None, sign: float = 1.0) -> tuple[Said, Node] | None:
+def _sum(r: Reader, total: Step, symbol: str, result: Step, length: NoteQuantity | None,
+         sign: float = 1.0) -> tuple[Said, Node] | None:
     """A force or moment from a sum of moments: its formula, and the equation of equilibrium."""
     size = r.project.study.forces.moment_size(r.k)
     terms = [t for t in _terms(r, total) if not is_zero(t[3], size)]
     if not terms:
         return None
-    quantities: list[Quantity] = []
+    quantities: list[NoteQuantity] = []
     tree: Any = None
     equation: list[Node] = []
     target = -float(np.real(value_at(total, r.k)))
@@ -204,12 +205,12 @@ def _sum(r: Reader, total: Step, symbol: str, result: Step, length: Quantity | N
     for symbol_, _, f, moment, step, arm in terms:
         if arm:
             quantities += [
-                Quantity(symbol_, abs(f), "N", r.id(step), r.label),
-                Quantity(f"h_{{{index_of(symbol_)}}}", arm, "m", r.id(step), r.label),
+                NoteQuantity(symbol_, abs(f), "N", r.id(step), r.label),
+                NoteQuantity(f"h_{{{index_of(symbol_)}}}", arm, "m", r.id(step), r.label),
             ]
             part = expression.Argument(len(quantities) - 2) * expression.Argument(len(quantities) - 1)
         else:
-            quantities.append(Quantity(symbol_, abs(moment), "N*m", r.id(step), r.label))
+            quantities.append(NoteQuantity(symbol_, abs(moment), "N*m", r.id(step), r.label))
             part = expression.Argument(len(quantities) - 1)
         positive = moment * flip < 0
         tree = (part if positive else -part) if tree is None else (tree + part if positive else tree - part)
@@ -222,7 +223,7 @@ def _sum(r: Reader, total: Step, symbol: str, result: Step, length: Quantity | N
     n = r.of(result)
     if abs(abs(value) - abs(n.value)) > 1e-6 * max(abs(n.value), 1e-9 * size):
         raise Differs(f"{symbol}: the record has {n.value}, the note's formula gives {value}")
-    said = r.written(symbol, tree, quantities, Quantity("", value, r.unit_of(result), n.step, n.position))
+    said = r.written(symbol, tree, quantities, NoteQuantity("", value, r.unit_of(result), n.step, n.position))
     own = [letters(symbol), *((Sign("·"), letters(length.symbol)) if length is not None else ())]
     equation += [Sign("+" if target >= 0 else "−"), *own, Sign("="), Words("0")]
     return said, Row(tuple(equation))
@@ -248,7 +249,7 @@ def _group(r: Reader, g: Any, nth: int, told: set[str]) -> dict[str, Any]:
             continue
         total = part.vector.args[0]
         a, b = (complex(value_at(x, r.k)) for x in part.vector.args[1:3])
-        length = Quantity(
+        length = NoteQuantity(
             r.length(part.at, part.centre), abs(b - a), "m", r.id(r.project.study.positions.points[part.at]), r.label
         )
         made = _sum(r, total, letters_of(part.vector.name), part.vector, length)
@@ -281,7 +282,7 @@ def _about_special_point(r: Reader, g: Any) -> Iterator[dict[str, Any]]:
         about, at = (complex(value_at(x, r.k)) for x in step.args[1:3])
         arm = abs(float((np.conj(at - about) * complex(value_at(step.args[3], r.k))).imag))
         symbol = letters_of(step.name.removesuffix("n") if special.third.guide else step.name)
-        length = Quantity(f"h_{{{index_of(symbol)}}}", arm, "m", r.id(step.args[2]), r.label)
+        length = NoteQuantity(f"h_{{{index_of(symbol)}}}", arm, "m", r.id(step.args[2]), r.label)
         made = _sum(r, step.args[0], symbol, step, length)
         item: dict[str, Any] = {"slider": bool(special.third.guide), "zero": made is None}
         item |= {"first": special.pair[0].link, "second": special.pair[1].link, "third": special.third.link}
@@ -317,8 +318,8 @@ def _arm(r: Reader, name: str, step: Step) -> dict[str, Any]:
         letters_of(name),
         lambda m, x: m / x,
         [
-            Quantity(letters_of(moment.name), abs(value), "N*m", r.id(moment), r.label),
-            Quantity(letters_of(force.name), f, "N", r.id(force), r.label),
+            NoteQuantity(letters_of(moment.name), abs(value), "N*m", r.id(moment), r.label),
+            NoteQuantity(letters_of(force.name), f, "N", r.id(force), r.label),
         ],
         step,
     )
@@ -374,11 +375,11 @@ def _force_plan(r: Reader, fp: Any) -> dict[str, Any]:
         force = next((s for s in fp.plan if s.name == _named(plain)), head)
         if sought:
             q = [
-                Quantity(f"|{tail.name}–{head.name}|", mm, "mm", r.id(force), r.label),
-                Quantity("μ_{F}", scale.mu, "N/mm", f"scales.{fp.plan.name}"),
+                NoteQuantity(f"|{tail.name}–{head.name}|", mm, "mm", r.id(force), r.label),
+                NoteQuantity("μ_{F}", scale.mu, "N/mm", f"scales.{fp.plan.name}"),
             ]
             tree: Any = expression.Argument(0) * expression.Argument(1)
-            results.append({"result": r.written(plain, tree, q, Quantity("", abs(f), "N", r.id(force), r.label))})
+            results.append({"result": r.written(plain, tree, q, NoteQuantity("", abs(f), "N", r.id(force), r.label))})
         elif f and mm < SEEN:
             tiny += [", "] if tiny else []
             tiny.append(Symbol(letters(plain)))
@@ -415,7 +416,7 @@ def _crank(r: Reader) -> list[dict[str, Any]]:
         pivot, at = (complex(value_at(x, r.k)) for x in balancing.args[1:3])
         u = complex(value_at(balancing.args[3], r.k))
         arm = abs(float((np.conj(at - pivot) * u).imag))
-        length = Quantity(f"h_{{{index_of(letters_of(r.project.balancing))}}}", arm, "m", r.id(balancing.args[2]), r.label)
+        length = NoteQuantity(f"h_{{{index_of(letters_of(r.project.balancing))}}}", arm, "m", r.id(balancing.args[2]), r.label)
     made = _sum(r, total, letters_of(r.project.balancing), balancing, length)
     if made is not None:
         item |= {"force": made[0], "equation": _shown(made[1], total.name, m.crank.pivot)}
@@ -433,7 +434,7 @@ def _lever(r: Reader, found: Scope) -> None:
         return
     said = words(r.language)["forces"]
     rows: list[tuple[Text, ...]] = [((said["force"],), (said["force_size"],), (said["arm"],), (said["lever_moment"],))]
-    quantities: list[Quantity] = []
+    quantities: list[NoteQuantity] = []
     tree: Any = None
     own = lever.hung[-1]
     last = float(value_at(own.arm, r.k))
@@ -460,8 +461,8 @@ def _lever(r: Reader, found: Scope) -> None:
         if is_zero(f * arm, greatest):
             continue
         quantities += [
-            Quantity(symbol, f, "N", r.id(h.force), r.label),
-            Quantity(f"h_{{{index_of(symbol)}}}", abs(mm), "mm", r.id(h.arm), r.label),
+            NoteQuantity(symbol, f, "N", r.id(h.force), r.label),
+            NoteQuantity(f"h_{{{index_of(symbol)}}}", abs(mm), "mm", r.id(h.arm), r.label),
         ]
         part: Any = expression.Argument(len(quantities) - 2) * expression.Argument(len(quantities) - 1)
         positive = arm * last < 0
@@ -471,24 +472,24 @@ def _lever(r: Reader, found: Scope) -> None:
     driven = letters_of(r.project.balancing)
     # The force that a moment hangs on the lever with is called after it, as on the sheet.
     name = driven if lever.line is not None else f"F_{{{re.sub('[_{}]', '', driven)}}}"
-    quantities.append(Quantity(f"h_{{{index_of(name)}}}", abs(float(scale.mm(last))), "mm", r.id(own.arm), r.label))
+    quantities.append(NoteQuantity(f"h_{{{index_of(name)}}}", abs(float(scale.mm(last))), "mm", r.id(own.arm), r.label))
     tree = tree / expression.Argument(len(quantities) - 1)
     value = float(expression.evaluate(tree, [q.value for q in quantities]))
     if abs(abs(value) - abs(f_own)) > 1e-6 * max(abs(f_own), 1e-12):
         raise Differs(f"lever: the record has {f_own}, the note's formula gives {value}")
-    found.formulas["lever"] = r.written(name, tree, quantities, Quantity("", value, "N", r.id(lever.balancing), r.label))
+    found.formulas["lever"] = r.written(name, tree, quantities, NoteQuantity("", value, "N", r.id(lever.balancing), r.label))
     found.tables["lever"] = tuple(rows)
     if lever.line is None:
         found.letters[bare(name)] = words(r.language)["loads"]["at_pin"]
     found.fields["mu_lever"] = scale_text(scale)
     if lever.line is None:
-        length = Quantity(
+        length = NoteQuantity(
             f"l_{{{study.mechanism.crank.pivot}{study.mechanism.crank.pin}}}",
             float(study.mechanism.crank.length),
             "m",
             r.origin(study.mechanism.crank.length, "crank.length"),
         )
-        force = Quantity(name, abs(f_own), "N", r.id(own.force), r.label)
+        force = NoteQuantity(name, abs(f_own), "N", r.id(own.force), r.label)
         found.formulas["lever_moment"] = r.checked(
             driven, lambda f, length: f * length, [force, length], lever.balancing
         )

@@ -16,7 +16,7 @@ from tmm_sheets.note.digits import shown
 from tmm_sheets.note.document import Figure, Symbol, Text
 from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Said, Scope, listed, words
-from tmm_sheets.note.reader import Quantity, Reader, named
+from tmm_sheets.note.reader import NoteQuantity, Reader, named
 from tmm_sheets.numbers import is_zero, number
 from tmm_sheets.sheets.false_positions import triads
 
@@ -104,20 +104,20 @@ def _first_formulas(r: Reader, found: Scope) -> None:
     crank = study.mechanism.crank
     omega = study.velocities.omega[crank.link]
     q_omega = r.quantity(omega, symbol=f"ω_{{{crank.link}}}")
-    q_omega = Quantity(q_omega.symbol, abs(q_omega.value), q_omega.unit, q_omega.step, q_omega.position)
+    q_omega = NoteQuantity(q_omega.symbol, abs(q_omega.value), q_omega.unit, q_omega.step, q_omega.position)
     from_turns = r.of_turns("crank.speed", "n_1", q_omega)
     if from_turns is not None:
         found.formulas["omega"] = from_turns
     found.fields["omega1"] = r.number(q_omega.value, q_omega.unit, q_omega.step, q_omega.position)
-    length = Quantity(f"l_{{{crank.pivot}{crank.pin}}}", float(crank.length), "m", r.origin(crank.length, "crank.length"))
+    length = NoteQuantity(f"l_{{{crank.pivot}{crank.pin}}}", float(crank.length), "m", r.origin(crank.length, "crank.length"))
     pin = study.velocities.points[crank.pin]
     found.formulas["pin"] = r.checked(f"V_{{{crank.pin}}}", lambda w, length: w * length, [q_omega, length], pin)
     scale = r.scales.get("velocities")
     if scale is not None:
-        drawn = Quantity(f"p{crank.pin.lower()}", float(scale.mm(abs(value_at(pin, r.k)))), "mm", r.id(pin), r.label)
-        of = Quantity(f"V_{{{crank.pin}}}", abs(value_at(pin, r.k)), "m/s", r.id(pin), r.label)
+        drawn = NoteQuantity(f"p{crank.pin.lower()}", float(scale.mm(abs(value_at(pin, r.k)))), "mm", r.id(pin), r.label)
+        of = NoteQuantity(f"V_{{{crank.pin}}}", abs(value_at(pin, r.k)), "m/s", r.id(pin), r.label)
         tree: Any = expression.Argument(0) / expression.Argument(1)
-        found.formulas["mu_V"] = r.written("μ_{V}", tree, [of, drawn], Quantity("", scale.mu, "(m/s)/mm", "scales.mu_V"))
+        found.formulas["mu_V"] = r.written("μ_{V}", tree, [of, drawn], NoteQuantity("", scale.mu, "(m/s)/mm", "scales.mu_V"))
     found.fields["pin"] = Symbol(letters_of_point(crank.pin))
     acceleration = study.accelerations.points[crank.pin]
     if study.running is None and not value_at(study.accelerations.epsilon[crank.link], r.k):
@@ -342,11 +342,11 @@ def _lengths(r: Reader, plan: Plan) -> Iterator[tuple[str, Said]]:
         if s.head.name in crossed and s.tail.name == plan.pole:
             size = float(abs(value_at(s.head, k) - value_at(s.tail, k)))
             if not is_zero(size, _greatest(plan, k)):
-                mm = Quantity(f"{s.tail.name}{named(s.head.name)}", float(scale.mm(size)), "mm", r.id(s.head), r.label)
-                mu = Quantity(scale.symbol, scale.mu, scale.unit, f"scales.{scale.symbol}")
+                mm = NoteQuantity(f"{s.tail.name}{named(s.head.name)}", float(scale.mm(size)), "mm", r.id(s.head), r.label)
+                mu = NoteQuantity(scale.symbol, scale.mu, scale.unit, f"scales.{scale.symbol}")
                 tree = expression.Argument(0) * expression.Argument(1)
                 said = r.written(
-                    s.symbol.replace(BAR, ""), tree, [mm, mu], Quantity("", size, plan.unit, r.id(s.head), r.label)
+                    s.symbol.replace(BAR, ""), tree, [mm, mu], NoteQuantity("", size, plan.unit, r.id(s.head), r.label)
                 )
                 yield "size", said
                 return
@@ -378,8 +378,8 @@ def _angular(r: Reader, plan: Plan, steps: dict[str, Step]) -> Iterator[dict[str
             )
             symbol = across.symbol.replace(BAR, "") if across is not None else f"a_{{{b.name}{a.name}}}^{{τ}}"
         quantities = [
-            Quantity(symbol, size, plan.unit, r.id(head), r.label),
-            Quantity(r.length(b.name, a.name), float(length), "m", r.id(b), r.label),
+            NoteQuantity(symbol, size, plan.unit, r.id(head), r.label),
+            NoteQuantity(r.length(b.name, a.name), float(length), "m", r.id(b), r.label),
         ]
         letter = "ε" if second else "ω"
         said = r.checked(f"{letter}_{{{link}}}", lambda x, length: x / length, quantities, step)

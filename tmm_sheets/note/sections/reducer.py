@@ -7,7 +7,7 @@ from typing import Any
 from tmm_sheets.note.document import Symbol, Text
 from tmm_sheets.note.formula import letters
 from tmm_sheets.note.phrases import Scope, words
-from tmm_sheets.note.reader import Quantity, Reader
+from tmm_sheets.note.reader import NoteQuantity, Reader
 from tmm_sheets.numbers import number
 
 
@@ -69,7 +69,7 @@ def _speeds(r: Reader, found: Scope) -> None:
     for key in ("input_speed", "output_speed"):
         value = getattr(table, key)
         if value is not None:
-            omega = Quantity(symbols[f"reducer.{key}"], float(value), "rad/s", f"reducer.{key}")
+            omega = NoteQuantity(symbols[f"reducer.{key}"], float(value), "rad/s", f"reducer.{key}")
             said = r.of_turns(f"reducer.{key}", omega.symbol.replace("ω", "n"), omega)
             if said is not None:
                 found.formulas[key] = said

@@ -7,7 +7,7 @@ from tmm_sheets.note import phrases
 from tmm_sheets.note.document import Number, Symbol, Text
 from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Scope
-from tmm_sheets.note.reader import Quantity, Reader
+from tmm_sheets.note.reader import NoteQuantity, Reader
 from tmm_sheets.words import of_file, tr
 
 
@@ -90,5 +90,5 @@ def _mobility(r: Reader, symbol: str, n: int, p5: int, value: int, step: str) ->
     """Chebyshev's formula W = 3n - 2p5 - p4."""
     a = [expression.Argument(i) for i in range(3)]
     tree = expression.Operation("-", (3 * a[0] - 2 * a[1], a[2]))
-    quantities = [Quantity("n", n, step=step), Quantity("p_5", p5, step=step), Quantity("p_4", 0, step=step)]
-    return r.written(symbol, tree, quantities, Quantity("", value, step=step))
+    quantities = [NoteQuantity("n", n, step=step), NoteQuantity("p_5", p5, step=step), NoteQuantity("p_4", 0, step=step)]
+    return r.written(symbol, tree, quantities, NoteQuantity("", value, step=step))

@@ -9,7 +9,7 @@ from tmm_sheets.construction import expression
 from tmm_sheets.note.document import Symbol, Text
 from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Scope, words
-from tmm_sheets.note.reader import Quantity, Reader, symbol_of
+from tmm_sheets.note.reader import NoteQuantity, Reader, symbol_of
 
 NEAR = 1.0
 """Difference from what is asked, per cent, that a drawing does not show."""
@@ -52,7 +52,7 @@ def scope(r: Reader) -> Scope | None:
             degrees = turn * 180 / pi
             ratio = turn / (2 * pi - turn)
             found.formulas["ratio"] = r.written(
-                "K", tree, [Quantity("φ_{рх}", degrees, "deg", "dead-positions")], Quantity("", ratio, "", "dead-positions")
+                "K", tree, [NoteQuantity("φ_{рх}", degrees, "deg", "dead-positions")], NoteQuantity("", ratio, "", "dead-positions")
             )
             found.fields["ratio"] = r.number(ratio, "", "dead-positions")
             found.fields["faster"] = r.number(1 / ratio, "", "dead-positions") if ratio < 1 else None
@@ -65,8 +65,8 @@ def scope(r: Reader) -> Scope | None:
                 found.formulas["theta"] = r.written(
                     "θ",
                     theta,
-                    [Quantity("K", float(asked), "", "cycle.coefficient")],
-                    Quantity("", 180 * (float(asked) - 1) / (float(asked) + 1), "deg", "cycle.coefficient"),
+                    [NoteQuantity("K", float(asked), "", "cycle.coefficient")],
+                    NoteQuantity("", 180 * (float(asked) - 1) / (float(asked) + 1), "deg", "cycle.coefficient"),
                 )
     return found
 

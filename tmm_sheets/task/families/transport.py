@@ -17,7 +17,7 @@ from math import acos, cos, degrees, radians, sin
 from string import Template
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets import nearest, resources
+from tmm_sheets import resources, spelling
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.task import headings
 from tmm_sheets.task.misprint import Misprint
@@ -188,7 +188,7 @@ def project_file(name: str, corrected: bool = False) -> tuple[str, tuple[str, ..
     """
     machine, at, code = name.removeprefix("transport/").partition("@")
     if machine not in MACHINES:
-        near = nearest.near(machine, MACHINES)
+        near = spelling.near(machine, MACHINES)
         raise BadInput(tell('unknown machine "{machine}" of manual 003').format(machine=machine),
                        hint=tell("did you mean {near}?").format(near=f"transport/{near[0]}") if near else
                        tell("known are {known}").format(known=", ".join(MACHINES)))

@@ -1,0 +1,221 @@
+"""A number worked out again from the student's own ones, by the very steps it comes from.
+
+Nothing is linear here and no formula is written a second time: the numbers that were measured take the place of what their steps
+had to give, and the rules behind them are done again. Only what stands between the measured numbers and this one may be off: the
+pencil of these steps, the reading of both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from tmm_sheets.construction.rules import take
+from tmm_sheets.construction.step import Step, value_of
+
+if TYPE_CHECKING:
+    from tmm_sheets.compare.measured.judged import JudgedValue, Place
+    from tmm_sheets.construction.error import Errors
+
+FAR = 30
+"""Steps between measured numbers beyond which a number does not follow from them plainly."""
+UNSEEN = 0.1
+"""Share of its tolerance that a number may owe to what was not measured of the points it is made of."""
+_Values = dict[int, Any]
+"""Values of steps by their id()."""
+
+
+class OwnValue:
+    """What the measured numbers that one is made of let expect of it."""
+
+    def __init__(self, j: JudgedValue, again: _Again) -> None:
+        self._j, self._again = j, again
+        self._off = {place: m.deviation * _along(m, again.steps[place].step) for place, m in again.measured.items()}
+        self._values = again.values(self._off)
+        self.expected = _change(j, self._values)
+        """Expected deviation from the exact value, in the unit of the number."""
+
+    @cached_property
+    def tolerance(self) -> float:
+        """How far the number may be from that; infinite where it depends on more than what was measured of a point."""
+        scatter, unknown = [self._j.reading], 0.0
+        for place, (step, measured, _) in self._again.steps.items():
+            if measured is None:
+                own = self._again.errors.own(step)
+                scatter += [self._moved(place, complex(*column)) for column in own[min(place[1], len(own) - 1)].T]
+                continue
+            along = _along(measured, step)
+            scatter.append(self._moved(place, along * (measured.line.half_digit if measured.entry.kind == "result" else
+                                                       measured.reading)))
+            if np.iscomplexobj(step.value) and step.rule.gives != "direction":
+                across = 1j * along / abs(along)
+                across *= self._again.errors.of_sum([(step, place[1], across)])[0]
+                unknown = float(np.hypot(unknown, self._moved(place, across)))
+        known = float(np.linalg.norm(scatter))
+        return float("inf") if unknown > UNSEEN * known else known
+
+    @cached_property
+    def reasons(self) -> list[tuple[JudgedValue, float]]:
+        """The measured numbers, each with what it contributes to the expected deviation, the greatest first."""
+        parts = [(m, -self._moved(place, -self._off[place])) for place, m in self._again.measured.items()]
+        return sorted(parts, key=lambda part: -abs(part[1]))
+
+    @property
+    def known_in_part(self) -> Iterator[Place]:
+        """Steps between the measured numbers and this one, its own included, and points: one number does not tell where one is."""
+        return (place for place, (step, measured, _) in self._again.steps.items()
+                if measured is None or np.iscomplexobj(step.value))
+
+    def _moved(self, place: Place, way: complex) -> float:
+        """What the number does when one step comes out elsewhere."""
+        return _change(self._j, self._again.moved(self._values, place, way)) - self.expected if way else 0.0
+
+
+class OwnSteps:
+    """Numbers done again from those before them; ``judged`` in the order of drawing."""
+
+    def __init__(self, judged: Sequence[JudgedValue], errors: Errors) -> None:
+        self._errors = errors
+        self._rank = {id(j): r for r, j in enumerate(judged)}
+        self._measured: dict[Place, list[JudgedValue]] = {}
+        self._known: dict[int, OwnValue | None] = {}
+        self._rows: dict[tuple[int, int], Any] = {}
+        for j in judged:
+            uncertain = [term for term in j.entry.terms if self._uncertain(term[0], term[1])]
+            if len(uncertain) == 1 and np.isfinite(j.tolerance) and not j.entry.is_way:
+                self._measured.setdefault(_place(*uncertain[0][:2]), []).append(j)
+
+    def value(self, j: JudgedValue) -> OwnValue | None:
+        """What the numbers it is made of let expect of a number; None where not all that it is made of was measured or given."""
+        if id(j) not in self._known:
+            again = _Again(self._errors)
+            made = all(self._gathered(step, k, j, again) for step, k, _ in j.entry.terms)
+            self._known[id(j)] = OwnValue(j, again) if made and again.measured else None
+        return self._known[id(j)]
+
+    def _uncertain(self, step: Step, k: int) -> bool:
+        error = self._errors.error(step)
+        return bool(error[min(k, len(error) - 1)] != 0)
+
+    def _gathered(self, step: Step, k: int, j: JudgedValue, again: _Again) -> bool:
+        """Gather what a step is made of, back to measured numbers; False where something drawn was not measured."""
+        place = _place(step, k)
+        if place in again.steps or not self._uncertain(step, k):
+            return True
+        before = [m for m in self._measured.get(place, ()) if self._rank[id(m)] < self._rank[id(j)]]
+        if before:
+            # A length is plotted from, a result computed from what was written down.
+            again.take(step, place, max(before, key=lambda m: (m.entry.kind == j.entry.kind, self._rank[id(m)])))
+            return True
+        if len(again.steps) >= FAR:
+            return False
+        made_of = [*self._made_of(step, k)]
+        for a, at in made_of:
+            if np.ndim(a.value) and np.size(a.value) not in (1, np.size(step.value)) and step.rule.compute is not take:
+                return False
+            if self._uncertain(a, at) and not self._gathered(a, at, j, again):
+                return False
+        again.make(step, place, [_place(a, at) for a, at in made_of])
+        return True
+
+    def _made_of(self, step: Step, k: int) -> Iterator[tuple[Step, int]]:
+        """Arguments that a step depends on at a position, and at which."""
+        args = self._errors.arguments(step)
+        for i, a in enumerate(args):
+            if not isinstance(a, Step):
+                continue
+            if step.rule.compute is take:
+                number = np.asarray(value_of(step.args[1]), dtype=int)
+                yield a, int(number[k] if number.ndim else number)
+            elif np.size(step.value) == 1 or np.size(a.value) > 1 or self._moved(step, k, i):
+                yield a, k
+
+    def _moved(self, step: Step, k: int, i: int) -> bool:
+        """Whether a step moves at a position when one argument does: a row of points depends on each in its place only."""
+        if (id(step), i) not in self._rows:
+            args = self._errors.arguments(step)
+            values = [value_of(a) for a in args]
+            values[i] = values[i] + np.max(self._errors.error(args[i])) * (1 + 1j if np.iscomplexobj(values[i]) else 1)
+            self._rows[id(step), i] = np.asarray(self._errors.replayed(step, values)) != step.value
+        return bool(self._rows[id(step), i][k])
+
+
+class _Done(NamedTuple):
+    """A step at a position: the number measured on it, or what it is made of."""
+
+    step: Step
+    measured: JudgedValue | None
+    made_of: Sequence[Place]
+
+
+class _Again:
+    """Steps done again in their order, from measured numbers."""
+
+    def __init__(self, errors: Errors) -> None:
+        self.errors = errors
+        self.steps: dict[Place, _Done] = {}
+
+    @property
+    def measured(self) -> dict[Place, JudgedValue]:
+        """The numbers all begins with."""
+        return {place: done.measured for place, done in self.steps.items() if done.measured is not None}
+
+    def take(self, step: Step, place: Place, j: JudgedValue) -> None:
+        """Begin with a measured number."""
+        self.steps[place] = _Done(step, j, ())
+
+    def make(self, step: Step, place: Place, made_of: Sequence[Place]) -> None:
+        """Do a step again from what is there."""
+        self.steps[place] = _Done(step, None, made_of)
+
+    def values(self, shifts: Mapping[Place, complex]) -> _Values:
+        """Values of the steps when the measured ones come out so much elsewhere."""
+        values: _Values = {}
+        for place, (step, measured, _) in self.steps.items():
+            if measured is None:
+                self._do(place, values)
+            else:
+                _shift(values, step, place, shifts[place])
+        return values
+
+    def moved(self, values: _Values, place: Place, way: complex) -> _Values:
+        """The same with one step elsewhere: what depends on it is done again, nothing else."""
+        values, moved = dict(values), {place}
+        _shift(values, self.steps[place].step, place, way)
+        for other, done in self.steps.items():
+            if not moved.isdisjoint(done.made_of):
+                self._do(other, values)
+                moved.add(other)
+        return values
+
+    def _do(self, place: Place, values: _Values) -> None:
+        step = self.steps[place].step
+        made = np.asarray(self.errors.replayed(step, [values.get(id(a), value_of(a)) for a in self.errors.arguments(step)]))
+        now = np.array(values.get(id(step), step.value))
+        at = (place[1],) if now.ndim else ()
+        now[at] = made[at] if made.ndim else made
+        values[id(step)] = now
+
+
+def _shift(values: _Values, step: Step, place: Place, way: complex) -> None:
+    now = np.array(values.get(id(step), step.value))
+    now[(place[1],) if now.ndim else ()] += way if now.dtype.kind == "c" else complex(way).real
+    values[id(step)] = now
+
+
+def _change(j: JudgedValue, values: _Values) -> float:
+    """How much a number changes when steps have these values."""
+    return j.changed(lambda step: values.get(id(step), step.value))
+
+
+def _along(j: JudgedValue, step: Step) -> complex:
+    """Displacement of a step for which the number measured on it grows by one."""
+    g = next(g for s, _, g in j.entry.terms if s is step) * j.size
+    return g / abs(g) ** 2
+
+
+def _place(step: Step, k: int) -> Place:
+    return id(step), k if np.size(step.value) > 1 else 0

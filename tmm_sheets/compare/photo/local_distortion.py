@@ -1,0 +1,265 @@
+"""Places where the paper bulges: over what lies beneath it, across a crease, along an edge that stands up.
+
+A map follows paper as it usually bends. Where it does not, one straight line after the other is seen with the same bend in it. A
+hand draws lines in wrong places, too long, turned, but with a ruler and compasses: when several lines near each other are neither
+straight nor round any more, the paper is guilty. There the map is corrected by all lines that can be followed; where that does not
+help, nothing is judged.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tmm_sheets.compare.elements import Element, grown, sampled
+from tmm_sheets.compare.photo.ink_levels import ink_levels
+from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.masking import fill
+from tmm_sheets.compare.photo.occlusion import Mask, at
+from tmm_sheets.compare.photo.profiles import follow, peaks, pixels, sample
+from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Floats, Map, spline_base
+from tmm_sheets.compare.photo.stations import Stations, fit, measurable, similarity_base
+from tmm_sheets.drawing.marks import Points
+from tmm_sheets.words import tell
+
+REACH, ACROSS, ALONG = 4.0, 0.2, 1.0
+"""mm to both sides of a line, and between offsets across it and stations along it."""
+PIECE, SHORTEST = 60, 25
+"""Stations of a piece of a line that is followed; pieces overlap by half. Stations of the shortest line."""
+NEAR = 1.5
+"""mm from another line within which a line is not followed."""
+LOOSE, STRAIGHT = 0.3, 0.4
+"""mm off a similarity from which on a station counts little, and least share of a line that is not."""
+BENT, BEND = 0.5, 6
+"""mm off a similarity from which on a line is bent, and for how many stations."""
+INKED = 0.8
+"""Least share of the stations of a bend, and of those beside it, that have ink."""
+SEVERAL, TOGETHER = 3, 60.0
+"""Least number of lines bent near each other by which the paper bulges, and how near that is, mm."""
+TABLES = ("frame", "table")
+"""Roles of lines too near to lettering to tell of a bulge, but when several are bent alike, by nearly as much, this near, mm."""
+ALIKE, BESIDE = 0.5, 40.0
+CELL, ABOUT = 12.0, 50.0
+"""Side of the cells of the spline by which a map follows a bulge, mm, and how far about its bends it may."""
+FAR = (3.0, 1.5, 0.8, 0.5, 0.5)
+"""Distances from which on lines count little there, mm, one after the other."""
+POINT, BEND_OF_SPLINE, SIZE = 0.6, 2.0, 20.0
+"""Usual error of a followed point, usual second difference of the spline and its usual size, mm."""
+MARGIN = 8
+"""mm about bent lines in which nothing is judged."""
+ROUNDS = 2
+"""How often lines are followed anew over a bulge."""
+OFFSETS = np.arange(-REACH, REACH + ACROSS / 2, ACROSS)
+
+
+class TracedLine(NamedTuple):
+    """A line followed through its ink: stations, their normals, how far off the ink is, mm, where it was seen, where it is bent."""
+
+    element: Element
+    points: Points
+    normals: Points
+    off: Floats
+    seen: Any
+    bent: Any
+
+
+def trace_lines(elements: Sequence[Element], ink: Any, level: float, hidden: Mask) -> list[TracedLine]:
+    """The lines of a rectified sheet that can be followed."""
+    chosen, p, n, real = _pieces(elements)
+    if not chosen:
+        return []
+    owners = Owners(*ink.shape)
+    for e in elements:
+        owners.add(e, e.points)
+    of = np.repeat([e.number for e, _ in chosen], [count for _, count in chosen])
+    places = p[..., None] + n[..., None] * OFFSETS
+    profile = sample(ink, pixels(places)).astype(np.float32)
+    # A line of lettering is as straight as one of ink, and as near to the lines of a table.
+    words = np.zeros_like(ink)
+    for e in elements:
+        if e.kind == "text":
+            fill(words, grown(e.points, 0.5))
+    others = owners.others(of[:, None, None], places) | (sample(words, pixels(places), nearest=True) > 0)
+    others &= np.abs(OFFSETS) > 0.45
+    # Half way to the next line known on either side.
+    below = np.where(others & (OFFSETS < 0), -OFFSETS, 2 * REACH).min(-1)
+    above = np.where(others & (OFFSETS > 0), OFFSETS, 2 * REACH).min(-1)
+    known = (np.minimum(below, above) > NEAR) & real & ~at(p, hidden)
+    clear = (0.5 * below[..., None] >= -OFFSETS) & (0.5 * above[..., None] >= OFFSETS) & known[..., None]
+    profile = np.where(clear, profile, 0)
+    way = OFFSETS[follow(np.minimum(profile, 2 * level), 2)]
+    off, strength = (part.reshape(way.shape) for part in peaks(profile.reshape(-1, len(OFFSETS)), OFFSETS, way.ravel(), 0.6, 0.5))
+    seen = strength > level
+    out: list[TracedLine] = []
+    first = 0
+    for e, count in chosen:
+        mine = slice(first, first + count)
+        first += count
+        z, w, o, k, s = (_joined(part[mine], real[mine]) for part in (p, n, off, known, seen))
+        if s.sum() >= SHORTEST:
+            out.append(TracedLine(e, z, w, o, s, _bent(e, z, w, o, k, s)))
+    return out
+
+
+def local_distortion(lines: Sequence[TracedLine]) -> Points:
+    """Places at which lines are bent near others that are."""
+    bent = [line for line in lines if line.bent.any()]
+    alike = _alike([line for line in bent if line.element.role in TABLES])
+    bends = [(line, line.points[line.bent]) for line in bent if line.element.role not in TABLES] + alike
+    if len(bends) < SEVERAL:
+        return np.zeros(0, complex)
+    strokes = _strokes([z for _, z in bends])
+    # One every few mm is enough to be near to.
+    near = [sum((np.abs(z[:, None] - np.concatenate(stroke)[None, ::3]).min(1) < TOGETHER).astype(int) for stroke in strokes)
+            for _, z in bends]
+    return np.concatenate([z[count >= SEVERAL] for (_, z), count in zip(bends, near, strict=True)])
+
+
+def _alike(lines: Sequence[TracedLine]) -> list[tuple[TracedLine, Points]]:
+    """Bends of lines, most of each like those of several; at the end of the reach it is something else that is followed."""
+    bends = [(line.points[here], (line.off * line.normals)[here]) for line in lines
+             for here in [line.bent & (np.abs(line.off) < REACH - LOOSE)]]
+    out = []
+    for line, (z, by) in zip(lines, bends, strict=True):
+        same = [((np.abs(z[:, None] - other) < BESIDE) & (np.abs(by[:, None] - its) < ALIKE)).any(1) for other, its in bends]
+        some = z[np.sum(same, 0) >= SEVERAL]
+        if len(some) > 0.5 * len(z):
+            out.append((line, some))
+    return out
+
+
+def _strokes(bends: Sequence[Points]) -> list[list[Points]]:
+    """Bends by the strokes they are in: lines that lie in one, a vector and the line it was built on, are bent once."""
+    out: list[list[Points]] = []
+    for z in bends:
+        same = next((s for s in out if (np.abs(z[:, None] - np.concatenate(s)[None]).min(1) < NEAR).mean() > 0.5), None)
+        if same is None:
+            out.append([z])
+        else:
+            same.append(z)
+    return out
+
+
+def over_bulges(
+    m: Map, ink: Any, elements: Sequence[Element], hidden: Mask, straighten: Callable[[Map], Any],
+) -> tuple[Map, Any, Points]:
+    """The map corrected where the paper bulges, the picture it straightens, and places where it bulges still."""
+    places = local_distortion(lines := trace_lines(elements, ink, ink_levels(ink)[1], hidden))
+    if not len(places):
+        return m, ink, places
+    for _ in range(ROUNDS):
+        m = _over(m, lines, places)
+        ink = straighten(m)
+        lines = trace_lines(elements, ink, ink_levels(ink)[1], hidden)
+        left = local_distortion(lines)
+        places = np.concatenate((places, left))
+    return m, ink, left
+
+
+def _over(m: Map, lines: Sequence[TracedLine], places: Points) -> Map:
+    """The map corrected about bulges at ``places`` by all lines there."""
+    shape = (round(FRAME.height / CELL) + 3, round(FRAME.width / CELL) + 3)
+    x = FRAME.x0 + (np.arange(shape[1]) - 1) * FRAME.width / (shape[1] - 3)
+    y = FRAME.y0 + (np.arange(shape[0]) - 1) * FRAME.height / (shape[0] - 3)
+    nodes = (x[None, :] + 1j * y[:, None]).ravel()
+    free = np.abs(nodes[:, None] - places[None, ::4]).min(1) < ABOUT
+    z, n, o = (np.concatenate([part[line.seen] for part, line in zip(parts, lines, strict=True)]) for parts in (
+        [line.points for line in lines], [line.normals for line in lines], [line.off for line in lines]))
+    here = np.abs(z[:, None] - places[None, ::4]).min(1) < ABOUT
+    z, n, o = z[here], n[here], o[here]
+    base = spline_base(z, shape)[:, free]
+    local = m.local if m.local.size else np.zeros((2, *shape))
+    old = local.reshape(2, -1)[:, free].ravel()
+    seen = z + n * o
+    wanted = np.real(np.conj(n) * (seen + m.correction(seen) - z - m.correction(z)))
+    one = np.zeros((np.count_nonzero(free), *shape))
+    one.reshape(len(one), -1)[np.arange(len(one)), np.flatnonzero(free)] = 1
+    rough = np.concatenate([np.diff(one, 2, axis=k).reshape(len(one), -1) for k in (1, 2)], 1)
+    rough = rough[:, rough.any(0)]
+    prior = rough @ rough.T / BEND_OF_SPLINE**2 + np.eye(len(one)) / SIZE**2
+    prior = np.kron(np.eye(2), prior)
+    both = np.hstack((n.real[:, None] * base, n.imag[:, None] * base))
+    target = wanted + both @ old
+    c = old
+    for far in FAR:
+        w = 1 / (1 + ((target - both @ c) / far) ** 2) ** 2 / POINT**2
+        c = np.linalg.solve(both.T @ (both * w[:, None]) + prior, both.T @ (w * target))
+    out = local.reshape(2, -1).copy()
+    out[:, free] = c.reshape(2, -1)
+    return replace(m, local=out.reshape(2, *shape))
+
+
+def about(places: Points) -> Mask:
+    """Where nothing is to be judged, a pixel for each square millimetre, the upper row first."""
+    import cv2
+
+    out = np.zeros((round(PAPER.height), round(PAPER.width)), np.uint8)
+    out[(PAPER.y1 - places.imag).astype(int).clip(0, len(out) - 1), places.real.astype(int).clip(0, out.shape[1] - 1)] = 1
+    return cv2.dilate(out, np.ones((2 * MARGIN + 1, 2 * MARGIN + 1), np.uint8)) > 0
+
+
+def bulge_notes(path: Path, bulging: Mask) -> Iterator[str]:
+    """What is to be said of the places where nothing is judged, a line each."""
+    import cv2
+
+    _, _, _, middles = cv2.connectedComponentsWithStats(bulging.astype(np.uint8))
+    said = tell("{file}: the paper bulges about x = {x}, y = {y} mm, so what is drawn there is not judged: lay it flat, nothing "
+                "beneath it")
+    for column, row in middles[1:]:
+        yield said.format(file=path.name, x=f"{column:.0f}", y=f"{PAPER.y1 - row:.0f}")
+
+
+def _bent(e: Element, z: Points, n: Points, o: Floats, known: Any, seen: Any) -> Any:
+    """Where a line is off what a hand could have done to it: in part of its length, along one stroke."""
+    here = np.zeros(len(z), bool)
+    half = max(float(np.abs(z - z.mean()).max()), 1.0)
+    raw = similarity_base(z, n, e.centre if e.kind == "circle" else z.mean(), half)
+    if e.kind == "line":
+        raw[:, 3] = 0.0
+    base = Stations(z, n, raw, half).base(seen)
+    off = o - base @ fit(base, o, seen, LOOSE)
+    if (np.abs(off[seen]) < LOOSE).mean() < STRAIGHT:
+        return here
+    for sign in (1, -1):
+        far = (sign * off > BENT) | ~known
+        for a, b in _runs(far):
+            beside = slice(max(a - BEND, 0), b + BEND)
+            if (seen & far)[a:b].sum() >= BEND and seen[beside].sum() >= INKED * known[beside].sum():
+                here[a:b] |= seen[a:b]
+    return here
+
+
+def _runs(some: Any) -> Iterator[tuple[int, int]]:
+    """Beginnings and ends of runs."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], some.astype(np.int8), [0]))))
+    yield from zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+
+
+def _joined(pieces: Any, real: Any) -> Any:
+    """The stations of a line from its pieces, of each the middle, where it was followed from both sides."""
+    last, quarter = len(pieces) - 1, PIECE // 4
+    some = [slice(quarter if k else 0, PIECE - quarter if k < last else PIECE) for k in range(len(pieces))]
+    return np.concatenate([row[s][there[s]] for row, there, s in zip(pieces, real, some, strict=True)])
+
+
+def _pieces(elements: Sequence[Element]) -> tuple[list[tuple[Element, int]], Points, Points, Any]:
+    """Lines drawn with a ruler or compasses, and how many pieces each has; of the pieces stations, normals, and which are real."""
+    chosen: list[tuple[Element, int]] = []
+    p, n, real = [], [], []
+    for e in elements:
+        if not measurable(e) or e.style == "text" or e.kind == "curve" or e.length < SHORTEST * ALONG:
+            continue
+        z, w = sampled(e.points, ALONG)
+        starts = range(0, max(len(z) - PIECE // 2, 1), PIECE // 2)
+        for first in starts:
+            lack = max(first + PIECE - len(z), 0)
+            p.append(np.pad(z[first : first + PIECE], (0, lack), mode="edge"))
+            n.append(np.pad(w[first : first + PIECE], (0, lack), mode="edge"))
+            real.append(np.arange(PIECE) < PIECE - lack)
+        chosen.append((e, len(starts)))
+    none = np.zeros((0, PIECE), complex)
+    return (chosen, np.stack(p), np.stack(n), np.stack(real)) if chosen else (chosen, none, none, none.real > 0)

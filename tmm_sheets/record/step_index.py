@@ -1,0 +1,111 @@
+"""The steps of a project under their ids, arguments before what is made of them, and the rules they use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from tmm_sheets.construction import expression
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Step, ordered, parents
+from tmm_sheets.words import tr
+
+
+def chain(steps: Iterable[Step], seen: set[int] | None = None) -> Iterator[Step]:
+    """The steps with all that they are made of, also by numbers that were found, each once, arguments first."""
+    return ordered(steps, parents, seen)
+
+
+class StepIndex:
+    """Plans by their ids, steps by theirs ("plan/name"), rules by their keys.
+
+    Steps that belong to no plan (a number that spares rounding) stand in the plan of the first step made of them.
+    """
+
+    def __init__(self, plans: Iterable[Plan]) -> None:
+        self.plans: dict[str, Plan] = {}
+        self.steps: dict[str, Step] = {}
+        self.of: dict[str, list[str]] = {}
+        self.rules: dict[str, dict[str, Any]] = {}
+        self._ids: dict[int, str] = {}
+        self._plan_of: dict[int, str] = {}
+        self._keys: dict[tuple[int, int], str] = {}
+        given = list(plans)
+        for plan in given:
+            self.plans[_free(plan.name, self.plans)] = plan
+        for name, plan in self.plans.items():
+            self.of[name] = []
+            for step in (*plan.auxiliaries.values(), *plan):
+                self._plan_of.setdefault(id(step), name)
+        for name, plan in self.plans.items():
+            self._adopt([*plan, *plan.auxiliaries.values()], name)
+        seen: set[int] = set()
+        for plan in self.plans.values():
+            for step in chain((*plan, *plan.auxiliaries.values()), seen):
+                self._enter(step)
+
+    def _adopt(self, steps: Iterable[Step], plan: str) -> None:
+        """Steps without a plan go to the plan that uses them."""
+        for step in chain(steps):
+            self._plan_of.setdefault(id(step), plan)
+
+    def _enter(self, step: Step) -> None:
+        plan = self._plan_of[id(step)]
+        found = _free(f"{plan}/{step.name}", self.steps)
+        self._ids[id(step)] = found
+        self.steps[found] = step
+        self.of[plan].append(found)
+
+    def id(self, step: Step) -> str:
+        """Id of a step; KeyError for one that is not recorded."""
+        return self._ids[id(step)]
+
+    def __contains__(self, step: Step) -> bool:
+        return id(step) in self._ids
+
+    def plan(self, step: Step) -> str:
+        """Id of the plan of a step."""
+        return self._plan_of[id(step)]
+
+    def rule(self, step: Step) -> str:
+        """Key of the rule of a step, which is entered among the rules when it is met first.
+
+        A rule that takes any number of arguments has a formula for each number of them.
+        """
+        known = self._keys.get((id(step.rule), len(step.args)))
+        if known is None:
+            made = rule_json(step)
+            known = next(key for key in _keys(step.rule.name, len(step.args)) if self.rules.setdefault(key, made) == made)
+            self._keys[id(step.rule), len(step.args)] = known
+        return known
+
+
+def rule_json(step: Step) -> dict[str, Any]:
+    """The rule of a step for its number of arguments: what it takes and gives, and its primitive or its formula."""
+    rule, count = step.rule, len(step.args)
+    tree = rule.tree(count)
+    takes = [*rule.takes[:count], *(a.rule.gives if isinstance(a, Step) else "number" for a in step.args[len(rule.takes):])]
+    found: dict[str, Any] = {"takes": takes, "gives": rule.gives}
+    if isinstance(tree, expression.Operation) and tree.function is not None and [
+            getattr(p, "index", None) for p in tree.parts] == list(range(count)):
+        return found | {"primitive": tree.name}
+    if tree is not None:
+        found["expression"] = expression.as_json(tree)
+    return found | ({"source": tr(rule.source)} if rule.source else {})
+
+
+def _keys(name: str, count: int) -> Iterator[str]:
+    yield name
+    yield f"{name} ({count})"
+    n = 2
+    while True:
+        yield f"{name} ({count}, {n})"
+        n += 1
+
+
+def _free(name: str, taken: dict[str, Any]) -> str:
+    n = 2
+    found = name
+    while found in taken:
+        found, n = f"{name}@{n}", n + 1
+    return found

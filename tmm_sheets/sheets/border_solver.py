@@ -1,0 +1,206 @@
+"""Where the borders between the views of a sheet run: each view gets a place of the shape it needs.
+
+The boxes of an arrangement are cut apart by straight lines from side to side, again and again: a tree of rows and columns with the
+views as leaves. It says what stands where and in what order; the sizes are proportions only. Borders then move as long as the
+views fill the sheet better. Everything is done in a fixed order and in steps of whole millimetres: the same needs, the same places.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from math import floor, inf, log10
+
+from tmm_sheets.box import Box
+from tmm_sheets.construction.scale import HANDY
+
+GAP = 6.0
+"""Largest distance that is kept between views, mm: the room of a view left out goes to its neighbours."""
+ROUNDED = 1.0
+"""What a place loses at most when its borders go to whole millimetres, mm."""
+STEPS = ((60.0, 35.0, 20.0, 11.0, 6.0), (4.0, 2.0, 1.0)), ((20.0, 11.0, 6.0), (4.0, 2.0, 1.0))
+"""How far borders move at a time, mm: at first as far as is best, in the end to the millimetre; and not so far at first.
+
+A far move may end where no other leads on: of several beginnings the best end is taken.
+"""
+ROUNDS = 3
+"""How often all borders are tried with each of these."""
+_SERIES = (*HANDY, 10.0)
+
+
+def rounded_up(mu: float) -> float:
+    """The next scale factor of the series, as :func:`~tmm_sheets.construction.scale.handy`, quick and not to the last digit."""
+    power = 10.0 ** floor(log10(mu))
+    return _SERIES[bisect_left(_SERIES, mu / power * (1 - 1e-9))] * power
+
+
+@dataclass(frozen=True)
+class Need:
+    """What a view needs of its place, mm.
+
+    ``span`` is what it draws to a scale, in its own unit, ``around`` what comes to it on paper whatever the scale: letters,
+    symbols, headings. ``least`` is the size below which it cannot be read, ``most`` that from which on more room is of no use.
+    ``finest`` is the least scale factor that is of use. ``drawn`` tells, for what has no scale, the area it fills of a place of
+    some width and height. ``covered`` is what lies over the place at its top, the turned designation.
+    """
+
+    span: tuple[float, float] = (0.0, 0.0)
+    around: tuple[float, float] = (0.0, 0.0)
+    least: tuple[float, float] = (60.0, 40.0)
+    most: tuple[float, float] = (inf, inf)
+    finest: float = 0.0
+    drawn: Callable[[float, float], float] | None = None
+    covered: float = 0.0
+
+    def ink(self, width: float, height: float) -> float:
+        """Area that is drawn upon in a place of this size, mm^2."""
+        w, h = min(width - ROUNDED, self.most[0]), min(height - ROUNDED - self.covered, self.most[1])
+        if self.drawn is not None:
+            return self.drawn(w, h)
+        free = w - self.around[0], h - self.around[1]
+        if not max(self.span) > 0 or not min(free) > 1.0:
+            return min(w, max(self.around[0], self.least[0])) * min(h, max(self.around[1], self.least[1]))
+        mu = rounded_up(max(self.span[0] / free[0], self.span[1] / free[1], self.finest))
+        return (self.span[0] / mu + self.around[0]) * (self.span[1] / mu + self.around[1])
+
+    def short(self, width: float, height: float) -> float:
+        """How much a place is too small, in its own size."""
+        return max(self.least[0] - width, 0.0) / self.least[0] + max(self.least[1] + self.covered - height, 0.0) / self.least[1]
+
+
+TOO_SMALL = 1e8
+"""Price of a place that is too small by its own size, mm^2: more than that of any sheet."""
+
+
+@dataclass
+class BorderNode:
+    """Several parts along x (``axis`` 0) or downwards (1) with ``gap`` between them, or a view.
+
+    Of a view: its ``need``, its number ``leaf``, the ``area`` that its arrangement means it to have, and what it fills of the
+    places in which it was ``tried``, and how much they are too small: half of them are tried again.
+    """
+
+    need: Need | None = None
+    leaf: int = -1
+    area: float = 1.0
+    axis: int = 0
+    children: list[BorderNode] = field(default_factory=list)
+    shares: list[float] = field(default_factory=list)
+    gap: float = GAP
+    tried: dict[tuple[float, float], tuple[float, float]] = field(default_factory=dict)
+
+    def every(self) -> Iterator[BorderNode]:
+        """The node and all below it."""
+        yield self
+        for child in self.children:
+            yield from child.every()
+
+    def sizes(self, width: float, height: float) -> list[float]:
+        """Extents of the children along the axis in a place of this size."""
+        free = (height if self.axis else width) - self.gap * (len(self.children) - 1)
+        return [share * free for share in self.shares]
+
+    def cost(self, width: float, height: float) -> float:
+        """What the places of its views cost: more, the less of what it is meant to have each of them fills."""
+        if self.need is not None:
+            place = width, height
+            if place not in self.tried:
+                self.tried[place] = self.need.ink(width, height), self.need.short(width, height)
+            ink, short = self.tried[place]
+            return self.area * (self.area / ink) ** 2 + TOO_SMALL * short  # the square: what is worst counts most
+        return sum(self._of(child, size, width, height)
+                   for child, size in zip(self.children, self.sizes(width, height), strict=True))
+
+    def _of(self, child: BorderNode, size: float, width: float, height: float) -> float:
+        return child.cost(width, size) if self.axis else child.cost(size, height)
+
+    def settle(self, width: float, height: float, steps: Sequence[float]) -> bool:
+        """Move each border by that of some steps, to one side or the other, which costs least, then those inside the parts.
+
+        Whether any moved.
+        """
+        free = (height if self.axis else width) - self.gap * (len(self.children) - 1)
+        moved = False
+        for i in range(len(self.children) - 1):
+            moved |= self._move(i, i + 1, [step / free for step in steps], width, height)
+        for child, size in zip(self.children, self.sizes(width, height), strict=True):
+            moved |= child.settle(width if self.axis else size, size if self.axis else height, steps)
+        return moved
+
+    def _move(self, i: int, j: int, steps: Sequence[float], width: float, height: float) -> bool:
+        pair = [self.children[i], self.children[j]]
+
+        def cost(shares: Sequence[float]) -> float:
+            free = (height if self.axis else width) - self.gap * (len(self.children) - 1)
+            return sum(self._of(child, share * free, width, height) for child, share in zip(pair, shares, strict=True))
+
+        now = [self.shares[i], self.shares[j]]
+        moved = [[now[0] + d, now[1] - d] for by in steps for d in (by, -by) if now[0] + d > 0 < now[1] - d]
+        best = min([now, *moved], key=lambda shares: round(cost(shares), 3))
+        self.shares[i], self.shares[j] = best
+        return best is not now
+
+    def places(self, box: Box) -> dict[int, Box]:
+        """Place of each view, its borders at whole millimetres."""
+        if self.need is not None:
+            return {self.leaf: Box(*(float(round(x)) for x in box))}
+        found, at = dict[int, Box](), box.y1 if self.axis else box.x0
+        for child, size in zip(self.children, self.sizes(box.width, box.height), strict=True):
+            found |= child.places(Box(box.x0, at - size, box.x1, at) if self.axis else Box(at, box.y0, at + size, box.y1))
+            at += -(size + self.gap) if self.axis else size + self.gap
+        return found
+
+
+def solve(tree: BorderNode, box: Box) -> dict[int, Box]:
+    """Places of the views of a tree in a rectangle, by their numbers."""
+    nodes, found = list(tree.every()), list[tuple[float, list[list[float]]]]()
+    begin = [node.shares for node in nodes]
+    for ladder in STEPS:
+        _shared(nodes, begin)
+        for steps in ladder:
+            for _ in range(ROUNDS):
+                if not tree.settle(box.width, box.height, steps):
+                    break
+        found.append((round(tree.cost(box.width, box.height), 3), [node.shares for node in nodes]))
+    _shared(nodes, min(found, key=lambda end: end[0])[1])
+    return tree.places(box)
+
+
+def _shared(nodes: Sequence[BorderNode], shares: Sequence[Sequence[float]]) -> None:
+    for node, own in zip(nodes, shares, strict=True):
+        node.shares = list(own)
+
+
+def joined(axis: int, children: Sequence[BorderNode], sizes: Sequence[float], gap: float = GAP) -> BorderNode:
+    """Several in a row (``axis`` 0) or in a column (1), of sizes in these proportions."""
+    if len(children) == 1:
+        return children[0]
+    return BorderNode(axis=axis, children=list(children), shares=[s / sum(sizes) for s in sizes], gap=gap)
+
+
+def cut(boxes: Sequence[Box], nodes: Sequence[BorderNode]) -> BorderNode | None:
+    """The tree of rows and columns of some boxes, their nodes as its leaves; None where no line from side to side parts them."""
+    if len(boxes) == 1:
+        return nodes[0]
+    for axis in (0, 1):
+        runs = _runs([(b.x0, b.x1) if axis == 0 else (-b.y1, -b.y0) for b in boxes])
+        if len(runs) > 1:
+            parts = [cut([boxes[i] for i in run], [nodes[i] for i in run]) for _, _, run in runs]
+            gap = min(GAP, *(max(after[0] - before[1], 0.0) for before, after in pairwise(runs)))
+            known = [part for part in parts if part is not None]
+            return joined(axis, known, [b - a for a, b, _ in runs], gap) if len(known) == len(parts) else None
+    return None
+
+
+def _runs(intervals: Sequence[tuple[float, float]]) -> list[tuple[float, float, list[int]]]:
+    """Intervals that overlap, together: begin, end, their numbers."""
+    runs: list[tuple[float, float, list[int]]] = []
+    for i in sorted(range(len(intervals)), key=lambda i: intervals[i]):
+        a, b = intervals[i]
+        if runs and a < runs[-1][1] - 1e-9:
+            runs[-1] = (runs[-1][0], max(runs[-1][1], b), [*runs[-1][2], i])
+        else:
+            runs.append((a, b, [i]))
+    return runs

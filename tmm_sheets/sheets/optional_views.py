@@ -1,0 +1,302 @@
+"""Views for the room that a sheet has left, found on the ink of the others; in the order in which its arrangement offers them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from importlib import import_module
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tmm_sheets.box import Box
+from tmm_sheets.drawing.canvas import Canvas, Label
+from tmm_sheets.drawing.evenness import dense
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Points
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.sheets.arrangement import ViewPlace
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+Cells = NDArray[Any]
+Counts = NDArray[np.int32]
+
+CELL = 2.0
+"""Side of the cells in which room is looked for, mm."""
+TITLE = 3.0
+"""Depth of the middle of a title under its upper edge, mm."""
+UNDER = 80.0
+"""What stands so near under a title belongs to it, and nothing else may stand between, mm."""
+REACH = 2.0
+"""How far a label may stand off beyond its gap, mm."""
+OPEN = 100.0
+"""What is open to one side of a view and wider than this is no part of its picture, mm."""
+CLOSE = (100.0, 200.0)
+"""Distances of a view from the spot that it belongs to, mm: as near as is wanted, and as is allowed."""
+FORCES = ("kinetics.group", "kinetics.groups", "kinetics.crank")
+"""Views of a scheme with its force plans, which stand in columns of their own."""
+GIVEN = "given_data.links"
+"""The table that belongs to no plan."""
+ANYWHERE = (GIVEN, "cam_law.equations", "wheel_sizes.table", "planet_motion.ratios", "planet_motion.checks", "plan_checks.mobility",
+            "plan_checks.of_train", "plan_checks.of_reducer", "plan_checks.pairs")
+"""Views that belong to no other: they go where most is empty."""
+LARGE = (160.0, 120.0), (150.0, 112.0)
+"""An empty rectangle of these sides, upright or lying, is a gap, mm; the second where cells that its edges cut hide one."""
+SCHEMES = ("train.scheme", "reducer.scheme")
+"""Views whose pictures reach from edge to edge of their wheels: what stands between these would be read as part of them."""
+FAR = 10**6
+"""More cells than a sheet has."""
+APART = (12.0, 9.0, 6.0)
+"""Distances from all else with which a place is looked for, mm: the widest first."""
+
+
+def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside: Box, closed: Sequence[Box]) -> None:
+    """Draw those of the offered views that find room ``inside`` the sheet, away from boxes ``closed`` to them.
+
+    A view ``module.function`` tells its sizes, from what it wants down to what it can do with, by ``module.function_sizes``; none
+    where it has nothing to show. By ``module.function_left`` it may tell the left edge that it would like best, mm; by
+    ``module.function_near`` what it belongs to: it stands near that or nowhere, and those that do so choose first.
+    """
+    taken = _closed(inside, closed)
+    seen, forces = 0, _of_forces(canvas, inside)
+    whole, drawn = (_whole(canvas, inside, taken.shape, lettering) for lettering in (True, False))
+    for view, wanted, function, near, left in _wanted(project, canvas, offered):
+        for k in range(seen, len(canvas.parts)):
+            taken |= _of_part(canvas, k, inside, taken.shape)
+        seen = len(canvas.parts)
+        if near is not None:
+            spot, own, others = near(project, canvas, view.options)
+            pictures = [_ink_box(canvas, k, inside, taken.shape) for k in (own, *others)]
+            box = _near(taken, wanted, inside, spot, pictures)
+        else:
+            at = None if left is None else left(view.options)
+            # Nothing parts a loaded scheme from its force plans but the equations that are read from it, and kinematics stand
+            # among the forces only where there is no other room. Beside a plan that is all but one line there is much of it from
+            # the title to the equation: no plan but a table may stand there.
+            room = taken if view.draw.startswith("moments.") else taken | (drawn if view.draw == GIVEN else whole)
+            if view.draw in ANYWHERE:
+                rooms = [*(room | ~_gaps(canvas, inside, closed, sides) for sides in LARGE), room]
+            else:
+                rooms = [room | forces, room] if view.needs == "positions" else [room]
+            box = next((box for part in rooms if (box := _place(part, wanted, inside, at)) is not None), None)
+        if box is not None:
+            canvas.of = view.draw
+            canvas.begin(box, "", view.draw)
+            function(project, canvas, box, view.options)
+
+
+def ask_again(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], placed: Sequence[tuple[str, Box]]) -> None:
+    """Ask the project for what the offered views show that were ``placed`` in these boxes."""
+    left = list(placed)
+    for view, _, function, _, _ in _wanted(project, canvas, offered):
+        k = next((k for k, (draw, _) in enumerate(left) if draw == view.draw), None)
+        if k is not None:
+            canvas.begin(left[k][1], "", view.draw)
+            function(project, canvas, left.pop(k)[1], view.options)
+
+
+def _wanted(project: Project, canvas: Canvas, offered: Sequence[ViewPlace]) -> Iterator[tuple[ViewPlace, Any, Any, Any, Any]]:
+    """The views that have something to show, those first that belong to another: sizes, and what draws and places them."""
+    views = [(view, *_functions(view)) for view in offered]
+    for view, function, sizes, near, left in sorted(views, key=lambda it: it[3] is None):
+        try:
+            wanted = sizes(project, canvas, view.options)
+        except CannotBuild:
+            continue  # what it shows cannot be had; the views that need it have said so
+        if wanted:
+            yield view, wanted, function, near, left
+
+
+def _functions(
+    view: ViewPlace,
+) -> tuple[Callable[..., None], Callable[..., Any], Callable[..., Any] | None, Callable[..., Any] | None]:
+    """What draws a view, tells its sizes, what it is to be near, and its left edge."""
+    module, _, function = view.draw.partition(".")
+    room = import_module(f"tmm_sheets.sheets.{module}")
+    return (getattr(room, function), getattr(room, f"{function}_sizes"), getattr(room, f"{function}_near", None),
+            getattr(room, f"{function}_left", None))
+
+
+def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float, float]) -> Cells:
+    """Cells of empty rectangles of these sides, mm, lying or upright."""
+    inked = _closed(inside, closed)
+    inked |= _cells(canvas, range(len(canvas.parts)), inside, inked.shape)
+    gaps = np.zeros(inked.shape, bool)
+    table = _summed(inked)
+    for size in (sides, sides[::-1]):
+        nx, ny = (int(np.ceil(length / CELL)) for length in size)
+        begins = _windows(table, nx, ny) == 0
+        # How many of them have a corner here, with its sign: summed up, how many lie over a cell.
+        count = np.zeros(np.add(inked.shape, 1), np.int64)
+        for (i, j), sign in {(0, 0): 1, (nx, 0): -1, (0, ny): -1, (nx, ny): 1}.items():
+            count[i:i + begins.shape[0], j:j + begins.shape[1]] += sign * begins
+        gaps |= count.cumsum(axis=0).cumsum(axis=1)[:-1, :-1] > 0
+    return gaps
+
+
+def _summed(taken: Cells) -> Counts:
+    """How many cells are taken of all to the left of and below each corner of the cells."""
+    table = np.zeros(np.add(taken.shape, 1), np.int32)
+    table[1:, 1:] = taken.cumsum(axis=0, dtype=np.int32).cumsum(axis=1, dtype=np.int32)
+    return table
+
+
+def _windows(table: Counts, nx: int, ny: int) -> Counts:
+    """How many cells are taken of each rectangle of so many cells, by its lower left one; of a table by :func:`_summed`."""
+    return np.asarray(table[nx:, ny:] - table[:-nx, ny:] - table[nx:, :-ny] + table[:-nx, :-ny])
+
+
+def _free(table: Counts, sizes: Sequence[tuple[float, float]]) -> Iterator[tuple[tuple[float, float], float, Cells]]:
+    """The sizes with distances from all else, the widest first, and the lowest left cells of all places that have them."""
+    for size in sizes:
+        for apart in APART:
+            nx, ny = (int(np.ceil((length + 2 * apart) / CELL)) for length in size)
+            if nx >= table.shape[0] or ny >= table.shape[1]:
+                continue
+            free = np.argwhere(_windows(table, nx, ny) == 0)
+            if len(free):
+                yield size, apart, free
+
+
+def _place(taken: Cells, sizes: Sequence[tuple[float, float]], inside: Box, left: float | None = None) -> Box | None:
+    """The first of the sizes for which there is room beside the cells ``taken``, where it is farthest from all else.
+
+    With the edge ``left``, mm, where there is room for that size with it.
+    """
+    for (width, height), apart, free in _free(_summed(taken), sizes):
+        if left is not None and len(aligned := free[free[:, 0] == round((left - apart - inside.x0) / CELL)]):
+            j = int(np.median(aligned[:, 1]))
+            return Box(left, inside.y0 + j * CELL + apart, left + width, inside.y0 + j * CELL + apart + height)
+        # In the middle of the room there is, if it is one; else at its beginning.
+        i, j = free[np.argmin(np.abs(free - np.median(free, axis=0)).sum(axis=1))]
+        corner = complex(inside.x0 + i * CELL + apart, inside.y0 + j * CELL + apart)
+        return Box(corner.real, corner.imag, corner.real + width, corner.imag + height)
+    return None
+
+
+def _near(taken: Cells, sizes: Sequence[tuple[float, float]], inside: Box, spot: complex, pictures: Sequence[Box]) -> Box | None:
+    """The place nearest to a spot of the first picture, no nearer to the others, of the first size that has one in reach."""
+    table = _summed(taken)
+    for reach in CLOSE:
+        for (width, height), apart, free in _free(table, sizes):
+            corners = complex(inside.x0 + apart, inside.y0 + apart) + CELL * (free[:, 0] + 1j * free[:, 1])
+            middles = corners + complex(width, height) / 2
+            off = np.array([_off(middles, picture) for picture in pictures])
+            far = np.where(off[0] <= off.min(axis=0), np.abs(middles - spot), np.inf)
+            if far.min() <= reach:
+                at = complex(corners[np.argmin(far)])
+                return Box(at.real, at.imag, at.real + width, at.imag + height)
+    return None
+
+
+def _off(z: Points, box: Box) -> NDArray[np.float64]:
+    """Distances of points from a box."""
+    x, y = (np.maximum(np.maximum(low - v, v - high), 0.0) for v, low, high in ((z.real, box.x0, box.x1), (z.imag, box.y0, box.y1)))
+    return np.asarray(np.hypot(x, y))
+
+
+def _ink_box(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> Box:
+    """What a part's ink takes."""
+    i, j = np.nonzero(_cells(canvas, range(k, k + 1), inside, shape))
+    return Box(*(float(edge) for edge in (inside.x0 + CELL * i.min(), inside.y0 + CELL * j.min(),
+                                          inside.x0 + CELL * (i.max() + 1), inside.y0 + CELL * (j.max() + 1))))
+
+
+def _whole(canvas: Canvas, inside: Box, shape: tuple[int, ...], lettering: bool = True) -> Cells:
+    """Cells between the pictures of one view of forces: a loaded scheme and its force plans; ``lettering`` is part of them."""
+    taken = np.zeros(shape, bool)
+    begins = [k for k, part in enumerate(canvas.parts) if not part.title]
+    for begin, end in pairwise([*begins, len(canvas.parts)]):
+        if canvas.parts[begin].draw in FORCES:
+            picture = _cells(canvas, range(begin, end), inside, shape, lettering)
+            taken |= _between(picture, 0)[1] | _between(picture, 1)[1]
+    return taken
+
+
+def _of_forces(canvas: Canvas, inside: Box) -> Cells:
+    """Cells of the views of forces, and between them."""
+    boxes = [part.box for part in canvas.parts if part.draw in FORCES]
+    alone = [part.box for part in canvas.parts if part.draw == "kinetics.lever"]
+    hull = [Box(min(b.x0 for b in boxes), min(b.y0 for b in boxes), max(b.x1 for b in boxes), max(b.y1 for b in boxes))] \
+        if boxes else []
+    return _closed(inside, [*hull, *alone])
+
+
+def _closed(inside: Box, closed: Sequence[Box]) -> NDArray[np.bool_]:
+    """Cells of the sheet, those within boxes ``closed`` to views taken."""
+    taken = np.zeros([int(length / CELL) for length in (inside.width, inside.height)], bool)
+    for box in closed:
+        i0, i1 = (int((x - inside.x0) / CELL) for x in (box.x0, box.x1))
+        j0, j1 = (int((y - inside.y0) / CELL) for y in (box.y0, box.y1))
+        taken[max(i0, 0):i1 + 1, max(j0, 0):j1 + 1] = True
+    return taken
+
+
+def _of_part(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Cells with ink of a part of a view, or between its ink: within its picture nothing else may stand."""
+    part = canvas.parts[k]
+    if part.draw == "title block":
+        return np.zeros(shape, bool)
+    own = _cells(canvas, range(k, k + 1), inside, shape)
+    along, across = _between(own, 0), _between(own, 1)
+    taken = along[0] | across[0] | along[1] & across[1]
+    if part.draw in SCHEMES:
+        taken |= across[1]
+    if part.title and own.any():
+        # A title is that of all parts up to the next one: plans of several positions.
+        after = (n for n in range(k + 1, len(canvas.parts)) if canvas.parts[n].headed or canvas.parts[n].draw != part.draw)
+        whole = range(k, next(after, len(canvas.parts))) if part.headed else range(k, k + 1)
+        picture = _between(_cells(canvas, whole, inside, shape), 0)[1] if len(whole) > 1 else own
+        taken |= _under_title(picture)
+        if len(whole) > 1:
+            taken |= _between(picture, 1)[1]
+    return taken
+
+
+def _cells(canvas: Canvas, parts: range, inside: Box, shape: tuple[int, ...], lettering: bool = True) -> NDArray[np.bool_]:
+    """Cells with ink of parts that follow each other, or under their labels not set yet; without ``lettering`` lines alone."""
+    end = canvas.parts[parts.stop].first if parts.stop < len(canvas.parts) else len(canvas.marks)
+    marks = canvas.marks[canvas.parts[parts.start].first:end]
+    z = np.concatenate((dense(marks, CELL), *(_about(label) for label in canvas.labels if label.part in parts))) if lettering \
+        else dense((mark for mark in marks if mark.by is None or mark.by.role != "text"), CELL)
+    own = np.zeros(shape, bool)
+    i, j = ((z.real - inside.x0) / CELL).astype(int), ((z.imag - inside.y0) / CELL).astype(int)
+    there = (i >= 0) & (i < shape[0]) & (j >= 0) & (j < shape[1])
+    own[i[there], j[there]] = True
+    return own
+
+
+def _under_title(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Cells between the title of a part, as if it were as wide as the part, and what is drawn near under it."""
+    columns, level = np.arange(cells.shape[1]), int(np.flatnonzero(cells.any(axis=0))[-1]) - int(TITLE / CELL)
+    top = np.where(cells[:, :level], columns[:level], -1).max(axis=1, initial=-1)
+    near = (top >= 0) & ((level - top) * CELL < UNDER)
+    return np.asarray(near[:, None] & (columns > top[:, None]) & (columns <= level))
+
+
+def _about(label: Label) -> Points:
+    """Points about a label's anchor as far away as its lettering may reach."""
+    laid = letter(label.text, label.height)
+    width, height = (size + label.gap + REACH for size in (laid.width, laid.ascent + laid.descent))
+    if not label.away:
+        return label.anchor + np.array([width, -width, 1j * height, -1j * height])
+    u = label.away / abs(label.away)
+    return label.anchor + np.array([0j, complex(u.real * width, u.imag * height)])
+
+
+def _between(cells: NDArray[np.bool_], axis: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Cells between two inked ones of a line along an axis: those that are less than ``OPEN`` apart, and any."""
+    close, between = np.zeros((2, *cells.shape), bool)
+    if cells.any():
+        # A part is small on the sheet: nothing lies between its ink beyond it.
+        reach = np.ix_(*(np.arange(n[0], n[-1] + 1) for n in (np.flatnonzero(cells.any(axis=1 - k)) for k in (0, 1))))
+        own = cells[reach]
+        n = np.arange(own.shape[axis]).reshape((-1, 1) if axis == 0 else (1, -1))
+        before = np.maximum.accumulate(np.where(own, n, -1), axis=axis)
+        behind = np.flip(np.minimum.accumulate(np.flip(np.where(own, n, FAR), axis), axis=axis), axis)
+        between[reach] = inside = (before >= 0) & (behind < FAR)
+        close[reach] = inside & ((behind - before) * CELL < OPEN)
+    return close, between
