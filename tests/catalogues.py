@@ -72,7 +72,7 @@ def of_projects() -> Iterator[tuple[str, str, None]]:
 
 
 def of_templates() -> Iterator[tuple[str, str, None]]:
-    """Titles and codes of arrangements, names of views, descriptions of layers and of line types."""
+    """Titles and codes of arrangements, descriptions of layers and of line types."""
     templates = ROOT / "templates"
     for path in sorted((templates / "sheets").glob("*.toml")):
         tree = tomllib.loads(path.read_text("utf-8"))
@@ -80,8 +80,6 @@ def of_templates() -> Iterator[tuple[str, str, None]]:
     for name in ("layers", "linetypes"):
         for row in tomllib.loads((templates / f"{name}.toml").read_text("utf-8")).values():
             yield f"templates/{name}.toml", row["description"], None
-    for name in tomllib.loads((templates / "view_names.toml").read_text("utf-8")).values():
-        yield "templates/view_names.toml", name, None
 
 
 def of_title_blocks() -> Iterator[tuple[str, str, str]]:

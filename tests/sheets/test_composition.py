@@ -16,9 +16,11 @@ from tmm_sheets.sheets import friction, kinematic_frames, kinetic_frames, linkag
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.border_solver import BorderNode, Need, cut, joined, rounded_up, solve
 from tmm_sheets.sheets.composing import INSIDE
-from tmm_sheets.sheets.composition import OF_FORCE, SHOWN, TITLE_BLOCK, _reaching, arranged
+from tmm_sheets.sheets.composition import TITLE_BLOCK, arranged
 from tmm_sheets.sheets.frame import fit_frame
+from tmm_sheets.sheets.linkage_sizes import OF_FORCE
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.sheets.view_sizes import SHOWN, reaching
 
 ROOM = Box(0.0, 0.0, 400.0, 300.0)
 
@@ -277,7 +279,7 @@ def test_a_fixed_point_that_carries_nothing_is_no_part_of_the_mechanism():
 def test_letters_that_take_the_place_ask_for_more_of_it():
     """A link of 0.3 m with 54 mm of arrows and letters about it in 56 mm: 2 mm of it would be drawn."""
     ends, offsets = np.array([0j, 0.3j]), np.array([-27j, 27j])
-    tight, roomy = (_reaching(Box(0.0, 0.0, 200.0, high), ends, offsets, (0.0, 20.0, 0.0, 20.0), (60.0, 40.0))
+    tight, roomy = (reaching(Box(0.0, 0.0, 200.0, high), ends, offsets, (0.0, 20.0, 0.0, 20.0), (60.0, 40.0))
                     for high in (96.0, 200.0))
     assert tight.least[1] == pytest.approx(40.0 + 54.0 + SHOWN)
     assert roomy.least[1] == pytest.approx(tight.least[1])

@@ -163,4 +163,4 @@ def test_loading_imports_nothing_that_draws(place, tmp_path):
     modules = told.stderr.splitlines()[-1].split()
     assert not [m for m in modules if m.startswith(("shapely", "scipy", "tmm_sheets.methods.", "tmm_sheets.mechanism."))]
     assert {m for m in modules if m.startswith("tmm_sheets.sheets.")} == {
-        f"tmm_sheets.sheets.{name}" for name in ("sheet", "storing", "composed")}  # fmt: skip
+        f"tmm_sheets.sheets.{name}" for name in ("sheet", "sheet_storage", "composed")}  # fmt: skip

@@ -21,7 +21,7 @@ def on_sheets(*names):
 
 
 def test_four_groups_beside_the_kinematics_are_told_to_be_too_small():
-    said, _ = map(str, legibility.crowded(on_sheets("kinematics_forces_wide"), [1]))
+    _, said = map(str, legibility.crowded(on_sheets("kinematics_forces_wide"), [1]))
     assert "29" in said
     assert 'sheets = ["kinematics", "forces"]' in said
 

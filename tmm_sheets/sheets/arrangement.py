@@ -11,12 +11,14 @@ from typing import Any
 from tmm_sheets.box import Box
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.resources import template
+from tmm_sheets.sheets.views import VIEWS, ViewKind
+from tmm_sheets.spelling import near
 from tmm_sheets.words import marked, tell
 
 
 @dataclass(frozen=True)
 class ViewPlace:
-    """A place on a sheet and what is drawn there: ``draw`` is module.function of tmm_sheets.sheets.
+    """A place on a sheet and the view of :data:`~tmm_sheets.sheets.views.VIEWS` that is drawn there.
 
     ``others`` are its places in other ways to arrange the same views, by their names; without one it is where it is.
     """
@@ -27,25 +29,14 @@ class ViewPlace:
     others: dict[str, Box] = field(default_factory=dict)
 
     @property
+    def kind(self) -> ViewKind:
+        """What is known of such a view."""
+        return VIEWS[self.draw]
+
+    @property
     def needs(self) -> str:
         """The part of a project's results it shows; empty for what every project has."""
-        return NEEDS.get(self.draw, NEEDS.get(self.draw.partition(".")[0], ""))
-
-
-NEEDS = {
-    "kinematics": "positions", "false_positions": "positions", "diagrams": "positions", "given_position": "positions",
-    "given_data": "positions", "path_marks": "positions",
-    "load_diagram": "positions", "synthesis": "positions", "kinetics": "forces", "moments": "forces", "friction": "forces",
-    "details": "forces", "position_tables.accelerations": "positions", "position_tables.reactions": "forces",
-    "diagrams.balancing": "forces", "diagrams.balancing_table": "forces",
-    "flywheel": "flywheel", "crank_speed": "flywheel", "mertsalov": "flywheel", "gear": "gear",
-    "gear_equations": "gear", "rack": "gear",
-    "reducer": "reducer", "reducer_equations": "reducer", "plan_checks.of_reducer": "reducer",
-    "plan_checks.mobility": "reducer", "plan_checks": "train", "train": "train", "cam": "cam", "cam_zone": "cam",
-    "cam_profile": "cam",
-    "cam_law": "cam",
-}
-"""Parts of the results that views need, by module or by view."""
+        return self.kind.shows
 
 
 ANYWHERE = Box(0.0, 0.0, 0.0, 0.0)
@@ -129,10 +120,15 @@ def arrangement(name: str) -> Arrangement:
         views = tuple(ViewPlace(v.pop("draw"), _box(v.pop("box")), others={name: _box(at) for name, at in v.pop("or", {}).items()},
                            options=v) for v in data.get("view", []))
         offers = tuple(ViewPlace(v.pop("draw"), ANYWHERE, options=v) for v in data.get("offer", []))
-        return Arrangement(name, data["title"], data.get("code", ""), views, dict(data.get("without", {})), offers)
+        found = Arrangement(name, data["title"], data.get("code", ""), views, dict(data.get("without", {})), offers)
     except (KeyError, TypeError, ValueError) as e:
         raise BadInput(Problem(tell("expected title and [[view]] tables with draw and box, found {found!r}").format(found=e),
                                str(path))) from None
+    for view in (*views, *offers):
+        if view.draw not in VIEWS:
+            raise BadInput(Problem(tell('there is no view "{draw}"').format(draw=view.draw), str(path), field="view.draw",
+                                   hint=tell('did you mean "{near}"?').format(near=near(view.draw, VIEWS, alike=0.0)[0])))
+    return found
 
 
 def _box(sides: Any) -> Box:

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections import Counter
-from collections.abc import Callable, Iterable
-from functools import cache
-from importlib import import_module
-from importlib.util import find_spec
+from collections.abc import Iterable
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -19,13 +15,12 @@ from tmm_sheets.drawing.labels import Grid, set_labels
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Drawing, View
 from tmm_sheets.drawing.title_block import draw_frame
-from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.resources import template
 from tmm_sheets.sheets import composition, legibility, titles, view_overflow
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.composed import Composed
 from tmm_sheets.sheets.composition import DESIGNATION, arranged
-from tmm_sheets.words import marked, of_file, tell, tr
+from tmm_sheets.sheets.views import VIEWS, function
+from tmm_sheets.words import marked, of_file, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -39,21 +34,9 @@ INSIDE = Box(20.0, 5.0, WIDTH - 5.0, HEIGHT - 5.0)
 TITLE_BLOCK = Box(INSIDE.x1 - 185.0, INSIDE.y0, INSIDE.x1, INSIDE.y0 + 55.0)
 """Place of the title block (GOST 2.104, form 1)."""
 
+FRAME = "title block"
+"""The view that every sheet has, before its arrangement's."""
 KEYWORDS = (marked("TMM"), marked("theory of mechanisms and machines"), marked("course project"))
-
-
-def _drawer(arrangement: str, draw: str) -> Callable[..., None]:
-    """The function a view names: module.function of tmm_sheets.sheets."""
-    module, _, function = draw.partition(".")
-    try:
-        if find_spec(f"tmm_sheets.sheets.{module}") is None:
-            raise AttributeError(module)
-        found: Callable[..., None] = getattr(import_module(f"tmm_sheets.sheets.{module}"), function)
-    except (AttributeError, ValueError):
-        path = template(f"sheets/{arrangement}.toml")
-        raise BadInput(Problem(tell('there is no view "{draw}"').format(draw=draw), str(path), field="view.draw",
-                               hint=tell("a view is named module.function, as in the shipped arrangements"))) from None
-    return found
 
 
 def viewed(project: Project, n: int) -> tuple[Arrangement, Canvas, dict[str, str]]:
@@ -68,7 +51,7 @@ def viewed(project: Project, n: int) -> tuple[Arrangement, Canvas, dict[str, str
     for view in plan.views:
         canvas.of = view.draw
         canvas.begin(view.box, "", view.draw)
-        _drawer(plan.name, view.draw)(project, canvas, view.box, view.options)
+        function(view.draw)(project, canvas, view.box, view.options)
     titles.lower(canvas)
     if plan.offers:
         from tmm_sheets.sheets import optional_views
@@ -107,7 +90,7 @@ def ask_again(project: Project, n: int, parts: Iterable[Part]) -> None:
     placed = [(part.draw, part.box) for part in parts if not part.title]
     for view in plan.views:
         canvas.begin(view.box, "", view.draw)
-        _drawer(plan.name, view.draw)(project, canvas, view.box, view.options)
+        function(view.draw)(project, canvas, view.box, view.options)
     if plan.offers:
         from tmm_sheets.sheets import optional_views
 
@@ -132,8 +115,8 @@ def _dead(project: Project, plan: Arrangement) -> tuple[Remark, ...]:
 def _framed(project: Project, n: int, canvas: Canvas) -> dict[str, str]:
     """Draw frame and title block of sheet ``n``; gives what is filled in."""
     block = project.variant.title_block
-    canvas.of = "title block"
-    canvas.begin(Box(0.0, 0.0, WIDTH, HEIGHT), "", "title block")
+    canvas.of = FRAME
+    canvas.begin(Box(0.0, 0.0, WIDTH, HEIGHT), "", FRAME)
     fields = {
         "designation": f"{of_file(block.designation)} {_code(project, n)}".strip(),
         "title": tr(arrangement(project.sheets[n - 1]).fitted(project.parts).title),
@@ -167,13 +150,6 @@ def _code(project: Project, n: int) -> str:
     return tr(codes[n - 1]) if rising else tr("D{number}").format(number=n)
 
 
-@cache
-def _names() -> dict[str, str]:
-    """Names of views that have no title on the sheet."""
-    names: dict[str, str] = tomllib.loads(template("view_names.toml").read_text(encoding="utf-8"))
-    return names
-
-
 def _views(canvas: Canvas) -> tuple[View, ...]:
     """The views of a sheet, each with its labels; what one draws before its first title belongs to that title.
 
@@ -201,4 +177,11 @@ def _views(canvas: Canvas) -> tuple[View, ...]:
 
 def _said(part: Part) -> str:
     """Name of a view: the letters of its title."""
-    return "".join(run.text for run in letter(part.title, 5.0).runs) if part.title else tr(_names().get(part.draw, part.draw))
+    return "".join(run.text for run in letter(part.title, 5.0).runs) if part.title else tr(_name_of(part.draw))
+
+
+def _name_of(draw: str) -> str:
+    """What a view without a title is called."""
+    if draw == FRAME:
+        return marked("Frame and title block")
+    return VIEWS[draw].name if draw in VIEWS and VIEWS[draw].name else draw

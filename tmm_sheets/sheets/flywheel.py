@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.arrangement import Arrangement, ViewPlace
 
-TANGENTS = ("flywheel.force_graph", "flywheel.total_work", "flywheel.energy_mass", "flywheel.results", "crank_speed.graph")
-"""Views of a flywheel by the energy-mass diagram."""
 Options = dict[str, Any]
 CLEAR = 14.0
 """How far the sign of a straight graph stands from the other curve, mm."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import inf
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,13 +13,15 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets import indicator, linkage
 from tmm_sheets.sheets.frame import SHORTEST, PlanFrame, ScaleBook, extent, fit_frame, pick, raised, together
-from tmm_sheets.words import tell, tell_n, tr
+from tmm_sheets.words import marked, marked_n, tell, tell_n, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.arrangement import ViewPlace
 
 GRAPH = 48.0
 """Height kept free over the position plans for the force graph, mm."""
@@ -257,7 +260,7 @@ def other_stroke(project: Project) -> int:
     return cycle.drawn[int(np.argmax(np.cos(turned - there)))][0]
 
 
-def accelerations(project: Project, canvas: ScaleBook, box: Box) -> PlanFrame:
+def accelerations(project: Project, canvas: ScaleBook, box: Box, _options: object = None) -> PlanFrame:
     """Frame of the acceleration plan at the analysed position."""
     real = plan_extent(project.study.accelerations.plan, project.force_index)
     inside = box.inset(*ACCELERATIONS)
@@ -276,3 +279,16 @@ def crowd(plan: Plan, i: int, mu: float) -> int:
     points = np.array(list(plan_points(plan, i).values())) / mu
     at = np.array([*points[[same[0] for same in together(points, 0.5)]], *((a + b) / 2 for a, b in ends if abs(b - a) >= SHORTEST)])
     return int((np.abs(at[:, None] - at) <= ABOUT).sum(axis=1).max())
+
+
+def left_out(project: Project, view: ViewPlace) -> Iterator[Remark]:
+    """What a view leaves out of the velocity plans, and why, for the command line."""
+    layout = velocities(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
+    for i, times in layout.beyond:
+        yield Remark(marked("position {label} is next to a dead point: its velocity plan is not drawn, it is {times:.3g} times "
+                            "as large as usual"), {"label": project.cycle.labels[i], "times": times})
+    if layout.every > 1:
+        count = len(project.cycle.drawn)
+        yield Remark(marked_n("there is no room for {count} velocity plan: one in {every} is drawn",
+                              "there is no room for {count} velocity plans: one in {every} is drawn"),
+                     {"count": count, "every": layout.every}, count)

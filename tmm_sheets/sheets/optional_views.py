@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from importlib import import_module
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -11,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tmm_sheets.box import Box
-from tmm_sheets.drawing.canvas import Canvas, Label
+from tmm_sheets.drawing.canvas import Canvas, Label, Part
 from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets.arrangement import ViewPlace
+from tmm_sheets.sheets.views import VIEWS, function
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -36,17 +36,8 @@ OPEN = 100.0
 """What is open to one side of a view and wider than this is no part of its picture, mm."""
 CLOSE = (100.0, 200.0)
 """Distances of a view from the spot that it belongs to, mm: as near as is wanted, and as is allowed."""
-FORCES = ("kinetics.group", "kinetics.groups", "kinetics.crank")
-"""Views of a scheme with its force plans, which stand in columns of their own."""
-GIVEN = "given_data.links"
-"""The table that belongs to no plan."""
-ANYWHERE = (GIVEN, "cam_law.equations", "wheel_sizes.table", "planet_motion.ratios", "planet_motion.checks", "plan_checks.mobility",
-            "plan_checks.of_train", "plan_checks.of_reducer", "plan_checks.pairs")
-"""Views that belong to no other: they go where most is empty."""
 LARGE = (160.0, 120.0), (150.0, 112.0)
 """An empty rectangle of these sides, upright or lying, is a gap, mm; the second where cells that its edges cut hide one."""
-SCHEMES = ("train.scheme", "reducer.scheme")
-"""Views whose pictures reach from edge to edge of their wheels: what stands between these would be read as part of them."""
 FAR = 10**6
 """More cells than a sheet has."""
 APART = (12.0, 9.0, 6.0)
@@ -56,28 +47,28 @@ APART = (12.0, 9.0, 6.0)
 def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside: Box, closed: Sequence[Box]) -> None:
     """Draw those of the offered views that find room ``inside`` the sheet, away from boxes ``closed`` to them.
 
-    A view ``module.function`` tells its sizes, from what it wants down to what it can do with, by ``module.function_sizes``; none
-    where it has nothing to show. By ``module.function_left`` it may tell the left edge that it would like best, mm; by
-    ``module.function_near`` what it belongs to: it stands near that or nowhere, and those that do so choose first.
+    A view tells its sizes, from what it wants down to what it can do with, and perhaps the left edge that it would like best or
+    what it belongs to: it stands near that or nowhere, and those that do so choose first.
     """
     taken = _closed(inside, closed)
     seen, forces = 0, _of_forces(canvas, inside)
     whole, drawn = (_whole(canvas, inside, taken.shape, lettering) for lettering in (True, False))
-    for view, wanted, function, near, left in _wanted(project, canvas, offered):
+    for view, wanted in _wanted(project, canvas, offered):
         for k in range(seen, len(canvas.parts)):
             taken |= _of_part(canvas, k, inside, taken.shape)
         seen = len(canvas.parts)
-        if near is not None:
-            spot, own, others = near(project, canvas, view.options)
+        if view.kind.near:
+            spot, own, others = function(view.kind.near)(project, canvas, view.options)
             pictures = [_ink_box(canvas, k, inside, taken.shape) for k in (own, *others)]
             box = _near(taken, wanted, inside, spot, pictures)
         else:
-            at = None if left is None else left(view.options)
+            at = function(view.kind.left)(view.options) if view.kind.left else None
             # Nothing parts a loaded scheme from its force plans but the equations that are read from it, and kinematics stand
             # among the forces only where there is no other room. Beside a plan that is all but one line there is much of it from
             # the title to the equation: no plan but a table may stand there.
-            room = taken if view.draw.startswith("moments.") else taken | (drawn if view.draw == GIVEN else whole)
-            if view.draw in ANYWHERE:
+            stands = view.kind.stands
+            room = taken if stands == "forces" else taken | (drawn if stands == "table" else whole)
+            if stands in ("anywhere", "table"):
                 rooms = [*(room | ~_gaps(canvas, inside, closed, sides) for sides in LARGE), room]
             else:
                 rooms = [room | forces, room] if view.needs == "positions" else [room]
@@ -85,39 +76,28 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside:
         if box is not None:
             canvas.of = view.draw
             canvas.begin(box, "", view.draw)
-            function(project, canvas, box, view.options)
+            function(view.draw)(project, canvas, box, view.options)
 
 
 def ask_again(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], placed: Sequence[tuple[str, Box]]) -> None:
     """Ask the project for what the offered views show that were ``placed`` in these boxes."""
     left = list(placed)
-    for view, _, function, _, _ in _wanted(project, canvas, offered):
+    for view, _ in _wanted(project, canvas, offered):
         k = next((k for k, (draw, _) in enumerate(left) if draw == view.draw), None)
         if k is not None:
             canvas.begin(left[k][1], "", view.draw)
-            function(project, canvas, left.pop(k)[1], view.options)
+            function(view.draw)(project, canvas, left.pop(k)[1], view.options)
 
 
-def _wanted(project: Project, canvas: Canvas, offered: Sequence[ViewPlace]) -> Iterator[tuple[ViewPlace, Any, Any, Any, Any]]:
-    """The views that have something to show, those first that belong to another: sizes, and what draws and places them."""
-    views = [(view, *_functions(view)) for view in offered]
-    for view, function, sizes, near, left in sorted(views, key=lambda it: it[3] is None):
+def _wanted(project: Project, canvas: Canvas, offered: Sequence[ViewPlace]) -> Iterator[tuple[ViewPlace, Any]]:
+    """The views that have something to show with their sizes, those first that belong to another."""
+    for view in sorted(offered, key=lambda view: not view.kind.near):
         try:
-            wanted = sizes(project, canvas, view.options)
+            wanted = function(view.kind.sizes)(project, canvas, view.options)
         except CannotBuild:
             continue  # what it shows cannot be had; the views that need it have said so
         if wanted:
-            yield view, wanted, function, near, left
-
-
-def _functions(
-    view: ViewPlace,
-) -> tuple[Callable[..., None], Callable[..., Any], Callable[..., Any] | None, Callable[..., Any] | None]:
-    """What draws a view, tells its sizes, what it is to be near, and its left edge."""
-    module, _, function = view.draw.partition(".")
-    room = import_module(f"tmm_sheets.sheets.{module}")
-    return (getattr(room, function), getattr(room, f"{function}_sizes"), getattr(room, f"{function}_near", None),
-            getattr(room, f"{function}_left", None))
+            yield view, wanted
 
 
 def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float, float]) -> Cells:
@@ -210,16 +190,21 @@ def _whole(canvas: Canvas, inside: Box, shape: tuple[int, ...], lettering: bool 
     taken = np.zeros(shape, bool)
     begins = [k for k, part in enumerate(canvas.parts) if not part.title]
     for begin, end in pairwise([*begins, len(canvas.parts)]):
-        if canvas.parts[begin].draw in FORCES:
+        if _picture(canvas.parts[begin]) == "force plans":
             picture = _cells(canvas, range(begin, end), inside, shape, lettering)
             taken |= _between(picture, 0)[1] | _between(picture, 1)[1]
     return taken
 
 
+def _picture(part: Part) -> str:
+    """What others have to respect of the picture of a part."""
+    return VIEWS[part.draw].picture if part.draw in VIEWS else ""
+
+
 def _of_forces(canvas: Canvas, inside: Box) -> Cells:
     """Cells of the views of forces, and between them."""
-    boxes = [part.box for part in canvas.parts if part.draw in FORCES]
-    alone = [part.box for part in canvas.parts if part.draw == "kinetics.lever"]
+    boxes = [part.box for part in canvas.parts if _picture(part) == "force plans"]
+    alone = [part.box for part in canvas.parts if _picture(part) == "forces"]
     hull = [Box(min(b.x0 for b in boxes), min(b.y0 for b in boxes), max(b.x1 for b in boxes), max(b.y1 for b in boxes))] \
         if boxes else []
     return _closed(inside, [*hull, *alone])
@@ -243,7 +228,7 @@ def _of_part(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> NDA
     own = _cells(canvas, range(k, k + 1), inside, shape)
     along, across = _between(own, 0), _between(own, 1)
     taken = along[0] | across[0] | along[1] & across[1]
-    if part.draw in SCHEMES:
+    if _picture(part) == "wheels":
         taken |= across[1]
     if part.title and own.any():
         # A title is that of all parts up to the next one: plans of several positions.
