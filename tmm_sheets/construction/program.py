@@ -130,7 +130,7 @@ def _behind(x: Any) -> Any:
     return x.step if isinstance(x, FoundNumber) else x
 
 
-def program(wanted: Mapping[str, Step], rows: Sequence[Any], chosen: Sequence[str] = ()) -> Program:
+def program(wanted: Mapping[str, Step], rows: Sequence[Any], chosen: Sequence[str] = (), exact: bool = False) -> Program:
     """The program that computes some steps.
 
     Parameters
@@ -141,13 +141,15 @@ def program(wanted: Mapping[str, Step], rows: Sequence[Any], chosen: Sequence[st
         arguments of the steps (rows over the positions) or steps, in whose place the program takes other values.
     chosen
         names of given numbers that may be others, too.
+    exact
+        True where primitives are called by name all of them: the program needs no guards, it is as exact as the steps.
 
     Raises
     ------
     CannotBuild
         when a rule has neither a formula nor a primitive, or nothing is made of a chosen given.
     """
-    walk = _Walk(rows, chosen)
+    walk = _Walk(rows, chosen, exact)
     needed = walk.needed(wanted.values())
     for step in needed:
         walk.take(step)
@@ -320,21 +322,21 @@ def _carried_out(does: str, numbers: Sequence[Any]) -> float:
 
 
 @cache
-def _arguments(compute: Callable[..., Any], count: int) -> frozenset[int] | None:
+def _arguments(compute: Callable[..., Any], count: int, exact: bool) -> frozenset[int] | None:
     """Numbers of the arguments that a rule's plain formula is made of; None for a rule without a formula."""
     tree = trace(compute, count)
-    return None if tree is None else frozenset(_met(tree, {}))
+    return None if tree is None else frozenset(_met(tree, {}, exact))
 
 
-def _met(tree: Expression, known: dict[int, frozenset[int]]) -> frozenset[int]:
+def _met(tree: Expression, known: dict[int, frozenset[int]], exact: bool) -> frozenset[int]:
     """Numbers of the arguments that a tree is made of, plain formulas written out."""
     if id(tree) not in known:
         if isinstance(tree, Operation):
-            of = [_met(part, known) for part in tree.parts]
-            plain = _plain(tree.function)
-            used = _arguments(plain, len(of)) if plain is not None else None
+            of = [_met(part, known, exact) for part in tree.parts]
+            plain = _plain(tree.function, exact)
+            used = _arguments(plain, len(of), exact) if plain is not None else None
             if plain is not None and (guard := _guard(tree.function)) is not None:
-                used = (used or frozenset()) | (_arguments(guard, len(of)) or frozenset())
+                used = (used or frozenset()) | (_arguments(guard, len(of), exact) or frozenset())
             found = frozenset[int]().union(*(of if used is None else [of[i] for i in used]))
         else:
             found = frozenset({tree.index} if isinstance(tree, Argument) else ())
@@ -346,9 +348,10 @@ def _primitive(function: Callable[..., Any] | None) -> Primitive | None:
     return getattr(function, "primitive", None)
 
 
-def _plain(function: Callable[..., Any] | None) -> Callable[..., Any] | None:
+def _plain(function: Callable[..., Any] | None, exact: bool) -> Callable[..., Any] | None:
+    """The formula that is written out in place of a primitive; an ``exact`` program has only those that are their own."""
     found = _primitive(function)
-    return None if found is None else found.plain
+    return None if found is None or (exact and found.plain is not function) else found.plain
 
 
 def _guard(function: Callable[..., Any] | None) -> Callable[..., Any] | None:
@@ -359,8 +362,9 @@ def _guard(function: Callable[..., Any] | None) -> Callable[..., Any] | None:
 class _Walk:
     """Steps one after another into the list of values."""
 
-    def __init__(self, rows: Sequence[Any], chosen: Sequence[str]) -> None:
+    def __init__(self, rows: Sequence[Any], chosen: Sequence[str], exact: bool) -> None:
         self.list = _List()
+        self.exact = exact
         self.guards: list[int] = []
         self.rows = {id(x): n for n, x in enumerate(rows)}
         self.chosen = {name: n for n, name in enumerate(chosen, len(rows))}
@@ -376,7 +380,7 @@ class _Walk:
         asked = {id(step) for step in wanted}
         for step in reversed(found):
             if id(step) in asked and id(step) not in self.rows:
-                used = _arguments(step.rule.compute, len(step.args))
+                used = _arguments(step.rule.compute, len(step.args), self.exact)
                 if used is None:
                     raise CannotBuild(tell('rule "{rule}" has no formula').format(rule=step.rule.name))
                 asked.update(id(_behind(step.args[i])) for i in used)
@@ -387,7 +391,7 @@ class _Walk:
         if id(step) in self.rows:
             self.known[id(step)] = self._input(self.rows[id(step)], step)
             return
-        used = _arguments(step.rule.compute, len(step.args)) or frozenset()
+        used = _arguments(step.rule.compute, len(step.args), self.exact) or frozenset()
         tree = trace(step.rule.compute, len(step.args))
         assert tree is not None
         self.known[id(step)] = self._applied(tree, [self.parts(a) if i in used else () for i, a in enumerate(step.args)])
@@ -451,12 +455,12 @@ class _Walk:
         count = len(tree.parts)
         if tree.function is None:
             return self._arithmetic(tree.name, [self._applied(part, args, known) for part in tree.parts])
-        plain, guard = _plain(tree.function), _guard(tree.function)
-        used = None if plain is None else _arguments(plain, count)
+        plain, guard = _plain(tree.function, self.exact), _guard(tree.function)
+        used = None if plain is None else _arguments(plain, count, self.exact)
         if used is None or plain is None:
             return self._called(tree, [self._applied(part, args, known) for part in tree.parts])
         if guard is not None:
-            used |= _arguments(guard, count) or frozenset()
+            used |= _arguments(guard, count, self.exact) or frozenset()
         of = [self._applied(part, args, known) if i in used else () for i, part in enumerate(tree.parts)]
         if all(self.list.constant(i) is not None for parts in of for i in parts) and all(of):
             return self._constant(tree.function(*map(self._number, of)))
@@ -471,7 +475,10 @@ class _Walk:
         return complex(*numbers) if len(numbers) == 2 else numbers[0]
 
     def _called(self, tree: Operation, of: list[Parts]) -> Parts:
-        """A primitive that is called by its name."""
+        """A primitive that is called by its name, at once where all that it takes is constant."""
+        values = [self.list.values[i] for parts in of for i in parts]
+        if tree.function is not None and all(v.does == NUMBER for v in values):
+            return self._constant(tree.function(*map(self._number, of)))
         found = _primitive(tree.function)
         gives: Type = "complex" if found is None else found.gives
         i = self.list.done(tree.name, *map(self._packed, of), gives=gives, function=tree.function)
