@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from tmm_sheets.methods.cams.cam_laws import LAWS, PositionFunction
-from tmm_sheets.sheets.cam_law import FORMS, _forms, _phases
+from tmm_sheets.sheets.cam_law import _forms, _phases, _written
+
+FORMS = [name for name, law in LAWS.items() if _written(law)]
 
 TOKEN = re.compile(r"S_\{max\}|φ_\w+|φ|sin|cos|π|x|\d+|[-+*/()]|\^")
 
@@ -16,6 +18,7 @@ def value(text, **letters):
     """What a formula gives, as it is written: what stands side by side is multiplied."""
     known = {"S_{max}": "S", "φ_у": "rise", "φ_дс": "dwell", "φ_с": "fall", "φ": "phi", "π": "pi", "^": "**"}
     found = ""
+    text = re.sub(r"sin\^2(\([^()]*\))", r"(sin\1)^2", text)
     for token in TOKEN.findall(text.replace("−", "-").replace("·", "*").replace("[", "(").replace("]", ")")):
         side_by_side = found and (found[-1].isalnum() or found[-1] == ")") and (token[0].isalnum() or token[0] == "(")
         found += ("*" if side_by_side and not found.endswith(("sin", "cos")) else "") + known.get(token, token)
@@ -35,6 +38,10 @@ def test_formulas_are_those_of_the_law(name, dwell):
             for line, exact in zip(lines[first:first + 3], (phase.s, phase.ds, phase.dds), strict=True):
                 assert value(line.partition(" = ")[2], x=x) == pytest.approx(float(exact(x)), abs=1e-12), line
         assert lines[-1].endswith(" м")
+
+
+def test_all_but_diagrams_are_formulas():
+    assert FORMS == ["sine", "cosine", "constant", "linearly decreasing"]
 
 
 def test_a_law_that_is_a_diagram_tells_its_greatest_value_only():

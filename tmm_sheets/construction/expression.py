@@ -5,13 +5,15 @@ there is one definition of each formula: what is computed is what is typeset, to
 that branches, loops until something converges or compares values cannot be read off: it is a :func:`primitive` of the construction.
 
 The tree is ``Argument`` (by its number), ``Constant`` or ``Operation`` (name and operands); :func:`evaluate` computes it,
-:func:`as_json` and :func:`from_json` carry it, :func:`latex` writes it with any texts in the places of the arguments.
+:func:`as_json` and :func:`from_json` carry it; :func:`latex` and, in one line, :func:`lettered` write it with any texts in the
+places of the arguments.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cache, reduce, wraps
 from math import pi
 from types import ModuleType
@@ -253,3 +255,51 @@ def _constant(value: float | complex) -> tuple[str, int]:
     if value == 2 * pi:
         return "2\\pi", 2
     return f"{value:.12g}", 1 if value < 0 else _ATOM
+
+
+def lettered(tree: Expression, texts: Sequence[str], least: int = 0) -> str:
+    """The tree in one line of lettering, as on a sheet: 2πx, sin^2(πx), x^2(3 − 2x).
+
+    In parentheses where it binds less tightly than ``least``: 2 for a factor or what is subtracted, 1 behind a sign.
+    """
+    text, binds = _lettered(tree, texts)
+    return text if binds >= least else f"({text})"
+
+
+def _lettered(tree: Expression, texts: Sequence[str]) -> tuple[str, int]:
+    """One line, and how tightly it binds, as :func:`_latex`; ratios bind as products."""
+    if isinstance(tree, Argument):
+        return texts[tree.index], _ATOM
+    if isinstance(tree, Constant):
+        return _ratio(tree.value)
+    assert isinstance(tree, Operation)
+    if tree.name == "*":
+        first, second = (lettered(part, texts, 2) for part in tree.parts)
+        # What is read as one product needs no sign: 2πx, 6x(1 − x); a ratio or a function begins or ends with one.
+        bare = tree.parts[1].parts[0] if isinstance(tree.parts[1], Operation) and tree.parts[1].name == "^" else tree.parts[1]
+        joined = "/" not in first and not first.endswith(")") and (second.startswith("(") or isinstance(bare, Argument))
+        return first + ("" if joined else "·") + second, 2
+    if tree.name == "/":
+        return f"{lettered(tree.parts[0], texts, 2)}/{lettered(tree.parts[1], texts, _ATOM)}", 2
+    if tree.name == "^":
+        base, power = tree.parts[0], lettered(tree.parts[1], texts)
+        raised = f"^{power}" if len(power) == 1 else f"^{{{power}}}"
+        if isinstance(base, Operation) and base.name in ("sin", "cos", "tan"):
+            return f"{base.name}{raised}({lettered(base.parts[0], texts)})", 3
+        return lettered(base, texts, _ATOM) + raised, 3
+    if tree.name in "+-":
+        sign, last = tree.name.replace("-", "−"), lettered(tree.parts[-1], texts, 2)
+        return (f"{lettered(tree.parts[0], texts)} {sign} {last}" if len(tree.parts) > 1 else sign + last), 1
+    return f"{tree.name}({', '.join(lettered(part, texts) for part in tree.parts)})", _ATOM
+
+
+def _ratio(value: float | complex) -> tuple[str, int]:
+    """A constant that is a small ratio, or one times a power of π: 1/2, 2π, π^2/2; another as its digits."""
+    for power, letter in enumerate(("", "π", "π^2")):
+        exact = Fraction(float(np.real(value)) / pi**power).limit_denominator(12)
+        if isinstance(value, complex) or abs(float(exact) * pi**power - value) > 1e-15 * abs(value):
+            continue
+        top = f"{abs(exact.numerator)}" if abs(exact.numerator) != 1 or not letter else ""
+        text = ("−" if exact < 0 else "") + top + letter + (f"/{exact.denominator}" if exact.denominator > 1 else "")
+        return text, 1 if exact < 0 else _ATOM if text == (top or letter) else 2
+    return f"{value:.12g}", 1 if np.real(value) < 0 else _ATOM

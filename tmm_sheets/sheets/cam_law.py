@@ -3,31 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.construction.expression import Expression, Operation, lettered, trace
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken, letter
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.methods.cams.cam_laws import BY_PIECES
 from tmm_sheets.numbers import number
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.cams.cam_laws import Phase, PositionFunction
+    from tmm_sheets.methods.cams.cam_laws import Law, Phase, PositionFunction
     from tmm_sheets.project import Project
 
-FORMS: dict[str, tuple[tuple[str, tuple[str, str, str]], ...]] = {
-    "sine": (("", ("(x − sin(2πx)/(2π))", "(1 − cos(2πx))", "2π·sin(2πx)")),),
-    "cosine": (("", ("(1 − cos(πx))/2", "π/2·sin(πx)", "π^2/2·cos(πx)")),),
-    "constant": (("x < 1/2", ("2x^2", "4x", "4")), ("x > 1/2", ("(1 − 2(1 − x)^2)", "4(1 − x)", "(−4)"))),
-    "linearly decreasing": (("", ("x^2(3 − 2x)", "6x(1 − x)", "6(1 − 2x)")),),
-}
-"""Displacement and both derivatives for unit stroke and unit phase angle, by the name of the law and by pieces of the phase.
-
-A law that is given as a diagram of its second derivative has no formula.
-"""
 WAYS = (5.0, 12.0, inf), (3.5, 8.0, inf), (3.5, 7.0, inf), (3.5, 6.0, inf), (3.5, 6.0, 62.0)
 """Heights of the letters, distances of the lines and widths at which these are broken that are tried, mm."""
 APART = 14.0
@@ -84,7 +77,7 @@ def _phases(law: PositionFunction) -> tuple[list[str], list[str]]:
 def _formulas(symbol: str, phase: Phase, head: str) -> list[str]:
     """Formulas of one phase under its heading, of the return those of the way back; its greatest second derivative."""
     most, angle, back = f"{symbol}_{{max}}", phase.letters, phase.travel < 0
-    minus, forms = "−" if back else "", FORMS.get(phase.law.name, ())
+    minus, forms = "−" if back else "", _written(phase.law)
     lines = [head] if forms else []
     for where, (s, ds, dds) in forms:
         lines += [f"{where}:"] if where else []
@@ -93,3 +86,24 @@ def _formulas(symbol: str, phase: Phase, head: str) -> list[str]:
     peak, unit = number(phase.law.peak), tr("m") if symbol == "S" else ""
     return [*lines, f"|{symbol}''|_{{max}} = {peak}·{most}/{angle}^2 = {peak}·{number(abs(phase.travel))}/"
             f"{number(phase.angle)}^2 = {number(phase.amplitude)} {unit}".rstrip()]
+
+
+def _written(law: Law) -> list[tuple[str, tuple[str, ...]]]:
+    """Displacement and both derivatives for unit stroke and unit phase angle, by pieces of the phase, from the law itself.
+
+    A law that is given as a diagram has no formula.
+    """
+    trees = [] if law.nodes else [tree for form in law.forms if (tree := trace(form, 1)) is not None]
+    if len(trees) < len(law.forms):
+        return []
+    pieces = [_pieces_of(tree) for tree in trees]
+    return [(same[0][0], tuple(lettered(tree, ["x"], 2) for _, tree in same)) for same in zip(*pieces, strict=True)]
+
+
+def _pieces_of(tree: Expression) -> list[tuple[str, Expression]]:
+    """The formulas of the pieces of a phase, each with the shares where it holds; all of it has no such words."""
+    if not isinstance(tree, Operation) or tree.name != BY_PIECES:
+        return [("", tree)]
+    borders = [lettered(border, ["x"]) for border in tree.parts[2::2]]
+    where = [f"x < {borders[0]}", *(f"{a} < x < {b}" for a, b in pairwise(borders)), f"x > {borders[-1]}"]
+    return list(zip(where, tree.parts[1::2], strict=True))

@@ -25,7 +25,10 @@ Reals = npt.NDArray[np.float64]
 Function = Callable[..., Any]
 
 
-@primitive("by pieces", "real")
+BY_PIECES = "by pieces"
+
+
+@primitive(BY_PIECES, "real")
 def by_pieces(x: Any, *pieces: Any) -> Any:
     """The first of some values whose border ``x`` has not reached: value, border, value, border ... value."""
     borders, values = pieces[1::2], pieces[::2]
@@ -112,7 +115,7 @@ SINE = Law(
 )
 COSINE = Law(
     "cosine", marked("cosine acceleration"),
-    (lambda x: np.sin(pi / 2 * x) ** 2, lambda x: pi / 2 * np.sin(pi * x), lambda x: pi**2 / 2 * np.cos(pi * x)),
+    (lambda x: np.sin(pi * x / 2) ** 2, lambda x: pi / 2 * np.sin(pi * x), lambda x: pi**2 / 2 * np.cos(pi * x)),
     peak=pi**2 / 2,
     division=lambda x: pi / 2 - pi * x,
 )
