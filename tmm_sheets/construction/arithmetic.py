@@ -265,3 +265,14 @@ def arm(about: Any, at: Any, force: Any) -> Any:
 def moment(about: Any, at: Any, force: Any) -> Any:
     """Moment about a point of a force applied at ``at``; counter-clockwise positive."""
     return cross(at - about, force)
+
+
+BY_PIECES = "by pieces"
+"""Name of the primitive that is another formula in each piece of its range."""
+
+
+@primitive(BY_PIECES, "real")
+def by_pieces(x: Any, *pieces: Any) -> Any:
+    """The first of some values whose border ``x`` has not reached: value, border, value, border ... value."""
+    borders, values = pieces[1::2], pieces[::2]
+    return np.select([np.asarray(x) < b for b in borders], values[:-1], values[-1])

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.construction.arithmetic import BY_PIECES
 from tmm_sheets.construction.expression import Expression, Operation, lettered, trace
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken, letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.methods.cams.cam_laws import BY_PIECES
 from tmm_sheets.numbers import number
 from tmm_sheets.words import tr
 

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.construction.arithmetic import by_pieces
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
@@ -22,7 +23,6 @@ from tmm_sheets.methods.cams.cam_laws import (
     Law,
     Phase,
     PositionFunction,
-    by_pieces,
     displaced,
     first_derivative,
     second_derivative,

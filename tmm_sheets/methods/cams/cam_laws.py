@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.construction.arithmetic import by_pieces
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.errors import CannotBuild
@@ -23,16 +24,6 @@ from tmm_sheets.words import marked, tell, tr
 
 Reals = npt.NDArray[np.float64]
 Function = Callable[..., Any]
-
-
-BY_PIECES = "by pieces"
-
-
-@primitive(BY_PIECES, "real")
-def by_pieces(x: Any, *pieces: Any) -> Any:
-    """The first of some values whose border ``x`` has not reached: value, border, value, border ... value."""
-    borders, values = pieces[1::2], pieces[::2]
-    return np.select([np.asarray(x) < b for b in borders], values[:-1], values[-1])
 
 
 @primitive("within a turn", "real")
