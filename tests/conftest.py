@@ -1,7 +1,9 @@
 """What holds for all tests."""
 
+import gc
 import os
 import shutil
+import sys
 import tempfile
 
 import pytest
@@ -18,8 +20,11 @@ os.environ["LANGUAGE"] = "en"  # messages are compared in the language of the co
 OWN_CACHE = "" if "PYTEST_XDIST_WORKER" in os.environ else tempfile.mkdtemp(prefix="tmm-sheets-tests-")
 if OWN_CACHE:
     os.environ[kept.FOLDER] = OWN_CACHE
-# Programs that tests start keep their byte code: the next one begins sooner.
+# Byte code is kept, that of the tests and of the programs they start: the next one begins sooner.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
+# Thousands of tests, modules and sheets stay to the end: looking through them all for garbage so often is in vain.
+gc.set_threshold(50_000, 20, 20)
 
 
 LONGEST = (

@@ -2,6 +2,7 @@
 
 import pytest
 
+from tests.few import seldom
 from tmm_sheets import catalogue, kept
 from tmm_sheets.__main__ import run
 from tmm_sheets.askers import listening
@@ -26,7 +27,7 @@ EXCEPTIONS = {
 """Modules that decide by a step, or tell it on as a plain number."""
 
 
-@pytest.mark.parametrize("name", ["lugansk/shaper", "press", "sixbar/5:5"])
+@pytest.mark.parametrize("name", ["lugansk/shaper", "press", seldom("sixbar/5:5")])
 def test_what_is_evaluated_is_shown(name, monkeypatch):
     monkeypatch.setenv(kept.FOLDER, "")  # a sheet that is kept evaluates nothing
     project = Project(catalogue.read(name))

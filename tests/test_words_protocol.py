@@ -66,7 +66,7 @@ def test_names_ids_and_numbers_are_the_same_in_every_language():
             project = Project(catalogue.read("sixbar/1:1"))
             record, _ = recording.record(project)
             entries = collecting.measurables(project, lambda what: None).entries
-            solved = results.as_json(results.assemble(Project(catalogue.read("sixbar/1:1")), None))
+            solved = results.as_json(results.assemble(project, None))
             found[language] = ([plan["steps"] for plan in record["plans"]], sorted(record["steps"]), sorted(record["rules"]),
                                record["results"], list(entries), [e.value for e in entries.values()], solved)
             assert any(name.endswith("^k") for name in entries)

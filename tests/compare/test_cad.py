@@ -15,10 +15,12 @@ from tests.compare.cad_plants import Way, draw
 from tests.few import seldom
 from tmm_sheets.backends import dxf
 from tmm_sheets.catalogue import read
+from tmm_sheets.compare import view_places
 from tmm_sheets.compare.cad import cad_drawing, cad_file, cad_report
 from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.cad.view_search import SHAPES
 from tmm_sheets.compare.elements import elements
+from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.compare.report import Report
 from tmm_sheets.errors import BadInput
@@ -254,13 +256,15 @@ def test_a_layout_of_ones_own(tmp_path):
 
 def test_a_single_view(tmp_path):
     """A drawing may have one view only: the others are told as missing, in a row each."""
-    view = CIRCLE.view
-    report = compare(drawn([e for e in EXACT if e.view == view], turn=0.5, shift=70), tmp_path)
+    cam = Project(read("lugansk/cam_flat"))
+    known = elements(composed(cam, 1))
+    view = next(e.view for e in known if e.view.n)
+    report = compare(drawn([e for e in known if e.view == view], turn=0.5, shift=70), tmp_path, 1, project=cam)
     mine = [e for e in report.tree["elements"] if e["view"] == view.name]
     assert {e["verdict"] for e in mine} == {"green"}
-    others = {e.view.name for e in EXACT if e.view != view}
+    others = {e.view.name for e in known if e.view != view}
     assert set(report.tree["summary"]["missing_views"]) == others
-    shaped = {e.view.name for e in EXACT if e.role in SHAPES}
+    shaped = {e.view.name for e in known if e.role in SHAPES}
     assert set(report.tree["summary"]["missing_tables"]) == others - shaped
     assert f"{len(mine)} green (up to 0.00 mm), 0 amber, 0 red; 0 extra; {len(others & shaped)} of {len(shaped)} " in report.text
 
@@ -304,8 +308,10 @@ def test_a_wrong_place_in_the_file_of_views_is_told_and_the_view_looked_for(tmp_
     ("[[view", "Expected|expected"),
 ])  # fmt: skip
 def test_a_bad_file_of_views(tmp_path, text, said):
+    path = tmp_path / "views.toml"
+    path.write_text(text, encoding="utf-8")
     with pytest.raises(BadInput, match=said):
-        compare(exact(), tmp_path, views=text)
+        view_places.read(path, views_of(SHEET))
 
 
 def test_the_wrong_sheet_is_told_and_the_right_one_named(tmp_path):

@@ -58,7 +58,7 @@ def drawings(spoiled, tmp_path_factory):
             (folder / "measured.csv").write_text("\n".join(("id;measured", *rows, "")), encoding="utf-8")
             return "--measured", folder / "measured.csv"
         if kind == "dxf":
-            (folder / "mine.dxf").write_bytes(dxf.render(spoiled, "strokes"))
+            (folder / "mine.dxf").write_bytes(dxf.render(spoiled))
             return "--sheet", 1, "--dxf", folder / "mine.dxf"
         rng = np.random.default_rng(1)
         camera = Camera(megapixels=8.0, tilt=0.1, curl=1.0, k1=-0.01, waves=(0.1, 0.1, 0.0), desk=110.0)

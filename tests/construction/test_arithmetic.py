@@ -13,7 +13,8 @@ from tmm_sheets.construction import arithmetic as ar
 
 EPS = 2.0**-52
 number = st.floats(1e-60, 1e60) | st.floats(-1e60, -1e-60)
-coordinate = st.floats(-1e3, 1e3)
+coordinate = st.floats(1e-60, 1e3) | st.floats(-1e3, -1e-60) | st.just(0.0)
+"""Not so small that what is made of it has fewer than 53 digits."""
 point = st.builds(complex, coordinate, coordinate)
 angle = st.floats(-np.pi, np.pi)
 size = st.floats(-3, 3).map(lambda x: 10.0**x)

@@ -9,6 +9,7 @@ from tests.foreign import drawing, judge, scene
 from tests.foreign.paper import Paper
 
 
+@pytest.mark.trial
 def test_a_picture_is_taken_and_judged(tmp_path: Path) -> None:
     cv2 = pytest.importorskip("cv2")
     picture, truth = scene.take(scene.scene(0, 1, ("tiles",)), tmp_path, most=3.0)

@@ -21,7 +21,7 @@ OF_LINKAGE = ("dead-positions", "cycle", "positions", "velocities", "loads", "mo
 LINKAGE = ("positions", "velocities", "accelerations", "forces")
 
 
-@pytest.fixture(scope="module", params=few(PROJECTS, "lugansk/shaper", "press", "lugansk/cam_flat"))
+@pytest.fixture(scope="module", params=few(PROJECTS, "lugansk/shaper", "lugansk/cam_flat"))
 def case(request):
     project = Project(catalogue.read(request.param))
     found, problem = recording.record(project)

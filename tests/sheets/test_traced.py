@@ -17,7 +17,7 @@ from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame, Text
 from tmm_sheets.project import Project
 
 
-@pytest.mark.parametrize("name", few(traced.PROJECTS, "lugansk/shaper", "press", "transport/press@07-ЭПС-718"))
+@pytest.mark.parametrize("name", few(traced.PROJECTS, "lugansk/shaper", "transport/press@07-ЭПС-718"))
 def test_marks_know_their_steps_and_lie_where_these_say(name):
     project = Project(read(name))
     sheets = traced.drawn(project, traced.DONE)

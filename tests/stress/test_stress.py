@@ -22,6 +22,8 @@ from tmm_sheets.mechanism.model import Crank, Guide, StructuralGroup
 from tmm_sheets.methods.linkage import accelerations, forces, positions, velocities, zhukovsky
 
 CASES = 10 * len(SCENES)
+FOLDING = ("parallelogram", "antiparallelogram", "kite", "slider-crank", "four-bar that folds", "parallelograms in a row")
+"""Scenes of linkages whose links fall into one line."""
 
 
 @pytest.fixture(scope="module")
@@ -229,8 +231,10 @@ def test_a_wrong_formula_is_caught(monkeypatch, what):
 
 def test_lines_that_fall_together_are_caught(monkeypatch):
     """The arithmetic of before: what lines tell that fall together is rounding times a condition of 8e15."""
+    folding = [case for case in range(0, CASES, 3) if list(SCENES)[case % len(SCENES)] in FOLDING]
+
     def exceeded(*invariants):
-        cases = [dict(run_case(11, case)[1]) for case in range(0, CASES, 3)]
+        cases = [dict(run_case(11, case)[1]) for case in folding]
         return [sum(not values.get(name, 0.0) <= BOUNDS[name][0] for values in cases) for name in invariants]
 
     monkeypatch.setattr(velocities.MotionPolygon, "known", lambda self, group: self.positions.known_sine(group))
