@@ -479,7 +479,7 @@ def judge(project: Project, name: str, n: int, path: Path, drawn: Drawn, known: 
         count["slips that nothing shows"] += 1
     elif drawn.slip is not None:
         shown = {v for v in drawn.built if v in there}
-        told = {v: b for v, b in found.built.items() if not isinstance(b.mistake, str)}
+        told = {v: b for v, b in found.built.items() if isinstance(b.mistake, Hypothesis)}
         said = [told[v].mistake for v in told if v in shown]
         after_or = [h for v in told if v in shown for h in told[v].alike]
 
@@ -494,7 +494,7 @@ def judge(project: Project, name: str, n: int, path: Path, drawn: Drawn, known: 
             out.append(f"{outcome}: {drawn.slip}; said {list(dict.fromkeys(b.said() for b in told.values()))}; lost "
                        f"{[v.name for v in drawn.built if v not in there]}")
     else:
-        count["named, none made"] += any(not isinstance(b.mistake, str) for v, b in found.built.items() if v not in drawn.built)
+        count["named, none made"] += any(isinstance(b.mistake, Hypothesis) for v, b in found.built.items() if v not in drawn.built)
     count["extra"] += len(found.outcome.extras)
     out += [f"extra: {x.length:.0f} mm {x.text} at {x.at:.0f}" for x in found.outcome.extras[:6]]
     return out

@@ -21,6 +21,7 @@ from tests.compare.own_layouts import Drawn, draws_alike, shaped_views, slipped
 from tests.foreign import scene
 from tests.foreign.drawing import Mark
 from tmm_sheets.catalogue import read
+from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.known_sheet import KnownSheet, known_sheet
 from tmm_sheets.compare.photo import image
@@ -156,7 +157,7 @@ def main() -> None:
 
 def judged(project: Project, known: KnownSheet, drawn: Drawn, built: dict) -> str:
     """What was told of a photograph."""
-    told = [b.mistake for b in built.values() if not isinstance(b.mistake, str)]
+    told = [b.mistake for b in built.values() if isinstance(b.mistake, Hypothesis)]
     if drawn.slip is None:
         return "sound, named" if built else "sound, nothing named"
     for some, outcome in ((told, "named"), ([h for b in built.values() for h in b.alike], "named after or")):

@@ -33,6 +33,7 @@ from tests.compare.own_layouts import SLIPS, draws_alike
 from tests.compare.students import OWN, opened
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.cad import cad_drawing, cad_report
+from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.elements import ElementView
 from tmm_sheets.compare.known_sheet import KnownSheet, known_sheet
 from tmm_sheets.construction.protocol import letter_of
@@ -362,7 +363,7 @@ def judge(name: str, n: int, project: Project, known: KnownSheet, drawn: Sparse,
     for handle in silent:
         p, q = drawn.wrong[handle]
         yield f"in silence: {handle} {p:.0f} {q:.0f}"
-    told = [b for v, b in found.built.items() if not isinstance(b.mistake, str)]
+    told = [b for v, b in found.built.items() if isinstance(b.mistake, Hypothesis)]
 
     def exact(some: list[Any]) -> bool:
         return any(h.kind == drawn.slip.kind and h.step.path in {s.path for s in drawn.slip.ways} for h in some)

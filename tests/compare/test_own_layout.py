@@ -130,7 +130,7 @@ def test_a_view_that_is_turned_is_told_so_once(compared):
     turned = VIEWS["План скоростей, положение 7"]
     assert found.turned == {turned: "drawn turned by 90° counter-clockwise"}
     (told,) = (m for m in cad_story.mistakes(found, cad_report.gone(found.outcome)) if m.where == turned.name)
-    assert (told.what, told.verdict, told.named) == (found.turned[turned], "red", True)
+    assert (told.what, told.verdict, told.named) == (found.turned[turned].said(), "red", True)
     assert not [f for f in found.outcome.findings if f.element.view == turned and f.verdict == "red"]
 
 

@@ -8,6 +8,7 @@ import pytest
 from tests.compare.students import PENCIL, READING, Hand
 from tests.project_files import MOMENT, SLIDER, WORKING, project
 from tmm_sheets.compare import group
+from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.measured import measured_lengths
 from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.collecting import measurables
@@ -31,11 +32,15 @@ def lines(found):
     return Hand(found, np.random.default_rng(3), (), 0.3).filled({k: e for k, e in found.entries.items() if e.main}).lines
 
 
+def _said(other):
+    return other.said() if isinstance(other, Remark) else other
+
+
 def told(found, lines, change=lambda e, value: value):
     """The judged numbers of a table, some of them written otherwise, and what is told was done otherwise."""
     judged = judge(Filled([replace(line, value=change(line.entry, line.value), half_digit=5e-5) for line in lines]), found, PENCIL,
                    READING)
-    return judged, [(j.wrong[0].words, j.wrong[0].other) if j.wrong else j.entry.id for j in judged if j.starts]
+    return judged, [(j.wrong[0].words, _said(j.wrong[0].other)) if j.wrong else j.entry.id for j in judged if j.starts]
 
 
 def numbered(lines, by):

@@ -7,9 +7,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
+from tmm_sheets.compare import codes
+from tmm_sheets.compare.codes import Number, Remark
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.report import Verdict
-from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
 
 SHOWN = 60
@@ -20,16 +21,21 @@ WIDE = 74
 
 @dataclass(frozen=True, eq=False)
 class Finding:
-    """The outcome for one element: by how much it is off, mm, the same in words, and the place on the sheet, mm.
+    """The outcome for one element: by how much it is off, mm, what that is, and the place on the sheet, mm.
 
-    ``verdict`` is None if it was not compared.
+    ``verdict`` is None if it was not compared, ``remark`` of what is right, where nothing is to be said.
     """
 
     element: Element
     verdict: Verdict | None
     deviation: float
-    what: str
+    remark: Remark | None
     at: complex
+
+    @property
+    def what(self) -> str:
+        """What it is, as the reader reads it."""
+        return self.remark.said() if self.remark is not None else ""
 
     @property
     def share(self) -> float:
@@ -84,57 +90,49 @@ def _on_paper(e: Element) -> str:
     return e.name.removeprefix(step).strip("()") if word else e.name
 
 
-_WAYS = {
-    (0, 1): marked("{by} mm too far up"), (0, -1): marked("{by} mm too far down"),
-    (1, 0): marked("{by} mm too far right"), (-1, 0): marked("{by} mm too far left"),
-    (1, 1): marked("{by} mm too far up and right"), (-1, 1): marked("{by} mm too far up and left"),
-    (1, -1): marked("{by} mm too far down and right"), (-1, -1): marked("{by} mm too far down and left"),
-}
-"""What a shift is said to be, by its signs to the right and upwards."""
-
-
-def shifted(by: complex) -> str:
-    """A shift, mm, in words; a component of less than a quarter is left out."""
+def shifted(by: complex) -> Remark:
+    """A shift, mm; a component of less than a quarter is left out."""
     right, up = (0 if abs(x) <= 0.25 * abs(by) else 1 if x > 0 else -1 for x in (by.real, by.imag))
-    return tell(_WAYS[right, up]).format(by=millimetres(by))
+    return codes.SHIFTED[right, up](by=millimetres(by))
 
 
-def turned(by: float) -> str:
-    """A turn, degrees counter-clockwise, in words."""
-    said = tell("turned by {by}° counter-clockwise") if by > 0 else tell("turned by {by}° clockwise")
-    return said.format(by=told(f"{abs(by):.2f}"))
+def turned(by: float) -> Remark:
+    """A turn, degrees counter-clockwise."""
+    return codes.TURNED[_sign(by)](by=Number(f"{abs(by):.2f}"))
 
 
-def too_long(by: float) -> str:
-    """An excess of a length, mm, in words."""
-    return (tell("{by} mm too long") if by > 0 else tell("{by} mm too short")).format(by=millimetres(by))
+def too_long(by: float) -> Remark:
+    """An excess of a length, mm."""
+    return codes.TOO_LONG[_sign(by)](by=millimetres(by))
 
 
-def of_radius(by: float, wanted: float) -> str:
-    """An excess of a radius that should be ``wanted``, mm, in words."""
-    said = (tell("radius {by} mm too large ({found} for {wanted})") if by > 0 else
-            tell("radius {by} mm too small ({found} for {wanted})"))
-    return said.format(by=millimetres(by), found=told(f"{wanted + by:.1f}"), wanted=told(f"{wanted:.1f}"))
+def of_radius(by: float, wanted: float) -> Remark:
+    """An excess of a radius that should be ``wanted``, mm."""
+    return codes.OF_RADIUS[_sign(by)](by=millimetres(by), found=Number(f"{wanted + by:.1f}"), wanted=Number(f"{wanted:.1f}"))
 
 
-def missing_part(size: float) -> str:
+def missing_part(size: float) -> Remark:
     """That so much of a line, mm, is not there."""
-    return tell("{size} mm of it missing").format(size=told(f"{size:.1f}"))
+    return codes.PART_MISSING(size=Number(f"{size:.1f}"))
 
 
-def farthest(by: float, at: complex) -> str:
+def farthest(by: float, at: complex) -> Remark:
     """How far a line is off at most, mm, and where on the sheet."""
-    return tell("up to {by} mm off at {place}").format(by=told(f"{by:.2f}"), place=place(at))
+    return codes.FARTHEST(by=Number(f"{by:.2f}"), place=place(at))
 
 
-def place(at: complex) -> str:
+def _sign(by: float) -> int:
+    return 1 if by > 0 else -1
+
+
+def place(at: complex) -> Number:
     """A place on the sheet, mm."""
-    return told(f"({at.real:.0f}, {at.imag:.0f})")
+    return Number(f"({at.real:.0f}, {at.imag:.0f})")
 
 
-def millimetres(by: complex) -> str:
+def millimetres(by: complex) -> Number:
     """The size of a deviation, mm, as it is written."""
-    return told(f"{abs(by):.{1 if abs(by) >= 1 else 2}f}")
+    return Number(f"{abs(by):.{1 if abs(by) >= 1 else 2}f}")
 
 
 def origin(e: Element) -> dict[str, Any]:

@@ -12,17 +12,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.cad_comparison import BEYOND, Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.displaced_lines import FARTHEST
 from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.cad.overlaps import left, overlaps, pieces
+from tmm_sheets.compare.codes import Number, Remark, joined
 from tmm_sheets.compare.findings import shifted, turned
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.numbers import told
-from tmm_sheets.words import tell
 
 LARGEST = 12.0
 """Greatest extent of a filled area that may be an arrow head, mm."""
@@ -89,7 +89,7 @@ def arrows(state: Comparison) -> None:
         if k not in taken and arrow in wanted:
             taken[k] = arrow.tip
             wanted.remove(arrow)
-            _tell(state, arrow, tell("points the other way"), state.elements[arrow.n].length)
+            _tell(state, arrow, codes.POINTS_BACK(), state.elements[arrow.n].length)
     for off, arrow, k in _pairs(_elsewhere, wanted, heads):
         if k not in taken:
             taken[k] = arrow.tip
@@ -106,7 +106,7 @@ def arrows(state: Comparison) -> None:
             wanted.remove(arrow)
     for arrow in wanted:
         if len(heads.area) and not _open_head(state, arrow.tip):
-            _tell(state, arrow, tell("no arrow head"), 2 * state.tolerance)
+            _tell(state, arrow, codes.NO_HEAD(), 2 * state.tolerance)
     state.used_areas.update(int(heads.area[k]) for k in taken)
 
 
@@ -220,8 +220,8 @@ def _drawn_aside(state: Comparison, arrow: _Arrow, tip: complex) -> bool:
     shift = (tip + tail - arrow.tip - arrow.tail) / 2
     turn = float(np.degrees(np.angle((tip - tail) / (arrow.tip - arrow.tail))))
     off = max(abs(tip - arrow.tip), abs(tail - arrow.tail))
-    what = turned(turn) if tail == arrow.tail and abs(turn) > 0.05 else shifted(shift)
-    state.found[arrow.n] = replace(arrow.finding, deviation=off, verdict=verdict(off, state.tolerance), what=what, shift=shift,
+    remark = turned(turn) if tail == arrow.tail and abs(turn) > 0.05 else shifted(shift)
+    state.found[arrow.n] = replace(arrow.finding, deviation=off, verdict=verdict(off, state.tolerance), remark=remark, shift=shift,
                                    turn=turn, at=tip, reach=5.0)
     return True
 
@@ -229,17 +229,17 @@ def _drawn_aside(state: Comparison, arrow: _Arrow, tip: complex) -> bool:
 def _off_by(state: Comparison, arrow: _Arrow, off: float) -> None:
     """Tell how far a tip is off where only the head tells where the line ends."""
     if state.found[arrow.n].verdict == "green" and off > state.tolerance:
-        what = tell("the tip is {by} mm off").format(by=told(f"{off:.2f}"))
-        state.found[arrow.n] = replace(arrow.finding, deviation=off, verdict=verdict(off, state.tolerance), what=what, at=arrow.tip,
-                                       reach=5.0)
+        remark = codes.TIP_OFF(by=Number(f"{off:.2f}"))
+        state.found[arrow.n] = replace(arrow.finding, deviation=off, verdict=verdict(off, state.tolerance), remark=remark,
+                                       at=arrow.tip, reach=5.0)
 
 
-def _tell(state: Comparison, arrow: _Arrow, what: str, deviation: float) -> None:
+def _tell(state: Comparison, arrow: _Arrow, remark: Remark, deviation: float) -> None:
     """Add what is wrong with the head of an arrow to what is known of its line."""
     finding = state.found[arrow.n]
     deviation = max(deviation, finding.deviation)
-    said = finding.what if what in finding.what else ", ".join(x for x in (finding.what, what) if x)
-    state.found[arrow.n] = replace(finding, verdict=verdict(deviation, state.tolerance), deviation=deviation, what=said)
+    state.found[arrow.n] = replace(finding, verdict=verdict(deviation, state.tolerance), deviation=deviation,
+                                   remark=joined((finding.remark, remark)))
 
 
 def _open_head(state: Comparison, tip: complex) -> bool:

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.cad_arrows import Heads, heads_in
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.line_fit import KnownLines
+from tmm_sheets.compare.codes import joined
 from tmm_sheets.compare.diagnosis import built_plan
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, StudentDrawing
 from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint
@@ -22,7 +24,6 @@ from tmm_sheets.compare.known_sheet import KnownSheet
 from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -67,19 +68,17 @@ def as_built(finding: CadFinding | None, was: Element, now: Element, move: Placi
     """
     if finding is None:
         there = moved(was, move)
-        said = tell("without length, as follows from the mistake")
         at = complex(move(now.points[0]))
-        return CadFinding(there, verdict(there.length, tolerance), there.length, said, at, 3.0, follows=True)
+        return CadFinding(there, verdict(there.length, tolerance), there.length, codes.VANISHED(), at, 3.0, follows=True)
     off = float(np.abs(move(now.points) - move(was.points)).max()) if len(now.points) == len(was.points) else 0.0
     if finding.verdict is None or off <= tolerance or was.kind == "text":
         return finding
     if was.role == "symbol" and finding.verdict != "green":
-        said = tell("a symbol at a point that lies elsewhere")
-        return replace(finding, verdict=None, deviation=0.0, what=said, missing=False)
-    said = tell("up to {by} mm off, as follows from the mistake").format(by=millimetres(off))
-    what = said if finding.verdict == "green" else f"{said}; {finding.what}"
+        return replace(finding, verdict=None, deviation=0.0, remark=codes.SYMBOL_ELSEWHERE(), missing=False)
+    follows = codes.AS_FOLLOWS(by=millimetres(off))
+    remark = follows if finding.verdict == "green" else joined((follows, finding.remark), "; ")
     deviation = max(off, finding.deviation)
-    return replace(finding, verdict=verdict(deviation, tolerance), deviation=deviation, what=what,
+    return replace(finding, verdict=verdict(deviation, tolerance), deviation=deviation, remark=remark,
                    follows=finding.verdict == "green")
 
 

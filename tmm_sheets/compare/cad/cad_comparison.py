@@ -16,6 +16,7 @@ from tmm_sheets.compare.cad.cad_findings import CadFinding
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines
 from tmm_sheets.compare.cad.overlaps import Interval, Left, Numbers, Overlaps, together
+from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.compare.report import verdict
@@ -115,7 +116,7 @@ class Comparison:
             z = np.zeros(len(parts))
             self.claims.append(Overlaps(np.full(len(parts), -1), z, z, j.astype(np.int64), a.astype(float), b.astype(float), z, z))
 
-    def finding(self, n: int, deviation: float, what: str, *, shift: complex | None = None, turn: float | None = None,
+    def finding(self, n: int, deviation: float, remark: Remark | None, *, shift: complex | None = None, turn: float | None = None,
                  size: float | None = None, missing: bool = False, entities: tuple[int, ...] = (),
                  at: complex | None = None) -> CadFinding:
         """A finding for element ``n``, judged by its deviation, mm."""
@@ -123,7 +124,7 @@ class Comparison:
         z = e.points
         middle, reach = (middle_of(z), reach_of(z)) if at is None else (at, min(reach_of(z), 5.0))
         judged = verdict(deviation, self.tolerance)
-        return CadFinding(e, judged, deviation, what, middle, reach, shift, turn, size, missing, entities)
+        return CadFinding(e, judged, deviation, remark, middle, reach, shift, turn, size, missing, entities)
 
     def units(self, n: int, t: npt.NDArray[np.float64]) -> Points:
         """Directions of the path of an element at distances from its beginning, mm."""

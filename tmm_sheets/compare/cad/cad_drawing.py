@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tmm_sheets.compare import view_places
+from tmm_sheets.compare import codes, view_places
 from tmm_sheets.compare.cad import cad_built, cad_file, cad_overlay, cad_report, cad_story, layout
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
@@ -150,7 +150,7 @@ def _matched(known: Sequence[Element], now: Sequence[Element], absent: Collectio
 
     def finding(was: Element, e: Element) -> CadFinding:
         if e.view in absent:
-            return CadFinding(e, "red", e.length, tell("missing"), e.middle, 5.0, missing=True)
+            return CadFinding(e, "red", e.length, codes.MISSING(), e.middle, 5.0, missing=True)
         judged, move = found.get(e.number), moves.get(was.view, Placing())
         return judged if was is e and judged is not None else cad_built.as_built(judged, was, e, move, pencil)
 

@@ -8,18 +8,18 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad import cad_lettering
 from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, LOOSE_STYLES, Comparison, middle_of, reach_of
 from tmm_sheets.compare.cad.cad_findings import ExtraStroke
 from tmm_sheets.compare.cad.cad_ink import normal
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines, shapes
 from tmm_sheets.compare.cad.overlaps import Left, left, pieces
+from tmm_sheets.compare.codes import Number, joined
 from tmm_sheets.compare.findings import farthest, place
 from tmm_sheets.compare.placing import HINGE
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.numbers import told
-from tmm_sheets.words import tell
 
 SHORT = 12.0
 """Strokes shorter than this may belong to lettering, mm."""
@@ -211,20 +211,20 @@ def _too_long(state: Comparison, n: int, size: float, chain: list[Left]) -> None
     r = chain[0]
     piece = state.theirs.b[r.piece] - state.theirs.a[r.piece]
     at = complex(state.theirs.a[r.piece] + (r.a + r.b) / 2 * piece / abs(piece))
-    what = tell("{by} mm too long at {place}").format(by=told(f"{size:.1f}"), place=place(at))
+    remark = codes.TOO_LONG_AT(by=Number(f"{size:.1f}"), place=place(at))
     loop = _loop(state, n, size, at, chain) if e.kind != "line" else None
     if loop is not None:
         size, at = loop
         if size <= old.deviation:
             return  # it is farther off elsewhere
-        what = farthest(size, at)
+        remark = farthest(size, at)
     deviation = max(old.deviation, size)
     judged = verdict(deviation, state.tolerance)
     if judged == "red" and e.style in LOOSE_STYLES and old.verdict != "red":
         judged = "amber"
     where = (at, 5.0) if old.verdict == "green" else (old.at, old.reach)
     entities = tuple(dict.fromkeys((*old.entities, *state.entities_of([r.piece]))))
-    state.found[n] = replace(old, deviation=deviation, verdict=judged, what=", ".join(x for x in (old.what, what) if x),
+    state.found[n] = replace(old, deviation=deviation, verdict=judged, remark=joined((old.remark, remark)),
                              at=where[0], reach=where[1], size=(old.size or 0.0) + size, entities=entities)
 
 

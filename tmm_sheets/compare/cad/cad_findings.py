@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from tmm_sheets.compare.cad.cad_ink import Entity
+from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.elements import ElementView
 from tmm_sheets.compare.findings import Finding
 from tmm_sheets.compare.report import Verdict
@@ -72,19 +73,24 @@ class LookFinding:
     ----------
     view : their view, None if they are in several
     styles : those of their lines on the sheet
-    what : how they are drawn
+    remark : how they are drawn
     elements, entities : their numbers and those of the entities of the drawing
     places : their lines, mm, the longest first
     """
 
     view: ElementView | None
     styles: tuple[str, ...]
-    what: str
+    remark: Remark
     elements: tuple[int, ...]
     entities: tuple[int, ...]
     places: tuple[Points, ...]
 
     verdict: ClassVar[Verdict] = "amber"
+
+    @property
+    def what(self) -> str:
+        """How they are drawn, as the reader reads it."""
+        return self.remark.said()
 
     @property
     def lines(self) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.box import Box
+from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad import cad_text
 from tmm_sheets.compare.cad.cad_comparison import Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding
@@ -19,7 +20,6 @@ from tmm_sheets.compare.cad.view_search import TITLE
 from tmm_sheets.compare.elements import grown
 from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.marks import Points, Text
-from tmm_sheets.words import tell
 
 LETTER = 4
 """A stroke that is more than so many times as long as a letter is high is none of a letter."""
@@ -36,9 +36,9 @@ def lettering(state: Comparison) -> None:
         state.used_writings.update(answer.writings)
         if answer.says is None:
             shift = complex(np.mean([state.space.writings[i].at for i in answer.writings])) - wanted[k].middle
-            state.found[n] = state.finding(n, 0.0, "", shift=shift, entities=entities)
+            state.found[n] = state.finding(n, 0.0, None, shift=shift, entities=entities)
         else:
-            said = tell('reads "{found}" instead of "{wanted}"').format(found=answer.says, wanted=state.elements[n].text)
+            said = codes.SAYS(found=answer.says, wanted=state.elements[n].text)
             state.found[n] = replace(state.finding(n, 4 * state.tolerance, said, entities=entities), says=answer.says)
         _bars(state, n)
         state.lettered.append(grown(wanted[k].points, 0.8))
@@ -89,12 +89,12 @@ def _strokes_of_letters(state: Comparison, rest: Sequence[int]) -> None:
             state.claims.append(near.only(of[ours.owner[near.ours]] == n))
             _bars(state, n)
             state.drawn_letters.append(n)
-            state.found[n] = state.finding(n, 0.0, "")
+            state.found[n] = state.finding(n, 0.0, None)
         elif by_letters[mine].sum() > 0.4 * whole > 0:
             state.found[n] = _other_letters(state, n)
             state.lettered.append(grown(want.points, 0.8))
         else:
-            said = tell('text "{text}" missing').format(text=state.elements[n].text)
+            said = codes.TEXT_MISSING(text=state.elements[n].text)
             state.found[n] = state.finding(n, 2 * state.tolerance, said, missing=True)
 
 
@@ -123,7 +123,7 @@ def strange_ink(state: Comparison, rest: Sequence[Left]) -> None:
 
 
 def _other_letters(state: Comparison, n: int) -> CadFinding:
-    return state.finding(n, 4 * state.tolerance, tell('the letters are not those of "{text}"').format(text=state.elements[n].text))
+    return state.finding(n, 4 * state.tolerance, codes.OTHER_LETTERS(text=state.elements[n].text))
 
 
 def _covered(near: Overlaps, ours: KnownLines, count: int) -> npt.NDArray[np.float64]:

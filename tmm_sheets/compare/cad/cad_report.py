@@ -9,13 +9,14 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Protocol
 
+from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad import omissions
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
 from tmm_sheets.compare.cad.layout import Layout
 from tmm_sheets.compare.cad.registration import Registration
 from tmm_sheets.compare.cad.view_search import SHAPES
-from tmm_sheets.compare.diagnosis.hypotheses import WORDS
+from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.findings import called, origin, place, table, worst
 from tmm_sheets.compare.placing import Placing, moved
@@ -57,27 +58,25 @@ class ExaminedDrawing:
 
 
     @cached_property
-    def turned(self) -> dict[ElementView, str]:
-        """Views that lie as in a mirror, or turned by right angles, on a drawing that else does not; in words."""
+    def turned(self) -> dict[ElementView, Remark]:
+        """Views that lie as in a mirror, or turned by right angles, on a drawing that else does not."""
         out = {v: _turned(move) for v, move in self.places.moves.items() if v.n}
-        return {v: said for v, said in out.items() if said}
+        return {v: remark for v, remark in out.items() if remark is not None}
 
     @property
     def mirrored(self) -> str:
-        """That the whole drawing lies as in a mirror, and how; "" where it does not. A sheet of paper may be turned, not that."""
+        """How the whole drawing lies as in a mirror, a key of ``WORDS``; "" where it does not. Paper may be turned, not that."""
         placing = self.laid.placing
-        said = WORDS["mechanism across" if round(placing.degrees / 90) % 4 == 2 else "mechanism upside down"]
-        return tell(said) if placing.mirrored else ""
+        across = round(placing.degrees / 90) % 4 == 2
+        return ("mechanism across" if across else "mechanism upside down") if placing.mirrored else ""
 
 
-def _turned(move: Placing) -> str:
-    """How a view is turned, "" where it is not."""
-    quarter = round(move.degrees / 90) % 4
+def _turned(move: Placing) -> Remark | None:
+    """How a view is turned, None where it is not."""
+    quarter = 90 * (round(move.degrees / 90) % 4)
     if move.mirrored:
-        said = {0: tell("drawn mirrored, top and bottom exchanged"), 2: tell("drawn mirrored, left and right exchanged")}
-        return said.get(quarter, tell("drawn mirrored and turned"))
-    return ("", tell("drawn turned by 90° counter-clockwise"), tell("drawn turned by 180°: every arrow points the other way"),
-            tell("drawn turned by 90° clockwise"))[quarter]
+        return codes.VIEW_TURNED[{0: "upside down", 180: "across"}.get(quarter, "mirrored")]()
+    return codes.VIEW_TURNED[str(quarter)]() if quarter else None
 
 
 class BuiltView(Protocol):

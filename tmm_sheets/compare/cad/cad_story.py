@@ -9,8 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
+from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad import cad_report, omissions
 from tmm_sheets.compare.cad.cad_findings import CadFinding
+from tmm_sheets.compare.diagnosis.hypotheses import built_otherwise
 from tmm_sheets.compare.elements import ElementView, drawn
 from tmm_sheets.compare.findings import called, counted, millimetres, worst
 from tmm_sheets.compare.story import Story, StoryPicture, StoryTable, ToldMistake, clipped
@@ -47,12 +49,13 @@ def mistakes(found: cad_report.ExaminedDrawing, lost: set[ElementView]) -> list[
             return False, list(found.built).index(v), 0
         return True, -sum(f.verdict == "red" for f in of_view[v]), v.n
 
-    turned = [replace(_mistake(found, v, of_view.pop(v, []), None), what=said, verdict="red", named=True)
-              for v, said in found.turned.items() if v not in lost]
+    turned = [replace(_mistake(found, v, of_view.pop(v, []), None), what=remark.said(), verdict="red", named=True)
+              for v, remark in found.turned.items() if v not in lost]
     order = sorted(of_view, key=place)
     one_by_one = [_mistake(found, v, of_view[v], first.get(found.built[v].said()) if v in found.built else None) for v in order]
     named = sum(m.named for m in one_by_one)
-    whole = [ToldMistake(tell("the whole drawing"), found.mirrored, "red", named=True)] if found.mirrored else []
+    whole = [ToldMistake(tell("the whole drawing"), built_otherwise(key).said(), "red", named=True)
+             for key in filter(None, (found.mirrored,))]
     return [*whole, *one_by_one[:named], *turned, *one_by_one[named:]]
 
 
@@ -75,7 +78,7 @@ def _mistake(found: cad_report.ExaminedDrawing, view: ElementView, bad: Sequence
             again = tell('the same as in view "{view}": it follows from there').format(view=first.name)
         if after:
             told_all = tell("up to {by} mm off, as follows from the mistake: {lines}")
-            said.append(told_all.format(by=millimetres(max(f.deviation for f in after)),
+            said.append(told_all.format(by=told(millimetres(max(f.deviation for f in after))),
                                         lines=", ".join(dict.fromkeys(f.element.name for f in after))))
         details = [*said, *details]
     return ToldMistake(view.name, what, "red" if red else "amber", tuple(details), _picture(found, view, bad),
@@ -108,7 +111,7 @@ def _picture(found: cad_report.ExaminedDrawing, view: ElementView, bad: Sequence
 def _unjudged(found: cad_report.ExaminedDrawing, lost: set[ElementView]) -> list[str]:
     """What could not be judged, and why."""
     beside = cad_report.tables_and_texts(found.outcome)
-    out = [tell('view "{view}": it was not found in the drawing').format(view=v.name)
+    out = [codes.VIEW_MISSING(view=v.name).said()
            for v in sorted(lost - beside, key=lambda v: v.n)]
     out += cad_report.not_as_ours(lost & beside)
     by_view: dict[str, list[str]] = {}

@@ -8,12 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.box import Box
+from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.cad_arrows import pointed
 from tmm_sheets.compare.cad.cad_comparison import SIZE_OF_SYMBOL, Comparison
 from tmm_sheets.compare.cad.overlaps import left, overlaps
 from tmm_sheets.compare.findings import shifted
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.words import tell
 
 NEAR, FAR = 2.0, 6.0
 """How far from its place a filled area is looked for, and a dot, mm."""
@@ -45,11 +45,11 @@ def filled(state: Comparison) -> None:
         state.used_areas.add(k)
         shift = complex(state.areas[k] - wanted[n])
         counted = abs(shift) if dot else max(abs(shift) - SIZE_OF_SYMBOL, 0.0)
-        state.found[n] = state.finding(n, counted, shifted(shift) if abs(shift) > state.tolerance else "", shift=shift,
+        state.found[n] = state.finding(n, counted, shifted(shift) if abs(shift) > state.tolerance else None, shift=shift,
                                       entities=(state.space.areas[k].entity,))
     for n in wanted.keys() - state.found.keys():
-        what = tell("the dot is missing") if state.elements[n].kind == "circle" else tell("not filled")
-        state.found[n] = state.finding(n, 2 * state.tolerance, what, missing=True)
+        remark = codes.DOT_MISSING() if state.elements[n].kind == "circle" else codes.NOT_FILLED()
+        state.found[n] = state.finding(n, 2 * state.tolerance, remark, missing=True)
 
 
 def _round(z: Points) -> bool:
@@ -82,7 +82,7 @@ def hatching(state: Comparison) -> None:
     for n in numbers:
         mine, whole = owner == n, state.whole(n)
         if float((near.s1 - near.s0)[mine].sum()) > 0.8 * whole:
-            state.found[n] = state.finding(n, 0.0, "")
+            state.found[n] = state.finding(n, 0.0, None)
             state.claims.append(near.only(mine))
     left_over = np.zeros(len(state.theirs.a), bool)
     left_over[[r.piece for r in left(state.theirs, state.claimed())]] = True
@@ -94,11 +94,11 @@ def hatching(state: Comparison) -> None:
         here = slanting & left_over & _inside(middles, Box.around(state.elements[n].points, 1.5).corners)
         if _inside(patterns, box).any() or float(state.theirs.length[here].sum()) > 0.4 * state.whole(n) or \
                 float(state.theirs.length[strokes].sum()) > 0.8 * state.whole(n):
-            state.found[n] = state.finding(n, 0.0, "")
+            state.found[n] = state.finding(n, 0.0, None)
             state.claim([(int(j), 0.0, float(state.theirs.length[j])) for j in strokes], n)
             state.zones.append(Box.around(state.elements[n].points, 1.5).corners)
         else:
-            state.found[n] = state.finding(n, 2 * state.tolerance, tell("not hatched"), missing=True)
+            state.found[n] = state.finding(n, 2 * state.tolerance, codes.NOT_HATCHED(), missing=True)
 
 
 def _inside(z: Points, box: Points) -> npt.NDArray[np.bool_]:

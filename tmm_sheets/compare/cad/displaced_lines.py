@@ -10,15 +10,15 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.box import Box
+from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, JOINT, LOOSE_STYLES, SIZE_OF_SYMBOL, Comparison
 from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.cad.overlaps import Circle, Left, Numbers, OverlapRun, Overlaps, circle, gaps, overlaps, pieces, runs, union
+from tmm_sheets.compare.codes import Number, joined
 from tmm_sheets.compare.findings import farthest, missing_part, of_radius, place, shifted, too_long, turned
 from tmm_sheets.compare.placing import HINGE
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
-from tmm_sheets.numbers import told
-from tmm_sheets.words import tell
 
 OWN = 0.3
 """Share of a line below which most of it is the ink of others."""
@@ -62,7 +62,7 @@ def _take_circle(state: Comparison, n: int, c: Circle) -> None:
         said.append(of_radius(size, e.radius))
     if missing > 0.5:
         said.append(missing_part(missing))
-    state.found[n] = state.finding(n, max(abs(shift) + counted, missing), ", ".join(said), shift=shift, size=size,
+    state.found[n] = state.finding(n, max(abs(shift) + counted, missing), joined(said), shift=shift, size=size,
                                    entities=state.entities_of_strokes(c.strokes))
     state.claim([(j, 0.0, float(state.theirs.length[j])) for j in state.of_strokes(c.strokes)], n)
 
@@ -88,7 +88,7 @@ def elsewhere(state: Comparison, rest: Sequence[Left]) -> None:
                 theirs.share(ours.points(0.5), SAME_SHAPE), ours.share(theirs.points(0.5), SAME_SHAPE)) < FULL:
             continue
         used.add(k)
-        state.found[n] = state.finding(n, off, shifted(by) if off > state.tolerance else "", shift=by,
+        state.found[n] = state.finding(n, off, shifted(by) if off > state.tolerance else None, shift=by,
                                        entities=state.entities_of_strokes((k,)))
         state.claim([(j, 0.0, float(state.theirs.length[j])) for j in state.of_strokes((k,))], n)
 
@@ -242,8 +242,8 @@ def _take_line(state: Comparison, n: int, found: tuple[complex, complex], run: O
     if abs(size) > state.tolerance:
         said.append(too_long(size))
     elif abs((shift * np.conj(u)).real) > state.tolerance:
-        said.append(tell("{by} mm along itself").format(by=told(f"{abs((shift * np.conj(u)).real):.2f}")))
-    state.found[n] = state.finding(n, deviation, ", ".join(said), shift=shift, turn=turn, size=size,
+        said.append(codes.ALONG_ITSELF(by=Number(f"{abs((shift * np.conj(u)).real):.2f}")))
+    state.found[n] = state.finding(n, deviation, joined(said), shift=shift, turn=turn, size=size,
                                    entities=state.entities_of(rest[k].piece for k in run.parts))
     state.claim([_whole_stretch(state, rest[k], c, d) for k in run.parts], n)
 
@@ -296,7 +296,7 @@ def _take_curve(state: Comparison, n: int, near: Overlaps, base: Numbers, rest: 
     kept = np.unique(using[there])
     stretches = [rest[near.theirs[k]] for k in kept]
     shift = _common_shift(state.units(n, t)[there], off[there])
-    state.found[n] = state.finding(n, max(worst, missing), ", ".join(said), shift=shift,
+    state.found[n] = state.finding(n, max(worst, missing), joined(said), shift=shift,
                                    entities=state.entities_of(r.piece for r in stretches))
     state.claim([(r.piece, r.a + float(near.w0[k]), r.a + float(near.w1[k])) for r, k in zip(stretches, kept, strict=True)], n)
 
@@ -329,16 +329,15 @@ def incomplete(state: Comparison) -> None:
         e, whole = state.elements[n], state.whole(n)
         if _missing(state, n) == np.inf:
             if not (e.kind == "circle" and e.radius <= HINGE and e.fills):  # dots are sought among the filled areas
-                state.found[n] = state.finding(n, whole, tell("missing"), missing=True)
+                state.found[n] = state.finding(n, whole, codes.MISSING(), missing=True)
             continue
         a, b = max(gaps(state.inked[n], whole), key=lambda g: g[1] - g[0])
         at = state.at(n, (a + b) / 2)
-        said = tell("too short: {size} mm missing at {place}") if a == 0 or b == whole else tell(
-            "a gap: {size} mm missing at {place}")
+        said = codes.TOO_SHORT_AT if a == 0 or b == whole else codes.GAP
         mine = state.in_place.only(state.in_place_of == n)
-        what = said.format(size=told(f"{b - a:.1f}"), place=place(at))
-        state.found[n] = state.finding(n, max(b - a, state.tolerance), what, size=-(b - a), entities=state.entities_of(mine.theirs),
-                                       at=at)
+        remark = said(size=Number(f"{b - a:.1f}"), place=place(at))
+        state.found[n] = state.finding(n, max(b - a, state.tolerance), remark, size=-(b - a),
+                                       entities=state.entities_of(mine.theirs), at=at)
         state.claims.append(mine)
 
 

@@ -13,11 +13,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.cad_comparison import Comparison
 from tmm_sheets.compare.cad.cad_findings import STYLES, LookFinding
 from tmm_sheets.compare.cad.cad_ink import Entity
 from tmm_sheets.compare.cad.cad_patterns import Pattern, of_dashes, of_strokes
 from tmm_sheets.compare.cad.overlaps import Interval, gaps, overlaps, union
+from tmm_sheets.compare.codes import Number, Remark
 from tmm_sheets.compare.elements import ElementView
 from tmm_sheets.drawing.dashes import cut
 from tmm_sheets.drawing.styles import line_type
@@ -81,7 +83,7 @@ def looks(state: Comparison) -> tuple[tuple[LookFinding, ...], tuple[str, ...]]:
 
 def _wrong_types(state: Comparison, ink: ByElement) -> list[LookFinding]:
     """A finding for each view, style and pattern it is drawn in; one for the whole drawing if all of it is continuous."""
-    wrong: dict[tuple[ElementView | None, str, str], list[int]] = {}
+    wrong: dict[tuple[ElementView | None, str, Remark], list[int]] = {}
     plain: list[int] = []
     right = 0
     for n, rows in ink.items():
@@ -92,13 +94,13 @@ def _wrong_types(state: Comparison, ink: ByElement) -> list[LookFinding]:
         found, wanted = _pattern(state, n, rows), _pattern_of(style)
         right += patterned and found == wanted
         if found is not None and found != wanted:
-            what = tell("drawn {found} instead of {wanted}").format(found=tell(PATTERNS[found]), wanted=tell(PATTERNS[wanted]))
-            wrong.setdefault((state.elements[n].view, style, what), []).append(n)
+            remark = codes.LINE_TYPE(found=Remark("", PATTERNS[found]), wanted=Remark("", PATTERNS[wanted]))
+            wrong.setdefault((state.elements[n].view, style, remark), []).append(n)
             plain += [n] if found == "continuous" else []
     if not right and len(plain) >= FEW:
         wrong = {key: found for key, found in wrong.items() if not set(found) & set(plain)}
-        wrong[None, "", tell("drawn continuous, as everything in the drawing")] = plain
-    return [_look(state, ink, view, style, what, found) for (view, style, what), found in wrong.items()]
+        wrong[None, "", codes.ALL_CONTINUOUS()] = plain
+    return [_look(state, ink, view, style, remark, found) for (view, style, remark), found in wrong.items()]
 
 
 def _wrong_widths(state: Comparison, ink: ByElement) -> tuple[list[LookFinding], list[str]]:
@@ -255,21 +257,21 @@ def _wrong_width(state: Comparison, n: int, rows: list[InkStretch], s: float) ->
     return _wide(state.space.entities[longest.entity])
 
 
-def _said(style: str, widths: list[float], s: float) -> str:
+def _said(style: str, widths: list[float], s: float) -> Remark:
     low, high = min(widths), max(widths)
-    mm = (tell("{low} to {high}") if high - low >= 0.005 else "{low}").format(low=told(f"{low:.2g}"), high=told(f"{high:.2g}"))
+    least, most = Number(f"{low:.2g}"), Number(f"{high:.2g}")
+    mm = Remark("", marked("{low} to {high}"), (("low", least), ("high", most))) if high - low >= 0.005 else least
     if style in BROAD:
-        return tell("drawn thin, {width} mm, where main lines are {main} mm").format(width=mm, main=told(f"{s:.2g}"))
-    said = tell("drawn thick, {width} mm, where {least} to {most} mm would be thin")
-    return said.format(width=mm, least=told(f"{s / 3:.2g}"), most=told(f"{s / 2:.2g}"))
+        return codes.TOO_THIN(width=mm, main=Number(f"{s:.2g}"))
+    return codes.TOO_THICK(width=mm, least=Number(f"{s / 3:.2g}"), most=Number(f"{s / 2:.2g}"))
 
 
-def _look(state: Comparison, ink: ByElement, view: ElementView | None, style: str, what: str, found: list[int]) -> LookFinding:
+def _look(state: Comparison, ink: ByElement, view: ElementView | None, style: str, remark: Remark, found: list[int]) -> LookFinding:
     """A finding on elements of one style, or of several if that is empty."""
     found = sorted(found, key=lambda n: -state.whole(n))
     styles = dict.fromkeys(state.elements[n].style for n in found) if not style else [style]
     entities = tuple(dict.fromkeys(row.entity for n in found for row in ink[n]))
-    return LookFinding(view, tuple(styles), what, tuple(state.elements[n].number for n in found), entities,
+    return LookFinding(view, tuple(styles), remark, tuple(state.elements[n].number for n in found), entities,
                        tuple(p for n in found for p in state.paths[n]))
 
 

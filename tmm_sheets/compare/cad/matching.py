@@ -16,6 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from tmm_sheets.box import Box
+from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad import cad_arrows, cad_extras, cad_lettering, cad_symbols, displaced_lines, line_styles, omissions
 from tmm_sheets.compare.cad.cad_comparison import JOINT, Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
@@ -65,7 +66,7 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     extras = cad_extras.extra(state)
     for n in range(len(state.elements)):
         if n not in state.found:
-            state.found[n] = state.finding(n, 0.0, "")
+            state.found[n] = state.finding(n, 0.0, None)
     say(tell("comparing line types and widths"))
     looks, notes = line_styles.looks(state)
     found = tuple(state.found[n] for n in range(len(state.elements)))
@@ -76,7 +77,7 @@ def _not_compared(state: Comparison) -> None:
     """In a view of another scale symbols keep their size: they are not compared."""
     for n, e in enumerate(state.elements):
         if n not in state.found and e.view in state.moved and state.moved[e.view].scaled and symbol(e):
-            state.found[n] = CadFinding(e, None, 0.0, tell("a symbol in a view of another scale"), e.middle, 5.0)
+            state.found[n] = CadFinding(e, None, 0.0, codes.OTHER_SCALE(), e.middle, 5.0)
             if e.role != "dimension":
                 state.zones.append(Box.around(e.points, BESIDE).corners)
 
@@ -86,7 +87,7 @@ def _leading_elsewhere(state: Comparison) -> None:
     leading = links(state.elements)
     for n, e in enumerate(state.elements):
         if e.number in leading and e.view in state.moved and state.found[n].missing:
-            state.found[n] = CadFinding(e, None, 0.0, tell("leads to another view, which stands elsewhere"), e.middle, 5.0)
+            state.found[n] = CadFinding(e, None, 0.0, codes.LEADS_ELSEWHERE(), e.middle, 5.0)
 
 
 def _right(state: Comparison) -> None:
@@ -112,7 +113,7 @@ def _right(state: Comparison) -> None:
             # Between the dashes only ink of other elements can lie.
             nearest = _nearest(s0[p:q], s1[p:q], off[p:q], whole)
             typical = float(np.median(nearest) if line_type(e.style).pattern else nearest.max()) if len(nearest) else 0.0
-            state.found[n] = state.finding(n, min(typical, state.tolerance), "")
+            state.found[n] = state.finding(n, min(typical, state.tolerance), None)
             right[n] = True
         else:
             state.inked[n] = parts

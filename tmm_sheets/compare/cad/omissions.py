@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad import cad_text
 from tmm_sheets.compare.cad.cad_comparison import Comparison
 from tmm_sheets.compare.cad.cad_findings import AbsentKind, CadFinding
@@ -22,7 +23,7 @@ from tmm_sheets.compare.cad.view_search import positions
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.placing import HINGE
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.words import tell, tell_n
+from tmm_sheets.words import tell_n
 
 FEW = 0.35
 """Share of what there should be of a kind below which it is left out."""
@@ -218,7 +219,7 @@ def _set_aside(state: Comparison, numbers: Sequence[int], kind: str) -> None:
     """Leave elements out of the comparison; those of them that are drawn all the same are not extra."""
     for n in numbers:
         e = state.elements[n]
-        state.found[n] = CadFinding(e, None, 0.0, tell("not drawn in this view"), e.middle, 5.0, missing=True, absent=kind)
+        state.found[n] = CadFinding(e, None, 0.0, codes.NOT_DRAWN(), e.middle, 5.0, missing=True, absent=kind)
         state.inked.pop(n, None)
     with_lines = [n for n in numbers if _is_drawn(state, n)]
     if with_lines:

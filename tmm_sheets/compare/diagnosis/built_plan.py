@@ -15,9 +15,11 @@ from typing import TYPE_CHECKING, Any, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from tmm_sheets.compare import codes
+from tmm_sheets.compare.codes import Own, Remark, Sentence
 from tmm_sheets.compare.diagnosis.drawn_plan import DRAWN, SHOWS, DrawnPlan, PlanPoint, between, drawn_plan, drawn_positions
 from tmm_sheets.compare.diagnosis.drawn_senses import acting
-from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, hypotheses
+from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, any_of, hypotheses
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, of_position, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.findings import millimetres
@@ -27,7 +29,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.step import Step, ordered
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.words import tell
+from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -59,24 +61,34 @@ FARTHEST = 250.0
 """A point is sought among the tips of lines no farther than this from its place, mm."""
 
 
+AT_POSITION = Sentence("built-otherwise", marked("{mistake} (position {position})"))
+
+
 @dataclass(frozen=True)
 class BuiltPlan:
     """A plan that was built on a mistake, and how many of its wrong lines that explains; the point that is off where it is none.
 
-    ``position`` is that at which it was made, in a plan of several; ``alike`` are mistakes that lead to the very same drawing.
+    ``step`` is the one that was done wrong, ``label`` the position of the plan; ``position`` is that label in a plan of several.
+    ``alike`` are mistakes that lead to the very same drawing.
     """
 
-    mistake: Hypothesis | str
+    mistake: Hypothesis | Remark
     explains: int
     of: int
+    step: Step
+    label: str
     position: str = ""
     alike: tuple[Hypothesis, ...] = ()
 
-    def said(self) -> str:
+    @property
+    def remark(self) -> Remark:
         """What was done wrong, or whatever draws the same."""
-        said = self.mistake if isinstance(self.mistake, str) else tell("; or: ").join(
-            dict.fromkeys(h.said() for h in (self.mistake, *self.alike)))
-        return tell("{mistake} (position {position})").format(mistake=said, position=self.position) if self.position else said
+        done = self.mistake if isinstance(self.mistake, Remark) else any_of((self.mistake, *self.alike))
+        return AT_POSITION(mistake=done, position=Own(self.position)) if self.position else done
+
+    def said(self) -> str:
+        """What was done wrong, as the reader reads it."""
+        return self.remark.said()
 
     def explained(self) -> str:
         """How much of the plan it explains."""
@@ -85,9 +97,9 @@ class BuiltPlan:
 
 @dataclass(frozen=True)
 class _Mistake:
-    """What was done wrong: one of the usual mistakes, or, in words, a point that is off; and what to replay."""
+    """What was done wrong: one of the usual mistakes, or a point that is off; and what to replay."""
 
-    said: Hypothesis | str
+    said: Hypothesis | Remark
     changes: tuple[Change, ...]
 
 
@@ -187,14 +199,16 @@ def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementV
             if found.mistake not in before and not drawn.of_positions:
                 before.append(found.mistake)
             explained = len(numbers & there.keys()), len(numbers)
-            if isinstance(h, str):
-                out[view] = BuiltPlan(h, *explained), found.points
+            if isinstance(h, Remark):
+                out[view] = BuiltPlan(h, *explained, found.mistake.changes[0].step, drawn.plan.labels[drawn.k]), found.points
                 continue
             if id(h) not in alike:
                 of = list(shown.values()) if found.mistake in before else [drawn]
                 alike[id(h)] = _alike(h, [m for m in before if m.said is not h], drawn, of, errors, taken)
-            position = "" if h.at is None or not drawn.of_positions else drawn.plan.labels[h.at]
-            out[view] = BuiltPlan(alike[id(h)][0], *explained, position, tuple(alike[id(h)][1:])), found.points
+            label = "" if h.at is None else drawn.plan.labels[h.at]
+            first, *others = alike[id(h)]
+            out[view] = BuiltPlan(first, *explained, first.step, label, label if drawn.of_positions else "",
+                                  tuple(others)), found.points
     return out
 
 
@@ -222,7 +236,7 @@ def _twice(drawn: DrawnPlan, k: int) -> Iterator[Hypothesis]:
         for other, label in enumerate(drawn.plan.labels):
             if other != k:
                 changes = tuple(Change(s, of_position(other), k) for s in steps)
-                yield Hypothesis("neighbour", "drawn twice", steps[-1], changes, k, label)
+                yield Hypothesis("neighbour", "drawn twice", steps[-1], changes, k, Own(label))
 
 
 def _replay(errors: Errors, mistakes: Iterable[_Mistake]) -> Callable[[Step], Any]:
@@ -307,8 +321,7 @@ def _points_off(drawn: DrawnPlan, drawing: StudentDrawing) -> Iterator[_Mistake]
             off = abs(at - p.was)
             if SHOWS < off < FARTHEST:
                 by = drawn.back(at) - drawn.back(p.was)
-                said = tell("point {point} lies {distance} mm off; what follows from it is drawn from there")
-                yield _Mistake(said.format(point=letter_of(p.step), distance=millimetres(off * drawing.scale)),
+                yield _Mistake(codes.POINT_MOVED_ON(point=letter_of(p.step), distance=millimetres(off * drawing.scale)),
                                (Change(p.step, displaced(by), drawn.k),))
 
 

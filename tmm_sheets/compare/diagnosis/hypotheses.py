@@ -13,6 +13,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+from tmm_sheets.compare import codes
+from tmm_sheets.compare.codes import Number, Own, Remark, Sentence, joined
 from tmm_sheets.compare.diagnosis.replay import (
     Change,
     Done,
@@ -26,8 +28,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.step import Rule, Step, value_at
 from tmm_sheets.methods.linkage import accelerations, forces, loads, velocities, zhukovsky
-from tmm_sheets.numbers import told
-from tmm_sheets.words import marked, tell
+from tmm_sheets.words import marked
 
 Kind = Literal["coriolis", "normal", "sense", "parallel", "intersection", "inertia", "force", "moment", "mirror", "crank",
                "neighbour", "scale"]
@@ -73,6 +74,12 @@ WORDS: Mapping[str, str] = {
     "mechanism upside down": marked("the mechanism is drawn mirrored, top and bottom exchanged, and all plans with it"),
 }
 """How they are told; ``step`` is where the mistake was made, ``other`` what it was mistaken for or done with."""
+EVERYWHERE = Sentence("built-otherwise", marked("{mistake}, at every position"))
+
+
+def built_otherwise(words: str, **fields: Any) -> Remark:
+    """A mistake by the key of its words."""
+    return Sentence("built-otherwise", WORDS[words])(**fields)
 
 
 @dataclass(frozen=True)
@@ -90,15 +97,20 @@ class Hypothesis:
     step: Step
     changes: tuple[Change, ...]
     at: int | None = None
-    other: str = ""
+    other: str | Remark = ""
     on_paper: str = ""
     drawn: tuple[tuple[str, float], ...] = ()
     everywhere: bool = False
 
+    @property
+    def remark(self) -> Remark:
+        """The mistake."""
+        done = built_otherwise(self.words, step=letter_of(self.step), other=self.other)
+        return EVERYWHERE(mistake=done) if self.everywhere else done
+
     def said(self) -> str:
         """The mistake as it is told to the reader."""
-        said = tell(WORDS[self.words]).format(step=letter_of(self.step), other=self.other)
-        return tell("{mistake}, at every position").format(mistake=said) if self.everywhere else said
+        return self.remark.said()
 
     def at_every_position(self) -> Hypothesis | None:
         """The same mistake made at every position; None where it was, or cannot be."""
@@ -124,6 +136,13 @@ def hypotheses(steps: Iterable[Step], k: int, labels: Sequence[str] = (), whole:
         yield from _among(of_plan, k)
         if name in MIRRORED:
             yield from _mirrored([s for s in whole if s.plan == name] or of_plan, k)
+
+
+def any_of(mistakes: Iterable[Hypothesis]) -> Remark:
+    """Mistakes that cannot be told from each other."""
+    done = joined((h.remark for h in mistakes), codes.OR)
+    assert done is not None
+    return done
 
 
 # --- one step --------------------------------------------------------------------------------------------------------------
@@ -154,7 +173,7 @@ def _of_step(step: Step, k: int) -> Iterator[Hypothesis]:
         kind, words = BACKWARDS[rule]
         yield Hypothesis(kind, words, step, (Change(step, laid_off_backwards, k),), k)
     if (rule in BACKWARDS or rule is rules.SHIFT) and isinstance(step.args[1], Step):
-        yield from (Hypothesis("scale", "vector scale", step, (Change(step, laid_off(times), k),), k, told(f"{times:g}"))
+        yield from (Hypothesis("scale", "vector scale", step, (Change(step, laid_off(times), k),), k, Number(f"{times:g}"))
                     for times in FACTORS)
     if rule in OTHER_SIGN:
         kind, words = OTHER_SIGN[rule]
@@ -211,7 +230,7 @@ def _neighbours(step: Step, k: int, labels: Sequence[str]) -> Iterator[Hypothesi
     """A computed number taken from the column of a neighbouring position."""
     if step.rule in COMPUTED and np.ndim(step.value) and np.size(step.value) == len(labels):
         for at in {(k - 1) % len(labels), (k + 1) % len(labels)} - {k}:
-            yield Hypothesis("neighbour", "position", step, (Change(step, of_position(at), k),), k, labels[at])
+            yield Hypothesis("neighbour", "position", step, (Change(step, of_position(at), k),), k, Own(labels[at]))
 
 
 def _among(steps: Sequence[Step], k: int) -> Iterator[Hypothesis]:
@@ -243,7 +262,7 @@ def _mirrored(steps: Sequence[Step], k: int) -> Iterator[Hypothesis]:
             yield Hypothesis("mirror", words, last, changes, k)
 
 
-def computed_with(steps: Sequence[Step], times: float, said: str) -> Hypothesis:
+def computed_with(steps: Sequence[Step], times: float) -> Hypothesis:
     """Numbers taken from a plan with another scale factor than it is drawn with: ``times`` as large, all its lengths right."""
     here = {id(s) for s in steps}
     moved = [s for s in steps if s.rule.gives in ("point", "vector")]
@@ -252,7 +271,8 @@ def computed_with(steps: Sequence[Step], times: float, said: str) -> Hypothesis:
         return lambda again, values: times * again(*_back(step, values, here, lambda z: z / times))
 
     changes = tuple(Change(s, scaled(s)) for s in moved)
-    return Hypothesis("scale", "computed scale", moved[-1], changes, other=said, on_paper=moved[-1].plan)
+    return Hypothesis("scale", "computed scale", moved[-1], changes, other=Number(f"{times:.3g}"),
+                      on_paper=moved[-1].plan)
 
 
 def _as_mirrored(step: Step, here: set[int], mirror: Callable[[Any], Any]) -> Done:

@@ -15,6 +15,8 @@ from statistics import NormalDist
 
 import numpy as np
 
+from tmm_sheets.compare import codes
+from tmm_sheets.compare.codes import Number, Own, Remark, joined
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.measured import measured_units as units
 from tmm_sheets.compare.measured.evidence import CURVED, Evidence, Explanation, place_of
@@ -28,8 +30,7 @@ from tmm_sheets.compare.measured.student_recompute import OwnValue
 from tmm_sheets.compare.measured.systematic_error import SystematicError, mark, whole_table
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.numbers import rounded, told
-from tmm_sheets.words import tell, tell_n
+from tmm_sheets.numbers import rounded
 
 ROUNDED = 0.005
 """Share of a result that rounding to three digits on the way (9.81, pi, omega, lengths of links) may bring."""
@@ -81,9 +82,7 @@ def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> 
             origin = _origin(j, computed)
             j.follows = origin if origin is not j else None
         if j.verdict == "red" and not j.starts and j.follows is None:
-            said = tell_n("one of {n} number may be off so far by chance", "one of {n} numbers may be off so far by chance",
-                          len(judged))
-            j.remark = j.remark or said.format(n=len(judged))
+            j.noted = j.noted or codes.BY_CHANCE(n=len(judged))
     mark(judged, wholes, written)
     return judged
 
@@ -125,7 +124,7 @@ def _judged(line: MeasuredLine, found: Measurables, factors: Mapping[str, float]
     measured = line.value if e.signed or e.kind == "angle" else abs(line.value)
     deviation = angle_apart(measured, exact, e.signed) if e.kind == "angle" else measured - exact
     judged = JudgedValue(line, exact, deviation, max(tolerance, EXACT), rows, size=size, reading=own)
-    judged.remark = _remark(judged, measured, tolerance)
+    judged.noted = _noted(judged, measured, tolerance)
     return judged
 
 
@@ -145,25 +144,25 @@ def _of_squares(e: Measurable, errors: Errors, reading: float, ratio: float) -> 
     return second
 
 
-def _remark(judged: JudgedValue, measured: float, tolerance: float) -> str:
+def _noted(judged: JudgedValue, measured: float, tolerance: float) -> Remark | None:
     """What is recognised at sight: a degenerate construction, a wrong sign, a slip of the pen."""
     if tolerance == float("inf"):
-        return tell("the construction degenerates here: no tolerance")
+        return codes.DEGENERATES()
     if judged.verdict != "red":
-        return ""
+        return None
     if judged.entry.kind in ("angle", "sense"):
         return _way_round(judged)
     if judged.entry.signed and abs(-measured - judged.exact) <= tolerance:
-        return tell("the sign is wrong")
+        return codes.SIGN()
     return _slip(measured, judged.exact, tolerance, judged.entry.unit)
 
 
-def _way_round(judged: JudgedValue) -> str:
+def _way_round(judged: JudgedValue) -> Remark | None:
     """That something points or turns the other way."""
     if judged.entry.kind == "sense":
-        return tell("it turns the other way")
+        return codes.TURNS_BACK()
     opposite = angle_apart(judged.deviation, 180.0, sense=True)
-    return tell("it points the other way") if judged.entry.signed and abs(opposite) <= judged.tolerance else ""
+    return codes.POINTS_OTHER_WAY() if judged.entry.signed and abs(opposite) <= judged.tolerance else None
 
 
 def _tilted(angle: float, slope: tuple[str, str], found: Measurables, factors: Mapping[str, float]) -> float:
@@ -172,15 +171,15 @@ def _tilted(angle: float, slope: tuple[str, str], found: Measurables, factors: M
     return degrees(atan(tan(radians(angle)) * x / y))
 
 
-def _slip(measured: float, exact: float, tolerance: float, unit: str) -> str:
+def _slip(measured: float, exact: float, tolerance: float, unit: str) -> Remark | None:
     """Slips of the pen that are recognised at sight: another unit, a factor of two or ten."""
     for other, factor in units.OTHERS.get(unit, ()):
         if factor != units.SCALE and abs(measured / factor - exact) <= tolerance and abs(exact) > 3 * tolerance:
-            return tell("as if in {unit}").format(unit=units.said(other))
+            return codes.AS_IF_IN(unit=Remark("", other))
     for factor in (10.0, 0.1, 2.0, 0.5, 100.0, 0.01, 1000.0, 0.001):
         if abs(measured / factor - exact) <= tolerance and abs(exact) > 3 * tolerance:
-            return tell("{times} times the exact value").format(times=told(f"{factor:g}"))
-    return ""
+            return codes.TIMES(times=Number(f"{factor:g}"))
+    return None
 
 
 # --- arithmetic --------------------------------------------------------------------------------------------------------------
@@ -216,16 +215,15 @@ def _check_arithmetic(judged: list[JudgedValue], filled: Filled, found: Measurab
             computed[id(j)] = needs
         elif abs(j.deviation) > ROUNDED * abs(j.exact) + j.line.half_digit:
             j.inconsistent = True
-            said = _own_gives(needs, expected)
-            j.remark = f"{j.remark}; {said}" if j.remark else said
+            j.noted = joined((j.noted, _own_gives(needs, expected)), "; ")
     return computed
 
 
-def _own_gives(own: Iterable[JudgedValue], value: float) -> str:
+def _own_gives(own: Iterable[JudgedValue], value: float) -> Remark:
     """That a number does not follow from some of the student's own, which give another value."""
-    numbers = ", ".join(f"{j.entry.quantity} = {told(rounded(j.line.value, 5))}" for j in own)
-    said = tell("does not follow from your own {numbers}: that gives {value}")
-    return said.format(numbers=numbers, value=told(rounded(value, 4)))
+    numbers = joined(Remark("", "{quantity} = {value}", (
+        ("quantity", j.entry.quantity), ("value", Number(rounded(j.line.value, 5))))) for j in own)
+    return codes.OWN_GIVES(numbers=numbers, value=Number(rounded(value, 4)))
 
 
 # --- chains -------------------------------------------------------------------------------------------------------------------
@@ -287,7 +285,7 @@ def _wrong_row(start: JudgedValue, judged: Sequence[JudgedValue]) -> None:
         near = max(start.line.half_digit + j.line.half_digit, start.reading / 2)
         if j.entry.unit == e.unit and abs(start.line.value - j.exact) <= j.tolerance and (
                 j.verdict == "red" or abs(start.line.value - j.line.value) <= near):
-            start.wrong = (Hypothesis("neighbour", "row", e.terms[-1][0], (), other=j.row),)
+            start.wrong = (Hypothesis("neighbour", "row", e.terms[-1][0], (), other=Own(j.row)),)
             return
 
 
@@ -311,7 +309,7 @@ def _follow(evidence: Evidence, start: JudgedValue, found: Explanation, beyond: 
         if explained and (found.wrong or surely) and j.off_own and j is not start:
             # Not from his own numbers by the rule, but by what he did instead or where he drew it.
             j.off_own = j.starts = False
-            j.remark = ""
+            j.noted = None
         if explained and not j.starts:
             yield i
             if j.follows is None:
@@ -352,7 +350,7 @@ def _against_own(own: OwnNumbers, left: set[int]) -> None:
         made = own.steps.value(j) if judgeable else None
         if made is not None and seen.isdisjoint(made.known_in_part) and _contradicts(j, made, beyond):
             j.off_own = j.starts = True
-            j.remark = _own_gives([m for m, _ in made.reasons[:MOST_TOLD]], j.exact + made.expected)
+            j.noted = _own_gives([m for m, _ in made.reasons[:MOST_TOLD]], j.exact + made.expected)
         if j.verdict == "red":
             seen |= {place_of(step, k) for step, k, _ in j.entry.terms}
 

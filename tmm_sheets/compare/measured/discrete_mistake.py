@@ -12,7 +12,6 @@ from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, computed_w
 from tmm_sheets.compare.measured.evidence import Evidence, Explanation, loss
 from tmm_sheets.compare.measured.exchanged_rows import wrong_rows
 from tmm_sheets.compare.measured.plan_scales import drawn_to, is_scaled, times_as_long
-from tmm_sheets.numbers import told
 
 ALONE = 0.9
 """Share of the number it is looked for that a mistake has to explain, besides most of another one."""
@@ -72,7 +71,7 @@ def _computed_with(evidence: Evidence, i: int) -> Iterator[Hypothesis]:
     if j.entry.kind == "result" and j.entry.reading and j.exact + evidence.predicted[i] and of_plan:
         times = float(j.line.value / (j.exact + evidence.predicted[i]))
         if times > 0 and abs(times - 1) > APART:
-            yield computed_with(of_plan, times, told(f"{times:.3g}"))
+            yield computed_with(of_plan, times)
 
 
 def _drawn_to(evidence: Evidence, i: int) -> Iterator[Hypothesis]:

@@ -8,6 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from tmm_sheets.compare.codes import Own
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.measured.evidence import LEFT, Evidence, Explanation, loss
 
@@ -89,7 +90,7 @@ def _written(evidence: Evidence, i: int, of: Mapping[int, int], words: str, othe
             doubt[n] = evidence.allowed[m]
             before += float(loss(evidence.left[n] / evidence.allowed[n]))
             after += float(loss(_apart(evidence, n, m) / evidence.allowed[m]))
-        h = Hypothesis("neighbour", words, evidence.judged[i].entry.terms[-1][0], (), other=other)
+        h = Hypothesis("neighbour", words, evidence.judged[i].entry.terms[-1][0], (), other=Own(other))
         yield h, Explanation((), shares, doubt, before - after)
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.measured.measurable import Measurable, angle_apart
 from tmm_sheets.compare.measured.measured_file import MeasuredLine
@@ -37,7 +38,8 @@ class JudgedValue:
     """A measured number with its judgement, in its own unit.
 
     ``follows`` is the number in which its chain of errors starts, itself not included; ``starts`` is True for such a number.
-    ``wrong`` are the discrete mistakes that explain it, the first of them the one that is told, ``mistake`` a displaced step.
+    ``noted`` is what is seen of it alone. ``wrong`` are the discrete mistakes that explain it, the first of them the one that is
+    told, ``mistake`` a displaced step.
     ``tolerance`` is infinite where the construction has none to give, ``reading`` the part of it that reading and computing have.
     """
 
@@ -50,7 +52,7 @@ class JudgedValue:
     starts: bool = False
     mistake: Mistake | None = None
     wrong: tuple[Hypothesis, ...] = ()
-    remark: str = ""
+    noted: Remark | None = None
     inconsistent: bool = False
     off_own: bool = False
     size: float = 1.0
@@ -66,6 +68,11 @@ class JudgedValue:
     def row(self) -> str:
         """Its row as it is told: position and quantity."""
         return f"({self.entry.label}) {self.entry.quantity}" if self.entry.label else self.entry.quantity
+
+    @property
+    def remark(self) -> str:
+        """What was noted of it, as the reader reads it."""
+        return self.noted.said() if self.noted is not None else ""
 
     @property
     def verdict(self) -> Verdict:

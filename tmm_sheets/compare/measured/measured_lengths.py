@@ -8,7 +8,9 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.compare import story
+from tmm_sheets.compare import codes, story
+from tmm_sheets.compare.codes import Number, Remark, joined
+from tmm_sheets.compare.diagnosis.hypotheses import any_of
 from tmm_sheets.compare.measured import measured_file
 from tmm_sheets.compare.measured.chain import EXACT, MOST, judge
 from tmm_sheets.compare.measured.collecting import measurables
@@ -116,20 +118,20 @@ def _row(j: JudgedValue) -> tuple[str, ...]:
     if j.remark:
         said.append(j.remark)
     mark = "·" if j.follows is not None else MARKS[j.verdict]
-    return (mark, e.label, e.quantity, _exact(j), _with_unit(j), _deviation(j), percent, tolerance,
+    return (mark, e.label, e.quantity, told(_exact(j)), _measured(j).said(), _deviation(j), percent, tolerance,
             "; ".join(said))
 
 
-def _with_unit(j: JudgedValue) -> str:
-    """The measured number; one that no sheet has in the notation of computers."""
+def _measured(j: JudgedValue) -> Remark:
+    """The measured number with its unit; one that no sheet has in the notation of computers."""
     x = j.line.value
-    written = told(rounded(x, 5) if x == 0 or 1e-7 < abs(x) < 1e9 else plain(x, 3))
-    return f"{written} {said_unit(j.entry.unit)}" if j.entry.unit else written
+    number = Number(rounded(x, 5) if x == 0 or 1e-7 < abs(x) < 1e9 else plain(x, 3))
+    return Remark("", "{number} {unit}" if j.entry.unit else "{number}", (("number", number), ("unit", Remark("", j.entry.unit))))
 
 
-def _exact(j: JudgedValue) -> str:
+def _exact(j: JudgedValue) -> Number:
     """Exact value, no digits far below the tolerance."""
-    return "0" if abs(j.exact) < 0.01 * j.tolerance else told(rounded(j.exact, 4))
+    return Number("0" if abs(j.exact) < 0.01 * j.tolerance else rounded(j.exact, 4))
 
 
 def _deviation(j: JudgedValue) -> str:
@@ -190,11 +192,10 @@ def _grouped(judged: list[JudgedValue]) -> list[list[JudgedValue]]:
 def _everywhere(some: list[JudgedValue]) -> story.ToldMistake:
     """One quantity that is off at several positions."""
     first = some[0].entry
-    what = tell_n("off at {n} position, and nothing before it explains that: computed or read in another way?",
-                  "off at {n} positions, and nothing before it explains that: computed or read in another way?", len(some))
     each = tell("({position}) {measured} instead of {exact}")
-    said = [each.format(position=j.entry.label, measured=_with_unit(j), exact=_exact(j)) for j in some]
-    return story.ToldMistake(f"{first.title}, {first.quantity}", what.format(n=len(some)), some[0].verdict, ("; ".join(said),))
+    said = [each.format(position=j.entry.label, measured=_measured(j).said(), exact=told(_exact(j))) for j in some]
+    what = codes.THROUGHOUT(n=len(some)).said()
+    return story.ToldMistake(f"{first.title}, {first.quantity}", what, some[0].verdict, ("; ".join(said),))
 
 
 def _mistakes(judged: list[JudgedValue], pictures: PlanPictures | None = None) -> Iterator[story.ToldMistake]:
@@ -211,7 +212,7 @@ def _mistakes(judged: list[JudgedValue], pictures: PlanPictures | None = None) -
             some = ", ".join(f.row for f in after[:6]) + (" ..." if len(after) > 6 else "")
             said = tell_n("{n} follows from it: {numbers}", "{n} follow from it: {numbers}", len(after))
             details.append(said.format(n=len(after), numbers=some))
-        yield story.ToldMistake(_place(j), _what(j), j.verdict, tuple(details),
+        yield story.ToldMistake(_place(j), _remark(j).said(), j.verdict, tuple(details),
                             pictures.picture(j) if pictures is not None else None)
 
 
@@ -224,7 +225,7 @@ def _advice(judged: list[JudgedValue]) -> list[str]:
     """What to do now."""
     starts, own = len(_grouped(judged)), _own(judged)
     if _too_many(judged):
-        return [tell("So many mistakes: was another variant drawn, or with other scale factors than stated?")]
+        return [codes.ANOTHER_MECHANISM().said()]
     if starts:
         return [tell("Mend the first one first: what follows from it is right as soon as that is.")]
     if own["red"]:
@@ -234,14 +235,13 @@ def _advice(judged: list[JudgedValue]) -> list[str]:
     return [] if own["amber"] else [tell("All within a pencil's reach.")]
 
 
-def _what(j: JudgedValue) -> str:
+def _remark(j: JudgedValue) -> Remark:
+    """What is wrong with a number."""
     if j.wrong:
-        return tell("; or: ").join(dict.fromkeys(h.said() for h in j.wrong))
-    said = tell("{measured} instead of {exact}, {times} times the tolerance") if j.tolerance > EXACT else tell(
-        "{measured} instead of {exact}")
-    times = told(f"{abs(j.deviation) / j.tolerance:.3g}")
-    text = said.format(measured=_with_unit(j), exact=_exact(j), times=times)
-    return "; ".join(part for part in (text, _where(j), j.remark) if part)
+        return any_of(j.wrong)
+    instead = codes.INSTEAD_BY if j.tolerance > EXACT else codes.INSTEAD
+    number = instead(measured=_measured(j), exact=_exact(j), times=Number(f"{abs(j.deviation) / j.tolerance:.3g}"))
+    return joined((number, _begins(j), j.noted), "; ") or number
 
 
 def _step(j: JudgedValue) -> str | None:
@@ -256,14 +256,14 @@ def _sentence(mistake: Mistake) -> str:
     return sentence(mistake.step, mistake.place[1], (lambda x: x / mu) if mu else float, "mm" if mu else "")
 
 
-def _where(j: JudgedValue) -> str:
+def _begins(j: JudgedValue) -> Remark | None:
     """Which step was drawn wrong, if one was, and by how much where that is a point on paper."""
     if j.mistake is None:
-        return ""
+        return None
     name, off = letter_of(j.mistake.step), _off(j)
     if off is None:
-        return tell("it starts with {step}").format(step=name)
-    return tell("point {point} lies {distance} mm off").format(point=name, distance=told(rounded(off, 2)))
+        return codes.STARTS_WITH(step=name)
+    return codes.POINT_MOVED(point=name, distance=Number(rounded(off, 2)))
 
 
 def _off(j: JudgedValue) -> float | None:
@@ -284,7 +284,7 @@ def _tree(name: str, judged: list[JudgedValue], filled: measured_file.Filled, pe
             return j.wrong[0].said()
         alike = [other for other in own if other.starts and first[id(other)] is j]
         told_ = _everywhere(alike) if len(alike) > 1 else None
-        return f"{told_.where}: {told_.what}" if told_ is not None else f"{_place(j)}: {_what(j)}"
+        return f"{told_.where}: {told_.what}" if told_ is not None else f"{_place(j)}: {_remark(j).said()}"
 
     return {
         "project": name,
@@ -294,7 +294,7 @@ def _tree(name: str, judged: list[JudgedValue], filled: measured_file.Filled, pe
         "summary": {**{v: sum(j.verdict == v for j in own) for v in ("green", "amber", "red")},
                     "following": len(judged) - len(own), "empty": filled.empty},
         "another": _advice(judged)[0] if _too_many(judged) else None,
-        "starts": [{"id": j.entry.id, "why": _what(j), "step": _step(j),
+        "starts": [{"id": j.entry.id, "why": _remark(j).said(), "step": _step(j),
                     "said": said(j), "same_as": None if first[id(j)] is j else first[id(j)].entry.id,
                     "kind": j.wrong[0].kind if j.wrong else None,
                     "or": list(dict.fromkeys(words for h in j.wrong[1:] if (words := h.said()) != j.wrong[0].said())),

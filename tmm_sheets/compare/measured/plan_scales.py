@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.compare.codes import Number
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.measured.judged import JudgedValue
 from tmm_sheets.construction.step import Step
-from tmm_sheets.numbers import told
 
 Floats = npt.NDArray[np.float64]
 SCALED = 4
@@ -57,7 +57,7 @@ def times_as_long(measured: Floats, expected: Floats, tolerance: Floats) -> tupl
 
 def drawn_to(times: float, step: Step, scale: str) -> Hypothesis:
     """The mistake: the plan of a step, by its scale factor, drawn so many times as large, what is taken from it being right."""
-    return Hypothesis("scale", "plan scale", step, (), other=told(f"{times:.3g}"), drawn=((scale, times),))
+    return Hypothesis("scale", "plan scale", step, (), other=Number(f"{times:.3g}"), drawn=((scale, times),))
 
 
 def _drawn_to_another_scale(of_plan: list[JudgedValue], judged: list[JudgedValue]) -> list[JudgedValue]:

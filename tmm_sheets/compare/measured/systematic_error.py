@@ -12,12 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tmm_sheets.compare.codes import Own, Remark, Sentence
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind
 from tmm_sheets.compare.measured import measured_units as units
 from tmm_sheets.compare.measured.judged import JudgedValue
 from tmm_sheets.compare.measured.measurable import angle_apart
 from tmm_sheets.compare.measured.measured_file import MeasuredLine
-from tmm_sheets.words import tell
+from tmm_sheets.words import marked
 
 REACH = 2.0
 """Tolerances beyond which a number is off, and within which it is explained."""
@@ -25,6 +26,8 @@ FEW, MOST = 4, 0.85
 """Fewer numbers than this must all be explained, more of them to this share."""
 POSITIONS = "positions"
 """Name of the plan of the positions."""
+UNIT = Sentence("unit", marked("{unit}, not {own}"))
+ROWS = Sentence("built-otherwise", marked("in the rows of position {position} stand the numbers of position {other}"))
 LEAST = 2
 """Numbers that a mistake of the whole table must explain at the least."""
 
@@ -65,7 +68,7 @@ def mark(judged: Sequence[JudgedValue], wholes: Sequence[SystematicError], writt
         for j, was in of:
             j.line = was.line
         for j, was in explained:
-            j.deviation, j.remark, j.inconsistent = was.deviation, "", False
+            j.deviation, j.noted, j.inconsistent = was.deviation, None, False
             j.follows = shown[0] if shown and was.verdict != "green" else None
         if shown:
             first = shown[0]
@@ -88,7 +91,7 @@ def _off(j: JudgedValue, value: float) -> float:
     return (value if j.entry.signed else abs(value)) - j.exact
 
 
-def _whole(kind: Kind, words: str, some: Sequence[JudgedValue], meant: Sequence[float], other: str = "",
+def _whole(kind: Kind, words: str, some: Sequence[JudgedValue], meant: Sequence[float], other: str | Remark = "",
            times: float = 1.0) -> Iterator[SystematicError]:
     step = next((j.entry.terms[-1][0] for j in some if j.entry.terms), None)
     if step is not None:
@@ -107,7 +110,7 @@ def _units(judged: Sequence[JudgedValue]) -> Iterator[SystematicError]:
         for other, times in units.OTHERS.get(unit, ()):
             plans = [of for (u, _), of in of_plan.items() if u == unit]
             for group in ([some] if len(plans) > 1 or times != units.SCALE else []) + (plans if times < units.SCALE else []):
-                said = tell("{unit}, not {own}").format(unit=units.said(other), own=units.said(unit))
+                said = UNIT(unit=Remark("", other), own=Remark("", unit))
                 yield from _whole("scale", "unit", group, [j.line.value / times for j in group], said, 1 / times)
 
 
@@ -133,9 +136,8 @@ def _numbered(judged: Sequence[JudgedValue], labels: Sequence[str]) -> Iterator[
         before = {now: at for at, now in after.items()}
         meant = [(j, of[before[at]].line.value if before[at] in of else j.exact) for of in rows.values()
                  for at, j in of.items() if before[at] in of or (after[at] in of and _is(j, of[after[at]]))]
-        said = tell("in the rows of position {position} stand the numbers of position {other}")
         yield from _whole("neighbour", "numbering", [j for j, _ in meant], [value for _, value in meant],
-                          said.format(position=labels[0], other=labels[by]))
+                          ROWS(position=Own(labels[0]), other=Own(labels[by])))
 
 
 def _is(j: JudgedValue, other: JudgedValue) -> bool:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.compare import codes
+from tmm_sheets.compare.codes import joined
 from tmm_sheets.compare.diagnosis import built_plan
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, StudentDrawing
 from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint, between, rebuilt, vanished
@@ -26,7 +28,6 @@ from tmm_sheets.compare.photo.traces import ExtraInk, InkTrace
 from tmm_sheets.compare.photo.washed_out import mask_washed_out
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -157,23 +158,24 @@ def _judged(f: PhotoFinding | None, first: PhotoFinding, found: Rectified, penci
     """
     was = first.element
     if f is None:
-        said, tolerance = tell("without length, as follows from the mistake"), pencil + found.uncertainty
-        return PhotoFinding(was, verdict(was.length, tolerance), was.length, said, was.middle, InkTrace(was, "small"), tolerance)
+        tolerance = pencil + found.uncertainty
+        return PhotoFinding(was, verdict(was.length, tolerance), was.length, codes.VANISHED(), was.middle,
+                            InkTrace(was, "small"), tolerance)
     now, f = f.element, replace(f, element=was)
     off = float(np.abs(now.points - was.points).max()) if len(now.points) == len(was.points) else 0.0
     if off <= f.tolerance or was.kind == "text" or f.trace.status not in ("measured", "shared", "missing", "beside") or f.unknown:
         return f
     if _stays(first, now.points):
         return first
-    said = tell("up to {by} mm off, as follows from the mistake").format(by=millimetres(off))
+    follows = codes.AS_FOLLOWS(by=millimetres(off))
     beyond = f.trace.status == "missing" and not all(map(PAPER.contains, now.points.tolist()))
-    rest = tell("there it runs off the paper, so it cannot be looked for") if beyond else f.what
-    what = said if f.verdict == "green" else f"{said}; {rest}"
+    rest = codes.OFF_THE_PAPER() if beyond else f.remark
+    remark = follows if f.verdict == "green" else joined((follows, rest), "; ")
     deviation = max(off, f.deviation)
     colour = verdict(deviation, f.tolerance)
     if first.verdict == "green" and first.trace.status == "measured" and not _told(f, now.points) and colour == "red":
         colour = "amber"
-    return replace(f, verdict=colour, deviation=deviation, what=what, at=was.middle if beyond else f.at)
+    return replace(f, verdict=colour, deviation=deviation, remark=remark, at=was.middle if beyond else f.at)
 
 
 def inked(ink: Any, line: Points, level: float, hidden: Mask | None = None) -> float:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tmm_sheets.box import Box
+from tmm_sheets.compare import codes
 from tmm_sheets.compare.elements import sampled
 from tmm_sheets.compare.findings import of_radius, worst
 from tmm_sheets.compare.photo.judging import PhotoFinding
@@ -20,7 +21,6 @@ from tmm_sheets.compare.photo.moved_labels import ALIKE, MOVED, TOGETHER
 from tmm_sheets.compare.photo.traces import ExtraInk, InkTrace
 from tmm_sheets.compare.report import Verdict
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.words import tell
 
 ONE = 5.0
 """mm between places of one view that are off, within which they are one: the circles round them would lie upon each other."""
@@ -319,6 +319,6 @@ def _about(f: PhotoFinding, ink: Sequence[ExtraInk]) -> tuple[PhotoFinding, list
         return None
     mine, radius, at = best
     by = radius - e.radius
-    said = tell("another circle lies about its centre: {how}").format(how=of_radius(by, e.radius))
+    remark = codes.OTHER_CIRCLE(how=of_radius(by, e.radius))
     trace = InkTrace(e, "measured", growth=by, deviation=abs(by), at=e.centre + (e.points - e.centre) * radius / e.radius)
-    return replace(f, verdict="amber", deviation=abs(by), what=said, at=e.centre + at, trace=trace), mine
+    return replace(f, verdict="amber", deviation=abs(by), remark=remark, at=e.centre + at, trace=trace), mine

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.compare import codes
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
 from tmm_sheets.compare.elements import ElementView, dashed
 from tmm_sheets.compare.findings import called, origin, table
@@ -141,8 +142,7 @@ def _read_otherwise(f: PhotoFinding, readings: Readings) -> PhotoFinding:
     found = readings.otherwise.get(f.element.number)
     if found is None:
         return f
-    said = tell("read as {found} instead of {wanted}").format(found=found, wanted=f.element.text)
-    return replace(f, verdict="amber", what=said, at=f.element.middle)
+    return replace(f, verdict="amber", remark=codes.READ_AS(found=found, wanted=f.element.text), at=f.element.middle)
 
 
 def _read(readings: Readings) -> str:

@@ -86,7 +86,7 @@ def said(p: FindingCluster) -> str:
         if first.trace.at is not None:
             return "; ".join(words)
         away = min((x.middle - first.element.middle for x in p.ink), key=abs)
-        words.append(tell("what stands {how} may be it").format(how=shifted(away)))
+        words.append(tell("what stands {how} may be it").format(how=shifted(away).said()))
     elif p.ink:
         words.append(tell("ink that is not on the sheet lies beside it"))
     return "; ".join(words)

@@ -1,4 +1,4 @@
-"""Judging what was found of an element: by how much it is off, in words, and whether a pencil may be off so far."""
+"""Judging what was found of an element: by how much it is off, what that is, and whether a pencil may be off so far."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tmm_sheets.compare import codes
+from tmm_sheets.compare.codes import Number, Remark, joined
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.findings import Finding, millimetres, of_radius, shifted, turned
 from tmm_sheets.compare.photo.black_and_white import LostToThreshold, may_be_lost, whole
@@ -17,8 +19,6 @@ from tmm_sheets.compare.photo.joints import joint
 from tmm_sheets.compare.photo.traces import InkTrace, open_line
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.styles import line_type
-from tmm_sheets.numbers import told
-from tmm_sheets.words import marked, tell
 
 LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "twodot"})
 """Lines whose ends mean nothing exact: by hand they are overdrawn."""
@@ -36,8 +36,6 @@ told."""
 SHORT = 12.0
 """mm; a helper line of no more, each end off by a pencil, is turned as well: it is off for sure only by twice as much."""
 SOFT_TOLERANCE = 0.15  # mm added in a picture that is not sharp
-IN_REACH = marked("within a pencil's reach")
-TOO_NEAR = marked("not measurable: too near to others")
 CROWDED, CROWDED_THIN = 0.55, 0.8
 """Share of a line near which no other is drawn below which its own ink cannot be told from theirs to twice a tolerance: it takes
 the edge of theirs, a thin line more so."""
@@ -74,12 +72,12 @@ def loose_ends(e: Element) -> bool:
 
 
 class _Deviation(NamedTuple):
-    """One way in which a line is off: by how much, what is allowed, where, and in words what is beyond that."""
+    """One way in which a line is off: by how much, what is allowed, where, and what is beyond that."""
 
     off: float
     allowed: float
     place: complex
-    said: str = ""
+    said: Remark | None = None
 
     @property
     def share(self) -> float:
@@ -102,8 +100,7 @@ def judge(t: InkTrace, pencil: float, uncertainty: float, soft: bool = False, ea
         What the picture eats of thin lines (see ``black_and_white``): what that may be the reason of is not judged.
     """
     if may_be_lost(t, tolerance := tolerance_of(pencil, uncertainty, soft), eats):
-        said = tell("not measurable: eaten by the black and white picture")
-        return PhotoFinding(t.element, "green", 0.0, said, t.element.middle, InkTrace(t.element, "eaten"), tolerance)
+        return PhotoFinding(t.element, "green", 0.0, codes.EATEN(), t.element.middle, InkTrace(t.element, "eaten"), tolerance)
     return _with_head(_in_pieces(_line(t if eats == "nothing" else whole(t), pencil, uncertainty, soft)))
 
 
@@ -119,29 +116,26 @@ def _in_pieces(f: PhotoFinding) -> PhotoFinding:
     if f.trace.status == "missing":
         half = f.trace.covered >= HALF
         if half and f.element.role in FORM_ROLES:
-            return replace(f, verdict="green", deviation=0.0, what=tell("only pieces of it are seen"))
-        what = (tell("ink in parts of its place only: it was left out, lies elsewhere, or pieces of it are seen") if half else
-                tell("not seen; lines as thin as it are in pieces in this picture"))
+            return replace(f, verdict="green", deviation=0.0, remark=codes.IN_PIECES())
+        remark: Remark | None = codes.HALF_SEEN() if half else codes.THIN_NOT_SEEN()
     else:
-        pieces = tell("only pieces of it are seen")
-        what = f"{f.what}; {pieces}"
-    return replace(f, verdict="amber", what=what)
+        remark = joined((f.remark, codes.IN_PIECES()), "; ")
+    return replace(f, verdict="amber", remark=remark)
 
 
 def _with_head(f: PhotoFinding) -> PhotoFinding:
     """What was found of an arrow, and of its head."""
     e, head = f.element, f.trace.head
     if head == "reversed":
-        return replace(f, verdict="red", deviation=e.length, what=tell("the arrow points the other way"))
+        return replace(f, verdict="red", deviation=e.length, remark=codes.ARROW_POINTS_BACK())
     if head == "doubled" and f.verdict == "green":
-        said = tell("an arrow head at its beginning, where none belongs: it or one in a stroke with it points the other way")
-        return replace(f, verdict="amber", what=said, at=complex(e.points[0]))
+        return replace(f, verdict="amber", remark=codes.HEAD_AT_BEGINNING(), at=complex(e.points[0]))
     if head == "absent" and f.verdict != "green":  # what was drawn elsewhere has its head there
         return f
     if head in ("absent", "left out"):
-        no_head = tell("no arrow head here") if head == "absent" else tell("only a thin line here, and no arrow head")
-        what = no_head if f.verdict == "green" else f"{f.what}; {no_head}"
-        return replace(f, verdict="amber" if f.verdict == "green" else f.verdict, what=what, at=complex(e.fills[0][0]))
+        no_head = codes.NO_HEAD_HERE() if head == "absent" else codes.THIN_LINE_ONLY()
+        remark = no_head if f.verdict == "green" else joined((f.remark, no_head), "; ")
+        return replace(f, verdict="amber" if f.verdict == "green" else f.verdict, remark=remark, at=complex(e.fills[0][0]))
     return f
 
 
@@ -157,38 +151,34 @@ def _line(t: InkTrace, pencil: float, uncertainty: float, soft: bool) -> PhotoFi
         if _crowded(t, tolerance):
             del deviations[0]
             if all(d.share <= 1 for d in deviations):
-                return PhotoFinding(e, "green", 0.0, tell(TOO_NEAR), middle, replace(t, status="dense"), tolerance)
+                return PhotoFinding(e, "green", 0.0, codes.TOO_NEAR(), middle, replace(t, status="dense"), tolerance)
         elif _tiny(e):
             deviations = _of_tiny(t, tolerance, deviations[0])
         if _loosely_judged(e) and deviations[0].share <= 2 and any(d.share > 1 for d in ends):
             deviations = ends  # how a short line is turned is no matter, where it ends is
         worst = max(deviations, key=lambda d: d.share)
         if 1 < worst.share <= 2 and _loosely_judged(e) and (e.role in FORM_ROLES or worst not in ends):
-            said = tell("a little aside, no more than its kind may be")
-            return PhotoFinding(e, "green", worst.off, said, worst.place, t, tolerance)
-        said = "; ".join(d.said for d in deviations if d.said)
-        return PhotoFinding(e, verdict(worst.off, worst.allowed), worst.off, said or tell(IN_REACH), worst.place, t, worst.allowed)
+            return PhotoFinding(e, "green", worst.off, codes.A_LITTLE_ASIDE(), worst.place, t, tolerance)
+        said = joined((d.said for d in deviations), "; ") or codes.IN_REACH()
+        return PhotoFinding(e, verdict(worst.off, worst.allowed), worst.off, said, worst.place, t, worst.allowed)
     if t.status == "beside":
-        said = (tell("a dot like it stands beside, and none is seen here: {how}") if e.kind == "circle" else
-                tell("in one stroke with others, but a line like it lies beside: {how}"))
+        beside = codes.DOT_BESIDE if e.kind == "circle" else codes.LINE_BESIDE
         at = middle if e.kind == "circle" else _displacement(t, tolerance, middle).place
-        return PhotoFinding(e, "amber", t.deviation, said.format(how=_similarity_in_words(t, tolerance)), at, t, tolerance)
+        return PhotoFinding(e, "amber", t.deviation, beside(how=_similarity(t, tolerance)), at, t, tolerance)
     if t.status == "covered":
-        said = tell("not seen where no other line covers it")
-        return PhotoFinding(e, "amber", 0.0, said, middle, t, tolerance)
+        return PhotoFinding(e, "amber", 0.0, codes.ONLY_COVERED(), middle, t, tolerance)
     if t.status == "missing":
-        return PhotoFinding(e, "red", e.length, tell("missing"), middle, t, tolerance)
+        return PhotoFinding(e, "red", e.length, codes.MISSING(), middle, t, tolerance)
     if t.status in ("absent lettering", "part of lettering"):
-        said = tell("no lettering here") if t.status == "absent lettering" else tell("part of the lettering is not here")
+        said = codes.NO_LETTERING() if t.status == "absent lettering" else codes.PART_OF_LETTERING()
         if t.at is not None:
-            said = tell("not in its place: what stands {how} may be it").format(how=shifted(t.shift))
+            said = codes.LETTERING_BESIDE(how=shifted(t.shift))
         return PhotoFinding(e, "amber", t.deviation, said, complex(e.points.mean()), t, tolerance)
     if t.status == "shared" and t.deviation <= tolerance:
-        said = tell("within a pencil's reach, with others in one stroke")
-        return PhotoFinding(e, "green", t.deviation, said, middle, t, tolerance)
+        return PhotoFinding(e, "green", t.deviation, codes.IN_REACH_SHARED(), middle, t, tolerance)
     if t.status == "hidden":
-        return PhotoFinding(e, "green", 0.0, tell("hidden in the picture"), middle, t, tolerance)
-    word = tell(TOO_NEAR) if t.status in ("dense", "shared") else tell("there")
+        return PhotoFinding(e, "green", 0.0, codes.HIDDEN(), middle, t, tolerance)
+    word = codes.TOO_NEAR() if t.status in ("dense", "shared") else codes.THERE()
     return PhotoFinding(e, "green", 0.0, word, middle, t, tolerance)
 
 
@@ -219,21 +209,14 @@ def _of_tiny(t: InkTrace, tolerance: float, whole: _Deviation) -> list[_Deviatio
     if whole.off > 2 * tolerance:
         return [whole._replace(allowed=2 * tolerance)]
     by = abs(t.shift)
-    return [_Deviation(by, tolerance, whole.place, shifted(t.shift) if by > tolerance else "")]
+    return [_Deviation(by, tolerance, whole.place, shifted(t.shift) if by > tolerance else None)]
 
 
 def _displacement(t: InkTrace, tolerance: float, middle: complex) -> _Deviation:
     """How far the line as a whole is off, at the place where it is farthest off."""
     z = t.element.points
     place = complex(z[int(np.abs(t.at - z).argmax())]) if t.at is not None and len(t.at) == len(z) else middle
-    return _Deviation(t.deviation, tolerance, place, _similarity_in_words(t, tolerance) if t.deviation > tolerance else "")
-
-
-_END = {
-    (0, True): marked("{by} mm too long at its beginning"), (0, False): marked("{by} mm too short at its beginning"),
-    (1, True): marked("{by} mm too long at its end"), (1, False): marked("{by} mm too short at its end"),
-}
-"""What an end is said to be: the first or the second, too long or too short."""
+    return _Deviation(t.deviation, tolerance, place, _similarity(t, tolerance) if t.deviation > tolerance else None)
 
 
 def _ends(t: InkTrace, pencil: float, tolerance: float, soft: bool) -> Iterator[_Deviation]:
@@ -247,12 +230,12 @@ def _ends(t: InkTrace, pencil: float, tolerance: float, soft: bool) -> Iterator[
         # 0.2 mm: the steps in which ends are seen. By hand a dashed line may end a dash and its gap before.
         drawn_to = SCARCELY if e.role == "construction" else LOOSE
         allowed = (LOOSE if end > 0 else drawn_to + dash) if loose else tolerance + pencil + 0.2
-        said = tell(_END[k, bool(end > 0)]).format(by=millimetres(end)) if abs(end) > allowed else ""
+        said = codes.END[k, 1 if end > 0 else -1](by=millimetres(end)) if abs(end) > allowed else None
         off = min(abs(end), 2 * allowed) if loose else abs(end)  # a thin line drawn over is never more than a remark
         yield _Deviation(off, allowed, complex(at), said)
 
 
-def _similarity_in_words(t: InkTrace, tolerance: float) -> str:
+def _similarity(t: InkTrace, tolerance: float) -> Remark:
     """Growth, shift and turn of a line, as far as each matters."""
     e = t.element
     half = 0.5 * e.length if e.kind == "line" else float(np.abs(e.points - e.points.mean()).max())
@@ -266,10 +249,9 @@ def _similarity_in_words(t: InkTrace, tolerance: float) -> str:
         said.append(shifted(t.shift))
     if e.kind != "circle" and abs(t.turn) * half > 0.5 * tolerance:
         said.append(turned(degrees(t.turn)))
-    return ", ".join(said) or tell("off by up to {by} mm").format(by=told(f"{t.deviation:.1f}"))
+    return joined(said) or codes.OFF_BY(by=Number(f"{t.deviation:.1f}"))
 
 
-def _grown(by: float, half: float) -> str:
-    """An excess of a curve that reaches ``half`` mm to each side, mm, in words."""
-    said = tell("{by} mm too large in {size} mm") if by > 0 else tell("{by} mm too small in {size} mm")
-    return said.format(by=millimetres(by), size=f"{half:.0f}")
+def _grown(by: float, half: float) -> Remark:
+    """An excess of a curve that reaches ``half`` mm to each side, mm."""
+    return codes.GROWN[1 if by > 0 else -1](by=millimetres(by), size=Number(f"{half:.0f}"))
