@@ -72,6 +72,14 @@ def fit_standard(span_mm: float, mm: float) -> tuple[int, int]:
     )
 
 
+def fitting(spans_mm: Any, rooms: Any) -> Any:
+    """Numbers in ``STANDARD`` of the largest scales at which figures fit: spans, shape (n, k), in rooms (k,), mm; -1 for none."""
+    import numpy as np
+
+    real, drawn = np.array(STANDARD).T
+    return (np.asarray(spans_mm)[:, :, None] * drawn <= np.outer(rooms, real) * (1 + 1e-9)).all(axis=1).sum(axis=1) - 1
+
+
 def times(ratio: float) -> str:
     """How many times something is enlarged, with the right form of the word: 2 раза, 5 раз, 2,5 раза."""
     whole = isclose(ratio, round(ratio))

@@ -25,6 +25,8 @@ STEPS = ((60.0, 35.0, 20.0, 11.0, 6.0), (4.0, 2.0, 1.0)), ((20.0, 11.0, 6.0), (4
 
 A far move may end where no other leads on: of several beginnings the best end is taken.
 """
+LESS = 1e-3
+"""Places that cost less by no more than this are none the better, mm^2."""
 ROUNDS = 3
 """How often all borders are tried with each of these."""
 _SERIES = (*HANDY, 10.0)
@@ -78,8 +80,8 @@ TOO_SMALL = 1e8
 class BorderNode:
     """Several parts along x (``axis`` 0) or downwards (1) with ``gap`` between them, or a view.
 
-    Of a view: its ``need``, its number ``leaf``, the ``area`` that its arrangement means it to have, and what it fills of the
-    places in which it was ``tried``, and how much they are too small: half of them are tried again.
+    Of a view: its ``need``, its number ``leaf``, the ``area`` that its arrangement means it to have. What the places cost in which
+    it was ``tried``, as long as no border in it moves: half of them are tried again.
     """
 
     need: Need | None = None
@@ -89,7 +91,7 @@ class BorderNode:
     children: list[BorderNode] = field(default_factory=list)
     shares: list[float] = field(default_factory=list)
     gap: float = GAP
-    tried: dict[tuple[float, float], tuple[float, float]] = field(default_factory=dict)
+    tried: dict[tuple[float, float], float] = field(default_factory=dict)
 
     def every(self) -> Iterator[BorderNode]:
         """The node and all below it."""
@@ -102,19 +104,29 @@ class BorderNode:
         free = (height if self.axis else width) - self.gap * (len(self.children) - 1)
         return [share * free for share in self.shares]
 
-    def cost(self, width: float, height: float) -> float:
-        """What the places of its views cost: more, the less of what it is meant to have each of them fills."""
-        if self.need is not None:
-            place = width, height
-            if place not in self.tried:
-                self.tried[place] = self.need.ink(width, height), self.need.short(width, height)
-            ink, short = self.tried[place]
-            return self.area * (self.area / ink) ** 2 + TOO_SMALL * short  # the square: what is worst counts most
-        return sum(self._of(child, size, width, height)
-                   for child, size in zip(self.children, self.sizes(width, height), strict=True))
+    def cost(self, width: float, height: float, most: float = inf) -> float:
+        """What the places of its views cost: more, the less of what it is meant to have each of them fills.
 
-    def _of(self, child: BorderNode, size: float, width: float, height: float) -> float:
-        return child.cost(width, size) if self.axis else child.cost(size, height)
+        Where that is ``most`` or more, something from ``most`` on: the other views are not asked.
+        """
+        place = width, height
+        found = self.tried.get(place)
+        if found is not None:
+            return found
+        if self.need is not None:
+            ink = self.need.ink(width, height)  # the square: what is worst counts most
+            found = self.area * (self.area / ink) ** 2 + TOO_SMALL * self.need.short(width, height)
+        else:
+            found = 0.0
+            for child, size in zip(self.children, self.sizes(width, height), strict=True):
+                found += self._of(child, size, width, height, most - found)
+                if found >= most:
+                    return found
+        self.tried[place] = found
+        return found
+
+    def _of(self, child: BorderNode, size: float, width: float, height: float, most: float = inf) -> float:
+        return child.cost(width, size, most) if self.axis else child.cost(size, height, most)
 
     def settle(self, width: float, height: float, steps: Sequence[float]) -> bool:
         """Move each border by that of some steps, to one side or the other, which costs least, then those inside the parts.
@@ -124,22 +136,25 @@ class BorderNode:
         free = (height if self.axis else width) - self.gap * (len(self.children) - 1)
         moved = False
         for i in range(len(self.children) - 1):
-            moved |= self._move(i, i + 1, [step / free for step in steps], width, height)
+            moved |= self._move(i, [step / free for step in steps], width, height, free)
         for child, size in zip(self.children, self.sizes(width, height), strict=True):
             moved |= child.settle(width if self.axis else size, size if self.axis else height, steps)
+        if moved:
+            self.tried.clear()
         return moved
 
-    def _move(self, i: int, j: int, steps: Sequence[float], width: float, height: float) -> bool:
-        pair = [self.children[i], self.children[j]]
-
-        def cost(shares: Sequence[float]) -> float:
-            free = (height if self.axis else width) - self.gap * (len(self.children) - 1)
-            return sum(self._of(child, share * free, width, height) for child, share in zip(pair, shares, strict=True))
-
-        now = [self.shares[i], self.shares[j]]
-        moved = [[now[0] + d, now[1] - d] for by in steps for d in (by, -by) if now[0] + d > 0 < now[1] - d]
-        best = min([now, *moved], key=lambda shares: round(cost(shares), 3))
-        self.shares[i], self.shares[j] = best
+    def _move(self, i: int, steps: Sequence[float], width: float, height: float, free: float) -> bool:
+        """The same of the border after child ``i``, of what its place has ``free`` for the children."""
+        now, pair = self.shares[i:i + 2], self.children[i:i + 2]
+        best, least = now, inf
+        for shares in (now, *([now[0] + d, now[1] - d] for by in steps for d in (by, -by) if now[0] + d > 0 < now[1] - d)):
+            most, smaller = least + LESS, int(shares[1] < now[1])  # which costs more than before, as a rule
+            cost = self._of(pair[smaller], shares[smaller] * free, width, height, most)
+            if cost < most:
+                cost += self._of(pair[1 - smaller], shares[1 - smaller] * free, width, height, most - cost)
+                if round(cost, 3) < least:
+                    best, least = shares, round(cost, 3)
+        self.shares[i:i + 2] = best
         return best is not now
 
     def places(self, box: Box) -> dict[int, Box]:
@@ -171,6 +186,8 @@ def solve(tree: BorderNode, box: Box) -> dict[int, Box]:
 def _shared(nodes: Sequence[BorderNode], shares: Sequence[Sequence[float]]) -> None:
     for node, own in zip(nodes, shares, strict=True):
         node.shares = list(own)
+        if node.children:
+            node.tried.clear()
 
 
 def joined(axis: int, children: Sequence[BorderNode], sizes: Sequence[float], gap: float = GAP) -> BorderNode:

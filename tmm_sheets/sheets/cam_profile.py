@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from cmath import phase, rect
+from functools import lru_cache
 from itertools import pairwise
 from math import degrees, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.construction.scale import fitting
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter
@@ -66,17 +68,16 @@ def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> 
         _second_disc(s, dense, picture)
     {"tappet": _rod, "rocker": _rocker, "flat": _flat}[picture.kind](s, picture)
     _phase_angles(s, picture)
-    size = _table_size(cam)
+    size = table_size(cam)
     corner = picture.corner(size) or complex(box.centre.real - size[0] / 2, box.y0 + FOOT + size[1])
     canvas.table(corner, _widths(cam), _given(cam, options.get("angle", ANGLE)), _ROW, 3.5)
     _path(s, picture, first, Box(corner.real, corner.imag - size[1], corner.real + size[0], corner.imag))
 
 
-def _pictured(cam: Cam, box: Box) -> _ProfilePicture:
+def _pictured(cam: Cam, box: Box, table: tuple[float, float] | None = None) -> _ProfilePicture:
     """The figure in a place, which leaves the foot of it to the table of sizes where that has no free corner."""
     room = Box(box.x0 + EDGE, box.y0 + FOOT, box.x1 - EDGE, box.y1 - 24)
-    picture = _ProfilePicture(cam, room)
-    size = _table_size(cam)
+    picture, size = _ProfilePicture(cam, room), table or table_size(cam)
     return picture if picture.corner(size) else _ProfilePicture(cam, room._replace(y0=room.y0 + size[1] + 6))
 
 
@@ -86,8 +87,12 @@ GUIDE = 22.0
 """What the guide of a translating follower and the end of its rod take above the roller, mm of paper."""
 
 
-def _figure(cam: Cam) -> tuple[Points, float, list[complex]]:
-    """Points round the figure of the profile, the height of the guide's lower edge, and the directions it may be turned to."""
+@lru_cache(maxsize=4)
+def _figure(cam: Cam) -> tuple[Points, float, list[complex], Points]:
+    """Points round the figure of the profile, the height of the guide's lower edge, the directions it may be turned to.
+
+    With it the width and height of the points in each direction, a complex number, m.
+    """
     inv = cam.inversion
     radius = float(getattr(cam, "roller", 0.0))
     outline = [cam.dense.centres.value, *([cam.dense.plan["B′"].value] if "B′" in inv.plan else [])]
@@ -106,7 +111,8 @@ def _figure(cam: Cam) -> tuple[Points, float, list[complex]]:
     if cam.kind == "rocker":
         along = complex(np.exp(-1j * phase(complex(inv.plan["A_0"].value))))
         turns += [1j, -1.0 + 0j, -1j, *(along * complex(np.exp(1j * k * pi / 12)) for k in np.argsort(np.arange(24) % 6))]
-    return points, guide, turns
+    turned = points * np.array(turns)[:, None]
+    return points, guide, turns, np.ptp(turned.real, axis=1) + 1j * np.ptp(turned.imag, axis=1)
 
 
 def margin(cam: Cam) -> float:
@@ -116,21 +122,24 @@ def margin(cam: Cam) -> float:
 
 def figure_sizes(cam: Cam) -> list[tuple[float, float]]:
     """Width and height of the figure, m, in every direction it may be turned to."""
-    points, guide, turns = _figure(cam)
-    if cam.kind == "rocker":
-        return [(float(np.ptp((points * turn).real)), float(np.ptp((points * turn).imag))) for turn in turns]
-    return [(float(np.ptp(points.real)), max(float(np.ptp(points.imag)), guide - float(points.imag.min())))]
+    points, guide, _, sizes = _figure(cam)
+    least = 0.0 if cam.kind == "rocker" else guide - float(points.imag.min())
+    return [(float(size.real), max(float(size.imag), least)) for size in sizes]
 
 
-def over(cam: Cam) -> tuple[float, float]:
+def over(cam: Cam, table: tuple[float, float]) -> tuple[float, float]:
     """What stands over and under the figure, mm: the heading alone, where the table has a free corner, and with the table."""
     heading = 28.0 + (14.0 if cam.kind == "rocker" else GUIDE)
-    return heading, heading + _table_size(cam)[1] + 6.0
+    return heading, heading + table[1] + 6.0
 
 
-def largest(cam: Cam, width: float, height: float) -> Scale:
-    """Scale to which the figure is drawn in a place of this size, mm."""
-    return _pictured(cam, Box(0.0, 0.0, width, height)).scale
+def largest(cam: Cam, table: tuple[float, float], width: float, height: float) -> Scale:
+    """Scale to which the figure is drawn in a place of this size, mm, with a table of a size."""
+    return _pictured(cam, Box(0.0, 0.0, width, height), table).scale
+
+
+_ROUND = np.exp(1j * np.arange(72) * pi / 36)
+"""Points of a circle of radius 1."""
 
 
 class _ProfilePicture:
@@ -147,11 +156,15 @@ class _ProfilePicture:
         self.kind = cam.kind
         inv = cam.inversion
         radius = float(getattr(cam, "roller", 0.0))
-        points, self.guide, turns = _figure(cam)
+        points, self.guide, turns, sizes = _figure(cam)
         side, over = margin(cam), 0.0 if self.kind == "rocker" else GUIDE
-        self.turn = max(turns, key=lambda turn: 1 / self._fitted(points * turn, side, over).mu)
-        self.points = points * self.turn
-        self.scale = self._fitted(self.points, side, over)
+        rooms = [room.width - 2 * side, room.height - 2 * side]
+        best = int(fitting(np.array([sizes.real, sizes.imag]).T * 1e3, rooms).argmax())
+        self.turn, self.points = turns[best], points * turns[best]
+        fitted = [*zip((float(sizes[best].real), float(sizes[best].imag)), rooms, strict=True)]
+        if over:
+            fitted.append((self.guide - float(self.points.imag.min()), room.height - over))
+        self.scale = standard(*fitted)
         x0, x1 = float(self.points.real.min()), float(self.points.real.max())
         y0, y1 = float(self.points.imag.min()), float(self.points.imag.max())
         top = max(self.scale.mm(y1), self.scale.mm(self.guide) + over) if over else self.scale.mm(y1)
@@ -162,28 +175,18 @@ class _ProfilePicture:
         self.start = phase(complex(inv.plan["A_0" if self.kind == "rocker" else "B_0"].value) * self.turn)
         self.first = phase(complex(inv.plan["B_0"].value) * self.turn)
 
-    def _fitted(self, points: Points, margin: float, over: float) -> Scale:
-        """Largest standard scale at which the figure fits."""
-        width, height = float(np.ptp(points.real)), float(np.ptp(points.imag))
-        fitted = [(width, self.room.width - 2 * margin), (height, self.room.height - 2 * margin)]
-        if over:
-            fitted.append((self.guide - float(points.imag.min()), self.room.height - over))
-        return standard(*fitted)
-
     def at(self, p: Any) -> Any:
         """Point of the cam's frame on paper."""
         return self.origin + self.scale.mm(p * self.turn)
 
     def ink(self) -> Points:
         """Points that the figure takes, mm."""
-        found = list(self.origin + self.scale.mm(self.points))
-        found += [self.origin + (self.scale.mm(self.cam.r0) + 14.0) * rect(1, t) for t in np.arange(72) * pi / 36]
+        found = [self.origin + self.scale.mm(self.points), self.origin + (self.scale.mm(self.cam.r0) + 14.0) * _ROUND]
         if self.kind == "rocker":
-            found += [self.at(complex(self.cam.inversion.plan["A_0"].value)) + 12.0 * rect(1, t) for t in np.arange(24) * pi / 12]
-        else:
-            top = self.at(self.cam.inversion.axis.value[0])
-            found += [top + side + 1j * up for side in (-8.0, 8.0) for up in np.arange(0.0, self.room.y1 - top.imag, 4.0)]
-        return np.array(found)
+            return np.concatenate([*found, self.at(complex(self.cam.inversion.plan["A_0"].value)) + 12.0 * _ROUND[::3]])
+        top = self.at(self.cam.inversion.axis.value[0])
+        up = 1j * np.arange(0.0, self.room.y1 - top.imag, 4.0)
+        return np.concatenate([*found, top - 8.0 + up, top + 8.0 + up])
 
     def corner(self, size: tuple[float, float]) -> complex | None:
         """Upper left corner of a rectangle in a corner of the room that the figure leaves free; None when there is none.
@@ -244,7 +247,8 @@ def _widths(cam: Cam) -> list[float]:
     return [max(least, need + 2.0) for least, need in zip(_WIDTHS, needs(_given(cam), 3.5, LEAST), strict=True)]
 
 
-def _table_size(cam: Cam) -> tuple[float, float]:
+def table_size(cam: Cam) -> tuple[float, float]:
+    """Width and height of the table of sizes, mm."""
     return sum(_widths(cam)), _ROW * len(_given(cam))
 
 

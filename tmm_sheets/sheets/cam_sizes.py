@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
-from functools import cache
+from collections.abc import Callable
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.construction.scale import Scale
+import numpy as np
+
+from tmm_sheets.construction.scale import STANDARD, fitting
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets import cam as cam_views
 from tmm_sheets.sheets import cam_profile, cam_zone
@@ -15,6 +17,7 @@ from tmm_sheets.sheets.frame import standard
 from tmm_sheets.sheets.view_sizes import leaf
 
 if TYPE_CHECKING:
+    from tmm_sheets.methods.cams.cam_profile import Cam
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.arrangement import ViewPlace
     from tmm_sheets.sheets.border_solver import BorderNode
@@ -69,30 +72,31 @@ def spring(project: Project, view: ViewPlace) -> BorderNode | None:
 
 def profile(project: Project, view: ViewPlace) -> BorderNode | None:
     """The profile at a standard scale, with its table where that leaves the scale."""
-    cam = project.cam
-    sizes = cam_profile.figure_sizes(cam)
-    beside = 2 * (cam_profile.EDGE + cam_profile.margin(cam))
-    alone, with_table = cam_profile.over(cam)
+    in_place = _profile_area(project.cam, cam_profile.table_size(project.cam))
+    return leaf(view.box, Need(least=(180.0, 180.0), drawn=lambda w, h: in_place(int(w), int(h))))
 
-    def fitted(width: int, height: int, over: float) -> Scale | None:
-        found = None
-        for w, h in sizes:
-            with suppress(CannotBuild):
-                scale = standard((w, width - beside), (h, height - over))
-                found = scale if found is None or scale.mu < found.mu else found
-        return found
+
+@lru_cache(maxsize=4)
+def _profile_area(cam: Cam, table: tuple[float, float]) -> Callable[[int, int], float]:
+    """Area that the figure of a profile takes of places of some width and height, mm: the same in all ways to arrange a sheet."""
+    sizes = np.array(cam_profile.figure_sizes(cam))
+    beside = 2 * (cam_profile.EDGE + cam_profile.margin(cam))
+    alone, with_table = cam_profile.over(cam, table)
+    mus = [real / drawn * 1e-3 for real, drawn in STANDARD]
 
     @cache
     def in_place(width: int, height: int) -> float:
-        scale, larger, over = fitted(width, height, with_table), fitted(width, height, alone), with_table
-        if scale is None:
+        scale, larger = (int(fitting(sizes * 1e3, (width - beside, height - over)).max()) for over in (with_table, alone))
+        if scale < 0:
             return 1.0
-        if larger is not None and larger.mu < scale.mu and cam_profile.largest(cam, width, height).mu < scale.mu:
-            scale, over = larger, alone
-        shown = [(w / scale.mu + beside, h / scale.mu + over) for w, h in sizes]
-        return max((w * h for w, h in shown if w <= width + 1e-6 and h <= height + 1e-6), default=1.0)
+        mu, over = mus[scale], with_table
+        if larger > scale and cam_profile.largest(cam, table, width, height).mu < mu:
+            mu, over = mus[larger], alone
+        w, h = (sizes / mu + (beside, over)).T
+        shown = (w * h)[(w <= width + 1e-6) & (h <= height + 1e-6)]
+        return float(shown.max()) if len(shown) else 1.0
 
-    return leaf(view.box, Need(least=(180.0, 180.0), drawn=lambda w, h: in_place(int(w), int(h))))
+    return in_place
 
 
 def roller(project: Project, view: ViewPlace) -> BorderNode | None:
