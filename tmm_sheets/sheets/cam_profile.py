@@ -133,8 +133,8 @@ def over(cam: Cam, table: tuple[float, float]) -> tuple[float, float]:
     return heading, heading + table[1] + 6.0
 
 
-def largest(cam: Cam, table: tuple[float, float], width: float, height: float) -> Scale:
-    """Scale to which the figure is drawn in a place of this size, mm, with a table of a size."""
+def largest(cam: Cam, width: float, height: float, table: tuple[float, float] | None = None) -> Scale:
+    """Scale to which the figure is drawn in a place of this size, mm; ``table`` is the size of its table, where it is known."""
     return _pictured(cam, Box(0.0, 0.0, width, height), table).scale
 
 

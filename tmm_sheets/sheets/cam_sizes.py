@@ -90,7 +90,7 @@ def _profile_area(cam: Cam, table: tuple[float, float]) -> Callable[[int, int], 
         if scale < 0:
             return 1.0
         mu, over = mus[scale], with_table
-        if larger > scale and cam_profile.largest(cam, table, width, height).mu < mu:
+        if larger > scale and cam_profile.largest(cam, width, height, table).mu < mu:
             mu, over = mus[larger], alone
         w, h = (sizes / mu + (beside, over)).T
         shown = (w * h)[(w <= width + 1e-6) & (h <= height + 1e-6)]

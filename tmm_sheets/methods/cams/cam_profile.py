@@ -188,9 +188,12 @@ OF_THREE = Rule("point of the sharpest place", rules.take, ("point", "number"), 
 # --- the cam --------------------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Cam:
-    """A disc cam; every part is built when it is first asked for. The kinds of followers are its subclasses."""
+    """A disc cam; every part is built when it is first asked for. The kinds of followers are its subclasses.
+
+    A cam is no other of the same data: what is kept of one is its own.
+    """
 
     data: CamTable
     law: PositionFunction
@@ -326,7 +329,7 @@ class Cam:
         raise NotImplementedError
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RollerCam(Cam):
     """A cam whose follower carries a roller."""
 
@@ -574,7 +577,7 @@ class RollerCam(Cam):
         return inv
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TappetCam(RollerCam):
     """A cam with a translating roller follower (толкатель)."""
 
@@ -610,7 +613,7 @@ class TappetCam(RollerCam):
         return found | self._found_angles() | ({"roller_distance": self.apart} if self.apart else {})
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RockerCam(RollerCam):
     """A cam with an oscillating roller follower (коромысло)."""
 
@@ -660,7 +663,7 @@ class RockerCam(RollerCam):
         return found | self._found_angles() | ({"arm_angle": self.apart} if self.apart else {})
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FlatCam(Cam):
     """A cam under a flat follower (плоский толкатель)."""
 
