@@ -28,15 +28,12 @@ gc.set_threshold(50_000, 20, 20)
 
 
 LONGEST = (
-    "output/test_batch", "compare/test_cad", "test_cli", "methods/linkage/test_forces", "compare/test_languages",
-    "compare/test_students", "test_docs",
-    "sheets/test_user_projects", "record/test_record", "compare/test_measured_manuals", "test_encodings", "compare/test_image",
-    "compare/test_doubtful_fits", "compare/test_own_layout", "methods/linkage/test_strokes", "sheets/test_languages",
-    "sheets/test_no_flywheel", "sheets/test_view_overflow", "compare/test_measured", "sheets/test_plan_scales",
-    "test_words_protocol", "task/test_names_of_plans", "foreign/test_foreign", "task/families/test_transport", "stress/test_stress",
-    "note/test_content", "test_missing_parts",
+    "compare/test_cad", "output/test_batch", "test_docs", "compare/test_languages", "stress/test_stress", "compare/test_tracing",
+    "test_cli", "compare/test_own_layout", "test_quoted", "sheets/test_kept_sheets", "test_counts", "compare/test_image",
+    "compare/test_measured", "compare/test_doubtful_fits", "compare/test_sparse_layouts", "test_words",
+    "task/families/test_transport", "record/test_record",
 )
-"""Files that take longest, the longest first (processor time, 2026-11-22): begun last they would leave one worker alone."""
+"""Files that take longest, the longest first (2026-11-28): begun last they would leave one worker alone."""
 
 
 def pytest_collection_modifyitems(items):

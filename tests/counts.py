@@ -13,7 +13,7 @@ import os
 import subprocess
 import sys
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
@@ -147,11 +147,12 @@ def load() -> None:
     gc.freeze()
 
 
-def of_projects() -> Counts:
-    """Counts of all commands on all projects, from this process, whose classes are wrapped from now on."""
+def of_projects(projects: Iterable[str]) -> Counts:
+    """Counts of all commands on projects, from this process, whose classes are wrapped from now on."""
     load()
     counts, found = watch(), Counts()
-    for project, (other, n) in PROJECTS.items():
+    for project in projects:
+        other, n = PROJECTS[project]
         found[project] = {}
         with TemporaryDirectory() as out:
             names = {"project": project, "other": other, "n": n, "out": out, "result": "positions.points.B"}
@@ -179,14 +180,14 @@ def modules() -> dict[str, dict[str, int]]:
     return found
 
 
-def counted() -> Counts:
-    """All counts, the commands in forks of a process of their own."""
-    program = [sys.executable, "-m", "tests.counts", "--only"]
+def counted(*projects: str) -> Counts:
+    """Counts of all commands on projects, in forks of a process of their own."""
+    program = [sys.executable, "-m", "tests.counts", "--only", *projects]
     done = subprocess.run(program, cwd=TABLE.parents[1], capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(done.stderr)
     found: Counts = json.loads(done.stdout)
-    return {**found, "modules": modules()}
+    return found
 
 
 def libraries() -> str:
@@ -223,11 +224,11 @@ def written(found: Counts) -> str:
 
 
 def main(words: list[str]) -> None:
-    """Write the table and tell what has changed; with ``--only`` count for the process that asks."""
+    """Write the table and tell what has changed; with ``--only PROJECT ...`` count for the process that asks."""
     if words:
-        print(json.dumps(of_projects()))
+        print(json.dumps(of_projects(words[1:])))
         return
-    found = counted()
+    found = {**counted(*PROJECTS), "modules": modules()}
     print(*differences(tomllib.loads(TABLE.read_text("utf-8")) if TABLE.exists() else {}, found), sep="\n")
     TABLE.write_text(written(found), "utf-8")
 

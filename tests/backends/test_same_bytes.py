@@ -31,7 +31,7 @@ def test_two_processes_write_the_same_bytes(tmp_path):
     script.write_text(CODE, encoding="utf-8")
     root = str(Path(__file__).resolve().parents[2])
     outputs = set()
-    for seed, zone in (("1", "UTC"), ("4", "Asia/Vladivostok"), ("7", "UTC")):
+    for seed, zone in (("1", "UTC"), ("4", "Asia/Vladivostok")):
         env = os.environ | {"PYTHONHASHSEED": seed, "TZ": zone}
         done = subprocess.run([sys.executable, str(script), root], env=env, capture_output=True, text=True, check=True)
         outputs.add(done.stdout)
