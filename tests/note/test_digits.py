@@ -33,7 +33,7 @@ def judged(line):
 
 SHAPES = {
     "product": A * B, "quotient": A / B, "sum": A + B - C, "moments": (A * B - C * D) / C, "square": A * B * B / C,
-    "root": np.sqrt((A - B) * (A + B)), "power": (A / B) ** e.Constant(0.2), "share": A / B - 1,
+    "root": np.sqrt((A - B) * (A + B)), "diagonal": np.hypot(A, B), "power": (A / B) ** e.Constant(0.2), "share": A / B - 1,
     "greatest": np.maximum(A * B - C, 0.0),
     "constant": pi * A / 30, "own number": 9.81 * A - 2.5 * B,
 }  # fmt: skip
