@@ -77,7 +77,8 @@ def written(project: Project) -> tuple[dict[Line, list[float]], dict[str, float]
         return noted
 
     views = [import_module(f"{sheets.__name__}.{m.name}") for m in iter_modules(sheets.__path__)]
-    before = [(m, name, vars(m)[name]) for m in views for name in ("number", "fixed") if name in vars(m)]
+    before = [(m, name, vars(m)[name]) for m in views for name in ("number", "fixed")
+              if name in vars(m) and vars(m)[name].__module__ != "tmm_sheets.sheets.view_sizes"]  # its fixed is of places
     try:
         for module, name, write in before:
             setattr(module, name, noting(write))
