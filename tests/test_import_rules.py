@@ -41,6 +41,7 @@ RULES = {
     "askers": ("construction sheets", "drawing"),
     "protocols": ("construction sheets", "project"),
     "record": ("construction drawing project results sheets", ""),
+    "living": ("construction drawing note project record results task.toml_lines", "methods.linkage"),
     "sheets": ("construction drawing mechanism.structure", f"project mechanism {METHODS}"),
     "backends": ("drawing", ""),
     "output": ("backends catalogue drawing explain project sheets", "task"),
@@ -60,8 +61,8 @@ RULES = {
     "lab.stress": ("construction mechanism methods.linkage", ""),
     "localized_cli": ("completion", ""),
     "completion": ("catalogue drawing note output project protocols record results", ""),
-    "cli": ("askers backends catalogue compare drawing explain lab note output project protocols record result_files results "
-            "localized_cli sheets summary task", ""),
+    "cli": ("askers backends catalogue compare drawing explain lab living note output project protocols record result_files "
+            "results localized_cli sheets summary task", ""),
     "__main__": ("cli completion localized_cli", ""),
     **dict.fromkeys(NEUTRAL.split(), ("", "")),
 }
@@ -79,7 +80,7 @@ LIBRARIES = {
 
 LATE = ("numpy", "shapely")
 """Libraries the command line must not wait for: numpy is imported at the top only where numbers are made, shapely nowhere."""
-NUMBERS = "mechanism construction drawing methods sheets backends compare lab project record note"
+NUMBERS = "mechanism construction drawing methods sheets backends compare lab project record note living"
 
 
 def within(module, rooms):

@@ -420,6 +420,29 @@ def record(project: str, corrected: bool, sheets: tuple[int, ...], target: str) 
 
 @commands.command()
 @PROJECT
+@CORRECTED
+@option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
+@option("--plan", "plan", default="", metavar="NAME", help="Open with this plan.")
+@option("-o", "--output", type=click.Path(path_type=Path), metavar="FILE",
+        help="File of the page.  [default: out/<project>/page.html]")
+@NO_CACHE
+def page(project: str, corrected: bool, sheets: tuple[int, ...], plan: str, output: Path | None) -> None:
+    """Write the living sheet of PROJECT: one page without network, in which its plans are drawn, turned, changed and asked."""
+    from tmm_sheets import files
+    from tmm_sheets.living.page import page as living_page
+    from tmm_sheets.output.building import chosen
+
+    opened = _open(project, corrected)
+    found, problem = living_page(opened, chosen(opened.variant, sheets), plan)
+    path = output if output is not None else _folder(opened.variant, None) / "page.html"
+    files.write_all({path: found.encode()})
+    click.echo(path)
+    if problem is not None:
+        raise problem
+
+
+@commands.command()
+@PROJECT
 @argument("result")
 @CORRECTED
 def why(project: str, result: str, corrected: bool) -> None:

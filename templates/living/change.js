@@ -1,0 +1,108 @@
+// Given numbers as sliders; what does not assemble is told; undo, the project's own numbers again, a project file.
+
+const edits = { done: [], undone: [] };
+const SHOWN = { m: ["mm", 1000], rad: ["°", 180 / Math.PI] };
+
+const told = (value, unit) => { const [u, by] = SHOWN[unit] ?? [unit, 1]; return `${digits(value * by)} ${UNITS()[u] ?? u}`; };
+
+function sizeOfAll() {
+  return Math.max(...record.motion.givens.filter((g) => g.unit === "m").flatMap((g) => [g.value].flat().map(Math.abs)), 0.01);
+}
+
+// One slider for a number, two for a point.
+function slidersOf(g) {
+  const parts2 = Array.isArray(g.value) ? [0, 1] : [null];
+  return parts2.map((i) => {
+    const own = i === null ? g.value : g.value[i], now = () => (i === null ? machine.given[g.name] : machine.given[g.name][i]);
+    const reach = g.unit === "rad" ? Math.PI / 4 : i !== null || own === 0 ? sizeOfAll() / 3 : Math.abs(own) * 0.6;
+    const low = own - reach, high = own + reach;
+    const name = `${g.symbol ? lettered(g.symbol) : plain(g.name)}${i === null ? "" : `<sub>${"xy"[i]}</sub>`}`;
+    const out = node("output"), input = node("input", { type: "range", min: low, max: high, step: (high - low) / 400, value: now(), "aria-label": `${g.name}${i === null ? "" : ` ${"xy"[i]}`}` });
+    const row = node("label", { class: "slide", title: g.name }, node("span", { html: name }), out, input);
+    const refresh = () => { out.textContent = told(now(), g.unit); row.classList.toggle("changed", now() !== own); input.value = now(); };
+    const put = (x) => setGiven(g.name, i === null ? x : machine.given[g.name].map((v, k) => (k === i ? x : v)));
+    let before = null;
+    input.addEventListener("pointerdown", () => { before = machine.given; });
+    input.addEventListener("input", () => { before ??= machine.given; put(Number(input.value)); });
+    input.addEventListener("change", () => { if (before) { edits.done.push(before); edits.undone = []; before = null; } showEdits(); });
+    machine.watchers.push(refresh);
+    refresh();
+    return row;
+  });
+}
+
+function put(given) {
+  machine.given = given;
+  for (const watcher of machine.watchers) watcher("all");
+  showEdits();
+}
+
+function undo() { if (edits.done.length) { edits.undone.push(machine.given); put(edits.done.pop()); } }
+function redo() { if (edits.undone.length) { edits.done.push(machine.given); put(edits.undone.pop()); } }
+function reset() { edits.done.push(machine.given); put({ ...machine.made }); }
+
+const changed = () => record.motion.givens.filter((g) => String(machine.given[g.name]) !== String(g.value));
+
+function showEdits() {
+  if (!$("undo")) return;
+  $("undo").disabled = !edits.done.length;
+  $("redo").disabled = !edits.undone.length;
+  $("reset").disabled = $("save").disabled = !changed().length;
+}
+
+// The project file with the changed numbers in their lines.
+function projectFile() {
+  const lines = record.file.split("\n");
+  for (const g of changed()) {
+    if (g.line === undefined) continue;
+    const value = machine.given[g.name], n = g.line - 1, unit = g.unit ? ` ${g.unit.replaceAll("*", "·")}` : "";
+    const text = (x) => (g.unit ? `"${Number(x.toPrecision(12))}${unit}"` : `${Number(x.toPrecision(12))}`);
+    const written = Array.isArray(value) ? `[${value.map(text).join(", ")}]` : text(value);
+    lines[n] = lines[n].replace(/=\s*(\[[^\]]*\]|"[^"]*"|[^#\s]+)/, () => `= ${written}`);
+  }
+  return lines.join("\n");
+}
+
+function save() {
+  const link = node("a", { download: record.filename, href: `data:application/toml;charset=utf-8,${encodeURIComponent(projectFile())}` });
+  link.click();
+}
+
+// Where the mechanism does not assemble: what is missing, and for which part of the turn.
+function tellLost(lost, values) {
+  const place = $("lost");
+  if (!place) return;
+  place.hidden = !lost;
+  if (!lost) return;
+  const first = Object.entries(record.motion.results).find(([id, [p]]) => id.startsWith("positions") && Number.isNaN(values[p]));
+  const gap = first && gapOf(first[0], values);
+  place.textContent = say("does not assemble at this angle") + (first ? `: ${stepOf(first[0]).name}` : "") + (gap ? `, ${say("gap")} ${told(gap, "m")}` : "");
+}
+
+// By how much two arcs, or an arc and a line, miss each other, m.
+function gapOf(id, values) {
+  const s = stepOf(id), own = (arg) => {
+    if (arg.step !== undefined) { const r = record.motion.results[arg.step]; return r ? (r[1] === 2 ? [values[r[0]], values[r[0] + 1]] : values[r[0]]) : stepOf(arg.step).value; }
+    return machine.given[arg.name] ?? arg.given;
+  };
+  const args = s.args.map(own);
+  if (s.rule.startsWith("arc cuts arc")) { const d = size(sub(args[2], args[0])); return Math.max(d - args[1] - args[3], Math.abs(args[1] - args[3]) - d); }
+  if (s.rule.startsWith("arc cuts line")) return Math.abs(cross(args[3], sub(args[2], args[0]))) - args[1];
+  return 0;
+}
+
+function changePanel() {
+  const wanted = record.motion.givens.filter((g) => ["m", "kg", "kg*m2", "rad/s", "rad", "m/s", "m/s2"].includes(g.unit) && g.line !== undefined
+    && (g.symbol || g.unit !== "rad"));
+  const group = (title, units) => {
+    const own = wanted.filter((g) => units.includes(g.unit) && !Array.isArray(g.value));
+    return own.length ? [node("h3", {}, say(title)), ...own.flatMap(slidersOf)] : [];
+  };
+  const button = (id, key, act) => node("button", { type: "button", class: "chip", id, onclick: act }, say(key));
+  const fixed2 = wanted.filter((g) => Array.isArray(g.value));
+  const found = [node("p", { class: "bad", id: "lost", role: "alert", hidden: true }), node("p", { class: "hint" }, say("drag the crank pin or a slider")),
+    node("div", { class: "chips" }, button("undo", "undo", undo), button("redo", "redo", redo), button("reset", "reset", reset), button("save", "save as project file", save)),
+    ...group("lengths", ["m"]), ...group("angles", ["rad"]), ...group("speeds", ["rad/s", "m/s"]), ...group("masses", ["kg", "kg*m2"]),
+    ...(fixed2.length ? [node("h3", {}, say("fixed points")), ...fixed2.flatMap(slidersOf)] : [])];
+  return found;
+}

@@ -1,0 +1,238 @@
+// The linkage in motion: its views drawn for any crank angle from what their marks hang on.
+
+const stage = { cards: [], playing: false, seconds: 6, last: 0, lost: null, vanes: false };
+
+// One view of each plan, at the highlighted position where there is one.
+function liveViews() {
+  const all = record.sheets.flatMap((sheet) => (sheet.live ?? []).map((live) => ({ ...live, sheet }))), main = all.find((v) => v.plan === "positions");
+  const kept = new Map();
+  for (const one of all) {
+    const key = one.plan.startsWith("positions") || one.marks.some((m) => m.kind !== "text" && m.along.length === 1 && m.role === "vector") ? one.view : one.plan;
+    const known = kept.get(key);
+    if (!known || (known.position !== main?.position && one.position === main?.position)) kept.set(key, one);
+  }
+  const first = (v) => (v === main ? 0 : v === kept.get("velocities") ? 1 : v === kept.get("accelerations") ? 2 : 3);
+  return [...kept.values()].sort((a, b) => first(a) - first(b));
+}
+
+// Anchors of a mark and its direction on the sheet, mm, y upwards; distances are so many times smaller than there.
+function placer(values, shrunk = 1) {
+  const number = (id) => { const [place, count] = record.motion.results[id]; return count === 2 ? [values[place], values[place + 1]] : values[place]; };
+  const turnedBy = (mark, [x, y]) => {
+    const w = [x / mark.mu[0] / shrunk, (mark.mirror ? -1 : 1) * y / mark.mu[1] / shrunk];
+    return mark.turn ? mul(cis(mark.turn), w) : w;
+  };
+  const direction = (mark) => {
+    if (!mark.along.length) return [1, 0];
+    const ends = mark.along.map(number);
+    return straight(turnedBy(mark, ends.length > 1 ? sub(ends[1], ends[0]) : ends[0]));
+  };
+  const point = (mark, id) => add(mark.origin, turnedBy(mark, number(id)));
+  const place = (mark, id, other, share) => {
+    const a = point(mark, id);
+    return other ? step(a, share, sub(point(mark, other), a)) : a;
+  };
+  const at = (mark, [id, x, y, other, share, dx = 0, dy = 0], u) => add(add(place(mark, id, other, share), mul([x, y], u)), [dx, dy]);
+  return { direction, point, at };
+}
+
+function geometryOf(mark, placed) {
+  const u = placed.direction(mark), points = mark.at.map((one) => placed.at(mark, one, u));
+  if (mark.kind === "text") return { text: { ...mark, at: points[0], angle: 0 } };
+  const round = { centre: points[0], radius: mark.reach ? size(sub(placed.point(mark, mark.reach[1]), placed.point(mark, mark.reach[0]))) : mark.radius };
+  if (mark.kind === "circle") return { circle: round };
+  if (mark.kind === "arc") { const t = Math.atan2(u[1], u[0]); return { arc: { ...round, from: mark.from + t, to: mark.to + t } }; }
+  return { [mark.kind]: points, closed: mark.closed };
+}
+
+const defined = (g) => {
+  const points = g.text ? [g.text.at] : g.circle ? [g.circle.centre] : g.arc ? [g.arc.centre] : g.line ?? g.polyline ?? g.fill;
+  return points.every((z) => Number.isFinite(z[0]) && Number.isFinite(z[1]));
+};
+
+function makeCard(live) {
+  const svg = svgNode("svg", { role: "img", "aria-label": live.view }), marks = live.marks.filter((m) => m.kind !== "path"), paths = live.marks.filter((m) => m.kind === "path");
+  svg.innerHTML = '<g class="paths"></g><g class="marks"></g><g class="over"></g>';
+  // What is said of the position that it is drawn for on the sheet does not hold in motion.
+  const position = say("position {label}", { label: live.position }), from = live.view.toLowerCase().indexOf(position.toLowerCase());
+  const name = from < 0 ? live.view : live.view.slice(0, from).replace(/[\s,(]+$/, "");
+  const caption = node("figcaption", {}, name), card = { live, name, svg, marks, paths, caption, figure: node("figure", { class: "card" }, caption, svg) };
+  const seen = new Set();
+  card.ends = marks.filter((m) => m.kind !== "text" && m.role !== "text").flatMap((m) => m.at.map(([id]) => [m, id])).filter(([m, id]) => {
+    const key = `${id} ${m.origin} ${m.mu}`;
+    return !seen.has(key) && seen.add(key);
+  });
+  card.elements = marks.map((mark) => {
+    const element = svgNode(mark.kind === "text" ? "text" : "path", { class: mark.kind === "fill" ? "mark fill" : "mark" });
+    if (mark.kind === "text") { element.setAttribute("font-size", mark.height / CAPITAL); element.textContent = mark.string.replace(`(${live.position})`, ""); }
+    else if (mark.kind !== "fill") { const s = record.styles[mark.style]; element.setAttribute("stroke-width", s.width); if (s.pattern.length) element.setAttribute("stroke-dasharray", s.pattern.join(" ")); }
+    element.addEventListener("click", () => { const id = live.sheet.marks.find((m) => m.id === mark.id)?.step; if (id) tellAsked(id); });
+    svg.querySelector(".marks").append(element);
+    return element;
+  });
+  return card;
+}
+
+// A polygon of forces or a group keeps to the middle of its card; a plan with a pole keeps its pole.
+function centre(card, placed) {
+  const [x0, y0, x1, y1] = extentOf(card.ends.map(([mark, id]) => placed.point(mark, id))), w = WIDE + 30, h = HIGH + 24;
+  if (x0 <= x1) card.svg.setAttribute("viewBox", `${(x0 + x1 - w) / 2} ${-(y0 + y1 + h) / 2} ${w} ${h}`);
+}
+
+// What a millimetre of the card stands for, at its size of the sheet.
+function tellScale(card) {
+  const plan = planOf(card.live.plan), mu = card.marks[0].mu[0] * card.shrunk, unit = plan.unit;
+  const written = UNITS()[unit] ?? unit, text = `${card.name}, μ = ${digits(Number(mu.toPrecision(3)))} ${/[/·]/.test(written) ? `(${written})` : written}/${UNITS().mm ?? "mm"}`;
+  if (card.told !== text) card.caption.textContent = card.told = text;
+}
+
+function tellAsked(id) {
+  const told = tellStep(id, ""), values = valuesAt(machine.phi);
+  told[0].innerHTML = `${titled(id)} <small>${plain(shown(values[id] ?? valueAt(id, ""), stepOf(id).unit))}</small>`;
+  $("panel").replaceChildren(node("button", { type: "button", class: "chip", onclick: () => openTab("turn") }, say("back")), ...told, tellWhy(id, ""));
+}
+
+// Angles of the whole turn, world, rad.
+const round = (many) => Array.from({ length: many }, (_, i) => record.motion.start + record.motion.sense * record.motion.period * i / many);
+
+const WIDE = 120, HIGH = 66; // a card's room for what moves, mm
+
+const STEADY = 2.5; // a plan is drawn at most so many times larger than where it is largest
+
+// By how much a view is to be smaller than on the sheet to have room in its card.
+function shrinking(card, all) {
+  const [x0, y0, x1, y1] = extentOf(all.flatMap((values) => {
+    const placed = placer(values);
+    return card.ends.map(([mark, id]) => placed.point(mark, id));
+  }));
+  return x0 <= x1 ? Math.max((x1 - x0) / WIDE, (y1 - y0) / (card === stage.cards[0] ? 2.2 * HIGH : HIGH)) : 0;
+}
+
+const keepsScale = (card) => card.live.plan === "positions";
+
+// The mechanism keeps its scale; plans that are small for most of the turn are drawn larger there, and their scale factor is told.
+const shrunkNow = (card, values) => (keepsScale(card) ? card.most : Math.max(shrinking(card, [values]), card.most / STEADY) || 1);
+
+function extentOf(points) {
+  const box = [Infinity, Infinity, -Infinity, -Infinity];
+  for (const [x, y] of points) {
+    if (Number.isFinite(x) && Number.isFinite(y)) {
+      box[0] = Math.min(box[0], x); box[1] = Math.min(box[1], y); box[2] = Math.max(box[2], x); box[3] = Math.max(box[3], y);
+    }
+  }
+  return box;
+}
+
+// A card shows everything that its view is in the course of a turn; recomputed when a given number is another.
+function frameCards() {
+  const values = round(Math.round(48 * Math.max(record.motion.period / (2 * Math.PI), 1))).map((phi) => parts(phi));
+  for (const card of stage.cards) {
+    card.most = keepsScale(card) ? shrinking(card, values) || 1 : Math.max(...values.map((one) => shrinking(card, [one])));
+    card.centred = !keepsScale(card) && planOf(card.live.plan).pole === undefined;
+    const all = values.map((one) => placer(one, shrunkNow(card, one))), box = [Infinity, Infinity, -Infinity, -Infinity], add1 = ([x, y], pad) => {
+      box[0] = Math.min(box[0], x - pad); box[1] = Math.min(box[1], y - pad); box[2] = Math.max(box[2], x + pad); box[3] = Math.max(box[3], y + pad);
+    };
+    for (const placed of all) {
+      for (const mark of card.marks) {
+        const g = geometryOf(mark, placed);
+        if (!defined(g) || mark.role === "construction" || mark.role === "text") continue;
+        const circle = g.circle ?? g.arc;
+        for (const z of g.text ? [g.text.at] : circle ? [circle.centre] : g.line ?? g.polyline ?? g.fill) add1(z, g.text ? g.text.height * 2 : circle ? circle.radius : 2);
+      }
+    }
+    if (box[0] < box[2]) { card.box = box; card.svg.setAttribute("viewBox", `${box[0] - 9} ${-box[3] - 7} ${box[2] - box[0] + 18} ${box[3] - box[1] + 14}`); }
+    card.svg.querySelector(".paths").innerHTML = card.paths.map((path) => {
+      const points = all.map((placed) => placed.point(path, path.of)), whole = points.every((z) => Number.isFinite(z[0]));
+      return `<path class="mark" ${look(path.style)} d="${polyPath(points.filter((z) => Number.isFinite(z[0])), 0, whole && record.motion.period > 6)}"/>`;
+    }).join("");
+  }
+}
+
+function drawStage() {
+  if ($("stage").hidden || !record.motion) return;
+  const values = parts(machine.phi);
+  let lost = 0;
+  for (const card of stage.cards) {
+    card.shrunk = shrunkNow(card, values);
+    const placed = placer(values, card.shrunk);
+    tellScale(card);
+    if (card.centred) centre(card, placed);
+    card.marks.forEach((mark, n) => {
+      const g = geometryOf(mark, placed), element = card.elements[n];
+      if (!defined(g)) { lost += card === stage.cards[0]; element.setAttribute("visibility", "hidden"); return; }
+      if (mark.kind === "text") { element.setAttribute("x", fixed(g.text.at[0])); element.setAttribute("y", fixed(-g.text.at[1])); }
+      else element.setAttribute("d", pathOf(g, 0));
+      element.removeAttribute("visibility");
+    });
+    card.figure.classList.toggle("lost", lost > 0);
+  }
+  tellLost(lost > 0, values);
+  const first = placer(values, stage.cards[0].shrunk);
+  placeGrip(first);
+  drawVanes(first, values);
+  const angle = mod(machine.phi * 180 / Math.PI, 360);
+  $("angle").value = mod(record.motion.sense * (machine.phi - record.motion.start), record.motion.period) * 180 / Math.PI;
+  $("degrees").textContent = `φ = ${angle.toFixed(1).replace(".", decimal())}°`;
+}
+
+// Velocities as arrows on the mechanism: a point B and the end b of its vector in the plan.
+function drawVanes(placed, values) {
+  const first = stage.cards[0], over = first.svg.querySelector(".over");
+  for (const old of over.querySelectorAll(".vane, .vanehead")) old.remove();
+  const scaled = stage.cards.find((card) => card.live.plan === "velocities");
+  if (!stage.vanes || !scaled) return;
+  const mark = first.marks[0], mu = scaled.marks[0].mu[0], result = (id) => { const [p] = record.motion.results[id]; return [values[p], values[p + 1]]; };
+  for (const id of Object.keys(record.motion.results)) {
+    if (!id.startsWith("velocities/") || record.motion.results[id][1] !== 2) continue;
+    const point = `positions/${id.slice(11, 12).toUpperCase()}${id.slice(12)}`;
+    if (!(point in record.motion.results) || !["point", "vector"].includes(stepOf(id).kind)) continue;
+    const a = placed.point(mark, point), v = scale(1 / mu / scaled.shrunk, result(id)), long = size(v), b = add(a, v), u = straight(v);
+    if (!(long > 3)) continue;
+    const wing = (s) => add(b, mul(u, [-4, s])).map(fixed);
+    over.append(svgNode("path", { class: "vane", d: polyPath([a, b], 0) }),
+      svgNode("path", { class: "vanehead", d: polyPath([b, add(b, mul(u, [-4, 1])), add(b, mul(u, [-4, -1]))], 0, true) }));
+  }
+}
+
+function openStage() {
+  if (!stage.cards.length) {
+    stage.cards = liveViews().map(makeCard);
+    stage.cards[0]?.figure.classList.add("first");
+    $("stage").append(...stage.cards.map((card) => card.figure));
+    makeGrip();
+  }
+  frameCards();
+  drawStage();
+}
+
+function stageBar() {
+  const degrees = record.motion.period * 180 / Math.PI;
+  return [
+    node("button", { type: "button", class: "play", id: "spin", "aria-label": say("play"), onclick: () => spin(!stage.playing) }, "▶"),
+    node("input", { type: "range", class: "scrub", id: "angle", min: 0, max: degrees, step: 0.1, "aria-label": say("crank angle"),
+      oninput: (event) => { spin(false); turn(record.motion.start + record.motion.sense * Number(event.target.value) * Math.PI / 180); } }),
+    node("output", { class: "count", id: "degrees" }),
+    node("button", { type: "button", "aria-pressed": "false", onclick: (event) => {
+      stage.vanes = !stage.vanes;
+      event.target.setAttribute("aria-pressed", String(stage.vanes));
+      drawStage();
+    } }, say("velocities")),
+    node("select", { "aria-label": say("speed"), onchange: (event) => { stage.seconds = Number(event.target.value); } },
+      ...[12, 6, 3].map((s) => node("option", { value: s, selected: s === 6 }, say("a turn in {s} s", { s })))),
+  ];
+}
+
+function spin(on) {
+  stage.playing = on;
+  const button = $("spin");
+  if (button) { button.textContent = on ? "❚❚" : "▶"; button.setAttribute("aria-label", say(on ? "pause" : "play")); }
+  if (!on) return;
+  stage.last = performance.now();
+  const frame = (now) => {
+    if (!stage.playing) return;
+    turn(machine.phi + record.motion.sense * 2 * Math.PI * (now - stage.last) / 1000 / stage.seconds);
+    stage.last = now;
+    requestAnimationFrame(frame);
+  };
+  requestAnimationFrame(frame);
+}

@@ -1,0 +1,160 @@
+"""The page: whole and alone, the same bytes each time; what it computes is what `solve` computes; its film runs to the end."""
+
+import gzip
+import json
+import re
+from base64 import b64decode
+from functools import cache
+
+import numpy as np
+import pytest
+
+from tests.living import javascript
+from tmm_sheets import catalogue, results
+from tmm_sheets.errors import BadInput
+from tmm_sheets.living import page as living
+from tmm_sheets.living.page import MODULES, page
+from tmm_sheets.project import Project
+from tmm_sheets.resources import template
+
+FEEDER = "tests/projects/feeder.toml"
+NAMES = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/3:2", "loom", FEEDER)
+LARGEST = 3_000_000
+
+
+@cache
+def made(name):
+    return page(Project(catalogue.read(name)))[0]
+
+
+def record_of(text):
+    packed = re.search('id="record">([^<]*)<', text)[1]
+    return json.loads(gzip.decompress(b64decode(packed)))
+
+
+def program_of(text):
+    return re.search("const PROGRAM = (.*?);\n//", text, re.S)[1]
+
+
+def test_one_file_without_network():
+    text = made("lugansk/shaper")
+    assert len(text.encode()) < LARGEST
+    assert re.findall(r"(?:src|href)=\"(?!data:)[^\"$]*\"", text) == []
+    assert "default-src 'none'" in text
+    assert not re.search(r"\bfetch\(|XMLHttpRequest|https?://(?!www\.w3\.org)", re.sub(r'id="record">[^<]*<', "", text))
+    assert page(Project(catalogue.read("lugansk/shaper")))[0] == text
+
+
+def test_every_module_stands_in_the_page():
+    assert {p.stem for p in template("living").glob("*.js")} == set(MODULES)
+
+
+def test_every_word_that_a_module_asks_for_is_told():
+    words = living.page_words()
+    texts = [template(f"living/{name}.js").read_text(encoding="utf-8") for name in MODULES]
+    asked = {key for text in texts for key in re.findall(r'say\("([^"]+)"', text)}
+    assert asked - set(words) == set()
+
+
+def test_text_of_a_project_is_no_markup(tmp_path):
+    path = tmp_path / "odd.toml"
+    text = catalogue.read("lugansk/shaper").text
+    path.write_text(text.replace('"Строгальный станок"', '"</script><b>odd"').replace('"пример 1"', '"<i>&"'), encoding="utf-8")
+    found = page(Project(catalogue.read(str(path))), [1])[0]
+    assert "<b>odd" not in found
+    assert "<i>&" not in found
+
+
+def test_a_plan_that_is_not_drawn_is_refused():
+    with pytest.raises(BadInput, match="velocitees"):
+        page(Project(catalogue.read("lugansk/shaper")), [1], "velocitees")
+
+
+def test_a_project_without_a_linkage_has_no_motion(tmp_path):
+    shaper = catalogue.read("lugansk/shaper").text
+    tables = re.split(r"\n(?=\[)", shaper)
+    path = tmp_path / "gears.toml"
+    kept = [t for t in tables if t.startswith(("[project]", "[title_block]", "[gear]", "schema", "#"))]
+    text = "\n".join(kept).replace('["kinematics_forces", "flywheel", "gear", "cam"]', '["gear"]')
+    path.write_text(text, encoding="utf-8")
+    found = page(Project(catalogue.read(str(path))))[0]
+    assert "const PROGRAM = null;" in found
+    assert "motion" not in record_of(found)
+
+
+RUN = javascript.modules("digits", "primitives", "machine") + """
+const result = ({ motion, cases }) => {
+  record = { motion };
+  startMachine();
+  return cases.map(([phi, given]) => { Object.assign(machine.given, machine.made, given); return valuesAt(phi); });
+};
+"""
+
+
+@javascript.needed
+@pytest.mark.parametrize("name", NAMES)
+def test_values_are_those_of_solve(name, tmp_path):
+    """At 200 random angles, by the ids of the record."""
+    text = made(name)
+    record = record_of(text)
+    rng = np.random.default_rng(1)
+    phi = rng.uniform(-np.pi, np.pi, 200)
+    project = Project(catalogue.read(name))
+    parts = [p for p in ("positions", "velocities", "accelerations", "forces") if p in project.parts]
+    told = results.told(project, parts, phi=tuple(phi))
+    cases = [[x, {}] for x in phi.tolist()]
+    run = f"let record;\nconst PROGRAM = {program_of(text)};\n{RUN}"
+    values = javascript.run(run, {"motion": record["motion"], "cases": cases}, tmp_path)
+    compared = 0
+    for part in parts:
+        for quantity, of in told[part].items():
+            for key in of:
+                path = f"{part}.{quantity}.{key}"
+                result = record["results"].get(path)
+                if result is None or result["step"] not in values[0] or key == "difference_percent":  # that is rounding alone
+                    continue
+                own = np.asarray(getattr(of[key], "value", of[key]))
+                own = np.broadcast_to(own, (200,)) if own.ndim == 0 else own
+                found = [np.nan if v[result["step"]] is None else v[result["step"]] for v in values]
+                if isinstance(found[0], list):
+                    found = [complex(*(np.nan if x is None else x for x in z)) for z in found]
+                found = np.asarray(found)
+                if result.get("part"):
+                    found = {"x": np.real, "y": np.imag, "abs": np.abs, "angle": np.angle}[result["part"]](found)
+                size = np.nanmax(np.abs(own)) or 1.0
+                np.testing.assert_allclose(found, own, rtol=0, atol=1e-9 * size, err_msg=path)
+                compared += 1
+    assert compared > 8
+
+
+EVERY_FILM = """<script>
+window.said = [];
+for (const name of ["error", "unhandledrejection"]) addEventListener(name, (e) => said.push(String(e.message ?? e.reason)));
+(function wait() {
+  if (!window.tmm) return setTimeout(wait, 20);
+  let steps = 0;
+  for (const sheet of tmm.record.sheets) {
+    tmm.open("draw", sheet.sheet);
+    for (let n = 0; n < tmm.film(); n++, steps++) tmm.step(n);
+    sheet.marks.forEach((mark, n) => { if (mark.step && n % 9 === 0) tmm.ask(mark.step, mark.position ?? ""); });
+  }
+  if (tmm.record.motion) {
+    tmm.open("turn");
+    for (let i = 0; i < 40; i++) tmm.turn(i / 6);
+  }
+  const loaded = performance.getEntriesByType("resource").length;
+  document.body.innerHTML = `<pre id="out">${JSON.stringify({ steps, said, loaded })}</pre>`;
+})();
+</script></body>"""
+
+
+@javascript.browser
+@pytest.mark.parametrize("name", NAMES)
+def test_every_film_runs_to_its_end(name, tmp_path):
+    """Every step of every sheet, every mark asked, the crank turned round: no error, and nothing is asked of a network."""
+    path = tmp_path / "page.html"
+    path.write_text(made(name).replace("</body>", EVERY_FILM), encoding="utf-8")
+    found = json.loads(re.search('<pre id="out">(.*?)</pre>', javascript.dom(path), re.S)[1])
+    assert found["said"] == []
+    assert found["steps"] > 40
+    assert found["loaded"] == 0

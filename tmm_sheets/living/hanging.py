@@ -1,0 +1,233 @@
+"""What a mark hangs on: the steps at its ends and the direction it lies along, so that it can be drawn for any crank angle.
+
+A mark of a linkage's view was drawn for one position. Its points stand at a step's place, or so many millimetres from it, measured
+along the line it lies on: from one step to another where its name says so ("p–b"), along the step itself where that is a force, or
+along a direction of the plan to which its edges are parallel. That is all the page needs to draw it anew.
+"""
+
+from __future__ import annotations
+
+from cmath import exp, phase
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from typing import Any
+
+HERE = 0.02
+"""What is this near stands in a place itself, mm."""
+BESIDE = 2.5
+"""Gap of a bar at a hinge, at most, mm."""
+BAR, NEAR, FAR = 2.6, 5.0, 9.0
+"""Bar over a letter, at most; a letter farther off than FAR, at the end of a leader, comes as near as NEAR, mm."""
+SIGNS = 4.0
+"""Gap between two signs of one lettering, at most, mm."""
+ALIKE = 1e-5
+"""Sine of the angle between an edge and a direction that are parallel: coordinates are told to a micrometre."""
+
+
+def hung(record: Mapping[str, Any], sheet: Mapping[str, Any], known: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Views of a sheet that follow the crank, each with its marks and what they hang on.
+
+    ``known`` are the ids of the steps that the page computes. A view is told once, at the position it is drawn for with most
+    marks: the highlighted one.
+    """
+    plans = {plan["id"]: plan for plan in record["plans"]}
+    found: dict[str, list[_Frame]] = {}
+    for frame in sheet["frames"]:
+        plan = plans.get(frame["plan"])
+        if plan is None or not plan["positions"] or not any(key in known for key in plan["steps"]):
+            continue
+        marks = [m for m in sheet["marks"] if m.get("frame") == frame["id"]]
+        label = frame["position"] or _highlighted(marks)
+        if label in plan["positions"]:
+            found.setdefault(frame["view"], []).append(_Frame(record, plan, frame, label, marks, known))
+    views = []
+    for view, frames in found.items():
+        marks = [told for f in frames for told in f.marks()]
+        if sum(m["kind"] != "text" for m in marks) > 2:
+            views.append({"view": view, "plan": frames[0].plan["id"], "position": frames[0].label, "marks": marks})
+    return views
+
+
+def _highlighted(marks: list[dict[str, Any]]) -> str:
+    """The position whose links are drawn with thick lines."""
+    labels = [m["position"] for m in marks if m.get("position") and m["style"] == "main"]
+    return max(sorted(set(labels)), key=labels.count, default="")
+
+
+class _Frame:
+    """Marks of a plan in one frame at one position."""
+
+    def __init__(self, record: Mapping[str, Any], plan: Mapping[str, Any], frame: Mapping[str, Any], label: str,
+                 marks: list[dict[str, Any]], known: Mapping[str, Any]) -> None:
+        self.plan, self.frame, self.label, self.drawn = plan, frame, label, marks
+        self.k = plan["positions"].index(label)
+        self.steps = record["steps"]
+        self.known = known
+        points = {key: self.place(key) for key in plan["steps"] if key in known and self.steps[key]["kind"] in ("point", "vector")}
+        self.points = {key: z for key, z in points.items() if z is not None}
+        self.named = {self.steps[key]["name"]: key for key in self.points}
+        self.anchors: dict[str, str] = {}
+        self.lines: dict[str, list[list[str]]] = {}
+        self.letters: dict[int, tuple[str, complex, Any, complex]] = {}
+
+    def value(self, key: str) -> complex | None:
+        """A step's value at the position; None where it is no point or not defined."""
+        step = self.steps[key]
+        value = step["value"]
+        if step["over"] == "positions" and value is not None:
+            value = value[self.k] if self.k < len(value) else None
+        return complex(*value) if isinstance(value, list) and len(value) == 2 and None not in value else None
+
+    def turned(self, z: complex) -> complex:
+        """A difference of the plan's points on the sheet, mm."""
+        mu = self.frame["mu"]
+        w = complex(z.real / mu[0], z.imag / mu[1])
+        return exp(1j * self.frame["turn"]) * (w.conjugate() if self.frame["mirror"] else w)
+
+    def place(self, key: str) -> complex | None:
+        """Where a step's point lies on the sheet, mm."""
+        z = self.value(key)
+        return None if z is None else complex(*self.frame["origin"]) + self.turned(z)
+
+    def marks(self) -> Iterator[dict[str, Any]]:
+        """Marks with what they hang on; those that hang on nothing are left out."""
+        letters = [m for m in self.drawn if m["role"] == "text"]
+        lines = [m for m in self.drawn if m["role"] != "text" and "line" in m["geometry"]]
+        others = [m for m in self.drawn if m["role"] != "text" and "line" not in m["geometry"]]
+        for mark in (*lines, *others, *letters):
+            still = mark["role"] in ("axis", "curve") and "position" not in mark
+            if mark.get("position") != self.label and not still and not (mark["role"] == "construction" and "position" not in mark):
+                continue
+            told = self._curve(mark) if mark["role"] == "curve" else self._mark(mark)
+            if told is not None:
+                yield {"id": mark["id"], "style": mark["style"], "role": mark["role"], "origin": self.frame["origin"],
+                       "mu": self.frame["mu"], "turn": self.frame["turn"], "mirror": self.frame["mirror"], **told}
+
+    def _curve(self, mark: dict[str, Any]) -> dict[str, Any] | None:
+        """The path of a point."""
+        key = mark.get("step")
+        return {"kind": "path", "of": key} if key in self.points and self.steps[key]["over"] == "positions" else None
+
+    def _mark(self, mark: dict[str, Any]) -> dict[str, Any] | None:
+        shape, (kind, points) = mark["geometry"], _points(mark["geometry"])
+        pair = self._pair(mark, points)
+        key = mark.get("step", "")
+        if pair and mark["role"] in ("vector", "link") and pair not in self.lines.setdefault(key, []):
+            self.lines[key].append(pair)
+        if mark["role"] == "text":
+            if kind == "line" and abs(points[1] - points[0]) > BAR:
+                return None  # a leader: the letter comes to its place without
+            return self._letter(mark, key, kind, points)
+        along = pair or self._along(key, points, mark["role"])
+        anchor = key if key in self.points else self.anchors.get(key)
+        if anchor is None and not pair and kind == "line":
+            anchor = next((name for z in points for name in self.points if abs(self.points[name] - z) < HERE), None)
+        if anchor is None and not pair:
+            return None
+        if not pair and mark["role"] == "construction" and kind == "line":
+            return None
+        self.anchors.setdefault(key, anchor or (pair or [""])[-1])
+        u = self.direction(along)
+        if u is None:
+            u, along = 1 + 0j, []
+        at = []
+        for z in points:
+            of = self._nearest(z, pair, mark["role"]) if pair else str(anchor)
+            at.append([of, *_mm((z - self.points[of]) / u)])
+        more = {name: shape[kind][name] for name in ("radius", "from", "to") if name in shape.get(kind, {})}
+        if kind == "arc":
+            more |= {"from": more["from"] - phase(u), "to": more["to"] - phase(u)}
+        if kind == "circle" and pair and abs(abs(self.points[pair[1]] - self.points[pair[0]]) - more["radius"]) < HERE:
+            at[0] = [pair[0], 0.0, 0.0]
+            more["reach"] = pair
+        if kind == "polyline" and shape.get("closed"):
+            more["closed"] = True
+        return {"kind": kind, "at": at, "along": along, **more}
+
+    def _letter(self, mark: dict[str, Any], key: str, kind: str, points: list[complex]) -> dict[str, Any] | None:
+        """A sign of a lettering: it stands where the first sign does, which keeps its place beside its vector, link or point."""
+        known = self.letters.get(mark["id"] - 1)
+        if known is None or known[0] != key or abs(points[0] - known[3]) > SIGNS:
+            known = key, points[0], self._place_of_letter(key, points[0]), points[0]
+        shape = mark["geometry"].get(kind)
+        end = points[0] + 0.6 * shape["height"] * len(shape["string"]) if kind == "text" else known[3]
+        self.letters[mark["id"]] = (*known[:3], end)
+        _, first, place, _ = known
+        if place is None:
+            return None
+        anchor, local, along, other = place
+        at = [[anchor, *_mm(local), *(other or ["", 0.0]), *_mm(z - first)] for z in points]
+        text = {"height": shape["height"], "string": shape["string"]} if kind == "text" else {}
+        return {"kind": kind, "at": at, "along": along, **text}
+
+    def _place_of_letter(self, key: str, z: complex) -> tuple[str, complex, list[str], list[Any] | None] | None:
+        """What a letter hangs on, its place beside that, mm, along which line, and between which points."""
+        if key in self.lines:
+            _, pair, share = min((self._beside(z, *pair) for pair in self.lines[key]), key=lambda found: found[0])
+            a, b = (self.points[name] for name in pair)
+            return pair[0], _nearer(z - a - share * (b - a)) / (self.direction(pair) or 1), pair, [pair[1], round(share, 6)]
+        anchor = key if key in self.points else self.anchors.get(key)
+        if anchor is None:
+            return None
+        along = [key] if key in self.known and self.steps[key]["kind"] in ("force", "direction") and self.value(key) else []
+        off = z - self.points[anchor]
+        return anchor, (off if along else _nearer(off)) / (self.direction(along) or 1), along, None
+
+    def _beside(self, z: complex, first: str, last: str) -> tuple[float, list[str], float]:
+        """How far a place lies off a line, mm, the line, and which share of it is nearest."""
+        a, d = self.points[first], self.points[last] - self.points[first]
+        share = min(max(((z - a) * d.conjugate()).real / abs(d) ** 2, 0.0), 1.0) if abs(d) > 0 else 0.0
+        return abs(z - a - share * d), [first, last], share
+
+    def _pair(self, mark: dict[str, Any], points: list[complex]) -> list[str]:
+        """Steps at the ends of a mark that is called by them."""
+        first, _, last = mark.get("name", "").partition("–")
+        if not last or last not in self.named:
+            return []
+        other = self.named.get(first) or next((key for z in points for key, p in self.points.items() if abs(p - z) < HERE
+                                               and key != self.named[last]), None)
+        return [other, self.named[last]] if other else []
+
+    def _along(self, key: str, points: list[complex], role: str) -> list[str]:
+        """The step that a mark lies along: its own, or a direction of the plan to which an edge is parallel."""
+        if key in self.known and self.steps[key]["kind"] in ("force", "direction") and self.value(key) is not None:
+            return [key]
+        edges = [b - a for a, b in pairwise(points) if abs(b - a) > 1]
+        if role != "symbol" or not edges:
+            return []
+        for name in self.plan["steps"]:
+            if name in self.known and self.steps[name]["kind"] == "direction" and (z := self.value(name)) is not None:
+                u = self.turned(z)
+                if any(min(abs((e / u).imag), abs((e / u).real)) < ALIKE * abs(e / u) for e in edges):
+                    return [name]
+        return []
+
+    def direction(self, along: list[str]) -> complex | None:
+        """Unit vector on the sheet."""
+        values = [self.value(key) for key in along]
+        if not values or None in values:
+            return None
+        z = self.turned(values[-1] - (values[0] if len(values) > 1 else 0))  # type: ignore[operator]
+        return z / abs(z) if abs(z) > 0 else None
+
+    def _nearest(self, z: complex, pair: list[str], role: str) -> str:
+        if role == "link":
+            near: str = min(self.points, key=lambda name: abs(self.points[name] - z))
+            if abs(self.points[near] - z) < BESIDE:
+                return near
+        return min(pair, key=lambda name: abs(self.points[name] - z))
+
+
+def _nearer(z: complex) -> complex:
+    return z if abs(z) <= FAR else NEAR * z / abs(z)
+
+
+def _mm(z: complex) -> list[float]:
+    return [round(z.real, 6), round(z.imag, 6)]
+
+
+def _points(shape: Mapping[str, Any]) -> tuple[str, list[complex]]:
+    """Kind of a shape and the points it is drawn through."""
+    ((kind, told),) = [(kind, told) for kind, told in shape.items() if kind != "closed"]
+    points = [told["at"]] if kind == "text" else [told["centre"]] if kind in ("arc", "circle") else told
+    return kind, [complex(*z) for z in points]
