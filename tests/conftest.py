@@ -20,6 +20,7 @@ os.environ["LANGUAGE"] = "en"  # messages are compared in the language of the co
 OWN_CACHE = "" if "PYTEST_XDIST_WORKER" in os.environ else tempfile.mkdtemp(prefix="tmm-sheets-tests-")
 if OWN_CACHE:
     os.environ[kept.FOLDER] = OWN_CACHE
+os.environ["TMM_SHEETS_CONFIG"] = ""  # nobody's own names
 # Byte code is kept, that of the tests and of the programs they start: the next one begins sooner.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from tmm_sheets.output.plot import Job, PlotLook
     from tmm_sheets.progress import Progress
     from tmm_sheets.project import Project
+    from tmm_sheets.task.title_entries import Names
     from tmm_sheets.task.variant import Variant
 
 FORMATS = ("dxf", "pdf", "svg", "png", "hpgl")
@@ -81,6 +82,30 @@ def _forgo(context: click.Context, parameter: click.Parameter, value: bool) -> N
         kept.forgo()
 
 
+TITLE = "tmm_sheets.title"
+"""Key under which a command's context keeps what its options fill title blocks in with."""
+
+
+def _entered(context: click.Context, parameter: click.Parameter, value: str | None) -> None:
+    if value is not None:
+        if any(not (sign.isprintable() or sign.isspace()) for sign in value):
+            raise click.BadParameter(tell("expected a text for the title block, without control characters"))
+        context.meta.setdefault(TITLE, {})[parameter.name] = value
+
+
+def titled(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Decorator: options for what stands in the title blocks."""
+    for name, said in (
+        ("designation", "Designation in the title blocks, without the code of the sheet."),
+        ("institution", "Institution or department in the title blocks."),
+        ("supervisor", "Head of the project in the title blocks."),
+        ("group", "Group of students in the title blocks."),
+        ("student", "Name of the student in the title blocks."),
+    ):
+        command = option(f"--{name}", metavar="TEXT", expose_value=False, callback=_entered, help=said)(command)
+    return command
+
+
 PROJECT = argument("project")
 NO_CACHE = option("--no-cache", is_flag=True, expose_value=False, callback=_forgo,
                   help="Draw every sheet anew, without the drawings kept of earlier times.")  # fmt: skip
@@ -131,7 +156,7 @@ def show(project: str, corrected: bool, as_file: bool, output: Path | None, forc
     """Show inputs with units and source, links, pairs, mobility W, Assur groups, formula of structure."""
     if output is not None and not as_file:
         raise click.UsageError(tell("-o goes with --file"))
-    variant = _read(project, corrected)
+    variant = _read(project, corrected, drawn=False)
     if output is not None:
         from tmm_sheets import files
 
@@ -143,7 +168,7 @@ def show(project: str, corrected: bool, as_file: bool, output: Path | None, forc
     else:
         from tmm_sheets import summary
 
-        click.echo(summary.text(variant))
+        click.echo(summary.text(variant, _names()))
 
 
 @commands.command()
@@ -178,6 +203,7 @@ def check(project: str, corrected: bool) -> None:
 @option("--list", "lists", multiple=True, metavar="FILE",
               help="Projects named in a file, one a line; - for standard input.")
 @CORRECTED
+@titled
 @option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
 @option("--format", "formats", default="dxf,pdf", show_default=True, callback=_among(FORMATS),
               metavar="F,F", help=f"Formats: {', '.join(FORMATS)}.")
@@ -211,7 +237,8 @@ def build(
 
     settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": machine}, "dxf": {"text": text},
                                            "pdf": {"date": files.source_date()}}  # fmt: skip
-    order = Order(sheets, formats, settings, corrected, force, archive, one_file, words.asked(), words.reader(), kept.used())
+    order = Order(sheets, formats, settings, corrected, force, archive, one_file, words.asked(), words.reader(), kept.used(),
+                  _names())
     if len(projects) == 1 and not families and not lists:
         if jobs is not None or scheduler is not None:
             raise click.UsageError(tell("--jobs and --dask are for several projects"))
@@ -359,7 +386,7 @@ def solve(
         raise click.UsageError(tell("give either --phi or --positions, not both"))
     from tmm_sheets import result_files, results
 
-    opened, refused = _open(project, corrected), dict[str, CannotBuild]()
+    opened, refused = _open(project, corrected, drawn=False), dict[str, CannotBuild]()
     found = results.told(opened, parts, phi=phi, positions=positions, refused=refused)
     for line in results.remarks(opened, found):
         click.echo(f"{opened.variant.called}: {line}", err=True)
@@ -390,7 +417,7 @@ def protocol(project: str, corrected: bool, name: str | None, everything: bool) 
     """Say the construction steps of PROJECT as sentences, in the language of its sheets, with their millimetres."""
     from tmm_sheets import protocols
 
-    for line in protocols.lines(_open(project, corrected), name, everything):
+    for line in protocols.lines(_open(project, corrected, drawn=False), name, everything):
         click.echo(line)
 
 
@@ -449,13 +476,14 @@ def why(project: str, result: str, corrected: bool) -> None:
     """Tell the steps from the given numbers of PROJECT to a RESULT, a path of solve --json such as flywheel.J_flywheel."""
     from tmm_sheets.record import why as reasons
 
-    for line in reasons.lines(_open(project, corrected), result):
+    for line in reasons.lines(_open(project, corrected, drawn=False), result):
         click.echo(line)
 
 
 @commands.command()
 @PROJECT
 @CORRECTED
+@titled
 @option("--format", "formats", default="pdf", show_default=True, callback=_among(NOTE_FORMATS), metavar="F,F",
         help=f"Formats: {', '.join(NOTE_FORMATS)}.")
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Folder of the note.  [default: out/<project>]")
@@ -499,6 +527,7 @@ def _window(context: click.Context, parameter: click.Parameter, value: str | Non
 @commands.command()
 @argument("project", metavar="PROJECT|FILE")
 @CORRECTED
+@titled
 @option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
 @option("--plotter", "machine", metavar="NAME", callback=_plotter,
               help="Make plot files (HPGL) for a shipped plotter or that of a file; without it PDF.")
@@ -528,7 +557,7 @@ def plot(
     from tmm_sheets.progress import Progress
 
     finished = project.lower().endswith(plotting.FILES)
-    if finished and any((sheets, tile, bar, window, outline == "off")):
+    if finished and any((sheets, tile, bar, window, outline == "off", click.get_current_context().meta.get(TITLE))):
         raise click.UsageError(tell("{project} is finished: it can be sent or shown, not changed").format(project=project))
     problem = None
     with Progress() as progress:
@@ -827,19 +856,27 @@ def _folder(variant: Variant, output: Path | None) -> Path:
     return output if output is not None else Path("out") / folder_name(variant.stem)
 
 
-def _open(project: str, corrected: bool) -> Project:
-    variant = _read(project, corrected)
+def _names() -> Names:
+    """What title blocks are filled in with, by the options of the command that runs and the user's settings."""
+    from tmm_sheets.task import title_entries
+
+    return title_entries.given(click.get_current_context().meta.get(TITLE, {}))
+
+
+def _open(project: str, corrected: bool, drawn: bool = True) -> Project:
+    """The project; where it is not ``drawn``, nobody asks for the title blocks."""
+    variant = _read(project, corrected, drawn)
     from tmm_sheets.project import Project
 
     words.set_paper(words.of_project(variant.project.language))
     return Project(variant)
 
 
-def _read(project: str, corrected: bool) -> Variant:
-    """The project's numbers; what is doubtful in them goes to standard error."""
+def _read(project: str, corrected: bool, drawn: bool = True) -> Variant:
+    """The project's numbers, and names in its title blocks; what is doubtful in them goes to standard error."""
     from tmm_sheets import catalogue
 
     variant = catalogue.read(project, corrected)
     for warning in variant.warnings:
         click.echo(f"{variant.called}: {warning}", err=True)
-    return variant
+    return _names().filled(variant) if drawn else variant

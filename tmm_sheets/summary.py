@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import in_a_row, listed, of_reader
+from tmm_sheets.task import title_entries
 from tmm_sheets.words import of_file, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.project import Project
+    from tmm_sheets.task.title_entries import Names
     from tmm_sheets.task.toml_lines import KeyPath
     from tmm_sheets.task.variant import Variant
 
@@ -22,11 +24,13 @@ WIDEST = 40
 """Longest entry that its column makes room for; what is longer (a diagram) pushes its own line only."""
 
 
-def text(variant: Variant) -> str:
-    """Inputs, then links, pairs, mobility, groups and formula of structure; only what the project has."""
+def text(variant: Variant, names: Names) -> str:
+    """Title block, inputs, then links, pairs, mobility, groups and formula of structure; only what the project has."""
     heading = variant.project
     lines = [f"{variant.called}: {', '.join(of_file(text, tell) for text in (heading.title, heading.variant) if text)}",
              tell("sheets: {sheets}").format(sheets=", ".join(f"{i} {name}" for i, name in enumerate(variant.sheets, 1)))]
+    lines += ["", tell("Title block"), *_table(_entered(variant, names)),
+              "  " + _precedence(variant)]
     lines += ["", tell("Inputs"), *_table(list(_inputs(variant)))]
     if variant.synthesis is not None:
         from tmm_sheets.project import Project
@@ -38,6 +42,19 @@ def text(variant: Variant) -> str:
         m = mechanism_of(variant)
         lines += [*_structure(m), *(_ways(variant, g) for g in m.groups if g.kind.grade == 3)]
     return "\n".join(lines)
+
+
+def _entered(variant: Variant, names: Names) -> list[tuple[str, str, str]]:
+    """What stands in the title blocks, and who says so."""
+    return [(name, of_file(entry.text, tell), entry.where if entry.text else "") for name, entry in names.entries(variant).items()]
+
+
+def _precedence(variant: Variant) -> str:
+    """Which of several texts for the title block goes."""
+    order = tell("an option of build, note and plot goes first, then {file}, {beside}, {user}")
+    if variant.shipped:
+        order = tell("an option of build, note and plot goes first, then {beside}, {user}, {file}")
+    return order.format(file=variant.called, beside=title_entries.beside_of(variant), user=title_entries.user_file() or "–")
 
 
 def swing(project: Project) -> Iterator[str]:

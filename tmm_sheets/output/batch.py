@@ -69,6 +69,7 @@ def _one(task: Task, order: Order, parent: Path) -> Outcome:
     try:
         variant = catalogue.read(project, order.corrected)
         warnings = tuple(variant.warnings)
+        variant = order.names.filled(variant)
         built = build(variant, order, order.outlet(parent / (task.folder or folder_name(variant.stem))))
     except (BadInput, CannotBuild) as e:
         return Outcome(project, str(e), warnings=warnings)

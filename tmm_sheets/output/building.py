@@ -25,6 +25,7 @@ from tmm_sheets.output.build_store import (
     record_of,
 )
 from tmm_sheets.program import fingerprint, program
+from tmm_sheets.task.title_entries import Names
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ class Order:
     ``force`` makes everything again, also what was changed by hand; ``archive`` puts each project into a zip file; ``one_file``
     puts all sheets into one PDF. ``language`` is that of the sheets whatever the projects say, empty for theirs; ``reader`` that of
     the messages: an order may be carried out on another machine. Without ``kept`` every sheet is composed, whatever is kept.
+    ``names`` fill the title blocks in.
     """
 
     sheets: tuple[int, ...] = ()
@@ -70,6 +72,7 @@ class Order:
     language: str = ""
     reader: str = words.MESSAGES
     kept: bool = True
+    names: Names = field(default_factory=Names)
 
     def targets(self, numbers: Sequence[int]) -> list[Target]:
         """The files of these sheets, format by format."""
@@ -174,7 +177,7 @@ class _Work:
 
 def _work(variant: Variant, order: Order, outlet: Outlet, numbers: list[int], wanted: list[Target], watch: Stopwatch) -> _Work:
     """What of the files wanted of sheets ``numbers`` is not current."""
-    inputs = fingerprint(program(), words.paper(), variant.text, str(variant.title_block.first_sheet))
+    inputs = fingerprint(program(), words.paper(), variant.content)
     due, names, stand_in = list[Target](), list[Target](), dict[str, str]()
     made_from: dict[Target, str] = {}
     with watch.phase(tell("compare with what is there")):

@@ -7,7 +7,6 @@ turn) is judged where the geometry is.
 
 from __future__ import annotations
 
-import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -15,13 +14,13 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, PrivateAttr, ValidationError
 
-from tmm_sheets import encodings, files, quoting, words
-from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
-from tmm_sheets.task import synthesis_refs, units
+from tmm_sheets import quoting, words
+from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.task import synthesis_refs, toml_file, units
 from tmm_sheets.task.bare_values import BareValue, quoted
 from tmm_sheets.task.cam_keys import check_cam
 from tmm_sheets.task.letters import check_letters, freed
-from tmm_sheets.task.messages import of_parser, said
+from tmm_sheets.task.messages import said
 from tmm_sheets.task.misprint import Misprint
 from tmm_sheets.task.names import check_names
 from tmm_sheets.task.schema import (
@@ -143,6 +142,11 @@ class Variant(Table):
         return quoting.command(name, self._called, *arguments, *(("--corrected",) if corrected else ()),
                              *(("--lang", asked) if asked else ()))
 
+    @property
+    def shipped(self) -> bool:
+        """Whether it is a shipped project."""
+        return self._shipped
+
     def shipped_as(self, name: str) -> Variant:
         """The same as a shipped project of that name."""
         self._called, self._shipped = name, True
@@ -208,7 +212,7 @@ class Variant(Table):
 
     def problem(self, message: str, *path: str | int, hint: str = "") -> Problem:
         """A problem placed at a key of this file, e.g. ``problem("too short", "crank", "length")``."""
-        return _problem(self._file, self._lines, path, message, hint)
+        return toml_file.problem(self._file, self._lines, path, message, hint)
 
 
 _SECTIONS = ("flywheel", "gear", "reducer", "train", "cam")
@@ -230,19 +234,11 @@ def read(path: Path | str) -> Variant:
     """
     file = str(path)
     try:
-        data = files.content(Path(path), LARGEST)
+        text, note = toml_file.text_of(Path(path), LARGEST)
     except FileNotFoundError:
         raise BadInput(Problem(tell("no such file"), file, hint=tell("{command} shows the shipped projects").format(
             command=quoting.command("list")))) from None
-    except IsADirectoryError:
-        raise BadInput(Problem(tell("expected a project file, this is a folder"), file)) from None
-    except OSError as e:
-        raise BadInput(Problem(tell("cannot be read: {why}").format(why=reason_of(e)), file)) from None
-    try:
-        text, note = encodings.decoded(data)
-    except encodings.NotText as e:
-        raise BadInput(Problem(str(e), file, e.line, hint=tell("save the file in the encoding UTF-8"))) from None
-    return parse(encodings.cleaned(text), file, (note,) if note else ())
+    return parse(text, file, (note,) if note else ())
 
 
 def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple[Misprint, ...] = ()) -> Variant:
@@ -257,20 +253,21 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
     try:
         data = tomllib.loads(readable)
     except tomllib.TOMLDecodeError as e:
-        raise BadInput([*(_of_bare(one, file) for one in bare.values()), _syntax(str(e), readable, file)]) from None
+        raise BadInput([*(_of_bare(one, file) for one in bare.values()), toml_file.syntax(str(e), readable, file)]) from None
     except RecursionError:
         raise BadInput(Problem(tell("lists or tables are nested too deeply"), file)) from None
     lines = scan(readable)
     data, found = _with_synthesis(_with_cycle(freed(data)), file)
-    problems = [_problem(file, lines, *one) for one in found]
+    problems = [toml_file.problem(file, lines, *one) for one in found]
     variant = None
     try:
         variant = Variant.model_validate(data)
     except ValidationError as e:
-        problems += [_problem(file, lines, *said(error, Variant)) for error in e.errors()]
-    problems += [_problem(file, lines, *found) for check in (check_names, check_cam, check_letters) for found in check(data)]
+        problems += [toml_file.problem(file, lines, *said(error, Variant)) for error in e.errors()]
+    checks = (check_names, check_cam, check_letters)
+    problems += [toml_file.problem(file, lines, *found) for check in checks for found in check(data)]
     if variant is not None and variant.project.sheets is None and not variant.sheets:
-        problems.append(_problem(file, lines, ("project",), tell("there is nothing to draw"),
+        problems.append(toml_file.problem(file, lines, ("project",), tell("there is nothing to draw"),
                                  tell("add [crank] and [[group]] for a mechanism, [gear], [reducer], [train] or [cam]")))
     if bare:
         others = [p for p in problems if p.line not in bare]
@@ -329,31 +326,8 @@ def _of_bare(bare: BareValue, file: str, readable: str = "", lines: TomlLines | 
         else:
             right.append(value)
     path = next((path for path, line in lines.lines.items() if line == bare.line and path), ())
-    return _problem(file, lines, path, said, _write(right) if right else wrong)
+    return toml_file.problem(file, lines, path, said, _write(right) if right else wrong)
 
 
 def _write(values: Sequence[str]) -> str:
     return tell("write {what}").format(what=either(values))
-
-
-def _syntax(message: str, text: str, file: str) -> Problem:
-    match = re.search(r"\(at line (\d+), column (\d+)\)", message)
-    line = int(match[1]) if match else text.count("\n") + 1
-    message = re.sub(r" \(at .*\)", "", message)
-    lines = text.splitlines()
-    written = lines[line - 1].strip() if 0 < line <= len(lines) else ""
-    hint = (tell("the line is: {line}").format(line=written) if written else
-            tell("the file ends too early: a quote or a bracket is not closed"))
-    why = of_parser(message[:1].lower() + message[1:])
-    said = (tell("not valid TOML, column {column}: {why}").format(column=match[2], why=why) if match else
-            tell("not valid TOML: {why}").format(why=why))
-    return Problem(said, file, line, hint=hint)
-
-
-def _problem(file: str, lines: TomlLines, path: KeyPath, message: str, hint: str = "") -> Problem:
-    field = ""
-    for part in path:
-        field += f"[{part + 1}]" if isinstance(part, int) else f".{part}" if field else part
-    return Problem(message, file, lines.line(path), field, hint)
-
-

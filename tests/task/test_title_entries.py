@@ -1,0 +1,82 @@
+"""Whose sheets they are: options, project files, settings beside them and of the user."""
+
+import pytest
+
+from tests.project_files import EVEN, SLIDER, write
+from tmm_sheets import catalogue
+from tmm_sheets.__main__ import run
+from tmm_sheets.errors import BadInput
+from tmm_sheets.task import title_entries
+from tmm_sheets.task.title_entries import Entry, Names, given
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv(title_entries.FOLDER, str(tmp_path / "of user"))
+    (tmp_path / "of user").mkdir()
+    return tmp_path
+
+
+def settings(folder, text):
+    (folder / title_entries.FILE).write_bytes(text.encode())
+
+
+def of(variant, options=()):
+    return {name: entry.text for name, entry in given(dict(options)).entries(variant).items()}
+
+
+def test_nearest_goes_first(folder):
+    settings(folder / "of user", "[title_block]\nstudent = 'U'\ngroup = 'U'\nsupervisor = 'U'\nchecker = 'U'\n")
+    settings(folder, "\ufeff[title_block]\r\nstudent = 'B'\r\ngroup = 'B'\r\nsupervisor = 'B'\r\n")
+    own = {"title_block": {"student": "P", "group": "P", "institution": "Кафедра ТММ"}}
+    variant = catalogue.read(write(folder, SLIDER, EVEN, own))
+    found = of(variant, {"student": " O \n"})
+    assert [found[name] for name in ("student", "group", "supervisor", "checker")] == ["O", "P", "B", "U"]
+    assert found["institution"] == "Кафедра ТММ"  # nobody says another one
+
+
+def test_what_only_keeps_a_place_goes_last(folder):
+    settings(folder, "[title_block]\ngroup = 'ТМ-21'\ninstitution = 'ЛНУ'\n")
+    shipped = catalogue.read("lugansk/shaper")
+    (folder / "my.toml").write_text(shipped.text, encoding="utf-8")
+    for variant in (shipped, catalogue.read("my.toml")):
+        assert of(variant)["group"] == "ТМ-21"
+        assert of(variant)["institution"] == "ЛНУ"
+
+
+def test_without_names_the_project_stays_itself(folder):
+    shipped = catalogue.read("press")
+    assert given({}).filled(shipped) is shipped
+    named = Names({"student": "X"}, {"group": Entry("G")}).filled(shipped)
+    assert (named.title_block.student, named.title_block.group) == ("X", "G")
+    assert named.content != shipped.content  # what is kept of it is another sheet
+
+
+@pytest.mark.parametrize(("text", "said"), [
+    ("student = 'A'", "tmm-sheets.toml:1: student: stands outside its table"),
+    ("[title_block]\nstudent = 3", "tmm-sheets.toml:2: title_block.student: expected a text in quotes"),
+    ("[title_block]\n\nform = '2a'", "tmm-sheets.toml:3: title_block.form: only project files have it"),
+    ("[title_block]\nstudnt = 'A'", 'did you mean "student"'),
+    ("[title_block\n", "tmm-sheets.toml:1: not valid TOML"),
+])
+def test_bad_settings(folder, text, said):
+    settings(folder, text)
+    with pytest.raises(BadInput) as e:
+        of(catalogue.read("press"))
+    assert said in str(e.value)
+
+
+def test_show_tells_whose_word_goes(folder, capsys):
+    settings(folder, "[title_block]\nstudent = 'Шевченко'\n")
+    assert run(["show", "lugansk/cam_flat"]) == 0
+    assert ["student", "Шевченко", "tmm-sheets.toml:2"] in [line.split() for line in capsys.readouterr().out.splitlines()]
+
+
+def test_option_fills_the_title_block(folder, capsys):
+    assert run(["build", "lugansk/cam_flat", "--format", "svg", "--student", "Шевченко Т. Г."]) == 0
+    named = (folder / "out/lugansk-cam_flat/sheet1.svg").read_text("utf-8")
+    assert run(["build", "lugansk/cam_flat", "--format", "svg"]) == 0
+    assert (folder / "out/lugansk-cam_flat/sheet1.svg").read_text("utf-8") != named
+    assert run(["build", "lugansk/cam_flat", "--student", "\x1b"]) == 2
+    assert "control characters" in capsys.readouterr().err

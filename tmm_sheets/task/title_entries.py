@@ -1,0 +1,164 @@
+"""Whose sheets these are: what stands in the title blocks by an option, the project file, or the settings of a folder or a user.
+
+A settings file, ``tmm-sheets.toml``, has the table ``[title_block]`` of a project file. One lies beside the project (beside a
+shipped one: in the working folder), one in the user's folder of configuration. Of several texts for a field that goes which is
+nearest to the sheet: the option, the project file, the settings beside it, those of the user. What shipped projects say there
+stands for nobody and goes last, and so it is where a file was copied from them.
+"""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pydantic import ValidationError
+
+from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.task import toml_file
+from tmm_sheets.task.messages import said
+from tmm_sheets.task.schema import Table, TitleBlockTable
+from tmm_sheets.task.toml_lines import scan
+from tmm_sheets.words import tell
+
+if TYPE_CHECKING:
+    from tmm_sheets.task.variant import Variant
+
+FIELDS = ("student", "group", "supervisor", "checker", "institution", "designation", "letter")
+"""Keys of ``[title_block]`` that settings may have."""
+FILE = "tmm-sheets.toml"
+"""Name of a settings file."""
+FOLDER = "TMM_SHEETS_CONFIG"
+"""Environment variable that names the user's folder of configuration; empty for none."""
+LARGEST = 1_000_000
+"""Bytes of the largest settings file that is read."""
+NOBODY, BLANK = "Кафедра ТММ", "___"
+"""What shipped projects say where something is to be filled in: the department, and part of any such text."""
+
+
+class SettingsTable(Table):
+    """A whole settings file."""
+
+    title_block: TitleBlockTable = TitleBlockTable()
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A text of the title block, and where it was told."""
+
+    text: str
+    where: str = ""
+
+
+@dataclass(frozen=True)
+class Names:
+    """What title blocks are filled in with beside what projects and the settings beside them say: options, the user's settings."""
+
+    options: Mapping[str, str] = field(default_factory=dict)
+    user: Mapping[str, Entry] = field(default_factory=dict)
+
+    def entries(self, variant: Variant) -> dict[str, Entry]:
+        """What stands in the title blocks of a project, by field.
+
+        Raises
+        ------
+        BadInput
+            when the settings beside the project cannot be read.
+        """
+        block, beside = variant.title_block, of_file(beside_of(variant))
+        found = {}
+        for name in FIELDS:
+            written = Entry(getattr(block, name), _place(variant, name))
+            option = Entry(self.options[name], f"--{name}") if name in self.options else None
+            own = None if variant.shipped or is_blank(written.text) else written
+            ways = (option, own, beside.get(name), self.user.get(name), written)
+            found[name] = next(entry for entry in ways if entry is not None)
+        return found
+
+    def filled(self, variant: Variant) -> Variant:
+        """The project with its title blocks filled in; itself where nothing is to be put there."""
+        block = variant.title_block
+        other = {name: entry.text for name, entry in self.entries(variant).items() if entry.text != getattr(block, name)}
+        return variant.model_copy(update={"title_block": block.model_copy(update=other)}) if other else variant
+
+
+def is_blank(text: str) -> bool:
+    """Whether a text of a project file only keeps the place of one."""
+    return not text.strip() or BLANK in text or text == NOBODY
+
+
+def _place(variant: Variant, name: str) -> str:
+    if name not in variant.title_block.model_fields_set:
+        return ""
+    problem = variant.problem("", "title_block", name)
+    return variant.called if variant.shipped else f"{problem.file}:{problem.line}"
+
+
+def beside_of(variant: Variant) -> Path:
+    """Where the settings beside a project are, if there are any."""
+    return Path(FILE) if variant.shipped else Path(variant.file).parent / FILE
+
+
+def user_file() -> Path | None:
+    """Where the settings of the user are, if there are any; None where the user has no folder for them."""
+    told = os.environ.get(FOLDER)
+    if told is not None:
+        return Path(told) / FILE if told else None
+    from platformdirs import user_config_dir
+
+    folder = Path(user_config_dir("tmm-sheets", appauthor=False))
+    return folder / FILE if folder.is_absolute() else None  # nobody's home
+
+
+def given(options: Mapping[str, str]) -> Names:
+    """Names by these options and the settings of the user.
+
+    Raises
+    ------
+    BadInput
+        when these cannot be read.
+    """
+    path = user_file()
+    return Names({name: " ".join(text.split()) for name, text in options.items()}, of_file(path) if path is not None else {})
+
+
+def of_file(path: Path) -> dict[str, Entry]:
+    """What a settings file says; nothing where there is none, or nothing in it.
+
+    Raises
+    ------
+    BadInput
+        with every problem of the file.
+    """
+    file = str(path)
+    try:
+        text, _ = toml_file.text_of(path, LARGEST)
+    except (FileNotFoundError, NotADirectoryError):
+        return {}
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as e:
+        raise BadInput(toml_file.syntax(str(e), text, file)) from None
+    lines = scan(text)
+    try:
+        block = SettingsTable.model_validate(data).title_block
+    except ValidationError as e:
+        raise BadInput(_problem(toml_file.problem(file, lines, *said(error, SettingsTable))) for error in e.errors()) from None
+    wrong = [name for name in sorted(block.model_fields_set) if name not in FIELDS]
+    if wrong:
+        hint = tell("settings have {known}").format(known=", ".join(FIELDS))
+        raise BadInput(toml_file.problem(file, lines, ("title_block", name), tell("only project files have it"), hint)
+                       for name in wrong)
+    return {name: Entry(text, f"{file}:{lines.line(('title_block', name))}") for name in FIELDS
+            if (text := " ".join(getattr(block, name).split()))}
+
+
+def _problem(problem: Problem) -> Problem:
+    """The same, with what to do about a name that stands above its table."""
+    if problem.field not in FIELDS:
+        return problem
+    return Problem(tell("stands outside its table"), problem.file, problem.line, problem.field,
+                   tell("write {what}").format(what=tell("[title_block] in a line above it")))

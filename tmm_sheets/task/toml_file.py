@@ -1,0 +1,61 @@
+"""A TOML file that a person wrote: its text, and what is wrong with it by line and key."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from tmm_sheets import encodings, files
+from tmm_sheets.errors import BadInput, Problem, reason_of
+from tmm_sheets.task.messages import of_parser
+from tmm_sheets.task.toml_lines import KeyPath, TomlLines
+from tmm_sheets.words import tell
+
+
+def text_of(path: Path, most: int) -> tuple[str, str]:
+    """Text of a file of at most ``most`` bytes, and what is to be said of its encoding.
+
+    Raises
+    ------
+    FileNotFoundError
+        when there is none.
+    BadInput
+        when it cannot be read, or is no text.
+    """
+    file = str(path)
+    try:
+        data = files.content(path, most)
+    except FileNotFoundError:
+        raise
+    except IsADirectoryError:
+        raise BadInput(Problem(tell("expected a project file, this is a folder"), file)) from None
+    except OSError as e:
+        raise BadInput(Problem(tell("cannot be read: {why}").format(why=reason_of(e)), file)) from None
+    try:
+        text, note = encodings.decoded(data)
+    except encodings.NotText as e:
+        raise BadInput(Problem(str(e), file, e.line, hint=tell("save the file in the encoding UTF-8"))) from None
+    return encodings.cleaned(text), note
+
+
+def syntax(message: str, text: str, file: str) -> Problem:
+    """What Python's reader of TOML says of a text, with the line that it means."""
+    match = re.search(r"\(at line (\d+), column (\d+)\)", message)
+    line = int(match[1]) if match else text.count("\n") + 1
+    message = re.sub(r" \(at .*\)", "", message)
+    lines = text.splitlines()
+    written = lines[line - 1].strip() if 0 < line <= len(lines) else ""
+    hint = (tell("the line is: {line}").format(line=written) if written else
+            tell("the file ends too early: a quote or a bracket is not closed"))
+    why = of_parser(message[:1].lower() + message[1:])
+    said = (tell("not valid TOML, column {column}: {why}").format(column=match[2], why=why) if match else
+            tell("not valid TOML: {why}").format(why=why))
+    return Problem(said, file, line, hint=hint)
+
+
+def problem(file: str, lines: TomlLines, path: KeyPath, message: str, hint: str = "") -> Problem:
+    """A problem placed at a key of a file."""
+    field = ""
+    for part in path:
+        field += f"[{part + 1}]" if isinstance(part, int) else f".{part}" if field else part
+    return Problem(message, file, lines.line(path), field, hint)
