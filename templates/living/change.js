@@ -58,7 +58,11 @@ function projectFile() {
     const value = machine.given[g.name], n = g.line - 1, unit = g.unit ? ` ${g.unit.replaceAll("*", "·")}` : "";
     const text = (x) => (g.unit ? `"${Number(x.toPrecision(12))}${unit}"` : `${Number(x.toPrecision(12))}`);
     const written = Array.isArray(value) ? `[${value.map(text).join(", ")}]` : text(value);
-    lines[n] = lines[n].replace(/=\s*(\[[^\]]*\]|"[^"]*"|[^#\s]+)/, () => `= ${written}`);
+    const place = /\[(\d+)\]$/.exec(g.name);  // one of a row of numbers
+    let at = -1;
+    lines[n] = place
+      ? lines[n].replace(/=\s*\[[^\]]*\]/, (row) => row.replace(/"[^"]*"|[\d.eE+-]+/g, (one) => (++at === Number(place[1]) ? written : one)))
+      : lines[n].replace(/=\s*(\[[^\]]*\]|"[^"]*"|[^#\s]+)/, () => `= ${written}`);
   }
   return lines.join("\n");
 }

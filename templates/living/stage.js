@@ -126,6 +126,7 @@ function extentOf(points) {
 // A card shows everything that its view is in the course of a turn; recomputed when a given number is another.
 function frameCards() {
   const values = round(Math.round(48 * Math.max(record.motion.period / (2 * Math.PI), 1))).map((phi) => parts(phi));
+  const fine = stage.cards.some((card) => card.paths.length) ? round(3 * values.length).map((phi) => parts(phi)) : [];
   for (const card of stage.cards) {
     card.most = keepsScale(card) ? shrinking(card, values) || 1 : Math.max(...values.map((one) => shrinking(card, [one])));
     card.centred = !keepsScale(card) && planOf(card.live.plan).pole === undefined;
@@ -142,7 +143,7 @@ function frameCards() {
     }
     if (box[0] < box[2]) { card.box = box; card.svg.setAttribute("viewBox", `${box[0] - 9} ${-box[3] - 7} ${box[2] - box[0] + 18} ${box[3] - box[1] + 14}`); }
     card.svg.querySelector(".paths").innerHTML = card.paths.map((path) => {
-      const points = all.map((placed) => placed.point(path, path.of)), whole = points.every((z) => Number.isFinite(z[0]));
+      const points = fine.map((one) => placer(one, card.most).point(path, path.of)), whole = points.every((z) => Number.isFinite(z[0]));
       return `<path class="mark" ${look(path.style)} d="${polyPath(points.filter((z) => Number.isFinite(z[0])), 0, whole && record.motion.period > 6)}"/>`;
     }).join("");
   }

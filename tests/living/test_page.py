@@ -91,40 +91,86 @@ const result = ({ motion, cases }) => {
 """
 
 
-@javascript.needed
-@pytest.mark.parametrize("name", NAMES)
-def test_values_are_those_of_solve(name, tmp_path):
-    """At 200 random angles, by the ids of the record."""
-    text = made(name)
-    record = record_of(text)
-    rng = np.random.default_rng(1)
-    phi = rng.uniform(-np.pi, np.pi, 200)
-    project = Project(catalogue.read(name))
-    parts = [p for p in ("positions", "velocities", "accelerations", "forces") if p in project.parts]
-    told = results.told(project, parts, phi=tuple(phi))
-    cases = [[x, {}] for x in phi.tolist()]
-    run = f"let record;\nconst PROGRAM = {program_of(text)};\n{RUN}"
-    values = javascript.run(run, {"motion": record["motion"], "cases": cases}, tmp_path)
+def told_at(project, phi):
+    """What `solve` tells of a linkage at crank angles."""
+    return results.told(project, [p for p in ("positions", "velocities", "accelerations", "forces") if p in project.parts], phi=phi)
+
+
+def compare(told, values, record, parts):
+    """How many quantities of `solve` the page has; all of them alike to 1e-9 of the greatest of each."""
     compared = 0
     for part in parts:
-        for quantity, of in told[part].items():
-            for key in of:
+        for quantity, of in told.get(part, {}).items():
+            for key in of if hasattr(of, "keys") else ():
                 path = f"{part}.{quantity}.{key}"
                 result = record["results"].get(path)
                 if result is None or result["step"] not in values[0] or key == "difference_percent":  # that is rounding alone
                     continue
                 own = np.asarray(getattr(of[key], "value", of[key]))
-                own = np.broadcast_to(own, (200,)) if own.ndim == 0 else own
+                own = np.broadcast_to(own, (len(values),)) if own.ndim == 0 else own
                 found = [np.nan if v[result["step"]] is None else v[result["step"]] for v in values]
                 if isinstance(found[0], list):
                     found = [complex(*(np.nan if x is None else x for x in z)) for z in found]
                 found = np.asarray(found)
                 if result.get("part"):
                     found = {"x": np.real, "y": np.imag, "abs": np.abs, "angle": np.angle}[result["part"]](found)
-                size = np.nanmax(np.abs(own)) or 1.0
-                np.testing.assert_allclose(found, own, rtol=0, atol=1e-9 * size, err_msg=path)
+                yield path, found, own
                 compared += 1
+
+
+@javascript.needed
+@pytest.mark.parametrize("name", NAMES)
+def test_values_are_those_of_solve(name, tmp_path):
+    """At 200 random angles, by the ids of the record."""
+    text = made(name)
+    record = record_of(text)
+    phi = np.random.default_rng(1).uniform(-np.pi, np.pi, 200)
+    told = told_at(Project(catalogue.read(name)), tuple(phi))
+    run = f"let record;\nconst PROGRAM = {program_of(text)};\n{RUN}"
+    values = javascript.run(run, {"motion": record["motion"], "cases": [[x, {}] for x in phi.tolist()]}, tmp_path)
+    compared = 0
+    for path, found, own in compare(told, values, record, ("positions", "velocities", "accelerations", "forces")):
+        np.testing.assert_allclose(found, own, rtol=0, atol=1e-9 * (np.nanmax(np.abs(own)) or 1.0), err_msg=path)
+        compared += 1
     assert compared > 8
+
+
+SAVED = javascript.modules("digits", "primitives", "machine", "change") + """
+const result = ({ motion, file, cases }) => {
+  record = { motion, file };
+  startMachine();
+  return cases.map(([phi, given]) => {
+    machine.given = { ...machine.made, ...given };
+    return { values: valuesAt(phi), file: projectFile() };
+  });
+};
+"""
+LENGTHS = 3
+
+
+def other_numbers(record, rng, share):
+    """Other lengths, masses and a speed, different by some share, for as many cases as LENGTHS."""
+    own = [g for g in record["motion"]["givens"] if "line" in g and g["unit"] in ("m", "kg", "kg*m2", "rad/s")]
+    for _ in range(LENGTHS):
+        yield [rng.uniform(-3, 3), {g["name"]: (np.asarray(g["value"]) * rng.uniform(1 - share, 1 + share)).tolist() for g in own}]
+
+
+@javascript.needed
+@pytest.mark.parametrize("name", NAMES)
+def test_a_saved_file_gives_what_the_page_showed(name, tmp_path):
+    """Other lengths and masses: the project file that is saved can be read, and its values are those of the page."""
+    text = made(name)
+    record = record_of(text)
+    # A group of class III is put together next to where it stands in the project.
+    cases = list(other_numbers(record, np.random.default_rng(2), 0.003 if name == "loom" else 0.02))
+    run = f"let record;\nconst PROGRAM = {program_of(text)};\n{SAVED}"
+    for (phi, _), found in zip(cases, javascript.run(run, {**record, "cases": cases}, tmp_path), strict=True):
+        path = tmp_path / "saved.toml"
+        path.write_text(found["file"], encoding="utf-8")
+        project = Project(catalogue.read(str(path)))
+        told = told_at(project, (phi,))
+        for quantity, value, own in compare(told, [found["values"]], record, ("positions", "velocities")):
+            np.testing.assert_allclose(value, own, rtol=0, atol=1e-9 * max(np.abs(own).max(), 0.1), err_msg=quantity)
 
 
 EVERY_FILM = """<script>
