@@ -33,6 +33,7 @@ RULES = {
     "task.letters": ("drawing.lettering task", ""),
     "task.families": ("task", ""),
     "task.title_entries": ("task", ""),
+    "task.new_file": ("catalogue task", ""),
     "project": (f"task {METHODS}", "construction mechanism"),
     "results": ("construction project result_files sheets", "methods.linkage"),
     "result_files": ("", ""),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tmm_sheets import quoting, resources, spelling
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.task import families, headings
-from tmm_sheets.words import either, tell
+from tmm_sheets.words import either, every, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.task.variant import Variant
@@ -40,6 +40,12 @@ def entries() -> tuple[Entry, ...]:
     """Every shipped project with its title, variant and sheets; only the heading of each file is looked at."""
     return tuple(Entry(name, table["title"], table.get("variant", ""), tuple(table["sheets"]))
                  for name, table in ((name, _heading(name)) for name in shipped()))
+
+
+def found(word: str) -> tuple[Entry, ...]:
+    """Shipped projects that have a word, or part of one, in their names, titles or variants, in any language."""
+    wanted = word.casefold()
+    return tuple(e for e in entries() if any(wanted in text.casefold() for text in (e.name, *every(e.title), *every(e.variant))))
 
 
 def _heading(name: str) -> dict[str, Any]:

@@ -215,7 +215,7 @@ def both(said: Sequence[str]) -> str:
 
 def every(text: str) -> tuple[str, ...]:
     """The text in all languages: what somebody may have written who has another one than the reader."""
-    return tuple(dict.fromkeys(_catalogue(language).gettext(text) for language in LANGUAGES))
+    return tuple(dict.fromkeys(_catalogue(language).gettext(text) for language in LANGUAGES)) if text else ()
 
 
 @cache
