@@ -7,7 +7,7 @@ What a key means stands in a string under it in ``schema.py``, where only this m
 import ast
 import inspect
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from math import degrees
 from pathlib import Path
@@ -19,9 +19,12 @@ from pydantic import AfterValidator, BeforeValidator, WrapValidator
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
+from tests.compare.languages import to_reader
 from tests.record import replayer
 from tmm_sheets import catalogue, cli, resources
 from tmm_sheets.backends import dxf
+from tmm_sheets.compare import codes
+from tmm_sheets.compare.diagnosis import hypotheses
 from tmm_sheets.drawing import layers, marks
 from tmm_sheets.drawing.marks import Arc, Drawing, Line
 from tmm_sheets.mechanism.groups import KINDS
@@ -35,6 +38,7 @@ from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import messages, schema, units, variant
 from tmm_sheets.task.cam_keys import FOLLOWER_KEYS
 from tmm_sheets.task.names import GROUP_KEYS
+from tmm_sheets.words import LANGUAGES, tell, tell_n
 
 ROOT = Path(__file__).parents[1]
 PAPERS = (ROOT / "README.md", ROOT / "README.ru.md", *sorted((ROOT / "docs").glob("*.md")))
@@ -247,6 +251,27 @@ def arguments(function: Any) -> Iterator[str]:
         yield f"{p.name} ..." if p.kind is p.VAR_POSITIONAL else p.name if p.default is p.empty else f"*{p.name}*"
 
 
+# --- what a comparison finds ------------------------------------------------------------------------------------------
+
+
+def finding_codes() -> str:
+    """Every code of a comparison: what it means, and what is told in each language."""
+    told = codes.sentences()
+    return table(("code", "means", *LANGUAGES), *((f"`{code}`", means, *spoken(told[code])) for code, means in codes.CODES.items()))
+
+
+def usual_mistakes() -> str:
+    """Every mistake that is recognised in a construction, by the key of its words."""
+    return table(("mistake", *LANGUAGES), *((f"`{key}`", *spoken([text])) for key, text in hypotheses.WORDS.items()))
+
+
+def spoken(texts: Sequence[str | tuple[str, str]]) -> Iterator[str]:
+    """Texts in each language."""
+    for language in LANGUAGES:
+        with to_reader(language):
+            yield "; ".join(tell(text) if isinstance(text, str) else tell_n(*text, 5) for text in texts)
+
+
 # --- one crank angle through the code -------------------------------------------------------------------------------
 
 
@@ -295,7 +320,8 @@ def path(module: ModuleType) -> str:
     return Path(module.__file__).relative_to(ROOT).as_posix()
 
 
-MAKERS = {f.__name__: f for f in (keys, whole, groups, followers, quantities, example, options, arrangements, primitives, walk)}
+MAKERS = {f.__name__: f for f in (keys, whole, groups, followers, quantities, example, options, arrangements, primitives, walk,
+                                 finding_codes, usual_mistakes)}
 
 
 def current(text: str) -> str:

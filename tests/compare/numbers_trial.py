@@ -13,6 +13,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from tests.compare.form import of_elements
 from tests.compare.simulation import shoot
 from tmm_sheets import catalogue
 from tmm_sheets.compare.known_sheet import known_sheet
@@ -48,8 +49,8 @@ def trial(name: str, n: int, count: int, seed: int) -> tuple[int, int, int, int,
         path = Path(folder) / "photo.jpg"
         path.write_bytes(shot.data)
         tree = image.compare(project, n, path, read_numbers=True).tree
-    said = {row["number"] for row in tree["elements"] if row["number"] in told and row["verdict"] == "amber"}
-    asked = tree["numbers"]
+    said = {row["number"] for row in of_elements(tree) if row["number"] in told and row["verdict"] == "amber"}
+    asked = tree["numbers_read"]
     return asked["asked"], asked["unread"], len(told), len(said), asked["otherwise"] - len(said)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from tests.compare.cad_plants import Way, draw
+from tests.compare.form import faults, of_elements
 from tests.few import seldom
 from tmm_sheets.backends import dxf
 from tmm_sheets.catalogue import read
@@ -22,7 +23,6 @@ from tmm_sheets.compare.cad.view_search import SHAPES
 from tmm_sheets.compare.elements import elements
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.placing import Placing
-from tmm_sheets.compare.report import Report
 from tmm_sheets.errors import BadInput
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
@@ -40,7 +40,9 @@ def compare(data, tmp_path, sheet=2, views=None, project=SHAPER):
         (tmp_path / "views.toml").write_text(views, encoding="utf-8")
         views = tmp_path / "views.toml"
     found = cad_drawing.examine(project, sheet, path, views, 0.25)
-    return Report(cad_report.text("shaper", path, found, 0.25), cad_report.tree("shaper", path, found, 0.25), notes=found.notes)
+    report = cad_report.report("shaper", path, found, 0.25)
+    assert [*faults(report.tree)] == []
+    return report
 
 
 @cache
@@ -54,11 +56,12 @@ def drawn(found, seed=1, **way):
 
 
 def summary(report):
-    return tuple(report.tree["summary"][k] for k in ("green", "amber", "red", "skipped", "extra"))
+    found = [f["verdict"] for f in of_elements(report.tree)]
+    return (*(found.count(k) for k in ("green", "amber", "red", "not-judged")), len(report.tree["unclaimed"]))
 
 
 def judged(report, number):
-    return report.tree["elements"][number - 1]
+    return of_elements(report.tree)[number - 1]
 
 
 def changed(number, **fields):
@@ -79,9 +82,9 @@ ALL_GREEN = (len(EXACT), 0, 0, 0, 0)
 def test_our_own_drawing_has_no_deviation(tmp_path, n, asked, text):
     report = compare(dxf.render(composed(SHAPER, n).drawing, text), tmp_path, asked)
     assert report.tree["sheet"] == n
-    assert {e["verdict"] for e in report.tree["elements"]} == {"green"}
-    assert max(e["deviation"] for e in report.tree["elements"]) < 0.002
-    assert report.tree["extra"] == []
+    assert {e["verdict"] for e in of_elements(report.tree)} == {"green"}
+    assert max(e["deviation_mm"] for e in of_elements(report.tree)) < 0.002
+    assert report.tree["unclaimed"] == []
     assert report.notes == ()
 
 
@@ -98,9 +101,9 @@ def test_our_own_drawing_worked_on_in_another_program(tmp_path):
     number.dxf.text = changed
     doc.saveas(path)
     report = compare(path.read_bytes(), tmp_path, 1)
-    (wrong,) = (e for e in report.tree["elements"] if e["verdict"] != "green")
-    assert changed in wrong["what"]
-    assert [e["what"] for e in report.tree["extra"] if "Петренко" not in e["what"]] == []
+    (wrong,) = (e for e in of_elements(report.tree) if e["verdict"] != "green")
+    assert changed in wrong["said"]
+    assert [x for x in report.tree["unclaimed"] if "Петренко" not in x["text"]] == []
 
 
 @pytest.mark.parametrize("way", [
@@ -110,8 +113,8 @@ def test_our_own_drawing_worked_on_in_another_program(tmp_path):
 def test_a_right_drawing_in_another_shape(tmp_path, way):
     report = compare(drawn(EXACT, **way), tmp_path)
     absent = EXACT[0].view.name if not way.get("frame", True) else ""
-    assert [e for e in report.tree["elements"] if e["verdict"] != "green" and e["view"] != absent] == []
-    assert report.tree["extra"] == []
+    assert [e for e in of_elements(report.tree) if e["verdict"] != "green" and e["view"] != absent] == []
+    assert report.tree["unclaimed"] == []
 
 
 def test_wrong_units_and_turns_are_mended_and_said(tmp_path):
@@ -125,7 +128,9 @@ def test_a_mirrored_drawing_at_half_size_is_turned_over_and_said(tmp_path):
     report = compare(drawn(EXACT, mirrored=True, turn=0.5, shift=500), tmp_path)
     assert "the drawing is mirrored; it was turned over for the comparison" in report.notes
     mirrored = "the mechanism is drawn mirrored, top and bottom exchanged, and all plans with it"
-    assert [(b["view"], b["what"]) for b in report.tree["built"]] == [("", mirrored)]  # a mistake, for teachers and marks
+    (start,) = report.tree["start"]
+    told = next(f for f in report.tree["findings"] if f["id"] == start)  # a mistake, for teachers and marks
+    assert (told["code"], told["kind"], told["said"], "view" in told) == ("built-otherwise", "mirror", mirrored, False)
     assert "the drawing is at scale 1:2; it was scaled to 1:1" in report.notes
     assert summary(report) == ALL_GREEN
 
@@ -179,15 +184,15 @@ def spoiled(tmp_path_factory):
 
 
 def test_only_what_was_spoiled_is_accused(spoiled):
-    wrong = {e["number"] for e in spoiled[1].tree["elements"] if e["verdict"] != "green"}
+    wrong = {e["number"] for e in of_elements(spoiled[1].tree) if e["verdict"] != "green"}
     assert wrong == {e.number for e in (*SPOILED, GONE)} - {GREENISH.number}
 
 
 def test_a_shifted_line_is_found_with_its_shift_and_its_handle(spoiled):
     path, report = spoiled
     found = judged(report, LINE.number)
-    assert (found["verdict"], found["deviation"]) == ("red", pytest.approx(1.5, abs=0.01))
-    assert found["shift"] == pytest.approx([1.5, 0], abs=0.01)
+    assert (found["verdict"], found["deviation_mm"]) == ("red", pytest.approx(1.5, abs=0.01))
+    assert found["shift_mm"] == pytest.approx([1.5, 0], abs=0.01)
     (entity,) = found["entities"]
     (space,) = cad_file.read(path).spaces
     stroke = next(s for s in space.strokes if space.entities[s.entity].handle == entity["handle"])
@@ -197,39 +202,41 @@ def test_a_shifted_line_is_found_with_its_shift_and_its_handle(spoiled):
 
 def test_the_verdict_follows_the_pencil(spoiled):
     assert [judged(spoiled[1], e.number)["verdict"] for e in (GREENISH, AMBER, LINE)] == ["green", "amber", "red"]
-    assert judged(spoiled[1], GREENISH.number)["deviation"] == pytest.approx(0.2, abs=0.01)
+    assert judged(spoiled[1], GREENISH.number)["deviation_mm"] == pytest.approx(0.2, abs=0.01)
 
 
 def test_a_turned_line(spoiled):
     found = judged(spoiled[1], TURNED.number)
-    assert found["turn"] == pytest.approx(2.0, abs=0.02)
-    assert found["deviation"] == pytest.approx(TURNED.length * np.radians(2), rel=0.01)
+    assert found["code"] in ("displaced", "turned")
+    assert found["turn_rad"] == pytest.approx(np.radians(2.0), abs=4e-4)
+    assert found["deviation_mm"] == pytest.approx(TURNED.length * np.radians(2), rel=0.01)
 
 
 def test_a_missing_and_an_extra_line(spoiled):
-    assert judged(spoiled[1], GONE.number)["missing"]
-    (extra,) = spoiled[1].tree["extra"]
-    assert extra["length"] == pytest.approx(abs(40 + 15j), abs=0.1)
-    assert extra["at"] == pytest.approx([520, 437.5], abs=0.1)
+    assert judged(spoiled[1], GONE.number)["code"] == "missing"
+    (extra,) = spoiled[1].tree["unclaimed"]
+    assert extra["length_mm"] == pytest.approx(abs(40 + 15j), abs=0.1)
+    assert extra["at_mm"] == pytest.approx([520, 437.5], abs=0.1)
 
 
 def test_a_circle_off_its_centre_and_of_another_size(spoiled):
     found = judged(spoiled[1], CIRCLE.number)
-    assert found["shift"] == pytest.approx([0, 2], abs=0.02)
-    assert found["size"] == pytest.approx(-1, abs=0.02)
+    assert found["shift_mm"] == pytest.approx([0, 2], abs=0.02)
+    assert found["growth"] * CIRCLE.radius == pytest.approx(-1, abs=0.02)
 
 
 def test_a_bulging_curve(spoiled):
-    assert judged(spoiled[1], CURVE.number)["deviation"] == pytest.approx(1.2, abs=0.1)
+    assert judged(spoiled[1], CURVE.number)["deviation_mm"] == pytest.approx(1.2, abs=0.1)
 
 
 def test_a_wrong_number(spoiled):
-    assert judged(spoiled[1], TEXT.number)["what"] == 'reads "H = 124" instead of "H = 142"'
+    assert judged(spoiled[1], TEXT.number)["code"] == "text"
+    assert judged(spoiled[1], TEXT.number)["said"] == 'reads "H = 124" instead of "H = 142"'
 
 
 def test_an_arrow_the_wrong_way_round(spoiled):
     found = judged(spoiled[1], ARROW.number)
-    assert (found["verdict"], found["what"]) == ("red", "points the other way")
+    assert (found["code"], found["verdict"], found["said"]) == ("arrow-reversed", "red", "points the other way")
 
 
 def test_a_wrong_letter_drawn_with_strokes(tmp_path):
@@ -237,7 +244,7 @@ def test_a_wrong_letter_drawn_with_strokes(tmp_path):
     k = next(k for k, m in enumerate(marks) if getattr(m, "text", "") == "H = 142")
     marks[k] = marks[k]._replace(text="H = 147")
     found = judged(compare(dxf.render(replace(SHEET.drawing, marks=tuple(marks)), "strokes"), tmp_path), TEXT.number)
-    assert (found["verdict"], found["what"]) == ("red", 'the letters are not those of "H = 142"')
+    assert (found["verdict"], found["said"]) == ("red", 'the letters are not those of "H = 142"')
 
 
 @pytest.mark.trial
@@ -250,7 +257,7 @@ def test_a_layout_of_ones_own(tmp_path):
     found[LINE.number - 1] = replace(found[LINE.number - 1], points=found[LINE.number - 1].points + 1.5)
     report = compare(drawn(found), tmp_path)
     assert judged(report, LINE.number)["verdict"] == "red"
-    assert report.tree["summary"]["red"] + report.tree["summary"]["amber"] <= 3
+    assert sum(summary(report)[1:3]) <= 3
     assert any(f'"{LINE.view.name}" stands' in note for note in report.notes)
 
 
@@ -260,10 +267,14 @@ def test_a_single_view(tmp_path):
     known = elements(composed(cam, 1))
     view = next(e.view for e in known if e.view.n)
     report = compare(drawn([e for e in known if e.view == view], turn=0.5, shift=70), tmp_path, 1, project=cam)
-    mine = [e for e in report.tree["elements"] if e["view"] == view.name]
+    mine = [e for e in of_elements(report.tree) if e["view"] == view.name]
     assert {e["verdict"] for e in mine} == {"green"}
     others = {e.view.name for e in known if e.view != view}
     assert set(report.tree["summary"]["missing_views"]) == others
+    lost = {f["id"]: f for f in report.tree["findings"] if f["code"] in ("view-missing", "table-missing")}
+    assert report.tree["start"] == [*lost]
+    assert {f["view"] for f in lost.values()} == others
+    assert all(lost[f["follows"][0]]["view"] == f["view"] for f in of_elements(report.tree) if f["view"] in others)
     shaped = {e.view.name for e in known if e.role in SHAPES}
     assert set(report.tree["summary"]["missing_tables"]) == others - shaped
     assert f"{len(mine)} green (up to 0.00 mm), 0 amber, 0 red; 0 extra; {len(others & shaped)} of {len(shaped)} " in report.text
@@ -286,7 +297,7 @@ def test_views_given_by_a_file(tmp_path):
     told = next(v for v in report.tree["views"] if v["view"] == view.name)
     assert told["size"] == pytest.approx(0.5, abs=1e-3)
     assert judged(report, CIRCLE.number)["verdict"] == "green"
-    near = [x for x in report.tree["extra"] if abs(complex(*x["at"]) - place(view.box.centre)) < 60]
+    near = [x for x in report.tree["unclaimed"] if abs(complex(*x["at_mm"]) - place(view.box.centre)) < 60]
     assert near == []  # neither hatching nor the heads of dimensions are compared there, nor are they too much
 
 

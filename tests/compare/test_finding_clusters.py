@@ -172,9 +172,10 @@ def test_ink_on_a_circle_about_the_centre_of_another_is_told_as_a_circle(arcs, b
 
 def test_the_tree_has_all_ink_with_its_place():
     judged = image_report._Judged([line(1, 0, 50, 3j)], [ink(10 + 0.5j, 40 + 2.5j), ink(200, 220)])
-    tree = image_report._tree(judged)
-    assert [x["place"] for x in tree["extra"]] == [1, 2]
-    assert [e["place"] for e in tree["elements"]] == [1]
+    records, start = image_report._records(judged, {})
+    assert [x["place"] for x in image_report._unclaimed(judged)] == [1, 2]
+    assert [r.beside["place"] for r in records] == [1]
+    assert start == []
     assert image_report._extra(judged) == ["1 place with ink that is not on the sheet"]
 
 

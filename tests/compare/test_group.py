@@ -6,7 +6,9 @@ from urllib.parse import unquote
 
 import pytest
 
-from tmm_sheets.compare import group, marking
+from tmm_sheets.compare import codes, group, marking
+from tmm_sheets.compare.codes import Number, Remark
+from tmm_sheets.compare.findings import FindingRecord
 from tmm_sheets.compare.report import Report
 from tmm_sheets.compare.report_pages import page
 from tmm_sheets.errors import BadInput
@@ -42,12 +44,14 @@ def scheme(tmp_path, text=SCHEME):
 def drawing(project, sheet, path):
     """Two red elements of which one is explained, three amber ones; none in a drawing called sound."""
     if "sound" in path.name:
-        return Report("", {"elements": [], "built": [], "summary": {"missing_views": []}})
-    verdicts = [("a", "red"), ("b", "red"), *[("b", "amber")] * 3, ("gone", "red"), ("table", "red")]
-    return Report("", {"elements": [{"view": v, "verdict": x} for v, x in verdicts],
-                       "built": [{"view": "a", "what": "point b3 lies 12,5 mm off" if "two" in path.name else
-                                  "point b3 lies 3,1 mm off"}],
-                       "summary": {"missing_views": ["gone", "table"], "missing_tables": ["table"]}})
+        return Report("", {})
+    off = Number("12.5" if "two" in path.name else "3.1")
+    start = [FindingRecord(codes.POINT_MOVED(point="b3", distance=off), "red", "a", step="velocities/b3", whole=True),
+             FindingRecord(codes.VIEW_MISSING(view="gone"), "red", "gone", whole=True),
+             FindingRecord(codes.TABLE_MISSING(views="table"), "amber", "table", whole=True)]
+    lost = [FindingRecord(codes.MISSING(), "red", r.view, follows=r) for r in start[1:]]
+    verdicts = [("a", "red"), ("b", "red"), *[("b", "amber")] * 3]
+    return Report("", {}, findings=[*start, *lost, *(FindingRecord(codes.MISSING(), x, v) for v, x in verdicts)], start=start)
 
 
 @pytest.fixture
@@ -92,8 +96,9 @@ def test_files_of_all_kinds(folder, tmp_path):
     (folder / "Empty").mkdir()
 
     def numbers(project, sheet, path):
-        starts = [{"said": "(2) b: 5 instead of 4"}, {"said": "the other way"}]
-        return Report("", {"numbers": [], "starts": starts})
+        start = [FindingRecord(codes.INSTEAD(measured="5", exact="4"), "red", where=Remark("", "(2) b")),
+                 FindingRecord(Remark("sense", "the other way"), "red")]
+        return Report("", {}, findings=start, start=start)
 
     opened = type("P", (), {"variant": type("V", (), {"sheets": [1, 2]})()})()
     report = group.compare(folder, "own", lambda name: opened, {"drawing": drawing, "numbers": numbers}, scheme(tmp_path),

@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
+from tests.compare.form import faults
 from tests.compare.simulation import Camera, paper, photograph, plant
 from tmm_sheets import catalogue
 from tmm_sheets.backends import pdf, png
@@ -170,9 +171,10 @@ def test_own_pdf_has_no_deviation(tmp_path):
     count = report.tree["count"]
     assert count["amber"] == count["red"] == 0
     assert count["green"] > 200
-    assert report.tree["extra"] == []
-    assert {row["verdict"] for row in report.tree["elements"]} == {"green"}
-    worst = max(row["deviation"] for row in report.tree["elements"] if row["deviation"] is not None)
+    assert [*faults(report.tree)] == []
+    assert report.tree["unclaimed"] == []
+    assert {row["verdict"] for row in report.tree["findings"]} <= {"green", "not-judged"}
+    worst = max(row["deviation_mm"] for row in report.tree["findings"] if row["verdict"] == "green")
     assert worst < 0.4
     overlay = cv2.imdecode(np.frombuffer(report.files[f"compare_sheet_{N}.png"], np.uint8), cv2.IMREAD_COLOR)
     assert overlay.shape == (2376, 3364, 3)

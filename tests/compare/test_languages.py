@@ -9,6 +9,7 @@ from itertools import pairwise, product
 import numpy as np
 import pytest
 
+from tests.compare.form import faults
 from tests.compare.languages import to_reader, told
 from tests.compare.simulation import Camera, paper, photograph
 from tests.few import few
@@ -24,7 +25,7 @@ from tmm_sheets.words import LANGUAGES, on_paper
 
 CYRILLIC = re.compile("[\u0400-\u04ff]")
 BRACES = re.compile(r"\{\w*\}")
-SAID = {"what", "said", "why", "remark", "unit", "notes", "lines", "space"}
+SAID = {"said", "where", "lang", "notes", "space"}
 """Keys of JSON whose values are told; all others are the same in every language."""
 PROJECT = "lugansk/cam_flat"
 
@@ -105,7 +106,8 @@ def test_only_words_differ(report, kind):
     assert status == 0
     for language in LANGUAGES:
         assert report(kind, language)[0] == 0
-        assert plain(report(kind, language)[3]) == plain(tree)
+        told = report(kind, language)[3]
+        assert (plain(told), [*faults(told)], told["lang"]) == (plain(tree), [], language)
     texts = {report(kind, language)[1] for language in LANGUAGES}
     assert len(texts) == len(LANGUAGES)
 
@@ -195,8 +197,8 @@ def test_a_template_is_read_in_any_language(templates, written, language, tmp_pa
     status, _, err = told(language, "compare", PROJECT, "--measured", path, "--json", target)
     assert status == 0, err
     assert err == ""
-    (judged,) = json.loads(target.read_text("utf-8"))["numbers"]
-    assert (judged["id"], judged["measured"]) == ("results/r0", 46.5)
+    (judged,) = json.loads(target.read_text("utf-8"))["findings"]
+    assert (judged["row"], judged["measured"]) == ("results/r0", 46.5)
     other = tmp_path / "other.csv"
     other.write_text("\n".join(lines).replace(PROJECT, "press"), encoding="utf-8-sig")
     assert told(language, "compare", PROJECT, "--measured", other)[0] == 2

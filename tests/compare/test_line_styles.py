@@ -67,11 +67,14 @@ def test_what_is_wrong_is_told_in_a_row_for_each_view_and_kind(tmp_path):
         (e.number, e.view.name, said) for e, (_, said) in SPOILED.items()}
     assert len(looks) == len({(e.view, said) for e, (_, said) in SPOILED.items()})
     assert {f.verdict for f in found.outcome.findings} == {"green"}
-    text, tree = (made("cam", tmp_path / "student.dxf", found, 0.25) for made in (cad_report.text, cad_report.tree))
+    report = cad_report.report("cam", tmp_path / "student.dxf", found, 0.25)
+    text, tree = report.text, report.tree
     assert all(said in text for _, said in SPOILED.values())
     assert "; 6 of another type or width of line" in text
-    assert tree["summary"]["looks"] == len(looks)
-    row = next(row for row in tree["looks"] if row["elements"] == [CENTRE[1].number])
+    rows = [f for f in tree["findings"] if f["code"] in ("line-style", "line-width")]
+    assert len(rows) == len(looks)
+    row = next(row for row in rows if row["numbers"] == [CENTRE[1].number])
+    assert row["code"] == "line-style"
     (named,) = row["entities"]
     (space,) = cad_file.read(tmp_path / "student.dxf").spaces
     assert [e.pattern for e in space.entities if e.handle == named["handle"]] == ["dash-two-dots"]

@@ -9,6 +9,7 @@ from html import unescape
 import numpy as np
 import pytest
 
+from tests.compare.form import faults
 from tests.compare.manual_tables import opened
 from tests.compare.students import PENCIL, READING, Hand, Plant
 from tests.compare.students import opened as measurables_of
@@ -303,15 +304,16 @@ def test_measured(cam, tmp_path, capsys):
     assert "2 numbers: " in out.out
     assert "columns separated by tabs" in out.err
     tree = json.loads(target.read_text(encoding="utf-8"))
-    assert {n["id"] for n in tree["numbers"]} == {"results/r0", "results/rho_min"}
+    assert [*faults(tree)] == []
+    assert {f["row"] for f in tree["findings"]} == {"results/r0", "results/rho_min"}
     assert tree["summary"]["red"] >= 1
-    assert tree["starts"][0]["id"] in ("results/r0", "results/rho_min")
-    assert tree["starts"][0]["off_mm"] is None
-    assert tree["numbers"][0]["exact"] > 0
+    start = next(f for f in tree["findings"] if f["id"] == tree["start"][0])
+    assert "off_mm" not in start
+    assert tree["findings"][0]["expected"] > 0
     # What is told on the terminal is told on the page, each number in a row of a table.
     told = unescape(page.read_text(encoding="utf-8"))
-    assert tree["starts"][0]["why"] in told
-    assert all(f"<td>{n['quantity']}</td>" in told for n in tree["numbers"])
+    assert start["said"] in told
+    assert all(f"<td>{f['quantity']}</td>" in told for f in tree["findings"])
 
 
 @pytest.mark.parametrize(("text", "message"), [

@@ -13,6 +13,7 @@ from tmm_sheets.compare.measured import measured_lengths
 from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.collecting import measurables
 from tmm_sheets.compare.measured.measured_file import Filled
+from tmm_sheets.compare.report import Report
 
 LINKS = {
     "guide[1].through": ["0 m", "0.05 m"],
@@ -131,14 +132,15 @@ def test_a_table_of_another_mechanism_is_told_as_that(found, lines):
     (said,) = measured_lengths._advice(judged)
     assert said.startswith("So many mistakes: was another variant drawn")
     assert measured_lengths._summary(judged, Filled([]))[1] == said
-    tree = measured_lengths._tree("own", judged, Filled([]), PENCIL, READING)
-    faults, mistakes = group._faults(tree)
-    assert mistakes == (said,)
-    assert faults["mistake"] == len([s for s in tree["starts"] if s["same_as"] is None])
+    findings, start = measured_lengths.records(judged)
+    faults, mistakes = group._faults(Report("", {}, findings=findings, start=start))
+    assert [m.told.said() for m in mistakes] == [said]
+    assert (start[0].remark.code, faults["mistake"]) == ("another-mechanism", len(start) - 1)
+    assert faults["mistake"] == len(measured_lengths._grouped(judged))
 
 
 def test_single_mistakes_are_told_one_by_one(found, lines):
     judged, _ = told(found, lines, times(1e-3, "mm"))
-    tree = measured_lengths._tree("own", judged, Filled([]), PENCIL, READING)
-    assert tree["another"] is None
-    assert group._faults(tree)[1] == ("the numbers are written in m, not mm",)
+    findings, start = measured_lengths.records(judged)
+    _, mistakes = group._faults(Report("", {}, findings=findings, start=start))
+    assert [m.told.said() for m in mistakes] == ["the numbers are written in m, not mm"]

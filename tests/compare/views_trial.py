@@ -15,6 +15,7 @@ from time import perf_counter
 
 import numpy as np
 
+from tests.compare.form import of_elements
 from tests.compare.simulation import shoot
 from tmm_sheets import catalogue
 from tmm_sheets.compare.elements import elements
@@ -113,19 +114,19 @@ def file_of_views(views, known, places, place, rng):
 def meets(extra, planted):
     """Whether extra ink of a report is where an error was drawn."""
     return planted.drawn is not None and any(
-        abs(extra["x"] - z.real) < extra["width"] / 2 + 4 and abs(extra["y"] - z.imag) < extra["height"] / 2 + 4
+        abs(extra["at_mm"][0] - z.real) < extra["width_mm"] / 2 + 4 and abs(extra["at_mm"][1] - z.imag) < extra["height_mm"] / 2 + 4
         for z in np.atleast_1d(planted.drawn))
 
 
 def outcomes(label, tree, planted, element_of, known):
     """What became of the planted errors, and what was made up; told line by line."""
-    bad = {e["number"]: e for e in tree["elements"] if e["verdict"] != "green"}
-    dense = {e["number"] for e in tree["elements"] if e["status"] == "dense"}
+    bad = {e["number"]: e for e in of_elements(tree) if e["verdict"] in ("amber", "red")}
+    dense = {e["number"] for e in of_elements(tree) if e["status"] == "dense"}
     spoiled = set()
     counted = Counter()
     for p in planted:
         if p.mark is None:
-            hit = any(meets(x, p) for x in tree["extra"])
+            hit = any(meets(x, p) for x in tree["unclaimed"])
             counted["found" if hit else "missed"] += 1
             if not hit:
                 print(f"  missed: {label} extra line {p.size:.0f} mm about {p.drawn.mean():.0f}")
@@ -141,7 +142,7 @@ def outcomes(label, tree, planted, element_of, known):
         counted[f"false {bad[number]['verdict']}"] += 1
         print(f"  false: {label} {bad[number]['verdict']} element {number} {e.kind} {e.style} {e.length:.0f} mm of "
               f"{e.view.name!r}: {bad[number]['said']}")
-    for x in tree["extra"]:
+    for x in tree["unclaimed"]:
         if not any(meets(x, p) for p in planted):
             counted["false extra"] += 1
             print(f"  false extra: {label} {x}")

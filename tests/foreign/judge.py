@@ -236,15 +236,15 @@ def _read(lettering: str) -> str:
 
 def _is(element: dict[str, Any], mark: Mark) -> bool:
     """Whether an element of the report is this mark of the record."""
-    if (element["step"], element["position"]) != (mark.step, mark.position) or not mark.step:
+    if (element.get("step", ""), element.get("position", "")) != (mark.step, mark.position) or not mark.step:
         return False
     if mark.kind == "text":
-        return bool(element["kind"] == "text" and _read(mark.string) in element["name"])
+        return bool(element["element"] == "text" and _read(mark.string) in element.get("name", ""))
     name = _read(mark.name)
-    names = ("", name, f"{name}({mark.position})") if name else (element["name"],)
+    names = ("", name, f"{name}({mark.position})") if name else (element.get("name", ""),)
     kinds = {"fill": ("line", "circle"), "circle": ("circle", "arc"), "polyline": ("curve", "line")}.get(mark.kind, (mark.kind,))
     # a view without a title is called by its module in the record, by a name in the report
-    return (element["view"] == mark.view or "." in mark.view) and element["name"] in names and element["kind"] in kinds
+    return (element["view"] == mark.view or "." in mark.view) and element.get("name", "") in names and element["element"] in kinds
 
 
 def _those(elements: list[dict[str, Any]], mark: Mark) -> list[dict[str, Any]]:
@@ -256,7 +256,7 @@ def _those(elements: list[dict[str, Any]], mark: Mark) -> list[dict[str, Any]]:
         return alike
     corners = np.vstack(mark.paths())
     middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
-    away = [float(np.hypot(*(np.array(element["middle"]) - middle))) for element in alike]
+    away = [float(np.hypot(*(np.array(element["middle_mm"]) - middle))) for element in alike]
     return [element for element, by in zip(alike, away, strict=True) if by < min(away) + SAME]
 
 
@@ -319,11 +319,11 @@ def _alone(paths: list[Floats], others: Floats) -> float:
     return float(step * (np.concatenate(apart) > HIDES).sum())
 
 
-def _pointed_at(mistake: dict[str, Any], extra: list[dict[str, float]]) -> bool:
+def _pointed_at(mistake: dict[str, Any], extra: list[dict[str, Any]]) -> bool:
     """Whether the report shows ink that belongs to nothing where the wrong line is."""
     samples = np.vstack([_sampled(np.array(line)) for line in mistake["lines"]])
     for spot in extra:
-        away = np.abs(samples - (spot["x"], spot["y"])) - (spot["width"] / 2 + 1, spot["height"] / 2 + 1)
+        away = np.abs(samples - spot["at_mm"]) - (spot["width_mm"] / 2 + 1, spot["height_mm"] / 2 + 1)
         if (away.max(axis=1) < 0).any():
             return True
     return False
@@ -331,8 +331,7 @@ def _pointed_at(mistake: dict[str, Any], extra: list[dict[str, float]]) -> bool:
 
 def _verdict(element: dict[str, Any]) -> str:
     """What is said of an element: its colour, or that it cannot be judged."""
-    unjudged = element["status"] == "hidden" or element["said"].startswith("not measurable")
-    return "unjudged" if unjudged else str(element["verdict"])
+    return "unjudged" if element["verdict"] == "not-judged" else str(element["verdict"])
 
 
 def _said(outcome: Outcome, report: dict[str, Any], truth: dict[str, Any], marks: list[Mark]) -> None:
@@ -340,14 +339,14 @@ def _said(outcome: Outcome, report: dict[str, Any], truth: dict[str, Any], marks
 
     "unjudged" is what the report tells that it cannot judge, "silent" what it says nothing of, "same" a mistake that does not show.
     """
-    elements = report["elements"]
+    elements = [f for f in report["findings"] if "element" in f]
     named = {mark.id: mark for mark in marks}
     touched: list[Mark] = []
     for mistake, shows in zip(truth["mistakes"], changed(truth, marks), strict=True):
         wrong = [named[mark["id"]] for mark in mistake["wrong"]]
         said = {_verdict(element) for mark in wrong for element in _those(elements, mark)}
         found = next((verdict for verdict in ("red", "amber", "green", "unjudged") if verdict in said), "silent")
-        if found != "red" and _pointed_at(mistake, report["extra"]):
+        if found != "red" and _pointed_at(mistake, report["unclaimed"]):
             found = "ink"
         if found not in FOUND and shows < SHOWS:
             found = "same"
@@ -360,7 +359,7 @@ def _said(outcome: Outcome, report: dict[str, Any], truth: dict[str, Any], marks
         outcome.sound += 1
         if element["verdict"] == "red":
             outcome.false_red += 1
-            outcome.accused.append(f"{element['view']}: {element['name'] or element['kind']}, {element['said']}")
+            outcome.accused.append(f"{element['view']}: {element.get('name') or element['element']}, {element['said']}")
 
 
 def judge(picture: Path, drawings: Path, keep: Path | None = None) -> Outcome:

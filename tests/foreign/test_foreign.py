@@ -91,7 +91,7 @@ def test_a_line_that_ends_at_the_edge_of_a_cover_tells_nothing_along_itself() ->
 def test_of_elements_of_one_name_those_in_place_are_asked() -> None:
     """Both lines of a guide have one name; a vector and the helper line under it have one, too, and are told together."""
     guide = drawing.Mark(1, "line", "plan", "symbol", "main", np.array([[0.0, 7.0], [20.0, 7.0]]), "positions/x", "4", "x")
-    element = {"step": "positions/x", "position": "4", "kind": "line", "name": "x(4)", "view": "plan"}
-    alike = [element | {"middle": middle} for middle in ([10.0, 0.0], [10.0, 7.0], [11.5, 7.0])]
+    element = {"step": "positions/x", "position": "4", "element": "line", "name": "x(4)", "view": "plan"}
+    alike = [element | {"middle_mm": middle} for middle in ([10.0, 0.0], [10.0, 7.0], [11.5, 7.0])]
     assert judge._those(alike, guide) == alike[1:]
     assert judge._those([], guide) == []

@@ -136,13 +136,13 @@ class Sentence:
         return Remark(self.code, self.text, tuple(fields.items()))
 
 
-def sentences() -> Mapping[str, list[str]]:
-    """The English sentences of each code that has any here, in the order in which they stand."""
-    found: dict[str, list[str]] = {code: [] for code in CODES}
+def sentences() -> Mapping[str, list[str | tuple[str, str]]]:
+    """The English sentences of each code that has any here, in their order; those with a number by both their forms."""
+    found: dict[str, list[str | tuple[str, str]]] = {code: [] for code in CODES}
     for value in globals().values():
         for one in value.values() if isinstance(value, dict) else (value,):
             if isinstance(one, Sentence):
-                found[one.code].append(one.text if isinstance(one.text, str) else one.text[1])
+                found[one.code].append(one.text)
     return found
 
 

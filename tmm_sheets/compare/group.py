@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING, Any
 from unicodedata import normalize
 
 from tmm_sheets import encodings, files
+from tmm_sheets.compare.codes import Remark
+from tmm_sheets.compare.findings import FindingRecord
 from tmm_sheets.compare.known_sheet import sheet_numbers
 from tmm_sheets.compare.marking import KINDS, MarkingScheme
 from tmm_sheets.compare.report import Report
@@ -42,11 +44,11 @@ MOST = 15
 
 @dataclass(frozen=True)
 class Judgement:
-    """What came of one file: how many faults of each kind of a scheme, mistakes in words, why it was not judged (else empty)."""
+    """What came of one file: how many faults of each kind of a scheme, the mistakes, why it was not judged (else empty)."""
 
     file: str
     faults: Mapping[str, int] = field(default_factory=dict)
-    mistakes: tuple[str, ...] = ()
+    mistakes: tuple[FindingRecord, ...] = ()
     refused: str = ""
     report: Report | None = None
 
@@ -71,7 +73,7 @@ class Student:
     @property
     def mistakes(self) -> tuple[str, ...]:
         """Mistakes in words, each once."""
-        return tuple(dict.fromkeys(m for f in self.files for m in f.mistakes))
+        return tuple(dict.fromkeys(m.told.said() for f in self.files for m in f.mistakes))
 
 
 def compare(folder: Path, project: str, opened: Callable[[str], Project], by_kind: Mapping[str, Callable[..., Report]],
@@ -192,25 +194,26 @@ def _judged(path: Path, file: str, name: str, opened: Callable[[str], Project],
             raise
         why = tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}")
         return Judgement(file, {"unjudged": 1}, refused=why)
-    faults, mistakes = _faults(report.tree)
+    faults, mistakes = _faults(report)
     return Judgement(file, faults, mistakes, report=report)
 
 
-def _faults(tree: Mapping[str, Any]) -> tuple[dict[str, int], tuple[str, ...]]:
-    """Faults of each kind, and mistakes in words, from the tree of a report."""
-    if "numbers" in tree:  # measured
-        starts = [s for s in tree["starts"] if s.get("same_as") is None]
-        left = [n for n in tree["numbers"] if n["follows"] is None and not n["starts"]]
-        count = Counter(n["verdict"] for n in left)
-        said = (tree["another"],) if tree.get("another") else tuple(s["said"] for s in starts)
-        return {"mistake": len(starts), "red": count["red"], "amber": count["amber"]}, said
-    built = {b["view"]: b["what"] for b in tree.get("built", ())}
-    summary = tree.get("summary", {})
-    missing, tables = (set(summary.get(key, ())) for key in ("missing_views", "missing_tables"))
-    count = Counter(e["verdict"] for e in tree["elements"] if e["view"] not in built and e["view"] not in missing)
-    mistakes = tuple(dict.fromkeys(built.values()))
-    return {"mistake": len(mistakes), "red": count["red"], "amber": count["amber"], "missing_view": len(missing - tables),
-            "missing_table": len(tables)}, mistakes
+MISSING = {"view-missing": "missing_view", "table-missing": "missing_table"}
+"""Kinds of faults that have findings of their own."""
+
+
+def _faults(report: Report) -> tuple[dict[str, int], tuple[FindingRecord, ...]]:
+    """Faults of each kind, and the mistakes; what follows from one, and views that were built on one, are no others."""
+    mistakes = tuple(r for r in report.start if r.remark.code not in MISSING)
+    built = {r.view for r in report.findings if r.whole}
+    # How a line is drawn is told, but costs nothing.
+    left = Counter(r.verdict for r in report.findings if r.follows is None and r not in report.start and r.view not in built
+                   and r.remark.code not in ("line-style", "line-width"))
+    lost = Counter(MISSING[r.remark.code] for r in report.start if r.remark.code in MISSING)
+    # Where something else was drawn the single mistakes are guesses.
+    another = tuple(r for r in mistakes if r.remark.code == "another-mechanism")
+    faults = {"mistake": len(mistakes) - len(another), "red": left["red"], "amber": left["amber"]}
+    return faults | {kind: lost[kind] for kind in MISSING.values()}, another or mistakes
 
 
 # --- the report -------------------------------------------------------------------------------------------------------------
@@ -274,19 +277,12 @@ def _kinds() -> tuple[str, ...]:
 
 def _most_made(students: Sequence[Student]) -> list[tuple[str, int]]:
     """Mistakes by how many students made them; sizes, which are everybody's own, do not tell them apart."""
-    first: dict[str, str] = {}
-    count: Counter[str] = Counter()
+    made: dict[tuple[object, ...], list[Remark]] = {}
     for s in students:
-        for key in {_alike(m): m for m in s.mistakes}:
-            count[key] += 1
-        for m in s.mistakes:
-            first.setdefault(_alike(m), m)
-    return [(first[key] if n == 1 else key, n) for key, n in count.most_common()]
-
-
-def _alike(mistake: str) -> str:
-    """A mistake without its sizes."""
-    return re.sub(r"(?<![\w])\d+(?:[.,]\d+)?", "…", mistake)
+        for key, remark in {m.alike: m.told for f in s.files for m in f.mistakes}.items():
+            made.setdefault(key, []).append(remark)
+    most = sorted(made.values(), key=len, reverse=True)
+    return [(some[0].said(own=len(set(some)) == 1), len(some)) for some in most]
 
 
 def _text(story: Story) -> str:
@@ -310,7 +306,7 @@ def _tree(students: Sequence[Student], scheme: MarkingScheme | None) -> dict[str
 
     return {
         "students": [{"student": s.name, "project": s.project, "faults": s.faults, "mistakes": list(s.mistakes), **marked(s),
-                      "files": [{"file": f.file, "faults": dict(f.faults), "mistakes": list(f.mistakes),
+                      "files": [{"file": f.file, "faults": dict(f.faults), "mistakes": [m.told.said() for m in f.mistakes],
                                  "refused": f.refused or None} for f in s.files]} for s in students],
         "most_made": [{"mistake": m, "students": n} for m, n in _most_made(students)],
     }

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
+    from tmm_sheets.compare.findings import FindingRecord
     from tmm_sheets.compare.story import Story
 
 Verdict = Literal["green", "amber", "red"]
@@ -39,6 +40,7 @@ class Report:
     files : what to write beside it (overlays), by file name
     notes : what was mended or deserves a warning, one line each
     story : the same to be read on paper or in a browser, None where there is only the text
+    findings, start : what was found, and that of it from which the rest follows, the likeliest first
     """
 
     text: str
@@ -46,6 +48,8 @@ class Report:
     files: Mapping[str, bytes] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     story: Story | None = None
+    findings: Sequence[FindingRecord] = ()
+    start: Sequence[FindingRecord] = ()
 
     def as_json(self) -> str:
         """The outcome as JSON."""

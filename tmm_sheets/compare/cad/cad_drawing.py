@@ -57,8 +57,9 @@ def compare(project: Project, sheet: int | None, path: Path, views: Path | None,
     exact = [p for e in found.exact for p in drawn(e)]
     files = cad_overlay.files(laid.known.n, laid.known.sheet.drawing, exact, found.space, marked, looks)
     name = project.variant.project.name
-    said = "\n".join([*listed(cad_story.mistakes(found, gone)), cad_report.text(name, path, found, pencil)])
-    return Report(said, cad_report.tree(name, path, found, pencil), files, found.notes, cad_story.story(name, path, found, pencil))
+    report = cad_report.report(name, path, found, pencil)
+    said = "\n".join([*listed(cad_story.mistakes(found, gone)), report.text])
+    return replace(report, text=said, files=files, story=cad_story.story(name, path, found, pencil))
 
 
 def examine(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,

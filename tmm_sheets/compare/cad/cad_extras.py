@@ -12,7 +12,7 @@ from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad import cad_lettering
 from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, LOOSE_STYLES, Comparison, middle_of, reach_of
 from tmm_sheets.compare.cad.cad_findings import ExtraStroke
-from tmm_sheets.compare.cad.cad_ink import normal
+from tmm_sheets.compare.cad.cad_ink import Entity, normal
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines, shapes
 from tmm_sheets.compare.cad.overlaps import Left, left, pieces
 from tmm_sheets.compare.codes import Number, joined
@@ -25,6 +25,8 @@ SHORT = 12.0
 """Strokes shorter than this may belong to lettering, mm."""
 LEAST = 1.0
 """Shortest stretch of extra ink, mm."""
+ROUND = frozenset({"ARC", "CIRCLE", "ELLIPSE"})
+"""Entities that are told as arcs."""
 TOUCHING = 0.06
 """Distance of places that count as one, mm."""
 FILLED, PART = 3.0, 1.5
@@ -256,11 +258,16 @@ def _extra_lines(state: Comparison, extra: list[tuple[list[Left], float]]) -> It
         if np.ptp(z.real) + np.ptp(z.imag) < HEAP:
             small.append((k, size, z))
         else:
-            yield ExtraStroke(state.space.entities[k], size, middle_of(z), reach_of(z))
+            yield _stroke(state.space.entities[k], size, z)
     for heap in _heaps(np.array([middle_of(z) for _, _, z in small], dtype=complex)):
         z = np.concatenate([small[k][2] for k in heap])
         size = sum(small[k][1] for k in heap)
-        yield ExtraStroke(state.space.entities[small[heap[0]][0]], size, middle_of(z), reach_of(z), len(heap))
+        yield _stroke(state.space.entities[small[heap[0]][0]], size, z, len(heap))
+
+
+def _stroke(entity: Entity, size: float, z: Points, count: int = 1) -> ExtraStroke:
+    """So many mm of line through some points, from an entity and others beside it."""
+    return ExtraStroke("arc" if entity.kind in ROUND else "line", entity, size, middle_of(z), reach_of(z), count)
 
 
 def _heaps(middles: Points, near: float = 5.0) -> Iterator[list[int]]:
@@ -292,10 +299,10 @@ def _extra_areas(state: Comparison, extra: KnownLines) -> Iterator[ExtraStroke]:
             continue
         if (np.abs(known - state.areas[k]) < reach).any() or extra.nearest(z, HEAD)[2].any():
             continue
-        yield ExtraStroke(state.space.entities[area.entity], around, middle_of(z), reach_of(z))
+        yield ExtraStroke("fill", state.space.entities[area.entity], around, middle_of(z), reach_of(z))
 
 
 def _extra_text(state: Comparison) -> Iterator[ExtraStroke]:
     for k, w in enumerate(state.space.writings):
         if k not in state.used_writings and normal(w.text):
-            yield ExtraStroke(state.space.entities[w.entity], 0.0, w.at, max(w.width, 4.0) / 2, 1, w.text.strip())
+            yield ExtraStroke("text", state.space.entities[w.entity], 0.0, w.at, max(w.width, 4.0) / 2, 1, w.text.strip())

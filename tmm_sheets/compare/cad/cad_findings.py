@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from tmm_sheets.compare.cad.cad_ink import Entity
 from tmm_sheets.compare.codes import Remark
@@ -34,7 +34,6 @@ class CadFinding(Finding):
     absent : the kind it is left out with, where all of that are, which is told of the view; else ""
     entities : numbers of the entities of the drawing it is made of
     says : what a text says instead of what it should
-    follows : whether it is as it follows from the mistake its plan was built on
     """
 
     reach: float
@@ -45,12 +44,13 @@ class CadFinding(Finding):
     entities: tuple[int, ...] = ()
     absent: str = ""
     says: str | None = None
-    follows: bool = False
 
 
 @dataclass(frozen=True)
 class ExtraStroke:
     """Ink or text that belongs to no element: ``length`` mm within ``reach`` of ``at``, from ``count`` entities."""
+
+    kind: Literal["line", "arc", "text", "fill"]
 
     entity: Entity
     length: float

@@ -1,26 +1,29 @@
-"""The report on a comparison with a CAD drawing: a table for the terminal, a tree for JSON."""
+"""The report on a comparison with a CAD drawing: a table for the terminal, what JSON lists."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from math import radians
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad import omissions
-from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
+from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome, ExtraStroke, LookFinding
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
 from tmm_sheets.compare.cad.layout import Layout
 from tmm_sheets.compare.cad.registration import Registration
 from tmm_sheets.compare.cad.view_search import SHAPES
 from tmm_sheets.compare.codes import Remark
+from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built
+from tmm_sheets.compare.diagnosis.hypotheses import built_otherwise
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.findings import called, origin, place, table, worst
+from tmm_sheets.compare.findings import FindingRecord, as_tree, called, of_element, place, point, table, worst
 from tmm_sheets.compare.placing import Placing, moved
-from tmm_sheets.compare.report import said_verdict
+from tmm_sheets.compare.report import Report, said_verdict
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
 
@@ -49,7 +52,7 @@ class ExaminedDrawing:
     places: Layout
     outcome: CadOutcome
     notes: tuple[str, ...]
-    built: Mapping[ElementView, BuiltView] = field(default_factory=dict)
+    built: Mapping[ElementView, BuiltPlan] = field(default_factory=dict)
 
     @cached_property
     def exact(self) -> tuple[Element, ...]:
@@ -77,16 +80,6 @@ def _turned(move: Placing) -> Remark | None:
     if move.mirrored:
         return codes.VIEW_TURNED[{0: "upside down", 180: "across"}.get(quarter, "mirrored")]()
     return codes.VIEW_TURNED[str(quarter)]() if quarter else None
-
-
-class BuiltView(Protocol):
-    """What was done wrong in a plan, in words."""
-
-    def said(self) -> str:
-        """The mistake."""
-
-    def explained(self) -> str:
-        """How much of the plan it explains."""
 
 
 def gone(outcome: CadOutcome) -> set[ElementView]:
@@ -219,7 +212,7 @@ def _extras(outcome: CadOutcome) -> list[tuple[str, ...]]:
         said = (tell('text "{text}"') if x.text else tell("{length} mm of line in {n} entities") if x.count > 1 else
                 tell("{length} mm of line"))
         what = said.format(text=x.text, length=told(f"{x.length:.1f}"), n=x.count)
-        rows.append((f"+{k}", what, place(x.at), said_verdict(x.verdict), str(x.entity)))
+        rows.append((f"+{k}", what, told(place(x.at)), said_verdict(x.verdict), str(x.entity)))
     return rows
 
 
@@ -236,52 +229,74 @@ def _looks(found: ExaminedDrawing) -> list[tuple[str, ...]]:
     return rows
 
 
-def _point(z: complex | None) -> list[float] | None:
-    return None if z is None else [round(z.real, 3), round(z.imag, 3)]
-
-
-def _rounded(x: float | None) -> float | None:
-    return None if x is None else round(x, 4)
-
-
-def tree(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> dict[str, Any]:
-    """The report for JSON on a drawing of project ``name``; ``pencil`` is the tolerance, mm."""
-    laid, places, outcome = found.laid, found.places, found.outcome
+def report(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> Report:
+    """The report on a drawing of project ``name``: table, JSON and findings; ``pencil`` is the tolerance, mm."""
+    laid, places, outcome, p = found.laid, found.places, found.outcome, found.laid.placing
     lost = sorted(gone(outcome), key=lambda v: v.n)
-    beside = tables_and_texts(outcome)
-    colours = Counter(f.verdict for f in outcome.findings)
-    p = laid.placing
-
-    def entity(e: Entity) -> dict[str, str]:
-        return {"type": e.kind, "layer": e.layer, "handle": e.handle}
-
-    return {
-        "project": name,
-        "sheet": laid.known.n,
-        "drawing": path.name,
-        "space": laid.space.name,
-        "tolerance": pencil,
-        "placing": {"scale": p.scale, "degrees": round(p.degrees, 4), "shift": _point(p.shift), "mirrored": p.mirrored,
-                    "share": round(laid.share, 4)},
-        "views": [{"view": v.name, "share": round(s, 4), **(
-            {"shift": _point(complex(places.moves[v](v.box.centre)) - v.box.centre), "size": round(places.moves[v].scale, 6)}
+    tables = tables_and_texts(outcome) & set(lost)
+    records, start = _records(found, lost, tables, pencil)
+    tree = as_tree(
+        "cad", name, laid.known.n, records, start, [_unclaimed(k, x) for k, x in enumerate(outcome.extras, 1)],
+        {"missing_views": [v.name for v in lost], "missing_tables": [v.name for v in lost if v in tables]},
+        drawing=path.name, space=laid.space.name, tolerance=pencil,
+        placing={"scale": p.scale, "degrees": round(p.degrees, 4), "shift": point(p.shift), "mirrored": p.mirrored,
+                 "share": round(laid.share, 4)},
+        views=[{"view": v.name, "share": round(s, 4), **(
+            {"shift": point(complex(places.moves[v](v.box.centre)) - v.box.centre), "size": round(places.moves[v].scale, 6)}
             if v in places.moves else {})} for v, s in places.share.items()],
-        "elements": [origin(f.element) | {
-            "verdict": f.verdict, "deviation": round(f.deviation, 4), "shift": _point(f.shift),
-            "turn": _rounded(f.turn), "size": _rounded(f.size), "missing": f.missing, "what": f.what, "at": _point(f.at),
-            "entities": [entity(laid.space.entities[k]) for k in f.entities],
-        } for f in outcome.findings],
-        "extra": [{"number": k, "what": x.text or tell("line"), "length": round(x.length, 3), "at": _point(x.at),
-                   "verdict": x.verdict, "count": x.count, "entity": entity(x.entity)} for k, x in enumerate(outcome.extras, 1)],
-        "looks": [{"number": k, "view": look.view.name if look.view is not None else None, "lines": look.lines, "what": look.what,
-                   "verdict": look.verdict, "elements": list(look.elements),
-                   "entities": [entity(laid.space.entities[i]) for i in look.entities]} for k, look in enumerate(outcome.looks, 1)],
-        "built": [{"view": v.name, "what": b.said(), "explained": b.explained()} for v, b in found.built.items()] + [
-            {"view": name, "what": said, "explained": ""}
-            for name, said in (("", found.mirrored), *((v.name, said) for v, said in found.turned.items())) if said],
-        "not_drawn": [{"view": x.view.name, "kind": x.kind, "count": x.count} for x in outcome.absent],
-        "summary": {"green": colours["green"], "amber": colours["amber"], "red": colours["red"], "skipped": colours[None],
-                    "extra": len(outcome.extras), "looks": len(outcome.looks),
-                    "missing_views": [v.name for v in lost], "missing_tables": [v.name for v in lost if v in beside]},
-    }
+        not_drawn=[{"view": x.view.name, "kind": x.kind, "count": x.count} for x in outcome.absent])
+    return Report(text(name, path, found, pencil), tree, notes=found.notes, findings=records, start=start)
 
+
+def _records(found: ExaminedDrawing, lost: Sequence[ElementView], tables: Container[ElementView],
+             pencil: float) -> tuple[list[FindingRecord], list[FindingRecord]]:
+    """What is listed: the mistakes, views that are missing, lines of another type or width, every element; and where it starts."""
+    whole = [FindingRecord(built_otherwise(key), "red", beside={"kind": "mirror", "mistake": key}, whole=True)
+             for key in filter(None, (found.mirrored,))]
+    built = of_built(found.built)
+    turned: dict[Remark, list[FindingRecord]] = {}
+    for v, remark in found.turned.items():
+        some = turned.setdefault(remark, [])
+        some.append(FindingRecord(remark, "red", v.name, whole=True, follows=some[0] if some else None))
+    missing = {v: FindingRecord(codes.TABLE_MISSING(views=v.name), "amber", v.name, whole=True) if v in tables else
+               FindingRecord(codes.VIEW_MISSING(view=v.name), "red", v.name, whole=True) for v in lost}
+    mistakes = [*whole, *built.values(), *(r for some in turned.values() for r in some), *missing.values()]
+    start = [r for r in mistakes if r.follows is None]
+    return [*mistakes, *(_look(found, look) for look in found.outcome.looks),
+            *(_record(found, f, _follows(f, built, missing), pencil) for f in found.outcome.findings)], start
+
+
+def _follows(f: CadFinding, built: Mapping[ElementView, FindingRecord], missing: Mapping[ElementView, FindingRecord]) -> (
+        FindingRecord | None):
+    """What a finding on an element follows from."""
+    mistake = built.get(f.element.view) if f.follows else None
+    return missing.get(f.element.view) or (mistake and (mistake.follows or mistake))
+
+
+def _record(found: ExaminedDrawing, f: CadFinding, follows: FindingRecord | None, pencil: float) -> FindingRecord:
+    """What is listed of an element."""
+    e = f.element
+    own = e.radius if e.kind == "circle" else e.length
+    beside = {"missing": True} if f.missing else {}
+    return of_element(f, f.verdict or "not-judged", shift=f.shift, turn=None if f.turn is None else radians(f.turn),
+                      growth=f.size / own if f.size is not None and own else None, tolerance=pencil, follows=follows,
+                      beside={**beside, "entities": _entities(found, f.entities)})
+
+
+def _look(found: ExaminedDrawing, look: LookFinding) -> FindingRecord:
+    """What is listed of lines of another type or width."""
+    return FindingRecord(look.remark, look.verdict, look.view.name if look.view is not None else "", beside={
+        "styles": list(look.styles), "numbers": list(look.elements), "entities": _entities(found, look.entities)})
+
+
+def _unclaimed(number: int, x: ExtraStroke) -> dict[str, Any]:
+    return {"kind": x.kind, "length_mm": round(x.length, 3), "at_mm": point(x.at), "where": str(x.entity), "number": number,
+            "verdict": x.verdict, "count": x.count, "text": x.text, "entity": _entity(x.entity)}
+
+
+def _entities(found: ExaminedDrawing, numbers: Iterable[int]) -> list[dict[str, str]]:
+    return [_entity(found.laid.space.entities[k]) for k in numbers]
+
+
+def _entity(e: Entity) -> dict[str, str]:
+    return {"type": e.kind, "layer": e.layer, "handle": e.handle}

@@ -22,7 +22,7 @@ from tmm_sheets.compare.diagnosis.drawn_senses import acting
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, any_of, hypotheses
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, of_position, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
-from tmm_sheets.compare.findings import millimetres
+from tmm_sheets.compare.findings import FindingRecord, millimetres
 from tmm_sheets.compare.known_sheet import KnownSheet, plans_of
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.plan import Plan
@@ -93,6 +93,20 @@ class BuiltPlan:
     def explained(self) -> str:
         """How much of the plan it explains."""
         return tell("this explains {n} of {all} wrong lines of the plan").format(n=self.explains, all=self.of)
+
+
+def of_built(built: Mapping[ElementView, BuiltPlan]) -> dict[ElementView, FindingRecord]:
+    """What is listed of views that were built on mistakes: what was done in a view before is told there, and follows."""
+    first: dict[Remark, FindingRecord] = {}
+    out = {}
+    for view, b in built.items():
+        h = b.mistake
+        beside = {"kind": h.kind, "mistake": h.words} if isinstance(h, Hypothesis) else {}
+        record = FindingRecord(b.remark, "red", view.name, b.step.plan, b.step.path, b.label, whole=True,
+                               follows=first.get(b.remark), beside={**beside, "explains": b.explains, "of": b.of})
+        out[view] = record
+        first.setdefault(b.remark, record)
+    return out
 
 
 @dataclass(frozen=True)

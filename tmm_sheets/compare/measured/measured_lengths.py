@@ -6,11 +6,12 @@ from collections.abc import Callable, Iterator
 from itertools import groupby
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tmm_sheets.compare import codes, story
-from tmm_sheets.compare.codes import Number, Remark, joined
+from tmm_sheets.compare.codes import Number, Own, Remark, joined
 from tmm_sheets.compare.diagnosis.hypotheses import any_of
+from tmm_sheets.compare.findings import FindingRecord, as_tree
 from tmm_sheets.compare.measured import measured_file
 from tmm_sheets.compare.measured.chain import EXACT, MOST, judge
 from tmm_sheets.compare.measured.collecting import measurables
@@ -19,6 +20,7 @@ from tmm_sheets.compare.measured.measured_units import said as said_unit
 from tmm_sheets.compare.measured.plan_pictures import PlanPictures
 from tmm_sheets.compare.report import Report, said_verdict
 from tmm_sheets.construction.protocol import letter_of, sentence
+from tmm_sheets.construction.step import Step
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.numbers import decimal, plain, rounded, told
 from tmm_sheets.words import marked, on_paper, reader, tell, tell_n
@@ -68,8 +70,13 @@ def compare(project: Project, path: Path, pencil: float, reading: float, say: Ca
     notes = (*found.notes, *filled.notes)
     title = tell("{project}: {file}").format(project=project.variant.called, file=path.name)
     pictures = PlanPictures(judged, found, found.errors(filled.factors, pencil, reading))
-    return Report(_text(judged, filled), _tree(project.variant.project.name, judged, filled, pencil, reading), notes=notes,
-                  story=_story(title, judged, filled, notes, pictures))
+    found_all, start = records(judged)
+    following = sum(j.follows is not None for j in judged)
+    tree = as_tree("measured", project.variant.project.name, None, found_all, start,
+                   summary={"following": following, "empty": filled.empty},
+                   pencil=pencil, reading=reading, scales=dict(filled.factors))
+    return Report(_text(judged, filled), tree, notes=notes, story=_story(title, judged, filled, notes, pictures),
+                  findings=found_all, start=start)
 
 
 # --- text ------------------------------------------------------------------------------------------------------------------
@@ -140,8 +147,11 @@ def _deviation(j: JudgedValue) -> str:
     return text if x <= 0 else f"+{text}"
 
 
-def _place(j: JudgedValue) -> str:
-    return f"{j.entry.title}, {j.row}"
+def _place(j: JudgedValue, more: int = 0) -> Remark:
+    """Where a number stands; without its position if that is one of several."""
+    e = j.entry
+    row = "{title}, ({position}) {quantity}" if e.label and not more else "{title}, {quantity}"
+    return Remark("", row, (("title", e.title), ("position", Own(e.label)), ("quantity", e.quantity)))
 
 
 def _story(title: str, judged: list[JudgedValue], filled: measured_file.Filled, notes: tuple[str, ...],
@@ -212,7 +222,7 @@ def _mistakes(judged: list[JudgedValue], pictures: PlanPictures | None = None) -
             some = ", ".join(f.row for f in after[:6]) + (" ..." if len(after) > 6 else "")
             said = tell_n("{n} follows from it: {numbers}", "{n} follow from it: {numbers}", len(after))
             details.append(said.format(n=len(after), numbers=some))
-        yield story.ToldMistake(_place(j), _remark(j).said(), j.verdict, tuple(details),
+        yield story.ToldMistake(_place(j).said(), _remark(j).said(), j.verdict, tuple(details),
                             pictures.picture(j) if pictures is not None else None)
 
 
@@ -244,12 +254,6 @@ def _remark(j: JudgedValue) -> Remark:
     return joined((number, _begins(j), j.noted), "; ") or number
 
 
-def _step(j: JudgedValue) -> str | None:
-    """Name of the step that was done wrong."""
-    step = j.wrong[0].step if j.wrong else j.mistake.step if j.mistake is not None else None
-    return None if step is None else step.name
-
-
 def _sentence(mistake: Mistake) -> str:
     """The step to be done again, as the protocol says it."""
     mu = mistake.mu
@@ -272,39 +276,52 @@ def _off(j: JudgedValue) -> float | None:
     return None if m is None or not m.mu or m.step.rule.gives not in ("point", "vector") else abs(complex(*m.moved)) / m.mu
 
 
-# --- tree ------------------------------------------------------------------------------------------------------------------
+# --- what is listed --------------------------------------------------------------------------------------------------------
 
 
-def _tree(name: str, judged: list[JudgedValue], filled: measured_file.Filled, pencil: float, reading: float) -> dict[str, Any]:
-    own = [j for j in judged if j.follows is None]
-    first = {id(j): some[0] for some in _grouped(judged) for j in some}
+def records(judged: list[JudgedValue]) -> tuple[list[FindingRecord], list[FindingRecord]]:
+    """What is listed: a finding for each number, and those of them where chains of errors start, in the order of drawing.
 
-    def said(j: JudgedValue) -> str:
-        if j.wrong:
-            return j.wrong[0].said()
-        alike = [other for other in own if other.starts and first[id(other)] is j]
-        told_ = _everywhere(alike) if len(alike) > 1 else None
-        return f"{told_.where}: {told_.what}" if told_ is not None else f"{_place(j)}: {_remark(j).said()}"
+    What nothing explains at several positions alike is one mistake: the others follow the first of them.
+    """
+    made: dict[int, FindingRecord] = {}
 
-    return {
-        "project": name,
-        "pencil": pencil,
-        "reading": reading,
-        "scales": dict(filled.factors),
-        "summary": {**{v: sum(j.verdict == v for j in own) for v in ("green", "amber", "red")},
-                    "following": len(judged) - len(own), "empty": filled.empty},
-        "another": _advice(judged)[0] if _too_many(judged) else None,
-        "starts": [{"id": j.entry.id, "why": _remark(j).said(), "step": _step(j),
-                    "said": said(j), "same_as": None if first[id(j)] is j else first[id(j)].entry.id,
-                    "kind": j.wrong[0].kind if j.wrong else None,
-                    "or": list(dict.fromkeys(words for h in j.wrong[1:] if (words := h.said()) != j.wrong[0].said())),
-                    "off_mm": _off(j), "followers": [f.entry.id for f in judged if f.follows is j]}
-                   for j in sorted(judged, key=lambda j: j.order) if j.starts],
-        "numbers": [{
-            "id": j.entry.id, "plan": j.entry.plan, "position": j.entry.label, "quantity": j.entry.quantity,
-            "unit": said_unit(j.entry.unit),
-            "line": j.line.line, "exact": j.exact, "measured": j.line.value, "deviation": j.deviation, "percent": j.percent,
-            "tolerance": j.tolerance if isfinite(j.tolerance) else None, "verdict": j.verdict, "starts": j.starts,
-            "follows": j.follows.entry.id if j.follows is not None else None, "remark": j.remark,
-        } for j in judged],
-    }
+    def of(j: JudgedValue) -> FindingRecord:
+        if id(j) not in made:
+            first = of(j.follows) if j.follows is not None else None
+            made[id(j)] = _record(j, first and (first.follows or first))
+        return made[id(j)]
+
+    start = []
+    for j, *more in _grouped(judged):
+        first = _record(j, None, len(more))
+        start.append(first)
+        made |= {id(j): first} | {id(other): _record(other, first) for other in more}
+    another = [FindingRecord(codes.ANOTHER_MECHANISM(), "red")] if _too_many(judged) else []
+    return [*another, *map(of, judged)], [*another, *start]
+
+
+def _record(j: JudgedValue, follows: FindingRecord | None, more: int = 0) -> FindingRecord:
+    """What is listed of a number; of one that is off at ``more`` positions too that, in its step where it was done wrong."""
+    e, step, h = j.entry, _step(j), j.wrong[0] if j.wrong else None
+    remark = (_remark(j) if j.starts or j.verdict != "green" else j.noted) or codes.IN_REACH()
+    brief = codes.THROUGHOUT(n=Number(str(more + 1))) if more else h.remark if h is not None else None
+    on_paper, off = e.kind == "length", _off(j)
+    beside = {"row": e.id, "quantity": e.quantity, "unit": e.unit, "line": j.line.line, "deviation": j.deviation,
+              "percent": j.percent, "tolerance": j.tolerance if isfinite(j.tolerance) and not on_paper else None,
+              "kind": h.kind if h is not None else None, "mistake": h.words if h is not None else None, "off_mm": off}
+    return FindingRecord(
+        brief if more and brief is not None else remark, j.verdict if isfinite(j.tolerance) else "not-judged", e.title,
+        step.plan if step is not None and step.plan else e.plan, step.path if step is not None else "", e.label,
+        shift=complex(*j.mistake.moved) / j.mistake.mu if j.mistake is not None and off is not None else None,
+        tolerance=j.tolerance if on_paper else None, measured=j.line.value, expected=j.exact, follows=follows, beside=beside,
+        where=None if h is not None else _place(j, more), brief=brief)
+
+
+def _step(j: JudgedValue) -> Step | None:
+    """The step that was done wrong, of other numbers the one they are measured on; None where that is no one."""
+    if j.wrong:
+        return j.wrong[0].step
+    if j.mistake is not None:
+        return j.mistake.step
+    return j.entry.terms[-1][0] if j.entry.terms else None

@@ -160,7 +160,7 @@ def _judged(f: PhotoFinding | None, first: PhotoFinding, found: Rectified, penci
     if f is None:
         tolerance = pencil + found.uncertainty
         return PhotoFinding(was, verdict(was.length, tolerance), was.length, codes.VANISHED(), was.middle,
-                            InkTrace(was, "small"), tolerance)
+                            InkTrace(was, "small"), tolerance, follows=True)
     now, f = f.element, replace(f, element=was)
     off = float(np.abs(now.points - was.points).max()) if len(now.points) == len(was.points) else 0.0
     if off <= f.tolerance or was.kind == "text" or f.trace.status not in ("measured", "shared", "missing", "beside") or f.unknown:
@@ -175,7 +175,8 @@ def _judged(f: PhotoFinding | None, first: PhotoFinding, found: Rectified, penci
     colour = verdict(deviation, f.tolerance)
     if first.verdict == "green" and first.trace.status == "measured" and not _told(f, now.points) and colour == "red":
         colour = "amber"
-    return replace(f, verdict=colour, deviation=deviation, remark=remark, at=was.middle if beyond else f.at)
+    return replace(f, verdict=colour, deviation=deviation, remark=remark, at=was.middle if beyond else f.at,
+                   follows=f.verdict == "green")
 
 
 def inked(ink: Any, line: Points, level: float, hidden: Mask | None = None) -> float:

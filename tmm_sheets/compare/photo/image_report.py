@@ -8,7 +8,6 @@ from concurrent.futures import ThreadPoolExecutor
 from contextvars import copy_context
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import degrees
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -16,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
+from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built
 from tmm_sheets.compare.elements import ElementView, dashed
-from tmm_sheets.compare.findings import called, origin, table
+from tmm_sheets.compare.findings import FindingRecord, as_tree, called, of_element, point, table
 from tmm_sheets.compare.photo import image_story, overlay
 from tmm_sheets.compare.photo.finding_clusters import FindingCluster, places
 from tmm_sheets.compare.photo.judging import SOFT_TOLERANCE, PhotoFinding
@@ -26,7 +25,7 @@ from tmm_sheets.compare.photo.numbers_read import Readings
 from tmm_sheets.compare.photo.occlusion import Mask
 from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.photo.sheet_map import PAPER
-from tmm_sheets.compare.photo.traces import ExtraInk
+from tmm_sheets.compare.photo.traces import ExtraInk, InkTrace
 from tmm_sheets.compare.report import Report, said_verdict
 from tmm_sheets.compare.story import Story, StoryTable, listed
 from tmm_sheets.numbers import told
@@ -113,20 +112,18 @@ def image_report(
     hidden, extra_places = _hidden(judged), _extra(judged)
     lines = [summary, *filter(None, ["; ".join((*hidden, *extra_places))]), tolerance, "", *listed(mistakes),
              *([*table(head, rows), ""] if rows else []), *unread]
-    tree = {
-        "project": name, "sheet": n, "image": path.name, "pixels_per_mm": round(found.scale, 2), "matched": round(found.match, 3),
-        "tolerance": round(pencil + found.uncertainty + soft, 3), **_tree(judged),
-        "built": [{"view": v.name, "what": b.said(), "explained": b.explained()} for v, b in built.items()], "notes": list(notes),
-        "bulging": boxes(found.bulging),
-        **({"numbers": readings.tree} if readings else {}),
-    }  # fmt: skip
+    records, start = _records(judged, built)
+    tree = as_tree(
+        "photo", name, n, records, start, _unclaimed(judged), image=path.name, pixels_per_mm=round(found.scale, 2),
+        matched=round(found.match, 3), tolerance=round(pencil + found.uncertainty + soft, 3), count=_count(judged),
+        notes=list(notes), bulging=boxes(found.bulging), **({"numbers_read": readings.tree} if readings else {}))
     title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=n, file=path.name)
     files = {f"compare_sheet_{n}.{suffix}": data for suffix, data in _overlays(found, judged, title).items()}
     verdicts = [str(p.verdict) for p in judged.places]
     tables = (StoryTable(tell("Everything that is off"), head, tuple(rows), tuple(verdicts)),) if rows else ()
     story = Story(title, (summary, *extra_places, tolerance, *notes), mistakes,
                   tables, (*hidden, *unread))
-    return Report("\n".join(lines), tree, files, notes, story)
+    return Report("\n".join(lines), tree, files, notes, story, records, start)
 
 
 def boxes(places: Mask) -> list[list[int]]:
@@ -202,20 +199,47 @@ def _rows(judged: _Judged) -> list[tuple[str, ...]]:
     return out
 
 
-def _tree(judged: _Judged) -> dict[str, Any]:
-    """What JSON tells of the elements and of extra ink."""
+def _records(judged: _Judged, built: Mapping[ElementView, BuiltPlan]) -> tuple[list[FindingRecord], list[FindingRecord]]:
+    """What is listed: plans that were built on mistakes, the elements; and where it starts."""
+    mistakes = of_built(built)
     told = ("measured", "shared", "beside", "covered", "missing", "dense", "part of lettering", "absent lettering", "hidden",
             "eaten")
-    measured = sum(f.trace.status == "measured" for f in judged.findings)
-    return {
-        "count": {**judged.count, "dense": len(judged.dense), "hidden": len(judged.hidden), "hidden_ends": judged.hidden_ends,
-                  "eaten": sum(f.trace.status == "eaten" for f in judged.findings),
-                  "measured": measured},
-        "elements": [_row(f) | {"place": judged.number.get(f.element.number)} for f in judged.findings
-                     if f.trace.status in told or f.verdict != "green"],
-        "extra": [{"x": round(x.middle.real, 1), "y": round(x.middle.imag, 1), "width": round(float(x.width), 1),
-                   "height": round(float(x.height), 1), "place": p.number} for p in judged.places for x in (*p.own, *p.ink)],
-    }  # fmt: skip
+    elements = [_record(f, judged.number.get(f.element.number), mistakes.get(f.element.view) if f.follows else None)
+                for f in judged.findings if f.trace.status in told or f.verdict != "green"]
+    return [*mistakes.values(), *elements], [r for r in mistakes.values() if r.follows is None]
+
+
+def _record(f: PhotoFinding, number: int | None, mistake: FindingRecord | None) -> FindingRecord:
+    """What is listed of an element; ``number`` is that of its place."""
+    t, e = f.trace, f.element
+    ends = [round(float(x), 2) if np.isfinite(x) else None for x in t.ends]
+    measured = t.status in ("measured", "shared", "beside") or (e.kind == "text" and t.at is not None)
+    beside = {"status": t.status, "place": number, "middle_mm": point(e.middle), "ends_mm": ends if any(ends) else None}
+    return of_element(f, f.outcome, shift=t.shift if measured else None, turn=t.turn if measured else None,
+                      growth=_growth(t) if measured else None, tolerance=f.tolerance,
+                      follows=mistake and (mistake.follows or mistake), beside=beside)
+
+
+def _growth(t: InkTrace) -> float | None:
+    """By what share of itself an element is too large: a line by its ends."""
+    e = t.element
+    if e.kind == "line":
+        return sum(t.ends) / e.length if e.length and np.isfinite(t.ends).all() else None
+    half = e.radius or float(np.abs(e.points - e.points.mean()).max())
+    return t.growth / half if half else None
+
+
+def _unclaimed(judged: _Judged) -> list[dict[str, Any]]:
+    """Ink that belongs to no element."""
+    return [{"kind": "ink", "length_mm": round(x.length, 1), "at_mm": point(x.middle), "width_mm": round(float(x.width), 1),
+             "height_mm": round(float(x.height), 1), "place": p.number} for p in judged.places for x in (*p.own, *p.ink)]
+
+
+def _count(judged: _Judged) -> dict[str, int]:
+    """How many elements were judged, and why the others were not."""
+    status = Counter(f.trace.status for f in judged.findings)
+    return {**judged.count, "dense": len(judged.dense), "hidden": len(judged.hidden), "hidden_ends": judged.hidden_ends,
+            "eaten": status["eaten"], "measured": status["measured"]}
 
 
 def _overlays(found: Rectified, judged: _Judged, title: str) -> dict[str, bytes]:
@@ -227,16 +251,3 @@ def _overlays(found: Rectified, judged: _Judged, title: str) -> dict[str, bytes]
         drawn = aside.submit(copy_context().run, overlay.png, found.ink, found.level, exact, flags)
         page = overlay.pdf(found.ink, found.level, exact, flags, title)
         return {"png": drawn.result(), "pdf": page}
-
-
-def _row(f: PhotoFinding) -> dict[str, Any]:
-    """A finding for JSON, null where nothing was measured."""
-    t, middle = f.trace, f.element.middle
-    ends = [round(float(x), 2) if np.isfinite(x) else None for x in t.ends]
-    measured = t.status in ("measured", "shared", "beside") or (t.element.kind == "text" and t.at is not None)
-    return origin(f.element) | {
-        "middle": [round(middle.real, 1), round(middle.imag, 1)], "status": t.status, "verdict": f.verdict, "said": f.what,
-        "shift": [round(t.shift.real, 2), round(t.shift.imag, 2)] if measured else None,
-        "turn_deg": round(degrees(t.turn), 3) if measured else None, "growth": round(t.growth, 2) if measured else None,
-        "ends": ends, "deviation": round(t.deviation, 2) if measured else None, "tolerance": round(f.tolerance, 2),
-    }  # fmt: skip

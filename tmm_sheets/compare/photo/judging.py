@@ -12,7 +12,7 @@ import numpy as np
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.codes import Number, Remark, joined
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.findings import Finding, millimetres, of_radius, shifted, turned
+from tmm_sheets.compare.findings import Finding, Outcome, millimetres, of_radius, shifted, turned
 from tmm_sheets.compare.photo.black_and_white import LostToThreshold, may_be_lost, whole
 from tmm_sheets.compare.photo.fragmented_lines import HALF
 from tmm_sheets.compare.photo.joints import joint
@@ -52,6 +52,12 @@ class PhotoFinding(Finding):
     def share(self) -> float:
         """Deviation by tolerance."""
         return self.deviation / self.tolerance
+
+    @property
+    def outcome(self) -> Outcome:
+        """The verdict, unless nothing can be told."""
+        untold = self.unknown or self.trace.status in ("hidden", "eaten")
+        return "not-judged" if untold and self.verdict == "green" else self.verdict or "not-judged"
 
     @property
     def unknown(self) -> bool:

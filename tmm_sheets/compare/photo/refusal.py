@@ -14,6 +14,7 @@ from tmm_sheets.compare.photo import overlay
 from tmm_sheets.compare.photo.fit_check import SIDE, SIDES
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Map
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ def _reasons(grey: Any, found: Rectified) -> Iterator[tuple[str, str]]:
     if bent:
         off = tell("most of the frame can be followed, but parts of it lie {by} mm off: the paper is not flat (waves, folds that "
                    "do not lie down), or something else was taken for the frame")
-        yield off.format(by=millimetres(check.rim)), tell(PRESS)
+        yield off.format(by=told(millimetres(check.rim))), tell(PRESS)
     if float(np.median(grey)) < DARK:
         yield tell("there is too little light"), tell("more light, from a window or two lamps, without the flash")
     if _patterned(grey, found.map):
@@ -88,7 +89,7 @@ def _reasons(grey: Any, found: Rectified) -> Iterator[tuple[str, str]]:
                tell("put the sheet on a plain ground that is darker than the paper, nothing under it"))
     if len(check.shifted):
         parts = tell("parts of the sheet lie {by} mm elsewhere, neighbours alike: {n}, circled in the overlay of the attempt")
-        yield parts.format(by=millimetres(check.shift), n=len(check.shifted)), tell(FLAT_OR_PLACED)
+        yield parts.format(by=told(millimetres(check.shift)), n=len(check.shifted)), tell(FLAT_OR_PLACED)
     elif len(check.adrift) and not bent:
         loose = tell("nothing shows where the sheet ends there, and what is drawn nearby lies elsewhere, circled in the overlay "
                      "of the attempt")
