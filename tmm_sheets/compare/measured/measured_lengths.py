@@ -16,6 +16,7 @@ from tmm_sheets.compare.measured import measured_file
 from tmm_sheets.compare.measured.chain import EXACT, MOST, judge
 from tmm_sheets.compare.measured.collecting import measurables
 from tmm_sheets.compare.measured.judged import JudgedValue, Mistake
+from tmm_sheets.compare.measured.measurable import RESULTS
 from tmm_sheets.compare.measured.measured_units import said as said_unit
 from tmm_sheets.compare.measured.plan_pictures import PlanPictures
 from tmm_sheets.compare.report import Report, said_verdict
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 
 SEVERAL = 3
 """From so many positions on at which a quantity is off without a reason it is told once."""
+IN_NO_VIEW = frozenset({RESULTS, "arms"})
+"""Groups of rows that stand under a heading of the file, in no view of the sheet."""
 NAME = "measured.csv"
 """File name of the template."""
 
@@ -311,8 +314,9 @@ def _record(j: JudgedValue, follows: FindingRecord | None, more: int = 0) -> Fin
               "percent": j.percent, "tolerance": j.tolerance if isfinite(j.tolerance) and not on_paper else None,
               "kind": h.kind if h is not None else None, "mistake": h.words if h is not None else None, "off_mm": off}
     return FindingRecord(
-        brief if more and brief is not None else remark, j.verdict if isfinite(j.tolerance) else "not-judged", e.title,
-        step.plan if step is not None and step.plan else e.plan, step.path if step is not None else "", e.label,
+        brief if more and brief is not None else remark, j.verdict if isfinite(j.tolerance) else "not-judged",
+        "" if e.plan in IN_NO_VIEW else e.title, step.plan if step is not None and step.plan else e.plan,
+        step.path if step is not None else "", e.label,
         shift=complex(*j.mistake.moved) / j.mistake.mu if j.mistake is not None and off is not None else None,
         tolerance=j.tolerance if on_paper else None, measured=j.line.value, expected=j.exact, follows=follows, beside=beside,
         where=None if h is not None else _place(j, more), brief=brief)
