@@ -53,7 +53,7 @@ RULES = {
     "compare.report_pages": ("compare", ""),
     "compare.group": ("compare", "project"),
     "compare.diagnosis": ("compare construction drawing", "project"),
-    "compare.diagnosis.hypotheses": ("compare.diagnosis construction methods.linkage", ""),
+    "compare.diagnosis.hypotheses": ("compare.codes compare.diagnosis construction methods.linkage", ""),
     "compare.diagnosis.replay": ("construction", ""),
     "compare.measured": (f"catalogue compare construction drawing sheets {METHODS}", "project"),
     "compare.cad": ("backends compare construction drawing sheets", "project"),

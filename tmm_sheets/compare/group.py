@@ -19,7 +19,7 @@ from unicodedata import normalize
 
 from tmm_sheets import encodings, files
 from tmm_sheets.compare.codes import Remark
-from tmm_sheets.compare.findings import FindingRecord
+from tmm_sheets.compare.finding_records import FindingRecord
 from tmm_sheets.compare.known_sheet import sheet_numbers
 from tmm_sheets.compare.marking import KINDS, MarkingScheme
 from tmm_sheets.compare.report import Report

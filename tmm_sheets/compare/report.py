@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
-    from tmm_sheets.compare.findings import FindingRecord
+    from tmm_sheets.compare.finding_records import FindingRecord
     from tmm_sheets.compare.story import Story
 
 Verdict = Literal["green", "amber", "red"]

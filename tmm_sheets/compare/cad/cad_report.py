@@ -21,7 +21,8 @@ from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built
 from tmm_sheets.compare.diagnosis.hypotheses import built_otherwise
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.findings import FindingRecord, as_tree, called, of_element, place, point, table, worst
+from tmm_sheets.compare.finding_records import FindingRecord, as_tree, point
+from tmm_sheets.compare.findings import called, of_element, place, table, worst
 from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.compare.report import Report, said_verdict
 from tmm_sheets.numbers import told

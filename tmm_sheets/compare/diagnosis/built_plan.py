@@ -22,7 +22,8 @@ from tmm_sheets.compare.diagnosis.drawn_senses import acting
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, any_of, hypotheses
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, of_position, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
-from tmm_sheets.compare.findings import FindingRecord, millimetres
+from tmm_sheets.compare.finding_records import FindingRecord
+from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import KnownSheet, plans_of
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.plan import Plan

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from tmm_sheets.compare import codes, story
 from tmm_sheets.compare.codes import Number, Own, Remark, joined
 from tmm_sheets.compare.diagnosis.hypotheses import any_of
-from tmm_sheets.compare.findings import FindingRecord, as_tree
+from tmm_sheets.compare.finding_records import FindingRecord, as_tree
 from tmm_sheets.compare.measured import measured_file
 from tmm_sheets.compare.measured.chain import EXACT, MOST, judge
 from tmm_sheets.compare.measured.collecting import measurables

@@ -17,7 +17,8 @@ import numpy as np
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built
 from tmm_sheets.compare.elements import ElementView, dashed
-from tmm_sheets.compare.findings import FindingRecord, as_tree, called, of_element, point, table
+from tmm_sheets.compare.finding_records import FindingRecord, as_tree, point
+from tmm_sheets.compare.findings import called, of_element, table
 from tmm_sheets.compare.photo import image_story, overlay
 from tmm_sheets.compare.photo.finding_clusters import FindingCluster, places
 from tmm_sheets.compare.photo.judging import SOFT_TOLERANCE, PhotoFinding

@@ -12,7 +12,8 @@ import numpy as np
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.codes import Number, Remark, joined
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.findings import Finding, Outcome, millimetres, of_radius, shifted, turned
+from tmm_sheets.compare.finding_records import Outcome
+from tmm_sheets.compare.findings import Finding, millimetres, of_radius, shifted, turned
 from tmm_sheets.compare.photo.black_and_white import LostToThreshold, may_be_lost, whole
 from tmm_sheets.compare.photo.fragmented_lines import HALF
 from tmm_sheets.compare.photo.joints import joint
