@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from tmm_sheets.box import Box
-from tmm_sheets.drawing import axis_numbers
+from tmm_sheets.drawing import axis_numbers, yielding
 from tmm_sheets.drawing.canvas import Canvas, Part
 from tmm_sheets.drawing.crowded import Crowded, Shortened
 from tmm_sheets.drawing.labels import Grid, set_labels
@@ -72,6 +72,7 @@ def composed(project: Project, n: int) -> Composed:
         from tmm_sheets.drawing import notes
 
         crowded += notes.set_notes(canvas, grid)
+    yielding.interrupt(canvas)
     title = f"{fields['project']}. {fields['title']}"
     drawing = Drawing(
         WIDTH, HEIGHT, title, tuple(canvas.marks), project.variant.title_block.student or "tmm_sheets",

@@ -22,7 +22,7 @@ from tmm_sheets.compare.cad.cad_comparison import JOINT, Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.overlaps import Numbers, gaps, left, overlaps, union
-from tmm_sheets.compare.elements import Element, ElementView
+from tmm_sheets.compare.elements import Element, ElementView, interruptions
 from tmm_sheets.compare.links import links
 from tmm_sheets.compare.placing import BESIDE, Placing, symbol
 from tmm_sheets.drawing.styles import line_type
@@ -108,7 +108,7 @@ def _right(state: Comparison) -> None:
             continue
         p, q = bounds[n], bounds[n + 1]
         e, whole = state.elements[n], state.whole(n)
-        parts = union(zip(s0[p:q].tolist(), s1[p:q].tolist(), strict=True), state.gap(e))
+        parts = union([*zip(s0[p:q].tolist(), s1[p:q].tolist(), strict=True), *interruptions(e)], state.gap(e))
         if parts and all(b - a <= state.tolerance + 1e-9 for a, b in gaps(parts, whole)):
             # Between the dashes only ink of other elements can lie.
             nearest = _nearest(s0[p:q], s1[p:q], off[p:q], whole)
