@@ -9,6 +9,7 @@ from math import cos, degrees, sin
 
 from tmm_sheets.backends.dxf_entities import entity, flat, head, letter_strokes, place, short
 from tmm_sheets.backends.dxf_frame import DIMENSION_STYLE, LETTERS, STYLE, DxfFrame, SheetParts, weight
+from tmm_sheets.drawing.dashes import interrupted
 from tmm_sheets.drawing.layers import layer
 from tmm_sheets.drawing.lettering import BAR, PEN, advance, glyph, lacking, letter
 from tmm_sheets.drawing.marks import Dimension, Drawing, Form, FormField, Mark, Text
@@ -63,8 +64,10 @@ class LiveSheet:
             if isinstance(mark, Text):
                 made += self._text(mark, owner, on.name)
             else:
-                handle = next(self.handles)
-                made.append((handle, entity(mark, handle, owner, on.name, dashed=bool(line_type(mark.style).pattern))))
+                for piece in interrupted(mark):
+                    assert not isinstance(piece, Text)
+                    handle = next(self.handles)
+                    made.append((handle, entity(piece, handle, owner, on.name, dashed=bool(line_type(mark.style).pattern))))
         return made
 
     def _text(self, mark: Text, owner: str, on: str) -> Iterator[tuple[int, str]]:

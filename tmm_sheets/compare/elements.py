@@ -35,8 +35,6 @@ Kind = Literal["line", "arc", "circle", "curve", "text", "hatch", "fill"]
 
 STRAIGHT = 0.01
 """Points within this distance of a chord, mm, are on a straight line."""
-LETTERED = 15.0
-"""Lettering that a circle begins and ends at is no longer than this, mm."""
 SAGITTA = 0.005
 """Sagitta of the chords by which ``points`` approximates an arc, mm."""
 
@@ -177,22 +175,10 @@ def dashed(element: Element) -> tuple[Points, ...]:
     return tuple(_line(m) for m in dashes.strokes(element.marks) if not isinstance(m, Fill | Text))
 
 
-def interruptions(e: Element) -> list[tuple[float, float]]:
-    """Stretches of an element's line, mm from its beginning, at which the sheet itself interrupts it, behind lettering."""
-    ink = [m for m in e.marks if isinstance(m, Line | Arc | Polyline)]
-    if len(ink) < 2 or e.kind not in ("line", "arc", "circle", "curve"):
-        return []
-    if e.kind == "line":
-        u = (e.points[-1] - e.points[0]) / max(e.length, 1e-9)
-        spans = [sorted(((_line(m)[[0, -1]] - e.points[0]) * u.conjugate()).real) for m in ink]
-    elif e.kind == "curve":
-        ends = np.cumsum([len(_line(m)) for m in ink])
-        run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(e.points)))))
-        spans = [[run[b - len(_line(m))], run[b - 1]] for m, b in zip(ink, ends, strict=True)]
-    else:
-        spans = [[(m.start - e.start) * e.radius, (m.end - e.start) * e.radius] for m in ink if isinstance(m, Arc)]
-    borders = [0.0, *(float(x) for span in sorted(spans) for x in span), e.length]
-    return [(a, b) for a, b in zip(borders[::2], borders[1::2], strict=True) if b > a]
+def interruptions(e: Element) -> tuple[tuple[float, float], ...]:
+    """Shares of the length of an element's line at which the sheet itself interrupts it, behind lettering."""
+    ink = [m for m in e.marks if not isinstance(m, Fill | Text)]
+    return ink[0].gaps if len(ink) == 1 else ()
 
 
 def said(markup: str) -> str:
@@ -297,9 +283,7 @@ def _drawn(
     """A line, arc or curve with its heads. Of several strokes (the arrows outside a short dimension) all lie on one line."""
     mark = lines[0]
     if isinstance(mark, Arc):
-        mark = mark._replace(end=lines[-1].end) if isinstance(lines[-1], Arc) else mark  # interrupted behind lettering
-        full = 2 * pi - (mark.end - mark.start) < (LETTERED / mark.radius if len(lines) > 1 else 1e-9)
-        mark = mark._replace(start=0.0, end=2 * pi) if full else mark
+        full = mark.end - mark.start > 2 * pi - 1e-9
         return Element(number, view, "", "circle" if full else "arc", _line(mark), mark.style, mark.centre, mark.radius,
                        mark.start, mark.end, fills=fills, marks=marks)
     points = np.concatenate([_line(m) for m in lines])

@@ -126,7 +126,7 @@ class MarkGroup(NamedTuple):
     ``text`` is the markup of lettering; ``part`` and ``anchor`` are those of a label, set when all views were drawn.
     """
 
-    kind: Literal["arrow", "dot", "hatch", "lettering", "line"]
+    kind: Literal["arrow", "dot", "hatch", "lettering"]
     first: int
     end: int
     text: str = ""
@@ -228,7 +228,7 @@ class Canvas:
         self.frames.append(PlacedFrame(len(self.parts) - 1, plan, position, complex(origin), both, turn, mirror))
         return len(self.frames) - 1
 
-    def _one(self, kind: Literal["arrow", "dot", "hatch", "lettering", "line"], first: int, text: str = "") -> None:
+    def _one(self, kind: Literal["arrow", "dot", "hatch", "lettering"], first: int, text: str = "") -> None:
         if len(self.marks) > first:
             self.groups.append(MarkGroup(kind, first, len(self.marks), text))
 

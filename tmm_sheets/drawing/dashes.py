@@ -8,11 +8,12 @@ GOST 2.303 asks, and a PDF, a DXF in any program and a plotter show the same str
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import chain
 from math import inf, pi
 
 import numpy as np
 
-from tmm_sheets.drawing.marks import Arc, Line, Mark, Points, Polyline
+from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Text
 from tmm_sheets.drawing.styles import line_type
 
 LEAST = 0.32  # a long stroke may shrink to this share of its nominal length (5 of 16 mm; GOST 2.303: 5 .. 30) ...
@@ -65,9 +66,33 @@ def _along(points: Points, pattern: tuple[float, ...], closed: bool) -> Iterator
         yield np.concatenate((ends[:1], inner, ends[1:]))
 
 
+def interrupted(mark: Mark) -> list[Mark]:
+    """The pieces of a line that lettering interrupts; any other mark as it is."""
+    if isinstance(mark, Text | Fill) or not mark.gaps:
+        return [mark]
+    borders = [0.0, *(border for gap in mark.gaps for border in gap), 1.0]
+    pieces = [(a, b) for a, b in zip(borders[::2], borders[1::2], strict=True) if b > a]
+    whole = mark._replace(gaps=())
+    if isinstance(whole, Line):
+        d = whole.b - whole.a
+        return [whole._replace(a=whole.a + d * a, b=whole.a + d * b) for a, b in pieces]
+    if isinstance(whole, Arc):
+        turn = whole.end - whole.start
+        return [whole._replace(start=whole.start + turn * a, end=whole.start + turn * b) for a, b in pieces]
+    points = np.append(whole.points, whole.points[:1]) if whole.closed else whole.points
+    run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(points)))))
+    out: list[Mark] = []
+    for a, b in pieces:
+        s = np.array([a, b]) * run[-1]
+        ends = np.interp(s, run, points.real) + 1j * np.interp(s, run, points.imag)
+        inner = points[(run > s[0]) & (run < s[1])]
+        out.append(whole._replace(points=np.concatenate((ends[:1], inner, ends[1:])), closed=False))
+    return out
+
+
 def strokes(marks: Iterable[Mark]) -> Iterator[Mark]:
-    """The marks with every line of a patterned type replaced by its separate strokes."""
-    for mark in marks:
+    """The marks with every line of a patterned type, or interrupted behind lettering, replaced by its separate strokes."""
+    for mark in chain.from_iterable(map(interrupted, marks)):
         if not isinstance(mark, Line | Arc | Polyline) or not (pattern := line_type(mark.style).pattern):
             yield mark
         elif isinstance(mark, Line):

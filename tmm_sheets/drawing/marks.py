@@ -58,17 +58,21 @@ class PlacedFrame(NamedTuple):
 
 
 class Line(NamedTuple):
-    """A straight stroke."""
+    """A straight stroke; ``gaps`` are the shares of its length, from where to where, at which lettering interrupts it."""
 
     a: complex
     b: complex
     style: str
     of: str = ""
     by: Provenance | None = None
+    gaps: tuple[tuple[float, float], ...] = ()
 
 
 class Arc(NamedTuple):
-    """A circular arc from angle ``start`` counter-clockwise to ``end`` (rad); a full circle when they differ by 2 pi."""
+    """A circular arc from angle ``start`` counter-clockwise to ``end`` (rad); a full circle when they differ by 2 pi.
+
+    ``gaps`` as those of a line.
+    """
 
     centre: complex
     radius: float
@@ -77,6 +81,7 @@ class Arc(NamedTuple):
     style: str
     of: str = ""
     by: Provenance | None = None
+    gaps: tuple[tuple[float, float], ...] = ()
 
 
 class Polyline(NamedTuple):
@@ -87,6 +92,7 @@ class Polyline(NamedTuple):
     closed: bool = False
     of: str = ""
     by: Provenance | None = None
+    gaps: tuple[tuple[float, float], ...] = ()
 
 
 class Text(NamedTuple):

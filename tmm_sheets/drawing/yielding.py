@@ -1,20 +1,20 @@
 """Thin lines yield to letters: they are interrupted where lettering stands on them, whatever was drawn first.
 
-A line in pieces stays one thing to whoever reads the sheet again: its pieces are a group of marks.
+The line itself stays whole, with its gaps: outputs draw what is between them (:func:`~tmm_sheets.drawing.dashes.strokes`), and
+whoever reads the sheet again finds the line that was constructed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
-from itertools import pairwise
-from math import pi, sqrt
+from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.drawing.canvas import Canvas, MarkGroup
+from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import strokes
 from tmm_sheets.drawing.marks import Arc, Line, Mark, Points, Polyline, Text, flat
 from tmm_sheets.drawing.styles import line_type
@@ -47,55 +47,42 @@ class _Letters(NamedTuple):
 
 
 def interrupt(canvas: Canvas) -> None:
-    """Interrupt the thin lines of a canvas behind its lettering; all that counts its marks is told their new numbers."""
+    """Interrupt the thin lines of a canvas behind its lettering."""
     letters = _letters([mark for mark in canvas.marks if isinstance(mark, Text)])
     if letters is None:
         return
-    pieces = _pieces(canvas.marks, letters)
-    if not pieces:
-        return
-    grouped = np.zeros(len(canvas.marks), bool)
-    for group in canvas.groups:
-        grouped[group.first:group.end] = True
-    marks, number, groups = list[Mark](), np.zeros(len(canvas.marks) + 1, int), list[MarkGroup]()
-    for k, mark in enumerate(canvas.marks):
-        number[k] = len(marks)
-        marks += pieces.get(k, [mark])
-        hatching = isinstance(mark, Line) and mark.style == "hatch"  # its strokes are one thing by their neighbours
-        if len(marks) - number[k] > 1 and not grouped[k] and not hatching:
-            groups.append(MarkGroup("line", int(number[k]), len(marks)))
-    number[-1] = len(marks)
-    canvas.marks[:] = marks
-    canvas.parts[:] = [part._replace(first=int(number[part.first]), headed=int(number[part.headed])) for part in canvas.parts]
-    moved = [group._replace(first=int(number[group.first]), end=int(number[group.end])) for group in canvas.groups]
-    canvas.groups[:] = sorted((*moved, *groups), key=lambda group: group.first)
-    canvas.dimensions[:] = [d._replace(first=int(number[d.first]), end=int(number[d.end])) for d in canvas.dimensions]
-    canvas.forms[:] = [form._replace(first=int(number[form.first]), end=int(number[form.end]), fields=tuple(
-        f._replace(first=int(number[f.first]), end=int(number[f.end])) for f in form.fields)) for form in canvas.forms]
-    canvas.windows = {int(number[k]) for k in canvas.windows}
-
-
-def _pieces(marks: Sequence[Mark], letters: _Letters) -> dict[int, list[Mark]]:
-    """What is left of each line that is interrupted, by its number."""
-    yields = [k for k, mark in enumerate(marks) if isinstance(mark, Line | Arc | Polyline) and line_type(mark.style).width <= THIN
-              and not (mark.by is not None and mark.by.role in STAYS)]
+    yields = [(k, mark) for k, mark in enumerate(canvas.marks) if isinstance(mark, Line | Arc | Polyline)
+              and line_type(mark.style).width <= THIN and not (mark.by is not None and mark.by.role in STAYS)]
     if not yields:
-        return {}
-    lines = [_chords(marks[k]) for k in yields]
-    box = np.array([(z.real.min(), z.imag.min(), z.real.max(), z.imag.max()) for z in lines])
+        return
+    lines = [_chords(mark) for _, mark in yields]
+    z, begin = np.concatenate(lines), np.cumsum([0, *map(len, lines)])[:-1]
     x0, y0, x1, y1 = letters.bounds
-    near = (box[:, :1] <= x1) & (box[:, 2:3] >= x0) & (box[:, 1:2] <= y1) & (box[:, 3:] >= y0)
-    found = {}
+    near = np.ones((len(lines), len(x0)), bool)
+    for v, low, high in ((z.real, x0, x1), (z.imag, y0, y1)):
+        near &= (np.minimum.reduceat(v, begin)[:, None] <= high) & (np.maximum.reduceat(v, begin)[:, None] >= low)
     for i in np.flatnonzero(near.any(axis=1)):
-        run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(lines[i])))))
-        hidden = [stretch for k in np.flatnonzero(near[i]) for stretch in _under(lines[i], run, letters, int(k))]
-        left = _left(hidden, float(run[-1]))
-        if hidden and sum(b - a for a, b in left) >= KEPT * run[-1]:
-            mark = marks[yields[i]]
-            if len(left) == 1 and isinstance(mark, Arc) and mark.end - mark.start > 2 * pi - 1e-9:
-                left = [(left[0][0], 0.5 * run[-1]), (0.5 * run[-1], left[0][1])]  # a circle is told from an arc by its pieces
-            found[yields[i]] = [_piece(mark, lines[i], run, stretch) for stretch in left]
-    return found
+        k, mark = yields[i]
+        gaps = _gaps(lines[i], letters, np.flatnonzero(near[i]))
+        if gaps:
+            canvas.marks[k] = mark._replace(gaps=gaps)
+
+
+def _gaps(line: Points, letters: _Letters, near: Iterable[int]) -> tuple[Stretch, ...]:
+    """Where a line of chords is interrupted, in shares of its length; nowhere if too little of it would be left."""
+    run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(line)))))
+    hidden = sorted(stretch for k in near for stretch in _under(line, run, letters, int(k)))
+    gaps, reached, length = list[Stretch](), 0.0, float(run[-1])
+    for a, b in hidden:
+        if gaps and a - reached < SHOWN:
+            gaps[-1] = gaps[-1][0], max(reached, b)
+        else:
+            gaps.append((0.0 if a < SHOWN else a, b))
+        reached = max(reached, b)
+    if gaps and length - reached < SHOWN:
+        gaps[-1] = gaps[-1][0], length
+    left = length - sum(b - a for a, b in gaps)
+    return tuple((a / length, b / length) for a, b in gaps) if left >= KEPT * length else ()
 
 
 def _chords(mark: Mark) -> Points:
@@ -141,31 +128,3 @@ def _under(line: Points, run: npt.NDArray[np.float64], letters: _Letters, k: int
     length = np.diff(run)
     for i in np.flatnonzero(leave > enter):
         yield float(run[i] + enter[i] * length[i]), float(run[i] + leave[i] * length[i])
-
-
-def _left(hidden: Sequence[Stretch], length: float) -> list[Stretch]:
-    """What remains of a line without some stretches: pieces that can be seen."""
-    borders, reached = [0.0], 0.0
-    for a, b in sorted(hidden):
-        if a > reached:
-            borders += [a, b]
-            reached = b
-        else:
-            reached = max(reached, b)
-            borders[-1] = reached
-    borders.append(length)
-    return [(a, b) for a, b in list(pairwise(borders))[::2] if b - a >= SHOWN]
-
-
-def _piece(mark: Mark, line: Points, run: npt.NDArray[np.float64], stretch: Stretch) -> Mark:
-    """A stretch of a line as a mark of its own."""
-    a, b = stretch
-    length = float(run[-1])
-    if isinstance(mark, Line):
-        return mark._replace(a=mark.a + (mark.b - mark.a) * a / length, b=mark.a + (mark.b - mark.a) * b / length)
-    if isinstance(mark, Arc):
-        turn = (mark.end - mark.start) / length
-        return mark._replace(start=mark.start + turn * a, end=mark.start + turn * b)
-    assert isinstance(mark, Polyline)
-    ends = [complex(np.interp(s, run, line.real), np.interp(s, run, line.imag)) for s in stretch]
-    return mark._replace(points=np.array([ends[0], *line[(run > a) & (run < b)], ends[1]]), closed=False)

@@ -108,7 +108,8 @@ def _right(state: Comparison) -> None:
             continue
         p, q = bounds[n], bounds[n + 1]
         e, whole = state.elements[n], state.whole(n)
-        parts = union([*zip(s0[p:q].tolist(), s1[p:q].tolist(), strict=True), *interruptions(e)], state.gap(e))
+        lettered = [(a * whole, b * whole) for a, b in interruptions(e)]
+        parts = union([*zip(s0[p:q].tolist(), s1[p:q].tolist(), strict=True), *lettered], state.gap(e))
         if parts and all(b - a <= state.tolerance + 1e-9 for a, b in gaps(parts, whole)):
             # Between the dashes only ink of other elements can lie.
             nearest = _nearest(s0[p:q], s1[p:q], off[p:q], whole)
