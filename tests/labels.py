@@ -3,8 +3,9 @@
 Usage: python -m tests.labels [--ciphers N --seed S] [--lang L] [PROJECT ...]; without names all shipped projects.
 
 For every label: its own line or point is nearer than any other and the shortest way there crosses nothing, or it has a leader; it
-covers no line thicker than 0.25 mm. See :mod:`tmm_sheets.drawing.owners`. Leaders that run over lettering or cross each other are
-faults, too; labels so near other lettering on their level that both read as one word are only counted.
+covers no line thicker than 0.25 mm; no line at all runs over ink of letters. See :mod:`tmm_sheets.drawing.owners`.
+Leaders that run over lettering or cross each other are faults, too; labels so near other lettering on their level that both read as
+one word are only counted.
 """
 
 from __future__ import annotations
@@ -22,10 +23,12 @@ from tests.gallery import names
 from tmm_sheets import catalogue
 from tmm_sheets import kept as stored
 from tmm_sheets.drawing import labels as placing
-from tmm_sheets.drawing import owners
+from tmm_sheets.drawing import lettering, owners
 from tmm_sheets.drawing.canvas import Label
+from tmm_sheets.drawing.dashes import strokes
 from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.drawing.yielding import STAYS
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
 from tmm_sheets.words import LANGUAGES, set_paper
@@ -87,7 +90,27 @@ def judged(project, n):
         if what:
             faults.append(Fault(f"{project.variant.project.name} {n}", p.label.of, p.label.text, p.label.anchor, what))
     run_on = sum(_runs_on(p, kept, written) for p in kept)
+    faults += [Fault(f"{project.variant.project.name} {n}", style, text, at, "line over letters")
+               for text, style, at in crossings(composed.drawing)]
     return faults, len(kept), sum(bool(p.leader) for p in kept), run_on
+
+
+def crossings(drawing):
+    """Lines that cross the ink of level letters: what is lettered, the style of the line, and where."""
+    marks = list(strokes(drawing.marks))
+    ink = owners.Ink(marks)
+    found = []
+    for text in marks:
+        drawn = lettering.strokes(text.text, text.height) if isinstance(text, Text) and abs(np.sin(2 * text.angle)) < 0.01 else []
+        if drawn:
+            z = text.at + np.exp(1j * text.angle) * np.concatenate(drawn)
+            box = Box(z.real.min(), z.imag.min(), z.real.max(), z.imag.max())
+            near = ink.near(box, 0.0)
+            over = near[owners.enters(ink.a[near], ink.b[near] - ink.a[near], *box)]
+            lines = {ink.of[k] for k in over}
+            found += [(text.text, ink.marks[k].style, text.at) for k in lines
+                      if not isinstance(ink.marks[k], Text) and not (ink.marks[k].by and ink.marks[k].by.role in STAYS)]
+    return found
 
 
 def _badly_led(p, kept, written):

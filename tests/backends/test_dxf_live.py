@@ -14,6 +14,7 @@ from fontTools.ttLib import TTFont
 from tmm_sheets import catalogue
 from tmm_sheets.backends import dxf
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.dashes import interrupted
 from tmm_sheets.drawing.marks import Arc, Drawing, Form, FormField, Line, Polyline, Text, View
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.drawing.title_block import draw_frame
@@ -104,8 +105,10 @@ def test_lettering_is_as_long_as_in_the_font(sheet):
 
 def test_circles_and_axes_are_whole_and_of_their_line_types():
     drawing, doc = drawing_of(3), opened(dxf.render(drawing_of(3)))
-    dashed = [m for m in drawing.marks if isinstance(m, Line | Arc | Polyline) and line_type(m.style).pattern]
-    assert sum(isinstance(m, Arc) for m in dashed) >= 4
+    whole = [m for m in drawing.marks if isinstance(m, Line | Arc | Polyline) and line_type(m.style).pattern]
+    assert sum(isinstance(m, Arc) for m in whole) >= 4
+    dashed = [piece for m in whole for piece in interrupted(m)]
+    assert len(dashed) <= len(whole) + 10
     own = [e for e in everywhere(doc) if doc.layers.get(e.dxf.layer).dxf.linetype != "Continuous"]
     assert len(own) == len(dashed)
     assert {e.dxf.linetype for e in own} == {"BYLAYER"}

@@ -21,8 +21,8 @@ from tmm_sheets.methods.flywheel.chosen import flywheel
 from tmm_sheets.project import Project
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import composition, mertsalov
+from tmm_sheets.sheets import views as kinds
 from tmm_sheets.sheets.arrangement import arrangement
-from tmm_sheets.sheets.flywheel import TANGENTS
 from tmm_sheets.sheets.sheet import composed
 
 AXIS = 382.0
@@ -170,7 +170,7 @@ def test_check_knows_the_views_that_another_method_cannot_draw(view):
         refused = "belongs to flywheel.method" in str(e)
     except (AttributeError, KeyError):
         refused = False  # it asks the flywheel for what every method has
-    assert refused == (view in TANGENTS)
+    assert refused == (kinds.VIEWS[view].after == "flywheel.with_tangents")
 
 
 @pytest.mark.parametrize(("sheets", "refused"), [(["flywheel"], True), (["press_1"], False), (["press_1", "flywheel"], True)])
