@@ -439,6 +439,50 @@ def _build_many(
 
 
 @commands.command()
+@argument("table", metavar="FILE", type=click.Path(path_type=Path))
+@option("--task", default="", metavar="PROJECT", help="Task of those for whom the table names none, or a machine for its ciphers.")
+@CORRECTED
+@titled
+@option("--format", "formats", default="dxf,pdf", show_default=True, callback=_among(FORMATS),
+        metavar="F,F", help=f"Formats: {', '.join(FORMATS)}.")
+@option("-o", "--output", type=click.Path(path_type=Path), default=Path("out"), show_default=True, metavar="DIR",
+        help="Folder with one for each student.")
+@option("--force", is_flag=True, help="Make again also what has not changed, and overwrite what was changed by hand.")
+@option("--jobs", type=click.IntRange(1), metavar="N", help="Processes for several projects.  [default: all processors]")
+@NO_CACHE
+def roster(table: Path, task: str, corrected: bool, formats: tuple[str, ...], output: Path, force: bool, jobs: int | None) -> None:
+    """Make the work of a whole group: for each student of a CSV FILE sheets, note, living page, a table to fill in."""
+    from tmm_sheets import files
+    from tmm_sheets.output import batch
+    from tmm_sheets.output import roster as rosters
+    from tmm_sheets.output.building import Order
+    from tmm_sheets.progress import Bar
+
+    students = rosters.read(table, task)
+    files.check_folder(output)
+    settings: dict[str, dict[str, Any]] = {"pdf": {"date": files.source_date()}}
+    order = Order((), formats, settings, corrected, force, False, False, words.asked(), words.reader(), kept.used(), _names())
+    works = [batch.Task(s.project, s.folder, s.student, s.group) for s in students]
+    done = {}
+    with Bar(len(works)) as bar:
+        for outcome in batch.carry_out(works, order, output, jobs or batch.processors()):
+            done[outcome.folder] = outcome
+            bar.step(bool(outcome.problem))
+    written, hand = _put(output, rosters.lists(students, done), force)
+    for s in students:
+        for warning in done[s.folder].warnings if s.folder in done else ():
+            click.echo(f"{s.student}: {warning}", err=True)
+    for line in hand:
+        click.echo(line, err=True)
+    click.echo(rosters.told(students, done))
+    for path in written:
+        click.echo(path)
+    failed = [s for s in students if s.folder not in done or done[s.folder].problem]
+    if failed:
+        raise CannotBuild("\n".join(f"{s.student}: {done[s.folder].problem}" for s in failed if s.folder in done))
+
+
+@commands.command()
 @PROJECT
 @CORRECTED
 @option("--json", "target", metavar="FILE", help="Write JSON to FILE, or to standard output for -.")

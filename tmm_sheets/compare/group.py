@@ -2,7 +2,8 @@
 
 A folder in it, or a file that lies in it alone, is a student's; ``projects.toml`` in it says whose project is another one than that
 of the command: ``"Petrenko" = "sixbar/3:2"``. What is compared how follows from the names: ``.dxf`` drawings, ``.csv`` measured
-numbers, ``.jpg``, ``.png``, ``.pdf`` photographs, which say their sheet in their names (``sheet 2.jpg``).
+numbers, ``.jpg``, ``.png``, ``.pdf`` photographs, which say their sheet in their names (``sheet 2.jpg``). What the program itself
+put there (``roster``) and nobody has changed is not handed in.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from tmm_sheets.compare.report_pages import page
 from tmm_sheets.compare.story import Story, StoryTable
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.numbers import told
+from tmm_sheets.output.build_store import untouched
 from tmm_sheets.words import tell, tell_n
 
 if TYPE_CHECKING:
@@ -69,6 +71,18 @@ class Student:
     def mark(self, scheme: MarkingScheme) -> float | None:
         """The mark by a scheme; None where no file could be judged."""
         return scheme.mark(self.faults) if any(not f.refused for f in self.files) else None
+
+    @property
+    def handed_in(self) -> str:
+        """How much of the work can be judged: sheets, and numbers of those that the tables ask for."""
+        judged = [f.report.tree for f in self.files if f.report is not None]
+        sheets = sorted({int(tree["sheet"]) for tree in judged if tree.get("sheet")})
+        tables = [tree for tree in judged if tree.get("source") == "measured"]
+        filled = sum("measured" in finding for tree in tables for finding in tree["findings"])
+        asked = filled + sum(tree["summary"].get("empty", 0) for tree in tables)
+        said = [tell("sheets {numbers}").format(numbers=", ".join(map(str, sheets)))] if sheets else []
+        said += [tell("{n} of {total} numbers").format(n=filled, total=asked)] if tables else []
+        return "; ".join(said) or "–"
 
     @property
     def mistakes(self) -> tuple[str, ...]:
@@ -125,7 +139,7 @@ def _works(folder: Path) -> dict[str, list[Path]]:
             continue  # what operating systems leave in folders and archives
         if path.is_dir() and len(inside.parts) == 1:
             found.setdefault(path.name, [])
-        elif path.is_file() and (len(inside.parts) > 1 or path.suffix.lower() in COMPARED):
+        elif path.is_file() and not untouched(path) and (len(inside.parts) > 1 or path.suffix.lower() in COMPARED):
             found.setdefault(inside.parts[0] if len(inside.parts) > 1 else path.stem, []).append(path)
     if not any(path.suffix.lower() in COMPARED for paths in found.values() for path in paths):
         raise BadInput(Problem(tell("has nothing to compare"), str(folder),
@@ -234,13 +248,13 @@ def _report(folder: Path, students: Sequence[Student], scheme: MarkingScheme | N
 
 
 def _tables(students: Sequence[Student], scheme: MarkingScheme | None) -> Iterator[StoryTable]:
-    head = [tell("student"), tell("project"), tell("files"), *_kinds()]
+    head = [tell("student"), tell("project"), tell("files"), tell("handed in"), *_kinds()]
     if scheme is not None:
         head += [tell("mark"), *([tell("grade")] if scheme.grades else [])]
     rows = []
     for s in students:
         faults = s.faults
-        row = [s.name, s.project, str(len(s.files)), *(str(faults[kind]) for kind in KINDS)]
+        row = [s.name, s.project, str(len(s.files)), s.handed_in, *(str(faults[kind]) for kind in KINDS)]
         if scheme is not None:
             mark = s.mark(scheme)
             row += ["–" if mark is None else told(f"{mark:.4g}"), *([scheme.grade(mark) if mark is not None else "–"]
@@ -305,7 +319,8 @@ def _tree(students: Sequence[Student], scheme: MarkingScheme | None) -> dict[str
         return {"mark": mark, "grade": None if mark is None else scheme.grade(mark) or None, "costs": costs}
 
     return {
-        "students": [{"student": s.name, "project": s.project, "faults": s.faults, "mistakes": list(s.mistakes), **marked(s),
+        "students": [{"student": s.name, "project": s.project, "handed_in": s.handed_in, "faults": s.faults,
+                      "mistakes": list(s.mistakes), **marked(s),
                       "files": [{"file": f.file, "faults": dict(f.faults), "mistakes": [m.told.said() for m in f.mistakes],
                                  "refused": f.refused or None} for f in s.files]} for s in students],
         "most_made": [{"mistake": m, "students": n} for m, n in _most_made(students)],

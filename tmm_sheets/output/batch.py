@@ -17,7 +17,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from contextvars import copy_context
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count as count_up
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -25,7 +25,9 @@ from typing import Any, NamedTuple
 
 from tmm_sheets import catalogue, files, kept, quoting, spelling, words
 from tmm_sheets.errors import BadInput, CannotBuild, Stopped, reason_of
+from tmm_sheets.output import handouts
 from tmm_sheets.output.building import Order, build, folder_name
+from tmm_sheets.task.title_entries import Names
 from tmm_sheets.words import tell
 
 LARGEST_CHUNK = 25
@@ -38,7 +40,10 @@ CHUNKS_EACH = 64
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one project: ``problem`` is empty when all of it was built; counts of files, bytes of those made now."""
+    """What became of one project: ``problem`` is empty when all of it was built; counts of files, bytes of those made now.
+
+    ``folder`` is that of a student, ``handed`` tells what of the rest that a student gets is there.
+    """
 
     project: str
     problem: str = ""
@@ -46,18 +51,26 @@ class Outcome:
     unchanged: int = 0
     size: int = 0
     warnings: tuple[str, ...] = ()
+    folder: str = ""
+    handed: tuple[tuple[str, bool], ...] = ()
 
 
 class Task(NamedTuple):
-    """A project of a batch, as it was called, and its folder in that of the batch; empty for one called after the project."""
+    """A project of a batch, as it was called, and its folder in that of the batch; empty for one called after the project.
+
+    A ``student``'s, with the ``group``, has the student's name on the sheets, and what a student gets beside them.
+    """
 
     project: str
     folder: str
+    student: str = ""
+    group: str = ""
 
 
 def one(task: Task, order: Order, parent: Path) -> Outcome:
     """Build one project into its folder below ``parent``; whatever goes wrong is told, not raised."""
-    return copy_context().run(_one, task, order, parent)  # the languages it sets are its own
+    outcome = copy_context().run(_one, task, order, parent)  # the languages it sets are its own
+    return replace(outcome, folder=task.folder) if task.student else outcome
 
 
 def _one(task: Task, order: Order, parent: Path) -> Outcome:
@@ -69,8 +82,13 @@ def _one(task: Task, order: Order, parent: Path) -> Outcome:
     try:
         variant = catalogue.read(project, order.corrected)
         warnings = tuple(variant.warnings)
-        variant = order.names.filled(variant)
-        built = build(variant, order, order.outlet(parent / (task.folder or folder_name(variant.stem))))
+        variant = _names(task, order).filled(variant)
+        folder = parent / (task.folder or folder_name(variant.stem))
+        built = build(variant, order, order.outlet(folder))
+        handed = dict[str, bool]()
+        if task.student:
+            handed, said = handouts.write(built.opened, folder, order.force)
+            warnings += said
     except (BadInput, CannotBuild) as e:
         return Outcome(project, str(e), warnings=warnings)
     except MemoryError:
@@ -84,7 +102,14 @@ def _one(task: Task, order: Order, parent: Path) -> Outcome:
         return Outcome(project, tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}"), warnings=warnings)
     made = len(built.sizes)
     problem = "" if built.refused is None else str(built.refused)
-    return Outcome(project, problem, made, len(built.paths) - made, sum(built.sizes.values()), warnings + built.warnings)
+    return Outcome(project, problem, made, len(built.paths) - made, sum(built.sizes.values()), warnings + built.warnings,
+                   handed=tuple(handed.items()))
+
+
+def _names(task: Task, order: Order) -> Names:
+    """Names on the sheets of one task: the student's go before those of the order."""
+    own = {key: text for key, text in (("student", task.student), ("group", task.group)) if text}
+    return replace(order.names, options={**order.names.options, **own})
 
 
 def several(tasks: Sequence[Task], order: Order, parent: Path) -> list[Outcome]:
@@ -136,7 +161,12 @@ def processors() -> int:
 
 
 def run(projects: Sequence[str], order: Order, parent: Path, workers: int) -> Iterator[Outcome]:
-    """Build projects in ``workers`` processes; outcomes as they come.
+    """Build projects in ``workers`` processes, see :func:`carry_out`."""
+    return carry_out(_tasks(projects), order, parent, workers)
+
+
+def carry_out(works: Sequence[Task], order: Order, parent: Path, workers: int) -> Iterator[Outcome]:
+    """Do tasks in ``workers`` processes; outcomes as they come.
 
     A signal that asks for the end lets each process finish the project in its hands.
 
@@ -145,13 +175,12 @@ def run(projects: Sequence[str], order: Order, parent: Path, workers: int) -> It
     Stopped
         after the outcomes, when such a signal came.
     """
-    workers = min(workers, len(projects))
-    works = _tasks(projects)
+    workers = min(workers, len(works))
     if workers <= 1:
         for work in works:
             yield one(work, order, parent)
         return
-    chunks = _chunks(works, max(1, min(LARGEST_CHUNK, len(projects) // (workers * CHUNKS_EACH))))
+    chunks = _chunks(works, max(1, min(LARGEST_CHUNK, len(works) // (workers * CHUNKS_EACH))))
     method = "fork" if "fork" in multiprocessing.get_all_start_methods() else None
     context = multiprocessing.get_context(method)
     told, end = context.Pipe(duplex=False)

@@ -178,6 +178,13 @@ def put(outlet: Outlet, made: Mapping[str, bytes], force: bool) -> tuple[list[st
     return list(named), kept
 
 
+def untouched(path: Path) -> bool:
+    """Whether a file is just as it was written here."""
+    place = Folder(path.parent)
+    known, data = record_of(place).files.get(path.name), place.read(path.name)
+    return known is not None and data is not None and fingerprint(data) == known[1]
+
+
 def of_hand(name: str, new: str) -> str:
     """That a file was changed by hand, and where the new one is."""
     return tell("{name} was changed by hand and stays; the new one is {new} (--force overwrites it)").format(name=name, new=new)

@@ -177,8 +177,9 @@ def of_groups(kinds: Sequence[int]) -> str:
     made, on = _Tables(), Driven()
     for kind in kinds:
         on = _LAID[kind](made, on)
+    other = tell("or clockwise")
     crank = (f'[crank]\nlink = "1"\npivot = "O"\npin = "A"\nlength = {_mm(CRANK)}\nspeed = "60 rpm"\n'
-             f'sense = "counter-clockwise"  # {tell("or clockwise")}\n')
+             f'sense = "counter-clockwise"  # {other}\n')
     said = tell("fixed points: x to the right, y up, from the pivot of the crank")
     points = "\n".join((f"[points]  # {said}", *made.points, ""))
     said = tell("numbered positions: a crank angle to begin with, equal parts of a turn")
@@ -210,7 +211,8 @@ def of_parts(parts: Iterable[str]) -> str:
 
 def whole(name: str, title: str, tables: str, entries: Mapping[str, str]) -> str:
     """A project file of these tables, with what stands in its title blocks."""
-    head = f'schema = 1\n\n[project]\nname = {_quoted(name)}\ntitle = {_quoted(title)}  # {tell("as it stands on the sheets")}\n'
+    said = tell("as it stands on the sheets")
+    head = f'schema = 1\n\n[project]\nname = {_quoted(name)}\ntitle = {_quoted(title)}  # {said}\n'
     return f"{_begin(name)}{head}\n{_title_block(entries)}\n{tables}"
 
 

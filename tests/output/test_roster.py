@@ -1,0 +1,71 @@
+"""A whole group from a table: who has which task, what each student gets, what of it is handed in."""
+
+import pytest
+
+from tmm_sheets.__main__ import run
+from tmm_sheets.compare import group
+from tmm_sheets.compare.measured import measured_lengths
+from tmm_sheets.errors import BadInput
+from tmm_sheets.output import roster
+
+
+def read(folder, text, task=""):
+    path = folder / "group.csv"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return roster.read(path, task)
+
+
+@pytest.mark.parametrize("text", [
+    "student,group,task,variant\nA,G,3,2\n", "\ufeffВариант;ФИО;№;Группа;Задание\r\n2;A;1;G;3\r\n;;;;\r\n",
+    "Прізвище\tГрупа\tЗавдання\nA\tG\tsixbar/3:2\n", "\n\nПІБ;група;варіант\n A ;G;3:2\n", "student,group,task\nA,G,3:2\n",
+    "студент;группа;задание\nA;G;sixbar/3:2".encode("cp1251"),
+])
+def test_tables_as_people_write_them(text, tmp_path):
+    assert read(tmp_path, text) == [roster.Enrolled("A", "G", "sixbar/3:2", "A")]
+
+
+def test_ciphers_and_files(tmp_path):
+    (tmp_path / "own.toml").write_text("", encoding="utf-8")
+    (one,) = read(tmp_path, "student;шифр\nЮ/Я;01-Т-27", "transport/diesel")
+    assert (one.project, one.folder) == ("transport/diesel@01-Т-27", "Ю-Я")
+    with pytest.raises(BadInput, match=r"group.csv:2: task: .*own.toml:1"):
+        read(tmp_path, "student;task\nA;own.toml")
+
+
+def test_every_problem_is_told(tmp_path):
+    with pytest.raises(BadInput) as e:
+        read(tmp_path, "student;task;cipher\nA;press;\na;press;\nB;;\n/;press;\nC;presss;\nD;;01-Т-27\n")
+    found = [(p.line, p.field) for p in e.value.problems]
+    assert found == [(3, "student"), (4, "task"), (5, "student"), (6, "task"), (7, "cipher")]
+
+
+@pytest.mark.parametrize(("text", "said"), [
+    ("", "expected a header"), ("student;task\n", "has no students"), ("a;b\nA;press\n", "column student"),
+    ("student\nA", "--task"), ("student;task;project\nA;press;press", "two columns"), (b"\x00\x01\xff" * 50, "not a text file"),
+])
+def test_tables_that_are_none(text, said, tmp_path):
+    with pytest.raises(BadInput, match=said):
+        read(tmp_path, text)
+
+
+def test_a_group_is_made_and_handed_in(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    table = tmp_path / "group.csv"
+    table.write_text("student;group;task\nШевченко;ТМ-21;lugansk/cam_flat\n", encoding="utf-8")
+    assert run(["roster", str(table), "-o", "works", "--format", "svg", "--jobs", "1"]) == 0
+    assert ["Шевченко", "ТМ-21", "lugansk/cam_flat", "1", "+", "+", "+"] in [
+        line.split() for line in capsys.readouterr().out.splitlines()]
+    folder = tmp_path / "works" / "Шевченко"
+    assert {"sheet1.svg", "note.pdf", "measured.csv", "page.html"} <= {path.name for path in folder.iterdir()}
+    with pytest.raises(BadInput, match="nothing to compare"):
+        group._works(tmp_path / "works")  # nobody has filled anything in
+    measured = folder / measured_lengths.NAME
+    lines = measured.read_text("utf-8-sig").splitlines()
+    at = next(k for k, line in enumerate(lines) if line.endswith(","))
+    lines[at] += "10"
+    measured.write_text("\n".join(lines), encoding="utf-8")
+    assert group._works(tmp_path / "works") == {"Шевченко": [measured]}
+    assert run(["roster", str(table), "-o", "works", "--format", "svg", "--jobs", "1"]) == 0
+    assert measured.read_text("utf-8") == "\n".join(lines)
+    assert run(["compare", "press", "--group", "works", "-o", "reports"]) == 0
+    assert "1 of " in capsys.readouterr().out
