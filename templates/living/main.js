@@ -18,7 +18,7 @@ function openTab(name, sheet) {
   for (const button of $("tabs").children) button.setAttribute("aria-selected", String(moves ? button.dataset.tab === "turn" : Number(button.dataset.sheet) === (sheet ?? leaf.sheet.sheet)));
   $("bar").replaceChildren(...(moves ? stageBar() : playerBar()));
   if (moves) {
-    machine.watchers = [(name2) => { if (name2) frameCards(); drawStage(); }];
+    machine.watchers = [(name2) => { if (name2 && !$("stage").hidden) takeTurn(); drawStage(); }];
     $("panel").replaceChildren(...changePanel());
     showEdits();
     openStage();
@@ -61,7 +61,7 @@ async function start() {
   $("tabs").append(...record.sheets.map((s) => tab({ "data-sheet": s.sheet }, say("sheet {n}", { n: s.sheet }), () => openTab("draw", s.sheet))));
   if (record.motion && record.sheets.some((s) => s.live?.length)) $("tabs").append(tab({ "data-tab": "turn" }, say("in motion"), () => openTab("turn")));
   watchViewport(clicked);
-  watchFind();
+  setTimeout(watchFind);
   if (record.motion) machine.phi = phiOf(record.sheets.flatMap((s) => s.live ?? []).find((v) => v.plan === "positions"));
   const opens = record.opens && record.sheets.find((s) => s.plans.has(record.opens));
   leaf.sheet = opens || record.sheets[0];

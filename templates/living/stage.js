@@ -56,7 +56,7 @@ function makeCard(live) {
   // What is said of the position that it is drawn for on the sheet does not hold in motion.
   const position = say("position {label}", { label: live.position }), from = live.view.toLowerCase().indexOf(position.toLowerCase());
   const name = from < 0 ? live.view : live.view.slice(0, from).replace(/[\s,(]+$/, "");
-  const caption = node("figcaption", {}, name), card = { live, name, svg, marks, paths, caption, figure: node("figure", { class: "card" }, caption, svg) };
+  const caption = node("figcaption", {}, name), card = { live, name, svg, marks, paths, caption, hidden: marks.map(() => false), seen: false, figure: node("figure", { class: "card" }, caption, svg) };
   const seen = new Set();
   card.ends = marks.filter((m) => m.kind !== "text" && m.role !== "text").flatMap((m) => m.at.map(([id]) => [m, id])).filter(([m, id]) => {
     const key = `${id} ${m.origin} ${m.mu}`;
@@ -123,57 +123,69 @@ function extentOf(points) {
   return box;
 }
 
-// A card shows everything that its view is in the course of a turn; recomputed when a given number is another.
-function frameCards() {
-  const values = round(Math.round(48 * Math.max(record.motion.period / (2 * Math.PI), 1))).map((phi) => parts(phi));
-  const fine = stage.cards.some((card) => card.paths.length) ? round(3 * values.length).map((phi) => parts(phi)) : [];
-  for (const card of stage.cards) {
-    card.most = keepsScale(card) ? shrinking(card, values) || 1 : Math.max(...values.map((one) => shrinking(card, [one])));
-    card.centred = !keepsScale(card) && planOf(card.live.plan).pole === undefined;
-    const all = values.map((one) => placer(one, shrunkNow(card, one))), box = [Infinity, Infinity, -Infinity, -Infinity], add1 = ([x, y], pad) => {
-      box[0] = Math.min(box[0], x - pad); box[1] = Math.min(box[1], y - pad); box[2] = Math.max(box[2], x + pad); box[3] = Math.max(box[3], y + pad);
-    };
-    for (const placed of all) {
-      for (const mark of card.marks) {
-        const g = geometryOf(mark, placed);
-        if (!defined(g) || mark.role === "construction" || mark.role === "text") continue;
-        const circle = g.circle ?? g.arc;
-        for (const z of g.text ? [g.text.at] : circle ? [circle.centre] : g.line ?? g.polyline ?? g.fill) add1(z, g.text ? g.text.height * 2 : circle ? circle.radius : 2);
-      }
+// What all views are in the course of a turn; taken anew when a given number is another, for the cards that are seen.
+function takeTurn() {
+  const many = Math.round(48 * Math.max(record.motion.period / (2 * Math.PI), 1));
+  stage.turn = round(many).map((phi) => parts(phi));
+  stage.fine = stage.cards.some((card) => card.paths.length) ? round(3 * many).map((phi) => parts(phi)) : [];
+  for (const card of stage.cards) card.framed = false;
+}
+
+// The scale of a card, the room of everything that moves in it, paths of points.
+function frameCard(card) {
+  card.framed = true;
+  card.most = keepsScale(card) ? shrinking(card, stage.turn) || 1 : Math.max(...stage.turn.map((one) => shrinking(card, [one])));
+  card.centred = !keepsScale(card) && planOf(card.live.plan).pole === undefined;
+  const seen = [], moving = card.marks.filter((mark) => mark.role !== "construction" && mark.role !== "text");
+  for (const values of card.centred ? [] : stage.turn) {
+    const placed = placer(values, shrunkNow(card, values));
+    for (const mark of moving) {
+      const g = geometryOf(mark, placed), circle = g.circle ?? g.arc;
+      if (!defined(g)) continue;
+      if (!circle) seen.push(...(g.line ?? g.polyline ?? g.fill));
+      else for (const s of [-1, 1]) seen.push([circle.centre[0] + s * circle.radius, circle.centre[1] + s * circle.radius]);
     }
-    if (box[0] < box[2]) { card.box = box; card.svg.setAttribute("viewBox", `${box[0] - 9} ${-box[3] - 7} ${box[2] - box[0] + 18} ${box[3] - box[1] + 14}`); }
-    card.svg.querySelector(".paths").innerHTML = card.paths.map((path) => {
-      const points = fine.map((one) => placer(one, card.most).point(path, path.of)), whole = points.every((z) => Number.isFinite(z[0]));
-      return `<path class="mark" ${look(path.style)} d="${polyPath(points.filter((z) => Number.isFinite(z[0])), 0, whole && record.motion.period > 6)}"/>`;
-    }).join("");
   }
+  const [x0, y0, x1, y1] = extentOf(seen);
+  if (x0 < x1) card.svg.setAttribute("viewBox", `${x0 - 11} ${-y1 - 9} ${x1 - x0 + 22} ${y1 - y0 + 18}`);
+  card.svg.querySelector(".paths").innerHTML = card.paths.map((path) => {
+    const points = stage.fine.map((one) => placer(one, card.most).point(path, path.of)), there = points.filter((z) => Number.isFinite(z[0]));
+    const closed = there.length === points.length && record.motion.period > 6;
+    return there.length ? `<path class="mark" ${look(path.style)} d="${polyPath(there, 0, closed)}"/>` : "";
+  }).join("");
+}
+
+// Draw the marks of a card; true where some of them have no place.
+function drawCard(card, values) {
+  if (!card.framed) frameCard(card);
+  card.shrunk = shrunkNow(card, values);
+  const placed = placer(values, card.shrunk);
+  let lost = false;
+  tellScale(card);
+  if (card.centred) centre(card, placed);
+  card.marks.forEach((mark, n) => {
+    const g = geometryOf(mark, placed), element = card.elements[n], there = defined(g);
+    if (card.hidden[n] === there) { element.setAttribute("visibility", there ? "visible" : "hidden"); card.hidden[n] = !there; }
+    if (!there) { lost = true; return; }
+    if (mark.kind !== "text") { element.setAttribute("d", pathOf(g, 0)); return; }
+    element.setAttribute("x", fixed(g.text.at[0]));
+    element.setAttribute("y", fixed(-g.text.at[1]));
+  });
+  return lost;
 }
 
 function drawStage() {
-  if ($("stage").hidden || !record.motion) return;
-  const values = parts(machine.phi);
-  let lost = 0;
-  for (const card of stage.cards) {
-    card.shrunk = shrunkNow(card, values);
-    const placed = placer(values, card.shrunk);
-    tellScale(card);
-    if (card.centred) centre(card, placed);
-    card.marks.forEach((mark, n) => {
-      const g = geometryOf(mark, placed), element = card.elements[n];
-      if (!defined(g)) { lost += card === stage.cards[0]; element.setAttribute("visibility", "hidden"); return; }
-      if (mark.kind === "text") { element.setAttribute("x", fixed(g.text.at[0])); element.setAttribute("y", fixed(-g.text.at[1])); }
-      else element.setAttribute("d", pathOf(g, 0));
-      element.removeAttribute("visibility");
-    });
-    card.figure.classList.toggle("lost", lost > 0);
-  }
-  tellLost(lost > 0, values);
+  if ($("stage").hidden || !stage.cards.length) return;
+  const values = parts(machine.phi), lost = drawCard(stage.cards[0], values);
+  for (const card of stage.cards.slice(1)) if (card.seen) drawCard(card, values);
+  if (stage.lost !== lost) for (const card of stage.cards) card.figure.classList.toggle("lost", lost);
+  stage.lost = lost;
+  tellLost(lost, values);
   const first = placer(values, stage.cards[0].shrunk);
   placeGrip(first);
   drawVanes(first, values);
-  const angle = mod(machine.phi * 180 / Math.PI, 360);
   $("angle").value = mod(record.motion.sense * (machine.phi - record.motion.start), record.motion.period) * 180 / Math.PI;
-  $("degrees").textContent = `φ = ${angle.toFixed(1).replace(".", decimal())}°`;
+  $("degrees").textContent = `φ = ${mod(machine.phi * 180 / Math.PI, 360).toFixed(1).replace(".", decimal())}°`;
 }
 
 // Velocities as arrows on the mechanism: a point B and the end b of its vector in the plan.
@@ -189,7 +201,6 @@ function drawVanes(placed, values) {
     if (!(point in record.motion.results) || !["point", "vector"].includes(stepOf(id).kind)) continue;
     const a = placed.point(mark, point), v = scale(1 / mu / scaled.shrunk, result(id)), long = size(v), b = add(a, v), u = straight(v);
     if (!(long > 3)) continue;
-    const wing = (s) => add(b, mul(u, [-4, s])).map(fixed);
     over.append(svgNode("path", { class: "vane", d: polyPath([a, b], 0) }),
       svgNode("path", { class: "vanehead", d: polyPath([b, add(b, mul(u, [-4, 1])), add(b, mul(u, [-4, -1]))], 0, true) }));
   }
@@ -200,9 +211,14 @@ function openStage() {
     stage.cards = liveViews().map(makeCard);
     stage.cards[0]?.figure.classList.add("first");
     $("stage").append(...stage.cards.map((card) => card.figure));
+    const watch = new IntersectionObserver((all) => {
+      for (const { target, isIntersecting } of all) stage.cards.find((card) => card.figure === target).seen = isIntersecting;
+      drawStage();
+    }, { root: $("stage") });
+    for (const card of stage.cards) watch.observe(card.figure);
     makeGrip();
   }
-  frameCards();
+  takeTurn();
   drawStage();
 }
 

@@ -37,12 +37,14 @@ class Motion:
     """The program of a linkage's plans with what it takes.
 
     ``source`` is its text; ``inputs`` say how each input is had in the page: {"angle": "world"} or "turned", {"strokes": ...} by
-    the angle turned, {"fixed": value}, or {"given": name}.
+    the angle turned, {"fixed": value}, or {"given": name}. ``crank`` are the ids of its pivot and its pin; ``start`` its angle in
+    position 0, rad.
     """
 
     source: Source
     inputs: list[dict[str, Any]]
     givens: list[dict[str, Any]]
+    crank: tuple[str, str]
     start: float
     sense: float
     period: float
@@ -50,7 +52,7 @@ class Motion:
     def told(self) -> dict[str, Any]:
         """What the page takes besides the program's text."""
         return {"inputs": self.inputs, "givens": self.givens, "results": self.source.results, "constants": self.source.constants,
-                "start": self.start, "sense": self.sense, "period": self.period}
+                "crank": self.crank, "start": self.start, "sense": self.sense, "period": self.period}
 
 
 def motion(project: Project, index: StepIndex) -> Motion:
@@ -72,8 +74,10 @@ def motion(project: Project, index: StepIndex) -> Motion:
     chosen = _givens(wanted.values(), {*objects, *frozen})
     made = program(wanted, [*objects.values(), *frozen.values()], [*chosen], exact=True)
     inputs = [*(rows[key] for key in objects), *fixed, *({"given": name} for name in chosen)]
-    return Motion(Source(made), inputs, [_told_given(g) for g in chosen.values()], float(cycle.start), float(cycle.sense),
-                  float(cycle.period))
+    points, crank = study.positions.points, study.mechanism.crank
+    ends = points[crank.pivot].path, points[crank.pin].path
+    return Motion(Source(made), inputs, [_told_given(g) for g in chosen.values()], ends,
+                  float(cycle.start), float(cycle.sense), float(cycle.period))
 
 
 def _studied(project: Project) -> Study:
