@@ -188,6 +188,8 @@ function drawStage() {
   $("degrees").textContent = `φ = ${mod(machine.phi * 180 / Math.PI, 360).toFixed(1).replace(".", decimal())}°`;
 }
 
+const VANE = 0.45; // length of a velocity on the mechanism beside that in its plan
+
 // Velocities as arrows on the mechanism: a point B and the end b of its vector in the plan.
 function drawVanes(placed, values) {
   const first = stage.cards[0], over = first.svg.querySelector(".over");
@@ -199,7 +201,7 @@ function drawVanes(placed, values) {
     if (!id.startsWith("velocities/") || record.motion.results[id][1] !== 2) continue;
     const point = `positions/${id.slice(11, 12).toUpperCase()}${id.slice(12)}`;
     if (!(point in record.motion.results) || !["point", "vector"].includes(stepOf(id).kind)) continue;
-    const a = placed.point(mark, point), v = scale(1 / mu / scaled.shrunk, result(id)), long = size(v), b = add(a, v), u = straight(v);
+    const a = placed.point(mark, point), v = scale(VANE / mu / scaled.shrunk, result(id)), long = size(v), b = add(a, v), u = straight(v);
     if (!(long > 3)) continue;
     over.append(svgNode("path", { class: "vane", d: polyPath([a, b], 0) }),
       svgNode("path", { class: "vanehead", d: polyPath([b, add(b, mul(u, [-4, 1])), add(b, mul(u, [-4, -1]))], 0, true) }));
