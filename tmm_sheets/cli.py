@@ -245,8 +245,11 @@ def _kinds(value: str) -> list[int]:
 @commands.command()
 @PROJECT
 @CORRECTED
-def check(project: str, corrected: bool) -> None:
-    """Read and assemble PROJECT, tell what no pencil can draw; write nothing."""
+@option("--scheme", type=click.Path(path_type=Path), metavar="FILE", help="Draw how the mechanism is understood, SVG.")
+def check(project: str, corrected: bool, scheme: Path | None) -> None:
+    """Read and assemble PROJECT, tell what no pencil can draw; write nothing but a scheme asked for."""
+    if scheme is not None and scheme.suffix.lower() != ".svg":
+        raise click.UsageError(tell("--scheme {file}: expected a name that ends in .svg").format(file=scheme))
     opened = _open(project, corrected)
     from tmm_sheets.sheets import composing, composition
 
@@ -264,6 +267,11 @@ def check(project: str, corrected: bool) -> None:
             click.echo(f"{opened.variant.called}: {told}", err=True)
     for line in opened.flywheel.remarks if opened.variant.flywheel is not None else ():
         click.echo(f"{opened.variant.called}: {line}", err=True)
+    if scheme is not None:
+        from tmm_sheets import files
+        from tmm_sheets.output import view_pictures
+
+        files.write_all({scheme: view_pictures.scheme(opened)})
     click.echo(tell("{project}: OK").format(project=opened.variant.called))
 
 
@@ -292,11 +300,15 @@ def check(project: str, corrected: bool) -> None:
 @option("--dask", "scheduler", metavar="ADDRESS", help="Build several projects on a dask cluster.")
 @NO_CACHE
 @option("--with-note", is_flag=True, help="Also the explanatory note, note.pdf; the numbers of the sheets run on after its pages.")
+@option("--views", is_flag=True, help="Also each view as a picture of its own, in the folder views: those of the formats that are "
+              "svg, png or pdf.")
+@option("--open", "show_files", is_flag=True, help="Open what was made: one file, or its folder.")
 @option("--explain", is_flag=True, help="Also tell what was built and evaluated, and how long it took.")  # fmt: skip
 def build(
     projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[str, ...], corrected: bool, sheets: tuple[int, ...],
     formats: tuple[str, ...], dpi: float, machine: Plotter | None, text: str, one_file: bool, output: Path | None,
-    archive: bool, force: bool, jobs: int | None, scheduler: str | None, with_note: bool, explain: bool,
+    archive: bool, force: bool, jobs: int | None, scheduler: str | None, with_note: bool, views: bool,
+    show_files: bool, explain: bool,
 ) -> None:
     """Draw the sheets of one PROJECT or of several; what has not changed since the last time is not made again."""
     if not projects and not families and not lists:
@@ -315,8 +327,12 @@ def build(
             raise click.UsageError(tell("--jobs and --dask are for several projects"))
         if with_note and archive:
             raise click.UsageError(tell("--with-note writes into a folder: leave --zip out"))
-        _build_one(projects[0], order, output, explain, with_note)
+        if views and archive:
+            raise click.UsageError(tell("--views writes into a folder: leave --zip out"))
+        _build_one(projects[0], order, output, explain, with_note, views, show_files)
         return
+    if views or show_files:
+        raise click.UsageError(tell("--views and --open are for one project"))
     if with_note:
         raise click.UsageError(tell("--with-note is for one project"))
     if explain:
@@ -340,7 +356,8 @@ def _listed(file: str) -> list[str]:
         raise BadInput(Problem(str(e), file, e.line, hint=hint)) from None
 
 
-def _build_one(project: str, order: Order, output: Path | None, explain: bool, with_note: bool) -> None:
+def _build_one(project: str, order: Order, output: Path | None, explain: bool = False, with_note: bool = False,
+               views: bool = False, show_files: bool = False) -> None:
     from contextlib import nullcontext
 
     from tmm_sheets.explain import Stopwatch
@@ -370,8 +387,16 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool, w
                 noted, kept = _put(folder, written.files, order.force)
             paths += noted
             warnings += (*kept, *(tell("left out: {problem}").format(problem=problem) for problem in written.problems))
+        if views:
+            pictured, kept = _put(folder / "views", _pictures(built.opened, order), order.force)
+            paths += pictured
+            warnings += tuple(kept)
     for path in paths:
         click.echo(path)
+    if show_files and paths:
+        shown = paths[0] if len(paths) == 1 else paths[0].parent
+        if click.launch(str(shown)):
+            warnings += (tell("{path} cannot be opened here: open it yourself").format(path=shown),)
     for warning in warnings:
         click.echo(f"{variant.called}: {warning}", err=True)
     unchanged = len(built.paths) - len(built.sizes)
@@ -384,6 +409,47 @@ def _build_one(project: str, order: Order, output: Path | None, explain: bool, w
         click.echo(report.text(built.opened, built.drawings, watch, askers))
     if built.refused is not None:
         raise built.refused
+
+
+def _pictures(opened: Project, order: Order) -> dict[str, bytes]:
+    """Pictures of the views of the sheets that were asked for and can be drawn."""
+    from tmm_sheets.output import view_pictures
+    from tmm_sheets.output.building import chosen
+    from tmm_sheets.sheets import sheet
+
+    formats = [form for form in order.formats if form in view_pictures.FORMATS] or ["svg"]
+    drawn = sheet.attempt(opened, chosen(opened.variant, order.sheets)).drawn
+    dpi = order.settings["png"]["dpi"]
+    return {name: data for n, composed in drawn.items() for name, data in view_pictures.of_sheet(n, composed, formats, dpi)}
+
+
+@commands.command()
+@PROJECT
+@CORRECTED
+@titled
+@option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
+@option("--format", "formats", default="pdf", show_default=True, callback=_among(FORMATS),
+        metavar="F,F", help=f"Formats: {', '.join(FORMATS)}.")
+@option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Folder of the sheets.  [default: out/<project>]")
+def watch(project: str, corrected: bool, sheets: tuple[int, ...], formats: tuple[str, ...], output: Path | None) -> None:
+    """Draw the sheets of a project file each time it is saved, until Ctrl-C."""
+    from tmm_sheets import catalogue
+    from tmm_sheets.output import watching
+    from tmm_sheets.output.building import Order
+    from tmm_sheets.task import title_entries
+
+    if catalogue.is_shipped(project):
+        raise click.UsageError(tell("{project} is a shipped project, which nobody changes: {command}").format(
+            project=project, command=quoting.command("new", "my", "--from", project)))
+    path = catalogue.located(project)
+    click.echo(tell("watching {file}, Ctrl-C ends it").format(file=path), err=True)
+    for _ in watching.saved((path, path.parent / title_entries.FILE)):
+        try:
+            order = Order(sheets, formats, {}, corrected, language=words.asked(), reader=words.reader(), kept=kept.used(),
+                          names=_names())
+            _build_one(project, order, output)
+        except (BadInput, CannotBuild) as e:
+            click.echo(e, err=True)
 
 
 def _put(folder: Path, made: Mapping[str, bytes], force: bool) -> tuple[tuple[Path, ...], list[str]]:
