@@ -33,7 +33,7 @@ function mathml(latex) {
     const t = peek();
     n++;
     if (t === "{") { n--; return group(); }
-    if (/^\d/.test(t)) return `<mn>${t}</mn>`;
+    if (/^\d/.test(t)) return `<mn>${t.replace(".", decimal())}</mn>`;
     if (!t.startsWith("\\")) return /[\p{L}]/u.test(t) ? `<mi>${plain(t)}</mi>` : `<mo>${t === "-" ? "−" : t === "'" ? "′" : plain(t)}</mo>`;
     const name = t.slice(1);
     if (name === "frac") return `<mfrac>${group()}${group()}</mfrac>`;
@@ -66,5 +66,5 @@ function mathml(latex) {
 
 // Lettering markup, F_{5} or φ_1, with indices below.
 function lettered(markup) {
-  return plain(markup).replace(/_\{([^}]*)\}/g, "<sub>$1</sub>").replace(/_(.)/gu, "<sub>$1</sub>").replace(/\^\{([^}]*)\}/g, "<sup>$1</sup>");
+  return plain(markup).replace(/_\{([^}]*)\}/g, "<sub>$1</sub>").replace(/_([\u0400-\u04ff]+|.)/gu, "<sub>$1</sub>").replace(/\^\{([^}]*)\}/g, "<sup>$1</sup>");
 }

@@ -19,7 +19,7 @@ function tellStep(id, label) {
   const s = stepOf(id), plan = planOf(s.plan), formula = s.formula;
   const where = [plan.title, label ? say("position {label}", { label }) : ""].filter(Boolean).join(", ");
   const found = [node("h2", { html: `${titled(id)} <small>${plain(shown(valueAt(id, label), s.unit))}</small>` }), node("p", { class: "where" }, where),
-    node("p", { class: "sentence" }, at(s.sentence, label) ?? "")];
+    node("p", { class: "sentence", html: lettered(at(s.sentence, label) ?? "") })];
   if (formula) {
     const numbers = at(formula.numbers, label);
     found.push(node("div", { class: "formula", html: mathml(formula.symbols) + (numbers ? mathml(`= ${numbers}`) : "") }));
@@ -44,7 +44,7 @@ function tellWhy(id, label) {
         list.append(node("li", {}, argumentChip(arg, label), ` ${arg.source ?? say("given")}`));
       }
     }
-    list.append(node("li", {}, chip(one, label), ` ${at(stepOf(one).sentence, label) ?? ""}`));
+    list.append(node("li", {}, chip(one, label), node("span", { html: ` ${lettered(at(stepOf(one).sentence, label) ?? "")}` })));
   }
   return node("details", {}, node("summary", {}, say("why: back to the givens")), list);
 }
