@@ -123,7 +123,7 @@ def test_commands_are_found():
 
 
 def test_wrong_commands_are_found():
-    for line in ("draw press", "build press --colour red", "list press", "plot press --tile a5", "show"):
+    for line in ("draw press", "build press --colour red", "list press screen", "plot press --tile a5", "show"):
         with pytest.raises(click.UsageError):
             parsed(line.split())
 
@@ -166,6 +166,8 @@ NOT_RUN = {
     "build --all": "fifty projects", "--with-note": "builds all twice; tests/note runs it",
     "--image": "needs a photograph; tests/compare takes some", "note": "tests/note writes some",
     "--group": "needs works; tests/compare/test_group.py has some", "--list": "needs a list of one's own",
+    "new my": "asks, and my.toml is there; tests/task/test_new_file.py answers", "watch": "goes on until Ctrl-C",
+    "roster": "needs a table; tests/output/test_roster.py has one",
     "--measured": "needs a table filled in; tests/test_quoted.py fills one in", "--dxf": "needs a drawing; tests/compare has some",
     "lugansk/shaper press my.toml": "three projects; tests/output/test_batch.py builds more",
 }
