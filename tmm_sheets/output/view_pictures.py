@@ -8,8 +8,6 @@ from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Mark, Polyline, Text, flat
@@ -61,6 +59,8 @@ def scheme(project: Project) -> bytes:
 
 def _views(composed: Composed) -> Iterator[tuple[str, Drawing]]:
     """What draws each view, and the view alone as a drawing as large as it is."""
+    import numpy as np
+
     whole = composed.drawing
     for view in whole.views:
         marks = [whole.marks[k] for first, end in view.spans for k in range(first, end)]
