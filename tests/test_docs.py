@@ -146,7 +146,7 @@ def test_the_first_project_works(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     block = TEXTS["README.md"].split("## Your first own project")[1].split("\n##")[0]
     commands = typed(block, "tmm-sheets")
-    assert len(commands) == 10
+    assert len(commands) == 11
     for arguments in commands:
         assert __main__.run(arguments) == __main__.DONE, (arguments, capsys.readouterr().err)
     assert {p.name for p in Path("out/my").iterdir()} >= {"sheet1.dxf", "sheet4.pdf", "sheet1-a4.pdf", "measured.csv"}

@@ -45,6 +45,8 @@ const changed = () => record.motion.givens.filter((g) => String(machine.given[g.
 
 function showEdits() {
   if (!$("undo")) return;
+  // Searches are the project's: what they found does not follow other numbers.
+  $("stale").hidden = !changed().length || !record.motion.inputs.some((input) => "strokes" in input || "fixed" in input);
   $("undo").disabled = !edits.done.length;
   $("redo").disabled = !edits.undone.length;
   $("reset").disabled = $("save").disabled = !changed().length;
@@ -106,6 +108,7 @@ function changePanel() {
   const fixed2 = wanted.filter((g) => Array.isArray(g.value));
   const found = [node("p", { class: "bad", id: "lost", role: "alert", hidden: true }), node("p", { class: "hint" }, say("drag the crank pin or a slider")),
     node("div", { class: "chips" }, button("undo", "undo", undo), button("redo", "redo", redo), button("reset", "reset", reset), button("save", "save as project file", save)),
+    node("p", { class: "hint", id: "stale", hidden: true }, say("found by searches")),
     ...group("lengths", ["m"]), ...group("angles", ["rad"]), ...group("speeds", ["rad/s", "m/s"]), ...group("masses", ["kg", "kg*m2"]),
     ...(fixed2.length ? [node("h3", {}, say("fixed points")), ...fixed2.flatMap(slidersOf)] : [])];
   return found;

@@ -19,6 +19,9 @@ def page_words() -> dict[str, str]:
         "drag the crank pin or a slider": tr("Drag the crank pin round, or a slider: all plans follow."),
         "fixed points": tr("Fixed points"),
         "find": tr("Find a step or a result"),
+        "found by searches": tr("Strokes of the loads and the uneven running of the crank stay those of the project: forces, and "
+                                "accelerations of an uneven crank, are then only near. "
+                                "Save the file and solve it for the exact ones."),
         "from it follow": tr("From it follow"),
         "gap": tr("gap"),
         "given": tr("given"),
