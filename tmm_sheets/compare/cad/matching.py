@@ -112,7 +112,7 @@ def _right(state: Comparison) -> None:
         parts = union([*zip(s0[p:q].tolist(), s1[p:q].tolist(), strict=True), *lettered], state.gap(e))
         if parts and all(b - a <= state.tolerance + 1e-9 for a, b in gaps(parts, whole)):
             # Between the dashes only ink of other elements can lie.
-            nearest = _nearest(s0[p:q], s1[p:q], off[p:q], whole)
+            nearest = _nearest(s0[p:q], s1[p:q], off[p:q], whole, lettered)
             typical = float(np.median(nearest) if line_type(e.style).pattern else nearest.max()) if len(nearest) else 0.0
             state.found[n] = state.finding(n, min(typical, state.tolerance), None)
             right[n] = True
@@ -121,9 +121,10 @@ def _right(state: Comparison) -> None:
     state.claims.append(every.only(right[state.in_place_of]))
 
 
-def _nearest(s0: Numbers, s1: Numbers, off: Numbers, whole: float) -> Numbers:
-    """Distances of the nearest ink at points along an element of length ``whole``, mm."""
+def _nearest(s0: Numbers, s1: Numbers, off: Numbers, whole: float, gaps: Sequence[tuple[float, float]]) -> Numbers:
+    """Distances of the nearest ink at points along an element of length ``whole`` but in its gaps, mm."""
     t = np.linspace(0.0, whole, 25)[1:-1]
+    t = t[[not any(a <= x <= b for a, b in gaps) for x in t]]
     on = (s0 - JOINT <= t[:, None]) & (t[:, None] <= s1 + JOINT)
     nearest = np.where(on, off, np.inf).min(axis=1)
     return np.asarray(nearest[np.isfinite(nearest)])

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.elements import Element, interruptions
 from tmm_sheets.compare.photo.displacement import FAR
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.judging import LOOSE_STYLES
@@ -56,6 +56,8 @@ class _Way(NamedTuple):
     t: Floats
     places: Points
     normals: Points
+    lettered: Any
+    """Whether the sheet itself interrupts the line there, behind lettering."""
 
 
 def with_ends(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any, level: float) -> list[InkTrace]:
@@ -102,7 +104,10 @@ def _ways(t: InkTrace) -> tuple[_Way, _Way]:
     assert t.at is not None
     reach = min(FAR, 0.4 * t.element.length)
     begin, end = t.element.points[[0, -1]]
-    return _way(t.element, t.at, reach, _tip(t.element, begin)), _way(t.element, t.at[::-1], reach, _tip(t.element, end))
+    gaps = interruptions(t.element)
+    back = [(1 - b, 1 - a) for a, b in gaps]
+    return (_way(t.element, t.at, reach, _tip(t.element, begin), gaps),
+            _way(t.element, t.at[::-1], reach, _tip(t.element, end), back))
 
 
 def _tip(e: Element, end: complex) -> float | None:
@@ -110,22 +115,26 @@ def _tip(e: Element, end: complex) -> float | None:
     return min((d for f in e.fills if (d := float(abs(f[0] - end))) < FAR), default=None) if e.arrow else None
 
 
-def _way(e: Element, z: Points, reach: float, tip: float | None) -> _Way:
-    """The way over the beginning of a line ``z``, straight on beyond it."""
+def _way(e: Element, z: Points, reach: float, tip: float | None, gaps: Sequence[tuple[float, float]]) -> _Way:
+    """The way over the beginning of a line ``z``, straight on beyond it; ``gaps`` as shares of the line from there."""
     run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(z)))))
     u = z[0] - z[min(int(np.searchsorted(run, 1.0)) + 1, len(z) - 1)]
     u /= max(abs(u), 1e-9)
     t = np.arange(-min(reach + 2.0, run[-1] / 2), reach + STEP / 2, STEP)
     p = np.where(t <= 0, np.interp(-t, run, z.real) + 1j * np.interp(-t, run, z.imag), z[0] + u * np.maximum(t, 0))
     along = np.gradient(p)
-    return _Way(e, tip, t, p, 1j * along / np.maximum(np.abs(along), 1e-9))
+    lettered = np.zeros(len(t), bool)
+    for a, b in gaps:
+        lettered |= (-t >= a * run[-1] - STEP) & (-t <= b * run[-1] + STEP)
+    return _Way(e, tip, t, p, 1j * along / np.maximum(np.abs(along), 1e-9), lettered)
 
 
 def _end(way: _Way, across: Any, hidden: Any, crowded: Any, level: float) -> float:
     """How far the line runs beyond its end, mm; negative when it stops short, nan when others hide it."""
     t, tip = way.t, way.tip
     pen = 0.5 * line_type(way.element.style).width if tip is None else tip
-    dark, own, pale = _ink_along(way, across, hidden, level)
+    dark, own, pale = _ink_along(way, across, hidden | way.lettered, level)
+    dark |= way.lettered
     if (extent := _extent(way, dark, own)) is None:
         return float("nan")
     least, most = (float(t[k]) for k in extent)
