@@ -169,7 +169,7 @@ def modules() -> dict[str, dict[str, int]]:
         report = Path(out) / "loaded"
         for again, command in (*((False, c) for c in START), (True, START[-1])):
             arguments = [word.format(out=f"{out}/{again}") for word in command.split()]
-            environment = {**os.environ, kept.FOLDER: f"{out}/kept"}
+            environment = {**os.environ, kept.FOLDER: f"{out}/kept", "TMM_SHEETS_CONFIG": f"{out}/none"}
             program = [sys.executable, "-c", LOADED, str(report)]
             subprocess.run([*program, *arguments], env=environment, capture_output=True, check=True)
             status, own, foreign = map(int, report.read_text().split())
