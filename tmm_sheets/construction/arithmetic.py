@@ -48,7 +48,11 @@ def _plain_dot(u: Any, v: Any) -> Any:
 
 @primitive("cross", "real", plain=_plain_cross)
 def cross(u: Any, v: Any) -> Any:
-    """Cross product of two plane vectors: Re u Im v - Im u Re v."""
+    """Cross product of two plane vectors: Re u Im v - Im u Re v.
+
+    >>> float(cross(2 + 0j, 1 + 3j))
+    6.0
+    """
     return difference_of_products(np.real(u), np.imag(v), np.imag(u), np.real(v))
 
 
@@ -60,7 +64,11 @@ def dot(u: Any, v: Any) -> Any:
 
 @primitive("polar", formula=True)
 def polar(centre: Any, radius: Any, angle: Any) -> Any:
-    """Point at ``radius`` from ``centre`` under ``angle`` (rad, counter-clockwise from the x axis)."""
+    """Point at ``radius`` from ``centre`` under ``angle`` (rad, counter-clockwise from the x axis).
+
+    >>> complex(polar(1 + 0j, 2.0, 0.0))
+    (3+0j)
+    """
     return centre + radius * (np.cos(angle) + 1j * np.sin(angle))
 
 
@@ -101,6 +109,11 @@ def line_line(p: Any, u: Any, q: Any, v: Any, det: Any = None, way: Any = None) 
     Laid off from the nearer of the two points. ``det``, the cross product of the directions, may be known better than they
     can tell themselves (from the plan they were taken from); and so may be the whole ``way`` from ``p``, also where both lines are
     one. Where these are NaN they are not known.
+
+    >>> complex(line_line(0j, 1 + 0j, 3 + 2j, 1j))
+    (3+0j)
+    >>> bool(np.isnan(line_line(0j, 1 + 0j, 3 + 2j, 1 + 0j)))
+    True
     """
     if way is not None and not np.any(np.isnan(way)):
         return p + way * u
@@ -150,6 +163,9 @@ def arc_arc(c1: Any, r1: Any, c2: Any, r2: Any, side: Any, height: Any = None, d
     lost towards tangency than with ``sqrt(r**2 - a**2)``; or it is given, with the distance of the centres, where both are
     known better than from the points. The ``line`` from the first centre is given where both may lie in one place: the radii are
     one then, and the distance has a sign along the line.
+
+    >>> arc_arc(0j, 5.0, 6 + 0j, 5.0, np.array([1, -1])).tolist()
+    [(3+4j), (3-4j)]
     """
     if line is not None:
         return c1 + (distance / 2 + 1j * side * height) * line
@@ -193,6 +209,9 @@ def arc_line(centre: Any, radius: Any, p: Any, u: Any, side: Any, half: Any = No
     """Intersection of a circle with the line through ``p`` along ``u``; ``side`` +1 is the one further along ``u``.
 
     ``half``, half of the chord, is given where it is known better than from the points.
+
+    >>> complex(arc_line(0j, 5.0, 0 + 3j, 1 + 0j, -1))
+    (-4+3j)
     """
     w, lost = difference(p, centre)
     height = cross(u, w) + _plain_cross(u, lost)
@@ -253,12 +272,20 @@ def tangent_direction(p: Any, centre: Any, radius: Any, side: Any, length: Any =
 
 @primitive("foot", formula=True)
 def foot(p: Any, q: Any, u: Any) -> Any:
-    """Foot of the perpendicular from ``p`` on the line through ``q`` along the unit direction ``u``."""
+    """Foot of the perpendicular from ``p`` on the line through ``q`` along the unit direction ``u``.
+
+    >>> complex(foot(4 + 5j, 1 + 0j, 1 + 0j))
+    (4+0j)
+    """
     return q + dot(u, p - q) * u
 
 
 def arm(about: Any, at: Any, force: Any) -> Any:
-    """Arm of a force about a point, signed: positive when the force turns counter-clockwise about it."""
+    """Arm of a force about a point, signed: positive when the force turns counter-clockwise about it.
+
+    >>> float(arm(0j, 2 + 0j, 10j)), float(arm(0j, 2 + 0j, -10j))
+    (2.0, -2.0)
+    """
     return cross(at - about, force) / np.abs(force)
 
 

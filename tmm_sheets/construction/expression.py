@@ -144,7 +144,11 @@ def _node(x: Any) -> Expression:
 
 @cache
 def trace(compute: Callable[..., Any], count: int) -> Expression | None:
-    """Tree of a function of ``count`` numbers; None for one that is no formula (a primitive of the construction)."""
+    """Tree of a function of ``count`` numbers; None for one that is no formula (a primitive of the construction).
+
+    >>> as_json(trace(lambda m, v: m * v**2 / 2, 2))
+    {'/': [{'*': [{'arg': 0}, {'^': [{'arg': 1}, 2.0]}]}, 2.0]}
+    """
     try:
         found = compute(*(Argument(i) for i in range(count)))
         return _node(found)
@@ -201,9 +205,12 @@ _ATOM = 4
 
 
 def latex(tree: Expression, texts: Sequence[str]) -> str:
-    """LaTeX of a tree, the texts in the places of the arguments, in the order in which the formula has them.
+    r"""LaTeX of a tree, the texts in the places of the arguments, in the order in which the formula has them.
 
     A text that begins with a minus sign or holds a sum stands in parentheses where it is multiplied, raised or subtracted.
+
+    >>> latex(Argument(0) * Argument(1) ** 2 / 2, ["m", "v"])
+    '\\frac{m \\cdot v^{2}}{2}'
     """
     return _latex(tree, texts)[0]
 
@@ -261,6 +268,9 @@ def lettered(tree: Expression, texts: Sequence[str], least: int = 0) -> str:
     """The tree in one line of lettering, as on a sheet: 2πx, sin^2(πx), x^2(3 − 2x).
 
     In parentheses where it binds less tightly than ``least``: 2 for a factor or what is subtracted, 1 behind a sign.
+
+    >>> lettered(2 * pi * (1 - Argument(0)), ["x"])
+    '2π(1 − x)'
     """
     text, binds = _lettered(tree, texts)
     return text if binds >= least else f"({text})"

@@ -45,7 +45,11 @@ class Scale:
 
 
 def fit(symbol: str, unit: str, span: float, mm: float) -> Scale:
-    """Smallest handy scale factor with which the real ``span`` takes at most ``mm`` millimetres; CannotBuild for none."""
+    """Smallest handy scale factor with which the real ``span`` takes at most ``mm`` millimetres; CannotBuild for none.
+
+    >>> fit("μ_l", "m/mm", 0.35, 150.0).mu
+    0.0025
+    """
     if not mm > 0:
         raise CannotBuild(
             tell("there is no room left for the diagram with the scale factor {symbol} beside what it belongs to").format(
@@ -60,6 +64,9 @@ def fit_standard(span_mm: float, mm: float) -> tuple[int, int]:
     """Largest GOST 2.302 scale (real, drawn) with which ``span_mm`` millimetres of the object fit in ``mm``.
 
     Raises CannotBuild when they fit at none.
+
+    >>> fit_standard(300.0, 160.0)
+    (2, 1)
     """
     for real, drawn in reversed(STANDARD):
         if span_mm * drawn <= mm * real * (1 + 1e-9):
@@ -88,7 +95,11 @@ def times(ratio: float) -> str:
 
 
 def handy(least: float) -> float:
-    """Smallest number of the series ``HANDY`` * 10^k that is not less than ``least``."""
+    """Smallest number of the series ``HANDY`` * 10^k that is not less than ``least``.
+
+    >>> handy(0.0026), handy(7.0)
+    (0.003, 8.0)
+    """
     if not least > 0:
         raise ValueError(f"a scale factor must be positive, not {least}")
     power = floor(log10(least))

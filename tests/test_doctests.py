@@ -1,0 +1,15 @@
+"""The examples in docstrings of the construction are true."""
+
+import doctest
+from importlib import import_module
+
+import pytest
+
+ROOMS = ("construction.arithmetic", "construction.expression", "construction.scale")
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_examples_are_true(room):
+    found = doctest.testmod(import_module(f"tmm_sheets.{room}"))
+    assert found.attempted > 2
+    assert found.failed == 0
