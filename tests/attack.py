@@ -27,6 +27,7 @@ from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
 from tmm_sheets.task import variant
+from tmm_sheets.task.title_entries import Names
 
 TESTS = Path(__file__).parent
 WHOLE = (*(resources.variants() / "lugansk").glob("*.toml"), resources.variants() / "press.toml",
@@ -139,7 +140,7 @@ def _steps(file):
     """What the commands do with a file, one after another on one project: name and a function without arguments."""
     read = variant.parse(file, "my.toml")
     project = Project(read)
-    yield "show", lambda: summary.text(read)
+    yield "show", lambda: summary.text(read, Names())
     yield "check", project.check
     yield "solve", lambda: results.as_json(results.assemble(project, None, refused={}))
     if len(read.sheets) < 10:

@@ -15,6 +15,7 @@ from tmm_sheets.drawing.marks import Arc, Text, flat
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import variant
+from tmm_sheets.task.title_entries import Names
 
 FILES = [path for path in sorted((Path(__file__).parents[1] / "projects").glob("*.toml"))
          if "[crank]" in path.read_text(encoding="utf-8")]
@@ -38,7 +39,7 @@ def test_all_kinds_are_there():
 
 def test_it_is_shown_and_checked(project):
     project.check()
-    told = summary.text(project.variant)
+    told = summary.text(project.variant, Names())
     assert "Mobility W = 3n - 2 p5 - p4" in told
     assert told.count("class 2, order 2") + told.count("class 3, order 3") == len(project.mechanism.groups)
     assert project.mechanism.mobility == 1
