@@ -1,6 +1,6 @@
 """Thin lines are interrupted behind lettering, and are whole lines all the same."""
 
-from math import pi
+from math import nan, pi
 
 import numpy as np
 import pytest
@@ -43,6 +43,11 @@ def test_a_line_through_a_letter_has_a_gap_there():
     Line(100 + 52j, 105.5 + 52j, "thin"),  # too little would be
     Text(90 + 52j, "long lettering", 5.0),
     Polyline(np.array([50 + 60j, 150 + 60j]), "thin"),
+    Line(101 + 52j, 101 + 52j, "thin"),  # of no length
+    Polyline(np.array([101 + 52j, 101 + 52j, 101 + 52j]), "thin"),
+    Arc(101 + 52j, 0.0, 0.0, 2 * pi, "thin"),
+    Arc(101 + 52j, nan, 0.0, 2 * pi, "thin"),
+    Line(complex(nan, 52), 150 + 52j, "thin"),
 ], ids=repr)  # fmt: skip
 def test_what_stays(mark):
     assert yielded(mark, WORD)[0] is mark
@@ -68,6 +73,29 @@ def test_a_turned_letter_hides_what_lies_under_it_alone():
     assert a.gaps
     assert a.gaps[0][1] * 100 + 50 <= 100 + CLEAR + 0.01
     assert not b.gaps
+
+
+def test_nothing_to_yield_and_nothing_to_yield_to():
+    assert yielded() == []
+    line = Line(50 + 52j, 150 + 52j, "thin")
+    assert yielded(line) == [line]
+    assert yielded(WORD) == [WORD]
+    assert yielded(line, WORD._replace(text=" ")) == [line, WORD._replace(text=" ")]
+
+
+def test_a_line_that_a_curve_crosses_twice_has_two_gaps():
+    bent = Polyline(np.array([50 + 52j, 150 + 52j, 150 + 54j, 50 + 54j]), "thin")
+    mark, _ = yielded(bent, WORD)
+    assert len(mark.gaps) == 2
+    assert len(interrupted(mark)) == 3
+
+
+def test_letters_at_both_ends_leave_the_middle():
+    line, *_ = yielded(Line(100 + 52j, 154 + 52j, "thin"), WORD, WORD._replace(at=150 + 50j))
+    assert line.gaps[0][0] == 0
+    assert line.gaps[-1][1] == 1
+    (middle,) = interrupted(line)
+    assert 103 < middle.a.real < middle.b.real < 150
 
 
 def test_letters_that_stand_close_make_one_gap():

@@ -6,9 +6,9 @@ whoever reads the sheet again finds the line that was constructed.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
-from math import sqrt
+from math import inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -68,10 +68,10 @@ def interrupt(canvas: Canvas) -> None:
             canvas.marks[k] = mark._replace(gaps=gaps)
 
 
-def _gaps(line: Points, letters: _Letters, near: Iterable[int]) -> tuple[Stretch, ...]:
+def _gaps(line: Points, letters: _Letters, near: npt.NDArray[np.intp]) -> tuple[Stretch, ...]:
     """Where a line of chords is interrupted, in shares of its length; nowhere if too little of it would be left."""
     run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(line)))))
-    hidden = sorted(stretch for k in near for stretch in _under(line, run, letters, int(k)))
+    hidden = sorted(_under(line, run, letters, near))
     gaps, reached, length = list[Stretch](), 0.0, float(run[-1])
     for a, b in hidden:
         if gaps and a - reached < SHOWN:
@@ -82,12 +82,14 @@ def _gaps(line: Points, letters: _Letters, near: Iterable[int]) -> tuple[Stretch
     if gaps and length - reached < SHOWN:
         gaps[-1] = gaps[-1][0], length
     left = length - sum(b - a for a, b in gaps)
-    return tuple((a / length, b / length) for a, b in gaps) if left >= KEPT * length else ()
+    return tuple((a / length, b / length) for a, b in gaps) if left >= KEPT * length > 0 else ()
 
 
 def _chords(mark: Mark) -> Points:
-    """A line as points, an arc in chords."""
-    return flat(mark, sqrt(8 * mark.radius * SAGITTA) if isinstance(mark, Arc) else 1.0)
+    """A line as points, an arc in chords; one that is no arc at all as its centre: the writers say what is wrong with it."""
+    if isinstance(mark, Arc):
+        return flat(mark, sqrt(8 * mark.radius * SAGITTA)) if 0 < mark.radius < inf else np.array([mark.centre, mark.centre])
+    return flat(mark)
 
 
 @lru_cache(maxsize=4096)
@@ -113,18 +115,20 @@ def _letters(texts: Sequence[Text]) -> _Letters | None:
     return _Letters(at, u, low, high, np.array([x.min(axis=0), y.min(axis=0), x.max(axis=0), y.max(axis=0)]))
 
 
-def _under(line: Points, run: npt.NDArray[np.float64], letters: _Letters, k: int) -> Iterator[Stretch]:
-    """Stretches of a line of chords that lie under one run of letters."""
-    z = (line - letters.at[k]) * letters.u[k].conjugate()
-    enter, leave = np.zeros(len(z) - 1), np.ones(len(z) - 1)
+def _under(line: Points, run: npt.NDArray[np.float64], letters: _Letters, near: npt.NDArray[np.intp]) -> Iterator[Stretch]:
+    """Stretches of a line of chords that lie under some runs of letters."""
+    z = (line - letters.at[near, None]) * letters.u[near, None].conj()
+    low, high = letters.low[near, None], letters.high[near, None]
+    enter: npt.NDArray[np.float64] = np.zeros((len(near), len(line) - 1))
+    leave = enter + 1.0
     with np.errstate(divide="ignore", invalid="ignore"):
-        for v, low, high in zip((z.real, z.imag), *((c.real, c.imag) for c in (letters.low[k], letters.high[k])), strict=True):
-            d = np.diff(v)
-            beside = (d == 0) & ((v[:-1] < low) | (v[:-1] > high))
-            first, last = np.sort(((low - v[:-1]) / d, (high - v[:-1]) / d), axis=0)
-            still = d == 0
-            enter = np.maximum(enter, np.where(still, np.where(beside, 1.0, 0.0), first))
-            leave = np.minimum(leave, np.where(still, np.where(beside, 0.0, 1.0), last))
+        for v, least, most in ((z.real, low.real, high.real), (z.imag, low.imag, high.imag)):
+            begin, d = v[:, :-1], np.diff(v)
+            a, b = (least - begin) / d, (most - begin) / d
+            # A chord along a side of the letters is within it all the way, or nowhere.
+            within = (begin >= least) & (begin <= most)
+            enter = np.maximum(enter, np.where(d == 0, np.where(within, 0.0, 1.0), np.minimum(a, b)))
+            leave = np.minimum(leave, np.where(d == 0, np.where(within, 1.0, 0.0), np.maximum(a, b)))
     length = np.diff(run)
-    for i in np.flatnonzero(leave > enter):
-        yield float(run[i] + enter[i] * length[i]), float(run[i] + leave[i] * length[i])
+    for j, i in np.argwhere(leave > enter):
+        yield float(run[i] + enter[j, i] * length[i]), float(run[i] + leave[j, i] * length[i])
