@@ -7,7 +7,6 @@ import tomllib
 import pytest
 
 from tests import counts
-from tests.few import few
 
 TABLE = tomllib.loads(counts.TABLE.read_text(encoding="utf-8"))
 
@@ -17,7 +16,7 @@ def part(name):
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="each command is a fork")
-@pytest.mark.parametrize("project", few(counts.PROJECTS, "lugansk/shaper"))
+@pytest.mark.parametrize("project", counts.PROJECTS)
 def test_no_command_does_more_than_it_did(project):
     assert "\n".join(counts.differences(part(project), counts.counted(project))) == ""
 
