@@ -442,7 +442,8 @@ def test_solve_imports_no_drawing():
     loaded = set(done.stdout.splitlines())
     assert "tmm_sheets.results" in loaded
     # Scale factors follow from the places on the sheets, and these from what all views of the sheet need.
-    views = ("kinematics", "kinetics", "cam", "gear", "flywheel", "mertsalov", "reducer", "sheet")
+    views = ("linkage.kinematics", "linkage.kinetics", "cams.cam", "gears.gear", "flywheel.flywheel", "flywheel.mertsalov",
+             "gears.reducer", "sheet")
     assert loaded & {f"tmm_sheets.sheets.{m}" for m in views} == set()
     assert {m for m in loaded if m.startswith(("tmm_sheets.drawing.labels", "tmm_sheets.backends"))} == set()
     assert loaded & {"shapely", "ezdxf", "reportlab", "matplotlib"} == set()

@@ -162,7 +162,7 @@ def test_imports(module):
     ("methods.cams.cam_zone", "from tmm_sheets.methods.flywheel.flywheel import Flywheel"),
     ("construction.plan", "if TYPE_CHECKING:\n    from tmm_sheets.project import Project"),
     ("mechanism.model", "from tmm_sheets.construction import rules"),
-    ("sheets.cam", "from tmm_sheets.methods.cams import cam_profile"),
+    ("sheets.cams.cam", "from tmm_sheets.methods.cams import cam_profile"),
     ("compare.photo.image", "import ezdxf"),
     ("drawing.canvas", "import shapely"),
     ("cli", "import numpy as np"),

@@ -259,7 +259,8 @@ def check(project: str, corrected: bool, scheme: Path | None) -> None:
         click.echo(f"{opened.variant.called}: {line}", err=True)
     if opened.variant.crank is not None:
         from tmm_sheets import summary
-        from tmm_sheets.sheets import flat_crossings, legibility
+        from tmm_sheets.sheets import legibility
+        from tmm_sheets.sheets.components import flat_crossings
 
         every = range(1, len(opened.sheets) + 1)
         for told in (*composition.left_out(opened, every), *legibility.crowded(opened, every), *flat_crossings.lines(opened),

@@ -25,7 +25,7 @@ from tmm_sheets.methods.linkage.dead_positions import dead_positions
 from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.velocities import velocity_plan
-from tmm_sheets.sheets import linkage
+from tmm_sheets.sheets.linkage import link_marks
 
 REACH, AHEAD = 0.12, 0.7
 ROD, ROCKER, FRAME, SECOND, AT = 0.28, 0.24, 0.3, 0.35, 0.2
@@ -192,7 +192,7 @@ def test_structure():
 
 
 def test_shapes(plans):
-    shapes = {s.link: s for s in linkage.shapes(plans[0])}
+    shapes = {s.link: s for s in link_marks.shapes(plans[0])}
     assert shapes["2"].bar == ("B", "C")
     assert shapes["2"].arms == (("B", "E"), ("E", "C"))
     assert shapes["3"].bar == ("D", "C")

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from importlib import import_module
 from math import degrees, isfinite, pi
 from pathlib import Path
-from pkgutil import iter_modules
+from pkgutil import walk_packages
 from typing import Any
 
 import numpy as np
@@ -76,7 +76,7 @@ def written(project: Project) -> tuple[dict[Line, list[float]], dict[str, float]
             return write(x, *args, **options)
         return noted
 
-    views = [import_module(f"{sheets.__name__}.{m.name}") for m in iter_modules(sheets.__path__)]
+    views = [import_module(m.name) for m in walk_packages(sheets.__path__, f"{sheets.__name__}.")]
     before = [(m, name, vars(m)[name]) for m in views for name in ("number", "fixed")
               if name in vars(m) and vars(m)[name].__module__ != "tmm_sheets.sheets.view_sizes"]  # its fixed is of places
     try:

@@ -11,7 +11,7 @@ from tmm_sheets.catalogue import read
 from tmm_sheets.drawing import labels, owners
 from tmm_sheets.drawing.marks import Line, Provenance
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import friction, kinetic_frames, kinetics, linkage, moments
+from tmm_sheets.sheets.linkage import friction, kinetic_frames, kinetics, link_marks, moments
 from tmm_sheets.sheets.sheet import composed
 
 
@@ -33,7 +33,7 @@ def test_the_part_of_an_arm_that_shorter_ones_take(arm, others, part):
     ("A", "A"), ("A3", "A_{3}"), ("k′", "k′"), ("A3′", "A_{3}′"), ("S₂", "S_{2}"), ("D″", "D″"), ("D5″", "D_{5}″"),
 ])  # fmt: skip
 def test_a_prime_is_no_index(name, text):
-    assert linkage.indexed(name) == text
+    assert link_marks.indexed(name) == text
 
 
 def test_the_moment_with_friction_has_its_sign(monkeypatch):

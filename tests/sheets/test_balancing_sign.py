@@ -5,7 +5,7 @@ import pytest
 from tests import project_files as files
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.sheets import kinetics
+from tmm_sheets.sheets.linkage import kinetics
 
 
 @pytest.mark.parametrize(("position", "value", "held"), [("2", "7744,9", False), ("6", "−40,0", True), ("9", "−3843,3", True)])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tmm_sheets.methods.cams.cam_laws import LAWS, PositionFunction
-from tmm_sheets.sheets.cam_law import _forms, _phases, _written
+from tmm_sheets.sheets.cams.cam_law import _forms, _phases, _written
 
 FORMS = [name for name, law in LAWS.items() if _written(law)]
 

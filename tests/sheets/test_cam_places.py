@@ -7,7 +7,7 @@ import pytest
 
 from tmm_sheets import catalogue
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import cam, cam_profile, cam_zone
+from tmm_sheets.sheets.cams import cam, cam_profile, cam_zone
 from tmm_sheets.sheets.composition import arranged
 
 RING = str(Path(__file__).parents[1] / "projects" / "ring.toml")

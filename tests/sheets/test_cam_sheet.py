@@ -1,6 +1,5 @@
 """The cam sheet: every view stays in its place, fills it, and shows what the constructions hold."""
 
-from importlib import import_module
 from itertools import combinations
 from types import SimpleNamespace
 
@@ -15,7 +14,8 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Box, Line, Polyline, Text, flat
 from tmm_sheets.methods.cams.cam_profile import DIAGRAMS, cam
 from tmm_sheets.sheets.arrangement import arrangement
-from tmm_sheets.sheets.cam import HEADS
+from tmm_sheets.sheets.cams.cam import HEADS
+from tmm_sheets.sheets.views import function
 
 TITLE_BLOCK = Box(651, 5, 836, 60)
 FRAME = Box(20, 5, 836, 589)
@@ -58,21 +58,16 @@ def places(data):
             if traits.issuperset(v.options.get("when", ())) and traits.isdisjoint(v.options.get("unless", ()))}
 
 
-def view(name):
-    module, function = name.split(".")
-    return getattr(import_module(f"tmm_sheets.sheets.{module}"), function)
-
-
 def drawn(name, data):
     canvas = Canvas()
-    view(name)(data, canvas, places(data)[name], {})
+    function(name)(data, canvas, places(data)[name], {})
     return canvas
 
 
 def whole(data):
     canvas = Canvas()
     for v in arrangement("cam").views:
-        view(v.draw)(data, canvas, v.box, v.options)
+        function(v.draw)(data, canvas, v.box, v.options)
     return canvas
 
 
@@ -308,7 +303,7 @@ def test_without_upper_dwell_positions_8_and_8_prime_are_one_in_the_tables(data)
     assert "8'" in own.cam.law.labels
     for name in ("cam.table", "cam_profile.radii"):
         canvas = Canvas()
-        view(name)(own, canvas, Box(0, 0, 300, 160), {})
+        function(name)(own, canvas, Box(0, 0, 300, 160), {})
         assert "8" in texts(canvas)
         assert "8'" not in texts(canvas)
 

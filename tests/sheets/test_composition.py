@@ -12,13 +12,13 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY, handy
 from tmm_sheets.drawing.marks import Arc, Text
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import friction, kinematic_frames, kinetic_frames, linkage
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.border_solver import BorderNode, Need, cut, joined, rounded_up, solve
 from tmm_sheets.sheets.composing import INSIDE
 from tmm_sheets.sheets.composition import TITLE_BLOCK, arranged
 from tmm_sheets.sheets.frame import fit_frame
-from tmm_sheets.sheets.linkage_sizes import OF_FORCE
+from tmm_sheets.sheets.linkage import friction, kinematic_frames, kinetic_frames, link_marks
+from tmm_sheets.sheets.linkage.linkage_sizes import OF_FORCE
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.sheets.view_sizes import SHOWN, reaching
 
@@ -259,9 +259,9 @@ def test_a_traced_point_is_drawn_as_a_point_of_its_link():
     point = {"point": [{"name": "E", "link": "2", "from": "A", "towards": "B", "distance": "0.15 m", "angle": "40 deg"}]}
     project = files.project(files.FOUR_BAR, point, files.EVEN)
     positions = project.study.positions
-    shape = next(s for s in linkage.shapes(positions) if s.link == "2")
+    shape = next(s for s in link_marks.shapes(positions) if s.link == "2")
     assert set(shape.bar) == {"A", "B", "E"}
-    assert linkage.traced(project.mechanism, "2") == ["E"]
+    assert link_marks.traced(project.mechanism, "2") == ["E"]
     marks = composed(project, 1).drawing.marks
     circles = {m.by.step for m in marks if isinstance(m, Arc) and m.style == "main" and m.by and m.by.role == "symbol"}
     assert "positions/B" in circles

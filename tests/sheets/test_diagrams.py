@@ -16,7 +16,8 @@ from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Line, Polyline, Text
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import diagrams, graphs
+from tmm_sheets.sheets.components import graphs
+from tmm_sheets.sheets.linkage import diagrams
 from tmm_sheets.sheets.sheet import composed
 
 BOX = Box(20.0, 10.0, 330.0, 240.0)
@@ -147,7 +148,7 @@ def test_balancing_moment_needs_a_moment():
 def test_couple_of_a_guide_without_a_force_is_shown():
     """Task 10: nothing pushes slider 5 across its guide, a couple keeps it from turning."""
     canvas = Canvas()
-    from tmm_sheets.sheets import kinetics
+    from tmm_sheets.sheets.linkage import kinetics
 
     kinetics.group(Project(read("sixbar/10:1")), canvas, Box(450.0, 300.0, 830.0, 580.0), {"group": 1})
     labels = [label.text for label in canvas.labels]

@@ -12,7 +12,7 @@ from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.resources import variants
-from tmm_sheets.sheets import indicator, kinematics, synthesis
+from tmm_sheets.sheets.linkage import indicator, kinematics, synthesis
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import variant
 

@@ -7,7 +7,7 @@ import pytest
 from tmm_sheets.catalogue import read
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import kinematic_frames, kinematics
+from tmm_sheets.sheets.linkage import kinematic_frames, kinematics
 from tmm_sheets.sheets.sheet import composed
 
 VIEW = "kinematics.enlarged_velocities"

@@ -20,7 +20,8 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Box, Fill, Text, flat
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import composition, flat_crossings, sheet
+from tmm_sheets.sheets import composition, sheet
+from tmm_sheets.sheets.components import flat_crossings
 
 NEAR = str(Path(__file__).parent / "near.toml")
 CRANK, COUPLER, ROCKER, FRAME = 0.1, 0.33, 0.173, 0.4

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import dataclass
-from importlib import import_module
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
@@ -21,10 +20,11 @@ from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.chosen import flywheel
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import graphs
 from tmm_sheets.sheets.arrangement import arrangement
-from tmm_sheets.sheets.flywheel import apart, constant_moment, force_graph
+from tmm_sheets.sheets.components import graphs
+from tmm_sheets.sheets.flywheel.flywheel import apart, constant_moment, force_graph
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.sheets.views import function
 from tmm_sheets.task import variant
 
 VIEWS = tomllib.loads((Path(__file__).parents[2] / "templates/sheets/flywheel.toml").read_text(encoding="utf-8"))["view"]
@@ -65,9 +65,8 @@ def draw(p, only=None):
     canvas = Canvas()
     wanted = "column" if only in COLUMN else only
     for view in views(p):
-        module, name = view.draw.split(".")
-        if wanted in (None, name):
-            getattr(import_module(f"tmm_sheets.sheets.{module}"), name)(p, canvas, view.box, view.options)
+        if wanted in (None, view.draw.partition(".")[2]):
+            function(view.draw)(p, canvas, view.box, view.options)
     if only in COLUMN:
         k = next(k for k, part in enumerate(canvas.parts) if part.draw == f"flywheel.{only}")
         end = canvas.parts[k + 1].first if k + 1 < len(canvas.parts) else len(canvas.marks)
@@ -186,7 +185,7 @@ def test_an_axis_longer_than_its_place_is_refused():
     view = next(view for view in views(p) if view.draw == "flywheel.column")
     x0, y0, x1, y1 = view.box
     with pytest.raises(CannotBuild, match=r"view flywheel\.column needs \d+ mm more width"):
-        import_module("tmm_sheets.sheets.flywheel").column(p, Canvas(), Box(x0, y0, x1 - 40, y1), view.options)
+        function("flywheel.column")(p, Canvas(), Box(x0, y0, x1 - 40, y1), view.options)
 
 
 @pytest.mark.parametrize("name", ["column", "total_work", "inertia"])
@@ -194,7 +193,7 @@ def test_a_place_that_is_too_small_is_refused(name):
     view = next(v for v in VIEWS if v["draw"] == f"flywheel.{name}")
     x0, y0, x1, _ = view["box"]
     with pytest.raises(CannotBuild, match=rf"view flywheel\.{name} needs \d+ mm more height"):
-        getattr(import_module("tmm_sheets.sheets.flywheel"), name)(
+        function(f"flywheel.{name}")(
             project(Shaper()), Canvas(), Box(x0, y0, x1, y0 + 25), view)
 
 

@@ -5,7 +5,7 @@ import pytest
 from tests import project_files as files
 from tmm_sheets import catalogue
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import gear
+from tmm_sheets.sheets.gears import gear
 from tmm_sheets.sheets.sheet import composed
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from tmm_sheets import catalogue
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.gear_equations import OF_PAIR, OF_WHEEL, equations
+from tmm_sheets.sheets.gears.gear_equations import OF_PAIR, OF_WHEEL, equations
 from tmm_sheets.task import variant
 
 RING = Path(__file__).parents[1] / "projects" / "ring.toml"

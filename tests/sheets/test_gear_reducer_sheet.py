@@ -15,8 +15,8 @@ from tmm_sheets.drawing.marks import Arc, Box, Line, Polyline, Text, flat
 from tmm_sheets.methods.gears.gear_pair import gear_pair, settled
 from tmm_sheets.methods.gears.reducer import reducer
 from tmm_sheets.resources import template
-from tmm_sheets.sheets import gear, rack
-from tmm_sheets.sheets import reducer as reducers
+from tmm_sheets.sheets.gears import gear, rack
+from tmm_sheets.sheets.gears import reducer as reducers
 from tmm_sheets.task.schema import GearTable
 
 TITLE_BLOCK = Box(651, 5, 836, 60)

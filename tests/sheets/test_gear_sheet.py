@@ -2,7 +2,6 @@
 
 import tomllib
 from cmath import rect
-from importlib import import_module
 from itertools import combinations
 from math import radians
 from types import SimpleNamespace
@@ -18,8 +17,9 @@ from tmm_sheets.methods.gears.gear_pair import gear_pair
 from tmm_sheets.numbers import fixed
 from tmm_sheets.project import Project
 from tmm_sheets.resources import template
-from tmm_sheets.sheets import gear as gear_sheet
-from tmm_sheets.sheets import gear_radii
+from tmm_sheets.sheets.gears import gear as gear_sheet
+from tmm_sheets.sheets.gears import gear_radii
+from tmm_sheets.sheets.views import function
 
 TITLE_BLOCK = Box(651, 5, 836, 60)
 DESIGNATION = Box(20, 575, 90, 589)
@@ -55,8 +55,7 @@ def drawn(name, box, data):
 
 
 def draw(name, data, canvas, box):
-    module, _, function = name.partition(".")
-    getattr(import_module(f"tmm_sheets.sheets.{module}"), function)(data, canvas, box, {})
+    function(name)(data, canvas, box, {})
 
 
 def ink(marks):

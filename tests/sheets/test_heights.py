@@ -7,7 +7,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import kinetics
+from tmm_sheets.sheets.linkage import kinetics
 from tmm_sheets.sheets.sheet import composed
 
 

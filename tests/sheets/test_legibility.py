@@ -10,7 +10,7 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import legibility
 from tmm_sheets.sheets.composition import arranged
-from tmm_sheets.sheets.kinetic_frames import places_of_groups
+from tmm_sheets.sheets.linkage.kinetic_frames import places_of_groups
 from tmm_sheets.sheets.sheet import composed
 
 CHAIN = "tests/sheets/chain.toml"

@@ -7,7 +7,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame
-from tmm_sheets.sheets import details, lever_detail
+from tmm_sheets.sheets.linkage import details, lever_detail
 
 PLACE = Box(100.0, 100.0, 200.0, 196.0)
 

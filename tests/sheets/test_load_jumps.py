@@ -4,7 +4,7 @@ import pytest
 
 from tests.project_files import FORCE, MASS, MOMENT, SLIDER, WORKING, project
 from tmm_sheets.drawing.marks import Text
-from tmm_sheets.sheets import kinetics
+from tmm_sheets.sheets.linkage import kinetics
 from tmm_sheets.sheets.sheet import composed
 
 

@@ -8,8 +8,8 @@ from tests.evenness import gap
 from tests.project_files import project
 from tmm_sheets.drawing.evenness import empty_cells
 from tmm_sheets.drawing.marks import Line, Text
-from tmm_sheets.sheets import plan_checks, reducer, wheel_sizes
-from tmm_sheets.sheets import train as trains
+from tmm_sheets.sheets.gears import plan_checks, reducer, wheel_sizes
+from tmm_sheets.sheets.gears import train as trains
 from tmm_sheets.sheets.sheet import composed
 
 REDUCER = {"simple": "none", "input_speed": "1450 rpm", "module": "3 mm", "satellites": 3}

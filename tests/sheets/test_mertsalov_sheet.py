@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
-from importlib import import_module
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -20,10 +19,12 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.chosen import flywheel
 from tmm_sheets.project import Project
 from tmm_sheets.resources import template
-from tmm_sheets.sheets import composition, mertsalov
+from tmm_sheets.sheets import composition
 from tmm_sheets.sheets import views as kinds
 from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.flywheel import mertsalov
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.sheets.views import function
 
 AXIS = 382.0
 COLUMN = Box(324, 8, 647, 586)
@@ -64,8 +65,7 @@ def test_every_label_finds_a_place_and_nothing_leaves_the_frame(sheets, n):
 def test_a_view_keeps_to_its_place(press, view):
     found = next(v for v in arrangement("press_1").views if v.draw == view)
     canvas = Canvas()
-    module, _, name = view.partition(".")
-    getattr(import_module(f"tmm_sheets.sheets.{module}"), name)(press, canvas, found.box, found.options)
+    function(view)(press, canvas, found.box, found.options)
     points = np.concatenate([text_box(m) if isinstance(m, Text) else flat(m) for m in canvas.marks])
     assert [p for p in points if not found.box.contains(p, 1.0)] == []
 
@@ -161,10 +161,9 @@ VIEWS = sorted({view.draw for path in template("sheets/press_1.toml").parent.glo
 
 @pytest.mark.parametrize("view", VIEWS)
 def test_check_knows_the_views_that_another_method_cannot_draw(view):
-    module, _, function = view.partition(".")
     project = SimpleNamespace(flywheel=SimpleNamespace(method="mertsalov"))
     try:
-        getattr(import_module(f"tmm_sheets.sheets.{module}"), function)(project, Canvas(), Box(0, 0, 400, 300), {})
+        function(view)(project, Canvas(), Box(0, 0, 400, 300), {})
         refused = False
     except CannotBuild as e:
         refused = "belongs to flywheel.method" in str(e)

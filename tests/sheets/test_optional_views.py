@@ -15,21 +15,12 @@ from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.drawing.marks import Polyline
 from tmm_sheets.numbers import number
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import (
-    diagrams,
-    given_data,
-    hodograph,
-    kinematics,
-    kinetics,
-    linkage,
-    moments,
-    optional_views,
-    position_tables,
-    reducer,
-    train,
-)
+from tmm_sheets.sheets import optional_views
 from tmm_sheets.sheets.composing import _code
+from tmm_sheets.sheets.gears import reducer, train
+from tmm_sheets.sheets.linkage import diagrams, hodograph, kinematics, kinetics, link_marks, moments
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.sheets.tables import given_data, position_tables
 
 FIELD = Box(20.0, 5.0, 836.0, 589.0)
 
@@ -222,7 +213,7 @@ def test_every_vertex_of_the_lever_has_its_letters(name):
     said = {text for label in canvas.labels for text in label.text.split(", ") if text.endswith("′") and "F" not in text}
     plan = p.study.velocities.plan
     ends = {step.name for seg in plan.segments for step in (seg.tail, seg.head)} - {plan.pole}
-    assert said >= {f"{linkage.indexed(end)}′" for end in ends}
+    assert said >= {f"{link_marks.indexed(end)}′" for end in ends}
 
 
 @pytest.mark.parametrize(("name", "codes"), [("lugansk/shaper", "1234"), ("screen", "123"), ("lugansk/cam_flat", "4")])

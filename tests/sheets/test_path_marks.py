@@ -5,7 +5,7 @@ import pytest
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.marks import Text
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import kinematics, path_marks
+from tmm_sheets.sheets.linkage import kinematics, path_marks
 from tmm_sheets.sheets.sheet import composed
 
 VIEW = "path_marks.enlarged"

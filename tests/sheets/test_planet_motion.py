@@ -9,7 +9,7 @@ import pytest
 from tests.project_files import project
 from tmm_sheets.catalogue import read
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import planet_motion
+from tmm_sheets.sheets.gears import planet_motion
 from tmm_sheets.sheets.sheet import composed
 
 

@@ -6,7 +6,7 @@ from tests import project_files as files
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.marks import Arc
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import kinematic_frames, linkage
+from tmm_sheets.sheets.linkage import kinematic_frames, link_marks
 from tmm_sheets.sheets.sheet import composed
 
 YOKE = """
@@ -88,5 +88,5 @@ def test_a_ram_on_an_upright_guide_has_room_for_its_body():
     project = files.project(files.from_file("sixbar/10:3"), {"cycle.force_position": "12", "project.sheets": ["sixbar_1"]})
     points, offsets = kinematic_frames.positions_reach(project)
     ram = complex(project.study.positions.points["B5"].at(project.force_index))
-    assert min(d.imag for z, d in zip(points, offsets, strict=True) if abs(z.imag - ram.imag) < 1e-9) <= -linkage.RAM
+    assert min(d.imag for z, d in zip(points, offsets, strict=True) if abs(z.imag - ram.imag) < 1e-9) <= -link_marks.RAM
     assert not composed(project, 1).leaving

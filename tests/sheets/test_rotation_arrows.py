@@ -5,8 +5,8 @@ import pytest
 
 from tests import project_files as files
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.sheets import kinematics, linkage
 from tmm_sheets.sheets.frame import PlanFrame
+from tmm_sheets.sheets.linkage import kinematics, link_marks
 from tmm_sheets.sheets.player import stage
 
 
@@ -17,7 +17,7 @@ def test_an_arrow_keeps_clear_of_what_stands_in_its_usual_place(link):
     pos = project.study.positions
     scale = kinematics.Scale("μ_l", 0.002, "m/mm")
     s = stage(Canvas(), pos.plan, 3, PlanFrame(scale, 100 + 100j))
-    shape = next(shape for shape in linkage.shapes(pos) if shape.link == link)
+    shape = next(shape for shape in link_marks.shapes(pos) if shape.link == link)
     usual = kinematics._free_arrows(shape, s, pos, np.array([-1e3 + 0j]))
     busy = np.concatenate([kinematics._along_arrow(arrow) for arrow in usual])
     found = kinematics._free_arrows(shape, s, pos, busy)

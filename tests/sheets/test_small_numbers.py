@@ -9,7 +9,7 @@ from tests import project_files as files
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.numbers import enough
-from tmm_sheets.sheets import crank_speed, flywheel
+from tmm_sheets.sheets.flywheel import crank_speed, flywheel
 
 
 @pytest.mark.parametrize(("x", "least", "kind", "text"), [

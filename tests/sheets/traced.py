@@ -23,7 +23,7 @@ from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, PlacedFrame, Points,
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.composed import Composed
-from tmm_sheets.sheets.details import NAMES
+from tmm_sheets.sheets.linkage.details import NAMES
 from tmm_sheets.sheets.sheet import every
 
 ROOMS = {

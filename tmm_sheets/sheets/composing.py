@@ -15,8 +15,9 @@ from tmm_sheets.drawing.labels import Grid, set_labels
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Drawing, View
 from tmm_sheets.drawing.title_block import draw_frame
-from tmm_sheets.sheets import composition, legibility, titles, view_overflow
+from tmm_sheets.sheets import composition, legibility, view_overflow
 from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.components import titles
 from tmm_sheets.sheets.composed import Composed
 from tmm_sheets.sheets.composition import DESIGNATION, arranged
 from tmm_sheets.sheets.views import VIEWS, function
@@ -43,7 +44,7 @@ def viewed(project: Project, n: int) -> tuple[Arrangement, Canvas, dict[str, str
     """Arrangement of sheet ``n``, its views on a canvas without the lettering that looks for places, texts of the title block."""
     plan = arranged(project, n)
     if {"positions", "flywheel"} & {view.needs for view in plan.views}:
-        from tmm_sheets.sheets.kinematic_frames import check_number
+        from tmm_sheets.sheets.linkage.kinematic_frames import check_number
 
         check_number(project)
     canvas = Canvas()

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 from tmm_sheets.box import Box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
-from tmm_sheets.sheets import kinematic_frames, view_sizes
+from tmm_sheets.sheets import view_sizes
 from tmm_sheets.sheets.arrangement import Arrangement, ViewPlace, arrangement
 from tmm_sheets.sheets.border_solver import GAP, BorderNode, cut, joined, solve
+from tmm_sheets.sheets.linkage import kinematic_frames
 from tmm_sheets.sheets.views import ViewKind, function
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def arranged(project: Project, n: int) -> Arrangement:
     if any(view.needs == "forces" for view in plan.views):
         project.check_forces()
     if any("axis" in view.options for view in plan.views):
-        from tmm_sheets.sheets import flywheel
+        from tmm_sheets.sheets.flywheel import flywheel
 
         return flywheel.apart(project, plan)
     # Whoever sets scale factors by hand has the boxes as they are written.

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
-from tmm_sheets.sheets import kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.composition import placed_where
 from tmm_sheets.sheets.frame import extent, fit_frame
-from tmm_sheets.sheets.linkage_sizes import LINKS
+from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
+from tmm_sheets.sheets.linkage.linkage_sizes import LINKS
 from tmm_sheets.sheets.views import function
 from tmm_sheets.words import marked
 

@@ -74,11 +74,23 @@ class ViewKind:
     name: str = ""
 
 
+ROOMS = {module: room for room, modules in {
+    "cams": "cam cam_law cam_profile cam_sizes cam_zone",
+    "flywheel": "crank_speed flywheel mertsalov",
+    "linkage": "details diagrams false_positions friction friction_sizes given_position hodograph "
+               "kinematic_frames kinematics kinetics lever_detail linkage_sizes load_diagram moments path_marks synthesis",
+    "gears": "gear gear_equations gear_sizes plan_checks planet_motion rack reducer reducer_equations train wheel_sizes",
+    "tables": "given_data position_tables",
+}.items() for module in modules.split()}
+"""Where the modules of the functions below are, but those beside this one."""
+
+
 @cache
 def function(name: str) -> Callable[..., Any]:
-    """The function module.function of :mod:`tmm_sheets.sheets`."""
+    """The function module.function of a room of :mod:`tmm_sheets.sheets`."""
     module, _, of_it = name.partition(".")
-    found: Callable[..., Any] = getattr(import_module(f"tmm_sheets.sheets.{module}"), of_it)
+    room = ROOMS.get(module)
+    found: Callable[..., Any] = getattr(import_module(f"tmm_sheets.sheets{f'.{room}' if room else ''}.{module}"), of_it)
     return found
 
 

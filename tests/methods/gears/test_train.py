@@ -8,8 +8,8 @@ import pytest
 from tests.project_files import project, read
 from tmm_sheets.drawing.marks import Text
 from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.sheets.gears.train import mobility_lines
 from tmm_sheets.sheets.sheet import composed
-from tmm_sheets.sheets.train import mobility_lines
 
 
 def mesh(sun=None, planet="", carrier=None, ring=None):

@@ -18,7 +18,7 @@ from tmm_sheets.methods.linkage.accelerations import CORIOLIS, acceleration_plan
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.velocities import velocity_plan
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.kinematics import _hinges
+from tmm_sheets.sheets.linkage.kinematics import _hinges
 from tmm_sheets.task import variant
 
 PROJECTS = Path(__file__).parents[2] / "projects"

@@ -18,7 +18,7 @@ from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters,
 from tmm_sheets.note.phrases import Said, Scope, listed, words
 from tmm_sheets.note.reader import NoteQuantity, Reader, named
 from tmm_sheets.numbers import is_zero, number
-from tmm_sheets.sheets.false_positions import triads
+from tmm_sheets.sheets.linkage.false_positions import triads
 
 BAR = "\u0305"
 MOST_COLUMNS = 9

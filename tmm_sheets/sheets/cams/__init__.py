@@ -1,0 +1,1 @@
+"""Views of cams: law of motion, dimensions by the allowed zone, profile by inversion."""

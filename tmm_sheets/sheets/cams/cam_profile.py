@@ -1,0 +1,585 @@
+"""Views of the cam sheet: profile by inversion and envelope, radius of the roller."""
+
+from __future__ import annotations
+
+from cmath import phase, rect
+from functools import lru_cache
+from itertools import pairwise
+from math import degrees, pi
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction.scale import fitting
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.clipping import segment_inside
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Box, Points
+from tmm_sheets.drawing.symbols import pivot
+from tmm_sheets.drawing.tables import LEAST, needs, size_in, widened
+from tmm_sheets.numbers import fixed, number
+from tmm_sheets.sheets.cams import cam_scale
+from tmm_sheets.sheets.cams.cam import ANGLE, distinct, for_cams, in_degrees, in_mm, lines_of_text, raised
+from tmm_sheets.sheets.frame import ratio, standard
+from tmm_sheets.sheets.player import PlayerStage, placed, play
+from tmm_sheets.words import tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.scale import Scale
+    from tmm_sheets.methods.cams.cam_inversion import Inversion
+    from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam
+
+EDGE, FOOT = 3.0, 4.0
+"""Room left free at both sides of the place and at its foot, mm."""
+ROLLER = 8.0, 34.0, 8.0, 24.0
+"""Room round the figure for the roller's radius at the left, below (what follows from it), right and above, mm."""
+
+
+@for_cams
+def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Centre profile by inversion with all follower lines and arcs, roller circles, working profile, follower."""
+    cam: Cam = project.cam
+    picture, first = _pictured(cam, box), len(canvas.marks)
+    canvas.scales[cam.inversion.plan.name] = picture.scale
+    canvas.title(box, tr("Construction of the cam profile"), f"{ratio(picture.scale)}   {picture.scale}")
+    inv, at = cam.inversion, picture.at
+    s, dense = (placed(canvas, i.plan, picture.origin, picture.scale.mu, phase(picture.turn)) for i in (inv, cam.dense))
+    _circles(s, picture)
+    _inverted(s, picture)
+    if "roller" in cam.traits:
+        dense.curve(cam.dense.centres, at(cam.dense.centres.value[:-1]), "centre", closed=True)
+    for k, label in _joined(inv).items():
+        here, centre = s.position(k), s.position(k).at(inv.centres)
+        if picture.roller > 0:
+            play(here, ["F"], "main" if k == 0 else "construction")
+        if k == 0 and picture.roller > 8:
+            # On the side from which the cam turns, the arcs of the inversion lie on the other; over it a rocker has its path.
+            tip = rect(picture.roller, picture.first - cam.right * (0.75 if cam.kind == "rocker" else 1 / 3) * pi)
+            # The value stands outside: within are the numbers of the arcs.
+            pen, out = here.pen("F", "dimension"), centre + tip * (1 + 5.0 / picture.roller)
+            pen.arrow(centre, centre + tip, "thin", 3.0)
+            pen.line(centre + tip, out, "thin")
+            canvas.label(out, f"r_p = {number(cam.roller * 1e3)}", tip, 3.5, 0.6)  # type: ignore[attr-defined]
+        here.dot(inv.centres, 0.6, "main")
+        if k:
+            canvas.label(centre, label, centre - picture.origin, 3.5, 0.8)
+    dense.curve(cam.dense.plan["F"], at(cam.dense.plan["F"].value[:-1]), "curve", closed=True)
+    if "F′" in inv.plan:
+        _second_disc(s, dense, picture)
+    {"tappet": _rod, "rocker": _rocker, "flat": _flat}[picture.kind](s, picture)
+    _phase_angles(s, picture)
+    size = table_size(cam)
+    corner = picture.corner(size) or complex(box.centre.real - size[0] / 2, box.y0 + FOOT + size[1])
+    canvas.table(corner, _widths(cam), _given(cam, options.get("angle", ANGLE)), _ROW, 3.5)
+    _path(s, picture, first, Box(corner.real, corner.imag - size[1], corner.real + size[0], corner.imag))
+
+
+def _pictured(cam: Cam, box: Box, table: tuple[float, float] | None = None) -> _ProfilePicture:
+    """The figure in a place, which leaves the foot of it to the table of sizes where that has no free corner."""
+    room = Box(box.x0 + EDGE, box.y0 + FOOT, box.x1 - EDGE, box.y1 - 24)
+    picture, size = _ProfilePicture(cam, room), table or table_size(cam)
+    return picture if picture.corner(size) else _ProfilePicture(cam, room._replace(y0=room.y0 + size[1] + 6))
+
+
+HOLE = 30.0
+"""So much farther from the figure the foot of its place must be for the table of its sizes to stand there, mm."""
+GUIDE = 22.0
+"""What the guide of a translating follower and the end of its rod take above the roller, mm of paper."""
+
+
+@lru_cache(maxsize=4)
+def _figure(cam: Cam) -> tuple[Points, float, list[complex], Points]:
+    """Points round the figure of the profile, the height of the guide's lower edge, the directions it may be turned to.
+
+    With it the width and height of the points in each direction, a complex number, m.
+    """
+    inv = cam.inversion
+    radius = float(getattr(cam, "roller", 0.0))
+    outline = [cam.dense.centres.value, *([cam.dense.plan["B′"].value] if "B′" in inv.plan else [])]
+    ring = radius * np.exp(2j * pi * np.arange(16) / 16)
+    every = [(p[::4, None] + ring).ravel() for p in outline] if radius else [cam.dense.plan["F"].value]
+    swept = [abs(p) * np.exp(1j * (phase(p) + cam.right * np.linspace(0, turn, 33))) for p, turn in _arcs(inv, cam.right)]
+    if cam.kind == "rocker":
+        swept.append(complex(inv.plan["A_0"].value) * np.exp(1j * cam.right * np.linspace(0, cam.law.fall.end, 65)))
+    if cam.kind == "flat":
+        swept += [np.array(ends) for ends in _plates(cam)]
+    points = np.concatenate([*every, *swept])
+    marks = inv.axis.value
+    # The guide of a translating follower stands clear of the roller in position 0.
+    guide = max(float(marks.imag.max()), float(marks[0].imag) + radius)
+    turns = [1.0 + 0j]
+    if cam.kind == "rocker":
+        along = complex(np.exp(-1j * phase(complex(inv.plan["A_0"].value))))
+        turns += [1j, -1.0 + 0j, -1j, *(along * complex(np.exp(1j * k * pi / 12)) for k in np.argsort(np.arange(24) % 6))]
+    turned = points * np.array(turns)[:, None]
+    return points, guide, turns, np.ptp(turned.real, axis=1) + 1j * np.ptp(turned.imag, axis=1)
+
+
+def margin(cam: Cam) -> float:
+    """Room left free at both sides of the figure, mm: the rays of a rocker end in letters."""
+    return 7.0 if cam.kind == "rocker" else 0.0
+
+
+def figure_sizes(cam: Cam) -> list[tuple[float, float]]:
+    """Width and height of the figure, m, in every direction it may be turned to."""
+    points, guide, _, sizes = _figure(cam)
+    least = 0.0 if cam.kind == "rocker" else guide - float(points.imag.min())
+    return [(float(size.real), max(float(size.imag), least)) for size in sizes]
+
+
+def over(cam: Cam, table: tuple[float, float]) -> tuple[float, float]:
+    """What stands over and under the figure, mm: the heading alone, where the table has a free corner, and with the table."""
+    heading = 28.0 + (14.0 if cam.kind == "rocker" else GUIDE)
+    return heading, heading + table[1] + 6.0
+
+
+def largest(cam: Cam, width: float, height: float, table: tuple[float, float] | None = None) -> Scale:
+    """Scale to which the figure is drawn in a place of this size, mm; ``table`` is the size of its table, where it is known."""
+    return _pictured(cam, Box(0.0, 0.0, width, height), table).scale
+
+
+_ROUND = np.exp(1j * np.arange(72) * pi / 36)
+"""Points of a circle of radius 1."""
+
+
+class _ProfilePicture:
+    """Where the figure of the profile stands on paper: ``at`` turns points of the cam's frame, m, into millimetres.
+
+    ``start`` is the direction from which the phases are laid off, ``first`` that of the roller in position 0, rad.
+
+    The figure of a rocker may be turned as a whole, with OA_0 by multiples of 15 degrees, when a larger standard scale fits
+    then.
+    """
+
+    def __init__(self, cam: Cam, room: Box) -> None:
+        self.cam, self.room = cam, room
+        self.kind = cam.kind
+        inv = cam.inversion
+        radius = float(getattr(cam, "roller", 0.0))
+        points, self.guide, turns, sizes = _figure(cam)
+        side, over = margin(cam), 0.0 if self.kind == "rocker" else GUIDE
+        rooms = [room.width - 2 * side, room.height - 2 * side]
+        best = int(fitting(np.array([sizes.real, sizes.imag]).T * 1e3, rooms).argmax())
+        self.turn, self.points = turns[best], points * turns[best]
+        fitted = [*zip((float(sizes[best].real), float(sizes[best].imag)), rooms, strict=True)]
+        if over:
+            fitted.append((self.guide - float(self.points.imag.min()), room.height - over))
+        self.scale = standard(*fitted)
+        x0, x1 = float(self.points.real.min()), float(self.points.real.max())
+        y0, y1 = float(self.points.imag.min()), float(self.points.imag.max())
+        top = max(self.scale.mm(y1), self.scale.mm(self.guide) + over) if over else self.scale.mm(y1)
+        middle = complex(self.scale.mm((x0 + x1) / 2), (self.scale.mm(y0) + top) / 2)
+        self.origin = complex(room.centre - middle)
+        self.roller = float(self.scale.mm(radius))
+        self.hole = min(1.8, 0.3 * self.roller)  # that its axis turns in
+        self.start = phase(complex(inv.plan["A_0" if self.kind == "rocker" else "B_0"].value) * self.turn)
+        self.first = phase(complex(inv.plan["B_0"].value) * self.turn)
+
+    def at(self, p: Any) -> Any:
+        """Point of the cam's frame on paper."""
+        return self.origin + self.scale.mm(p * self.turn)
+
+    def ink(self) -> Points:
+        """Points that the figure takes, mm."""
+        found = [self.origin + self.scale.mm(self.points), self.origin + (self.scale.mm(self.cam.r0) + 14.0) * _ROUND]
+        if self.kind == "rocker":
+            return np.concatenate([*found, self.at(complex(self.cam.inversion.plan["A_0"].value)) + 12.0 * _ROUND[::3]])
+        top = self.at(self.cam.inversion.axis.value[0])
+        up = 1j * np.arange(0.0, self.room.y1 - top.imag, 4.0)
+        return np.concatenate([*found, top - 8.0 + up, top + 8.0 + up])
+
+    def corner(self, size: tuple[float, float]) -> complex | None:
+        """Upper left corner of a rectangle in a corner of the room that the figure leaves free; None when there is none.
+
+        At the right rather than at the left, at the top unless the figure leaves a much larger hole at the foot.
+        """
+        ink, room, (width, height) = self.ink(), self.room, size
+        for x in (room.x1 - width, room.x0):
+            away = []
+            for y in (room.y1, room.y0 + height):
+                across = np.maximum(np.maximum(x - ink.real, ink.real - x - width), 0.0)
+                along = np.maximum(np.maximum(y - height - ink.imag, ink.imag - y), 0.0)
+                away.append(float(np.hypot(across, along).min()))
+            top, foot = away
+            if max(away) > 4.0:
+                return complex(x, room.y0 + height if foot > top + HOLE or top <= 4.0 else room.y1)
+        return None
+
+
+def _plates(cam: Any) -> list[tuple[complex, complex]]:
+    """Plates of the inverted positions, m: whole in position 0, in the others from the middle to beyond the contact."""
+    inv, beyond = cam.inversion, 0.2 * cam.r0
+    found = []
+    for k, (centre, line, contact) in enumerate(zip(inv.centres.value, inv.lines.value, inv.plan["F"].value, strict=True)):
+        along = 1j * complex(line)
+        if k == 0:
+            low, high = sorted(_plate_ends(cam))
+        else:
+            offset = float(((contact - centre) * np.conjugate(along)).real)
+            low, high = min(offset, 0.0) - beyond, max(offset, 0.0) + beyond
+        found.append((complex(centre + low * along), complex(centre + high * along)))
+    return found
+
+
+def _plate_ends(cam: Any) -> tuple[float, float]:
+    """Ends of the plate along the direction 90 degrees left of the follower's line, m."""
+    return (cam.plate.l1, -cam.plate.l2) if cam.right > 0 else (cam.plate.l2, -cam.plate.l1)
+
+
+def _joined(inv: Inversion) -> dict[int, str]:
+    """Numbers of the positions; where two points fall together, one label for both."""
+    found: dict[int, str] = {}
+    points = inv.centres.value
+    for k, p in enumerate(points):
+        near = next((j for j in found if abs(points[j] - p) < 1e-9), None)
+        if near is None:
+            found[k] = inv.plan.labels[k]
+        elif near == 0 or k - near > 1:
+            found[near] += f", {inv.plan.labels[k]}"
+    return found
+
+
+_WIDTHS, _ROW = (56.0, 34.0), 7.0
+"""Least widths of the columns and height of the rows of the table, mm."""
+
+
+def _widths(cam: Cam) -> list[float]:
+    return [max(least, need + 2.0) for least, need in zip(_WIDTHS, needs(_given(cam), 3.5, LEAST), strict=True)]
+
+
+def table_size(cam: Cam) -> tuple[float, float]:
+    """Width and height of the table of sizes, mm."""
+    return sum(_widths(cam)), _ROW * len(_given(cam))
+
+
+def _given(cam: Any, letter_of: str = ANGLE) -> list[list[str]]:
+    """Given numbers and main dimensions."""
+    d, law = cam.data, cam.law
+    head = [tr("Parameter"), tr("Value")]
+    phases = [in_degrees(" / ".join(p.letters for p in (law.rise, law.upper_dwell, law.fall))),
+              " / ".join(number(degrees(v)) for v in (d.rise, d.upper_dwell, d.fall))]
+    if "flat" in cam.traits:
+        p = cam.plate
+        return [head, [tr("Stroke of the follower S, mm"), number(d.stroke * 1e3)], phases,
+                [in_mm("r_{min}"), fixed(p.r_min * 1e3, 3)], [in_mm("r_0"), number(p.r0 * 1e3)],
+                [in_mm("l_1 / l_2"), f"{fixed(p.l1 * 1e3, 2)} / {fixed(p.l2 * 1e3, 2)}"]]
+    z = cam.zone
+    angle = [tr("[{angle}] on the rise, deg").format(angle=letter_of) if d.limit == "rise" else in_degrees(f"[{letter_of}]"),
+             number(degrees(d.pressure_angle))]
+    if "rocker" in cam.traits:
+        rows = [head, [tr("Angle of swing ψ, deg"), number(degrees(d.swing))],
+                [tr("Length of the rocker AB, mm"), number(d.arm * 1e3)], phases, angle,
+                [in_mm("r_0"), fixed(z.r0 * 1e3, 3)], [in_mm("l_0"), fixed(z.l0 * 1e3, 3)]]
+    else:
+        rows = [head, [tr("Stroke of the follower S, mm"), number(d.stroke * 1e3)], phases, angle,
+                [in_mm("S_0"), fixed(z.s0 * 1e3, 3)], [in_mm("e"), fixed(z.e * 1e3, 3)], [in_mm("r_0"), fixed(z.r0 * 1e3, 3)]]
+    rows.append([in_mm("r_p"), number(cam.roller * 1e3)])
+    if d.closure == "geometric":
+        rows.append([tr("Angle between the arms"), f"{fixed(degrees(cam.spread), 2)}°"] if "rocker" in cam.traits
+                    else [tr("Between the rollers L, mm"), fixed(cam.distance * 1e3, 3)])
+    return rows
+
+
+def radii_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the table of radii can do with, mm."""
+    rows = len(_radii(project.cam))
+    return [(width, 11.0 + row * rows) for width, row in ((112.0, 8.0), (96.0, 7.0), (84.0, 6.4), (76.0, 5.6), (70.0, 4.6))]
+
+
+def radii(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Radii of the centre profile and of the profile at the numbered positions."""
+    cam: Cam = project.cam
+    rows = _radii(cam)
+    canvas.of = cam.inversion.plan.name
+    inside = canvas.title(box.inset(0, 0, 0, 2), tr("Radii of the profile"))
+    row = min(inside.height / len(rows), 8.0)
+    height = size_in(row)
+    widths = widened([0.16 * box.width, *[0.84 * box.width / (len(rows[0]) - 1)] * (len(rows[0]) - 1)], rows, height)
+    canvas.table(complex(box.x0, inside.y1), widths, rows, row, height)
+
+
+def _radii(cam: Cam) -> list[list[str]]:
+    """Cam angle and radii, mm, from the drawn points."""
+    inv = cam.inversion
+    columns = [(in_degrees("φ"), np.degrees(inv.phi), 2)]
+    if "roller" in cam.traits:
+        columns.append((in_mm("|OB|"), inv.plan.length(inv.plan["O"], inv.centres).value * 1e3, 2))
+    columns.append((in_mm("|OF|"), inv.plan.length(inv.plan["O"], inv.plan["F"]).value * 1e3, 2))
+    rows = [[tr("No."), *(head for head, _, _ in columns)]]
+    return rows + [[inv.plan.labels[k], *(fixed(float(values[k]), places) for _, values, places in columns)]
+                   for k in distinct(inv.plan.labels, inv.phi)]
+
+
+def _circles(s: PlayerStage, picture: _ProfilePicture) -> None:
+    """Circles r0, e and l0 with their radii, drawn where the cam dwells: no follower line is there."""
+    cam, origin, scale, canvas = picture.cam, picture.origin, picture.scale, s.canvas
+    radii = [("r_0", cam.r0, 0.3)]
+    if picture.kind == "tappet":
+        radii.append(("e", abs(cam.zone.e), 0.17))  # type: ignore[attr-defined]
+    for (_, radius, _), step in zip(radii, ("C" if picture.kind == "rocker" else "N", "T"), strict=False):
+        s.pen(step, "construction").circle(origin, scale.mm(radius), "thin")
+    reach = scale.mm(cam.r0) + 6.0
+    for way in (reach, 1j * reach):
+        shown = segment_inside(picture.room, origin - way, origin + way)
+        if shown:
+            s.line("O", *shown, "centre", "axis")
+    s.pen("O", "symbol").circle(origin, 3.0, "main")
+    idle = cam.law.lower_dwell
+    start = picture.first
+    for name, radius, share in radii:
+        if scale.mm(radius) > 8:
+            angle = start + cam.right * (idle.start + share * idle.angle)
+            tip = origin + rect(scale.mm(radius), angle)
+            s.pen("O", "dimension").arrow(origin + rect(3.0, angle), tip, "thin", 3.0)
+            text = f"{name} = {fixed(radius * 1e3, 3)}"
+            wide = letter(text, 3.5).width
+            if scale.mm(radius) < 2.0 * wide:  # beyond its arrow, where there is more room
+                canvas.label(tip, text, rect(1, angle), 3.5, 1.0)
+            else:
+                canvas.label(origin + rect(scale.mm(radius) - 3.0 - wide / 2, angle), text, 1j * rect(1, angle), 3.5, 0.6)
+    canvas.label(origin, "O", -1 - 1j, 5.0, 3.5)
+
+
+def _arcs(inv: Inversion, right: float) -> list[tuple[complex, float]]:
+    """Arcs about O: the mark each starts from and how far it goes round, rad; of equal radii the longest."""
+    furthest: dict[float, tuple[complex, float]] = {}
+    for centre, mark in zip(inv.centres.value, inv.axis.value, strict=True):
+        turn = float(right * np.angle(centre / mark) + 1e-9) % (2 * pi) - 1e-9  # none is none, not a whole turn
+        key = round(abs(mark) / abs(inv.axis.value[0]), 6)
+        if turn < 2 * pi - 1e-6 and (key not in furthest or turn > furthest[key][1]):
+            furthest[key] = (complex(mark), turn)
+    return list(furthest.values())
+
+
+def _inverted(s: PlayerStage, picture: _ProfilePicture) -> None:
+    """Follower lines or arms in the inverted motion, and arcs about O through the marks of the path."""
+    cam = picture.cam
+    inv, right = cam.inversion, cam.right
+    for k, along in enumerate(inv.lines.value):
+        here = s.position(k)
+        if picture.kind != "rocker":
+            start = picture.origin if inv.feet is None else here.at(inv.feet)
+            here.line(inv.lines, start, here.at(inv.centres) + 5.0 * along * picture.turn)
+        elif k:
+            here.line(inv.ends, here.at(inv.ends), here.at(inv.centres))
+    for mark, turn in _arcs(inv, right):
+        start = phase(mark * picture.turn)
+        ends = sorted((start, start + right * turn))
+        here = s.position(int(np.argmin(np.abs(inv.axis.value - mark))))
+        radius = abs(here.at(inv.axis) - picture.origin)
+        here.pen(inv.centres, "construction").arc(picture.origin, radius, ends[0], ends[1], "construction")
+
+
+def _rod(s: PlayerStage, picture: _ProfilePicture) -> None:
+    """Translating follower in position 0: roller, rod, guide."""
+    inv = picture.cam.inversion
+    _guided(s.position(0).pen(inv.axis, "symbol"), picture, s.position(0).at(inv.axis))
+
+
+def _path(s: PlayerStage, picture: _ProfilePicture, first: int, table: Box) -> None:
+    """Marks of the follower's path with the numbers of all positions, away from the arcs through them and from the table."""
+    inv, side = picture.cam.inversion, picture.cam.right
+    marks = [s.position(k).at(inv.axis) for k in range(len(inv.plan.labels))]
+    if picture.kind == "rocker":
+        a0 = s.at("A_0")
+        along = cam_scale.lengths(np.array(marks), a0)
+        arm, way = abs(marks[0] - a0), 1.0 if max(along) > -min(along) else -1.0
+        start = phase(marks[0] - a0)
+        cam_scale.numbered(s, inv.axis, first, [way * t for t in along], inv.plan.labels,
+                         lambda t, beside: a0 + rect(arm + beside, start + way * t / arm), 1.0, table, 15.0)
+        return
+    low = marks[0]
+    cam_scale.numbered(s, inv.axis, first, [(p - low).imag for p in marks], inv.plan.labels,
+                     lambda t, beside: low + complex(beside, t), side, table)
+
+
+def _guided(canvas: Canvas, picture: _ProfilePicture, low: complex) -> None:
+    """Rod from ``low`` up, with its guide and the hole of the roller's axis, mm."""
+    canvas.circle(low, picture.hole, "main")
+    stand = complex(low.real, picture.origin.imag + picture.scale.mm(picture.guide))
+    canvas.line(low + 1j * picture.hole, stand + 1j * (GUIDE - 1.0), "main")
+    for side in (-1.0, 1.0):
+        a, b = stand + complex(2.2 * side, 5.0), stand + complex(2.2 * side, GUIDE - 5.0)
+        canvas.line(a, b, "main")
+        canvas.hatch(a, b, 1 if side < 0 else -1)
+
+
+def _rocker(s: PlayerStage, picture: _ProfilePicture) -> None:
+    """Rocker in position 0, circle l0 with the axes of the inverted positions, marks of the path, triangle OAB."""
+    cam, at, canvas = picture.cam, picture.at, s.canvas
+    inv = cam.inversion
+    a0, b0 = s.at("A_0"), s.at("B_0")
+    radius = abs(a0 - picture.origin)
+    ends = sorted(picture.start + cam.right * v for v in (0.0, cam.law.fall.end))
+    s.pen(inv.ends, "construction").arc(picture.origin, radius, ends[0], ends[1], "thin")
+    for name, end in (("A_0", a0), ("B_0", b0)):
+        s.line(name, picture.origin, end, "thin")
+    for k, (before, after) in enumerate(pairwise(inv.ends.value), 1):
+        if abs(after - before) > 1e-9:
+            here = s.position(k)
+            here.dot(inv.ends, 0.6, "main")
+            canvas.label(here.at(inv.ends), f"A_{{{here.label}}}", here.at(inv.ends) - picture.origin, 2.5, 0.7)
+    marks = at(inv.axis.value[: len(inv.axis.value) // 2])
+    arm = abs(b0 - a0)
+    first = phase(complex(marks[0] - a0))
+    last = first + float(np.angle((marks[-1] - a0) / (marks[0] - a0)))
+    s.pen(inv.axis, "construction").arc(a0, arm, min(first, last), max(first, last), "thin")
+    u = (b0 - a0) / arm
+    pivot(s.pen("A_0", "symbol"), a0, -1j if (b0 - a0).imag >= -1e-9 else 1j)
+    pen = s.pen("B_0", "symbol")
+    pen.line(a0 + 1.6 * u, b0 - picture.hole * u, "main")
+    pen.circle(b0, picture.hole, "main")
+    canvas.label(a0, "A_0", (a0 - b0) / arm, 3.5, 3.0)
+    canvas.label(b0, "B_0", -u + 1j, 3.5, 2.0)
+    canvas.label(picture.origin + 0.55 * (a0 - picture.origin), f"l_0 = {fixed(cam.zone.l0 * 1e3, 3)}",  # type: ignore[attr-defined]
+                 1j * (a0 - picture.origin), 3.5, 0.6)
+
+
+def _flat(s: PlayerStage, picture: _ProfilePicture) -> None:
+    """Flat follower in position 0 and the plates of the inverted positions, whose envelope is the profile."""
+    cam, at = picture.cam, picture.at
+    inv = cam.inversion
+    for k, (a, b) in enumerate(_plates(cam)):
+        s.position(k).line("⊥ON", complex(at(a)), complex(at(b)), "main" if k == 0 else "construction")
+    for k in range(len(inv.plan.labels)):
+        s.position(k).dot("F", 0.5, "main")
+    _rod(s, picture)
+
+
+def _second_disc(s: PlayerStage, course: PlayerStage, picture: _ProfilePicture) -> None:
+    """Centre profile and profile of the second disc, its roller, and what keeps both rollers at their distance."""
+    cam, at, canvas = picture.cam, picture.at, s.canvas
+    dense, inv = cam.dense, cam.inversion
+    outline = dense.plan["F′"].value
+    for name, style in (("B′", "twodot"), ("F′", "hidden")):
+        course.curve(dense.plan[name], at(dense.plan[name].value[:-1]), style, closed=True)
+    for disc, own, other in ((1, dense.plan["F"].value, outline), (2, outline, dense.plan["F"].value)):
+        # Where this disc stands out furthest over the other one.
+        away = np.array([float(np.abs(other - p).min()) for p in own[::4]])
+        # Along a dwell it is the same: there in the middle.
+        furthest = np.flatnonzero(away > away.max() - 1e-9)
+        k = int(furthest[len(furthest) // 2]) * 4
+        canvas.label(complex(at(own[k])), tr("disc {number}").format(number=disc), complex(own[k]) * picture.turn, 3.5, 1.5)
+    start = s.position(0)
+    first, second = start.at(inv.centres), start.at("B′")
+    start.pen("F′", "construction").circle(second, picture.roller, "main")
+    start.pen("B′", "symbol").circle(second, picture.hole, "main")
+    for k in range(1, len(inv.plan.labels)):
+        s.position(k).dot("B′", 0.4, "main")
+    if picture.kind == "rocker":
+        a0 = s.at("A_0")
+        u = (second - a0) / abs(second - a0)
+        start.line("B′", a0 + 1.6 * u, second - picture.hole * u, "main", "symbol")
+        canvas.label(second, "B′_0", 1j * u, 3.5, picture.roller + 1.0)
+    else:
+        u = (second - first) / abs(second - first)
+        start.line("B′", first + picture.roller * u, second - picture.roller * u, "centre")
+        canvas.label(second, "B′_0", u + 0.6, 3.5, picture.roller + 1.0)
+
+
+def _phase_angles(s: PlayerStage, picture: _ProfilePicture) -> None:
+    """Angles of the phases from the line of position 0, the cam's and the inverted sense of rotation."""
+    cam, origin, scale, start, canvas = picture.cam, picture.origin, picture.scale, picture.start, s.canvas
+    reach = scale.mm(cam.r0)
+    inner = scale.mm(abs(cam.zone.e)) if picture.kind == "tappet" else 0.0  # type: ignore[attr-defined]
+    radius = 0.78 * inner if inner > 0.35 * reach else 0.42 * reach
+    for p in cam.law.phases:
+        ends = sorted(start + cam.right * v for v in (p.start, p.end))
+        s.line(cam.inversion.ends, origin, origin + rect(reach, start + cam.right * p.start), "thin")
+        canvas.angle_mark(origin, ends[0], ends[1], radius, p.letters)
+    turn = 0.5 * radius
+    s.pen("O", "symbol").arc_arrow(origin, turn, start + cam.right * 0.3, start - cam.right * 1.3, "axis")
+    canvas.label(origin + rect(turn, start - cam.right * 0.6), "ω", rect(1, start - cam.right * 0.6), 5.0, 1.0)
+    idle = max(cam.law.phases, key=lambda p: p.angle if p.travel == 0 and p.first == 0 else 0.0)
+    # Nearer to the end of the fall: a rocker's arm lies over the beginning of the rise.
+    middle = picture.first + cam.right * (idle.start + 0.35 * idle.angle)
+    room, around = picture.room, reach + 9.0
+    if not all(room.contains(origin + rect(around + 2.0, middle + turned)) for turned in (-0.25, 0.0, 0.25)):
+        around = reach - 7.0
+    s.pen("O", "symbol").arc_arrow(origin, around, middle - 0.22 * cam.right, middle + 0.22 * cam.right, "axis")
+    canvas.label(origin + rect(around, middle), "−ω", rect(1, middle) * (1 if around > reach else -1), 5.0, 1.0)
+
+
+@for_cams
+def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Smallest radius of curvature by three points of the centre profile; the radius of the roller by both rules."""
+    cam: RollerCam = project.cam
+    plan = cam.inversion.plan
+    d, centre = complex(plan["D_ρ"].value), complex(plan["M"].value)
+    chords = [complex(plan[f"{n}_ρ"].value) for n in "EDG"]
+    beside, near = _sharpest(cam)
+    every = np.array([*near, centre])
+    left, below, right, above = ROLLER
+    room = box.inset(left, below, right, above)
+    scale = standard((float(np.ptp(every.real)), room.width), (float(np.ptp(every.imag)), room.height))
+    box, room = raised(box, room, scale.mm(float(np.ptp(every.imag))))
+    canvas.title(box, tr("Choice of the radius of the roller"), ratio(scale))
+    middle = complex((every.real.max() + every.real.min()) / 2, (every.imag.max() + every.imag.min()) / 2)
+    origin = room.centre - scale.mm(middle)
+
+    s = placed(canvas, plan, complex(origin), scale.mu)
+    at = s.frame
+    placed(canvas, beside.plan, complex(origin), scale.mu).curve(beside.centres, at(near))
+    for (a, b), end in zip(pairwise(chords), "DG", strict=True):
+        s.line(f"{end}_ρ", at(a), at(b), "thin")
+        s.pen("M", "construction").ray_line(at(centre), at((a + b) / 2), "construction", 0.9 * abs(at(b) - at(a)) + 3.0, 2.5)
+        # Equal arcs about both ends meet on the perpendicular through the middle of the chord.
+        for end_, other in ((at(a), at(b)), (at(b), at(a))):
+            for side in (1, -1):
+                crossing = (end_ + other) / 2 + side * 0.9j * (at(b) - at(a))
+                s.pen("M", "symbol").arc_mark(end_, crossing, 2.5, "construction")
+    s.pen("ρ_min", "dimension").arrow(at(centre), at(d), "thin", 3.0)
+    s.dot("M", 0.7, "main")
+    outwards = (d - centre) / abs(d - centre)
+    for name, p in zip("EDG", chords, strict=True):
+        s.dot(f"{name}_ρ", 0.7, "main")
+        canvas.label(at(p), name, outwards + 0.6 * (p - d) / max(abs(p - d), 1e-12), 3.5, 1.5)
+    canvas.label(at(centre), "M", -outwards, 3.5, 1.0)
+    canvas.label(at((d + centre) / 2), "ρ_{min}", 1j * outwards, 3.5, 2.0)
+    lines_of_text(canvas, box, _roller_lines(cam, scale.mu))
+
+
+def _roller_lines(cam: RollerCam, mu: float) -> list[str]:
+    """The least radius of curvature as it is measured, and the radius of the roller by both rules."""
+    drawn_rho, rules = float(cam.inversion.plan["ρ_min"].value), cam.roller_rules
+    found = tr("|MD| = {length} mm;  ρ_{{min}} = |MD|·μ_l = {drawn} mm (exactly {exact} mm)")
+    if cam.rho_min < cam.sharpest.rho * (1 - 1e-6):
+        found = tr("|MD| = {length} mm;  ρ_{{min}} = |MD|·μ_l = {drawn} mm (exactly {exact} mm); of the second disc {second} mm")
+    lines = [found.format(length=fixed(drawn_rho / mu, 1), drawn=_mm(drawn_rho), exact=_mm(cam.sharpest.rho),
+                          second=_mm(cam.rho_min))]
+    for rule in rules:
+        low, high = rule.limits
+        if low == high:
+            lines.append(tr("r_p ≤ {share} {radius} = {limit} mm").format(
+                share=number(rule.shares[0]), radius=rule.symbol, limit=_mm(low)))
+            continue
+        shares = f"({number(rule.shares[0])}…{number(rule.shares[1])})"
+        lines.append(tr("r_p ≤ {share} {radius} = {limit} mm").format(
+            share=shares, radius=rule.symbol, limit=f"{_mm(low)}…{_mm(high)}"))
+    met = all(cam.roller <= rule.limits[1] * (1 + 1e-9) for rule in rules)
+    taken = tr("Taken: r_p = {radius} mm") if met else tr("Taken: r_p = {radius} mm (more than recommended)")
+    lines.append(taken.format(radius=number(cam.roller * 1e3)))
+    return lines
+
+
+def _sharpest(cam: RollerCam) -> tuple[Inversion, Points]:
+    """Positions about the sharpest point of the centre profile, and the centres of the roller as far as they are drawn, m."""
+    d, centre = (complex(cam.inversion.plan[name].value) for name in ("D_ρ", "M"))
+    beside = cam.at(float(cam.three[1]) + np.linspace(-0.6, 0.6, 121))
+    course = beside.centres.value
+    return beside, course[np.abs(course - d) < 0.75 * abs(centre - d)]
+
+
+def roller_width(cam: RollerCam) -> float:
+    """Width that its lines take, mm."""
+    return 8.0 + max(letter(line, 3.5).width for line in _roller_lines(cam, 2e-4))
+
+
+def roller_extent(cam: RollerCam) -> tuple[float, float]:
+    """Width and height of the figure for the roller's radius, m."""
+    every = np.append(_sharpest(cam)[1], complex(cam.inversion.plan["M"].value))
+    return float(np.ptp(every.real)), float(np.ptp(every.imag))
+
+
+def _mm(length: float) -> str:
+    return fixed(length * 1e3, 2)

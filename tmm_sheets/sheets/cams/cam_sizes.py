@@ -1,0 +1,116 @@
+"""What the views of a cam need of their places."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache, lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction.scale import STANDARD, fitting
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.sheets.border_solver import Need
+from tmm_sheets.sheets.cams import cam as cam_views
+from tmm_sheets.sheets.cams import cam_profile, cam_zone
+from tmm_sheets.sheets.frame import standard
+from tmm_sheets.sheets.view_sizes import leaf
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.cams.cam_profile import Cam
+    from tmm_sheets.project import Project
+    from tmm_sheets.sheets.arrangement import ViewPlace
+    from tmm_sheets.sheets.border_solver import BorderNode
+
+
+NUMBERED = 30.0
+"""Height of a curve on which all positions are numbered, mm."""
+
+
+ORDINATES = 4.0
+"""Distance of two ordinates that can be read, mm."""
+
+
+GRAPH = 45.0
+"""Height of a graph that can be read, mm."""
+
+
+def wide(project: Project, view: ViewPlace) -> BorderNode:
+    """Need of a view that takes what room there is, down to a part of its box below which it cannot be read."""
+    w, h = view.box.width, view.box.height
+    return leaf(view.box, Need(least=(0.9 * w, 0.8 * h), drawn=lambda w, h: 0.6 * w * h))
+
+
+def zone_of_tappet(project: Project, view: ViewPlace) -> BorderNode | None:
+    """A curve S(S′) with the numbers of all positions on it, which must be so high that they can be read."""
+    cam: Any = project.cam  # one with a tappet: others have no such view
+    rays = bool(view.options.get("rays"))
+
+    @cache
+    def in_place(width: int, height: int) -> float:
+        return 0.6 * width * height * min(cam_zone.stroke_in(cam, rays, width, height) / NUMBERED, 1.0)
+
+    need = Need(least=(0.88 * view.box.width, 0.8 * view.box.height), drawn=lambda w, h: in_place(int(w), int(h)))
+    return leaf(view.box, need)
+
+
+def pressure(project: Project, view: ViewPlace) -> BorderNode | None:
+    """A graph over the whole turn: beyond its width more height is of no use, and its ordinates are to stand apart."""
+    def drawn(width: float, height: float) -> float:
+        return 0.6 * width * min(height, width) * min(cam_views.ordinates_apart(project.cam, width) / ORDINATES, 1.0)
+
+    return leaf(view.box, Need(least=(120.0, 80.0), drawn=drawn))
+
+
+def spring(project: Project, view: ViewPlace) -> BorderNode | None:
+    """A graph with its lines beside it or under it, where they leave it the height to be read."""
+    def drawn(width: float, height: float) -> float:
+        return 0.6 * width * height * min(max(cam_views.spring_height(project.cam, width, height) / GRAPH, 0.05), 1.0)
+
+    return leaf(view.box, Need(least=(0.8 * view.box.width, 80.0), drawn=drawn))
+
+
+def profile(project: Project, view: ViewPlace) -> BorderNode | None:
+    """The profile at a standard scale, with its table where that leaves the scale."""
+    in_place = _profile_area(project.cam, cam_profile.table_size(project.cam))
+    return leaf(view.box, Need(least=(180.0, 180.0), drawn=lambda w, h: in_place(int(w), int(h))))
+
+
+@lru_cache(maxsize=4)
+def _profile_area(cam: Cam, table: tuple[float, float]) -> Callable[[int, int], float]:
+    """Area that the figure of a profile takes of places of some width and height, mm: the same in all ways to arrange a sheet."""
+    sizes = np.array(cam_profile.figure_sizes(cam))
+    beside = 2 * (cam_profile.EDGE + cam_profile.margin(cam))
+    alone, with_table = cam_profile.over(cam, table)
+    mus = [real / drawn * 1e-3 for real, drawn in STANDARD]
+
+    @cache
+    def in_place(width: int, height: int) -> float:
+        scale, larger = (int(fitting(sizes * 1e3, (width - beside, height - over)).max()) for over in (with_table, alone))
+        if scale < 0:
+            return 1.0
+        mu, over = mus[scale], with_table
+        if larger > scale and cam_profile.largest(cam, width, height, table).mu < mu:
+            mu, over = mus[larger], alone
+        w, h = (sizes / mu + (beside, over)).T
+        shown = (w * h)[(w <= width + 1e-6) & (h <= height + 1e-6)]
+        return float(shown.max()) if len(shown) else 1.0
+
+    return in_place
+
+
+def roller(project: Project, view: ViewPlace) -> BorderNode | None:
+    """The choice of the roller at a standard scale."""
+    cam: Any = project.cam  # one with a roller: others have no such view
+    w, h = cam_profile.roller_extent(cam)
+    left, below, right, above = cam_profile.ROLLER
+
+    @cache
+    def in_place(width: int, height: int) -> float:
+        try:
+            mu = standard((w, width - left - right), (h, height - below - above)).mu
+        except CannotBuild:
+            return 1.0
+        return (w / mu + left + right) * (h / mu + below + above)
+
+    return leaf(view.box, Need(least=(cam_profile.roller_width(cam), 104.0), drawn=lambda w, h: in_place(int(w), int(h))), 0.5)

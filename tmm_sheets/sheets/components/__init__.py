@@ -1,0 +1,1 @@
+"""What views of several kinds share: graphs over an axis, titles, dimensions, crossings too flat to be drawn."""

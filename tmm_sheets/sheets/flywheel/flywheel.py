@@ -1,0 +1,869 @@
+"""Views of sheet 2, the flywheel: graphs over the crank angle, energy-mass diagram, sketch of the wheel, results.
+
+The three graphs of the left column and the graph of dE share the ordinate axis given by the option ``axis`` (x of the
+axis, mm of the sheet), so their positions stand one under another. The energy-mass diagram stands at the level of the
+graph of dE and under the turned graph of J: its options ``energy`` and ``inertia`` repeat the places of those views.
+"""
+
+from __future__ import annotations
+
+from cmath import rect
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from math import degrees, pi
+from string import ascii_lowercase
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from tmm_sheets.construction.scale import times
+from tmm_sheets.drawing.axis_numbers import Plain
+from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
+from tmm_sheets.drawing.evenness import dense
+from tmm_sheets.drawing.lettering import letter, size_for
+from tmm_sheets.drawing.marks import Box, Text
+from tmm_sheets.drawing.notes import wrapped
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.numbers import decimals_for, enough, fixed, is_zero, number
+from tmm_sheets.sheets.components import graphs
+from tmm_sheets.sheets.frame import ratio, standard, together
+from tmm_sheets.sheets.player import PlayerStage, play, stage
+from tmm_sheets.words import tell, tr, tr_in
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.step import Step
+    from tmm_sheets.methods.flywheel.flywheel import Flywheel
+    from tmm_sheets.methods.flywheel.wheel import RimWheel
+    from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
+    from tmm_sheets.project import Project
+    from tmm_sheets.sheets.arrangement import Arrangement, ViewPlace
+
+Options = dict[str, Any]
+CLEAR = 14.0
+"""How far the sign of a straight graph stands from the other curve, mm."""
+CROWD = 4
+"""So many intervals between two positions on an average are drawn, with their rays, as they are."""
+FELT = 0.02
+"""Error of the work by ordinates from which on the sheet tells what it does to the flywheel beside it."""
+_BELOW = 7.0  # room of position numbers beside an axis
+_UNDER = 8.0  # room of the letter b under the energy-mass diagram
+
+
+Stacked = tuple[Callable[..., None], float, float]
+"""A graph of a column: what draws it, the height of its ordinates and what it needs under them, mm."""
+
+
+def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Forces, moments and works one under another."""
+    parts = _of_column(project.flywheel)
+    stacked(project, canvas, box, options, "flywheel.column", [(_view(draw), height, below) for draw, height, below in parts])
+
+
+def _of_column(fw: Flywheel) -> tuple[Stacked, ...]:
+    lines = [line for name in fw.reduced.forces_at(fw.samples[:1]) for line in _acting(fw, name)]
+    forces = np.concatenate([np.zeros(1), *(line.imag for line in lines)])
+    return (force_graph, float(np.ptp(forces)), _BELOW), *of_moments(fw)
+
+
+def apart(project: Any, plan: Arrangement) -> Arrangement:
+    """The arrangement with the border between the column and the graph of dE under it where both have room to spare alike."""
+    fw, views = project.flywheel, {view.draw: view for view in plan.views}
+    upper, lower = views.get("flywheel.column"), views.get("flywheel.total_work")
+    if fw.method != "wittenbauer" or upper is None or lower is None:
+        return plan
+    parts = _of_column(fw)
+    needs = sum(height + below for _, height, below in parts) + len(parts) * (graphs.OVER + graphs.HEAD)
+    low, high = _energy_range(fw)
+    gap = upper.box.y0 - lower.box.y1
+    spare = upper.box.y1 - lower.box.y0 - gap - needs - (_UNDER + high - low + graphs.HEAD + graphs.OVER)
+    border = upper.box.y1 - needs - max(spare, 0.0) * (len(parts) - 1) / (len(parts) + 1)
+    places = {upper.draw: upper.box._replace(y0=border), lower.draw: lower.box._replace(y1=border - gap)}
+
+    def placed(view: ViewPlace) -> ViewPlace:
+        energy = {"energy": [*places[lower.draw]]} if "energy" in view.options else {}
+        return replace(view, box=places.get(view.draw, view.box), options={**view.options, **energy})
+
+    return replace(plan, views=tuple(map(placed, plan.views)))
+
+
+def _view(draw: Callable[..., None]) -> Callable[..., None]:
+    """One graph of the column as a view of its own."""
+    def begun(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+        canvas.of = f"flywheel.{draw.__name__}"
+        canvas.begin(box, "", canvas.of)
+        draw(project, canvas, box, options)
+
+    return begun
+
+
+def of_moments(fw: Flywheel) -> tuple[Stacked, Stacked]:
+    """The graphs of moments and works as parts of a column."""
+    moment = np.concatenate(([0.0, fw.M_constant], *(fw.at_samples.moment(side).value for side in (1, -1))))
+    work = np.append(fw.work_curve(fw.samples), (0.0, fw.driving_plan["K"].value.imag))
+    # The constant moment is lettered above its line.
+    return (moments, float(np.ptp(fw.scales.moment.mm(moment))) + 6.0, 4.0), (works, float(np.ptp(work)), 4.0)
+
+
+def stacked(project: Any, canvas: Canvas, box: Box, options: Options, name: str, views: Sequence[Stacked]) -> None:
+    """Graphs one under another, each as high as it is, the room left over between them."""
+    over = graphs.OVER + graphs.HEAD
+    spare = (box.height - sum(height + below + over for _, height, below in views)) / (len(views) - 1)
+    graphs.check_room(box, box.y1 - min(spare, 0.0) * (len(views) - 1), name)
+    fw: Flywheel = project.flywheel
+    graphs.check_width(box, options["axis"] + fw.scales.angle.mm(fw.reduced.period) + graphs.OVER, name)
+    top = box.y1
+    for view, height, below in views:
+        low = top - height - below - over
+        view(project, canvas, Box(box.x0, low, box.x1, top), options)
+        top = low - spare
+
+
+def force_graph(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Technological forces over the crank angle; where one begins or ends the moment graph is cut off."""
+    fw = with_tangents(project)  # the first view of its sheets: what is said of another method comes before what lacks room
+    s, r = fw.scales, fw.reduced
+    names = list(r.forces_at(fw.samples[:1]))
+    one, many, letter_of, unit = (
+        (tr("Graph of the moment {shown}"), tr("Graphs of the moments {shown}"), "M", tr("N·m")) if r.forces_are_moments else
+        (tr("Graph of the force {shown}"), tr("Graphs of the forces {shown}"), "F", tr("N")))
+    title = one if len(names) == 1 else many
+    beside = [*r.moments_beside, *([tr("the weights of the links")] if fw.data.weights else [])]
+    if beside:  # no place among the ordinates of forces
+        canvas.note(box, tr("The reduced moment of forces counts as well: {shown}").format(shown=", ".join(beside)))
+    graphs.heading(canvas, box, options, title.format(shown=", ".join(f"{n}(φ_1)" for n in names)), f"{s.force}")
+    acting = {name: _acting(fw, name) for name in names}
+    low = min((float(line.imag.min()) for lines in acting.values() for line in lines), default=0.0)
+    g = graphs.Graph(complex(options["axis"], box.y0 + _BELOW - min(low, 0.0)))
+    top = 0.0
+    of = stage(canvas, r.numbered.plan, None, g.place(s.angle.mu, s.force.mu))
+    steps = dict(zip(names, r.force_steps, strict=True))
+    for name in names:
+        for line in acting[name]:
+            of.curve(steps[name], g(_down_to_axis(line)))
+            highest = line[int(np.argmax(line.imag))]
+            top = max(top, float(highest.imag))
+            if len(names) > 1 and (highest.imag > 4.0 or line is max(acting[name], key=lambda some: float(some.imag.max()))):
+                canvas.label(g(highest), name, 1 + 0.3j, 3.5)
+    graphs.check_room(box, g.origin.imag + top, "flywheel.force_graph")
+    ordinate = f"{names[0] if len(names) == 1 else letter_of}, {unit}"
+    axes(fw, of, r.force_steps[0], g, min(low, 0.0), top, ordinate, np.ones(len(fw.labels)))
+    for k, x in enumerate(s.angle.mm(r.phi)):
+        if top and k:
+            here, name = max(((graphs.one(values), name) for name, values in r.forces_at(r.phi[k]).items()), key=_size)
+            at = of.position(k % len(r.labels))
+            at.line(steps[name], g(x), g(x + 1j * s.force.mm(here)), "thin")
+
+
+def _size(of: tuple[float, str]) -> tuple[float, str]:
+    """By magnitude, then by name."""
+    return abs(of[0]), of[1]
+
+
+def _acting(fw: Flywheel, name: str) -> list[Any]:
+    """Curves of one force where it acts, mm: each runs on through the kinks between its stretches."""
+    s, r = fw.scales, fw.reduced
+    runs: list[list[Any]] = []
+    on = False
+    for a, b in _stretches(fw):
+        phi = _inside(fw, a, b)
+        ends = (graphs.one(r.forces_at(a, side=1)[name]), graphs.one(r.forces_at(b, side=-1)[name]))
+        y = s.force.mm(np.concatenate((ends[:1], r.forces_at(phi[1:-1])[name], ends[1:])))
+        if y.any():
+            runs = runs if on else [*runs, []]
+            runs[-1].append(s.angle.mm(phi) + 1j * y)
+        on = bool(y.any())
+    return [np.concatenate(parts) for parts in runs]
+
+
+def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Reduced moments with the pole, the ordinates in the middles of the intervals, their rays and the constant moment."""
+    fw: Flywheel = project.flywheel
+    s, r, plan = fw.scales, fw.reduced, fw.work_plan
+    varying, constant = indices(fw)
+    # Of very many intervals (a digitised diagram) one between any two numbers stands for all.
+    drawn = [n for n in fw.intervals if len(fw.intervals) <= CROWD * len(fw.labels) or n[-1:] not in ascii_lowercase]
+    every = len(drawn) == len(fw.intervals)
+    factors = tr("{moment}, {angle}, H = {pole} mm") if every else \
+        tr("{moment}, {angle}, H = {pole} mm; {shown} of {count} rays are shown")
+    graphs.heading(canvas, box, options, tr("Graphs of the reduced moments of forces"),
+                   factors.format(moment=s.moment, angle=s.angle, pole=number(s.pole), shown=len(drawn), count=len(fw.intervals)))
+    line = _moment_curve(fw)
+    level = s.moment.mm(fw.M_constant)
+    low = min(0.0, level, float(line.imag.min()))
+    high = max(0.0, level, float(line.imag.max()))
+    g = graphs.Graph(complex(options["axis"], box.y0 + 4.0 - low))
+    graphs.check_room(box, g.origin.imag + high + graphs.HEAD, "flywheel.moments")
+    canvas.of = plan.name
+    of, drive = (stage(canvas, p, None, g.place()) for p in (fw.moment_plan, fw.driving_plan))
+    of.curve("M", g(_down_to_axis(line)))
+    length = s.angle.mm(r.period)
+    drive.line("dK", g(1j * level), g(length + 1j * level), "curve", "curve")
+    points = fw.moment_plan["M"].value
+    # Where the curve runs along the axis its numbers stand on the side the graph leaves free.
+    body = line.imag[int(np.argmax(np.abs(line.imag)))]
+    axes(fw, of, "M", g, low, high, tr("M, N·m"), np.where(np.abs(points.imag) < 1.0, body, points.imag))
+    uprights(of, "M")
+    pole = plan["P"].value
+    rays = stage(canvas, plan, None, g.place())
+    _rays(rays, fw, drawn)
+    drive.line("K′", g(pole), drive.at("K′"))
+    drive.letters("K′", "K′", -1 + 0.6j if level > 0 else -1 - 0.6j)
+    rays.dot("P", 0.6, "main")
+    rays.letters("P", "P", -1 + 1j)
+    canvas.dimension(g(pole.real + 1j * low), g(1j * low), -3.0 if low > -12 else 5.0, "H")
+    size = np.abs(line.imag)
+    peak = int(np.argmax(size))
+    falling = line[peak + int(np.argmax(size[peak:] < 0.6 * size[peak]))]
+    canvas.label(g(falling), tr("M_{index}^{{red}}").format(index=varying), 1 - 1j if falling.imag < 0 else 1 + 1j, height=5)
+    beside = _clear_of(line, level, length)
+    canvas.label(g(beside), tr("M_{index}^{{red}}").format(index=constant), -1j if level > 0 else 1j, height=5)
+
+
+def _clear_of(line: Any, level: float, length: float) -> complex:
+    """Place on the line of the constant moment for its sign: the first of some that the other curve keeps clear of, mm."""
+    places = [share * length + 1j * level for share in (0.78, 0.7, 0.86, 0.6, 0.5, 0.4, 0.3, 0.2)]
+    ways = [float(np.abs(graphs.dense(line) - z).min()) for z in places]
+    return next((z for z, way in zip(places, ways, strict=True) if way > CLEAR), places[int(np.argmax(ways))])
+
+
+def axes(fw: Flywheel, of: PlayerStage, step: Step | str, g: graphs.Graph, low: float, high: float, ordinate: str,
+         side: Any) -> None:
+    """Axes of the graph of a step over the cycle, and the numbers of the positions beneath where ``side`` is positive."""
+    angle, r, pen = fw.scales.angle, fw.reduced, of.pen(step, "axis")
+    graphs.axes(pen, g, angle.mm(r.period), low, high, ordinate)
+    graphs.numbers(pen, g, angle.mm(r.phi), fw.labels, side)
+
+
+def _down_to_axis(line: Any) -> Any:
+    """A curve of the diagram with both its ends brought down to the abscissa."""
+    return np.concatenate(([line[0].real + 0j], line, [line[-1].real + 0j]))
+
+
+def uprights(s: PlayerStage, step: str) -> None:
+    """Ordinates of the points of a graph, one for each position."""
+    for k in range(len(s.plan.labels)):
+        play(s.position(k), [step], "thin")
+
+
+def _moment_curve(fw: Flywheel) -> Any:
+    """The varying moment over the crank angle, mm, with both values where it jumps."""
+    s, r, values = fw.scales, fw.reduced, fw.at_samples.moment().value
+    stretches = []
+    for a, b in _stretches(fw):
+        p = _inside(fw, a, b)
+        ends = [graphs.one(r.moment(p[0], side=1)), graphs.one(r.moment(p[-1], side=-1))]
+        inside = values[(fw.samples > a) & (fw.samples < b)]
+        stretches.append(s.angle.mm(p) + 1j * s.moment.mm(np.concatenate((ends[:1], inside, ends[1:]))))
+    return np.concatenate(stretches)
+
+
+def _rays(s: PlayerStage, fw: Flywheel, intervals: list[str]) -> None:
+    """Ordinates in the middles of the intervals, carried over to the ordinate axis, and the rays from the pole to them."""
+    plan = s.plan
+    heights = {f"{name}{fw.mark}": float(plan[f"m{name}"].value.imag) for name in intervals}
+    heights = {name: y for name, y in heights.items() if abs(y) > 0.05}
+    for name in heights:
+        play(s, [f"m{name.removesuffix(fw.mark)}", name])
+    play(s, ["P"], "axis")
+    every = list(heights)
+    shown = [[every[i] for i in same] for same in together(list(heights.values()), 1e-6)]
+    shown.sort(key=lambda names: -abs(heights[names[0]]))
+    play(s, [f"P{names[0]}" for names in shown])
+    plain = Plain(s.canvas)
+    for names in shown:
+        # Points of the ordinate axis that nearly coincide cannot all be numbered; the rays tell them apart.
+        plain.set(s.pen(names[0], "text"), s.at(names[0]), ", ".join(names))
+
+
+def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Work of the varying moment by chords parallel to the rays, and the straight line that balances the cycle."""
+    fw: Flywheel = project.flywheel
+    s = fw.scales
+    varying, constant = indices(fw)
+    graphs.heading(canvas, box, options, tr("Graphs of work"), f"{s.work}")
+    canvas.of = fw.work_plan.name
+    ends = np.array([e.value for e in fw.work_ends])
+    end = fw.driving_plan["K"].value
+    curve = s.angle.mm(fw.samples) + 1j * fw.work_curve(fw.samples)
+    low, high = min(0.0, end.imag, curve.imag.min()), max(0.0, end.imag, curve.imag.max())
+    g = graphs.Graph(complex(options["axis"], box.y0 + 4.0 - low))
+    graphs.check_room(box, g.origin.imag + high, "flywheel.works")
+    of, drive = (stage(canvas, p, None, g.place()) for p in (fw.work_plan, fw.driving_plan))
+    of.curve("A(φ)", g(curve))
+    drive.line("K", g(0j), g(end), "curve", "curve")
+    play(of, fw.borders[1:])
+    uprights = []
+    for k, label in zip(fw.at_positions, fw.labels, strict=True):
+        x = ends[k].real
+        heights = (0.0, ends[k].imag, x * end.imag / end.real)
+        uprights.append(np.linspace(complex(x, min(heights)), complex(x, max(heights)), 50))
+        canvas.tracing("construction", fw.total_plan["ΣA"].path, label).line(g(uprights[-1][0]), g(uprights[-1][-1]), "thin")
+    axes(fw, of, "A(φ)", g, low, high, tr("A, J"), np.zeros(len(fw.labels)))
+    k = len(curve) // 2
+    canvas.label(g(curve[k]), f"A_{varying}", -1 - 1j if curve[k].imag < 0 else -1 + 1j, height=5)
+    canvas.label(g(end / 2), f"A_{constant}", -1 + 1j if end.imag > 0 else -1 - 1j, height=5)
+    drive.letters("K", "K", 1j if end.imag > 0 else -1j)
+    share = fixed(100 * fw.work_error, 2)
+    # So many figures that both can be told apart.
+    drawn, converged = graphs.column([float(fw.work[-1]), float(fw.work_converged[-1])], 4, least=1)
+    # Nothing is a share of a work that is nothing: a weight that comes back to where it was.
+    nothing = is_zero(float(fw.work_converged[-1]), float(np.abs(fw.work).max()))
+    by_area = tr("by the area of the graph 0 J") if nothing else tr("by the area of the graph {work} J ({share} %)").format(
+        work=converged, share=share if share.startswith("−") else f"+{share}")
+    note: tuple[str, ...] = (tr("A_{index}({label}) = {work} J by the ordinates in the middles of the intervals,").format(
+        index=varying, label=fw.labels[-1], work=drawn), by_area)
+    if not nothing and abs(fw.work_error) >= FELT and (fw.given or fw.needed) and abs(fw.difference_percent) < 100:
+        far = tr("δ by them: {difference} % from n → ∞") if fw.given else tr("J_{{f}} by them: {difference} % from n → ∞")
+        note += (far.format(difference=f"{'+' if fw.difference_percent > 0 else ''}{fixed(fw.difference_percent, 2)}"),)
+    inside = Box(g.origin.real, g.origin.imag + low, g.origin.real + end.real, g.origin.imag + high)
+    ink = [g(z) for z in (curve, np.linspace(0, end, 50), np.linspace(0, end.real, 50) + 0j, *uprights[1:])]
+    if not graphs.note(canvas, inside, note, ink):
+        canvas.note(box, "; ".join((" ".join(note[:2]), *note[2:])))
+
+
+def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Sum of the works, which is the change of kinetic energy, at the scale of the energy-mass diagram."""
+    fw = with_tangents(project)
+    s = fw.scales
+    scale = s.excess or s.energy
+    ratio = s.work.mu / scale.mu
+    graphs.heading(canvas, box, options, tr("Graph of the total work A_Σ(φ_1) = ΔE(φ_1)"), f"{scale}",
+                   _enlarged(ratio) if abs(ratio - 1) > 1e-9 else "")
+    canvas.of = fw.total_plan.name
+    larger = s.energy.mu / scale.mu
+    ordinates = larger * fw.energy_curve(fw.samples)
+    low, high = min(0.0, float(ordinates.min())), max(0.0, float(ordinates.max()))
+    g = _energy_graph(fw, box, options) if scale is s.energy else \
+        graphs.Graph(complex(options["axis"], box.y1 - graphs.HEAD - graphs.OVER - high - 4.0))
+    of = stage(canvas, fw.total_plan, None, g.place())
+    of.curve("points", g(s.angle.mm(fw.samples) + 1j * ordinates))
+    uprights(of, "points")
+    axes(fw, of, "points", g, low, high, tr("ΔE, J"), fw.total_plan["points"].value.imag)
+
+
+def _enlarged(ratio: float) -> str:
+    """What the ordinates are against those of the graph of works."""
+    said = tr("Ordinates ΔE enlarged {times}") if ratio > 1 else tr("Ordinates ΔE reduced {times}")
+    return said.format(times=times(max(ratio, 1 / ratio)))
+
+
+def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Reduced moment of inertia, turned clockwise: its J axis runs as that of the energy-mass diagram, phi downwards."""
+    fw: Flywheel = project.flywheel
+    s = fw.scales
+    angle, turn = fw.inertia_angle, fw.inertia_turn
+    left = canvas.title(box.inset(0, 0, 0, 2), tr("Graph of the reduced moment of inertia J^red(φ_1)"), f"{s.inertia}, {angle}")
+    canvas.of = fw.inertia_plan.name
+    g = _inertia_graph(fw, box, options)
+    length = angle.mm(turn)
+    graphs.check_room(Box(box.x0, 0, box.x1, left.y1), g.origin.imag + 3, "flywheel.inertia")
+    graphs.check_room(Box(0, -g.origin.imag, 0, -box.y0), length - g.origin.imag, "flywheel.inertia")
+    phi = fw.samples[fw.samples <= turn * (1 + 1e-12)]
+    curve = angle.mm(phi) + 1j * s.inertia.mm(fw.inertia(fw.samples)[:len(phi)])
+    of = stage(canvas, fw.inertia_plan, None, g.place())
+    of.curve("points", g(curve))
+    levels = together(fw.inertia_plan["points"].value.real, 1e-6)
+    for same in levels:
+        play(of.position(same[0]), ["points"], "thin")
+    for x, same in ((fw.inertia_plan["points"].value[same[0]].real, same) for same in levels):
+        # The first number stands above the axis of J, which begins to the left of the curve.
+        canvas.text(g(x) - 2.0 + (-1.2j if x > 0 else 0.8j), ", ".join(fw.labels[k] for k in same), 3.5, "right")
+    highest = float(curve.imag.max())
+    reach = min(highest + graphs.OVER, max(box.x1 - g.origin.real, highest + 4.0))
+    pen = of.pen("points", "axis")
+    pen.arrow(g(-4), g(length + graphs.OVER), "axis", 3.0)
+    pen.text(g(length + graphs.OVER) - 2, tr("{symbol}, rad").format(symbol="φ_1"), 3.5, "right")
+    pen.arrow(g(-4j), g(1j * reach), "axis", 3.0)
+    canvas.text(g(1j * reach) - 2 + 2j, tr("J^red, kg·m^2"), 3.5, "right")
+
+
+def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Energy-mass curve by projection from the graphs of dE and J, its two tangents and the segment ab."""
+    fw = with_tangents(project)
+    s, plan = fw.scales, fw.energy_mass_plan
+    scale = s.excess or s.energy
+    canvas.of = plan.name
+    energy = _energy_graph(fw, Box(*options["energy"]), {"axis": options["energy_axis"]})
+    turned = _inertia_graph(fw, Box(*options["inertia"]), options)
+    g = graphs.Graph(complex(options["axis"], energy.origin.imag))
+    points = plan["points"].value
+    # The title stands in the widest gap between the lines that come down from the graph of J; too wide for it, it interrupts them.
+    cuts = np.unique(np.append(g(points).real, (g.origin.real, box.x1)))
+    widest = int(np.argmax(np.diff(cuts)))
+    gap = _for_title(Box(float(cuts[widest]), box.y0, float(cuts[widest + 1]), box.y1), g.origin.real, box.x1)
+    title = _narrow_title(canvas, gap, f"{s.energy}", f"{s.inertia}")
+    if scale is not s.energy:
+        title = _beneath(canvas, title, _enlarged(scale.mu / s.energy.mu))
+    curve = fw.energy_mass_curve(fw.samples)
+    of = stage(canvas, plan, None, g.place())
+    of.curve("points", g(curve))
+    middle = complex(np.mean(curve.real), np.mean(curve.imag))
+    x, masses = s.angle.mm(fw.reduced.phi), fw.inertia_plan["points"].value
+    for k, p in enumerate(points[:-1]):
+        here = of.position(k)
+        # Produced to the graphs that they come from; a graph of another scale stands elsewhere.
+        if scale is s.energy:
+            here.line("points", energy(complex(x[k], p.imag)), g(p))
+        above, below = complex(turned(masses[k])), complex(g(p))
+        if gap.x0 + 0.5 < below.real < gap.x1 - 0.5 and below.imag < title.y1:
+            here.line("points", above, complex(above.real, gap.y1 + 1.0))
+            above = complex(above.real, title.y1 + 1.5)
+        here.line("points", above, below)
+        here.dot("points", 0.7, "main")
+    touched = [plan[f"T_{name}"].value for name in ("max", "min")]
+    for near in together(points[:-1], 1.0):
+        # The number of a point beside that of a tangent, which has none, stands on the other side.
+        aside = [points[near[0]] - t for t in touched if 0.5 < abs(points[near[0]] - t) < BESIDE]
+        away = min(aside, key=abs, default=points[near[0]] - middle)
+        of.position(near[0]).letters("points", ", ".join(fw.labels[k] for k in near), away / abs(away))
+    reach = curve.real.max() + graphs.OVER
+    low, high = _energy_range(fw)
+    pen = of.pen("points", "axis")
+    pen.arrow(g(-12.0), g(reach), "axis", 3.0)
+    # Over or under the end of the axis, never beyond it: there the next column begins.
+    sign = tr("J^red, kg·m^2")
+    pen.label(g(reach - letter(sign, 3.5).width / 2 - 2.0), sign, 1j, 3.5, 1.5, leader=False)
+    pen.arrow(g(1j * (low - 5)), g(1j * (high + graphs.OVER + 2)), "axis", 3.0)
+    pen.label(g(1j * (high + graphs.OVER)), tr("ΔE, J"), 1, 3.5, 2.0, leader=False)
+    beside = abs(fw.ab_mm) < 12.0
+    for name, end in (("max", "a"), ("min", "b")):
+        cut, u = plan[end].value, plan[f"t_{name}"].value
+        room = (curve.real.max() - cut.real) / u.real
+        for bound in (title.y1, box.y0 + 2):
+            t = (bound - g.origin.imag - cut.imag) / u.imag
+            room = min(room, t) if t > 0 else room
+        canvas.tracing("construction", plan[end].path).line(g(cut - 6 * u), g(cut + room * u), "axis")
+        # The angles of tangents close together are marked one above the other.
+        vertex = cut + (0.7 if beside and name == "max" else 0.45) * room * u
+        pen, angle = of.pen(f"ψ_{name}", "dimension"), float(plan[f"ψ_{name}"].value)
+        pen.line(g(vertex), g(vertex + 45), "thin")
+        pen.angle_mark(complex(g(vertex)), 0.0, angle, 40.0, f"ψ_{name} = {fixed(degrees(angle), 2)}°")
+        of.dot(f"T_{name}", 0.7, "main")
+        of.letters(end, end, -1 + (1j if (end == "a") == (fw.ab_mm >= 0) else -1j), height=5)
+    ends = sorted((plan["a"].value, plan["b"].value), key=lambda z: float(z.imag))
+    length = _of_segment(fw)
+    text = f"|ab| = {length}" if fw.ab_mm >= 0 else f"ab = {length}"
+    _segment(of.pen("ab", "dimension"), g, ends[0], ends[1], [p.imag for p in points], text)
+
+
+def _of_segment(fw: Wittenbauer) -> str:
+    """Length of ab, mm, as it stands at the diagram and in the formulas."""
+    return fixed(fw.ab_mm, 2) if abs(fw.ab_mm) >= 10 else number(fw.ab_mm, 4)
+
+
+def _for_title(gap: Box, low: float, high: float) -> Box:
+    """A gap, widened inside of ``low`` .. ``high`` to what the title of the diagram needs."""
+    lack = letter(tr("Energy-mass diagram"), 5.0).width + 2.0 - gap.width
+    if lack <= 0 or high - low < gap.width + lack:
+        return gap
+    x0 = min(max(gap.x0 - lack / 2, low), high - gap.width - lack)
+    return Box(x0, gap.y0, x0 + gap.width + lack, gap.y1)
+
+
+def _narrow_title(canvas: Canvas, gap: Box, *factors: str) -> Box:
+    """Title of the diagram with its scale factors on as few lines as the gap allows; returns what is left below."""
+    name = tr("Energy-mass diagram")
+    if letter(name, 5.0).width <= gap.width - 2 >= letter(", ".join(factors), 5.0).width:
+        return canvas.title(gap, name, ", ".join(factors))
+    lines = [name, *factors] if letter(name, 5.0).width <= gap.width - 2 else [*name.split(), *factors]
+    height = size_for(lines, gap.width - 2, 5.0)
+    step = 1.6 * height
+    canvas.lines(complex(gap.centre.real, gap.y1 - step), lines, step, height, "centre")
+    return Box(gap.x0, gap.y0, gap.x1, gap.y1 - len(lines) * step - 3.0)
+
+
+def _beneath(canvas: Canvas, gap: Box, said: str) -> Box:
+    """Words right under a title on as many lines as the gap asks for; returns what is left below."""
+    room, height = gap.width - 2, 3.5
+    count = next((n for n in range(1, 4) if all(letter(line, height).width <= room for line in wrapped(said, height, n))), 4)
+    lines = wrapped(said, height, count)
+    height = size_for(lines, room, height)
+    canvas.lines(complex(gap.centre.real, gap.y1 - height), lines, 1.6 * height, height, "centre")
+    return Box(gap.x0, gap.y0, gap.x1, gap.y1 - len(lines) * 1.6 * height - 1.0)
+
+
+def wheel(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Sketch of the wheel to a standard scale: front view and section through the axis, with dimensions in mm.
+
+    Words in its place when no flywheel is needed, or of a given one nothing but its moment of inertia is known.
+    """
+    fw: Flywheel = project.flywheel
+    w = fw.wheel
+    if w is None:
+        (_given_wheel if fw.given else _no_wheel)(fw, canvas, box)
+    else:
+        with canvas.as_role("symbol"):
+            _sketch(w, canvas, box)
+
+
+def _sketch(w: RimWheel, canvas: Canvas, box: Box) -> None:
+    rim = w.form == "rim"
+    d, b, h = 1000 * w.diameter, 1000 * w.width, 1000 * w.thickness if rim else 0.0
+    outer = d + h
+    scale = standard(((outer + b) * 1e-3, box.width - 56), (outer * 1e-3, box.height - 36))
+    left = canvas.title(box, tr("Sketch of the flywheel"), ratio(scale))
+    k = 1e-3 / scale.mu
+    gap = (box.width - (outer + b) * k - 20) / 3
+    centre = complex(box.x0 + gap + outer * k / 2, (left.y0 + left.y1) / 2 - 2)
+    side = complex(box.x1 - gap - 20 - b * k / 2, centre.imag)
+    hub, bore = 0.24 * d * k / 2, 0.12 * d * k / 2
+    r = outer * k / 2
+    for radius in ({r, r - h * k, hub, bore} if rim else {r, bore}):
+        canvas.circle(centre, radius, "main")
+    if rim:
+        canvas.circle(centre, d * k / 2, "centre")
+        for i in range(6):
+            _spoke(canvas, centre, rect(1, pi / 2 + i * pi / 3), hub, r - h * k, 0.05 * d * k)
+    canvas.line(centre - r - 4, centre + r + 4, "centre")
+    canvas.line(centre - 1j * (r + 4), centre + 1j * (r + 4), "centre")
+    half = b * k / 2
+    canvas.line(side - half - 4, side + half + 4, "centre")
+    for sign in (1, -1):
+        low = r - h * k if rim else bore
+        _cut(canvas, side, half, sign * low, sign * r)
+        if rim:
+            _cut(canvas, side, half, sign * bore, sign * hub)
+            for x in (-1.0, 1.0):  # the edges of the rim behind the cutting plane, and the spokes
+                canvas.line(side + x * half + 1j * sign * hub, side + x * half + 1j * sign * low, "main")
+                canvas.line(side + x * 0.3 * half + 1j * sign * hub, side + x * 0.22 * half + 1j * sign * low, "main")
+            middle = side + 1j * sign * d * k / 2
+            canvas.line(middle - half - 3, middle + half + 3, "centre")
+    for x in (-half, half):
+        canvas.line(side + x - 1j * bore, side + x + 1j * bore, "main")
+    at = (d if rim else 2 * r / k) * k / 2
+    canvas.dimension(side + half - 1j * at, side + half + 1j * at, -12.0, f"D = {fixed(d, 0)}")
+    width = f"B = {fixed(b, 0)}"
+    inside = letter(width, 3.5).width <= 2 * half - 1
+    canvas.dimension(side - half - 1j * r, side + half - 1j * r, -9.0, width if inside else "")
+    if not inside:
+        canvas.text(side - half - 8.5 - 1j * (r + 8.0), width, 3.5, "right")
+    if rim:
+        canvas.dimension(side - half + 1j * (r - h * k), side - half + 1j * r, 7.0, "")
+        canvas.text(side - half - 8.5 + 1j * (r - h * k / 2 - 1.75), f"H = {fixed(h, 0)}", 3.5, "right")
+
+
+def _given_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
+    left = canvas.title(box, tr("The flywheel is given"))
+    lines = [tr("J_f = {J} kg·m^2").format(J=number(fw.J_flywheel)),
+             tr("It leaves δ = {delta}").format(delta=number(fw.unevenness, 4))]
+    _words(canvas, left, lines)
+
+
+def _words(canvas: Canvas, left: Box, lines: list[str]) -> None:
+    """Lines under their title, as large as their place allows: what is left under them is free for other views."""
+    height = size_for(lines, left.width, 5.0)
+    canvas.lines(complex(left.centre.real, left.y1 - 2.0 * height), lines, 2.0 * height, height, "centre")
+
+
+def _no_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
+    left = canvas.title(box, tr("No flywheel is needed"))
+    delta = fw.running(fw.J_running).delta
+    held = tr("J_{{cr}} + J_r·u^2 = {there} kg·m^2;  needed {needed} kg·m^2") if fw.J_rotor else \
+        tr("J_{{cr}} = {there} kg·m^2;  needed {needed} kg·m^2")
+    lines = [tr("J_f = {J} kg·m^2 ≤ 0").format(J=number(fw.J_flywheel, 4)),
+             held.format(there=number(fw.turning, 4), needed=number(max(fw.J_first, 0.0), 4))]
+    if not np.isnan(delta):
+        lines.append(tr("Without a flywheel δ = {found} {sign} {permitted}").format(
+            found=number(delta, 4), sign="≤" if delta <= fw.permitted else ">", permitted=number(fw.permitted)))
+    _words(canvas, left, lines)
+
+
+def disagreement(fw: Flywheel) -> list[str]:
+    """Lines for the sheet where the drawn construction and the limit do not agree whether a flywheel is needed."""
+    if fw.needed == (fw.J_flywheel_converged > 0):
+        return []
+    error = number(abs(fw.J_flywheel - fw.J_flywheel_converged), 2)
+    return [tr("By the construction a flywheel is needed, in the limit n → ∞ it is not:") if fw.needed else
+            tr("By the construction no flywheel is needed, in the limit n → ∞ it is:"),
+            tr("|J_f| is less than the error of the construction {error} kg·m^2").format(error=error)]
+
+
+def inertia_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Table of the terms of the reduced moment of inertia at the positions."""
+    fw: Flywheel = project.flywheel
+    rows = [[tr("Position"), *fw.labels]]
+    for name, values in fw.reduced.inertia_terms.items():
+        # A square over an index; terms without a unit are doubled energies. The position that closes the cycle may be left out.
+        caption = name.replace("²", "^2")
+        quantity = caption if "," in caption else tr("{quantity}, J").format(quantity=caption)
+        rows.append(graphs.row(quantity, np.resize(values, len(fw.labels))))
+    rows.append(graphs.row(tr("J^red, kg·m^2"), fw.J_reduced))
+    graphs.table(canvas, box, tr("Reduced moment of inertia"), rows)
+
+
+def work_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Table of moment, works and change of energy at the positions."""
+    fw: Flywheel = project.flywheel
+    varying, constant = indices(fw)
+    rows = [
+        [tr("Position"), *fw.labels],
+        graphs.row(tr("M_{index}^{{red}}, N·m").format(index=varying), fw.M_reduced),
+        graphs.row(tr("A_{index}, J").format(index=varying), fw.work),
+        graphs.row(tr("A_{index}, J").format(index=constant), fw.total_plan["A_K"].value),
+        graphs.row(tr("ΔE, J"), fw.delta_E),
+    ]
+    graphs.table(canvas, box, tr("Works of the cycle, M_{index}^{{red}} = {moment} N·m").format(
+        index=constant, moment=constant_moment(fw)), rows)
+
+
+def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Formulas with their numbers: tangents, segment, moment of inertia drawn and in the limit, sizes, mass.
+
+    With a given flywheel the coefficient of non-uniformity in place of the moment of inertia.
+    """
+    fw = with_tangents(project)
+    psi = fw.psi
+    slope = {name: float(fw.energy_mass_plan.auxiliaries[f"tg ψ_{name}"].value) for name in ("max", "min")}
+    drawn = tr("|ab| = {length} mm") if fw.ab_mm >= 0 else tr("ab = {length} mm (a below b)")
+    tangent = tr("tan ψ_{name} = μ_J/(2μ_E)·ω_1^2(1 {sign} δ/2)^2 = {slope};  ψ_{name} = {angle}°")
+    digits = decimals_for([slope["max"] - slope["min"]], 4)
+    rows = [
+        _givens(fw),
+        *(tangent.format(name=name, sign=sign, slope=fixed(slope[name], digits), angle=fixed(degrees(a), 2))
+          for name, sign, a in zip(("max", "min"), "+−", psi, strict=True)),
+        drawn.format(length=_of_segment(fw)),
+        _asked(fw),
+        _converged(fw),
+        *disagreement(fw),
+        *motor(fw),
+        *power(fw),
+        *frictionless(project),
+        *_sizes(fw),
+    ]
+    left = canvas.title(box, tr("Flywheel design"))
+    step = min(left.height / len(rows), 13.0)
+    height = size_for(rows, box.width, 5.0 if step >= 8 else 3.5)
+    canvas.lines(complex(box.x0, left.y1 - step + 3), rows, step, height)
+
+
+def _givens(fw: Flywheel) -> str:
+    """Angular velocity, what is given of δ and of the flywheel, and its density where its sizes are found."""
+    d = fw.data
+    said = tr("ω_1 = {omega} s^{{−1}};  δ = {delta};  ρ = {density} kg/m^3") if not fw.given else \
+        tr("ω_1 = {omega} s^{{−1}};  J_f = {J} kg·m^2 (given)") if d.density is None else \
+        tr("ω_1 = {omega} s^{{−1}};  J_f = {J} kg·m^2 (given);  ρ = {density} kg/m^3")
+    return said.format(omega=fixed(fw.reduced.omega1, 3), delta=number(fw.unevenness), J=number(fw.J_flywheel),
+                       density="" if d.density is None else number(d.density))
+
+
+def _asked(fw: Wittenbauer) -> str:
+    """Moment of inertia of the flywheel from the segment ab, or δ that a given one leaves."""
+    said = {(False, False): tr("J_f = {segment}·μ_E/(δ·ω_1^2) = {length}·{mu}/({delta}·{omega}^2) = {J} kg·m^2"),
+            (False, True): tr("J_f = {segment}·μ_E/(δ·ω_1^2) − J_r·u^2 = {length}·{mu}/({delta}·{omega}^2) − {rotor} = "
+                              "{J} kg·m^2"),
+            (True, False): tr("δ = {segment}·μ_E/(J_f·ω_1^2) = {length}·{mu}/({J}·{omega}^2) = {delta}"),
+            (True, True): tr("δ = {segment}·μ_E/[(J_f + J_r·u^2)·ω_1^2] = {length}·{mu}/[({J} + {rotor})·{omega}^2] = {delta}"),
+            }[fw.given, bool(fw.J_rotor)]
+    found, _ = _alike(fw)
+    given = number(fw.J_flywheel if fw.given else fw.unevenness)
+    return said.format(segment="|ab|" if fw.ab_mm >= 0 else "ab", length=_of_segment(fw), mu=number(fw.scales.energy.mu),
+                       omega=fixed(fw.reduced.omega1, 3), rotor=number(fw.J_rotor, 4),
+                       J=given if fw.given else found, delta=found if fw.given else given)
+
+
+def power(fw: Flywheel) -> list[str]:
+    """Mean power by the work of the cycle, where the efficiency of what lies between motor and crank is given."""
+    if fw.data.efficiency is None:
+        return []
+    takes = fw.reduced.resisting
+    said = tr("P_m = M_{index}·ω_1 = {power} kW;  P_mot = P_m/η = {power}/{efficiency} = {further} kW") if takes else \
+        tr("P_m = M_{index}·ω_1 = {power} kW;  P_out = P_m·η = {power}·{efficiency} = {further} kW")
+    here, further = (number(float(fw.power_plan[name].value) / 1000, 4) for name in ("P", "P_дв"))
+    return [said.format(index=indices(fw)[1], power=here, efficiency=number(fw.data.efficiency), further=further)]
+
+
+def motor(fw: Flywheel) -> list[str]:
+    """Whether the motor is strong enough and remains a motor; nothing where none is given."""
+    check, data = fw.motor, fw.data.motor
+    if check is None or data is None:
+        return []
+    strong = tr("P = M_{index}·ω_1/η = {needed} kW {sign} {rated} kW ({name});  η = {efficiency} (η taken)") if data.accepted else \
+        tr("P = M_{index}·ω_1/η = {needed} kW {sign} {rated} kW ({name});  η = {efficiency}")
+    steady = tr("[δ] = 2(n_s − n_r)/n_r = {permitted} ≥ δ: it never runs as a generator") if check.steady else \
+        tr("[δ] = 2(n_s − n_r)/n_r = {permitted} < δ: the motor runs as a generator at times")
+    return [strong.format(index=indices(fw)[1], needed=fixed(check.power / 1000, 2), sign="≤" if check.strong else ">",
+                          rated=number(check.rated_power / 1000), name=data.name, efficiency=number(data.efficiency)),
+            steady.format(permitted=fixed(check.permitted, 4))]
+
+
+def frictionless(project: Project) -> list[str]:
+    """That the moments of the flywheel leave out friction, where the force analysis has it."""
+    if project.variant.friction is None:
+        return []
+    return [tr("M_{index} is found without friction in the pairs").format(index=indices(project.flywheel)[1])]
+
+
+def _alike(fw: Flywheel) -> list[str]:
+    """What is asked by the drawn construction and in the limit with the same decimals."""
+    if fw.given:
+        return graphs.column([fw.unevenness, float(fw.limit_plan["δ∞"].value)], 4)
+    return graphs.column([fw.J_flywheel, fw.J_flywheel_converged], 5)
+
+
+def _converged(fw: Flywheel) -> str:
+    """The converged flywheel and how far the drawn one is from it: in percent, beside a small converged one in kg m2."""
+    if fw.given:
+        return tr("For n → ∞ positions: δ = {delta} (difference {difference} %)").format(
+            delta=_alike(fw)[1], difference=fixed(fw.difference_percent, 2))
+    said = tr("For n → ∞ positions: J_f = {J} kg·m^2 (difference {difference} %)") \
+        if fw.needed and abs(fw.difference_percent) < 100 else \
+        tr("For n → ∞ positions: J_f = {J} kg·m^2 (difference {apart} kg·m^2)")
+    return said.format(J=_alike(fw)[1], difference=fixed(fw.difference_percent, 2),
+                       apart=number(float(fw.limit_plan["ΔJ_м"].value), 3))
+
+
+def _sizes(fw: Flywheel) -> list[str]:
+    """Sizes and mass of the wheel as formulas, or that none is needed."""
+    w, d = fw.wheel, fw.data
+    if w is None or d.width_ratio is None or d.thickness_ratio is None:
+        return [] if fw.given else [tr("J_f ≤ 0: no flywheel is needed")]
+    if w.form != "rim":
+        said = (tr("Disc:  κ = B/D = {width_ratio}"), tr("D = (32J_f/(πρκ))^{{1/5}} = {diameter} m"), tr("B = κD = {width} m"),
+                tr("m = 8J_f/D^2 = {mass} kg"))
+    elif d.rim_share < 1:
+        said = (tr("Rim, it has {share}·J_f:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio}"),
+                tr("D = (4·{share}·J_f/(πρκc))^{{1/5}} = {diameter} m"), tr("B = κD = {width} m;  H = cD = {thickness} m"),
+                tr("m = 4·{share}·J_f/D^2 = {mass} kg"))
+    else:
+        said = (tr("Rim with spokes:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio}"),
+                tr("D = (4J_f/(πρκc))^{{1/5}} = {diameter} m"), tr("B = κD = {width} m;  H = cD = {thickness} m"),
+                tr("m = 4J_f/D^2 = {mass} kg"))
+    numbers = {"share": number(d.rim_share), "width_ratio": number(d.width_ratio), "thickness_ratio": number(d.thickness_ratio),
+               "diameter": number(w.diameter, 5), "width": number(w.width, 4),
+               "thickness": number(w.thickness) if w.form == "rim" else "",
+               "mass": number(w.mass, 4), "speed": fixed(w.speed, 2), "density": number(d.density or 0.0)}
+    speed = tr("V = ω_1·D/2 = {speed} m/s < 30 m/s") if w.speed < 30 else \
+        tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s: too fast for cast iron (ρ = {density} kg/m^3)") if fw.cast_iron else \
+        tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s: the wheel is of steel")
+    return [*(line.format(**numbers) for line in said), *(disc_for_rim(w) or [speed.format(**numbers)])]
+
+
+def disc_for_rim(w: RimWheel) -> list[str]:
+    """What made a disc of the rim that was asked for; nothing where none was."""
+    if "V_об" not in w.plan:
+        return []
+    return [tr("A rim would have V = {speed} m/s ≥ 30 m/s: a disc is taken").format(speed=fixed(float(w.plan["V_об"].value), 2))]
+
+
+# --- parts shared by the views --------------------------------------------------------------------------
+
+
+def by_method(project: Any, method: str, hint: str) -> Any:
+    """The project's flywheel, which a view must find by its own method."""
+    fw = project.flywheel
+    if fw.method != method:
+        raise CannotBuild(tell('this view belongs to flywheel.method = "{wanted}", not "{found}"').format(
+            wanted=method, found=fw.method), hint)
+    return fw
+
+
+def with_tangents(project: Any) -> Wittenbauer:
+    """The flywheel by the energy-mass diagram; CannotBuild for one by another method."""
+    hint = tell("take an arrangement with the views of mertsalov among the project's sheets: sixbar_2, or press_1")
+    return cast("Wittenbauer", by_method(project, "wittenbauer", hint))
+
+
+def constant_moment(fw: Flywheel) -> str:
+    """The constant moment as it is written, N m: 0 where it is nothing but rounding beside the moments that vary."""
+    return enough(fw.M_constant, 1, float(np.abs(fw.at_samples.moment().value).max()))
+
+
+def omega_digits(omega: float, uneven: Iterable[float]) -> int:
+    """Decimals that tell the greatest angular velocity from the least, rad/s."""
+    return decimals_for((omega * delta for delta in uneven), 4)
+
+
+def indices(fw: Flywheel) -> tuple[str, str]:
+    """Indices of the varying moment and of the constant one: resistance and drive, for an engine exchanged."""
+    resisting, driving = tr_in("index of moment and work", "r"), tr_in("index of moment and work", "d")
+    return (resisting, driving) if fw.reduced.resisting else (driving, resisting)
+
+
+def _stretches(fw: Flywheel) -> list[tuple[float, float]]:
+    """Stretches of the cycle between the jumps of the force."""
+    ends = [0.0, *(b for b in fw.reduced.breaks if 0 < b < fw.reduced.period), fw.reduced.period]
+    return list(pairwise(ends))
+
+
+def _inside(fw: Flywheel, a: float, b: float) -> Any:
+    """Angles for a curve from ``a`` to ``b``, both included."""
+    return np.concatenate(([a], fw.samples[(fw.samples > a) & (fw.samples < b)], [b]))
+
+
+def _energy_range(fw: Wittenbauer) -> tuple[float, float]:
+    """Lowest and highest ordinate of the graph of dE, of the ends of ab and of the axis, mm."""
+    ends = [fw.energy_mass_plan[end].value.imag for end in "ab"]
+    curve = fw.energy_curve(fw.samples)
+    return min(float(curve.min()), *ends, 0.0), max(float(curve.max()), *ends, 0.0)
+
+
+def _energy_graph(fw: Wittenbauer, box: Box, options: Options) -> graphs.Graph:
+    """Axes of the graph of dE, and the level of the energy-mass diagram: room for ``b`` below, for the tangent above."""
+    low, high = _energy_range(fw)
+    spare = box.height - (_UNDER + high - low + graphs.HEAD + graphs.OVER)
+    graphs.check_room(box, box.y1 - spare, "flywheel.total_work")
+    return graphs.Graph(complex(options["axis"], box.y0 + _UNDER - low + max(spare, 0.0) / 2))
+
+
+def _inertia_graph(fw: Flywheel, box: Box, options: Options) -> graphs.Graph:
+    length = fw.inertia_angle.mm(fw.inertia_turn)
+    spare = box.height - 16 - length - graphs.OVER
+    return graphs.Graph(complex(options["axis"], box.y1 - 16 - max(spare / 2, 3.0)), -1j)
+
+
+def _segment(canvas: Canvas, g: graphs.Graph, b: complex, a: complex, levels: list[float], text: str) -> None:
+    """Dimension of ab on the energy axis, from its lower end to its upper one.
+
+    Its number stands in the widest gap between the projection lines.
+    """
+    x = -14.0
+    p, q = complex(g(b + x)), complex(g(a + x))
+    canvas.line(g(a), q - 2, "thin")
+    canvas.line(g(b), p - 2, "thin")
+    canvas.line(p, q, "thin")
+    for tip, u in ((p, 1j), (q, -1j)):
+        canvas.fill((tip, tip + 3.5 * u + 0.6, tip + 3.5 * u - 0.6), "thin")
+    low, top = _gaps(b.imag, a.imag, levels)[0]
+    if top - low > letter(text, 3.5).width + 2:
+        canvas.text(complex(g(x + 0.5j * (low + top))) - 1, text, 3.5, "centre", pi / 2)
+        return
+    # Too near each other for it along the line, the projection lines may leave room beside it, clear of the axis' own lettering
+    # and of the graph that ends there.
+    ink = dense([mark for mark in canvas.marks if not isinstance(mark, Text) and mark.style == "curve"], 1.0)
+    half = complex(letter(text, 3.5).width / 2 + 1.0, 2.5)
+    for low, top in _gaps(b.imag, a.imag, [*levels, *AXIS]):
+        end = complex(g(x + 0.5j * (low + top))) - 1.5
+        off = ink - (end - half.real)
+        if top - low > 6.0 and not ((np.abs(off.real) < half.real) & (np.abs(off.imag) < half.imag)).any():
+            canvas.text(end - 1.2j, text, 3.5, "right")
+            return
+    canvas.label(complex(g(x + 0.5j * (a + b).imag)), text, -1)
+
+
+BESIDE = 4.0
+"""How near to the point of a tangent the number of another point could be taken for its own, mm."""
+AXIS = -8.0, 6.0
+"""Heights under and over an axis that its numbers and its sign take, mm."""
+
+
+def _gaps(low: float, top: float, levels: list[float]) -> list[tuple[float, float]]:
+    """Gaps between the levels from the lowest to the highest, the widest first."""
+    gaps = pairwise(sorted({low, top, *(v for v in levels if low < v < top)}))
+    return sorted(gaps, key=lambda gap: gap[0] - gap[1])
+
+
+@in_role("symbol")
+def _spoke(canvas: Canvas, centre: complex, u: complex, inner: float, outer: float, half: float) -> None:
+    for sign in (1, -1):
+        a, b = sign * half, sign * 0.75 * half
+        p = complex((inner**2 - a**2) ** 0.5, a)
+        q = complex((outer**2 - b**2) ** 0.5, b)
+        canvas.line(centre + u * p, centre + u * q, "main")
+
+
+@in_role("symbol")
+def _cut(canvas: Canvas, at: complex, half: float, low: float, top: float) -> None:
+    outline = at + np.array([complex(-half, low), complex(half, low), complex(half, top), complex(-half, top)])
+    canvas.polyline(outline, "main", closed=True)
+    hatch_polygon(canvas, outline)

@@ -1,0 +1,339 @@
+"""Views of the flywheel by Mertsalov's procedure: energies, angular velocity, inertia of the second group, tables.
+
+The graphs of the moments and of the works are those of :mod:`.flywheel`; the graphs here stand on the same angle
+axis: their option ``axis`` is the x of the ordinate axis, mm of the sheet. The manuals name the quantities differently: the
+options ``energies`` (change, second group, first group) and ``inertia`` are the signs on the sheet.
+"""
+
+from __future__ import annotations
+
+from math import degrees
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from tmm_sheets.construction.scale import Scale
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.clipping import segment_inside
+from tmm_sheets.drawing.lettering import letter, size_for
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.notes import TOGETHER
+from tmm_sheets.drawing.tables import size_in, widened
+from tmm_sheets.numbers import decimals_for, enough, fixed, number, size
+from tmm_sheets.sheets.components import graphs
+from tmm_sheets.sheets.flywheel import flywheel
+from tmm_sheets.sheets.linkage.kinetic_frames import flat
+from tmm_sheets.sheets.player import PlayerStage, stage
+from tmm_sheets.words import marked, tell, tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.step import Step
+    from tmm_sheets.methods.flywheel.mertsalov import Mertsalov
+
+Options = dict[str, Any]
+ENERGIES = ("ΔE", "E_{II}", "E_I")
+INERTIA = "J_{II}"
+OF_SIXBAR = (marked("E_links"), marked("E_f"), marked("J_links"))
+"""Signs that templates/sheets/sixbar_2.toml takes instead."""
+NAMED = 3
+"""So many terms of the inertia are lettered at their curves; more are numbered, with a legend under the heading."""
+LOW = 4.0
+"""What stays below would run along the axis, mm."""
+LEGEND = 6.0
+"""Room of the legend, mm."""
+
+
+def procedure(project: Any) -> Mertsalov:
+    """The flywheel by the crank's energy; CannotBuild for one by another method."""
+    hint = tell("take the arrangement flywheel among the project's sheets")
+    return cast("Mertsalov", flywheel.by_method(project, "mertsalov", hint))
+
+
+def _signs(options: Options) -> tuple[str, str, str, str]:
+    change, second, first = map(tr, options.get("energies", ENERGIES))
+    return change, second, first, tr(options.get("inertia", INERTIA))
+
+
+def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """All graphs one under another: moments, works, energies, inertia; each as high as it is, the room left over between them."""
+    fw = procedure(project)
+    s = fw.scales
+    energy = np.concatenate(([0.0], fw.energy_curve(fw.samples), np.imag(fw.first_curve(fw.samples))))
+    flywheel.stacked(project, canvas, box, options, "mertsalov.column", [
+        *flywheel.of_moments(fw), (energies, float(np.ptp(energy)), 8.0),
+        (inertia, float(s.inertia.mm(fw.inertia(fw.samples)).max()) + (LEGEND if len(_terms(fw)[0]) > NAMED else 0.0), 8.0)])
+
+
+def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Reduced moment of inertia of the second group with its terms, read as its energy too; the tangent at the chosen position."""
+    fw = procedure(project)
+    s = fw.scales
+    _, second, _, sign = _signs(options)
+    mu_e = Scale(f"μ_{{{flat(second)}}}", float(fw.energy_plan.auxiliaries["μ_T"].value), tr("J/mm"))
+    graphs.heading(canvas, box, options, tr("Graphs of {inertia}(φ_1) and {energy}(φ_1)").format(inertia=sign, energy=second),
+                   f"{s.inertia}, {mu_e}")
+    canvas.of = fw.inertia_plan.name
+    g = graphs.Graph(complex(options["axis"], box.y0 + 8.0))
+    x = s.angle.mm(fw.samples)
+    curve = s.inertia.mm(fw.inertia(fw.samples))
+    graphs.check_room(box, g.origin.imag + float(curve.max()) + graphs.HEAD, "mertsalov.inertia")
+    of = stage(canvas, fw.inertia_plan, None, g.place())
+    doubled = s.inertia.mu * fw.reduced.omega1**2  # the terms are doubled energies
+    terms = stage(canvas, fw.reduced.numbered.plan, None, g.place(s.angle.mu, doubled))
+    of.curve("points", g(x + 1j * curve))
+    parts, low = _terms(fw)
+    if low:
+        canvas.note(box, tr("Not drawn, lower than {height:g}{space}mm: {terms}").format(
+            height=LOW, space=TOGETHER, terms=", ".join(low)))
+    for n, (name, step, part) in enumerate(parts, 1):
+        terms.curve(step, g(x + 1j * part), "main")
+        # A narrow peak is named at its left flank, where there is room.
+        k = int(np.argmax(part[: len(part) // 2] > 0.7 * part[: len(part) // 2].max()))
+        canvas.label(g(x[k] + 1j * part[k]), name if len(parts) <= NAMED else str(n), -1 if k else 1 - 1j, 3.5)
+    if len(parts) > NAMED:
+        legend = ";  ".join(f"{n} – {name}" for n, (name, *_) in enumerate(parts, 1))
+        beside = options["axis"] + 4.0  # the sign of the axis may reach up to it
+        canvas.text(complex((beside + box.x1) / 2, box.y1 - 13.0), legend, size_for([legend], box.x1 - beside, 3.5), "centre")
+    flywheel.uprights(of, "points")
+    ordinate = tr("{quantity}, kg·m^2").format(quantity=sign)
+    flywheel.axes(fw, of, "points", g, 0.0, float(curve.max()), ordinate, np.ones(len(fw.labels)))
+    k = int(np.argmax(curve))
+    canvas.label(g(x[k] + 1j * curve[k]), sign, 1 + 1j, height=5)
+    _tangent(fw, of.position(project.force_index), box, graphs.HEAD + (LEGEND if len(parts) > NAMED else 0.0))
+
+
+def _terms(fw: Mertsalov) -> tuple[list[tuple[str, Step, Any]], list[str]]:
+    """Terms of the reduced moment of inertia, each with its step and its ordinates at the samples, mm; names of those too low."""
+    steps = fw.reduced.numbered.terms
+    found = [(f"{name.removesuffix('²')}^2/ω_1^2", steps[name], fw.scales.inertia.mm(values))
+             for name, values in fw.reduced.parts(fw.at_samples).items()]
+    return [term for term in found if term[2].max() > LOW], [name for name, _, part in found if not part.max() > LOW]
+
+
+def _tangent(fw: Mertsalov, of: PlayerStage, box: Box, head: float) -> None:
+    """Tangent of the graph of inertia at the position of the force analysis, which gives the acceleration of the crank there."""
+    step = fw.position_acceleration["ψ"]
+    psi = float(of.value(step))
+    at, u = of.at("points"), complex(np.cos(psi), np.sin(psi))
+    # As long as its place allows: a steep one ends under the heading, its legend too, and above the numbers of the axis.
+    low, high = segment_inside(box.inset(2.0, 2.0, 2.0, head), at - 26.0 * u, at + 26.0 * u) or (at, at)
+    of.canvas.tracing("construction", step.path, of.label).line(low, high, "axis")
+    of.dot("points", 0.7, "main")
+    # The vertex of the angle lies on the tangent, away from the curve's own label.
+    vertex = at + 0.8 * ((low if psi > 0 else high) - at)
+    side = 1 if psi > 0 else -1
+    of.canvas.tracing("dimension", step.path, of.label).line(vertex, vertex + side * 20, "thin")
+    start, end = (0.0, psi) if psi > 0 else (np.pi + psi, np.pi)
+    if abs(psi) > 0.02:
+        of.canvas.angle_mark(vertex, start, end, 16.0, f"ψ = {fixed(degrees(psi), 2)}°")
+
+
+def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Change of kinetic energy, the second group's energy laid off below it, the first group's curve with the segment ab.
+
+    The same curve measured from the axis through the middle of ab is the angular velocity of the crank.
+    """
+    fw = procedure(project)
+    s, plan = fw.scales, fw.energy_plan
+    change, second, first, _ = _signs(options)
+    omega = _omega_scale(fw)
+    ratio = s.work.mu / s.energy.mu
+    against = "" if abs(ratio - 1) < 1e-9 else f" (μ_A/{number(ratio)})" if ratio > 1 else f" ({number(1 / ratio)}μ_A)"
+    graphs.heading(canvas, box, options, tr("Graphs of {change}(φ_1), {first}(φ_1), ω_1(φ_1)").format(change=change, first=first),
+                   f"{s.energy}{against}, {omega}")
+    x = s.angle.mm(fw.samples)
+    total, own = fw.energy_curve(fw.samples), np.imag(fw.first_curve(fw.samples))
+    low, high = min(0.0, float(own.min())), max(0.0, float(total.max()), float(own.max()))
+    g = graphs.Graph(complex(options["axis"], box.y0 + 8.0 - low))
+    graphs.check_room(box, g.origin.imag + high + graphs.HEAD, "mertsalov.energies")
+    canvas.of = fw.total_plan.name
+    sums, of, speed = (stage(canvas, p, None, g.place()) for p in (fw.total_plan, plan, fw.speed_plan))
+    sums.curve("points", g(x + 1j * total))
+    canvas.of = plan.name
+    of.curve("points", g(x + 1j * own))
+    points, upper = plan["points"].value, fw.total_plan["ΔE"].value
+    for p, top, label in zip(points, upper, fw.labels, strict=True):
+        below, above = (g(complex(p.real, f(0.0, p.imag, top))) for f in (min, max))
+        canvas.tracing("construction", plan["T_I"].path, label).line(below, above, "thin")
+    ordinate = tr("{quantity}, J").format(quantity=f"{change}, {first}")
+    flywheel.axes(fw, of, "points", g, low, high, ordinate, np.where(upper > 1e-6, 1.0, -1.0))
+    for name, end in (("max", "a"), ("min", "b")):
+        # The tangent runs on beyond the point where it touches.
+        of.line(f"M_{name}", of.at(end), of.at(f"M_{name}") + 10)
+        of.dot(f"M_{name}", 0.7, "main")
+        of.letters(end, end, -1 + (1j if end == "a" else -1j), 5)
+    of.pen("ab", "dimension").dimension(of.at("b"), of.at("a"), 9.0, f"|ab| = {fixed(fw.ab_mm, 2)}")
+    axis, length, pen = speed.at("O"), s.angle.mm(fw.reduced.period), speed.pen("O", "axis")
+    pen.line(axis - 5, axis + length + graphs.OVER, "centre")
+    pen.label(axis + length - 10, tr("ω_{1m}"), 1j, height=3.5)
+    k = int(np.argmax(total))
+    canvas.label(g(x[k] + 1j * total[k]), change, 1 + 1j, height=5)
+    k = int(np.argmax(np.abs(np.gradient(own))))
+    canvas.label(g(x[k] + 1j * own[k]), f"{first}, ω_1", 1 - 1j, height=5)
+    k = int(np.argmax(fw.energy_plan["T_II"].value[1:])) + 1
+    if fw.energy_plan["T_II"].value[k]:
+        middle = complex(points[k].real, (points[k].imag + upper[k]) / 2)
+        canvas.label(g(middle), second, 1, height=3.5)
+
+
+def _omega_scale(fw: Mertsalov) -> Scale:
+    mu = fw.speed_scale
+    return Scale(mu.symbol, float(f"{mu.mu:.4g}"), mu.unit)
+
+
+def position_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """What was found at every position: moment, work, energies, inertia, angular velocity and acceleration of the crank."""
+    fw = procedure(project)
+    varying, _ = flywheel.indices(fw)
+    change, second, first, sign = _signs(options)
+    columns = [
+        (tr("M_{index}^{{red}}").format(index=varying), tr("N·m"), fw.M_reduced), (f"A_{varying}", tr("J"), fw.work),
+        (change, tr("J"), fw.delta_E), (sign, tr("kg·m^2"), fw.J_reduced), (second, tr("J"), fw.T_second),
+        (first, tr("J"), fw.T_first),
+        ("y_ω", tr("mm"), fw.speed_plan["y"].value), ("ω_1", tr("rad/s"), fw.omega),
+        ("ε_1", tr("rad/s^2"), fw.position_acceleration["ε1"].value),
+    ]
+    # The angular velocity hardly changes: a digit more shows it.
+    cells = [graphs.column(values, 5 if name == "ω_1" else 4) for name, _, values in columns]
+    rows = [[tr("No."), *(name for name, _, _ in columns)], ["", *(unit for _, unit, _ in columns)]]
+    rows += [[label, *(column[i] for column in cells)] for i, label in enumerate(fw.labels)]
+    left = canvas.title(box.inset(0, 0, 0, 2), tr("Results by positions"))
+    high = min(left.height / len(rows), 7.0)
+    height = size_in(high)
+    widths = widened([9.0, *[(box.width - 9.0) / len(columns)] * len(columns)], rows, height)
+    canvas.table(complex(box.x0, left.y1), widths, rows, high, height, header=2)
+
+
+def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Formulas with their numbers: segment, moment of inertia, scale factor and check of omega, acceleration, motor, sizes."""
+    fw = procedure(project)
+    k = project.force_index
+    _, _, _, sign = _signs(options)
+    varying, constant = flywheel.indices(fw)
+    plan = fw.position_acceleration
+    psi, slope, moment, inertia, epsilon = (float(plan[name].value[k]) for name in ("ψ", "dJ/dφ", "M", "J", "ε1"))
+    mu = _omega_scale(fw)
+    held = _held(fw)
+    rows = [
+        _givens(fw), *(_delta(fw) if fw.given else _inertia(fw)),
+        tr("μ_ω = μ_E/({held}·ω_{{1m}}) = {mu} {unit}").format(held=held, mu=number(mu.mu), unit=mu.unit),
+        *_extremes(fw),
+        tr("Position {label}:  ψ = {psi}°;  d{sign}/dφ = tan ψ·μ_J/μ_φ = {slope} kg·m^2").format(
+            label=fw.labels[k], psi=fixed(degrees(psi), 2), sign=sign,
+            slope=number(slope, kind=size([plan["dJ/dφ"].value], k))),
+        tr("M = M_{constant} + M_{varying} = {moment} N·m;  {held} + {sign} = {inertia} kg·m^2").format(
+            constant=constant, varying=varying, moment=enough(moment, 1, size([plan["M"].value], k)), held=held, sign=sign,
+            inertia=enough(inertia, 2)),
+        tr("ε_1 = (M − ω_{{1m}}^2/2·d{sign}/dφ)/({held} + {sign}) = {epsilon} rad/s^2").format(
+            sign=sign, held=held, epsilon=enough(epsilon, 3, size([plan["ε1"].value], k))),
+        *flywheel.motor(fw), *flywheel.power(fw), *flywheel.frictionless(project), *flywheel.disagreement(fw), *_size(fw)]
+    left = canvas.title(box, tr("Flywheel design by Mertsalov's method"))
+    step = min(left.height / len(rows), 11.0)
+    for i, line in enumerate(rows):
+        canvas.text(complex(box.x0, left.y1 - (i + 0.65) * step), line, size_for([line], box.width, 3.5))
+
+
+def _givens(fw: Mertsalov) -> str:
+    """Mean angular velocity, δ or the flywheel that is given, constant moment."""
+    d = fw.data
+    said = tr("ω_{{1m}} = {omega} rad/s;  J_f = {flywheel} kg·m^2 (given);  M_{index} = {moment} N·m") if fw.given else \
+        tr("ω_{{1m}} = {omega} rad/s;  δ = {delta} (taken);  M_{index} = {moment} N·m") if d.accepted else \
+        tr("ω_{{1m}} = {omega} rad/s;  δ = {delta};  M_{index} = {moment} N·m")
+    return said.format(omega=fixed(fw.reduced.omega1, 4), delta=number(fw.unevenness), flywheel=number(fw.J_flywheel),
+                       index=flywheel.indices(fw)[1], moment=flywheel.constant_moment(fw))
+
+
+def _inertia(fw: Mertsalov) -> list[str]:
+    """All that turns with the crank from the segment ab, and what of it is the flywheel."""
+    first = number(fw.J_first, 5)
+    return [tr("J_I = |ab|·μ_E/(δ·ω_1^2) = {length}·{mu}/({delta}·{omega}^2) = {first} kg·m^2").format(
+                length=fixed(fw.ab_mm, 2), mu=number(fw.scales.energy.mu), delta=number(fw.unevenness),
+                omega=fixed(fw.reduced.omega1, 3), first=first),
+            tr("J_f = J_I − (J_{{cr}} + J_r·u^2) = {first} − {bare} = {flywheel} kg·m^2").format(
+                first=first, bare=number(fw.turning, 4, fw.J_first), flywheel=number(fw.J_flywheel, 5))]
+
+
+def _delta(fw: Mertsalov) -> list[str]:
+    """The way back from a given flywheel to δ, and what it is for vanishing intervals."""
+    first = number(fw.J_first, 5)
+    found, limit = graphs.column([fw.unevenness, float(fw.limit_plan["δ∞"].value)], 4)
+    return [tr("J_I = J_f + (J_{{cr}} + J_r·u^2) = {flywheel} + {bare} = {first} kg·m^2").format(
+                flywheel=number(fw.J_flywheel, 5), bare=number(fw.turning, 4, fw.J_first), first=first),
+            tr("δ = |ab|·μ_E/(J_I·ω_1^2) = {length}·{mu}/({first}·{omega}^2) = {delta}").format(
+                length=fixed(fw.ab_mm, 2), mu=number(fw.scales.energy.mu), first=first, omega=fixed(fw.reduced.omega1, 3),
+                delta=found),
+            tr("For n → ∞ positions: δ = {delta} (difference {difference} %)").format(
+                delta=limit, difference=fixed(fw.difference_percent, 2))]
+
+
+def _held(fw: Mertsalov) -> str:
+    """What carries the running: all of the first group, or without a flywheel the crank and the rotor alone."""
+    if fw.needed:
+        return "J_I"
+    return tr("(J_cr + J_r·u^2)") if fw.J_rotor else tr("J_cr")
+
+
+def _extremes(fw: Mertsalov) -> tuple[str, str]:
+    """Greatest and least angular velocity beside those that are permitted, which they keep to with the flywheel only.
+
+    A given flywheel has to keep to none.
+    """
+    digits = flywheel.omega_digits(fw.reduced.omega1, [fw.unevenness])
+    if fw.given:
+        highest, lowest = (fixed(found, digits) for found in fw.extremes)
+        return tr("ω_{{max}} = {found} rad/s").format(found=highest), tr("ω_{{min}} = {found} rad/s").format(found=lowest)
+    texts = (tr("ω_{{max}} = {found};  ω_m(1 + δ/2) = {permitted} rad/s"),
+             tr("ω_{{min}} = {found};  ω_m(1 − δ/2) = {permitted} rad/s")) if fw.needed else \
+        (tr("ω_{{max}} = {found} < ω_m(1 + δ/2) = {permitted} rad/s"), tr("ω_{{min}} = {found} > ω_m(1 − δ/2) = {permitted} rad/s"))
+    fast, slow = (said.format(found=fixed(found, digits), permitted=fixed(float(fw.speed_plan[f"[ω_{name}]"].value), digits))
+                  for said, found, name in zip(texts, fw.extremes, ("max", "min"), strict=True))
+    return fast, slow
+
+
+def _size(fw: Mertsalov) -> list[str]:
+    """Ratios, sizes and mass of the wheel, or that none is needed."""
+    w, d = fw.wheel, fw.data
+    if w is None or d.density is None or d.width_ratio is None or d.thickness_ratio is None:
+        return [] if fw.given else [tr("J_f ≤ 0: no flywheel is needed; ω_{max}, ω_{min}, ε_1 are without it")]
+    if w.form != "rim":
+        said = (tr("Disc:  κ = B/D = {width_ratio};  ρ = {density} kg/m^3"),
+                tr("D = (32J_f/(πρκ))^{{1/5}} = {diameter} m;  B = {width} m;  m = {mass} kg"))
+    elif d.rim_share < 1:
+        said = (tr("Rim, it has {share}·J_f:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio};  ρ = {density} kg/m^3"),
+                tr("D = (4·{share}·J_f/(πρκc))^{{1/5}} = {diameter} m;  B = {width} m;  H = {thickness} m;  m = {mass} kg"))
+    else:
+        said = (tr("Rim:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio};  ρ = {density} kg/m^3"),
+                tr("D = (4·J_f/(πρκc))^{{1/5}} = {diameter} m;  B = {width} m;  H = {thickness} m;  m = {mass} kg"))
+    numbers = {"share": number(d.rim_share), "density": number(d.density), "width_ratio": number(d.width_ratio),
+               "thickness_ratio": number(d.thickness_ratio), "diameter": number(w.diameter, 5), "width": number(w.width),
+               "thickness": number(w.thickness) if w.form == "rim" else "", "mass": number(w.mass)}
+    return [*(line.format(**numbers) for line in said), *flywheel.disc_for_rim(w)]
+
+
+def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    """Mertsalov's flywheel beside Wittenbauer's, drawn and exact, each with the exact running of the machine that has it."""
+    fw = procedure(project)
+    rows = [[tr("Flywheel"), tr("J_I, kg·m^2"), tr("ω_{max}, rad/s"), tr("ω_{min}, rad/s"), "δ"]]
+    omega = fw.reduced.omega1
+    made = [(c.name, c.first, c.running.fastest, c.running.slowest, c.running.delta) for c in fw.compared]
+    if fw.given:
+        drawn = ((tr("Mertsalov, construction"), fw.unevenness), (tr("Wittenbauer, construction"), fw.other.unevenness),
+                 (tr("Mertsalov, n → ∞"), float(fw.limit_plan["δ∞"].value)))
+        made = [(name, fw.J_first, omega * (1 + delta / 2), omega * (1 - delta / 2), delta) for name, delta in drawn] + made
+    uneven = [delta for *_, delta in made]
+    inertia, digits, places = (decimals_for([first for _, first, *_ in made], 2), flywheel.omega_digits(omega, uneven),
+                               decimals_for(uneven, 5))
+    rows += [[name, fixed(first, inertia), fixed(fastest, digits), fixed(slowest, digits), fixed(delta, places)]
+             for name, first, fastest, slowest, delta in made]
+    left = canvas.title(box.inset(0, 0, 0, 2), tr("Comparison of the methods with the exact running"))
+    high = min((left.height - 12.0) / len(rows), 8.0)
+    first = max(letter(line[0], 3.5).width for line in rows) + 3.0
+    widths = widened([first, *[(box.width - first) / 4] * 4], rows, 3.5)
+    place = canvas.table(complex(box.x0, left.y1), widths, rows, high, 3.5)
+    if fw.given:
+        return
+    _, _, _, sign = _signs(options)
+    apart = float(fw.comparison_plan["ΔJ"].value)
+    text = tr("n → ∞: difference {apart} kg·m^2; theory: ({sign}(φ_{{max}}) + {sign}(φ_{{min}}))/2 = {excess} kg·m^2").format(
+        apart=enough(apart, 3, fw.J_first), sign=sign, excess=enough(fw.excess, 3, fw.J_first))
+    canvas.text(complex(box.x0, place.y0 - 6.5), text, size_for([text], box.width, 3.5))

@@ -1,0 +1,1 @@
+"""Views of gears: engagement, generating, trains and reducers, their equations and tables."""

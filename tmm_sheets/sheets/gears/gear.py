@@ -1,0 +1,769 @@
+"""Views of the gear sheet: engagement picture, sliding curves, tables (manual 000, section 6)."""
+
+from __future__ import annotations
+
+from cmath import phase, rect
+from math import degrees, pi, radians
+from typing import Any, cast
+
+import numpy as np
+
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.scale import STANDARD, Scale, fit
+from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, lettered
+from tmm_sheets.drawing.clipping import arcs_inside, segment_inside
+from tmm_sheets.drawing.free_space import Drawn
+from tmm_sheets.drawing.lettering import fitted, letter
+from tmm_sheets.drawing.marks import Box, Line
+from tmm_sheets.numbers import degrees_and_minutes, fixed, number
+from tmm_sheets.sheets.components.clear_dimensions import around, crossed
+from tmm_sheets.sheets.frame import PlanFrame, proportion, ratio, standard
+from tmm_sheets.sheets.gears import gear_radii
+from tmm_sheets.sheets.gears.gear_marks import CIRCLES, Window, gap, hatch_between, ruled_table
+from tmm_sheets.sheets.player import PlayerStage, placed, play, stage
+from tmm_sheets.words import tr
+
+EDGE = 24.0
+"""Least distance of a wheel's centre from the edge of the picture, mm."""
+STRIP = 2.5
+"""Depth of the hatched strip along the working part of a flank, mm."""
+DIMENSION = 8.0
+"""Distance of the dimension lines of the teeth from the root circle, mm."""
+FURTHEST = 40.0
+"""So much farther the dimension lines of the teeth stand at most where lines would run through their lettering, mm."""
+SLIVER = 1e-6
+"""mm of a line beside its lettering that are nothing but rounding."""
+DIVISION = 10.0
+"""Room beyond the last division of an involute for its number, mm."""
+PITCHES, MOST = 1.25, 1.5
+"""Pitches that the view of the meshing zone must show at least, and those it shows at most."""
+BROKEN_BELOW = (25.0, 4.0), (16.0, 2.0)
+"""Height of a tooth on the picture, mm, below which a wheel 2 so many times greater is broken so that the scale can be larger: a
+tooth lower than 16 mm leaves no room for the lettering of the mesh, about 60 signs within three pitches.
+"""
+NEARLY, HALF, LEAST = 0.8, 0.5, 20.0
+"""Shares of its scale that a picture gives up at most so that no wheel is cut at its edges: where it cuts one, and where it cuts
+both; height of a tooth that it keeps, mm.
+"""
+MOSTLY = 0.7
+"""Share of the room beyond the centres that the smaller wheel takes at most where it is shown whole."""
+HUB, UNDER, BESIDE = 44.0, 14.0, 14.0
+"""Height of what is left of a broken wheel about its centre; room under the foot N of its perpendicular and at its side, mm."""
+MESH = 18.0, 32.0
+"""What comes to the meshing zone: names of circles beside it; title and edges over and under it, mm."""
+DEEPEST = 10.0
+"""Specific sliding down to which the curves are followed on their way to minus infinity."""
+
+
+def engagement(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Engagement picture to a standard scale with the line of centres vertical."""
+    picture = _GearPicture(project.gear, canvas, box)
+    picture.circles()
+    picture.line_of_action()
+    for wheel in picture.gear.wheels:
+        picture.unrolling(wheel)
+        picture.teeth(wheel)
+        picture.overlap(wheel)
+        picture.rotation(wheel)
+    for wheel in picture.gear.wheels:
+        picture.dimensions(wheel)
+    picture.pole_letter()
+    gear_radii.draw(picture)
+
+
+def picture_room(gear: Any, width: float, height: float) -> float:
+    """Room for the height of the engagement picture, mm: two thirds for the centre distance, of a ring nearly all.
+
+    And most of the smaller wheel across the width.
+    """
+    smaller = 1.45 * min(w.ra for w in gear.wheels)
+    tall = height - 60 if gear.internal else 2 / 3 * (height - 16)
+    return float(min(tall, (width - 12) / smaller * gear.height))
+
+
+def picture(gear: Any, width: float, height: float) -> tuple[Scale, bool]:
+    """Scale of the engagement picture in a place of this size, mm, and whether the greater wheel is broken for it."""
+    whole: Scale = gear.picture_scale(picture_room(gear, width, height))
+    tooth = max(abs(w.ra - w.rf) for w in gear.wheels)
+    if not gear.internal:
+        uncut = standard((2 * max(w.ra for w in gear.wheels), width - 2 * BESIDE),
+                         (gear.a_w + sum(w.ra for w in gear.wheels), height - 16.0 - 2 * BESIDE))
+        small, spare = min(w.ra for w in gear.wheels), height - 16.0 - whole.mm(gear.a_w)
+        cuts_both = whole.mm(small) + 4 > MOSTLY * spare or 2 * whole.mm(small) > width - 2 * BESIDE
+        if whole.mu < uncut.mu <= whole.mu / (HALF if cuts_both else NEARLY) and uncut.mm(tooth) >= LEAST:
+            return uncut, False
+    one, two = gear.wheels
+    if gear.internal or not any(whole.mm(tooth) < low and two.teeth >= greater * one.teeth for low, greater in BROKEN_BELOW):
+        return whole, False
+    for real, drawn in reversed(STANDARD):
+        larger = Scale(whole.symbol, real / drawn * 1e-3, whole.unit)
+        left, right, below, above = (length / larger.mu for length in _broken_extent(gear, larger))
+        if left + right <= width - 6.0 - 2 * BESIDE and below + above <= height - 16.0 - HUB - 2 * UNDER:
+            return (larger, True) if larger.mu < whole.mu else (whole, False)
+    return whole, False
+
+
+def _broken_extent(gear: Any, scale: Scale) -> tuple[float, float, float, float]:
+    """What is to be seen about the pole of a pair whose wheel 2 is broken, m: the side of its foot N2, the other, below, above.
+
+    The divisions go on beyond the foot, as far as they do with this scale.
+    """
+    one, two = gear.wheels
+    last = complex(gear.engagement["N2"].value) * gear.divisions(two, scale)[-1] / gear.parts(two, scale)
+    return max(abs(last.real), one.ra), one.ra, max(abs(last.imag), one.ra - one.rw), one.rw + one.ra
+
+
+class _GearPicture:
+    """The engagement picture in its place: turns metres of the plans into millimetres of the sheet.
+
+    Of a pair with a far greater wheel 2 that wheel is ``broken`` between the mesh and its centre (GOST 2.305).
+    """
+
+    def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
+        self.gear, self.canvas, self.first = gear, canvas, len(canvas.marks)
+        self.mu, self.broken = picture(gear, box.width, box.height)
+        for name in ("engagement", "involute-1", "involute-2", "tooth-1", "tooth-2"):
+            canvas.scales[f"gear-{name}"] = self.mu
+        self.box = canvas.title(box, tr("Gear meshing"), ratio(self.mu))
+        self.pole = self.pole_of_broken() if self.broken else self.beside(
+            self.pole_of_ring() if gear.internal else self.pole_of_pair())
+        self.at = PlanFrame(self.mu, self.pole)
+        self.stage = stage(canvas, gear.engagement, 0, self.at)
+        self.tooth = {w.number: stage(canvas, gear.tooth(w), 0, self.at) for w in gear.wheels}
+        if gear.internal:  # the ring ends a little over its centre
+            self.box = Box(*self.box[:3], min(self.box.y1, self.of("O2").imag + EDGE))
+        if self.broken:
+            self.hub, self.box = complex(self.pole.real, self.box.y0 + 0.55 * HUB), self.box._replace(y0=self.box.y0 + HUB)
+        self.spokes: list[int] = []
+        """Numbers of the marks of radial lines, which make way for the dimensions of the teeth."""
+        self.window = Window(canvas, self.box.inset(3))  # room for the kinks of break lines
+        self.mm = self.mu.mm
+
+    def pole_of_ring(self) -> complex:
+        """Place of the pole between the ring's rim, which closes the picture below, and its centre, which does so above."""
+        ring = self.gear.wheels[1]
+        below = (ring.outside - ring.rw) / self.mu.mu
+        spare = self.box.height - below - ring.rw / self.mu.mu - EDGE
+        return complex((self.box.x0 + self.box.x1) / 2, self.box.y0 + spare / 2 + below)
+
+    def pole_of_broken(self) -> complex:
+        """Place of the pole of a broken pair: what its divisions need at the side of N2, the rest is left over and under it."""
+        left, right, below, above = (length / self.mu.mu for length in _broken_extent(self.gear, self.mu))
+        if self.gear.engagement["N2"].value.real > 0:
+            left, right = right, left
+        spare = self.box.width - left - right, self.box.height - HUB - below - above
+        return complex(self.box.x0 + spare[0] / 2 + left, self.box.y0 + HUB + spare[1] / 2 + below)
+
+    def pole_of_pair(self) -> complex:
+        """Place of the pole between two wheels one over the other."""
+        gear = self.gear
+        one, two = (w.ra / self.mu.mu + 4 for w in gear.wheels)
+        spare = self.box.height - gear.a_w / self.mu.mu
+        # The smaller wheel is shown whole, if that leaves room beyond the other's centre; both are cut alike otherwise.
+        above = one if one <= two else spare - two
+        if not EDGE <= above <= spare - EDGE or min(one, two) > MOSTLY * spare:
+            above = spare / 2
+        return complex((self.box.x0 + self.box.x1) / 2, self.box.y1 - above - gear.wheels[0].rw / self.mu.mu)
+
+    def beside(self, pole: complex) -> complex:
+        """The pole moved aside where the divisions of an involute, which go on beyond its foot N, would leave the picture.
+
+        Not so far that the smaller wheel would leave it at the other side.
+        """
+        gear, mu = self.gear, self.mu
+        lasts = [gear.involute(w, mu)[str(gear.divisions(w, mu)[-1])].value.real / mu.mu for w in gear.wheels]
+        wheel = min(w.ra for w in gear.wheels) / mu.mu
+        spare = self.box.width / 2 - max(abs(x) for x in lasts) - DIVISION
+        if spare >= 0 or wheel + EDGE / 2 > self.box.width / 2:
+            return pole
+        shift = float(min(-spare, self.box.width / 2 - wheel - EDGE / 2))
+        return pole - (shift if max(lasts, key=abs) > 0 else -shift)
+
+    def of(self, name: str) -> complex:
+        """Point of the engagement plan on the sheet."""
+        return self.stage.at(name)
+
+    def centre(self, wheel: Any) -> complex:
+        """Where a wheel's centre is drawn: nearer than it is if the wheel is broken."""
+        return self.hub if self.broken and wheel.number == 2 else self.of(f"O{wheel.number}")
+
+    def away(self, wheel: Any) -> int:
+        """+1 when the wheel's far side is up."""
+        return 1 if wheel.number == 1 or wheel.ring else -1
+
+    def spoke(self, wheel: Any, step: str, end: complex, style: str) -> None:
+        """Line from a wheel's centre, interrupted where the dimensions of its teeth are written."""
+        centre, first = self.of(f"O{wheel.number}"), len(self.canvas.marks)
+        self._spoke(wheel, step, centre, end, style)
+        self.spokes.extend(range(first, len(self.canvas.marks)))
+
+    def _spoke(self, wheel: Any, step: str, centre: complex, end: complex, style: str) -> None:
+        u = (end - centre) / abs(end - centre)
+        if wheel.ring:  # they are written beyond its root circle
+            self.window.line(self.stage, step, centre, end, style)
+            return
+        root = self.mm(wheel.rf)
+        self.window.line(self.stage, step, centre, centre + u * (root - DIMENSION - 9), style)
+        self.window.line(self.stage, step, centre + u * (root - 1), end, style)
+
+    def circles(self) -> None:
+        for wheel in self.gear.wheels:
+            centre = self.of(f"O{wheel.number}")
+            self.window.line(self.stage, "O1O2", centre + 1j * self.away(wheel) * (self.mm(wheel.ra) + 6), centre, "centre")
+        for wheel in self.gear.wheels:
+            self.spoke(wheel, "O1O2", self.pole, "centre")
+        for wheel in self.gear.wheels:
+            centre = self.of(f"O{wheel.number}")
+            self.window.circles(self.stage, [wheel])
+            self.window.breaks(self.stage, wheel)
+            # At the right the extension line of the centre distance continues it; of a ring there is nothing at this level.
+            left = 12.0 if wheel.ring else self.mm(wheel.ra) + 6.0
+            self.window.line(self.stage, f"O{wheel.number}", centre - left, centre + 12, "centre")
+            at = self.centre(wheel)
+            if at != centre:  # what is left of it beyond the break
+                s = self.stage.pen("O1O2", "axis")
+                s.line(complex(at.real, self.box.y0 - 1.0), at - 12j, "centre")
+                s.line(at - 12, at + 12, "centre")
+            self.stage.pen(f"O{wheel.number}", "symbol").circle(at, 2.0, "main")
+            self.canvas.label(at, f"O_{wheel.number}", away=complex(1, self.away(wheel)), height=5, gap=3)
+
+    def line_of_action(self) -> None:
+        c, s = self.canvas, self.stage
+        n1, n2, a, b, pole = (self.of(k) for k in ("N1", "N2", "A", "B", "Pw"))
+        u = complex(s.plan["N1N2"].value)
+        beside = min(pole.real - self.window.box.x0, self.window.box.x1 - pole.real)
+        reach = min(1.25 * max(abs(n1 - pole), abs(n2 - pole)), beside - 8.0)
+        h = self.gear.hand
+        self.window.line(s, "N1N2", pole - h * reach, pole + h * reach, "thin")
+        for end in (pole - h * reach, pole + h * reach):
+            c.label(end, "t", away=end - pole, height=5, leader=False)
+        s.line("B", a, b, "main", "curve")
+        for name, point in (("A", a), ("B", b)):
+            s.dot(name, 0.9, "main")
+            c.label(point, name, away=1j * u, height=5, gap=1.5, thin=2.0)
+        s.dot("Pw", 0.9, "main")
+        for i, foot in ((1, n1), (2, n2)):
+            centre = self.of(f"O{i}")
+            away = (foot - centre) / abs(foot - centre)
+            inward = (pole - foot) / abs(pole - foot)
+            self.spokes.append(len(c.marks))
+            self.window.line(s, f"N{i}", centre, foot, "thin")
+            corner = foot + 3 * inward - 3 * away
+            s.line(f"N{i}", foot - 3 * away, corner, "thin", "symbol")
+            s.line(f"N{i}", corner, foot + 3 * inward, "thin", "symbol")
+            s.dot(f"N{i}", 0.8, "main")
+            c.label(foot, f"N_{i}", away=away - inward, height=5, gap=1.5)
+        alpha = f"α_w = {degrees_and_minutes(self.gear.alpha_w)}"
+        radius = (abs(n2 - pole) + abs((b if self.gear.driver == 1 else a) - pole)) / 2
+        start, end = (pi, pi + self.gear.alpha_w) if h < 0 else (-self.gear.alpha_w, 0.0)
+        pen, o1 = s.pen("alpha_w", "dimension"), self.of("O1")
+        pen.angle_mark(pole, start, end, radius, "α_w")
+        angle_beside(pen, o1, phase(n1 - o1), -pi / 2, self.mm(self.gear.wheels[0].rb) * 0.45, alpha)
+        self.dimension_of_centres()
+
+    def pole_letter(self) -> None:
+        """Letter of the pole beyond the root circle of wheel 1 where nothing is drawn, its leader clear of flanks."""
+        foot = self.pole - self.of("O1")
+        inwards, ink = -foot / abs(foot), Drawn(self.canvas, self.first)
+        laid, root = letter("P_w", 5.0), self.mm(self.gear.wheels[0].rf)
+        half = complex(laid.width, 5.0 + laid.descent) / 2
+
+        def tried(turn: float, beyond: float) -> tuple[complex, complex, bool]:
+            """End of the leader, middle of the letter at that end, whether there is room for both."""
+            way = inwards * rect(1, radians(turn))
+            along = (np.conj(way) * foot).real
+            end = self.pole - (along + max((root - beyond) ** 2 - (abs(foot) ** 2 - along**2), 0.0) ** 0.5) * way
+            at = end + way * (0.5 + min(half.real / max(abs(way.real), 1e-9), half.imag / max(abs(way.imag), 1e-9)))
+            box = Box(at.real - half.real, at.imag - half.imag, at.real + half.real, at.imag + half.imag).inset(-0.5)
+            start = self.pole + 2.0 * way
+            return end, at, not (ink.meets(box) or ink.strong(start, end) or ink.over(start, end))
+
+        turns = sorted(np.arange(-60.0, 61.0, 4.0), key=abs)
+        places = (tried(turn, beyond) for beyond in np.arange(1.5, 26.0, 0.5) for turn in turns)
+        end, at, free = next((p for p in places if p[2]), None) or tried(turns[0], 1.5)
+        self.stage.line("Pw", self.pole, end, "thin", "text")
+        if free:
+            self.stage.pen("Pw", "text").put(laid, at - half + 1j * laid.descent, 0.0, "P_w")
+        else:
+            self.canvas.label(end, "P_w", away=inwards, height=5, gap=0.5, leader=False, thin=KEPT_OFF)
+
+    def dimension_of_centres(self) -> None:
+        """Centre distance at the edge of the picture, lettered where no circle crosses it, as near to the middle as can be."""
+        top, bottom = (self.centre(self.gear.wheels[i - 1]) for i in ((2, 1) if self.gear.internal else (1, 2)))
+        x, text = self.box.x1 - 12, f"a_w = {fixed(self.gear.a_w * 1e3, 2)}"
+        half, middle, crossed = letter(text, 5.0).width / 2 + 2.0, (top.imag + bottom.imag) / 2, list[tuple[float, float]]()
+        for wheel in self.gear.wheels:
+            centre = self.of(f"O{wheel.number}")
+            reach = np.array([x - 8.0, x + 1.0]) - centre.real  # from the top of the letters to the line
+            for radius in (self.mm(getattr(wheel, key)) for key, _, _ in CIRCLES):
+                ends = np.sqrt(np.maximum(radius**2 - reach**2, 0.0))
+                if ends.max() > 0:
+                    crossed += [tuple(sorted(centre.imag + side * ends)) for side in (1, -1)]
+        places = [middle, *(low - half for low, _ in crossed), *(high + half for _, high in crossed)]
+        free = [y for y in places if bottom.imag + half < y < top.imag - half
+                and all(y + half <= low or high <= y - half for low, high in crossed)]
+        at = min(free, key=lambda y: abs(y - middle), default=middle)
+        self.canvas.dimension(bottom + 12, top + 12, 12 - (x - top.real), text, 5.0,
+                              (at - bottom.imag) / (top.imag - bottom.imag))
+
+    def unrolling(self, wheel: Any) -> None:
+        """Divisions of P_wN, equal arcs, tangents and the involute through their ends."""
+        c = self.canvas
+        c.of = f"gear-involute-{wheel.number}"
+        s = stage(c, self.gear.involute(wheel, self.mu), 0, self.at)
+        parts = self.gear.parts(wheel, self.mu)
+        numbers = self.gear.divisions(wheel, self.mu)
+        centre, foot, pole = self.of(f"O{wheel.number}"), self.of(f"N{wheel.number}"), self.pole
+        u = (foot - pole) / abs(foot - pole)
+        self.window.line(s, str(numbers[-1]), pole, s.at(str(numbers[-1])) + 4 * u)
+        for k in numbers:
+            d, t = s.at(str(k)), s.at(f"{k}′")
+            if k:
+                s.line(str(k), d - 1.2j * u, d + 1.2j * u, "thin", "point")
+            if k != parts:
+                play(s, [f"E{k}"])
+                out = (t - centre) / abs(t - centre)
+                s.line(f"{k}′", t - 10 * out, t, "construction", "axis")
+            s.dot(f"E{k}", 0.5, "thin")
+            if 0 < k != parts:
+                c.label(d, str(k), away=u * 1j, height=2.5, gap=0.8, leader=False)
+            if k != parts:
+                c.label(t, f"{k}′", away=centre - t, height=2.5, gap=0.8)
+        smooth = self.gear.smooth_involute(wheel, reach=numbers[-1] / parts * wheel.t_pole / wheel.t_tip)
+        stage(c, smooth, None, self.at).curve("E", style="construction")
+        c.of = "gear.engagement"
+
+    def teeth(self, wheel: Any) -> None:
+        c, s = self.canvas, self.tooth[wheel.number]
+        shape = self.gear.shape(wheel)
+        s.curve(shape.step, self.at(shape.outline(step=self.mu.mu)), "main")
+        centre = self.of(f"O{wheel.number}")
+        out = -1 if wheel.ring else 1
+        for k in (-1, 0, 1):
+            axis = shape.axis_of(k)
+            s.line("axis", centre + axis * (self.mm(wheel.rf) - 3 * out), centre + axis * (self.mm(wheel.ra) + 5 * out), "centre",
+                   "axis")
+        if wheel.ring:
+            self.rim(wheel)
+        k = self.strip_tooth(wheel)
+        outline = self.at(shape.copied(self.gear.working_strip(wheel, self.mu.real(STRIP)), k))
+        half = len(outline) // 2
+        s.pen(shape.step, "hatch").polyline(outline[half:], "thin")
+        hatch_between(c, outline[:half], outline[half:][::-1])
+        ends = outline[0], outline[half - 1]
+        names = ("A", "B") if (wheel.number == 1) == (self.gear.driver == 1) else ("B", "A")
+        for name, p in zip(names, ends, strict=True):
+            c.label(complex(p), f"{name}_{wheel.number}", away=p - centre - axis * abs(p - centre), height=3.5, gap=1.5)
+
+    def rim(self, ring: Any) -> None:
+        """Outer circle of a ring's rim."""
+        centre, radius = self.of(f"O{ring.number}"), self.mm(ring.outside)
+        pen = self.stage.pen(f"rf{ring.number}", "symbol")
+        for start, end in arcs_inside(self.window.box, centre, radius):
+            pen.arc(centre, radius, start, end, "main")
+
+    def strip_tooth(self, wheel: Any) -> int:
+        """The tooth whose working flank is hatched: the neighbour that stands clear of the mesh."""
+        return 1 if wheel.number == 1 else -1
+
+    def overlap(self, wheel: Any) -> None:
+        """The wheel's profile in contact at A and at B, and the angle between."""
+        i = wheel.number
+        centre, flank = self.of(f"O{i}"), self.gear.shape(wheel).flank
+        u = self.gear.engagement["N1N2"].value
+        ends = []
+        for name in "ab":
+            travel = (np.conj(u) * self.gear.engagement[name.upper()].value).real
+            p = self.of(f"{name}{i}")
+            self.stage.curve(f"{name}{i}", self.at(self.gear.rolled(wheel, flank, travel)), "thin")
+            self.spoke(wheel, f"{name}{i}", p, "construction")
+            ends.append(phase(p - centre))
+        if self.away(wheel) > 0:
+            ends.reverse()
+        first, last = ends
+        drawn = float(self.gear.engagement[f"phi{i}"].value)
+        pen = self.stage.pen(f"phi{i}", "dimension")
+        # Of a broken wheel in what is seen of it.
+        radius = self.mm(wheel.rf) * 0.66 if self.centre(wheel) == centre else self.box.y0 + UNDER - centre.imag
+        angle_beside(pen, centre, first, last, radius, f"φ_{{α{i}}} = {fixed(degrees(drawn), 2)}°")
+
+    def dimensions(self, wheel: Any) -> None:
+        """Chordal thickness on an outer tooth, chordal pitch between the axes of the other two."""
+        c, i = self.canvas, wheel.number
+        shape, tooth = self.gear.shape(wheel), self.gear.tooth(wheel)
+        k = -self.strip_tooth(wheel)
+        centre = self.of(f"O{i}")
+        e, f = (complex(self.at(shape.copied(tooth[name].value, k))) for name in "EF")
+        radius = self.mm(wheel.r)
+        p, q = (centre + radius * shape.axis_of(j) for j in (0, -k))
+        side = -1 if wheel.ring else 1  # the lines stand beyond the root circle
+        inside = side * (radius - self.mm(wheel.rf))
+        thickness, step = (fixed(v * 1e3, 2) for v in (wheel.s_chord, wheel.p_chord))
+        for a, b, text in ((e, f, f"s̅_{i} = {thickness}"), (p, q, f"p̅_{i} = {step}")):
+            # the side of the centre is the left of a .. b
+            a, b = (a, b) if side * (np.conj(b - a) * (centre - a)).imag > 0 else (b, a)
+            offset = self.clear_of_lines(a, b, inside + DIMENSION, text)
+            c.dimension(a, b, offset, text)
+            self.interrupt(*lettered(a, b, offset, text), text)
+
+    def clear_of_lines(self, a: complex, b: complex, offset: float, text: str) -> float:
+        """Offset of a dimension, this or a greater one, at which no line runs through its lettering.
+
+        Within a ring the tangents of its involute lie over the root circle of the pinion.
+        """
+        ink = Drawn(self.canvas, self.first, but=self.spokes)
+        return min((offset + further for further in np.arange(0.0, FURTHEST, 0.5)), key=lambda by: crossed(ink, a, b, by, text))
+
+    def interrupt(self, at: complex, along: complex, text: str) -> None:
+        """Interrupt the radial lines that would run through lettering whose baseline has its middle there (GOST 2.307)."""
+        marks, place = self.canvas.marks, around(text)
+        for n in [n for n in self.spokes if isinstance(marks[n], Line)]:
+            line = cast(Line, marks[n])
+            start, end = ((z - at) / along for z in (line.a, line.b))
+            hidden = segment_inside(place, start, end)
+            if hidden is None:
+                continue
+            near, far = sorted((z * along + at for z in hidden), key=lambda z: abs(z - line.a))
+            # Lettering that reaches beyond an end leaves one piece, one that reaches beyond both nothing to be seen.
+            pieces = [piece for piece in (line._replace(b=near), line._replace(a=far)) if abs(piece.b - piece.a) > SLIVER]
+            marks[n] = pieces[0] if pieces else line._replace(b=line.a)
+            if len(pieces) > 1:
+                self.spokes.append(len(marks))
+                marks.append(pieces[1])
+
+    def rotation(self, wheel: Any) -> None:
+        """Arrow of the angular velocity."""
+        first = -1 if self.gear.sense == "clockwise" else 1
+        sense = first if wheel.number == 1 or wheel.ring else -first
+        centre = self.centre(wheel)
+        middle = pi / 2 * self.away(wheel)
+        half = radians(50)
+        self.canvas.tracing("symbol").arc_arrow(centre, 12, middle - sense * half, middle + sense * half)
+        tip = rect(1, middle + sense * half)
+        self.canvas.label(centre + 12 * tip, f"ω_{wheel.number}", away=tip, height=5)
+
+
+def angle_beside(canvas: Canvas, vertex: complex, start: float, end: float, radius: float, markup: str) -> None:
+    """Dimension arc between two rays, its sign outside beside the end at ``start`` where no ray crosses it."""
+    lo, hi = sorted((start % (2 * pi), end % (2 * pi)))
+    if hi - lo > pi:
+        lo, hi = hi, lo + 2 * pi
+    canvas.arc(vertex, radius, lo, hi, "thin")
+    if (hi - lo) * radius > 8:
+        for tip, sense in ((lo, -1), (hi, 1)):
+            canvas.arrow_head(vertex + rect(radius, tip), rect(1, tip + sense * (pi / 2 - 1.75 / radius)))
+    ray = rect(1, start)
+    away = 1j * ray if (np.conj(ray) * rect(1, end)).imag < 0 else -1j * ray
+    canvas.label(vertex + radius * ray, markup, away=away, gap=2)
+
+
+def mesh(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The teeth at the pole once more, enlarged: circles, clearances, distance of the pitch circles, fillets."""
+    _Detail(project.gear, canvas, box).draw()
+
+
+def mesh_height(gear: Any) -> float:
+    """Height of the meshing zone with the clearances, m."""
+    return 2.0 * float(max(abs(w.ra - w.rw) + gear.clearance * gear.m for w in gear.wheels))
+
+
+def mesh_scale(gear: Any, width: float, height: float) -> Scale:
+    """Scale of the meshing zone in a place of this size, mm."""
+    return standard((PITCHES * gear.p, width - MESH[0]), (mesh_height(gear), height - MESH[1]))
+
+
+class _Detail:
+    """Surroundings of the pole to the largest standard scale that shows a pitch and a quarter."""
+
+    def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
+        self.gear, self.canvas = gear, canvas
+        margin = MESH[0]
+        mu = mesh_scale(gear, box.width, box.height)
+        inner = canvas.title(box, tr("Meshing zone"), ratio(mu))
+        place = Box(inner.x0, inner.y0, inner.x1 - margin, inner.y1)
+        self.pole = place.centre
+        tall = mesh_height(gear) / 2 / mu.mu + 8
+        low, high = self.pole.imag - tall, self.pole.imag + tall
+        # Farther from the pole the teeth sink below the edges, and of each only pieces would be seen.
+        wide = min(place.width, MOST * gear.p / mu.mu) / 2
+        self.window = Window(canvas, Box(self.pole.real - wide, max(inner.y0, low), self.pole.real + wide, min(inner.y1, high)))
+        self.at = PlanFrame(mu, self.pole)
+        self.stage = stage(canvas, gear.engagement, 0, self.at)
+
+    def draw(self) -> None:
+        c, gear, s, w = self.canvas, self.gear, self.stage, self.window
+        u, reach = complex(s.plan["N1N2"].value), w.box.width
+        self.window.line(s, "O1O2", s.at("O1"), s.at("O2"), "centre")
+        self.window.line(s, "Pw", self.pole - reach, self.pole + reach, "thin")
+        self.window.line(s, "N1N2", self.pole - reach * u, self.pole + reach * u, "thin")
+        self.window.line(s, "B", s.at("A"), s.at("B"), "axis", "curve")
+        w.edge()
+        w.circles(s, gear.wheels, 0.5)
+        for wheel in gear.wheels:
+            self.teeth(wheel)
+        s.dot("Pw", 1.0, "main")
+        c.label(self.pole, "P_w", away=complex(-gear.hand, 1), height=5, gap=1.5)
+        start, end = (pi, pi + gear.alpha_w) if gear.hand < 0 else (-gear.alpha_w, 0.0)
+        s.pen("alpha_w", "dimension").angle_mark(self.pole, start, end, 0.4 * reach, "α_w")
+        self.gaps(c.tracing("dimension"))
+
+    def teeth(self, wheel: Any) -> None:
+        """Teeth in mesh, and the radius of their fillets."""
+        c, s = self.canvas, stage(self.canvas, self.gear.tooth(wheel), 0, self.at)
+        shape = self.gear.shape(wheel)
+        self.window.curve(s, shape.step, self.at(shape.outline(-2, 2, step=0.5 * self.at.scale.mu)), "main")
+        if self.gear.profile == "rack":
+            return  # a trochoid has no radius to show
+        fillet, touch = s.at("C"), s.at("R")
+        s.dot("C", 0.5, "thin")
+        pen = s.pen("rho", "dimension")
+        pen.line(fillet, touch, "thin")
+        pen.arrow_head(touch, (touch - fillet) / abs(touch - fillet), 2.5)
+        c.label(fillet, f"ρ_{{f{wheel.number}}} = {fixed(wheel.fillet * 1e3, 2)}", away=fillet - self.pole, gap=1.5)
+
+    def gaps(self, c: Canvas) -> None:
+        """Radial clearances and the distance between the pitch circles, on the line of centres."""
+        gear = self.gear
+        one, two = gear.wheels
+        h, way = gear.hand, 1 if gear.internal else -1  # of a circle of wheel 2 its lowest or its highest point
+        clearance = f"c^{{*}}m = {number(gear.clearance * gear.m * 1e3, 3)}"
+        for low, high, text, side in (
+            (way * (two.rw - two.rf), -(one.ra - one.rw), clearance, -h), (way * (two.rw - two.ra), one.rw - one.rf, clearance, h),
+            (way * (two.rw - two.r), one.rw - one.r, f"ym = {fixed(gear.ym * 1e3, 2)}", h),
+        ):
+            if abs(high - low) < 1e-9:
+                continue
+            a, b = (self.pole + 1j * v / self.at.scale.mu for v in sorted((low, high)))
+            gap(c, a, b, text, complex(side, 0), 4)
+
+
+def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Speeds of the contact point along both profiles and the specific sliding, on one line of action N1N2.
+
+    N1 stands on the side where it is in the engagement picture.
+    """
+    gear = project.gear
+    canvas.of = "gear-sliding"
+    one = gear.wheels[0]
+    room = box.width - 34
+    scale = canvas.scales.get("gear-engagement") or gear.picture_scale()
+    if not 0.6 * room < scale.mm(one.t_pole + gear.beyond_pole) <= room:
+        scale = standard((one.t_pole + gear.beyond_pole, room))
+    canvas.scales["gear-sliding"] = scale
+    whole = scale.mm(one.t_pole + gear.beyond_pole)
+    plan = gear.sliding
+    way = gear.hand
+    upper = canvas.title(box, tr("Graphs of the velocities"), ratio(scale))
+    left = (box.x0 + box.x1 - whole) / 2
+    # rounded: where letters stand must not hang on the last digit
+    y1, y2 = np.round(plan["yV1"].value, 9), np.round(plan["yV2"].value, 9)
+    highest = float(max(y1.max(), y2.max()))
+    share = _ways(gear, plan) / scale.mu
+    pole = left + (one.t_pole if way > 0 else gear.beyond_pole) / scale.mu
+    xs = np.round(pole + way * share, 9)
+    axis = upper.y1 - highest - 8
+    s = _along(canvas, gear, plan, complex(pole, axis), scale, way)
+    _axis_line(s, gear, complex(left, axis), whole, pole - left, scale, way)
+    ordinate = float(y1[np.argmin(np.abs(share))])
+    speeds = placed(canvas, plan, complex(pole, axis), (scale.mu, 1.0), *_turned(way))
+    start, end = (complex(x, axis) for x in (left, left + whole)[::way])
+    speeds.line("yV1", start, end + 1j * y1[-1], "curve", "curve")
+    speeds.line("yV2", start + 1j * y2[0], end + 1j * y2[-1], "curve", "curve")
+    canvas.label(end + 1j * y1[-1], "V_1", away=-way + 0.3j, height=5)
+    canvas.label(start + 1j * y2[0], "V_2", away=way + 0.5j, height=5)
+
+    lower = canvas.title(Box(box.x0, box.y0, box.x1, axis - 16), tr("Specific sliding"))
+    worst = -min(gear.greatest_sliding)
+    mu, top = _sliding_scale(worst, lower.height - 12)
+    canvas.text(complex((box.x0 + box.x1) / 2, lower.y1 - 5), str(mu), 5.0, "centre")
+    zero = lower.y1 - 14 - top
+    deepest = zero - (lower.y0 + 2)
+    origin = complex(left, zero)
+    t = _along(canvas, gear, plan, complex(pole, zero), scale, way)
+    _theta(placed(canvas, gear.smooth_sliding, complex(pole, zero), (scale.mu, mu.mu), *_turned(way)), gear, -deepest * mu.mu, way)
+    t.line("K", origin - 6, origin + whole + 8, "axis", "axis")
+    pen = t.pen("theta1", "axis")
+    pen.line(complex(left, lower.y0), complex(left, zero + top + 6), "axis")
+    for theta in (theta for theta in range(1, -int(deepest * mu.mu) - 1, -1) if theta):
+        y = zero + theta / mu.mu
+        pen.line(complex(left - 1.2, y), complex(left + 1.2, y), "axis")
+        pen.text(complex(left - 2.5, y - 1.25), number(theta), 2.5, "right")
+    canvas.label(complex(left, zero + top + 6), "θ", away=1 + 1j, height=5)
+    for k, x in enumerate(xs):
+        values = [plan[f"theta{i}"].value[k] for i in (1, 2)]
+        low = min([v for v in values if np.isfinite(v) and v > -deepest * mu.mu] or [0.0])
+        # Projection lines leave the title between the graphs free.
+        s.position(k).line("K", complex(x, axis + max(y1[k], y2[k])), complex(x, axis - 5), "construction", "axis")
+        t.position(k).line("K", complex(x, zero + top + 5), complex(x, zero + min(low, 0.0) / mu.mu), "construction", "axis")
+        canvas.label(complex(x, zero), plan.labels[k], away=1 - 1j, height=2.5, gap=0.6, leader=False)
+    said = tr("{length} mm").format(length=number(ordinate))
+    canvas.label(complex(pole, axis + ordinate), said, away=1 - 0.2j, height=3.5)
+
+
+def _ways(gear: Any, plan: Plan) -> Any:
+    """Ways of the contact point along the line of action from the pole, m."""
+    return np.real(plan["K"].value * np.conj(gear.engagement["N1N2"].value))
+
+
+def _turned(way: int) -> tuple[float, bool]:
+    """Turn and mirroring of a frame whose abscissa runs to the right (1) or to the left (-1)."""
+    return (0.0, False) if way > 0 else (pi, True)
+
+
+def _along(canvas: Canvas, gear: Any, plan: Plan, pole: complex, scale: Scale, way: int) -> PlayerStage:
+    """A plan with the line of action laid along the abscissa, N1N2 to the right or to the left."""
+    return placed(canvas, plan, pole, scale.mu, -phase(way * complex(gear.engagement["N1N2"].value)))
+
+
+def _axis_line(s: PlayerStage, gear: Any, origin: complex, whole: float, pole: float, scale: Scale, way: int) -> None:
+    """The line of action as an abscissa with its points, the pole so far from its beginning at the left."""
+    canvas = s.canvas
+    s.line("K", origin - 6, origin + whole + 8, "axis", "axis")
+    one, two = gear.wheels
+    last = two.t_pole - two.t_low
+    ends = [pole + way * t / scale.mu for t in (one.t_low - one.t_pole, -last if gear.internal else last)]
+    names = ("A", "B") if gear.driver == 1 else ("B", "A")
+    e = _along(canvas, gear, gear.engagement, origin + pole, scale, way)
+    e.line("B", origin + ends[0], origin + ends[1], "main", "curve")
+    feet = [] if gear.internal else [("N_2", (whole, 0.0)[::way][0])]
+    for name, x in (("N_1", (0.0, whole)[::way][0]), ("P_w", pole), *feet, *zip(names, ends, strict=True)):
+        e.dot(name.replace("_", ""), 0.8, "main")
+        canvas.label(origin + x, name, away=-1j, height=3.5)
+
+
+def _sliding_scale(worst: float, height: float) -> tuple[Scale, float]:
+    """Scale factor of the sliding with which the worst value of the engagement is seen, and the height of 1 in mm."""
+    mu = fit("μ_θ", tr("1/mm"), 1 + min(max(1.15 * worst, 2.0), DEEPEST), height)
+    return mu, 1 / mu.mu
+
+
+def _theta(s: PlayerStage, gear: Any, lowest: float, way: int) -> None:
+    """Both curves, cut where they leave the place on their way to minus infinity."""
+    x = _ways(gear, s.plan)
+    for i, onward in ((1, 1), (2, -1)):  # from where each comes up from below
+        along, y = x[::onward], np.asarray(s.plan[f"theta{i}"].value)[::onward]
+        k = int(np.argmax(y >= lowest))
+        points = along[y >= lowest] + 1j * y[y >= lowest]
+        if k and np.isfinite(y[k - 1]):
+            t = (lowest - y[k]) / (y[k - 1] - y[k])
+            points = np.insert(points, 0, along[k] + t * (along[k - 1] - along[k]) + 1j * lowest)
+        s.curve(f"theta{i}", s.frame(points[::onward]))
+        s.canvas.label(complex(s.frame(points[0].real + 0.6j * points[0].imag)), f"θ_{i}", away=way * onward, height=5, gap=3)
+
+
+def sliding_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> tuple[tuple[float, float], ...]:
+    """Sizes that the graphs can do with, mm."""
+    return (210.0, 200.0), (190.0, 150.0)
+
+
+def sliding_table_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Sizes that the table can do with, mm; none without the graphs whose ordinates it holds."""
+    if "gear-sliding" not in canvas.scales:
+        return []
+    wide = 24.0 + 14.0 * len(project.gear.sliding.labels)
+    return [(wide + 10.0, 52.0), (wide, 46.0)]
+
+
+def sliding_table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Ordinates of the speeds and specific sliding at the divisions of N1N2."""
+    plan = project.gear.sliding
+    rows = [["", *plan.labels]]
+    for name, text, symbol in (("yV1", tr("{symbol}, mm"), "y_{V1}"), ("yV2", tr("{symbol}, mm"), "y_{V2}"),
+                               ("theta1", "{symbol}", "θ_1"), ("theta2", "{symbol}", "θ_2")):
+        rows.append([text.format(symbol=symbol), *(_cell(v, 2) for v in plan[name].value)])
+    inner = canvas.title(box, tr("Velocities and specific sliding"))
+    head = 24.0
+    widths = [head] + [(box.width - head) / len(plan.labels)] * len(plan.labels)
+    canvas.table(complex(box.x0, inner.y1), widths, rows, row=min(14.0, (inner.y1 - box.y0) / len(rows)), height=3.5)
+
+
+def _cell(value: float, decimals: int) -> str:
+    return fixed(value, decimals) if np.isfinite(value) else "−∞"
+
+
+def parameters(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Table of the pair's parameters after GOST 2.403: name, sign, wheel 1, wheel 2; common values span both."""
+    gear = project.gear
+
+    def both(key: str, decimals: int = 2) -> tuple[str, str]:
+        one, two = (fixed(getattr(w, key) * 1e3, decimals) for w in gear.wheels)
+        return one, two
+
+    one, two = gear.wheels
+    rows: list[tuple[str, ...]] = [
+        (tr("Parameter"), tr("Symbol"), tr("Wheel 1"), tr("Wheel 2")),
+        (tr("Number of teeth"), "z", str(one.teeth), str(two.teeth)),
+        (tr("Module, mm"), "m", number(gear.m * 1e3)),
+        (tr("Profile angle of the basic rack"), "α", degrees_and_minutes(gear.alpha)),
+        (tr("Addendum coefficient"), "h_a^{*}", *dict.fromkeys(number(w.addendum) for w in gear.wheels)),
+        (tr("Bottom clearance coefficient"), "c^{*}", number(gear.clearance)),
+        (tr("Profile shift coefficient"), "x", number(one.shift), number(two.shift)),
+        (tr("Working pressure angle"), "α_w", degrees_and_minutes(gear.alpha_w)),
+        (tr("Centre distance, mm"), "a_w", fixed(gear.a_w * 1e3, 2)),
+        (tr("Centre distance modification coefficient"), "y", fixed(gear.y, 4)),
+        (tr("Addendum shortening coefficient"), "Δy", fixed(gear.dy, 4)),
+        (tr("Reference radius, mm"), "r", *both("r")),
+        (tr("Base radius, mm"), "r_b", *both("rb")),
+        (tr("Pitch radius, mm"), "r_w", *both("rw")),
+        (tr("Tip radius, mm"), "r_a", *both("ra")),
+        (tr("Root radius, mm"), "r_f", *both("rf")),
+        (tr("Tooth thickness, mm"), "s", *both("s")),
+        (tr("Chordal tooth thickness, mm"), "s̅", *both("s_chord")),
+        (tr("Tooth thickness at the tip, mm"), "s_a", *both("sa")),
+        (tr("Pitch, mm"), "p", fixed(gear.p * 1e3, 2)),
+        (tr("Chordal pitch, mm"), "p̅", *both("p_chord")),
+        (tr("Angular pitch"), "τ", degrees_and_minutes(one.tau), degrees_and_minutes(two.tau)),
+        (tr("Fillet radius, mm"), "ρ_f", *both("fillet")) if gear.profile == "fillet" else (
+            tr("Fillet radius of the rack, mm"), "ρ_f", fixed(one.fillet * 1e3, 2)),
+    ]
+    inner = canvas.title(box, tr("Main parameters of the gear pair"))
+    ruled_table(canvas, Box(box.x0, box.y0, box.x1, inner.y1), rows, (18.0, 30.0, 30.0), 12.0)
+
+
+def results(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Contact ratio from the drawn overlap angles and by the formula, greatest sliding, what was chosen."""
+    gear = project.gear
+    plan, pole = gear.engagement, int(np.argmin(np.abs(gear.sliding["K"].value)))
+    drawn = [float(plan[f"eps{i}"].value) for i in (1, 2)]
+    entry, leave = ("A", "B") if gear.driver == 1 else ("B", "A")
+    rows: list[tuple[str, ...]] = [
+        (tr("Quantity"), tr("Symbol"), tr("Value")),
+        (tr("Angle of contact of wheel 1 (drawing)"), "φ_{α1}", f"{fixed(degrees(float(plan['phi1'].value)), 2)}°"),
+        (tr("Angle of contact of wheel 2 (drawing)"), "φ_{α2}", f"{fixed(degrees(float(plan['phi2'].value)), 2)}°"),
+        (tr("Contact ratio {fraction}").format(fraction="φ_{α1}/τ_1"), "ε_α", fixed(drawn[0], 3)),
+        (tr("Contact ratio {fraction}").format(fraction="φ_{α2}/τ_2"), "ε_α", fixed(drawn[1], 3)),
+        (tr("Contact ratio by the formula"), "ε_α", fixed(gear.eps_alpha, 3)),
+        (tr("Difference, %"), "Δ", fixed(float(plan["Δeps"].value), 2)),
+        (tr("Path of contact AB, mm"), "g_α", fixed(gear.g_alpha * 1e3, 2)),
+        (tr("Base pitch, mm"), "p_b", fixed(gear.pb * 1e3, 2)),
+        *((tr("Sliding at the dedendum of wheel {wheel} (point {point})").format(wheel=i, point=point), f"θ_{i}",
+           fixed(gear.greatest_sliding[i - 1], 2)) for i, point in ((1, entry), (2, leave))),
+    ]
+    if gear.profile == "rack":
+        rows += [(tr("ρ of wheel {wheel}: limit ≤ lowest, mm").format(wheel=w.number), f"ρ_{{l{w.number}}}; ρ_{{p{w.number}}}",
+                  f"{fixed(w.rho_limit * 1e3, 2)}; {fixed(w.t_low * 1e3, 2)}") for w in gear.wheels]
+    rows += [(tr("Tooth thickness at the tip, in modules (≥ 0.2)"), "s_{a1}; s_{a2}",
+              "; ".join(fixed(w.step("sa_m").value, 2) for w in gear.wheels))]
+    if gear.internal:
+        clear = degrees(float(gear.step("tips_clear").value))
+        rows += [(tr("Clearance of the tips beside the mesh (≥ 0)"), "δ_{12}", f"{fixed(clear, 2)}°")]
+    inner = canvas.title(box, tr("Quality indices"))
+    end = ruled_table(canvas, Box(box.x0, box.y0 + 50, box.x1, inner.y1), rows, (20.0, 32.0), 12.0)
+    one, two = gear.wheels
+    scale = canvas.scales.get("gear-engagement") or gear.picture_scale()
+    notes = [
+        tr("Taken: scale of the gear meshing {scale};").format(scale=proportion(scale)),
+        tr("segments P_{{w}}N_1 and P_{{w}}N_2 divided into {one} and {two} parts;").format(
+            one=gear.parts(one, scale), two=gear.parts(two, scale)),
+        *([tr("for the velocities into {one} and {two};").format(one=pole, two=len(gear.sliding.labels) - 1 - pole)]
+          if "gear-sliding" in canvas.scales else []),
+        *([tr("ordinate of the velocities at the pitch point {length} mm;").format(
+            length=number(float(gear.sliding["yV1"].value[3])))]
+          if "gear-sliding" in canvas.scales or gear.profile == "fillet" else []),
+        tr("driving wheel {wheel}.").format(wheel=gear.driver),
+        *(f"{text[0].upper()}{text[1:]}." for text in gear.warnings),
+    ]
+    for k, text in enumerate(notes):
+        y = end - 8 - 7 * k
+        if y > box.y0:
+            canvas.put(fitted(text, box.width, 3.5), complex(box.x0, y), 0.0, text)

@@ -1,0 +1,137 @@
+"""What the views of gears need of their places: with standard scales (GOST 2.302) only steps count."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from math import pi
+from typing import TYPE_CHECKING
+
+from tmm_sheets.sheets.border_solver import BorderNode, Need
+from tmm_sheets.sheets.frame import standard
+from tmm_sheets.sheets.gears import gear, gear_marks, rack, reducer, train
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+    from tmm_sheets.sheets.arrangement import ViewPlace
+
+BESIDE = 44.0
+"""Room beside the smaller wheel: dimension of the centre distance and what is kept from it, mm."""
+
+OTHER = 0.4
+"""What width counts that only shows more of the greater wheel."""
+
+
+def _node(view: ViewPlace, least: tuple[float, float], drawn: Callable[[int, int], float], share: float = 1.0) -> BorderNode:
+    """Node of a view that draws on so much of a place, whole mm, not below ``least``."""
+    known = cache(drawn)
+    need = Need(least=least, drawn=lambda w, h: max(known(int(w), int(h)), 1.0))
+    return BorderNode(need, area=share * view.box.width * view.box.height)
+
+
+def engagement(project: Project, view: ViewPlace) -> BorderNode:
+    """The smaller wheel is to be seen whole, the other may be cut at both sides."""
+    pair = project.gear
+
+    def drawn(width: int, height: int) -> float:
+        mu, broken = gear.picture(pair, width, height)
+        if broken:
+            return float(width * height) * (1.0 + 1e-3 / mu.mu)  # the scale is what counts
+        whole = min(2 * min(w.ra for w in pair.wheels) / mu.mu + BESIDE, width)
+        return (whole + (width - whole) * OTHER) * height
+
+    return _node(view, (180.0, 300.0), drawn)
+
+
+def sliding(project: Project, view: ViewPlace) -> BorderNode:
+    """Two graphs under one another; they need height more than width."""
+    return _node(view, (130.0, 240.0), lambda width, height: min(width, 240) * min(height, 320))
+
+
+def generating(project: Project, view: ViewPlace) -> BorderNode:
+    """A pitch and a half of the rack with what it cuts."""
+    pair = project.gear
+    across, high = rack.PITCHES * pi * pair.m, sum(rack.extent(pair))
+    beside = rack.LEFT + rack.MARGIN
+
+    def drawn(width: int, height: int) -> float:
+        mu = standard((across, width - beside), (high, height - rack.OVER)).mu
+        return min(width, 1.6 * across / mu + beside) * min(height, rack.USUAL * high / mu + rack.OVER)
+
+    return _node(view, (120.0, 110.0), drawn)
+
+
+def mesh(project: Project, view: ViewPlace) -> BorderNode:
+    """A pitch and a quarter of the wheels about the pole."""
+    pair = project.gear
+
+    def drawn(width: int, height: int) -> float:
+        mu = gear.mesh_scale(pair, width, height).mu
+        return min(width, gear.MOST * pair.p / mu + gear.MESH[0]) * min(height, gear.mesh_height(pair) / mu + gear.MESH[1])
+
+    return _node(view, (120.0, 90.0), drawn)
+
+
+def scheme_of_reducer(project: Project, view: ViewPlace) -> BorderNode:
+    """Axial view, picture of velocities and end view of a reducer."""
+    return _scheme(reducer.SchemeOfReducer(project.reducer), view)
+
+
+def scheme_of_train(project: Project, view: ViewPlace) -> BorderNode:
+    """The same of a train."""
+    return _scheme(train.SchemeOfTrain(project.train), view)
+
+
+def _scheme(views: reducer.SchemeViews, view: ViewPlace) -> BorderNode:
+    def drawn(width: int, height: int) -> float:
+        mu = views.fitted(width, height).mu
+        whole = 2 * views.side / mu + views.beside(reducer.WIDEST + 24.0)
+        return min(width, whole) * min(height, (views.top + views.bottom) / mu + reducer.OVER + views.above)
+
+    return _node(view, (views.beside(reducer.NARROWEST) + 60.0, 130.0), drawn)
+
+
+def speeds(project: Project, view: ViewPlace) -> BorderNode:
+    """A plan of speeds of rotation: rays from a pole to a line."""
+    return _node(view, (150.0, 100.0), lambda width, height: 0.6 * width * min(height, 190))
+
+
+def _table(view: ViewPlace, rows: int, head: float = 16.0) -> BorderNode:
+    """A table of so many rows under its title, from the least height of a row to the greatest of use."""
+    need = Need(least=(150.0, head + 6.0 * rows), most=(190.0, head + gear_marks.LARGE * rows), drawn=lambda w, h: w * h)
+    return BorderNode(need, area=need.least[0] * need.most[1])
+
+
+def choice(project: Project, view: ViewPlace) -> BorderNode:
+    """Tooth sets with the line that says how they were chosen."""
+    return _table(view, len(project.reducer.sets) + 1, 24.0)
+
+
+def conditions(project: Project, view: ViewPlace) -> BorderNode:
+    """Conditions of a reducer and the remarks under them."""
+    return _table(view, 9 + 2 * bool(project.reducer.simple) + len(project.reducer.warnings))
+
+
+def points_of_reducer(project: Project, view: ViewPlace) -> BorderNode:
+    """Velocities of the points of a reducer's picture."""
+    return _table(view, len(reducer.moving_points(project.reducer)) + 1)
+
+
+def points_of_train(project: Project, view: ViewPlace) -> BorderNode:
+    """The same of a train's."""
+    return _table(view, len(reducer.moving_points(project.train)) + 1)
+
+
+def links_of_train(project: Project, view: ViewPlace) -> BorderNode:
+    """Wheels and carriers of a train with the remarks under them."""
+    return _table(view, len(project.train.names) + 1 + len(project.train.warnings))
+
+
+def willis(project: Project, view: ViewPlace) -> BorderNode:
+    """Two lines for each mesh of a train."""
+    return _table(view, 2 * len(project.train.meshes))
+
+
+def dimensions(project: Project, view: ViewPlace) -> BorderNode:
+    """Lines of diameters and distances."""
+    return _table(view, len(train.dimensions(project)))

@@ -1,0 +1,111 @@
+"""Views for room left beside a train or a reducer: ratios as they are measured on the plan of speeds, and those of its pairs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from math import pi
+from typing import Any
+
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.numbers import fixed, number
+from tmm_sheets.sheets.gears.planet_motion import sizes_of, written
+from tmm_sheets.sheets.gears.reducer import ends_of_rays, link_name
+from tmm_sheets.words import tr
+
+MEASURED = 5.0
+"""Segment below which no ratio is to be measured, mm."""
+
+
+def of_reducer_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the measured ratios of a reducer can do with, mm."""
+    return sizes_of(tr("Ratios by the plan of speeds"), list(_measured(project.reducer, canvas, "reducer")))
+
+
+def of_reducer(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Ratios of the driving link to the others, from the segments of the plan and from the speeds."""
+    written(canvas, box, tr("Ratios by the plan of speeds"), list(_measured(project.reducer, canvas, "reducer")))
+
+
+def of_train_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the measured ratios of a train can do with, mm."""
+    return sizes_of(tr("Ratios by the plan of speeds"), list(_measured(project.train, canvas, "train")))
+
+
+def of_train(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The same of a train."""
+    written(canvas, box, tr("Ratios by the plan of speeds"), list(_measured(project.train, canvas, "train")))
+
+
+def mobility_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the degree of freedom of a reducer can do with, mm."""
+    return sizes_of(tr("Mobility and speeds of the links"), list(_mobility(project.reducer)))
+
+
+def mobility(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Degree of freedom of a reducer by Chebyshev's formula, one satellite counted; angular velocities of its links."""
+    written(canvas, box, tr("Mobility and speeds of the links"), list(_mobility(project.reducer)))
+
+
+def pairs_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the ratios of pairs with standing axes can do with, mm; none where there are no such pairs."""
+    return sizes_of(tr("Ratios of the pairs"), list(_pairs(project.train)))
+
+
+def pairs(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Ratio of every pair whose axes stand still, by its speeds and by its teeth; of a train of such pairs that of the whole."""
+    written(canvas, box, tr("Ratios of the pairs"), list(_pairs(project.train)))
+
+
+def _measured(of: Any, canvas: Canvas, part: str) -> Iterator[str]:
+    """Ratios from the segments that the sheet has, as they are measured, and from the speeds; of segments that can be measured."""
+    plan = of.plans[f"{part}-speeds"]
+    mu = canvas.scales[plan.name]
+    ends = [(link_name(step.name), round(float(mu.mm(complex(step.value).real)), 1), float(plan[f"n{step.name}"].value))
+            for step in ends_of_rays(plan)]
+    (one, length, n), *others = [end for end in ends if abs(end[1]) >= MEASURED] or [("", 0.0, 0.0)]
+    for two, other, speed in others:
+        sign = "" if length * other > 0 else "−"
+        yield (f"i_{{{one},{two}}} = {sign}|0–{_bracketed(one)}|/|0–{_bracketed(two)}| = "
+               f"{sign}{fixed(abs(length), 1)}/{fixed(abs(other), 1)} = {number(length / other)}; "
+               f"n_{{{one}}}/n_{{{two}}} = {number(n / speed)}")
+
+
+def _mobility(reducer: Any) -> Iterator[str]:
+    """Each stage has two meshes and two moving links besides the one that leads in; a simple pair one of both."""
+    meshes = 2 * len(reducer.stages) + bool(reducer.simple)
+    yield f"W = 3n − 2p_5 − p_4 = 3·{meshes + 1} − 2·{meshes + 1} − {meshes} = 1"
+    plan = reducer.plans["reducer-speeds"]
+    for end in ends_of_rays(plan):
+        of, n = link_name(end.name), float(plan[f"n{end.name}"].value)
+        yield f"ω_{{{of}}} = π·n_{{{of}}}/30 = {number(n * pi / 30, 5)} {tr('rad/s')}"
+
+
+def _bracketed(name: str) -> str:
+    return f"({name})" if "–" in name else name
+
+
+def _pairs(train: Any) -> Iterator[str]:
+    teeth, plan = train.data.teeth, train.kinematics
+    whole, alone = list[tuple[str, str, int, int, int]](), [m for m in train.meshes if not m.carrier]
+    for m in alone:
+        # From the driving wheel on: the first pair's is given, of the next ones it sits on the shaft that the one before drives.
+        before = {train.link(name) for _, name, *_ in whole[-1:]} or {train.link(name) for name in train.given}
+        a, b = (m.planet, m.central) if train.link(m.planet) in before else (m.central, m.planet)
+        whole.append((a, b, teeth[a], teeth[b], m.sign))
+        n = [float(plan[f"n{name}"].value) for name in (a, b)]
+        sign = "−" if m.sign > 0 else ""
+        turns = f"{number(n[0])}/{number(n[1]) if n[1] >= 0 else f'({number(n[1])})'}"
+        yield (f"i_{{{a}{b}}} = n_{{{a}}}/n_{{{b}}} = {sign}z_{{{b}}}/z_{{{a}}};  {turns} = {sign}{teeth[b]}/{teeth[a]} = "
+               f"{number(-m.sign * teeth[b] / teeth[a])}")
+    chained = all(train.link(one[1]) == train.link(two[0]) for one, two in pairwise(whole))
+    if len(whole) > 1 and len(alone) == len(train.meshes) and chained:
+        ratio, sign = 1.0, ""
+        for _, _, z, other, way in whole:
+            ratio *= -way * other / z
+        sign = "−" if ratio < 0 else ""
+        a, b = whole[0][0], whole[-1][1]
+        letters = "·".join(f"i_{{{one}{two}}}" for one, two, *_ in whole)
+        driven, driving = ("·".join(str(pair[k]) for pair in whole) for k in (3, 2))
+        yield f"i_{{{a}{b}}} = {letters} = {sign}{driven}/({driving}) = {number(ratio)}"

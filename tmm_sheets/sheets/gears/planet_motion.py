@@ -1,0 +1,161 @@
+"""Views for room left beside a train or a reducer: motion relative to the carriers, and whether planets can be put in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+from math import gcd, pi, sin
+from typing import Any
+
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.lettering import letter, size_for
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.tables import widened
+from tmm_sheets.numbers import fixed, is_zero, number
+from tmm_sheets.sheets.gears.gear_marks import LARGE, ROW
+from tmm_sheets.sheets.gears.reducer import letters_in
+from tmm_sheets.words import tr
+
+SIZES = ((5.0, 5.0, 12.0), (5.0, 3.5, 10.0), (5.0, 3.5, 7.0), (3.5, 3.5, 7.0))
+"""Heights of the letters of a title and of the lines under it, and distances of these, that are tried, mm."""
+PLACES = ((220.0, LARGE), (180.0, ROW), (150.0, 9.0), (120.0, 7.0))
+"""Widths and heights of rows of the table that are tried, mm."""
+
+
+def inverted_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the table of the inverted motion can do with, mm; none without a carrier."""
+    count = len(list(_inverted(project)))
+    return [(width, 11.0 + row * (count + 1)) for width, row in PLACES] if count else []
+
+
+def inverted(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Speeds of the wheels of every carrier as they are, and as one sees them who turns with it (Willis)."""
+    rows = [[tr("Link"), tr("n, rpm"), f"n − n_H, {tr('rpm')}", f"ω, {tr('rad/s')}"]]
+    found = list(_inverted(project))
+    several = len({carrier for carrier, *_ in found}) > 1
+    for carrier, name, n, n_carrier in found:
+        rows.append([f"{name} ({carrier})" if several else name, number(n), number(n - n_carrier), number(n * pi / 30, 5)])
+    left = canvas.title(box, tr("Inverted motion (carrier held)"))
+    row, height = letters_in(left.height / len(rows))
+    canvas.table(complex(box.x0, left.y1), widened([0.25 * box.width] * 4, rows, height), rows, row, height)
+
+
+def _inverted(project: Any) -> Iterator[tuple[str, str, float, float]]:
+    """Carrier, wheel, its speed and that of the carrier, rpm."""
+    if project.variant.train is not None:
+        train, plan = project.train, project.train.kinematics
+        for carrier in dict.fromkeys(m.carrier for m in train.meshes if m.carrier):
+            names = dict.fromkeys(name for m in train.meshes if m.carrier == carrier for name in (m.central, m.planet))
+            for name in names:
+                yield carrier, name, float(plan[f"n{name}"].value), float(plan[f"n{carrier}"].value)
+        return
+    for stage in project.reducer.stages:
+        for wheel in dict.fromkeys(stage.wheels):
+            yield stage.carrier, wheel.number, float(wheel.n.value), float(stage.n_H.value)
+
+
+def checks_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the conditions of a train's planets can do with, mm; none without a carrier."""
+    return sizes_of(tr("Conditions of the planets"), list(_checks(project.train)))
+
+
+def checks(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Common axis, assembly and neighbourhood of the planets of every carrier, in letters and in numbers."""
+    written(canvas, box, tr("Conditions of the planets"), list(_checks(project.train)))
+
+
+def ratios_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the ratios between the central wheels of a train can do with, mm; none where there are no two on a carrier."""
+    return sizes_of(tr("Ratios of the inverted motion"), list(_ratios(project.train)))
+
+
+def ratios(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Ratios of central wheels with their carrier held, from the speeds and from the teeth."""
+    written(canvas, box, tr("Ratios of the inverted motion"), list(_ratios(project.train)))
+
+
+def sizes_of(title: str, lines: list[str]) -> list[tuple[float, float]]:
+    """Places that lines under a title can do with, mm; none for no lines. The title is as large as others are, if it can be."""
+    return [(max(letter(title, head).width, *(letter(line, height).width for line in lines)) + 6.0, 14.0 + step * len(lines))
+            for head, height, step in SIZES] if lines else []
+
+
+def written(canvas: Canvas, box: Box, title: str, lines: list[str]) -> None:
+    """Lines under a title, with the largest letters that have room."""
+    left = canvas.title(box, title)
+    height = size_for(lines, box.width - 3.0, 5.0)
+    step = min((left.y1 - box.y0) / len(lines), 12.0 if height > 3.5 else 10.0)
+    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
+
+
+def _ratios(train: Any) -> Iterator[str]:
+    teeth, plan = train.data.teeth, train.kinematics
+    for one, other in ((m, o) for m, o in combinations(train.meshes, 2) if m.carrier and m.carrier == o.carrier):
+        (a, b), (c, d) = ((m.central, m.planet) for m in (one, other))
+        n_a, n_c, h = (float(plan[f"n{name}"].value) for name in (a, c, one.carrier))
+        if is_zero(n_c - h, max(abs(n_c), abs(h))):
+            continue  # both turn as one
+        sign = "" if one.sign * other.sign > 0 else "−"
+        carrier, held = f"n_{{{one.carrier}}}", number(h) if h >= 0 else f"({number(h)})"
+        ratio = f"i_{{{a}{c}}}^{{{one.carrier}}}"
+        yield (f"{ratio} = (n_{{{a}}} − {carrier})/(n_{{{c}}} − {carrier}) = ({number(n_a)} − {held})/({number(n_c)} − {held}) = "
+               f"{number((n_a - h) / (n_c - h))}")
+        letters, numbers = (f"z_{{{c}}}/z_{{{a}}}", f"{teeth[c]}/{teeth[a]}") if b == d else (
+            f"z_{{{b}}}·z_{{{c}}}/(z_{{{a}}}·z_{{{d}}})", f"{teeth[b]}·{teeth[c]}/({teeth[a]}·{teeth[d]})")
+        by_teeth = one.sign * other.sign * teeth[b] * teeth[c] / (teeth[a] * teeth[d])
+        yield f"{ratio} = {sign}{letters} = {sign}{numbers} = {number(by_teeth)}"
+
+
+def _checks(train: Any) -> Iterator[str]:
+    teeth, q = train.data.teeth, train.data.satellites
+    for carrier in dict.fromkeys(m.carrier for m in train.meshes if m.carrier):
+        meshes = [m for m in train.meshes if m.carrier == carrier]
+        signs = ["+" if m.sign > 0 else "−" for m in meshes]
+        sums = [teeth[m.central] + m.sign * teeth[m.planet] for m in meshes]
+        letters = [f"z_{{{m.central}}} {sign} z_{{{m.planet}}}" for m, sign in zip(meshes, signs, strict=True)]
+        numbers = [f"{teeth[m.central]} {sign} {teeth[m.planet]}" for m, sign in zip(meshes, signs, strict=True)]
+        if len(meshes) > 1:
+            same = len(set(sums)) == 1
+            yield tr("Coaxiality: {letters}; {numbers}").format(
+                letters=(" = " if same else " ≈ ").join(letters),
+                numbers=f"{' = '.join(numbers)} = {sums[0]}" if same else "; ".join(map("{} = {}".format, numbers, sums)))
+        if q == 1:
+            continue
+        for other in meshes[1:]:
+            yield tr("Assembly: {letters} = {numbers}").format(**_assembly(teeth, q, meshes[0], other))
+        largest = max(range(len(meshes)), key=lambda k: teeth[meshes[k].planet])
+        between, width = sums[largest] * sin(pi / q), teeth[meshes[largest].planet] + 2
+        sign = ">" if between > width else "<"
+        yield tr("Neighbourhood: {letters}").format(
+            letters=f"({letters[largest]})·sin(180°/q) > z_{{{meshes[largest].planet}}} + 2")
+        yield f"{sums[largest]}·sin(180°/{q}) = {fixed(between, 2)} {sign} {width}"
+
+
+def at_equal_angles(train: Any, carrier: str) -> int:
+    """So many planets of a carrier can be put in at equal angles, no more than the task has."""
+    one, *others = (m for m in train.meshes if m.carrier == carrier)
+    wanted: int = train.data.satellites
+    return next(q for q in range(wanted, 0, -1) if all(_parts(train.data.teeth, one, m) % q == 0 for m in others))
+
+
+def _parts(teeth: dict[str, int], one: Any, other: Any) -> int:
+    """What the number of planets at equal angles has to divide, of two central wheels of one carrier."""
+    (a, b), (c, d), sign = (one.central, one.planet), (other.central, other.planet), -1 if one.sign * other.sign > 0 else 1
+    return teeth[a] + sign * teeth[c] if b == d else (teeth[a] * teeth[d] + sign * teeth[b] * teeth[c]) // gcd(teeth[b], teeth[d])
+
+
+def _assembly(teeth: dict[str, int], q: int, one: Any, other: Any) -> dict[str, str]:
+    """The whole number that lets planets stand at equal angles, of two central wheels of one carrier."""
+    join = "−" if one.sign * other.sign > 0 else "+"
+    (a, b), (c, d) = ((m.central, m.planet) for m in (one, other))
+    if b == d:
+        letters, numbers = f"(z_{{{a}}} {join} z_{{{c}}})/q", f"({teeth[a]} {join} {teeth[c]})/{q}"
+    else:
+        divisor = tr("gcd({one}; {two})")
+        letters = f"(z_{{{a}}}·z_{{{d}}} {join} z_{{{b}}}·z_{{{c}}})/(q·{divisor.format(one=f'z_{{{b}}}', two=f'z_{{{d}}}')})"
+        numbers = f"({teeth[a]}·{teeth[d]} {join} {teeth[b]}·{teeth[c]})/({q}·{divisor.format(one=teeth[b], two=teeth[d])})"
+    value = _parts(teeth, one, other) / q
+    said = f"{numbers} = {number(value)}"
+    if value != int(value):
+        said = tr("{number} (not whole: no equal angles)").format(number=said)
+    return {"letters": letters, "numbers": said}

@@ -1,0 +1,294 @@
+"""Scale factors and poles of the kinematic plans, found from their places alone: nothing of drawing is needed for them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import inf
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.box import Box
+from tmm_sheets.construction.scale import Scale
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.remarks import Remark
+from tmm_sheets.sheets.frame import SHORTEST, PlanFrame, ScaleBook, extent, fit_frame, pick, raised, together
+from tmm_sheets.sheets.linkage import indicator, link_marks
+from tmm_sheets.words import marked, marked_n, tell, tell_n, tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.project import Project
+    from tmm_sheets.sheets.arrangement import ViewPlace
+
+GRAPH = 48.0
+"""Height kept free over the position plans for the force graph, mm."""
+MARGIN = 25.0
+"""Room for letters beside a velocity plan, mm."""
+HEAD = 16.0
+"""Room for its number and letters over and below it, mm."""
+SMALLEST = 10.0
+"""Size from which on the largest of the velocity plans can be read, mm."""
+LONGEST = 100.0
+"""Longest vector of a velocity plan that is of use, mm: what room is left is for others."""
+SPARE = 20.0
+"""Largest height between rows of velocity plans beside what they need, mm."""
+BEYOND = 10.0
+"""A velocity plan so many times as large as usual would leave nothing to see of the others."""
+SWING_ARROW = 20.0
+"""Greatest radius of the arrow of angular velocity behind the pivot of a crank that only swings, without a circle round it, mm."""
+ACCELERATIONS = 9.0, 8.0, 9.0, 24.0
+"""Room round the acceleration plan at the left, below, right and above, mm."""
+MOST = 72
+"""Most positions of one turn that are drawn: one each 5 degrees."""
+
+
+def check_number(project: Project) -> None:
+    """Refuse more positions than can be told apart on paper."""
+    count = len(project.cycle.drawn)
+    if count > MOST:
+        message = tell_n("{count} position of one turn cannot be told apart on a sheet, {most} at most",
+                         "{count} positions of one turn cannot be told apart on a sheet, {most} at most", count).format(
+                             count=count, most=MOST)
+        hint = tell("number fewer; {command} gives the numbers at all of them").format(
+            command=project.variant.command("solve", "--positions", str(count)))
+        raise CannotBuild(str(project.variant.problem(message, "cycle", "positions", hint=hint)))
+
+
+def graph_force(project: Project) -> Any:
+    """The force whose diagram can stand over the path: on the output, along a horizontal path, not zero all the way."""
+    strokes = project.cycle.strokes
+    if strokes is None or abs(strokes.path.imag) > 1e-9:
+        return None
+    return next((f for f in project.applied if f.point == strokes.output and f.motion is not None
+                 and any(np.any(f.magnitude(turned, 0)) for turned in f.over_way())), None)
+
+
+def graph_height(project: Project, options: dict[str, Any]) -> float:
+    """Height kept free over the position plans for the force graph, mm; 0 where there is none."""
+    return GRAPH if options.get("graph", True) and graph_force(project) is not None else 0.0
+
+
+def graph_below(project: Project) -> bool:
+    """True when the path of the output lies in the lower half of the mechanism: its graph then stands below."""
+    strokes = project.cycle.strokes
+    assert strokes is not None
+    real = extent([p.value for p in project.study.positions.points.values()])
+    return strokes.origin.imag < real.centre.imag
+
+
+def positions(project: Project, canvas: ScaleBook, box: Box, options: dict[str, Any]) -> PlanFrame:
+    """Frame of the position plans: all positions, the way of the crank and what sticks out of them on paper.
+
+    ``graph`` = false leaves the force graph over them out.
+    """
+    inside = box.inset(*positions_around(project, options))
+    return fit_frame(project, canvas, "positions", "μ_l", tr("m/mm"), *positions_reach(project), inside)
+
+
+def positions_around(project: Project, options: dict[str, Any]) -> tuple[float, float, float, float]:
+    """Room round the position plans at the left, below, right and above, mm: title, scale factor, force graph."""
+    graph = graph_height(project, options)
+    below = bool(graph) and graph_below(project)
+    return 8.0, 4.0 + (graph if below else 0.0), 8.0, 20.0 + (0.0 if below else graph)
+
+
+def positions_reach(project: Project) -> tuple[Any, Any]:
+    """Points of all position plans and of the way of the crank pin, m, and what sticks out of each on paper, mm."""
+    pos = project.study.positions
+    m, c = pos.mechanism, pos.mechanism.crank
+    beside = np.asarray([16.0 + 0j, -16.0, 9.0j, -9.0j])
+    centre, ways = m.fixed[c.pivot], beside / np.abs(beside)
+    if project.cycle.swings:
+        passed = np.exp(1j * project.cycle.world(project.cycle.ring))
+        ways = np.asarray([passed[np.argmax((passed * np.conj(u)).real)] for u in ways])
+        # The arrow of its speed stands behind its pivot.
+        behind = -np.exp(1j * project.cycle.phi[project.force_index])
+        ways, beside = np.append(ways, 0), np.append(beside, behind * (SWING_ARROW + 8.0))
+    z, d = [centre + c.length * ways], [beside]
+    for name, step in link_marks.drawn_points(pos).items():
+        at = np.ravel(step.value)
+        # What sticks out of a point whatever the scale: a pivot's base, a ram's body, numbers and letters.
+        wide = 32.0 if any(g.kind.ram(g) and g.inner == name for g in m.groups) else 14.0
+        for offset in (wide, -wide, 8.0j, -11.0j if name in m.fixed else -9.0j):
+            z.append(at)
+            d.append(np.full(len(at), offset))
+    for g in (g for g in m.groups if g.kind.ram(g)):
+        # Its body and the guide beside it lie along the guide, whichever way that runs.
+        point, guide = next((point, guide) for point, guide in g.kind.guided(g) if point == g.inner)
+        body = (link_marks.RAM + 5.0) * complex(pos.guide_directions[guide].at(project.force_index))
+        z.append(np.full(2, complex(pos.points[point].at(project.force_index))))
+        d.append(np.array([body, -body]))
+    for end in (end for ends in link_marks.free_ends(pos).values() for end in ends if end is not None):
+        z.append(np.ravel(end))
+        d.append(np.full(len(np.ravel(end)), 1j))
+    at_indicator, reach = indicator.reach(project)
+    z.append(np.asarray(at_indicator))
+    d.append(np.asarray(reach))
+    return np.concatenate(z), np.concatenate(d)
+
+
+def plan_points(plan: Plan, i: int) -> dict[str, complex]:
+    """Points of a velocity or acceleration plan at one position."""
+    return {step.name: complex(step.at(i)) for step in plan if step.rule.gives in ("point", "vector")}
+
+
+def title_of_accelerations(project: Project, k: int) -> str:
+    """Title of the acceleration plan of position ``k``."""
+    return tr("Acceleration polygon (position {label})").format(label=project.cycle.labels[k])
+
+
+def plan_extent(plan: Plan, i: int) -> Box:
+    """Rectangle round the points of a plan at one position, in its unit."""
+    return extent([np.array(list(plan_points(plan, i).values()))])
+
+
+@dataclass(frozen=True)
+class VelocityLayout:
+    """Velocity plans in rows: index and label of each, its extent, the common scale.
+
+    ``beyond`` are the positions whose plans can't be drawn beside the others, with how many times as large as usual they are;
+    ``every`` is 2, 3 ... where only every second, third ... of too many positions is shown.
+    """
+
+    shown: list[tuple[int, str]]
+    spans: list[Box]
+    rows: int
+    per_row: int
+    inside: Box
+    scale: Scale
+    beyond: list[tuple[int, float]]
+    every: int
+
+    def places(self) -> Iterator[tuple[tuple[int, str], Box, Box, float]]:
+        """Index and label of each plan, its extent, its place, and the height left over there, mm; not all that is left."""
+        rows = [slice(i, i + self.per_row) for i in range(0, len(self.shown), self.per_row)]
+        heights = [max(s.height for s in self.spans[row]) / self.scale.mu + HEAD for row in rows]
+        spare = min((self.inside.height - sum(heights)) / self.rows, SPARE)
+        y = self.inside.y1
+        for row, height in zip(rows, heights, strict=True):
+            widths = [s.width / self.scale.mu + MARGIN for s in self.spans[row]]
+            gap, x = (self.inside.width - sum(widths)) / len(widths), self.inside.x0
+            for at, span, width in zip(self.shown[row], self.spans[row], widths, strict=True):
+                yield at, span, Box(x, y - height - spare, x + width + gap, y), spare
+                x += width + gap
+            y -= height + spare
+
+
+def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str, Any]) -> VelocityLayout:
+    """Rows of velocity plans with one scale factor that fill the place; ``only`` = "force" shows the analysed one alone.
+
+    They stand in as many rows as make them largest.
+    """
+    cycle, k = project.cycle, project.force_index
+    inside = box.inset(0, 2.0, 0, 20.0)
+    drawn, beyond = [(k, cycle.labels[k])], []
+    if options.get("only") != "force":
+        beyond = beyond_drawing(project)
+        drawn = [(i, label) for i, label in cycle.drawn if i not in dict(beyond)]
+    wanted = project.variant.scales.get("velocities")
+    for every in range(1, len(drawn) + 1):
+        shown = [at for n, at in enumerate(drawn) if n % every == 0 or at[0] == k]
+        spans = [plan_extent(project.study.velocities.plan, i) for i, _ in shown]
+        readable = max(max(s.width, s.height) for s in spans) / SMALLEST
+        need, rows = most_room(spans, inside)
+        if need <= readable or (wanted is not None and need < inf):
+            break
+    if not need < inf:
+        raise CannotBuild(tell("the velocity plans have no room for their lettering"),
+                          tell("make their place larger in templates/sheets"))
+    if wanted is None:
+        need = max(need, longest(project, [i for i, _ in shown]) / LONGEST)
+    scale = pick(project, canvas, "velocities", "μ_V", tr("(m/s)/mm"), need)
+    per_row = -(-len(shown) // rows)
+    return VelocityLayout(shown, spans, -(-len(shown) // per_row), per_row, inside, scale, beyond, every)
+
+
+def beyond_drawing(project: Project) -> list[tuple[int, float]]:
+    """Positions next to a dead point: their velocity plans are more than ``BEYOND`` times as large as usual, and how many times.
+
+    Were the scale factor theirs, nothing would be seen of the others. What is usual is the median.
+    """
+    plan = project.study.velocities.plan
+    sizes = {i: max(s.width, s.height) for i, s in ((i, plan_extent(plan, i)) for i, _ in project.cycle.drawn)}
+    usual = float(np.median(list(sizes.values())))
+    return [(i, size / usual) for i, size in sizes.items() if size > BEYOND * usual]
+
+
+def most_room(spans: list[Box], inside: Box) -> tuple[float, int]:
+    """Rows with which the plans come out largest, and the scale factor they need; infinite where lettering takes all the room."""
+    return min((_need(spans, rows, inside), rows) for rows in range(1, len(spans) + 1))
+
+
+def velocity_spans(project: Project, options: dict[str, Any]) -> tuple[list[Box], float]:
+    """Extents of the velocity plans to be drawn and their longest vector, in their unit; ``only`` = "force": the analysed one."""
+    beyond = [] if options.get("only") == "force" else [i for i, _ in beyond_drawing(project)]
+    shown = [project.force_index] if options.get("only") == "force" else [i for i, _ in project.cycle.drawn if i not in beyond]
+    return [plan_extent(project.study.velocities.plan, i) for i in shown], longest(project, shown)
+
+
+def longest(project: Project, shown: Sequence[int]) -> float:
+    """Longest vector of the velocity plans at some positions, in their unit."""
+    plan = project.study.velocities.plan
+    return max(abs(complex(seg.head.at(i)) - complex(seg.tail.at(i))) for seg in plan.segments for i in shown)
+
+
+def _need(spans: list[Box], rows: int, inside: Box) -> float:
+    """Least scale factor with which plans fit in so many rows, lettering included; infinite where that alone takes the place."""
+    per_row = -(-len(spans) // rows)
+    parted = [spans[i:i + per_row] for i in range(0, len(spans), per_row)]
+    wide = max(_ratio(sum(s.width for s in row), inside.width - MARGIN * len(row)) for row in parted)
+    return max(wide, _ratio(sum(max(s.height for s in row) for row in parted), inside.height - HEAD * len(parted)))
+
+
+def _ratio(real: float, room: float) -> float:
+    return real / room if room > 0 else inf
+
+
+def other_stroke(project: Project) -> int:
+    """The position about as far in the other stroke as the analysed one is in its own; half a turn later without strokes."""
+    cycle, k = project.cycle, project.force_index
+    turned = np.array([cycle.turned[i] for i, _ in cycle.drawn])
+    there = cycle.turned[k] + np.pi
+    if cycle.strokes is not None:
+        ends = cycle.strokes.begin, cycle.strokes.end
+        begin, end = ends if cycle.strokes.working(cycle.turned[k], 1) else ends[::-1]
+        own = np.mod(end - begin, 2 * np.pi)
+        there = end + np.mod(cycle.turned[k] - begin, 2 * np.pi) / own * (2 * np.pi - own)
+    return cycle.drawn[int(np.argmax(np.cos(turned - there)))][0]
+
+
+def accelerations(project: Project, canvas: ScaleBook, box: Box, _options: object = None) -> PlanFrame:
+    """Frame of the acceleration plan at the analysed position."""
+    real = plan_extent(project.study.accelerations.plan, project.force_index)
+    inside = box.inset(*ACCELERATIONS)
+    need = max(real.width / inside.width, real.height / inside.height)
+    scale = pick(project, canvas, "accelerations", "μ_a", tr("(m/s²)/mm"), need)
+    return PlanFrame(scale, inside.centre - scale.mm(real.centre) + raised(inside, scale.mm(real.height)))
+
+
+TOGETHER_READ, ABOUT = 12, 12.0
+"""So many letters and signs of a plan can be read that stand within so many mm of one of them."""
+
+
+def crowd(plan: Plan, i: int, mu: float) -> int:
+    """Most letters of points and signs of vectors that a plan would have about one of them at a scale factor."""
+    ends = [(complex(seg.tail.at(i)) / mu, complex(seg.head.at(i)) / mu) for seg in plan.segments]
+    points = np.array(list(plan_points(plan, i).values())) / mu
+    at = np.array([*points[[same[0] for same in together(points, 0.5)]], *((a + b) / 2 for a, b in ends if abs(b - a) >= SHORTEST)])
+    return int((np.abs(at[:, None] - at) <= ABOUT).sum(axis=1).max())
+
+
+def left_out(project: Project, view: ViewPlace) -> Iterator[Remark]:
+    """What a view leaves out of the velocity plans, and why, for the command line."""
+    layout = velocities(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
+    for i, times in layout.beyond:
+        yield Remark(marked("position {label} is next to a dead point: its velocity plan is not drawn, it is {times:.3g} times "
+                            "as large as usual"), {"label": project.cycle.labels[i], "times": times})
+    if layout.every > 1:
+        count = len(project.cycle.drawn)
+        yield Remark(marked_n("there is no room for {count} velocity plan: one in {every} is drawn",
+                              "there is no room for {count} velocity plans: one in {every} is drawn"),
+                     {"count": count, "every": layout.every}, count)

@@ -1,0 +1,853 @@
+"""Views of the kinematic study: position plans, velocity plans, acceleration plan, tables."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator
+from itertools import pairwise
+from math import degrees, pi
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction.indices import on_link
+from tmm_sheets.construction.scale import Scale, handy, times
+from tmm_sheets.drawing import symbols
+from tmm_sheets.drawing.canvas import Align, Canvas
+from tmm_sheets.drawing.clipping import segment_inside
+from tmm_sheets.drawing.evenness import dense
+from tmm_sheets.drawing.labels import HEAVY
+from tmm_sheets.drawing.lettering import letter, size_for
+from tmm_sheets.drawing.marks import Box, Text
+from tmm_sheets.drawing.notes import TOGETHER
+from tmm_sheets.drawing.tables import needs, size_in, widened
+from tmm_sheets.mechanism.structure import decompose
+from tmm_sheets.numbers import decimals_for, fixed, is_zero, number
+from tmm_sheets.sheets.components import flat_crossings, graphs
+from tmm_sheets.sheets.frame import SHORTEST, PlanFrame, joined, pick, together
+from tmm_sheets.sheets.linkage import indicator, kinematic_frames, link_marks
+from tmm_sheets.sheets.player import PlayerStage, play, stage
+from tmm_sheets.words import tr, tr_in
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Segment
+    from tmm_sheets.construction.step import Step
+    from tmm_sheets.mechanism.model import Mechanism
+    from tmm_sheets.methods.linkage.cycle import Cycle
+    from tmm_sheets.methods.linkage.positions import Positions
+    from tmm_sheets.project import Project
+
+
+def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Combined position plans with path marks and the force graph over the path."""
+    cycle, k, pos = project.cycle, project.force_index, project.study.positions
+    graph = kinematic_frames.graph_height(project, options)
+    frame = kinematic_frames.positions(project, canvas, box, options)
+    canvas.title(box, tr("Positions of the mechanism"), str(frame.scale))
+    flat_crossings.warn(project, canvas, box, pos.plan, (i for i, _ in cycle.drawn))
+    _swing(project, canvas, box)
+    _nominal(project, canvas, box)
+    canvas.scales["dead-positions"] = frame.scale
+    every = stage(canvas, pos.plan, None, frame)
+    _way_of_crank(project, every)
+    _paths(project, every, Box(box.x0 + 2.0, box.y0, box.x1 - 2.0, box.y1 - 18.0))
+    of = canvas.of
+    for i, label in cycle.drawn:
+        if i != k:
+            canvas.of = f"position plan {label}"
+            link_marks.draw(every.position(i), pos, "thin")
+    canvas.of = f"position plan {cycle.labels[k]}"
+    s = every.position(k)
+    link_marks.draw_guides(s, pos)
+    link_marks.draw(s, pos, "main")
+    canvas.of = of
+    indicator.draw(project, every)
+    _position_numbers(project, s)
+    _point_letters(project, s)
+    link_marks.number_links(s, pos)
+    _rotations(project, s)
+    if cycle.strokes is not None and project.variant.cycle is not None and project.variant.cycle.working:
+        _strokes(project, s)
+    if options.get("angles"):
+        _named_angles(project, s)
+    if graph:
+        below = kinematic_frames.graph_below(project)
+        y = box.y0 if below else box.y1 - 20.0 - graph
+        _force_graph(project, every, Box(box.x0, y, box.x1, y + graph), below)
+
+
+def _swing(project: Project, canvas: Canvas, box: Box) -> None:
+    """How far a crank that only swings could go, and the groups that end it."""
+    limits = project.swing_limits
+    if limits is None or None in limits.angles:
+        return
+    low, high = (number(round(float(angle or 0.0), 2)) for angle in limits.angles)
+    canvas.note(box, tr("The crank could swing from {low}° (limit of group {first}) to {high}° (limit of group {last})").format(
+        low=low, high=high, first=limits.groups[0], last=limits.groups[1]))
+
+
+def _nominal(project: Project, canvas: Canvas, box: Box) -> None:
+    """That the strokes were divided by K, and how far from the dead positions their ends are then."""
+    cycle, strokes = project.variant.cycle, project.cycle.strokes
+    if cycle is None or cycle.division != "nominal" or cycle.start != "dead" or cycle.working is None or strokes is None:
+        return
+    canvas.note(box, tr("The strokes are divided by K = {k}: positions {first} and {last} are {angle}° beside the dead positions")
+                .format(k=number(float(cycle.coefficient or 0.0)), first=project.cycle.labels[0],
+                        last=project.cycle.labels[cycle.working], angle=number(abs(degrees(strokes.begin)), 2)))
+
+
+def _way_of_crank(project: Project, s: PlayerStage) -> None:
+    """The circle of the crank pin; of a crank that only swings the arc it goes through, and a little more."""
+    cycle, c = project.cycle, project.mechanism.crank
+    if not cycle.swings:
+        play(s, [c.pin], "thin", only="circle")
+        return
+    radius = c.length / s.frame.mu[1]
+    low, high = sorted(float(cycle.world(turned)) for turned in (0.0, cycle.period))
+    low -= BEYOND_SWING / radius
+    high = min(high + BEYOND_SWING / radius, low + 2 * pi)
+    s.pen(c.pin, "construction", f"{c.pivot}–{c.pin}").arc(s.at(c.pivot), radius, low, high, "thin")
+
+
+BEYOND_SWING = 5.0
+"""How far the arc of a crank that swings is drawn beyond both of its ends, mm."""
+
+
+def _paths(project: Project, s: PlayerStage, room: Box) -> None:
+    """Paths of the hinges and of the centres of mass, thin, through many positions."""
+    turned = project.cycle.ring
+    pos = project.study_at(turned, tuple(map(str, range(len(turned))))).positions
+    m = pos.mechanism
+    for name in [p.name for p in m.points] + list(_free_points(m)):
+        if np.ndim(pos.points[name].value):
+            s.pen(pos.points[name], "curve").polyline(s.frame(np.asarray(pos.points[name].value)), "thin")
+    for name in dict.fromkeys(name for g in m.groups for _, name in g.kind.guided(g)):
+        if m.guides[name].link == m.frame:
+            _guide_line(project.study.positions, s, name, room)
+
+
+def _free_points(m: Mechanism) -> Iterator[str]:
+    """Points that groups bring along and that slide on nothing."""
+    for g in m.groups:
+        on = [point for point, _ in g.kind.guided(g)]
+        yield from (name for name in g.kind.carried(g) if name not in on)
+
+
+def _guide_line(pos: Positions, s: PlayerStage, name: str, room: Box) -> None:
+    """Centre line of a fixed guide over the path of its slider and beyond, as far as there is room: not into the title."""
+    u, q = (complex(of[name].at(0)) for of in (pos.guide_directions, pos.guide_points))
+    on = [point for g in pos.mechanism.groups for point, guide in g.kind.guided(g) if guide == name]
+    z = np.concatenate([np.atleast_1d(pos.points[p].value) for p in on])
+    t = ((z - q) * np.conj(u)).real
+    inside = segment_inside(room, s.frame(q + u * np.nanmin(t)) - 24.0 * u, s.frame(q + u * np.nanmax(t)) + 24.0 * u)
+    if inside is not None:
+        s.pen(pos.guide_directions[name], "axis").line(*inside, "centre")
+
+
+def _position_numbers(project: Project, s: PlayerStage) -> None:
+    """Position numbers at the crank pin and the hinges, and as marks on the paths of the sliders."""
+    pos, m = project.study.positions, project.mechanism
+    sliding = on_fixed_guides(m)
+    for name in dict.fromkeys(_hinges(m, sliding)):
+        z = np.asarray(s.frame(pos.points[name].value))
+        _hinge_numbers(project, s, name, s.at(m.crank.pivot) if name == m.crank.pin else z.mean() - 40j)
+    on = list(sliding.values())
+    for name, guide in sliding.items():
+        u = complex(pos.guide_directions[guide].at(0))
+        n = _upper_side(u)
+        if on.count(guide) > 1:
+            _shared_path(project, s, name, n * (1 if name == next(p for p, g in sliding.items() if g == guide) else -1))
+        else:
+            own_path(project, s, name, n)
+
+
+def _hinges(m: Mechanism, sliding: Container[str]) -> Iterator[str]:
+    """Points of the hinges that have their position numbers beside them."""
+    yield m.crank.pin
+    yield from (p.name for p in m.points if p.link != m.crank.link and any(p.name in g.outer for g in m.groups))
+    for g in m.groups:
+        yield from (name for name in g.kind.carried(g) if name not in sliding)
+
+
+def _hinge_numbers(project: Project, s: PlayerStage, name: str, middle: complex) -> None:
+    """Small hinges at a point in all positions but the highlighted one, their numbers away from ``middle``, mm."""
+    for i, _ in project.cycle.drawn:
+        here = s.position(i)
+        if i != s.k:
+            symbols.hinge(here.pen(name, "symbol"), here.at(name), "thin", 0.7)
+            here.letters(name, project.cycle.labels[i], here.at(name) - middle, 2.5, 0.9, leader=False)
+
+
+def _upper_side(u: complex) -> complex:
+    """Unit vector across a guide along ``u``, upwards, to the right of a vertical one."""
+    n = 1j * u
+    return n if n.imag > 1e-9 or (n.imag > -1e-9 and u.imag < 0) else -1j * u
+
+
+def _path_mark(s: PlayerStage, name: str, n: complex) -> None:
+    """Stroke across a path at a point."""
+    s.pen(name, "point").line(s.at(name) - 2.0 * n, s.at(name) + 2.0 * n, "axis")
+
+
+def on_fixed_guides(m: Mechanism) -> dict[str, str]:
+    """Points that slide on fixed guides, with these: one that slides on a moving link has a path like any hinge."""
+    return {point: guide for g in m.groups for point, guide in g.kind.guided(g) if m.guides[guide].link == m.frame}
+
+
+def own_path(project: Project, s: PlayerStage, name: str, n: complex) -> None:
+    """Marks of the only slider on a path: numbers of the working stroke on side ``n`` of it, of the idle one on the other."""
+    cycle = project.cycle
+    z = np.asarray(s.frame(project.study.positions.points[name].value))
+    for i, _ in cycle.drawn:
+        _path_mark(s.position(i), name, n)
+    marks = [i for i, _ in cycle.drawn if i != s.k]
+    for side, there in zip((n, -n), by_stroke(project, name, marks), strict=True):
+        for crowd in crowds(there, z):
+            at = complex(sum(z[i] for i in crowd)) / len(crowd)
+            said = graphs.ranged([cycle.labels[i] for i in crowd])
+            s.position(crowd[0]).letters(name, said, side, 2.5, 0.6, at + 2.0 * side, False)
+
+
+def by_stroke(project: Project, name: str, marks: list[int]) -> tuple[list[int], list[int]]:
+    """Positions of a slider in which it goes the way of the working stroke, and the others."""
+    cycle, pos = project.cycle, project.study.positions
+    u = complex(pos.guide_directions[on_fixed_guides(pos.mechanism)[name]].at(0))
+    speed = (np.asarray(project.study.velocities.points[name].value) * np.conj(u)).real
+    working = speed[np.argmax(np.abs(speed))] if cycle.strokes is None else (cycle.strokes.path * np.conj(u)).real
+    ahead = speed * (np.sign(working) or 1.0) > -1e-9 * np.abs(speed).max()
+    return [i for i in marks if ahead[i]], [i for i in marks if not ahead[i]]
+
+
+def crowds(marks: list[int], z: Any) -> list[list[int]]:
+    """Marks in turn along a path, those that stand too close for numbers of their own together."""
+    found: list[list[int]] = []
+    for i in marks:
+        if found and abs(z[i] - z[found[-1][-1]]) < CROWDED:
+            found[-1].append(i)
+        else:
+            found.append([i])
+    return found
+
+
+CROWDED = 2.8
+"""Distance of two marks, mm, below which their numbers do not fit side by side."""
+
+
+def _shared_path(project: Project, s: PlayerStage, name: str, n: complex) -> None:
+    """Marks of one of several sliders on one path: all its numbers on its own side, those of one place together."""
+    drawn = [i for i, _ in project.cycle.drawn]
+    for same in together([s.position(i).at(name) for i in drawn], 1.0):
+        place = [drawn[n] for n in same]
+        here = s.position(place[0])
+        _path_mark(here, name, n)
+        text = ", ".join(project.cycle.labels[i] for i in place)
+        here.letters(name, text, n, 2.5, 0.6, here.at(name) + (2.0 if s.k not in place else 5.5) * n, False)
+
+
+def _point_letters(project: Project, s: PlayerStage) -> None:
+    """Letters of the points, those of moving ones with the number of the position, and symbols of the centres of mass."""
+    m = project.mechanism
+    masses = {link.centre for link in m.links.values() if link.mass}
+    own = {p.name for p in m.points if not any(p.name in g.outer for g in m.groups)}
+    for name, step in link_marks.drawn_points(project.study.positions).items():
+        moving, letters = name not in m.fixed, link_marks.indexed(name)
+        if name in masses and name in own:
+            symbols.centre_of_mass(s.pen(step, "symbol"), s.at(step))
+        text = f"{letters}({project.cycle.labels[project.force_index]})" if moving and not name[1:] else letters
+        s.letters(step, text, 0j if moving else 1 - 0.5j, 3.5, symbols.HINGE + 1.2)
+
+
+def _rotations(project: Project, s: PlayerStage) -> None:
+    """Arrows of angular velocity, and of angular acceleration, of the crank and of every bar that turns."""
+    study, k, m = project.study, project.force_index, project.mechanism
+    pos, c = study.positions, m.crank
+    pivot = s.at(c.pivot)
+    radius = max(0.5 * c.length / s.frame.mu[1], 7.0)
+    if project.cycle.swings:
+        radius = min(radius, kinematic_frames.SWING_ARROW)
+    away, crank = link_marks.clear_of_crank(s, pos), study.velocities.omega[c.link]
+    symbols.rotation_arrow(s.pen(crank, "symbol"), pivot, radius, away, c.omega, f"ω_{c.link}")
+    shapes = link_marks.shapes(pos)
+    bars = {shape.link: _along_bar(s, pos, shape) for shape in shapes}
+    taken = [_along_arrow((pivot, radius, away))]
+    for shape in shapes:
+        link = shape.link
+        w, eps = (of[link] for of in (study.velocities.omega, study.accelerations.epsilon))
+        if not shape.bar or link == c.link or abs(w.at(k)) < 1e-9 * c.speed:
+            continue
+        places = _free_arrows(shape, s, pos, np.concatenate([*taken, *(bar for name, bar in bars.items() if name != link)]))
+        for step, sign, place, least in ((w, "ω", places[0], 0.0), (eps, "ε", places[1], 1e-9 * c.speed**2)):
+            if abs(step.at(k)) > least:
+                symbols.rotation_arrow(s.pen(step, "symbol"), *place, float(step.at(k)), f"{sign}_{link}")
+                taken.append(_along_arrow(place))
+
+
+_Arrow = tuple[complex, float, complex]
+"""Arrow of a rotation: what it goes round, mm, its radius, mm, and the direction of its middle."""
+CLEAR = 3.0
+"""Distance of an arrow of rotation from other links and arrows that is enough, mm."""
+
+
+def _along_bar(s: PlayerStage, pos: Positions, shape: link_marks.Shape) -> Any:
+    """Points along the line of a link, a millimetre apart."""
+    z = [s.at(pos.points[name]) for name in (link_marks.along_bar(s, pos, shape) if shape.bar else (str(shape.block),))]
+    return np.concatenate([z, *(np.linspace(a, b, 2 + int(abs(b - a))) for a, b in pairwise(z))])
+
+
+def _along_arrow(arrow: _Arrow) -> Any:
+    """Points along an arrow of rotation and under its sign."""
+    about, radius, towards = arrow
+    u = towards / abs(towards)
+    half = symbols.half_arrow(radius)
+    return about + u * np.append(radius * np.exp(1j * np.linspace(-half, half, 12)), radius + np.array([2.0, 4.0]))
+
+
+def _free_arrows(shape: link_marks.Shape, s: PlayerStage, pos: Positions, busy: Any) -> tuple[_Arrow, _Arrow]:
+    """Arrows of velocity and acceleration of a bar: the first places clear of ``busy`` points, or the clearest.
+
+    Those of a rocker go round its pivot, those of a link that moves stand on each side of it, outwards first.
+    """
+    base, tip = (s.at(pos.points[name]) for name in shape.ends)
+    u = (tip - base) / abs(tip - base)
+    if shape.bar[0] in pos.mechanism.fixed:
+        longest = max(28.0, 0.9 * abs(tip - base))
+        places = [((base, r, u), (base, r + 8.0, u)) for r in (20.0, 28.0, 36.0, 44.0, 52.0, 60.0) if r + 8.0 <= longest]
+    else:
+        pivot = s.at(pos.mechanism.crank.pivot)
+        n = 1j * u if (np.conj(1j * u) * (base - pivot)).real > 0 else -1j * u
+        middles = [base + t * (tip - base) for t in (0.38, 0.5, 0.28, 0.62, 0.72, 0.2)]
+        places = [((middle, 6.0, n), (middle, 6.0, -n)) for middle in middles]
+
+    def room(arrows: tuple[_Arrow, _Arrow]) -> float:
+        at = np.concatenate([_along_arrow(arrow) for arrow in arrows])
+        return min(CLEAR, float(np.abs(at[:, None] - busy).min()))
+
+    return max(places, key=room)
+
+
+def _strokes(project: Project, s: PlayerStage) -> None:
+    """Working and idle angles of the crank between its dead positions."""
+    cycle, c = project.cycle, project.mechanism.crank
+    assert cycle.strokes is not None
+    radius = c.length / s.frame.mu[1] + 7.0
+    count = project.variant.cycle.working if project.variant.cycle else None
+    first = cycle.world(cycle.turned[0])
+    last = cycle.world(cycle.turned[count] if count else cycle.strokes.end)
+    working, idle = tr_in("angle of the crank", "φ_w"), tr_in("angle of the crank", "φ_i")
+    pivot, end = s.at(c.pivot), first + cycle.sense * 2 * pi
+    arcs = [(min(a, b), max(a, b), radius) for a, b in ((first, last), (last, end))]
+    # The sign of the idle angle stands near its beginning: about its middle the links of many positions crowd.
+    for sign, arc, at in zip((working, idle), arcs, (0.5, 0.2 if cycle.sense > 0 else 0.8), strict=True):
+        text = f"{sign} = {number(round(degrees(arc[1] - arc[0]), 6))}°"
+        share = _free_share(s.canvas, pivot, arcs, arc, text, at)
+        s.canvas.angle_mark(pivot, *arc, text, 3.5, share)
+
+
+def _named_angles(project: Project, s: PlayerStage) -> None:
+    """Crank and slotted link in the positions that the angles φ_1k and φ_2k belong to, and these angles from position 0 on."""
+    plan, cycle, c = project.motion.named_angles, project.cycle, project.mechanism.crank
+    if plan is None:
+        return
+    here = stage(s.canvas, plan, 0, s.frame)
+    _, far, *_ = (step.name for step in plan)
+    pivot, start = here.at(c.pivot), float(cycle.world(cycle.turned[0]))
+    angles = {k: float(plan[f"φ_{k}k"].value) for k in (1, 2)}
+    longer = max(angles, key=lambda k: abs(angles[k]))
+    arcs: dict[int, _Arc] = {}
+    for k, angle in angles.items():
+        name = f"{c.pin}_{k}k"
+        for end in (c.pivot, far):
+            here.pen(name, "link", f"{end}–{name}").line(here.at(end), here.at(name), "hidden")
+        here.dot(name, 0.8, "main")
+        here.letters(name, f"{c.pin}_{{{k}k}}", here.at(name) - pivot, gap=1.5)
+        # The shorter arc lies outside: each has a part with no other beyond it.
+        end_at = start + cycle.sense * angle
+        arcs[k] = min(start, end_at), max(start, end_at), c.length / s.frame.mu[1] + (9.0 if k == longer else 14.0)
+    for k, (lo, hi, radius) in arcs.items():
+        text = f"φ_{{{k}k}} = {number(round(degrees(angles[k]), 2), 5)}°"
+        share = _free_share(s.canvas, pivot, list(arcs.values()), arcs[k], text)
+        here.pen(f"φ_{k}k", "dimension").angle_mark(pivot, lo, hi, radius, text, share=share)
+
+
+_Arc = tuple[float, float, float]
+"""Of an arc: from, to, rad, and its radius, mm."""
+
+
+CROSSED = 20
+"""Millimetres of lines under a number up to which it finds a place beside them by itself."""
+
+
+def _free_share(canvas: Canvas, centre: complex, arcs: list[_Arc], own: _Arc, text: str, wanted: float | None = None) -> float:
+    """Where along its arc the number of an angle stands over least and within its view; where it is ``wanted`` if that will do."""
+    place = canvas.parts[-1].box
+    marks = canvas.marks[canvas.parts[-1].first:]
+    thick = [mark for mark in marks if not isinstance(mark, Text) and mark.style in HEAVY]
+    drawn = [centre + radius * np.exp(1j * np.arange(lo, hi, 1 / radius)) for lo, hi, radius in arcs]
+    anchors = [label.anchor for label in canvas.labels] * 4
+    ink = np.concatenate([dense(marks, 1.0), *[dense(thick, 1.0)] * 4, *drawn * (8 if wanted is None else 2),
+                          np.array(anchors, complex)])
+    laid = letter(text, 3.5)
+    half = complex(laid.width / 2 + 1.0, (laid.ascent + laid.descent) / 2 + 1.0)
+
+    def over(share: Any) -> tuple[int, float]:
+        u = complex(np.exp(1j * (own[0] + share * (own[1] - own[0]))))
+        at = centre + (own[2] + 1.0) * u + complex(half.real * u.real, half.imag * u.imag)
+        off = ink - at
+        out = 0 if place.contains(at - half) and place.contains(at + half) else len(ink)
+        covered = int(((np.abs(off.real) < half.real) & (np.abs(off.imag) < half.imag)).sum())
+        return covered + out, abs(share - (0.5 if wanted is None else wanted))
+
+    if wanted is not None and over(wanted)[0] <= CROSSED:
+        return wanted
+    return float(min(np.linspace(0.06, 0.94, 45), key=over))
+
+
+def _force_graph(project: Project, s: PlayerStage, box: Box, below: bool) -> None:
+    """Force over the path: the path marks carried over onto the abscissa, ordinates over every mark.
+
+    A stroke too short for that on the plans has an abscissa of its own, enlarged.
+    """
+    cycle, canvas = project.cycle, s.canvas
+    strokes, force = cycle.strokes, kinematic_frames.graph_force(project)
+    assert strokes is not None
+    tried = [(turned, np.asarray(force.shown(turned, 0))) for turned in force.over_way()]
+    diagrams = [(turned, values) for turned, values in tried if np.any(values)]
+    top, low = (of(0.0, *(float(of(values)) for _, values in diagrams)) for of in (max, min))
+    scale = pick(project, canvas, "force-graph", "μ_F", tr("N/mm"), (top - low) / (box.height - 18.0))
+    y0 = box.y0 + 5.0 - low / scale.mu
+    high = y0 + top / scale.mu
+    a, b = (s.frame(strokes.origin + strokes.path * t).real for t in (0.0, strokes.length))
+    way = link_marks.indexed(strokes.output) if strokes.output[0] == "S" else f"S_{{{strokes.output}}}"
+    ways = tr("{quantity}, m").format(quantity=way)
+    load, back = f"loads/{force.name}", a > b  # the way is counted from where the stroke begins
+    u = -1 if back else 1
+    inward, outward = _SIDES[::u]
+    rear, edge = (box.x0, box.x1)[::u]
+    room = edge - u * (1.5 + letter(ways, 3.5).width)
+    enlarged = _enlargement(abs(b - a))
+    start = a if enlarged == 1 else _nearer(rear, (a + b - enlarged * (b - a)) / 2, room - 14.0 * u - enlarged * (b - a))
+
+    def along(x: Any) -> Any:
+        return start + enlarged * (x - a)
+
+    tip = _nearer(start, along(b) + 14.0 * u, room)
+    graph = canvas.placed("loads", "", complex(start, y0), (s.frame.mu[0] / enlarged, scale.mu), pi * back, back)
+    pen = canvas.tracing("axis", load, "", graph)
+    pen.arrow(complex(start, y0 + low / scale.mu), complex(start, high + 9.0), "axis", 3.5)
+    pen.arrow(complex(start, y0), complex(tip, y0), "axis", 3.5)
+    pen.text(complex(start - 2.0 * u, high + 5.0), tr("{quantity}, N").format(quantity=link_marks.indexed(force.name)), 3.5, inward)
+    pen.text(complex(tip + 1.5 * u, y0 - 1.2), ways, 3.5, outward)
+    # Beside the end of the graph, or above it where there is no room.
+    said = [str(scale)] if enlarged == 1 else [str(scale), str(Scale("μ_S", s.frame.mu[0] / enlarged, tr("m/mm")))]
+    beside, room = along(b) + 3.0 * u, edge - u * max(letter(text, 3.5).width for text in said)
+    for n, text in enumerate(said):
+        lower = 6.25 * n if (room - beside) * u >= 0 else 6.25 * (n - len(said) + 1) - 2.5
+        canvas.text(complex(_nearer(start, beside, room), high - lower), text, 3.5, outward)
+    drawn = [_over_way(project, s, along, diagram, y0, scale.mu) for diagram in diagrams]
+    for (line, turned), (tried_at, values) in zip(drawn, diagrams, strict=True):
+        canvas.tracing("curve", load, "", graph).polyline(line, "curve")
+        later = [turned + turn for turn in np.arange(0, cycle.period, 2 * pi) if np.allclose(force.shown(tried_at + turn), values)]
+        if len(drawn) > 1 and (held := ", ".join(filter(None, (_held(cycle, of_turn) for of_turn in later)))):
+            off = np.abs(line.imag - y0)
+            level = np.flatnonzero(off > off.max() - 1e-6)
+            highest = line[level[len(level) // 2]]
+            canvas.label(complex(highest), held, 1j if highest.imag > y0 else -1j, 2.5, 1.5)
+    count = project.variant.cycle.working if project.variant.cycle else None
+    feet: list[tuple[float, str, str]] = []
+    for i, label in cycle.drawn:
+        here = s.position(i)
+        z = here.at(strokes.output)
+        acts = [float(np.ravel(force.shown(cycle.turned[i] + turn, side))[0]) for turn in np.arange(0, cycle.period, 2 * pi)
+                for side in (-1, 1)]
+        if not any(acts) and i not in (0, count):
+            continue
+        x = along(z.real)
+        foot, head = complex(x, y0), complex(x, y0 + max(acts, key=abs) / scale.mu)
+        if enlarged == 1:
+            here.pen(strokes.output, "construction").line(z, foot if below or head.imag < y0 else head, "thin")
+        if below or enlarged > 1 or head.imag < y0:
+            canvas.tracing("curve", load, here.label, graph).line(foot, head, "thin")
+        feet.append((x, label, cycle.labels[i]))
+    for x, label, least in feet:
+        pitch = min((abs(x - other) for other, *_ in feet if other != x), default=abs(b - a))
+        # Of a position of several turns its first number where all have no room.
+        text = label if letter(label, 2.5).width + 1.6 < pitch else least
+        canvas.number(complex(x, y0), complex(x + 0.8, y0 + 1.0), text, 2.5, pitch)
+
+
+def _over_way(project: Project, s: PlayerStage, along: Any, diagram: tuple[Any, Any], y0: float, mu: float) -> tuple[Any, Any]:
+    """A diagram of a force over the path, from the axis and back to it, mm, and the angles where it acts, rad."""
+    turned, values = diagram
+    strokes = project.cycle.strokes
+    assert strokes is not None
+    acting = np.flatnonzero(values)
+    path = project.study_at(turned, tuple("" for _ in turned)).positions.points[strokes.output]
+    xs = along(np.real(s.frame(path.value)))
+    curve = xs[acting] + 1j * (y0 + values[acting] / mu)
+    return np.array([complex(curve[0].real, y0), *curve, complex(curve[-1].real, y0)]), turned[acting]
+
+
+def _held(cycle: Cycle, turned: Any) -> str:
+    """First and last of the positions that lie within a stretch of angles, rad: "9…11"."""
+    into = np.mod(np.asarray(cycle.turned) - turned[0], cycle.period)
+    inside = sorted((float(t), label) for t, label in zip(into, cycle.labels, strict=True) if t <= turned[-1] - turned[0])
+    return "…".join(dict.fromkeys(label for _, label in (*inside[:1], *inside[-1:])))
+
+
+READABLE = 40.0
+"""Length of a stroke on the plans, mm, below which its graph of forces has an abscissa of its own."""
+
+
+def _enlargement(stroke: float) -> float:
+    """How many times as long as on the plans, where it is so many mm, a stroke is under its graph (GOST 2.302)."""
+    return 1.0 if stroke >= READABLE else next((t for t in (2.0, 2.5, 4.0, 5.0, 10.0, 20.0, 40.0) if t * stroke >= READABLE), 50.0)
+
+
+_SIDES: tuple[Align, Align] = ("right", "left")
+"""How lettering is aligned on the near side of the axis of forces, and beyond the end of the stroke."""
+
+
+def _nearer(to: float, x: float, y: float) -> float:
+    """The one of two numbers that is nearer."""
+    return min(x, y, key=lambda z: abs(z - to))
+
+
+def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Velocity plans of all positions with one scale factor, packed into rows."""
+    plan = project.study.velocities.plan
+    layout = kinematic_frames.velocities(project, canvas, box, options)
+    many = len(layout.shown) > 1
+    canvas.title(box, tr("Velocity polygons") if many else tr("Velocity polygon"), str(layout.scale))
+    flat_crossings.warn(project, canvas, box, plan, (i for i, _ in layout.shown))
+    _left_out(project, canvas, box, layout)
+    tiny: dict[str, list[str]] = {}
+    caption = tr("Position {label}")
+    height = min(size_for([caption.format(label=label)], place.width, 3.5) for (_, label), _, place, _ in layout.places())
+    for (index, label), span, place, spare in layout.places():
+        middle = place.centre + 4.0j
+        canvas.of = f"velocity plan {label}"
+        if many:
+            canvas.begin(place, tr("Velocity polygon, position {label}").format(label=label))
+        s = stage(canvas, plan, index, PlanFrame(layout.scale, middle - layout.scale.mm(span.centre)))
+        for name in _draw_plan(s, "p", symbols_at=not many):
+            tiny.setdefault(name, []).append(label)
+        canvas.text(complex(middle.real, place.y0 + spare / 2 + 2.0), caption.format(label=label), height, "centre")
+    canvas.of = "kinematics.velocity_plans"
+    if tiny:
+        canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(
+            space=TOGETHER, vectors=_with_positions(tiny) if many else ", ".join(tiny)))
+
+
+def _with_positions(tiny: dict[str, list[str]]) -> str:
+    """Signs of vectors with the labels of the positions they are tiny at; those of the same positions together."""
+    there: dict[tuple[str, ...], list[str]] = {}
+    for name, labels in tiny.items():
+        there.setdefault(tuple(labels), []).append(name)
+    one, several = tr("{vectors} (position {at})"), tr("{vectors} (positions {at})")
+    return "; ".join((several if len(at) > 1 else one).format(vectors=", ".join(names), at=", ".join(at))
+                     for at, names in there.items())
+
+
+def _left_out(project: Project, canvas: Canvas, box: Box, layout: kinematic_frames.VelocityLayout) -> None:
+    """Notes on the plans that are not drawn."""
+    for i, ratio in layout.beyond:
+        said = tr("The velocity polygon of position {label} (next to a dead one) is not drawn: it is {times} the usual size")
+        canvas.note(box, said.format(label=project.cycle.labels[i], times=times(round(ratio))))
+    if layout.every > 1:
+        canvas.note(box, tr("One velocity polygon of every {count} positions is drawn").format(count=layout.every))
+
+
+def _draw_plan(s: PlayerStage, pole: str, symbols_at: bool = False) -> list[str]:
+    """One velocity or acceleration plan: helper lines, vectors with arrow heads, letters of the points.
+
+    Returns the signs of the vectors that are too short to be drawn; their ends have their letters at one point.
+    """
+    assert s.k is not None
+    points = kinematic_frames.plan_points(s.plan, s.k)
+    play(s, over=4.0)
+    tiny = _vectors(s, max(abs(z) for z in points.values()), symbols_at)
+    centre = s.frame(np.mean(list(points.values())))
+    for names in joined({name: s.frame(z) for name, z in points.items()}, tiny):
+        q = s.at(names[0])
+        shown = [link_marks.indexed(s.plan[n].symbol or n) for n in names if n != pole]
+        s.dot(names[0])
+        # A long row of letters leaves the pole's own to itself.
+        rows = ([[pole], shown] if len(shown) > 2 else [[pole, *shown]]) if pole in names else [shown]
+        for row in rows:
+            s.letters(names[0], ", ".join(row), q - centre if abs(q - centre) > 1 else 0j)
+    return list(dict.fromkeys(tiny.values()))
+
+
+def _vectors(s: PlayerStage, size: float, symbols_at: bool) -> dict[tuple[str, str], str]:
+    """Vectors of a plan of some size, with their signs if asked; those too short to be drawn are told by their ends."""
+    tiny = {}
+    for seg in s.plan.segments:
+        a, b = complex(s.value(seg.tail)), complex(s.value(seg.head))
+        if is_zero(b - a, size):
+            continue
+        if abs(b - a) / s.frame.mu[1] < SHORTEST:
+            tiny[seg.tail.name, seg.head.name] = seg.symbol
+            continue
+        s.vector(seg.tail, seg.head)
+        if symbols_at:
+            s.letters(seg.head, seg.symbol, 1j * (b - a), at=s.frame(_place_of_sign(s, seg)))
+    return tiny
+
+
+def _place_of_sign(s: PlayerStage, seg: Segment) -> complex:
+    """Where the sign of a vector stands: where no shorter vector from the same point covers it, off the vectors it crosses."""
+    a, b = complex(s.value(seg.tail)), complex(s.value(seg.head))
+    others = [(complex(s.value(other.tail)), complex(s.value(other.head))) for other in s.plan.segments if other is not seg]
+    along = [(p, q) for p, q in others if abs(((q - p) * np.conj(b - a)).imag) < 1e-6 * abs(b - a) * abs(q - p)]
+    size = abs(b - a)
+    covered = [q for p, q in along if abs(p - a) < 1e-9 * size and 0 < ((q - a) * np.conj(b - a)).real < 0.95 * size**2]
+    begin = max(covered, key=lambda z: abs(z - a), default=a)
+    across = [line for line in others if line not in along]
+
+    def room(t: float) -> float:
+        z = begin + t * (b - begin)
+        return min((_distance(z, p, q) for p, q in across), default=size)
+
+    best = max((0.5, 0.42, 0.58, 0.34, 0.66), key=lambda t: min(room(t), 0.08 * size))
+    return begin + best * (b - begin)
+
+
+def _distance(z: complex, p: complex, q: complex) -> float:
+    """Distance of a point from the segment p .. q."""
+    t = ((z - p) * np.conj(q - p)).real / abs(q - p) ** 2 if q != p else 0.0
+    return abs(z - p - min(max(t, 0.0), 1.0) * (q - p))
+
+
+def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Acceleration plan of the chosen position with normal and Coriolis segments."""
+    acc, k = project.study.accelerations, project.force_index
+    frame = kinematic_frames.accelerations(project, canvas, box)
+    canvas.title(box, kinematic_frames.title_of_accelerations(project, k), str(frame.scale))
+    flat_crossings.warn(project, canvas, box, acc.plan)
+    tiny = _draw_plan(stage(canvas, acc.plan, k, frame), "π", symbols_at=True)
+    if tiny:
+        canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
+
+
+def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the second acceleration plan can do with, mm; none in which its vectors and their signs would crowd."""
+    plan, i = project.study.accelerations.plan, kinematic_frames.other_stroke(project)
+    real = kinematic_frames.plan_extent(plan, i)
+    left, below, right, above = kinematic_frames.ACCELERATIONS
+    longest = max(real.width, real.height)
+    if not longest > 0:
+        return []
+    # Wide enough for a title as the other plans have it, if there is room.
+    titled = letter(kinematic_frames.title_of_accelerations(project, kinematic_frames.other_stroke(project)), 5.0).width + 0.1
+    places = [(size * real.width / longest + left + right + 12.0, size * real.height / longest + below + above + 10.0)
+              for size in (120.0, 100.0, 80.0)
+              if kinematic_frames.crowd(plan, i, handy(longest / size)) <= kinematic_frames.TOGETHER_READ]
+    return [(max(wide, least), high) for least in (titled, 76.0) for wide, high in places]
+
+
+def second_accelerations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Acceleration plan of a position of the other stroke, with a scale factor of its own."""
+    acc, k = project.study.accelerations, kinematic_frames.other_stroke(project)
+    real = kinematic_frames.plan_extent(acc.plan, k)
+    inside = box.inset(*kinematic_frames.ACCELERATIONS).inset(6.0, 5.0)
+    scale = Scale("μ_a", handy(max(real.width / inside.width, real.height / inside.height)), tr("(m/s²)/mm"))
+    canvas.title(box, kinematic_frames.title_of_accelerations(project, k), str(scale))
+    tiny = _draw_plan(stage(canvas, acc.plan, k, PlanFrame(scale, inside.centre - scale.mm(real.centre))), "π", symbols_at=True)
+    if tiny:
+        canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
+
+
+SMALL = 30.0
+"""Size of the analysed velocity plan among the others, mm, below which it is shown once more, enlarged."""
+ENLARGED = (2.0, 2.5, 4.0, 5.0, 10.0)
+"""Enlargements (GOST 2.302)."""
+
+
+def enlarged_velocities_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the analysed velocity plan, enlarged, can do with, mm; none where it can be read among the others.
+
+    All plans have one scale factor, that of the largest; one next to a dead position leaves the others small.
+    """
+    plan, k = project.study.velocities.plan, project.force_index
+    real = kinematic_frames.plan_extent(plan, k)
+    drawn = max(real.width, real.height) / canvas.scales["velocities"].mu if "velocities" in canvas.scales else 0.0
+    if not SHORTEST < drawn < SMALL or f"velocity plan {project.cycle.labels[k]}" not in {mark.of for mark in canvas.marks}:
+        return []
+    around = kinematic_frames.MARGIN, kinematic_frames.HEAD + TITLED
+    longest, sizes = max(real.width, real.height), list[tuple[float, float]]()
+    for times_as_large in reversed([t for t in ENLARGED if 2 * SMALL <= t * drawn <= kinematic_frames.LONGEST] or ENLARGED[:1]):
+        size = times_as_large * drawn
+        sizes.append((max(size * real.width / longest + around[0], 90.0), size * real.height / longest + around[1]))
+    return sizes
+
+
+TITLED = 22.0
+"""Height of the title of a velocity plan with its scale factor, mm."""
+
+
+def enlarged_velocities(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The velocity plan of the analysed position enlarged, with the signs of its vectors."""
+    plan, k, plain = project.study.velocities.plan, project.force_index, canvas.scales["velocities"]
+    real = kinematic_frames.plan_extent(plan, k)
+    inside = box.inset(kinematic_frames.MARGIN / 2, kinematic_frames.HEAD / 2, kinematic_frames.MARGIN / 2,
+                       TITLED + kinematic_frames.HEAD / 2)
+    need = max(real.width / inside.width, real.height / inside.height)
+    larger = max(t for t in ENLARGED if t * need <= plain.mu * (1 + 1e-6))
+    scale = Scale(plain.symbol, float(f"{plain.mu / larger:.6g}"), plain.unit)
+    said = tr("{scale} (enlarged {times})").format(scale=scale, times=times(larger))
+    canvas.title(box, tr("Velocity polygon, position {label}").format(label=project.cycle.labels[k]),
+                 said if letter(said, 5.0).width <= box.width - 2.0 else str(scale))
+    frame = PlanFrame(scale, inside.centre - scale.mm(real.centre))
+    tiny = _draw_plan(stage(canvas, plan, k, frame), "p", symbols_at=True)
+    if tiny:
+        canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
+
+
+COLUMNS = 7
+"""So many columns the table of lengths has in about half of the place; with more it shares the width with that of speeds."""
+COLUMN = 12.5
+"""Width of a column, mm, below which the tables lie down: a row for each quantity, a column for each position."""
+LOWEST = 3.9
+"""Height of a row, mm, below which letters of 2.5 mm touch its lines."""
+
+
+def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Tables of measured segments and of velocities over all positions (manual 000, tables 3.2 and 3.3)."""
+    vel, cycle = project.study.velocities, project.cycle
+    varying: list[tuple[Segment, Any]] = []
+    constant: list[tuple[Segment, Any]] = []
+    for seg in vel.plan.segments:
+        value = np.broadcast_to(vel.plan.length(seg.tail, seg.head).value, (len(cycle.labels),))
+        (constant if np.allclose(value, value[0]) else varying).append((seg, value))
+    linear: dict[str, Any] = {}
+    for seg, value in varying:
+        linear.setdefault(seg.symbol.replace("\u0305", ""), value)
+    turning = [(f"ω_{link}", w.value) for link, w in vel.omega.items()
+               if np.ndim(w.value) and link in vel.reference]
+    speeds = [*linear.items(), *turning]
+    stacked = bool(options.get("stacked"))
+    lengths = _measured_lengths(project, canvas, varying, [link.removeprefix("ω_") for link, _ in turning])
+    width = box.width - 30.0
+    lying = COLUMN * (max(len(lengths), len(speeds)) if stacked else len(lengths) + len(speeds)) > width
+    # Tables that lie down have the same columns.
+    left, right = _table_places(box, len(speeds) if lying and lengths else len(lengths), len(speeds), stacked=stacked)
+    if lengths:
+        mu = canvas.scales["velocities"].mu
+        said = [f"{_segment(seg.tail, seg.head)} = {fixed(float(value[0]) / mu, 1)}" for seg, value in constant]
+        title = "; ".join([tr("Lengths of the segments, mm"), *said])
+        _table_over_positions(project, canvas, left, title, lengths, 1, lying=lying)
+    if speeds:
+        title = tr("Linear, m/s, and angular, rad/s, velocities") if turning else tr("Linear velocities, m/s")
+        _table_over_positions(project, canvas, right, title, speeds, 3, lying=lying)
+
+
+def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segment, Any]],
+                      turning: list[str]) -> list[tuple[str, Any]]:
+    """Captions and lengths, mm, of the segments to be measured; none (NaN) of a plan that is not drawn.
+
+    They are what the speeds come from: the vectors of the plans, and the segments that the links ``turning`` have there.
+    """
+    lengths = _lengths_on_rockers(project, canvas)
+    mu, vel = canvas.scales["velocities"].mu, project.study.velocities
+    drawn = {_segment(seg.tail, seg.head): value / mu for seg, value in varying}
+    for q, b in (vel.reference[link][2:] for link in turning):
+        if _segment(q, b) not in drawn and _segment(b, q) not in drawn:
+            drawn[_segment(q, b)] = np.abs(np.asarray(b.value) - np.asarray(q.value)) / mu
+    lengths += [(name, v) for name, v in drawn.items() if not any(np.allclose(v, w) for _, w in lengths)]
+    for i, _ in kinematic_frames.beyond_drawing(project):
+        lengths = [(name, np.where((np.arange(len(v)) == i) & name.startswith("|"), np.nan, v)) for name, v in lengths]
+    return lengths
+
+
+def _segment(tail: Step, head: Step) -> str:
+    return f"|{link_marks.indexed(tail.name)}{link_marks.indexed(head.name)}|"
+
+
+def _lengths_on_rockers(project: Project, canvas: Canvas) -> list[tuple[str, Any]]:
+    """Segments of rockers with a slot: the coincident point's velocity, the way to the block, velocities of carried hinges."""
+    vel = project.study.velocities
+    pos = vel.positions
+    mu_v, mu_l = canvas.scales["velocities"], canvas.scales["positions"]
+    pole = vel.plan[str(vel.plan.pole)]
+    lengths: list[tuple[str, Any]] = []
+    hinges = {name for g in pos.mechanism.groups for name in g.outer}
+    for g in pos.mechanism.groups:
+        if (j := g.kind.rocker(g)) is not None:
+            p, q = g.outer
+            coincident = vel.plan.length(pole, vel.coincident[on_link(p, j)])
+            lengths.append((f"|p{link_marks.indexed(on_link(p.lower(), j))}|", coincident.value / mu_v.mu))
+            lengths.append((f"{q}{p}", pos.plan.length(pos.points[q], pos.points[p]).value / mu_l.mu))
+            carried = [x.name for x in pos.mechanism.points if x.link == j and x.name in hinges]
+            lengths += [(f"|{q.lower()}{link_marks.indexed(x.lower())}|", vel.plan.length(pole, vel.points[x]).value / mu_v.mu)
+                        for x in carried]
+    return lengths
+
+
+def _table_places(box: Box, columns: int, speeds: int, *, stacked: bool) -> tuple[Box, Box]:
+    """Places of the tables of lengths and of speeds with so many columns; the second has all of it without any of the first."""
+    if not columns:
+        return box, box
+    if stacked:
+        middle = (box.y0 + box.y1) / 2
+        return Box(box.x0, middle + 2.0, box.x1, box.y1), Box(box.x0, box.y0, box.x1, middle - 2.0)
+    few = (0.45 * box.width - 10.0) / columns if columns <= COLUMNS else 0.0
+    one = min(19.0, max(few, (box.width - 30.0) / (columns + speeds)))
+    left = Box(box.x0, box.y0, box.x0 + 10.0 + one * columns, box.y1)
+    return left, Box(left.x1 + 10.0, box.y0, box.x1, box.y1)
+
+
+NOTHING = 1e-4
+"""Share of the greatest number of a table below which a column shows that it is nothing."""
+
+
+def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: str, columns: list[tuple[str, Any]],
+                          decimals: int, *, lying: bool = False) -> None:
+    """A column for each quantity, a row for each position that is drawn; the other way round ``lying``; a dash for no number.
+
+    ``decimals`` unless a column's numbers are too small for them, but for those that are nothing beside the others. What has no
+    room at all is named in a remark.
+    """
+    cycle = project.cycle
+    greatest = {name: float(np.nanmax(np.abs(v), initial=0.0)) for name, v in columns}
+    places = {name: decimals_for([size], decimals) if size > NOTHING * max(greatest.values()) else decimals
+              for name, size in greatest.items()}
+    cells = [[tr("No."), *(name for name, _ in columns)]]
+    cells += [[label, *("–" if np.isnan(v[i]) else fixed(float(v[i]), places[name]) for name, v in columns)]
+              for i, label in cycle.drawn]
+    if lying:
+        cells = [list(row) for row in zip(*cells, strict=True)]
+        room = max(int((place.height - 9.0) / LOWEST), 2)
+        if len(cells) > room:
+            canvas.note(place, tr("The table has no room for {names}").format(names=", ".join(row[0] for row in cells[room:])))
+            cells = cells[:room]
+    row = min((place.height - 15.0) / (len(cells) + 1), 7.5) if not lying else min((place.height - 9.0) / len(cells), 7.5)
+    # A head that is too long goes on in a second line: beside a larger one nobody reads it.
+    head = [title] if letter(title, 3.5).width <= place.width else [part for part in title.partition("; ")[::2] if part]
+    begin = complex(place.centre.real, place.y1 - (5.0 if len(head) == 1 else 2.2))
+    canvas.lines(begin, head, 5.0, size_for(head, place.width, 3.5), "centre")
+    height, count = size_in(row), len(cells[0]) - 1
+    if sum(needs(cells, height)) > place.width:
+        height = 2.5  # numbers that touch the lines cannot be read
+    widths = widened([10.0] + [(place.width - 10.0) / count] * count, cells, height)
+    canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, height)
+
+
+STRUCTURE = 200.0
+"""Width beyond which the table of groups, of five short columns, is not drawn apart, mm: a row is to be read as one."""
+
+
+def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Structure of the mechanism: mobility by Chebyshev, formula of structure, Assur groups."""
+    m = project.mechanism
+    moving, pairs = len(m.links), len(m.pairs)
+    spare = max(0.0, box.width - STRUCTURE) / 2
+    box = box.inset(spare, 0.0, spare, 0.0)
+    inside = canvas.title(box, tr("Structure of the mechanism"))
+    lines = (f"W = 3n − 2p_5 − p_4 = 3·{moving} − 2·{pairs} − 0 = {m.mobility}", m.structure)
+    canvas.lines(complex(box.x0 + 2.0, inside.y1 - 6.0), lines, 7.0)
+    if not m.groups:
+        return
+    rows = [[tr("Group"), tr("Class"), tr("Order"), tr("Kind"), tr("Pairs")]]
+    for g, found in zip(reversed(m.groups), decompose(m), strict=True):
+        rows.append([g.name, g.kind.roman, str(g.kind.order), found.kind.told(found), ", ".join(found.kind.joints(found))])
+    widths = [0.17, 0.15, 0.2, 0.22, 0.26]
+    canvas.table(complex(box.x0, inside.y1 - 16.5), widened([w * box.width for w in widths], rows, 3.5), rows, 7.0, 3.5)

@@ -1,0 +1,549 @@
+"""Views of the force study: loaded groups with their force plans, the crank, Zhukovsky's lever, the comparison."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from math import pi
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction.indices import pair_index
+from tmm_sheets.construction.scale import Scale, times
+from tmm_sheets.drawing import symbols
+from tmm_sheets.drawing.canvas import ARROW, KEPT_OFF, Align, Canvas
+from tmm_sheets.drawing.lettering import letter, size_for
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.notes import TOGETHER, wrapped
+from tmm_sheets.drawing.tables import widened
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.numbers import clean, decimals_for, fixed, is_zero, number
+from tmm_sheets.sheets.components import flat_crossings
+from tmm_sheets.sheets.frame import SHORTEST, PlanFrame, fit_frame, joined, together
+from tmm_sheets.sheets.linkage import link_marks
+from tmm_sheets.sheets.linkage.kinetic_frames import (
+    AROUND,
+    CRANK,
+    LEVER,
+    SCHEME,
+    Couple,
+    Shown,
+    acting_sides,
+    arm_sign,
+    arrows,
+    balancing_sign,
+    clear,
+    couple_radius,
+    couples_of,
+    crank_scheme,
+    finest,
+    finest_crank,
+    flat,
+    hinge_of,
+    lever_scheme,
+    normal_sign,
+    on_crank,
+    on_lever,
+    outer_forces,
+    places_of_groups,
+    polygon,
+    scheme,
+    scheme_points,
+    share_of_arrows,
+    terms,
+    turned_vectors,
+    with_arms,
+)
+from tmm_sheets.sheets.player import PlayerStage, play, stage
+from tmm_sheets.words import tell, tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Segment
+    from tmm_sheets.construction.step import Step
+    from tmm_sheets.mechanism.groups.force_plan import ForcePlan
+    from tmm_sheets.mechanism.model import StructuralGroup
+    from tmm_sheets.methods.linkage.forces import Kinetostatics
+    from tmm_sheets.methods.linkage.positions import Positions
+    from tmm_sheets.project import Project
+
+ALONG, SAME = 0.05, 0.01
+"""Sine of the angle at which two sides of a polygon lie along each other; distance at which they meet, mm."""
+BAR = "\u0305"
+GAP = 4.0
+"""Distance of groups that share a place, mm."""
+ROOM = 6.0
+"""Room for labels between a force polygon and its equation, mm."""
+LINE, LINES = 6.25, 3
+"""Distance of the lines of that equation and of the values under it, mm, and how many there is always room for."""
+STACKED = 90.0
+"""Height from which on the plans of a group stand one over another, mm; in lower places side by side."""
+
+
+def groups(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """All Assur groups of a mechanism, the farthest on top, in equal parts of the place, in so many ``columns``.
+
+    ``scheme`` is the share of the width for the loaded schemes, one number or one for each group.
+    """
+    shares = options.get("scheme", 0.42)
+    for i, place in enumerate(places_of_groups(box, len(project.mechanism.groups), int(options.get("columns", 1)), GAP)):
+        if "groups" in options:
+            group(project, canvas, box, {"group": i + 1, "places": options["groups"][i]})
+            continue
+        share = shares[min(i, len(shares) - 1)] if isinstance(shares, list) else shares
+        group(project, canvas, place, {"group": i + 1, "scheme": share})
+
+
+def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Loaded scheme of one Assur group beside the force plans of its links; ``group`` counts from the farthest.
+
+    ``scheme`` is the scheme's share of the place, ``stacked`` puts it above its plans.
+    """
+    k, forces = project.force_index, project.study.forces
+    m = project.mechanism
+    nth = int(options.get("group", 1))
+    if not 1 <= nth <= len(m.groups):
+        raise CannotBuild(tell("the mechanism has no group {nth} to draw, it has {count}").format(nth=nth, count=len(m.groups)),
+                          tell("take an arrangement with the view kinetics.groups, or leave kinetics.group out of it"))
+    g = tuple(reversed(m.groups))[nth - 1]
+    share = float(options.get("scheme", 0.42))
+    names = g.kind.force_plans(g)
+    if "places" in options:
+        left, *places = options["places"]
+    else:
+        left, places = _parted(box, share, [forces.plans[name] for name in names], k, stacked=bool(options.get("stacked")))
+    _scheme(project, canvas, left, g, k)
+    for line in jumps(project, g.links):
+        canvas.note(left, line)
+    for name, place in zip(names, places, strict=True):
+        _force_plan(project, canvas, place, forces.plans[name], k)
+
+
+def jumps(project: Project, links: Collection[str]) -> Iterator[str]:
+    """What loads of some links do that jump at the position of the force analysis, and which of their values counts."""
+    k = project.force_index
+    for load in project.applied:
+        found = load.jump(float(project.cycle.turned[k])) if load.link in links else None
+        if found is not None:
+            unit = tr("N") if load.point is not None else tr("N·m")
+            before, after, here = (f"{number(value)}{TOGETHER}{unit}" for value in found)
+            yield tr("At position {label} {load} jumps from {before} to {after}; {here} are taken").format(
+                label=project.cycle.labels[k], load=link_marks.indexed(load.name), before=before, after=after, here=here)
+
+
+def _parted(box: Box, share: float, plans: list[ForcePlan], k: int, *, stacked: bool) -> tuple[Box, list[Box]]:
+    """Place of a loaded scheme, its share of the whole, and of the force plans beside or, ``stacked``, below it."""
+    left = Box(box.x0, box.y0, box.x0 + share * box.width, box.y1)
+    right = Box(left.x1 + 6.0, box.y0, box.x1, box.y1)
+    if stacked:
+        left = Box(box.x0, box.y1 - share * box.height, box.x1, box.y1)
+        right = Box(box.x0, box.y0, box.x1, left.y0 - 2.0)
+    if right.height / len(plans) < STACKED and len(plans) > 1:
+        width = (right.width + GAP) / len(plans)
+        return left, [Box(right.x0 + i * width, right.y0, right.x0 + (i + 1) * width - GAP, right.y1) for i in range(len(plans))]
+    return left, _stacked(right, plans, k)
+
+
+def _stacked(box: Box, plans: list[ForcePlan], k: int) -> list[Box]:
+    """Places of force plans one under another: as high as each polygon is when it fills the width, the rest in equal parts."""
+    left, below, right, above = AROUND
+    width = box.width - left - right
+    wanted = []
+    for fp in plans:
+        real = polygon(fp, k)[1]
+        wanted.append(width * real.height / real.width if real.width > 0 else box.height)
+    free = box.height - len(plans) * (below + above)
+    spare = (free - sum(wanted)) / len(plans)
+    heights = [h + spare for h in wanted] if spare > 0 else [free / len(plans)] * len(plans)
+    places, y = [], box.y1
+    for h in heights:
+        places.append(Box(box.x0, y - h - below - above + 2.0, box.x1, y))
+        y -= h + below + above
+    return places
+
+
+def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int) -> None:
+    """Loaded scheme of a group: its links, all forces and couples on it, the arms of its moment equations."""
+    pos = project.study.positions
+    shown, couples = outer_forces(project, g, k)
+    drawn = [shape for shape in link_marks.shapes(pos) if shape.link in g.links]
+    hinges, centres = scheme_points(project, g, drawn)
+    points = [pos.points[name] for name in (*hinges, *dict.fromkeys(centres))]
+    about = complex(pos.place(g.kind.about(g)).at(k))
+    share = share_of_arrows(project, g, k, box.inset(*SCHEME))
+    around = scheme(project, g, k, share)
+    frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", tr("m/mm"), *around, box.inset(*SCHEME))
+    canvas.of = f"group {g.name}"
+    title = tr("Assur group {name} (kind {number})") if g.kind.grade == 2 else tr("Assur group {name} (class III, order 3)")
+    canvas.title(box, title.format(name=g.name, number=g.kind.number), str(frame.scale))
+    s = stage(canvas, pos.plan, k, frame)
+    if g.kind.ram(g) is None:
+        link_marks.draw_guides(s, pos, g.links)
+    link_marks.draw(s, pos, "main", g.links)
+    for point in points:
+        s.letters(point, link_marks.indexed(point.name), 1 - 0.5j if point.name in pos.mechanism.fixed else 0j, gap=2.8)
+    _link_numbers(s, pos, drawn)
+    for name in centres:
+        symbols.centre_of_mass(s.pen(name, "symbol"), s.at(name))
+    draw_arms(s, about, with_arms(project, g, shown))
+    if g.kind.about(g) in pos.special:
+        point = pos.special[g.kind.about(g)].step
+        s.dot(point, 0.9, "main")
+        s.letters(point, link_marks.indexed(point.name), gap=1.5)
+    draw_forces(s, shown, share)
+    low = min((frame(z) + d).imag for z, d in zip(*around, strict=True)) - SCHEME[1]
+    _from_moments(project, canvas, box._replace(y0=max(box.y0, low)), g, k, frame.scale)
+    for c in couples:
+        _turning(s, frame(c.at), 10.0, -1 - 0.4j, c)
+    _link_couples(project, s, drawn)
+
+
+def _link_couples(project: Project, s: PlayerStage, drawn: Iterable[link_marks.Shape]) -> None:
+    """Couples of the links round their centres of mass, or their first points; moments of friction round their hinges."""
+    round_hinge: dict[str, int] = {}
+    for shape in drawn:
+        centre = project.mechanism.links[shape.link].centre or shape.block or shape.bar[0]
+        for n, c in couples_of(project, shape.link):
+            hinge = hinge_of(project, c)
+            if hinge is None:
+                _turning(s, s.at(project.study.positions.points[centre]), 7.0 + 4.0 * n, -1 + 0.2j, c)
+            else:
+                round_hinge[hinge] = round_hinge.get(hinge, -1) + 1
+                _turning(s, s.at(hinge), 6.0 + 4.0 * round_hinge[hinge], 1 - 1j, c)
+
+
+def _turning(s: PlayerStage, at: complex, radius: float, towards: complex, couple: Couple) -> None:
+    """Arrow of a couple."""
+    symbols.rotation_arrow(s.pen(couple.step, "symbol"), at, radius, towards, couple.value, couple.symbol)
+
+
+def _link_numbers(s: PlayerStage, pos: Positions, drawn: Iterable[link_marks.Shape]) -> None:
+    """Numbers of the links, near the first ends of bars: their middles are left to forces and arms."""
+    for shape in drawn:
+        names = link_marks.along_bar(s, pos, shape) if shape.bar else (str(shape.block),)
+        a, b = s.at(pos.points[names[0]]), s.at(pos.points[names[-1]])
+        s.letters(pos.directions[shape.link], shape.link, 1 + 0.3j, 5.0, 2.0 if shape.bar else 6.5, a + 0.3 * (b - a))
+
+
+def _from_moments(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int, scale: Scale) -> None:
+    """What the moment equations of a group gave: tangential parts of its reactions, arms of its outer guides' reactions."""
+    forces, m = project.study.forces, project.mechanism
+    said = []
+    for part in forces.from_moments:
+        if part.link in g.links:
+            value = newtons(clean(abs(complex(part.vector.at(k))), forces.force_size(k)))
+            said.append(tr("ΣM_{centre} = 0: {force} = {value} N").format(
+                centre=part.centre, force=f"F_{{{pair_index(part.link, part.source)}}}^τ", value=value))
+    about = g.kind.about(g)
+    if about in project.study.positions.special:
+        special = project.study.positions.special[about]
+        if (normal := forces.about_special(special.step)) is not None:
+            value = newtons(clean(abs(complex(normal.at(k))), forces.force_size(k)))
+            said.append(tr("ΣM_{centre} = 0: {force} = {value} N").format(
+                centre=f"{{{about}}}", force=normal_sign(project, special.third), value=value))
+    for pair in (pair_index(link, m.guides[guide].link) for guide in g.guides for link in g.links):
+        arm = forces.arms.get(f"h{pair}")
+        length = scale.mm(abs(float(arm.at(k)))) if arm is not None else np.inf
+        if 0.05 < length < max(box.width, box.height):
+            said.append(tr("ΣM_{centre} = 0: h_{{{index}}} = {value} mm").format(centre=about, index=pair, value=fixed(length, 1)))
+    for couple in outer_forces(project, g, k)[1]:
+        said.append(tr("ΣM_{centre} = 0: {couple} = {value} N·m").format(
+            centre=about if len(about) == 1 else f"{{{about}}}", couple=couple.symbol, value=number(abs(couple.value), 5)))
+    if said:
+        _fitted(canvas, complex(box.centre.real, box.y0), "; ".join(said), 3.5, box.width - 4.0)
+
+
+def draw_forces(s: PlayerStage, shown: Iterable[Shown], share: float = 1.0) -> None:
+    """Arrows with their tails at the points they act at, a ``share`` of their usual length."""
+    for force, arrow in arrows(shown, share):
+        tail, u = s.frame(force.at), force.along
+        pen = s.pen(force.step, "vector", f"{force.step.name}n" if force.symbol.endswith("^n") else "")
+        pen.arrow(tail, tail + arrow, "vector")
+        pen.label(tail + arrow - 2.0 * u, force.symbol, u + 0.35j * u, 3.5, 2.0)
+
+
+def draw_arms(s: PlayerStage, about: complex, shown: Sequence[Shown], points: Iterable[complex] = ()) -> None:
+    """Perpendiculars from a point to the lines of action; equal arms once. Their signs keep clear of ``points``, mm."""
+    seen, centre = list[complex](), s.frame(about)
+    feet = [s.frame(force.foot(about)) for force in shown]
+    busy = [centre, *points, *(s.frame(force.at) for force in shown), *feet]
+    for force in sorted(shown, key=lambda force: -abs(force.vector)):  # forces on one line share the arm of the largest
+        tail, foot = s.frame(force.at), s.frame(force.foot(about))
+        if abs(foot - centre) < 1.5 or any(abs(foot - f) < 0.6 for f in seen):
+            continue
+        seen.append(foot)
+        same = [arm_sign(other.symbol) for other, f in zip(shown, feet, strict=True) if abs(foot - f) < 0.6]
+        pen = s.pen(force.arm, "construction", f"h{flat(force.symbol)}")
+        if abs(foot - tail) > 0.5:
+            pen.ray_line(tail, foot, "thin", 2.0)
+        pen.line(centre, foot, "thin")
+        pen.dot(foot, 0.35, "thin")
+        # On an arm that runs on over a shorter one its letter stands beyond the end of that.
+        first = centre + _covered(foot - centre, [f - centre for f in feet]) * (foot - centre)
+        places = [first + t * (foot - first) for t in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)]
+        at = max(places, key=lambda z: min(6.0, *(abs(z - q) for q in busy)))
+        text = " = ".join(dict.fromkeys([arm_sign(force.symbol), *same]))
+        pen.label(at, text, 1j * (foot - centre), 2.5, 0.8, thin=KEPT_OFF)
+        busy.append(at)
+
+
+def _covered(arm: complex, others: Iterable[complex]) -> float:
+    """The part of an arm that shorter ones on its line take, as far as enough for a letter is left of it."""
+    along = [(other / arm).real for other in others if abs((other / arm).imag) * abs(arm) < 0.6]
+    return max((t for t in along if t > 0 and t * abs(arm) < abs(arm) - 3.0), default=0.0)
+
+
+def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: int) -> None:
+    """Force polygon with numbered vertices, its equation and the values found."""
+    points, _ = polygon(fp, k)
+    canvas.of = fp.plan.name
+    inside = box.inset(*AROUND)
+    size = project.study.forces.force_size(k)
+    sides = acting_sides(fp, k, size)
+    if not sides:
+        _fitted(canvas, canvas.title(box, fp.plan.title).centre, tr("There are no forces in this position"), 3.5, box.width - 4.0)
+        return
+    extra = [seg for seg in fp.plan.segments if not any(seg.symbol == side[0] for side in fp.sides)]
+    asked = [side[:3] for side in sides if side[3]] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
+    found = [tr("{quantity} = {value} N").format(quantity=sign.replace(BAR, ""),
+                                                 value=newtons(clean(fp.plan.length(tail, head).at(k), size)))
+             for sign, tail, head in asked]
+    frame, lines, height = _over_equation(project, canvas, box, fp, (terms(sides), found))
+    canvas.title(box, fp.plan.title, str(frame.scale))
+    flat_crossings.warn(project, canvas, box, fp.plan)
+    s = stage(canvas, fp.plan, k, frame)
+    tiny = _draw_sides(s, sides, inside.centre)
+    for seg in extra:
+        s.vector(seg.tail, seg.head)
+        s.letters(seg.head, seg.symbol, at=(s.at(seg.tail) + s.at(seg.head)) / 2)
+    for names in joined({name: frame(z) for name, z in points.items()}, tiny, 0.5):
+        s.letters(names[0], ", ".join(sorted(names, key=int)), s.at(names[0]) - inside.centre, 2.5, 0.8)
+    if tiny:
+        canvas.note(box, tr("Less than 1{space}mm: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny.values())))
+    # Equation and values close under a polygon that does not fill the height of its place.
+    lowest = min(frame(z).imag for z in points.values())
+    low = max(box.y0, lowest - ROOM - max(AROUND[1], LINE * len(lines)))
+    for k, line in enumerate(reversed(lines)):
+        canvas.text(complex(box.centre.real, low + 3.0 + LINE * k), line, height, "centre")
+
+
+def _over_equation(project: Project, canvas: Canvas, box: Box, fp: ForcePlan,
+                   texts: tuple[list[str], list[str]]) -> tuple[PlanFrame, list[str], float]:
+    """A force polygon's frame, the lines of its equation and values, and their height.
+
+    Where there is room over the polygon it goes up rather than that they stand in smaller letters than those of its neighbours;
+    where there is none it comes out a little smaller.
+    """
+    k, points, name = project.force_index, list(polygon(fp, project.force_index)[0].values()), fp.plan.name
+
+    def placed(lines: int) -> tuple[PlanFrame, list[str], float]:
+        left, below, right, above = AROUND
+        inside = box.inset(left, below + LINE * (lines - LINES), right, above)
+        frame = fit_frame(project, canvas, name, "μ_F", tr("N/mm"), points, [0j] * len(points), inside, finest(fp, k))
+        ends = [complex(frame(z)).imag for z in points]
+        lifts = 0.0, max(inside.y1 - max(ends), 0.0)
+        least, most = (max(LINES, int((min(ends) + lift - ROOM - box.y0) / LINE)) for lift in lifts)
+        found, height = equation(*texts, box.width - 4.0, least)
+        higher, larger = equation(*texts, box.width - 4.0, most)
+        if larger <= height:
+            return frame, found, height
+        lift = ROOM + LINE * len(higher) - (min(ends) - box.y0)
+        return replace(frame, origin=frame.origin + 1j * max(lift, 0.0)), higher, larger
+
+    first = placed(LINES)
+    lines, large = equation(*texts, box.width - 4.0, 2 * LINES)
+    if large > first[2] and name not in project.variant.scales:
+        smaller = placed(len(lines) + 1)
+        if smaller[2] == large and smaller[0].scale.mu < SMALLER * first[0].scale.mu:
+            return smaller
+        canvas.scales[name] = first[0].scale
+    return first
+
+
+SMALLER = 1.6
+"""So many times the scale factor of a force plan may be that its equation stands in letters as high as the others."""
+
+
+def heads_apart(sides: Sequence[tuple[complex, complex]]) -> list[float | None]:
+    """Sizes of arrow heads, mm, where a short side folds back along the one before: both heads have to be seen on its length."""
+    sizes: list[float | None] = [None] * len(sides)
+    for n, ((a, b), (c, d)) in enumerate(zip(sides, [*sides[1:], *sides[:1]], strict=True)):
+        first, second = b - a, d - c
+        turned = np.conj(first) * second
+        back = abs(b - c) < SAME and turned.real < 0 and abs(turned.imag) < ALONG * abs(turned)
+        if back and SHORTEST <= abs(second) < min(abs(first), 2 * ARROW[0]):
+            sizes[n] = sizes[(n + 1) % len(sides)] = 0.42 * abs(second)
+    return sizes
+
+
+def _draw_sides(s: PlayerStage, sides: Sequence[tuple[str, Step, Step, bool]], centre: complex) -> dict[tuple[str, str], str]:
+    """Sides of a force polygon with their signs outside it; those too short to be drawn are told by their vertices."""
+    tiny = {}
+    heads = heads_apart([(s.at(tail), s.at(head)) for _, tail, head, _ in sides])
+    for (sign, tail, head, _), size in zip(sides, heads, strict=True):
+        a, b = s.at(tail), s.at(head)
+        if abs(b - a) < SHORTEST:
+            value = newtons(s.value(s.plan.length(tail, head)))
+            tiny[tail.name, head.name] = tr("{quantity} = {value} N").format(quantity=sign, value=value).replace(" ", TOGETHER)
+            continue
+        s.vector(tail, head, size=size)
+        middle, n = (a + b) / 2, 1j * (b - a)
+        s.letters(head, sign, -n if (np.conj(n) * (middle - centre)).real < 0 else n, at=middle)
+    return tiny
+
+
+def newtons(force: float) -> str:
+    """A force for the sheet: tenths of a newton, whole ones from 10 kN on, small forces with four figures."""
+    return fixed(force, 0 if force >= 1e4 else 1) if force >= 10 else number(force, 4)
+
+
+def equation(terms: list[str], values: list[str], width: float, most: int) -> tuple[list[str], float]:
+    """Vector equation of a force plan and the values found, on ``most`` lines at most, and the height of their letters, mm.
+
+    Rather on more lines than in smaller letters: all equations of a sheet are to be read alike.
+    """
+    # A line ends after a sign; a value is not parted from its unit.
+    texts = [f"{TOGETHER}+ ".join(terms) + f"{TOGETHER}={TOGETHER}0", "; ".join(value.replace(" ", TOGETHER) for value in values)]
+    for height in (3.5, 2.5):
+        broken = [_broken(text, height, width, most) for text in texts if text]
+        if all(broken) and sum(map(len, broken)) <= most:
+            return [line for lines in broken for line in lines], height
+    lines = [line for text, count in zip(texts, (2, 1), strict=True) if text for line in wrapped(text, 2.5, count)]
+    return lines, size_for(lines, width, 2.5)
+
+
+def _broken(text: str, height: float, width: float, most: int) -> list[str]:
+    """A text on as few lines as it needs; none where so many are not enough."""
+    found = (wrapped(text, height, count) for count in range(1, most + 1))
+    return next((lines for lines in found if max(letter(line, height).width for line in lines) <= width), [])
+
+
+def _fitted(canvas: Canvas, at: complex, text: str, height: float, width: float, align: Align = "centre") -> None:
+    canvas.text(at, text, size_for([text], width, height), align)
+
+
+def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The initial link with its forces and arms beside its force plan."""
+    k, study, c, driver = project.force_index, project.study, project.mechanism.crank, project.driver
+    forces, pos = study.forces, study.positions
+    share = float(options.get("scheme", 0.5))
+    left, right = options.get("places", (Box(box.x0, box.y0, box.x0 + share * box.width, box.y1),
+                                         Box(box.x0 + share * box.width + 4.0, box.y0, box.x1, box.y1)))
+    centre, pins = pos.points[c.pivot], [pos.points[name] for name in link_marks.crank_pins(pos)]
+    pivot, ends = complex(centre.at(k)), [complex(pin.at(k)) for pin in pins]
+    shown = on_crank(project, k)
+    away = clear(pivot, ends, shown)
+    frame = fit_frame(project, canvas, "scheme-crank", "μ_l", tr("m/mm"), *crank_scheme(project, k, shown), left.inset(*CRANK),
+                      finest_crank(project))
+    canvas.title(left, tr("Input link"), str(frame.scale))
+    s = stage(canvas, pos.plan, k, frame)
+    if driver is not None and pos.contact is not None:  # pitch circle of the wheel on the shaft, and its pitch point
+        play(s, [pos.contact], "centre", only="circle")
+        s.dot(pos.contact, 0.6, "thin")
+        s.letters(pos.contact, "P", 1j * complex(np.exp(1j * driver.mate)), gap=1.5)
+    link_marks.draw(s, pos, "main", [c.link])
+    for point in (centre, *pins):
+        s.letters(point, link_marks.indexed(point.name), gap=2.8)
+    draw_arms(s, pivot, [force for force in shown if force.at != pivot])
+    draw_forces(s, shown)
+    symbols.rotation_arrow(s.pen(study.velocities.omega[c.link], "symbol"), s.at(centre), 14.0, away, c.omega, f"ω_{c.link}")
+    moment = None if driver is not None else forces.balancing
+    if moment is not None and not is_zero(moment.at(k), forces.moment_size(k)):
+        _turning(s, s.at(centre), 24.0, away, Couple(balancing_sign(project), 0j, float(moment.at(k)), moment))
+    for line in jumps(project, [c.link]):
+        canvas.note(left, line)
+    _crank_couples(project, s, left, s.at(centre), away)
+    _force_plan(project, canvas, right, forces.plans[c.link], k)
+
+
+def _crank_couples(project: Project, s: PlayerStage, box: Box, at: complex, away: complex) -> None:
+    """Couples on the crank, its inertia couple among them, as arrows and with their values."""
+    k, forces = project.force_index, project.study.forces
+    said = []
+    for n, couple in couples_of(project, project.mechanism.crank.link):
+        hinge = hinge_of(project, couple)
+        if hinge is None:
+            _turning(s, at, couple_radius(n), away, couple)
+        else:
+            _turning(s, s.at(hinge), 6.0, -away if s.at(hinge) == at else away, couple)
+        said.append(tr("{quantity} = {value} N·m").format(quantity=couple.symbol, value=number(abs(couple.value), 5)))
+    if said and project.driver is None and forces.balancing is not None:
+        moment = number(float(project.study.balance["M"].at(k)), 5, forces.moment_size(k))
+        said.append(tr("{quantity} = {value} N·m").format(quantity=balancing_sign(project), value=moment))
+    if said:
+        _fitted(s.canvas, complex(box.centre.real, box.y0 + 3.0), "; ".join(said), 3.5, box.width - 4.0)
+
+
+def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Zhukovsky's lever: the velocity plan turned by 90 degrees with every force and its arm."""
+    k, lv = project.force_index, project.study.lever
+    points = [complex(step.at(k)) for step in lv.points.values()]
+    shown = on_lever(project, k)
+    frame = fit_frame(project, canvas, "lever", "μ_V", tr("(m/s)/mm"), *lever_scheme(project, k, shown), box.inset(*LEVER))
+    plain: Scale | None = canvas.scales.get("velocities")
+    text = str(frame.scale)
+    ratio = plain.mu / frame.scale.mu if plain is not None else 1.0
+    if ratio > 1.01 and abs(100 * ratio - round(100 * ratio)) < 1e-6:  # 2,667 times tells nothing
+        said = tr("{scale} (enlarged {times})").format(scale=text, times=times(ratio))
+        # In a narrow place by its sign: all scale factors of a sheet have letters of one height.
+        text = said if letter(said, 5.0).width <= box.width - 2.0 else f"{text} (×{number(ratio)})"
+    canvas.title(box, tr("Zhukovsky lever (position {label})").format(label=project.cycle.labels[k]), text)
+    turned = stage(canvas, lv.velocities.plan, k, replace(frame, turn=pi / 2))
+    vectors = turned_vectors(lv)
+    for seg in vectors:
+        turned.pen(seg.head, "vector", f"{seg.tail.name}–{seg.head.name}").line(turned.at(seg.tail), turned.at(seg.head), "axis")
+    s = stage(canvas, lv.plan, k, frame)
+    s.dot("p", 0.9)
+    s.letters("p", "p", gap=1.2)
+    _turned_letters(s, turned, lv.points, vectors)
+    if lv.contact is not None and project.driver is not None:
+        play(s, [lv.contact], "axis")
+        s.letters(lv.contact, lv.contact.name, gap=1.2)
+    draw_arms(s, 0j, shown, points=[frame(z) for z in points])
+    draw_forces(s, shown)
+
+
+def _turned_letters(s: PlayerStage, turned: PlayerStage, points: Mapping[str, Step], vectors: list[Segment]) -> None:
+    """Dots of the turned plan's points and their letters with a prime; those of one place together.
+
+    ``points`` are those that forces hang on; the other vertices are those of the velocity plan itself, which is ``turned``.
+    """
+    vertices = [step for seg in vectors for step in (seg.tail, seg.head) if step.name != turned.plan.pole]
+    every = {name: (s, step) for name, step in points.items()}
+    every |= {step.name: (turned, step) for step in vertices if step.name not in points}
+    names = list(every)
+    for same in together([on.at(step) for on, step in every.values()], 0.5):
+        here, first = every[names[same[0]]]
+        at = here.at(first)
+        here.dot(first)
+        text = ", ".join(f"{link_marks.indexed(names[i])}′" for i in same)
+        here.letters(first, text, at - s.frame(0j), gap=1.2)
+
+
+def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The balancing force by both methods and their difference; moments are positive in the sense of rotation."""
+    k, study = project.force_index, project.study
+    forces: Kinetostatics = study.forces
+    assert forces.balancing is not None
+    assert study.lever.balancing is not None
+    force, sign = project.driver is not None, balancing_sign(project)
+    kind = forces.force_size(k) if force else forces.moment_size(k)
+    drives = 1.0
+    if project.driver is not None:  # signed along the line that drives the crank
+        along = project.driver.direction(project.mechanism.crank.sense)
+        drives = -1.0 if (complex(forces.balancing.at(k)) * along.conjugate()).real < 0 else 1.0
+    kinetic, hung = (clean(drives * abs(step.at(k)), kind) for step in (forces.balancing, study.lever.balancing)) if force else \
+        (clean(float(study.balance[name].at(k)), kind) for name in ("M", "M_р"))
+    unit = tr("N") if force else tr("N·m")
+    difference = float(study.balance["Δ"].at(k)) if kinetic else 0.0
+    heading = tr("Balancing force") if force else tr("Balancing moment (“+”: in the sense of ω_1)")
+    decimals = decimals_for((kinetic, hung), 2)
+    rows = [[heading, tr("Value")],
+            [tr("Force analysis: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(kinetic, decimals)],
+            [tr("Zhukovsky lever: {quantity}, {unit}").format(quantity=sign, unit=unit), fixed(hung, decimals)],
+            [tr("Difference, %"), number(difference, 2, 100.0)]]
+    row, width = min(box.height / len(rows), 9.0), min(box.width, 210.0)
+    canvas.table(complex(box.x0, box.y1), widened([width * 0.66, width * 0.34], rows, 3.5), rows, row, 3.5)
+    if force and kinetic < 0:
+        canvas.note(box, tr("{quantity} < 0: the mate holds the wheel back, in truth by the other flanks of its teeth").format(
+            quantity=sign))

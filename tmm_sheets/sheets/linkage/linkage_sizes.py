@@ -1,0 +1,229 @@
+"""What the views of a linkage need of their places, told from the points of its plans; nothing is drawn for it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from math import ceil, floor, inf, log10
+from typing import TYPE_CHECKING, Any
+
+from tmm_sheets.box import Box
+from tmm_sheets.construction.scale import HANDY
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.sheets.arrangement import ViewPlace
+from tmm_sheets.sheets.border_solver import BorderNode, Need, joined, rounded_up
+from tmm_sheets.sheets.frame import extent
+from tmm_sheets.sheets.linkage import false_positions as triads_by_hand
+from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
+from tmm_sheets.sheets.view_sizes import fixed, leaf, reaching, rows
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+MAIN = 4
+"""How much more than others the position plans count: the mechanism is what a sheet is about."""
+
+
+LINKS = 0.4
+"""Size of links in that of their whole scheme, below which they are not what its scale factor is for."""
+
+
+OF_FORCE = 6.0
+"""Length of a group's links that each force on its scheme needs, mm."""
+
+
+OF_POINT = 5.0
+"""The same of a plan of accelerations, mm, for each of its points: letters of the points and of the vectors between them."""
+
+
+ON_LEVER = 5.0
+"""The same of Zhukovsky's lever, mm: its forces stand all round."""
+
+
+OF_VALUE = 24.0
+"""Room of one force with its value in the line under a force plan, mm, about."""
+
+
+def positions(project: Project, view: ViewPlace) -> BorderNode:
+    """The position plans with all that is drawn about them."""
+    around = kinematic_frames.positions_around(project, view.options)
+    z, d = kinematic_frames.positions_reach(project)
+    return leaf(view.box, reaching(view.box, z, d, around, (max(110.0, 0.75 * view.box.width), 90.0)), MAIN)
+
+
+def velocities(project: Project, view: ViewPlace) -> BorderNode:
+    """All velocity plans, of equal scale."""
+    spans, longest = kinematic_frames.velocity_spans(project, view.options)
+    finest = longest / kinematic_frames.LONGEST
+    around = kinematic_frames.MARGIN, kinematic_frames.HEAD
+    title = 22.0
+    if len(spans) == 1:
+        need = Need((spans[0].width, spans[0].height), (around[0], around[1] + title), (80.0, 80.0), finest=finest)
+        return leaf(view.box, need)
+
+    @cache
+    def in_place(width: int, height: int) -> float:
+        mu = kinematic_frames.most_room(spans, Box(0.0, 0.0, width, height - title))[0]
+        if not 0 < mu < inf:
+            return 1.0
+        mu = rounded_up(max(mu, finest))
+        return sum((s.width / mu + around[0]) * (s.height / mu + around[1]) for s in spans) + title * width
+
+    def drawn(width: float, height: float) -> float:
+        return in_place(round(width), round(height))
+
+    # All velocities are measured on them, and all that follows from these.
+    return leaf(view.box, Need(least=(0.7 * view.box.width, 0.7 * view.box.height), drawn=drawn), 3)
+
+
+def accelerations(project: Project, view: ViewPlace) -> BorderNode:
+    """The acceleration plan with room for its letters."""
+    real = kinematic_frames.plan_extent(project.study.accelerations.plan, project.force_index)
+    left, below, right, above = kinematic_frames.ACCELERATIONS
+    around = left + right, below + above
+    title = letter(kinematic_frames.title_of_accelerations(project, project.force_index), 5.0).width
+    need = Need((real.width, real.height), around, (max(88.0, title + 1.0), 80.0))
+    points = sum(step.rule.gives == "point" for step in project.study.accelerations.plan.steps.values())
+    return leaf(view.box, _readable(need, max(real.width, real.height), points, OF_POINT), 0.8)
+
+
+def false_positions(project: Project, view: ViewPlace) -> BorderNode | None:
+    """A group of class III by false positions."""
+    found, nth = triads_by_hand.triads(project), int(view.options.get("group", 1))
+    if nth > len(found):
+        return None
+    reach = triads_by_hand.reach(project, found[nth - 1])
+    return leaf(view.box, reaching(view.box, *reach, triads_by_hand.AROUND, (110.0, 90.0)))
+
+
+def group(project: Project, view: ViewPlace) -> BorderNode | None:
+    """Loaded scheme and force plans: side by side, or the plans one under another, or the scheme over them: what fills most."""
+    k, forces = project.force_index, project.study.forces
+    nth = int(view.options.get("group", 1))
+    if not 1 <= nth <= len(project.mechanism.groups):
+        return fixed(view.box)
+    g = tuple(reversed(project.mechanism.groups))[nth - 1]
+    box, share = view.box, float(view.options.get("scheme", 0.45))
+    need = _readable(reaching(box, *kinetic_frames.scheme(project, g, k), kinetic_frames.SCHEME, (92.0, 80.0)),
+                     *kinetic_frames.crowd(project, g, k), OF_FORCE)
+    plans = [_force_plan(project, forces.plans[of], k) for of in g.kind.force_plans(g)]
+    return _parted(box, share, need, plans)
+
+
+def each_group(project: Project, view: ViewPlace) -> list[ViewPlace]:
+    """Every group of the mechanism in a place of its own."""
+    places = kinetic_frames.places_of_groups(view.box, len(project.mechanism.groups), int(view.options.get("columns", 1)), 0.0)
+    return [ViewPlace("kinetics.group", place, {"scheme": 0.45, "group": i}) for i, place in enumerate(places, 1)]
+
+
+def _readable(need: Need, size: float, forces: int, each: float) -> Need:
+    """Need of a figure of such a size, in its unit, that has room along it for so many forces, ``each`` of a length, mm.
+
+    Where only its width and height are measured, arrows round a small figure take the same place as round a large one. What
+    is small beside its own forces and their arms, slider blocks in a slot, is no larger at any factor that has room for these.
+    """
+    if not forces or not size > LINKS * max(need.span):
+        return need
+    coarsest = size / (each * forces)
+    power = 10.0 ** floor(log10(coarsest))
+    mu = power * max(factor for factor in HANDY if factor * power <= coarsest * (1 + 1e-9))
+    wide, high = (max(least, span / mu + beside) for least, span, beside in zip(need.least, need.span, need.around, strict=True))
+    return replace(need, least=(wide, high))
+
+
+def _parted(box: Box, share: float, scheme: Need, plans: list[Need]) -> BorderNode:
+    def node(axis: int, inner: int) -> BorderNode:
+        each = (1.0 - share) / len(plans)
+        of_plans = joined(inner, [leaf(box, need, each) for need in plans], [1.0] * len(plans), 4.0)
+        return joined(axis, [leaf(box, scheme, share), of_plans], [share, 1.0 - share], 4.0)
+
+    found = [node(axis, inner) for axis, inner in ((0, 1), (0, 0), (1, 0))[::2 if len(plans) == 1 else 1]]
+    for tree in found:
+        for _ in range(2):
+            tree.settle(box.width, box.height, (16.0, 8.0, 4.0))
+    return min(found, key=lambda tree: round(tree.cost(box.width, box.height), 3))
+
+
+def _force_plan(project: Project, fp: Any, k: int) -> Need:
+    real = kinetic_frames.polygon(fp, k)[1]
+    left, below, right, above = kinetic_frames.AROUND
+    sides = kinetic_frames.acting_sides(fp, k, project.study.forces.force_size(k))
+    parts = kinetic_frames.terms(sides)
+    half = " + ".join(parts[:(len(parts) + 1) // 2]) + " +"
+    asked = sum(side[3] for side in sides) + sum(not any(seg.symbol == side[0] for side in fp.sides) for seg in fp.plan.segments)
+    wide = max(78.0, letter(half, 2.5).width + 8.0, OF_VALUE * asked + 6.0)
+    return Need((real.width, real.height), (left + right, below + above), (wide, 56.0), finest=kinetic_frames.finest(fp, k))
+
+
+def crank(project: Project, view: ViewPlace) -> BorderNode:
+    """The crank with its force plan."""
+    k = project.force_index
+    share = float(view.options.get("scheme", 0.5))
+    reach = kinetic_frames.crank_scheme(project, k, kinetic_frames.on_crank(project, k))
+    scheme = replace(reaching(view.box, *reach, kinetic_frames.CRANK, (76.0, 80.0)), finest=kinetic_frames.finest_crank(project))
+    plan = _force_plan(project, project.study.forces.plans[project.mechanism.crank.link], k)
+    return _parted(view.box, share, scheme, [plan])
+
+
+def lever(project: Project, view: ViewPlace) -> BorderNode:
+    """Zhukovsky's lever."""
+    k = project.force_index
+    reach = kinetic_frames.lever_scheme(project, k, kinetic_frames.on_lever(project, k))
+    # Every force and its arm hangs on it: no view has more labels.
+    need = reaching(view.box, *reach, kinetic_frames.LEVER, (112.0, 100.0))
+    points = extent([complex(step.at(k)) for step in project.study.lever.points.values()])
+    return leaf(view.box, _readable(need, max(points.width, points.height), len(kinetic_frames.on_lever(project, k)), ON_LEVER), 3)
+
+
+def structure(project: Project, view: ViewPlace) -> BorderNode:
+    """A row for each group."""
+    return rows(project, view, len(project.mechanism.groups) + 1, 26.0, (7.0, 7.0), (122.0, 170.0))
+
+
+def motion_table(project: Project, view: ViewPlace) -> BorderNode | None:
+    """A row for each position."""
+    if not project.diagrams:
+        return None
+    count = len(project.cycle.labels) + (2 if view.options.get("links") else 1)
+    return rows(project, view, count, 9.0, (5.6 if count <= 26 else 4.0, 7.0), (100.0, 170.0))
+
+
+def velocity_tables(project: Project, view: ViewPlace) -> BorderNode:
+    """A row for each drawn position."""
+    over = 2 if view.options.get("stacked") else 1
+    count = over * (len(project.cycle.drawn) + 2)
+    return rows(project, view, count, 10.0 * over, (4.6, 7.5), (0.8 * view.box.width, inf))
+
+
+def results(project: Project, view: ViewPlace) -> BorderNode:
+    """Four lines."""
+    return rows(project, view, 4, 0.0, (7.0, 9.0), (128.0, 170.0))
+
+
+def values(project: Project, view: ViewPlace) -> BorderNode:
+    """Tables of points, links and loads."""
+    points, links = len(project.study.positions.points), len(project.mechanism.links)
+    loads = len(project.applied)
+    count = 1 + ceil((points - len(project.mechanism.fixed)) / 2) + 1 + links + (1 + loads if loads else 0)
+    tables = 3 if loads else 2
+    return rows(project, view, count, 8.0 * tables, (4.6, 7.0), (140.0, 200.0))
+
+
+def motion(project: Project, view: ViewPlace) -> BorderNode | None:
+    """Diagrams of displacement, velocity and acceleration."""
+    if not project.diagrams:
+        return None
+    return leaf(view.box, Need(least=(180.0, 150.0), drawn=lambda w, h: 0.75 * w * h), 0.5)
+
+
+def loads(project: Project, view: ViewPlace) -> BorderNode | None:
+    """The load over the turn, where it is more than pressure in a cylinder."""
+    pressures = {f.name for f in project.variant.force if f.bore is not None}
+    if all(f.name in pressures for f in project.applied):
+        return None
+    return leaf(view.box, Need(least=(150.0, 70.0), most=(inf, 110.0), drawn=lambda w, h: 0.7 * w * h))
+
+
+def synthesis(project: Project, view: ViewPlace) -> BorderNode | None:
+    """The given sizes and what is found from them."""
+    return fixed(view.box) if project.variant.synthesis is not None else None

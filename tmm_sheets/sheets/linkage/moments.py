@@ -1,0 +1,238 @@
+"""Views of the moment equations of the force study, in letters and in numbers: of the groups and of Zhukovsky's lever."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import product
+from math import inf
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from tmm_sheets.construction.indices import pair_index
+from tmm_sheets.construction.plan import symbol
+from tmm_sheets.construction.step import Step
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.lettering import broken, letter
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.numbers import is_zero, number
+from tmm_sheets.sheets.linkage.kinetic_frames import arm_sign, balancing_sign, flat, normal_sign, on_lever
+from tmm_sheets.sheets.linkage.link_marks import indexed
+from tmm_sheets.words import tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.mechanism.model import StructuralGroup
+    from tmm_sheets.project import Project
+
+BAR = "\u0305"
+WAYS = ((3.5, 7.0, inf), (3.5, 6.0, inf), *((3.5, 6.0, width) for width in (150.0, 120.0, 95.0, 80.0)), (2.5, 5.0, inf))
+"""Heights of the letters, distances of the lines and widths at which equations are broken that are tried, mm."""
+
+
+class Term(NamedTuple):
+    """A term of a sum of moments: its letters, its sign, and its numbers: a force (N) with its arm (m), or a couple (N m)."""
+
+    letters: str
+    sign: float
+    values: tuple[float, ...]
+
+
+def equations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the equations can do with, mm: each in one line, then broken, then in small letters; last without guides."""
+    sizes = []
+    for texts, (height, step, width) in _choices(project):
+        lines = [line for text in texts for line in broken(text, width, height)]
+        sizes.append((max(letter(line, height).width for line in lines) + 6.0, 12.0 + step * len(lines)))
+    return sizes
+
+
+def _choices(project: Project) -> list[tuple[list[str], tuple[float, float, float]]]:
+    """The equations with those of the guides' reactions, if there are any; rather without them than in small letters."""
+    every, usual = list(_lines(project, guides=True)), list(_lines(project))
+    guided = product([every], WAYS[:-1]) if len(every) > len(usual) else ()
+    return [(texts, way) for texts, way in (*guided, *product([usual], WAYS)) if texts]
+
+
+def equations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Every equation of moments that gives a part of a reaction or the balancing moment: letters, then numbers."""
+    canvas.of = "moments"
+    left = canvas.title(box, tr("Equations of moments"))
+    for texts, (height, step, _) in _choices(project):
+        lines = [line for text in texts for line in broken(text, box.width - 6.0 + 1e-6, height)]
+        if 12.0 + step * len(lines) <= box.height + 1e-6:
+            break
+    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
+
+
+def _lines(project: Project, guides: bool = False) -> Iterator[str]:
+    """The equations, with those that give where the reactions of fixed ``guides`` act."""
+    k, forces, pos = project.force_index, project.study.forces, project.study.positions
+    for g in reversed(project.mechanism.groups):  # as the reactions are found: the crank's neighbours last
+        for part in forces.from_moments:
+            if part.link in g.links:
+                total, centre, at = part.vector.args
+                sign, arm = f"F_{{{pair_index(part.link, part.source)}}}^τ", f"l_{{{part.at}{part.centre}}}"
+                length = float(forces.positions.plan.length(centre, at).at(k))
+                # The scheme of a class III group shows the arms about its special point: others say what they are about.
+                about = "" if g.kind.grade == 2 else f"^{part.centre}"
+                yield from _solved(project, indexed(part.centre), total, (sign, arm, length), part.vector, about)
+        if guides:
+            yield from _guided(project, g)
+        if (about := g.kind.about(g)) in pos.special:
+            point, third = pos.special[about].step, pos.special[about].third
+            if (normal := forces.about_special(point)) is not None:
+                sign = normal_sign(project, third)
+                length = abs(float(forces.arm_about(point, normal.args[2], normal).at(k)))
+                yield from _solved(project, f"{{{about}}}", normal.args[0], (sign, arm_sign(sign), length), normal)
+    if project.driver is None and forces.balancing is not None:
+        total = forces.balancing.args[0]
+        terms = list(_terms(project, total)) if np.isfinite(total.at(k)) else []
+        if terms:
+            # Taken to act in the sense of rotation: where it comes out negative it acts against it.
+            name, sense = balancing_sign(project), float(pos.mechanism.crank.sense)
+            centre = indexed(pos.mechanism.crank.pivot)
+            yield tr("ΣM_{centre} = {sum} = 0").format(centre=centre, sum=_sum([Term(name, sense, ()), *terms]))
+            solved = [term._replace(sign=-sense * term.sign) for term in terms]
+            value = number(float(project.study.balance["M"].at(k)), 5, forces.moment_size(k))
+            yield tr("{moment} = {sum} = {value} N·m (“+”: in the sense of ω_1)").format(
+                moment=name, sum=_sum(solved, numbers=True), value=value)
+
+
+def _guided(project: Project, g: StructuralGroup) -> Iterator[str]:
+    """Couples of the reactions of a group's guides, and the arms at which they act; none for one through its hinge."""
+    k, forces, guides = project.force_index, project.study.forces, project.mechanism.guides
+    for pair in (pair_index(link, guides[guide].link) for guide in g.guides for link in g.links):
+        couple = forces.couples.get(f"F{pair}")
+        if couple is None or not np.isfinite(value := float(couple.at(k))) or is_zero(value, forces.moment_size(k)):
+            continue
+        total = couple.args[0]
+        terms = list(_terms(project, total))
+        centre, sign = indexed(total.args[0].name), f"M_{{{pair}}}"
+        yield from _passed_on(project, total)
+        yield tr("ΣM_{centre} = {sum} = 0").format(centre=centre, sum=_sum([Term(sign, 1.0 if value > 0 else -1.0, ()), *terms]))
+        yield tr("{force} = |{sum}| = {value} N·m").format(force=sign, sum=_sum(terms, numbers=True), value=number(abs(value), 5))
+        force, arm = complex(forces.reactions[f"F{pair}"].at(k)), forces.arms.get(f"h{pair}")
+        if arm is not None and np.isfinite(arm.at(k)) and not is_zero(force, forces.force_size(k)):
+            yield tr("h_{{{pair}}} = M_{{{pair}}}/F_{{{pair}}} = {couple}/{force} = {value} m").format(
+                pair=pair, couple=number(abs(value), 5), force=number(abs(force), 5), value=number(abs(float(arm.at(k))), 4))
+
+
+def _passed_on(project: Project, total: Step) -> Iterator[str]:
+    """Couples in a sum that a block passes on from its own loads, such as friction in its hinge: the scheme shows only these."""
+    k, own = project.force_index, [id(couple) for couple in project.study.forces.couples.values()]
+    for couple in total.args[3::3]:
+        if isinstance(couple, Step) and couple.args and id(couple.args[0]) in own and (
+                terms := list(_terms(project, couple.args[0].args[0]))):
+            yield tr("{force} = {sum} = {value} N·m").format(
+                force=symbol(couple.symbol or couple.name).replace(BAR, ""), sum=_sum(terms),
+                value=number(float(couple.at(k)), 5, project.study.forces.moment_size(k)))
+
+
+def _solved(project: Project, centre: str, total: Step, own: tuple[str, str, float], found: Step,
+            about: str = "") -> Iterator[str]:
+    """An equation of moments in letters, and what it gives in numbers.
+
+    ``own`` are sign, arm and its length, m, of the unknown; ``about`` stands above the arms of the others.
+    """
+    k, forces, (sign, arm, length) = project.force_index, project.study.forces, own
+    if not np.isfinite(total.at(k)) or not (terms := list(_terms(project, total, about))):
+        return
+    # The unknown turns counter-clockwise about the centre where the others together turn clockwise.
+    turning = -1.0 if float(total.at(k)) > 0 else 1.0
+    yield tr("ΣM_{centre} = {sum} = 0").format(centre=centre, sum=_sum([Term(f"{sign}·{arm}", turning, ()), *terms]))
+    value = number(abs(complex(found.at(k))), 5, forces.force_size(k))
+    yield tr("{force} = |{sum}|/{length} = {value} N").format(
+        force=sign, sum=_sum(terms, numbers=True), length=number(length), value=value)
+
+
+def lever_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the equation of the lever can do with, mm: none without the lever on the sheet."""
+    if "lever" not in canvas.scales:
+        return []
+    sizes = []
+    for height, step in ((3.5, 6.0), (2.5, 5.0)):
+        for width in (250.0, 190.0, 140.0, 110.0, 90.0):
+            if not (lines := _lever_lines(project, canvas, width - 6.0, height, options)):
+                return []  # no force has a moment about the pole
+            sizes.append((max(letter(line, height).width for line in lines) + 6.0, 10.0 + step * len(lines)))
+    return sizes
+
+
+def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Sum of the moments about the pole of Zhukovsky's lever: letters, then numbers; arms in mm as they are drawn."""
+    canvas.of = "moments of the lever"
+    left = canvas.title(box, tr("Equation of the lever"))
+    for height, step in ((3.5, 6.0), (2.5, 5.0)):
+        lines = _lever_lines(project, canvas, box.width - 3.0, height, options)
+        if 10.0 + step * len(lines) <= box.height + 1e-6:
+            break
+    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
+
+
+def _lever_lines(project: Project, canvas: Canvas, width: float, height: float, options: dict[str, Any]) -> list[str]:
+    """Lines of the equation of the lever, broken before a sign where they would be wider than ``width``, mm.
+
+    ``letters`` = false gives them in numbers alone.
+    """
+    k, study, mm = project.force_index, project.study, canvas.scales["lever"].mm
+    least, own = study.forces.force_size(k) * project.mechanism.crank.speed, study.lever.hung[-1]
+    by_moment = project.driver is None
+    terms = []
+    for force in on_lever(project, k):
+        arm, size = float(force.arm.at(k)), abs(force.vector)
+        if force.step is not own.force and not is_zero(size * arm, least):
+            sign = force.symbol.replace(BAR, "")
+            terms.append(Term(f"{sign}·h_{{{flat(force.symbol)}}}", float(np.sign(arm)), (size, float(mm(abs(arm))))))
+    name = flat(balancing_sign(project)) if by_moment else flat(own.symbol)
+    sign = f"F_{{{name}}}" if by_moment else own.symbol.replace(BAR, "")
+    arm, value = float(own.arm.at(k)), abs(complex(own.force.at(k)))
+    if by_moment:  # taken to act in the sense of rotation, like the moment that it stands for
+        moment, length = float(study.balance["M_р"].at(k)), project.mechanism.crank.length
+        arm, value = abs(complex(own.at.at(k))) * -1.0, moment / length
+    if not terms or not np.isfinite(arm):
+        return []
+    turning = float(np.sign(arm))
+    own_term = Term(f"{sign}·h_{{{name}}}", turning, ())
+    h, found = number(float(mm(abs(arm)))), number(value, 5, study.forces.force_size(k))
+    if options.get("letters", True):
+        solved = [term._replace(sign=-turning * term.sign) for term in terms]
+        said = [tr("ΣM_p = {sum} = 0").format(sum=_sum([own_term, *terms])),
+                tr("{force} = ({sum})/{arm} = {value} N").format(force=sign, sum=_sum(solved, numbers=True), arm=h, value=found)]
+    else:
+        written = (own_term._replace(letters=f"{sign}·{h}"),
+                   *(term._replace(letters="·".join(map(number, term.values))) for term in terms))
+        said = [tr("ΣM_p = {sum} = 0; {force} = {value} N").format(sum=_sum(written), force=sign, value=found)]
+        said = [text.replace(f"; {sign} = ", f"; {sign}\u00a0= ") for text in said]  # a force stands with its value
+    if by_moment:
+        m = project.mechanism.crank
+        said.append(tr("{moment} = {force}·l_{{{crank}}} = {value} N·m (“+”: in the sense of ω_1)").format(
+            moment=balancing_sign(project), force=sign, crank=f"{m.pivot}{m.pin}",
+            value=number(moment, 5, study.forces.moment_size(k))))
+    return [line for text in said for line in broken(text, width, height)]
+
+
+def _terms(project: Project, total: Step, about: str = "") -> Iterator[Term]:
+    """Terms of a sum of moments at the analysed position, without those that are nothing; ``about`` stands above their arms."""
+    k, forces = project.force_index, project.study.forces
+    letters = {id(load.vector): load.symbol for loads in forces.loads.values() for load in loads}
+    letters |= {id(part): f"{symbol(name)}^τ" for name, part in forces.parts.items()}
+    least = forces.moment_size(k)
+    for at, vector, couple in zip(total.args[1::3], total.args[2::3], total.args[3::3], strict=True):
+        if isinstance(vector, Step):
+            arm = forces.arm_about(total.args[0], at, vector)
+            force, length = abs(complex(vector.at(k))), float(arm.at(k))
+            sign = letters.get(id(vector), symbol(vector.name)).replace(BAR, "")
+            if np.isfinite(length) and not is_zero(force * length, least):  # a force of nothing has no arm
+                yield Term(f"{sign}·{arm_sign(sign)}{about}", 1.0 if length > 0 else -1.0, (force, abs(length)))
+        if isinstance(couple, Step) and not is_zero(value := float(couple.at(k)), least):
+            yield Term(symbol(couple.symbol or couple.name).replace(BAR, ""), 1.0 if value > 0 else -1.0, (abs(value),))
+
+
+def _sum(terms: Sequence[Term], numbers: bool = False) -> str:
+    """Terms with their signs, in letters or in numbers."""
+    said = ""
+    for n, term in enumerate(terms):
+        sign = "−" if term.sign < 0 else "+"
+        text = "·".join(number(value) for value in term.values) if numbers else term.letters
+        said += (f" {sign} " if n else "−" if term.sign < 0 else "") + text
+    return said

@@ -1,0 +1,1 @@
+"""Tables for the room that a sheet has left."""

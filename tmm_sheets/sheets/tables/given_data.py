@@ -1,0 +1,83 @@
+"""Table of what is given of the links, for room that a sheet has left: lengths, masses and moments of inertia."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.tables import needs, size_in
+from tmm_sheets.numbers import is_zero, number
+from tmm_sheets.sheets.linkage.link_marks import drawn_points
+from tmm_sheets.words import tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+ROWS = (7.0, 6.4, 5.6, 4.6)
+"""Heights of the rows that are tried, mm."""
+BESIDE = (1, 2, 3)
+"""How many quantities may stand in one row."""
+HEAD = 8.0
+"""Height of the title over the table, mm."""
+ROOMY = 8.0
+"""What a column is wider than its widest text, mm."""
+
+Rows = list[list[str]]
+
+
+def links_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the table can do with, mm; none where a mechanism has no length of its own."""
+    return [size for size, _, _ in _forms(project)]
+
+
+def links(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Where the fixed hinges are, lengths in the order in which the links are put together, then masses and moments of inertia."""
+    _, rows, row = next(form for form in _forms(project) if form[0][0] <= box.width + 1e-6 and form[0][1] <= box.height + 1e-6)
+    height = size_in(row)
+    widths = needs(rows, height, ROOMY)
+    spare = max(box.width - sum(widths), 0.0) / len(widths)
+    canvas.text(complex(box.centre.real, box.y1 - 5.5), _title(), 3.5, "centre")
+    canvas.table(complex(box.x0, box.y1 - HEAD), [w + spare for w in widths], rows, row, height)
+
+
+def _title() -> str:
+    return tr("Given sizes and masses")
+
+
+def _forms(project: Project) -> Iterator[tuple[tuple[float, float], Rows, float]]:
+    """Size on paper, rows and their height, of the forms of the table: the clearest first."""
+    cells = [[symbol, value] for symbol, value in _quantities(project)]
+    if not cells:
+        return
+    for row, beside in product(ROWS, BESIDE):
+        count = -(-len(cells) // beside)
+        columns = [cells[n * count:(n + 1) * count] for n in range(beside)]
+        lines = [[text for column in columns for text in (column[i] if i < len(column) else ["", ""])] for i in range(count)]
+        rows = [[tr("Quantity"), tr("Value")] * beside, *lines]
+        width = max(sum(needs(rows, size_in(row), ROOMY)), letter(_title(), 3.5).width + 4.0)
+        yield (width, HEAD + row * len(rows)), rows, row
+
+
+def _quantities(project: Project) -> Iterator[tuple[str, str]]:
+    """Letters with unit, and number, of what the task gives of frame and links or a synthesis has found; nothing that is zero."""
+    m = project.mechanism
+    lengths: list[Any] = [m.crank.length]
+    for g in m.groups:
+        lengths += [*g.lengths, g.offset, *getattr(g, "sides", ()), *(leg.length for leg in getattr(g, "legs", ()))]
+    lengths += [p.distance for p in m.points]
+    for name, at in ((name, at) for name, at in m.fixed.items() if name in drawn_points(project.study.positions)):
+        for axis, value in (("x", at.real), ("y", at.imag)):
+            if not is_zero(value, float(m.crank.length)):
+                yield f"{axis}_{{{name}}}, {tr('m')}", number(value)
+    links = sorted(m.links.values(), key=lambda link: (len(link.name), link.name))
+    of_links = [getattr(link, name) for name in ("mass", "inertia") for link in links]
+    for unit, values in ((tr("m"), lengths), (None, of_links)):
+        for value in values:
+            given = getattr(value, "step", value)  # one that a synthesis found has the letters of its step
+            if value and getattr(given, "symbol", ""):
+                said = unit or {"kg": tr("kg"), "kg*m2": tr("kg·m²")}[given.unit]
+                yield f"{given.symbol}, {said}", number(abs(float(value)))  # the other way along its line is no length
