@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from tests.compare.test_tracing import COLUMNS, ROWS, arrow, draw, fill_head, line, paper
+from tests.compare.test_tracing import COLUMNS, HIGH, ROWS, WIDE, arrow, draw, fill_head, line, paper
 from tmm_sheets.compare.photo.arrow_heads import exchanged, with_heads
 from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.judging import judge
@@ -13,9 +13,9 @@ from tmm_sheets.compare.photo.masking import fill
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.traces import InkTrace
 
-A, B = 300 + 300j, 330 + 320j
+A, B = 130 + 440j, 160 + 460j
 WAY = (B - A) / abs(B - A)
-BACK = 330 + 320j, float(np.angle(WAY))
+BACK = 160 + 460j, float(np.angle(WAY))
 """Where the head belongs, and which way it points."""
 OTHER = A, float(np.angle(-WAY))
 """Where it is when the vector is drawn the other way."""
@@ -40,7 +40,7 @@ def heads(known, drawn, at=(), letters=(), blur=0.0, grey=True):
     if not grey:
         ink = np.where(ink > ink.max() / 4, np.uint8(255), np.uint8(0))
     traces = [InkTrace(e, "measured", at=e.points) for e in known]
-    return with_heads(traces, ink, owners, words, np.zeros((594, 841), bool))
+    return with_heads(traces, ink, owners, words, np.zeros((HIGH, WIDE), bool))
 
 
 def ray(number, angle, style="vector", length=30):
@@ -148,7 +148,7 @@ def test_a_vector_drawn_elsewhere_leaves_its_place_to_the_helper_line(under, dra
         fill_head(ink, A + (B - A) * turn, float(np.angle(WAY * turn)))
     traces = [InkTrace(vector, "measured", at=vector.points, head="absent"),
               InkTrace(helper, "beside", turn=0.1, deviation=4, at=there)]
-    found = exchanged(traces, ink, owners, words, np.zeros((594, 841), bool))
+    found = exchanged(traces, ink, owners, words, np.zeros((HIGH, WIDE), bool))
     assert (found[0].status, found[1].status) == status
     assert found[0].head == head
     if status[0] == "beside":
@@ -184,7 +184,7 @@ def test_in_black_and_white_a_helper_line_is_known_by_its_width_alone(grey, draw
 @pytest.mark.parametrize(("positions", "short"), [(1, True), (24, False)])
 def test_thin_lines_fade_in_the_hub_of_many_positions(positions, short):
     """Only where others are on both sides; a single one that stops short does so."""
-    hub, lines, ink = 300 + 300j, [], paper()
+    hub, lines, ink = 130 + 440j, [], paper()
     for k in range(positions):
         e = line(k + 1, hub, hub + 60 * np.exp(2j * np.pi * k / positions), "thin")
         lines.append(e)
@@ -215,7 +215,7 @@ def test_a_faint_head_is_not_missed(dark, head):
     draw(ink, A, B, "vector")
     owners = Owners(ROWS, COLUMNS)
     owners.add(e, e.points)
-    found = with_heads([InkTrace(e, "measured", at=e.points)], ink, owners, np.zeros_like(ink), np.zeros((594, 841), bool))
+    found = with_heads([InkTrace(e, "measured", at=e.points)], ink, owners, np.zeros_like(ink), np.zeros((HIGH, WIDE), bool))
     assert found[0].head in (head, "unknown") if dark else found[0].head == head
 
 
@@ -338,12 +338,12 @@ def test_a_stroke_as_broad_as_a_head_hides_it(wide, head):
 
 @pytest.mark.parametrize(("deviation", "said"), [(0.0, "no arrow head here"), (3.0, "3.0 mm too far up")])
 def test_of_a_vector_drawn_elsewhere_no_head_is_missed_in_its_place(deviation, said):
-    e = arrow(1, 300 + 300j, 340 + 300j)
+    e = arrow(1, 130 + 440j, 170 + 440j)
     t = InkTrace(e, "measured", shift=1j * deviation, deviation=deviation, at=e.points + 1j * deviation, head="absent")
     assert judge(t, 0.25, 0.15).what == said
 
 
-SOUND = [arrow(k, A + 20j * k, B + 20j * k) for k in (11, 12, 13)]
+SOUND = [arrow(k, A + 60 + 20j * (k - 12), B + 60 + 20j * (k - 12)) for k in (11, 12, 13)]
 """Vectors elsewhere, by which it is known how dark a vector is."""
 THEIRS = [(e.points[1], BACK[1]) for e in SOUND]
 
@@ -368,7 +368,7 @@ def test_a_thin_line_elsewhere_is_not_the_vector_that_was_left_out(by, status):
     for place, way in THEIRS:
         fill_head(ink, place, way)
     traces = [InkTrace(e, "measured", deviation=abs(by), at=there.points), *(InkTrace(k, "measured", at=k.points) for k in SOUND)]
-    assert with_heads(traces, ink, owners, np.zeros_like(ink), np.zeros((594, 841), bool))[0].status == status
+    assert with_heads(traces, ink, owners, np.zeros_like(ink), np.zeros((HIGH, WIDE), bool))[0].status == status
 
 
 @pytest.mark.parametrize("aside", [1.1, 6.0])
@@ -389,7 +389,7 @@ def test_the_head_of_a_vector_whose_point_was_moved_stands_there(ends, head):
         owners.add(k, k.points)
         draw(ink, *(k.points + (np.array(ends) if k is other else 0)), k.style)
     traces = [InkTrace(e, "measured", at=e.points), InkTrace(other, "measured", at=other.points + np.array(ends))]
-    assert with_heads(traces, ink, owners, np.zeros_like(ink), np.zeros((594, 841), bool))[0].head == head
+    assert with_heads(traces, ink, owners, np.zeros_like(ink), np.zeros((HIGH, WIDE), bool))[0].head == head
 
 
 @pytest.mark.parametrize(("off", "head"), [(0.0, "absent"), (0.7, "unknown")])
@@ -410,7 +410,7 @@ def test_a_head_is_known_on_a_stroke_that_was_found_a_little_aside():
 def test_a_force_found_aside_of_the_middle_of_its_link_is_missed(off):
     """Others whose heads are seen, thinner than the link, do not make its stroke a broad one."""
     link = line(2, A - 2 * WAY + off * 1j * WAY, B + 30 * WAY + off * 1j * WAY, "main")
-    sound = [arrow(k, 360 + (280 + 10 * k) * 1j, 390 + (280 + 10 * k) * 1j) for k in (3, 4, 5)]
+    sound = [arrow(k, 190 + (420 + 10 * k) * 1j, 220 + (420 + 10 * k) * 1j) for k in (3, 4, 5)]
     known = [arrow(1, A, B), link, *sound]
     found = heads(known, known, [(complex(e.points[1]), 0.0) for e in sound])
     assert [t.head for t in found] == ["absent", "unknown", *["there"] * 3]

@@ -10,11 +10,11 @@ from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.tracing import trace
 from tmm_sheets.drawing.marks import Text
 
-A, B = 250 + 300j, 290 + 300j
+A, B = 80 + 440j, 120 + 440j
 TIP = B - 5
 """A vector ends where its helper line goes on for five millimetres."""
-OTHERS = [line(k, 250 + 1j * y, 290 + 1j * y, style) for k, (y, style) in enumerate(
-    [(320, "construction"), (330, "construction"), (340, "vector"), (350, "vector")], 10)]  # they show what is usual
+OTHERS = [line(k, 80 + 1j * y, 120 + 1j * y, style) for k, (y, style) in enumerate(
+    [(460, "construction"), (470, "construction"), (480, "vector"), (490, "vector")], 10)]  # they show what is usual
 
 
 def verdicts(known, drawn):
@@ -24,7 +24,7 @@ def verdicts(known, drawn):
         draw(ink, *e.points, e.style)
     for a, b, style in drawn:
         draw(ink, a, b, style)
-    here = (slice(6 * (594 - 360), 6 * (594 - 270)), slice(6 * 230, 6 * 310))
+    here = (slice(6 * (594 - 500), 6 * (594 - 410)), slice(6 * 60, 6 * 140))
     ink[here] = cv2.GaussianBlur(ink[here], (0, 0), 2.0)
     found, _ = trace([*known, *OTHERS], ink)
     assert {judge(t, 0.25, 0.15).verdict for t in found[len(known):]} == {"green"}

@@ -12,7 +12,7 @@ from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.compare.photo.tracing import trace
 
-A, B = 250 + 300j, 275 + 300j
+A, B = 80 + 440j, 105 + 440j
 STROKE = [(A, B, "axis"), (A, B, "vector")]
 BLUR = 2.0
 """Pixels of blur (standard deviation), with that of the lines 0.4 mm: a picture of three pixels a millimetre."""
@@ -23,7 +23,7 @@ def picture(drawn):
     ink = paper()
     for a, b, style in drawn:
         draw(ink, a, b, style)
-    here = (slice(6 * (594 - 360), 6 * (594 - 270)), slice(6 * 230, 6 * 310))
+    here = (slice(6 * (594 - 500), 6 * (594 - 410)), slice(6 * 60, 6 * 140))
     ink[here] = cv2.GaussianBlur(ink[here], (0, 0), BLUR)
     return ink
 
@@ -103,7 +103,7 @@ def test_ink_of_nobody_beside_a_stroke_is_seen_on_either_side():
 @pytest.mark.parametrize(("by", "verdict"), [(0.0, "green"), (1.8, "amber"), (-1.8, "amber")])
 def test_a_line_that_was_measured_by_the_ink_of_others_is_told(by, verdict):
     """Two lines of one stroke each find its ink: the one that is elsewhere too, as if it were measured by itself."""
-    usual = [(250 + 1j * y, 290 + 1j * y, style) for y, style in ((320, "axis"), (330, "axis"), (340, "vector"), (350, "vector"))]
+    usual = [(80 + 1j * y, 120 + 1j * y, style) for y, style in ((460, "axis"), (470, "axis"), (480, "vector"), (490, "vector"))]
     known = [line(k, *drawn) for k, drawn in enumerate([*STROKE, *usual], 1)]
     found, _ = trace(known, picture([(A, B + 1j * by, "axis"), (A, B, "vector"), *usual]))
     assert (found[0].status == "beside") == bool(by)

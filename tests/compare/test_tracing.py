@@ -24,7 +24,9 @@ from tmm_sheets.drawing.marks import Provenance as By
 from tmm_sheets.drawing.marks import Text
 from tmm_sheets.drawing.styles import line_type
 
-ROWS, COLUMNS = 594 * 6, 841 * 6
+HIGH, WIDE = 264, 290
+"""Of the sheet so much from the top and from the left, in mm: all that is drawn here lies there."""
+ROWS, COLUMNS = 6 * HIGH, 6 * WIDE
 VIEW = ElementView(0, "view", Box(0, 0, 841, 594))
 
 
@@ -34,7 +36,7 @@ def line(number, a, b, style="main", role="link"):
 
 @cache
 def bare():
-    return np.random.default_rng(3).integers(0, 5, (ROWS, COLUMNS)).astype(np.uint8)
+    return np.random.default_rng(1).integers(0, 5, (ROWS, COLUMNS)).astype(np.uint8)
 
 
 def paper():
@@ -61,14 +63,14 @@ def traced(known, drawn):
     return trace(known, ink)
 
 
-CORNER = 300 + 300j
+CORNER = 130 + 440j
 """Where a line ends on another that crosses there."""
 
 
 @pytest.mark.parametrize("off", [-3.0, -1.5, 1.5, 3.0])
 def test_a_line_that_ends_at_another_is_measured_at_both_sides_of_it(off):
-    known = [line(1, 240 + 300j, CORNER), line(2, 300 + 250j, 300 + 350j)]
-    found, extra = traced(known, [(240 + 300j, CORNER + off, "main"), (300 + 250j, 300 + 350j, "main")])
+    known = [line(1, 70 + 440j, CORNER), line(2, 130 + 390j, 130 + 490j)]
+    found, extra = traced(known, [(70 + 440j, CORNER + off, "main"), (130 + 390j, 130 + 490j, "main")])
     assert found[0].ends[1] == pytest.approx(off, abs=0.5)
     assert found[0].ends[0] == pytest.approx(0, abs=0.3)
     f = judge(found[0], 0.25, 0.15)
@@ -79,17 +81,17 @@ def test_a_line_that_ends_at_another_is_measured_at_both_sides_of_it(off):
 
 
 def test_a_line_that_goes_on_after_a_gap_is_not_short():
-    known = [line(1, 240 + 300j, CORNER), line(2, 300 + 250j, 300 + 350j)]
-    pieces = [(240 + 300j, CORNER - 5, "main"), (CORNER - 2, CORNER, "main"), (300 + 250j, 300 + 350j, "main")]
+    known = [line(1, 70 + 440j, CORNER), line(2, 130 + 390j, 130 + 490j)]
+    pieces = [(70 + 440j, CORNER - 5, "main"), (CORNER - 2, CORNER, "main"), (130 + 390j, 130 + 490j, "main")]
     found, _ = traced(known, pieces)
     assert found[0].ends[1] == pytest.approx(0, abs=0.3)
     assert judge(found[0], 0.25, 0.15).verdict == "green"
 
 
 def test_an_end_where_another_line_goes_on_is_not_known():
-    known = [line(1, 240 + 300j, CORNER), line(2, CORNER, 360 + 300j, "vector")]
+    known = [line(1, 70 + 440j, CORNER), line(2, CORNER, 190 + 440j, "vector")]
     for end in (CORNER, CORNER + 3):
-        found, _ = traced(known, [(240 + 300j, end, "main"), (CORNER, 360 + 300j, "vector")])
+        found, _ = traced(known, [(70 + 440j, end, "main"), (CORNER, 190 + 440j, "vector")])
         assert np.isnan(found[0].ends[1])
         f = judge(found[0], 0.25, 0.15)
         assert (f.verdict, f.hidden_ends) == ("green", 1)
@@ -97,7 +99,7 @@ def test_an_end_where_another_line_goes_on_is_not_known():
 
 def test_a_slanting_line_hides_as_well_as_a_level_one():
     """A thin line at 45 degrees is a row of pixels that touch at their corners."""
-    known = [line(1, 260 + 260j, CORNER, "thin"), line(2, 250 + 250j, 350 + 350j, "thin")]
+    known = [line(1, 90 + 400j, CORNER, "thin"), line(2, 80 + 390j, 180 + 490j, "thin")]
     owners = Owners(ROWS, COLUMNS)
     for e in known:
         owners.add(e, e.points)
@@ -111,7 +113,7 @@ def test_a_slanting_line_hides_as_well_as_a_level_one():
 @pytest.mark.parametrize("off", [0.0, 0.3, 0.9])
 def test_lines_in_one_stroke_are_measured_together(off):
     """A construction line under a vector: what they share can be in place or off, which of them is off cannot be told."""
-    a, b = 250 + 300j, 330 + 340j
+    a, b = 80 + 440j, 160 + 480j
     u = (b - a) / abs(b - a)
     known = [line(1, a, b, "construction"), line(2, a + 0.3j * u, b + 0.3j * u, "vector")]
     found, _ = traced(known, [(e.points[0] + 1j * off * u, e.points[1] + 1j * off * u, e.style) for e in known])
@@ -125,8 +127,8 @@ def test_lines_in_one_stroke_are_measured_together(off):
 @pytest.mark.parametrize(("by", "verdict"), [(0.0, "green"), (2.5, "amber"), (-4.0, "amber")])
 def test_a_line_that_left_its_stroke_is_seen_beside_it(by, verdict):
     """A helper line turned about its beginning, from under a vector that is right, across another line."""
-    a, b = 250 + 300j, 280 + 300j
-    known = [line(1, a, b, "construction"), line(2, a, b, "vector"), line(3, 268 + 280j, 268 + 320j)]
+    a, b = 80 + 440j, 110 + 440j
+    known = [line(1, a, b, "construction"), line(2, a, b, "vector"), line(3, 98 + 420j, 98 + 460j)]
     found, _ = traced(known, [(a, b + 1j * by, "construction"), *((*e.points, e.style) for e in known[1:])])
     assert judge(found[0], 0.25, 0.15).verdict == verdict
     assert judge(found[2], 0.25, 0.15).verdict == "green"
@@ -136,7 +138,7 @@ def test_a_line_that_left_its_stroke_is_seen_beside_it(by, verdict):
 
 def test_a_line_among_others_that_has_ink_at_its_own_place_is_not_called_displaced():
     """A fan of lines a millimetre apart, blurred until the gaps are grey."""
-    known = [line(k + 1, 300 + 1j * (300 + 0.9 * k), 380 + 1j * (300 + 0.9 * k), "thin") for k in range(8)]
+    known = [line(k + 1, 130 + 1j * (440 + 0.9 * k), 210 + 1j * (440 + 0.9 * k), "thin") for k in range(8)]
     ink = paper()
     for e in known:
         draw(ink, *e.points, "thin")
@@ -147,21 +149,21 @@ def test_a_line_among_others_that_has_ink_at_its_own_place_is_not_called_displac
 
 
 def test_missing_and_displaced_lines_and_ink_too_much():
-    known = [line(1, 200 + 300j, 260 + 300j), line(2, 200 + 320j, 260 + 320j), line(3, 200 + 340j, 260 + 340j, "thin")]
-    drawn = [(200 + 304j, 260 + 304j, "main"), (200 + 341.5j, 260 + 341.5j, "thin"), (400 + 200j, 430 + 220j, "thin")]
+    known = [line(1, 30 + 440j, 90 + 440j), line(2, 30 + 460j, 90 + 460j), line(3, 30 + 480j, 90 + 480j, "thin")]
+    drawn = [(30 + 444j, 90 + 444j, "main"), (30 + 481.5j, 90 + 481.5j, "thin"), (230 + 340j, 260 + 360j, "thin")]
     found, extra = traced(known, drawn)
     assert [t.status for t in found] == ["measured", "missing", "measured"]
     assert found[0].shift == pytest.approx(4j, abs=0.2)
     assert found[2].shift == pytest.approx(1.5j, abs=0.2)
     (one,) = extra
-    assert one.middle == pytest.approx(415 + 210j, abs=1.0)
+    assert one.middle == pytest.approx(245 + 350j, abs=1.0)
     assert (one.width, one.height) == pytest.approx((30, 20), abs=1.5)
 
 
 def test_thin_lines_drawn_over_are_a_remark_and_none_in_a_soft_picture():
-    known = [line(1, 240 + 300j, CORNER, "thin")]
+    known = [line(1, 70 + 440j, CORNER, "thin")]
     for over, verdict in ((2.0, "green"), (4.0, "amber"), (5.8, "amber")):
-        found, _ = traced(known, [(240 + 300j, CORNER + over, "thin")])
+        found, _ = traced(known, [(70 + 440j, CORNER + over, "thin")])
         assert judge(found[0], 0.25, 0.15).verdict == verdict
         assert judge(found[0], 0.25, 0.15, soft=True).verdict == "green"
 
@@ -178,7 +180,7 @@ def test_thin_lines_drawn_over_are_a_remark_and_none_in_a_soft_picture():
 ])
 def test_how_far_a_line_may_end_from_its_end(role, style, off, verdict):
     """Guides, supports and curves end where the hand stopped, dashed lines a dash before; links and vectors end in points."""
-    e = line(1, 240 + 300j, 300 + 300j, style, role)
+    e = line(1, 70 + 440j, 130 + 440j, style, role)
     assert judge(InkTrace(e, "measured", ends=(0.0, off), at=e.points), 0.25, 0.15).verdict == verdict
 
 
@@ -188,14 +190,14 @@ def test_how_far_a_line_may_end_from_its_end(role, style, off, verdict):
     (0.6, 0.0, "a little aside, no more than its kind may be"), (0.6, np.nan, "a little aside, no more than its kind may be"),
 ])
 def test_a_short_line_may_be_turned_a_little_but_not_end_elsewhere(off, end, what):
-    e = line(1, 290 + 300j, 300 + 300j, "thin", "construction")
+    e = line(1, 120 + 440j, 130 + 440j, "thin", "construction")
     assert judge(InkTrace(e, "measured", turn=off / 5, deviation=off, ends=(0.0, end), at=e.points), 0.25, 0.15).what == what
 
 
 @pytest.mark.parametrize(("gap", "short"), [(1.6, True), (0.0, False)])
 def test_an_ordinate_that_stops_before_its_curve_is_short(gap, short):
     """What is at its end is the curve."""
-    end, slope = 300 + 300j, 9 * np.exp(0.75j)
+    end, slope = 130 + 440j, 9 * np.exp(0.75j)
     known = [line(1, end - 40j, end, "thin", "construction"), line(2, end - slope, end + slope, "curve", "curve")]
     ink = paper()
     draw(ink, end - 40j, end - (1.4 + gap) * 1j if gap else end, "thin")
@@ -204,7 +206,7 @@ def test_an_ordinate_that_stops_before_its_curve_is_short(gap, short):
     assert ("too short at its end" in f.what) == short
 
 
-SLIDER = np.array([-3 - 2j, 3 - 2j, 3 + 2j, -3 + 2j, -3 - 2j]) + 300 + 300j
+SLIDER = np.array([-3 - 2j, 3 - 2j, 3 + 2j, -3 + 2j, -3 - 2j]) + 130 + 440j
 
 
 @pytest.mark.parametrize(("kind", "free", "off", "verdict"), [
@@ -217,7 +219,7 @@ def test_what_is_a_little_off_among_others_is_not_judged(kind, free, off, verdic
 
     A large circle is seen between them.
     """
-    z = SLIDER if kind == "curve" else 300 + 300j + np.array([0, 40])
+    z = SLIDER if kind == "curve" else 130 + 440j + np.array([0, 40])
     e = Element(1, VIEW, "", kind, z, "thin", radius=20.0)
     f = judge(InkTrace(e, "measured", 1j * off, deviation=off, at=z + 1j * off, free=free), 0.25, 0.15)
     assert f.verdict == verdict
@@ -225,21 +227,21 @@ def test_what_is_a_little_off_among_others_is_not_judged(kind, free, off, verdic
 
 
 def test_an_end_that_is_short_is_told_though_others_run_along():
-    e = line(1, 240 + 300j, 300 + 300j)
+    e = line(1, 70 + 440j, 130 + 440j)
     f = judge(InkTrace(e, "measured", 0.6j, deviation=0.6, at=e.points + 0.6j, free=0.4, ends=(0.0, -4.0)), 0.25, 0.15)
     assert (f.verdict, f.what) == ("red", "4.0 mm too short at its end")
 
 
 def test_the_edge_of_another_line_is_no_displaced_one():
     """A line that is not there, beside two thick ones whose edges are as near as it could be drawn."""
-    known = [line(1, 240 + 300j, 300 + 300j, "thin"), line(2, 240 + 300.9j, 300 + 300.9j), line(3, 240 + 299.1j, 300 + 299.1j)]
+    known = [line(1, 70 + 440j, 130 + 440j, "thin"), line(2, 70 + 440.9j, 130 + 440.9j), line(3, 70 + 439.1j, 130 + 439.1j)]
     found, _ = traced(known, [(*e.points, "main") for e in known[1:]])
     assert judge(found[0], 0.25, 0.15).verdict == "green"
 
 
 def test_a_soft_picture_has_a_wider_tolerance():
-    known = [line(1, 240 + 300j, CORNER)]
-    found, _ = traced(known, [(240 + 300.5j, CORNER + 0.5j, "main")])
+    known = [line(1, 70 + 440j, CORNER)]
+    found, _ = traced(known, [(70 + 440.5j, CORNER + 0.5j, "main")])
     assert found[0].deviation == pytest.approx(0.5, abs=0.05)
     assert judge(found[0], 0.25, 0.15).verdict == "amber"
     assert judge(found[0], 0.25, 0.15, soft=True).verdict == "green"
@@ -265,7 +267,7 @@ def fill_head(ink, at, way):
     ("reversed", "red", "the arrow points the other way"),
 ])
 def test_the_head_of_an_arrow_is_looked_for_at_both_ends(head, verdict, said):
-    a, b = 300 + 300j, 330 + 320j
+    a, b = 130 + 440j, 160 + 460j
     helper = line(2, 2 * a - b, b, "thin")  # a line under it does not matter
     ink = paper()
     known = [arrow(1, a, b), helper]
@@ -285,7 +287,7 @@ def test_the_head_of_an_arrow_is_looked_for_at_both_ends(head, verdict, said):
 @pytest.mark.parametrize(("head", "wide"), [("there", 1.0), ("there", 0.8), ("absent", 1.0), ("absent", 0.5)])
 def test_heads_are_known_in_black_and_white_too(head, wide):
     """There lines are wider than they were drawn, and heads are no more than half as wide again."""
-    a, b = 300 + 300j, 330 + 320j
+    a, b = 130 + 440j, 160 + 460j
     u = (b - a) / abs(b - a)
     ink = np.zeros((ROWS, COLUMNS), np.uint8)
     lines = [(a + wide / 2 * 1j * u, a - wide / 2 * 1j * u, b - wide / 2 * 1j * u, b + wide / 2 * 1j * u)]
@@ -301,7 +303,7 @@ def test_heads_are_known_in_black_and_white_too(head, wide):
 @pytest.mark.parametrize("theirs", [False, True])
 def test_a_head_at_the_other_end_tells_though_the_tip_is_hidden(theirs):
     """Lines beside the tip hide it; where another arrow has its head at the other end, nothing is told."""
-    a, b = 300 + 300j, 330 + 300j
+    a, b = 130 + 440j, 160 + 440j
     known = [arrow(1, a, b), line(2, b - 5 + 0.5j, b + 3 + 0.5j), line(3, b - 5 - 0.5j, b + 3 - 0.5j)]
     if theirs:
         known.append(arrow(4, b, a))
@@ -316,17 +318,17 @@ def test_a_head_at_the_other_end_tells_though_the_tip_is_hidden(theirs):
 @pytest.mark.parametrize(("turn", "beside"), [(0.08, True), (-0.15, True), (1.2, False), (np.pi / 2, False), (np.pi, False)])
 def test_a_line_from_the_same_pole_is_told_beside_a_vector(turn, beside):
     """At a small angle it looks like the edge of a head, from the other end of a vector whose tip is hidden."""
-    a, b = 300 + 300j, 330 + 320j
+    a, b = 130 + 440j, 160 + 460j
     known = [arrow(1, a, b), line(2, a, a + 20 * np.exp(1j * turn) * (b - a) / abs(b - a))]
     owners = Owners(ROWS, COLUMNS)
     for e in known:
         owners.add(e, e.points)
-    sheet = arrow_heads._Paper(paper(), owners, paper(), np.zeros((594, 841), bool), [])
+    sheet = arrow_heads._Paper(paper(), owners, paper(), np.zeros((HIGH, WIDE), bool), [])
     assert sheet.accompanied(known[0], a, (b - a) / abs(b - a)) is beside
 
 
 def test_a_vector_left_out_over_a_helper_has_no_head_though_there_is_a_dot():
-    a, b = 300 + 300j, 330 + 320j
+    a, b = 130 + 440j, 160 + 460j
     dot = Element(3, VIEW, "", "circle", b + 0.65 * np.exp(1j * np.linspace(0, 2 * np.pi, 40)), "thin", centre=b, radius=0.65,
                   fills=(b + 0.65 * np.exp(1j * np.linspace(0, 2 * np.pi, 40)),))
     known = [arrow(1, a, b), line(2, 2 * a - b, b, "thin"), dot]
@@ -341,8 +343,8 @@ def test_a_vector_left_out_over_a_helper_has_no_head_though_there_is_a_dot():
 @pytest.mark.parametrize(("by", "left_out"), [(-1.0, 1), (1.0, 2), (1.0, None)])
 def test_a_line_seen_only_where_another_covers_it_is_a_place_to_look_at(by, left_out):
     """Two vectors that part at so small an angle that they are one stroke for most of their way; another shows what is usual."""
-    ends = (330 + 300j, 330 + (300 + by) * 1j, 330 + 350j)
-    known = [line(k, 250 + 300j, end, "vector") for k, end in enumerate(ends, 1)]
+    ends = (160 + 440j, 160 + (440 + by) * 1j, 160 + 490j)
+    known = [line(k, 80 + 440j, end, "vector") for k, end in enumerate(ends, 1)]
     found, _ = traced(known, [(*e.points, "vector") for e in known if e.number != left_out])
     assert [judge(t, 0.25, 0.15).verdict for t in found] == ["amber" if e.number == left_out else "green" for e in known]
     assert [t.element.number for t in found if t.status == "covered"] == [left_out] * (left_out is not None)
@@ -350,7 +352,7 @@ def test_a_line_seen_only_where_another_covers_it_is_a_place_to_look_at(by, left
 
 def word(*runs, bar=False):
     """Lettering of W, M and V, its letters 4 mm high and about as wide, in runs; with a bar over it."""
-    at, text = 300 + 300j, "".join(runs)
+    at, text = 130 + 440j, "".join(runs)
     marks = [Text(at + 4 * len("".join(runs[:k])), run, 4.0) for k, run in enumerate(runs)]
     pieces = (np.array([at + 4.3j, at + 4 * len(text) + 4.3j]),) if bar else ()
     corners = at + np.array([0, 4 * len(text), 4 * len(text) + 4j, 4j])
@@ -365,7 +367,7 @@ def word(*runs, bar=False):
 def test_part_of_lettering_is_missed(runs, letters, bar, status):
     """A run of letters is looked for by itself, and the bar over letters that stand elsewhere is no lettering."""
     ink = paper()
-    write(ink, letters, 300 + 300j)
+    write(ink, letters, 130 + 440j)
     known = word(*runs, bar=bar)
     for a, b in known.pieces:
         draw(ink, a, b, "thin")
@@ -375,7 +377,7 @@ def test_part_of_lettering_is_missed(runs, letters, bar, status):
 
 def test_the_words_of_the_form_outside_the_frame_are_not_looked_for():
     known = word("WMW")
-    outside = replace(known, number=2, points=known.points - 298j, marks=tuple(m._replace(at=m.at - 298j) for m in known.marks))
+    outside = replace(known, number=2, points=known.points - 128, marks=tuple(m._replace(at=m.at - 128) for m in known.marks))
     assert [t.status for t in trace([known, outside], paper())[0]] == ["absent lettering", "small"]
 
 
@@ -394,7 +396,7 @@ def write(ink, letters, at):
 def test_lettering_is_looked_for_beside_its_place(letters, by, where):
     """By ink of its size, as a whole even where it lies partly in its old place."""
     ink, known = paper(), word("WMW")
-    write(ink, letters, 300 + 300j + by)
+    write(ink, letters, 130 + 440j + by)
     (found,), _ = trace([known], ink)
     assert found.status in ("absent lettering", "part of lettering")
     assert (found.at is None) == (where is None)
@@ -405,7 +407,7 @@ def test_lettering_is_looked_for_beside_its_place(letters, by, where):
 def test_lettering_is_seen_elsewhere_though_some_ink_is_in_its_place(by):
     """Its old place is not quite empty where it was moved by less than its length."""
     ink, known = paper(), word("WMWWMW")
-    write(ink, "WMWWMW", 300 + 300j + by)
+    write(ink, "WMWWMW", 130 + 440j + by)
     (found,), _ = trace([known], ink)
     assert (found.status, found.shift) == ("part of lettering", pytest.approx(by, abs=0.7))
 
@@ -413,14 +415,14 @@ def test_lettering_is_seen_elsewhere_though_some_ink_is_in_its_place(by):
 def test_neither_other_lettering_nor_what_lies_on_a_line_is_taken_for_it():
     ink, known = paper(), word("WMW")
     other = replace(known, number=2, points=known.points + 9j, marks=tuple(m._replace(at=m.at + 9j) for m in known.marks))
-    write(ink, "WMW", 300 + 309j)
+    write(ink, "WMW", 130 + 449j)
     (found, there), _ = trace([known, other], ink)
     assert (found.status, found.at, there.status) == ("absent lettering", None, "lettering")
 
 
 @pytest.mark.parametrize(("dark", "deviation"), [(60, 3.0), (170, 0.0)])
 def test_a_pale_trace_in_its_place_is_not_the_line_when_a_dark_one_lies_beside(dark, deviation):
-    known = [line(k + 1, 300 + 1j * (300 + 10 * k), 340 + 1j * (300 + 10 * k)) for k in range(4)]
+    known = [line(k + 1, 130 + 1j * (440 + 10 * k), 170 + 1j * (440 + 10 * k)) for k in range(4)]
     ink = paper()
     for e in known[1:]:
         draw(ink, *e.points)
@@ -433,27 +435,27 @@ def test_a_pale_trace_in_its_place_is_not_the_line_when_a_dark_one_lies_beside(d
 def test_a_straight_stroke_beside_lettering_is_extra_and_a_letter_is_not():
     ink = paper()
     for one, other in ((0, 1 + 5j), (1 + 5j, 2), (2, 3 + 5j)):  # the letter, 4 mm too low
-        draw(ink, 300.5 + 296j + one, 300.5 + 296j + other, "thin")
-    draw(ink, 298 + 308j, 310 + 306.5j, "thin")
+        draw(ink, 130.5 + 436j + one, 130.5 + 436j + other, "thin")
+    draw(ink, 128 + 448j, 140 + 446.5j, "thin")
     _, extra = trace([word("W")], ink)
     assert [x.length for x in extra] == pytest.approx([12.1 + 1.0], abs=0.6)  # its blur, and coarse pixels
 
 
 def test_a_crease_is_not_extra():
     ink = paper()
-    for x in (100, 340, 580):
-        draw(ink, x + 297j, x + 297.2j + 40, "thin")
-    draw(ink, 300 + 400j, 330 + 400j, "thin")
-    _, extra = trace([line(1, 300 + 100j, 330 + 100j)], ink)
-    assert [round(x.middle.imag) for x in extra] == [400]
+    for x in (35, 150, 245):
+        draw(ink, x + 397j, x + 397.2j + 40, "thin")
+    draw(ink, 130 + 540j, 160 + 540j, "thin")
+    _, extra = trace([line(1, 130 + 350j, 160 + 350j)], ink)
+    assert [round(x.middle.imag) for x in extra] == [540]
 
 
 def test_what_shows_of_a_hidden_line_is_not_extra():
     ink = paper()
-    draw(ink, 300 + 300j, 330 + 300j)
-    hidden = np.zeros((594, 841), bool)
-    hidden[280:310, 326:345] = True
-    known = [line(1, 300 + 300j, 340 + 300j)]
+    draw(ink, 130 + 440j, 160 + 440j)
+    hidden = np.zeros((HIGH, WIDE), bool)
+    hidden[140:170, 156:175] = True
+    known = [line(1, 130 + 440j, 170 + 440j)]
     traces, extra = trace(known, ink, hidden)
     assert (traces[0].status, extra) == ("hidden", [])
 
@@ -461,7 +463,7 @@ def test_what_shows_of_a_hidden_line_is_not_extra():
 @pytest.mark.parametrize("by", [0.0, 2.1, -1.8])
 def test_a_circle_crossed_by_many_lines_is_not_seen_in_their_ink(by):
     """Radii 3 mm apart along the circle: smeared along it they would be a grey band, and the circle in it anywhere."""
-    centre, radius = 300 + 300j, 30.0
+    centre, radius = 130 + 440j, 30.0
     turn = np.linspace(0, 2 * np.pi, 200)
     ring = Element(1, VIEW, "", "circle", centre + radius * np.exp(1j * turn), "thin", centre, radius, 0.0, 2 * np.pi)
     way = np.exp(2j * np.pi * np.arange(60) / 60)
@@ -476,8 +478,8 @@ def test_a_circle_crossed_by_many_lines_is_not_seen_in_their_ink(by):
 @pytest.mark.parametrize(("end", "seen"), [(6.0, True), (0.4, False)])
 def test_a_stroke_that_lines_cut_to_pieces_is_extra(end, seen):
     """One of two lines that belong in the same place was turned; lines that cross leave no piece of 8 mm."""
-    a, b = 250 + 300j, 290 + 300j
-    cross = [line(k + 3, 258 + 7 * k + 270j, 258 + 7 * k + 330j, "thin") for k in range(5)]
+    a, b = 80 + 440j, 120 + 440j
+    cross = [line(k + 3, 88 + 7 * k + 410j, 88 + 7 * k + 470j, "thin") for k in range(5)]
     known = [line(1, a, b, "thin"), line(2, a, b, "thin"), *cross]
     found, extra = traced(known, [(a, b, "thin"), (a, b + 1j * end, "thin"), *((*e.points, e.style) for e in cross)])
     # That it parts is a remark to the two, which cannot be told from each other; all others are in place.
@@ -486,7 +488,7 @@ def test_a_stroke_that_lines_cut_to_pieces_is_extra(end, seen):
     assert {verdicts[1], verdicts[2]} <= ({"green", "amber"} if seen else {"green"})
     assert bool(extra) == seen
     for x in extra:
-        assert abs(x.middle - (275 + 300j + 1j * end * 25 / 40)) < 4
+        assert abs(x.middle - (105 + 440j + 1j * end * 25 / 40)) < 4
 
 
 def dot(number, at, radius=0.6):
@@ -507,7 +509,7 @@ def dot(number, at, radius=0.6):
     ],
 )
 def test_a_dot_that_stands_beside_its_place(places, says):
-    known = [line(1, 270 + 300j, 330 + 300j, "thin"), dot(2, CORNER)]
+    known = [line(1, 100 + 440j, 160 + 440j, "thin"), dot(2, CORNER)]
     ink = paper()
     draw(ink, *known[0].points, "thin")
     for by in places:
@@ -531,7 +533,7 @@ def test_a_dot_that_stands_beside_its_place(places, says):
     ],
 )
 def test_a_small_dot_where_lines_cross_is_taken_for_a_spot_beside(places, verdicts):
-    lines = [line(1, 270 + 300j, 330 + 300j, "thin"), *(line(k, x + 270j, x + 330j, "thin") for k, x in ((2, 300), (3, 306)))]
+    lines = [line(1, 100 + 440j, 160 + 440j, "thin"), *(line(k, x + 410j, x + 470j, "thin") for k, x in ((2, 130), (3, 136)))]
     ink = paper()
     for e in lines:
         draw(ink, *e.points, "thin")
@@ -573,8 +575,8 @@ def test_a_dot_in_a_black_and_white_picture_may_be_swollen(usual, wide, found):
 def test_a_large_dot_is_known_upon_a_letter(radius, places, room, found):
     ink, words = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
     for by, letters in ((20, 255), (room, 0)):  # letters about the dot's place, but not in it
-        rows = slice(round((594 - 300 - by) * SCALE), round((594 - 300 + by) * SCALE))
-        words[rows, round((300 - by) * SCALE) : round((300 + by) * SCALE)] = letters
+        rows = slice(round((594 - CORNER.imag - by) * SCALE), round((594 - CORNER.imag + by) * SCALE))
+        words[rows, round((CORNER.real - by) * SCALE) : round((CORNER.real + by) * SCALE)] = letters
     for way in (1 + 1j, 1 - 1j):
         for middle in (3 + 1j, -3 - 1j, 3 - 3j):
             draw(ink, CORNER + middle - 2 * way, CORNER + middle + 2 * way, "thin")
@@ -588,7 +590,7 @@ def test_a_large_dot_is_known_upon_a_letter(radius, places, room, found):
 def on_a_line(places, radius=0.6, heads=(), usual=180):
     """Dots of that radius upon a thin line through CORNER and a thick one beside, where they are found, by number."""
     ink, lines = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
-    for a, b, style in ((270 + 300j, 330 + 300j, "thin"), (270 + 304j, 330 + 304j, "main")):
+    for a, b, style in ((100 + 440j, 160 + 440j, "thin"), (100 + 444j, 160 + 444j, "main")):
         draw(ink, a, b, style)
         ends = ((round(z.real * SCALE), round((594 - z.imag) * SCALE)) for z in (a, b))
         cv2.line(lines, *ends, 255, round(SCALE * line_type(style).width))
@@ -629,7 +631,7 @@ def test_a_head_upon_a_line_and_black_lines_are_no_bumps():
 @pytest.mark.parametrize(("dark", "found"), [(140, {}), (180, {1: 4 + 0j})])
 def test_a_letter_that_runs_together_is_paler_than_a_dot(dark, found):
     ink, words = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
-    words[:, round(302 * SCALE) :] = 255
+    words[:, round((CORNER.real + 2) * SCALE) :] = 255
     for y in (-0.6, 0, 0.6):
         draw(ink, CORNER + 3.4 + 1j * y, CORNER + 4.6 + 1j * y, "main", dark)
     assert stands([dot(1, CORNER, 0.7)], [], ink, words, 150) == found
@@ -695,7 +697,7 @@ def test_the_end_of_a_line_that_was_drawn_over_is_no_dot(over):
 @pytest.mark.parametrize(("by", "verdict"), [(1.2, "amber"), (1.84, "amber"), (4.0, "amber"), (0.5, "green"), (0.0, "green")])
 def test_a_line_that_parts_from_its_stroke_only_near_its_end_is_seen(by, verdict):
     """Of a helper line under a vector that was turned about the pole, as little as a third lies on bare paper."""
-    a, b = 250 + 300j, 301 + 300j
+    a, b = 80 + 440j, 131 + 440j
     known = [line(1, a, b, "construction"), line(2, a, b - 4)]
     found, _ = traced(known, [(a, b + 1j * by, "construction"), (a, b - 4, "main")])
     assert [judge(t, 0.25, 0.15).verdict for t in found] == [verdict, "green"]
@@ -704,7 +706,7 @@ def test_a_line_that_parts_from_its_stroke_only_near_its_end_is_seen(by, verdict
 @pytest.mark.parametrize(("gap", "rest", "short"), [(2.0, 2.5, False), (2.0, 0.6, True), (4.5, 1.5, True)])
 def test_a_gap_near_an_end_is_a_lifted_pencil_when_ink_follows(gap, rest, short):
     """The head of another arrow covers the end: the rest may be its ink or the line's own."""
-    end = 300 + 300j
+    end = 130 + 440j
     other = arrow(2, end + 30, end - rest)
     known = [line(1, end - 60, end), other]
     ink = paper()
@@ -718,7 +720,7 @@ def test_a_gap_near_an_end_is_a_lifted_pencil_when_ink_follows(gap, rest, short)
 @pytest.mark.parametrize(("dark", "to", "short"), [(45, 0.0, False), (0, 0.0, True), (45, -2.0, True)])
 def test_an_end_that_goes_on_paler_is_under_adhesive_tape(dark, to, short):
     """Where the pale rest stops as well, the line is too short all the same."""
-    end = 300 + 300j
+    end = 130 + 440j
     known = [line(1, end - 60, end), line(2, end - 40j, end + 40j)]
     ink = paper()
     draw(ink, end - 40j, end + 40j)
@@ -824,7 +826,7 @@ def test_a_line_that_others_cover_must_be_seen_to_the_dot_where_it_ends(end, dot
 @pytest.mark.parametrize(("dark", "status"), [(20, "covered"), (60, "measured")])
 def test_a_line_whose_place_is_far_paler_than_its_kind_is_not_there(dark, status):
     """Ends of a hatching stand in its place."""
-    known = [line(k, 200 + 10j * k, 260 + 10j * k) for k in range(3)]
+    known = [line(k, 30 + 440j + 10j * k, 90 + 440j + 10j * k) for k in range(3)]
     traces = [InkTrace(e, "measured", at=e.points, darkness=d, covered=1.0) for e, d in zip(known, (dark, 100, 100), strict=True)]
     nothing, owners = np.zeros((ROWS, COLUMNS), np.uint8), Owners(ROWS, COLUMNS)
     found = tracing._doubted(traces, {}, nothing, nothing, nothing, owners, 10)
@@ -834,7 +836,7 @@ def test_a_line_whose_place_is_far_paler_than_its_kind_is_not_there(dark, status
 @pytest.mark.parametrize(("by", "verdict"), [(0, "green"), (2.8, "amber")])
 def test_a_vector_that_was_drawn_into_the_stroke_beside_is_not_seen_in_its_place(by, verdict):
     """From where they are near each other the edge of that stroke is in its place."""
-    pole, tip, other = 200 + 200j, 221 + 208j, 232 + 209j
+    pole, tip, other = 30 + 340j, 51 + 348j, 62 + 349j
     known = [line(1, pole, other, "vector"), line(2, pole, tip, "vector")]
     way = (tip - pole) / abs(tip - pole)
     found, _ = traced(known, [(pole, other, "vector"), (pole, tip - by * 1j * way, "vector")])
