@@ -14,7 +14,8 @@ from tmm_sheets.construction.expression import Argument, lettered
 from tmm_sheets.construction.given import Given, GivenNumber, GivenPoint
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Reported, Rule, Step
-from tmm_sheets.methods.flywheel.flywheel import ACCELERATION, PLOT
+from tmm_sheets.methods.flywheel.flywheel import ACCELERATION
+from tmm_sheets.methods.flywheel.works import PLOT
 from tmm_sheets.methods.linkage.velocities import ANGULAR_VELOCITY, RIGID, SIMILAR
 
 KNOWN = expression.primitives(ar)

@@ -13,7 +13,7 @@ import pytest
 
 from tests.methods.linkage.mechanisms import value
 from tmm_sheets import catalogue
-from tmm_sheets.methods.flywheel.flywheel import wheel
+from tmm_sheets.methods.flywheel.wheel import wheel
 from tmm_sheets.project import Project
 
 HERE = Path(__file__).parent

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.methods.flywheel.energy_mass import energy_mass_plan, highest, limit, speed, touched
-from tmm_sheets.methods.flywheel.flywheel import LAY_DOWN
+from tmm_sheets.methods.flywheel.works import LAY_DOWN
 
 
 @given(st.floats(0.3, 6.0), st.floats(0.2, 5.0))

@@ -19,8 +19,8 @@ from tests.methods.linkage import shaper_truth as truth
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.methods.flywheel.chosen import flywheel
+from tmm_sheets.methods.flywheel.diagram_scales import DiagramSpace, FlywheelScales
 from tmm_sheets.methods.flywheel.energy_mass import limit
-from tmm_sheets.methods.flywheel.flywheel import DiagramSpace, FlywheelScales
 from tmm_sheets.methods.flywheel.wheel import wheel
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 

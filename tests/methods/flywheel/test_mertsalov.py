@@ -22,7 +22,8 @@ from tmm_sheets import catalogue
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.methods.flywheel.chosen import flywheel
-from tmm_sheets.methods.flywheel.flywheel import Flywheel, FlywheelScales
+from tmm_sheets.methods.flywheel.diagram_scales import FlywheelScales
+from tmm_sheets.methods.flywheel.flywheel import Flywheel
 from tmm_sheets.methods.flywheel.mertsalov import SPACE, Mertsalov
 from tmm_sheets.methods.flywheel.running import Energy, steady
 from tmm_sheets.methods.flywheel.wheel import motor_check, wheel

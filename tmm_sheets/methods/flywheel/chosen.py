@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tmm_sheets.methods.flywheel import mertsalov, wittenbauer
-from tmm_sheets.methods.flywheel.flywheel import Flywheel, ReducedData
+from tmm_sheets.methods.flywheel.flywheel import Flywheel
+from tmm_sheets.methods.flywheel.reduced_data import ReducedData
 
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import FlywheelTable

@@ -22,10 +22,12 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import DISTANCE
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Reported, Rule, Step
+from tmm_sheets.methods.flywheel.diagram_scales import DiagramSpace
 from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT, AtAngles, ConvergedWheel, highest, limit_segment
-from tmm_sheets.methods.flywheel.flywheel import FROM_PAPER, OF_EXCESS, OF_SEGMENT, PLOT, DiagramSpace, Flywheel
+from tmm_sheets.methods.flywheel.flywheel import OF_EXCESS, OF_SEGMENT, Flywheel
 from tmm_sheets.methods.flywheel.running import Running
 from tmm_sheets.methods.flywheel.wittenbauer import FASTEST, SLOWEST, Wittenbauer
+from tmm_sheets.methods.flywheel.works import FROM_PAPER, PLOT
 from tmm_sheets.methods.integration import CARRY, Floats, Quadrature
 from tmm_sheets.words import marked, tr
 

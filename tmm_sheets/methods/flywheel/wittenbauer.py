@@ -13,6 +13,7 @@ from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit
 from tmm_sheets.construction.step import Rule, Step, value_of
+from tmm_sheets.methods.flywheel.diagram_scales import DiagramSpace
 from tmm_sheets.methods.flywheel.energy_mass import (
     ConvergedWheel,
     Tangents,
@@ -23,7 +24,7 @@ from tmm_sheets.methods.flywheel.energy_mass import (
     tangents,
     touched,
 )
-from tmm_sheets.methods.flywheel.flywheel import OF_EXCESS, OF_SEGMENT, TOGETHER, TOGETHER_LIMIT, DiagramSpace, Flywheel
+from tmm_sheets.methods.flywheel.flywheel import OF_EXCESS, OF_SEGMENT, TOGETHER, TOGETHER_LIMIT, Flywheel
 from tmm_sheets.methods.integration import Floats
 from tmm_sheets.words import marked, tr
 

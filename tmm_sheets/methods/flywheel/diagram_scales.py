@@ -1,0 +1,218 @@
+"""Scale factors of the diagrams of a flywheel: those of a handy series that fill the room on the sheet."""
+
+from __future__ import annotations
+
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.given import named
+from tmm_sheets.construction.scale import HANDY, Scale, fit, handy
+from tmm_sheets.construction.step import Step
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.methods.flywheel.energy_mass import AtAngles
+from tmm_sheets.methods.flywheel.intervals import Intervals
+from tmm_sheets.methods.integration import Floats, Quadrature
+from tmm_sheets.words import tell, tr
+
+_FACTORS = {"angle": ("mu_phi", "rad/mm"), "force": ("mu_F", "N/mm"), "moment": ("mu_M", "N*m/mm"), "work": ("mu_A", "J/mm"),
+            "energy": ("mu_E", "J/mm"), "excess": ("mu_dE", "J/mm"), "inertia": ("mu_J", "kg*m2/mm")}  # fmt: skip
+"""Names and units of the scale factors in the record."""
+EVEN = 1e-12
+"""A change of energy that is none, in parts of the work."""
+
+
+@dataclass(frozen=True)
+class DiagramSpace:
+    """Room for the diagrams on paper, mm: length of the angle axis and extents of the ordinates.
+
+    ``stack`` is the room together of the first ``stacked`` of moment, work, energy and inertia, which stand one under another:
+    the extents of each are the most it may have. Of the heights multiplied that of the energy counts ``reading`` times. What is
+    drawn by few ordinates may take ``spare`` more, and what the graph of the forces leaves of ``force``, if it ``heads`` them.
+    """
+
+    angle: float = 256.0
+    force: float = 17.0
+    moment: float = 130.0
+    work: float = 240.0
+    energy: float = 186.0
+    inertia: float = 218.0
+    pole: tuple[float, float] = (25.0, 80.0)
+    stack: float = 456.0
+    stacked: int = 3
+    reading: int = 1
+    spare: float = 1.0
+    heads: bool = True
+
+
+@dataclass(frozen=True)
+class FlywheelScales:
+    """Scale factors of the diagrams and the pole distance, mm; ``work.mu`` = ``moment.mu angle.mu pole``.
+
+    ``excess`` is that of the graph of dE where it has its own, not that of the energy-mass diagram.
+    """
+
+    angle: Scale
+    force: Scale
+    moment: Scale
+    work: Scale
+    energy: Scale
+    inertia: Scale
+    pole: float
+    excess: Scale | None = None
+
+    def __post_init__(self) -> None:
+        expected = self.moment.mu * self.angle.mu * self.pole
+        if abs(self.work.mu - expected) > 1e-9 * expected:
+            raise ValueError(f"mu_A = {self.work.mu} is not mu_M mu_phi H = {expected}")
+
+
+class Diagrams(Intervals, ABC):
+    """What the diagrams of a flywheel are drawn to: their room, scale factors and pole distance."""
+
+    space: DiagramSpace | None
+    fixed_scales: FlywheelScales | None
+
+    def mass(self, at: AtAngles) -> Step:
+        """Reduced moment of inertia whose graph is drawn, kg m2: of all links without the flywheel."""
+        return at.inertia
+
+    def inertia(self, phi: Any) -> Floats:
+        """The same at any angles."""
+        if phi is self.samples:
+            return np.asarray(self.mass(self.at_samples).value)
+        return np.asarray(self.reduced.inertia(phi))
+
+    @cached_property
+    def scales(self) -> FlywheelScales:
+        """Scale factors from the handy series that fill the space, with mu_A = mu_M mu_phi H."""
+        return self.fixed_scales or self._fitted_scales()
+
+    def _fitted_scales(self) -> FlywheelScales:
+        space, reduced = self.space or self._space(), self.reduced
+        work = Quadrature(reduced.moment, self.edges)
+        constant = -work.total / reduced.period
+        edges = self.at_borders.moment(1).value, self.at_borders.moment(-1).value
+        moment = np.concatenate((*edges, (0.0, constant), self.at_samples.moment().value))
+        done = np.append(work(self.samples), (0.0, -work.total))
+        excess = work(self.samples) + constant * self.samples
+        mass = self.inertia(self.samples)
+        # The zero level belongs to the diagram as well.
+        energies = [*excess[[excess.argmax(), excess.argmin()]], *self._energies(excess, mass), 0.0]
+        if not max(np.ptp(excess), np.ptp(mass) * reduced.omega1**2 / 2) > EVEN * np.ptp(done):
+            raise CannotBuild(tell("the machine runs evenly: in every position the moments balance each other, and no link gains "
+                                   "or loses energy"), tell("leave [flywheel] and its sheet out"))
+        mu_phi = handy(reduced.period / space.angle)
+        largest = _largest(reduced.forces_at(self.samples))
+        # A crank that alone has inertia leaves nothing for the others: its own is the scale then.
+        heaviest = float(mass.max()) or reduced.crank_inertia
+        if not heaviest > 0:
+            raise CannotBuild(tell("a flywheel needs links with masses"),
+                              tell("add mass, centre and inertia to [[link]] of the project file"))
+        spans = (float(np.ptp(moment)), float(np.ptp(done)), float(np.ptp(energies)), heaviest)
+        force = fit(*(("μ_M′", tr("N·m/mm")) if reduced.forces_are_moments else ("μ_F", tr("N/mm"))), largest, space.force)
+        spare = space.spare + (space.force - largest / force.mu if space.heads else 0.0)
+        mu_m, mu_a, mu_e, mu_j = _scaled(spans, self._drawn_spans(moment, mass, heaviest), mu_phi, space, spare)
+        return FlywheelScales(
+            angle=Scale("μ_φ", mu_phi, tr("rad/mm")),
+            force=force,
+            moment=Scale("μ_M", mu_m, tr("N·m/mm")),
+            work=Scale("μ_A", mu_a, tr("J/mm")),
+            energy=Scale("μ_E", mu_e, tr("J/mm")),
+            inertia=Scale("μ_J", mu_j, tr("kg·m²/mm")),
+            pole=mu_a / (mu_m * mu_phi),
+            excess=self._own_scale(float(np.ptp(np.append(excess, 0.0))), mu_e),
+        )
+
+    def _drawn_spans(self, moment: Floats, mass: Floats, heaviest: float) -> Four:
+        """Extents as they are drawn: the works by the ordinates in the middles of the intervals; ``mass`` is J at the samples."""
+        behind, before = self.at_borders.moment(1).value, self.at_borders.moment(-1).value
+        ends = np.append(0.0, np.cumsum(self.at_middles.moment().value * np.diff(self.edges)))
+        work = Curve(self.edges, ends, behind[:-1], before[1:])(self.samples)
+        constant = -work[-1] / self.reduced.period
+        excess = work + constant * self.samples
+        energies = [*excess, *self._energies(excess, mass), 0.0]
+        moments, works = np.append(moment, constant), np.append(work, -work[-1])
+        return float(np.ptp(moments)), float(np.ptp(works)), float(np.ptp(energies)), heaviest
+
+    def _own_scale(self, excess: float, mu_energy: float) -> Scale | None:
+        """Scale factor of the graph of dE, whose values span ``excess`` J, where that of energy is none for it."""
+        return None
+
+    def _space(self) -> DiagramSpace:
+        """Room for the diagrams when none is given."""
+        return DiagramSpace()
+
+    @abstractmethod
+    def _energies(self, excess: Floats, mass: Floats) -> Iterable[float]:
+        """Energies the method needs room for besides dE, J; ``excess`` and ``mass`` are dE and J at the samples."""
+
+    def mu(self, name: str) -> float:
+        """Scale factor of a quantity, by the name of its field in :class:`FlywheelScales`."""
+        scale: Scale = getattr(self.scales, name)
+        return named(scale.mu, f"scales.{_FACTORS[name][0]}", scale.symbol.replace("_", "_{") + "}", _FACTORS[name][1])
+
+    @property
+    def omega1(self) -> float:
+        """Mean angular velocity of the crank, rad/s."""
+        return named(self.reduced.omega1, "crank.speed", "ω_1", "rad/s")
+
+
+def _largest(forces: Mapping[str, Floats]) -> float:
+    """Extent of the graph of the forces, which stand on one axis."""
+    largest = float(np.ptp(np.concatenate([np.zeros(1), *map(np.ravel, forces.values())])))
+    if not largest > 0:
+        raise CannotBuild(tell("a flywheel needs a technological force or moment, and {names} is 0 at every position").format(
+            names=re.sub("[_{}]", "", ", ".join(forces))), tell("give it a value, or leave the flywheel and its sheets out"))
+    return largest
+
+
+def _next_handy(mu: float) -> float:
+    return handy(mu * (1 + 1e-6) * HANDY[0])
+
+
+Four = tuple[float, float, float, float]
+
+
+def _scaled(spans: Four, drawn: Four, mu_phi: float, space: DiagramSpace, spare: float) -> Four:
+    """Scale factors of moment, work, energy and inertia; those of moment and work suit the pole.
+
+    Of all with which the graphs one under another fit together those with the greatest product of their heights. The moments are
+    what everything else comes from: where they can, they get ``READABLE`` first, or one of the ``SHARES`` of it. What stands alone
+    fills its own room. What is ``drawn`` by few ordinates may be much higher than the extents: it has to fit, too, with ``spare``
+    mm more.
+    """
+    series = []
+    for k, room in enumerate((space.moment, space.work, space.energy, space.inertia)):
+        alone = k >= space.stacked
+        series.append([handy(max(spans[k], drawn[k] if alone else 0.0) / room)])
+        for _ in range(0 if alone else STEPS):
+            series[-1].append(_next_handy(series[-1][-1]))
+    mu = np.meshgrid(*series, indexing="ij", sparse=True)
+    heights = [span / m for span, m in zip(spans, mu, strict=True)]
+    pole = mu[1] / (mu[0] * mu_phi)
+    on_paper = sum(span / m for span, m in zip(drawn[:space.stacked], mu, strict=False))
+    fitting = (sum(heights[:space.stacked]) <= space.stack) & (on_paper <= space.stack + spare)
+    fitting = fitting & (pole >= space.pole[0]) & (pole <= space.pole[1])
+    # Then a pole distance that a ruler lays off, in half millimetres, where there is one.
+    for wanted in (*(heights[0] >= share * READABLE for share in SHARES), np.abs(2 * pole - np.round(2 * pole)) < 1e-6):
+        fitting = fitting & wanted if (fitting & wanted).any() else fitting
+    product = heights[0] * heights[1] * heights[2]**space.reading * heights[3]
+    products = np.where(fitting, product, 0.0)
+    best = np.unravel_index(int(np.argmax(products)), products.shape)
+    mu_m, mu_a, mu_e, mu_j = (of[int(i)] for of, i in zip(series, best, strict=True))
+    return mu_m, mu_a, mu_e, mu_j
+
+
+READABLE = 80.0
+"""Height of the graphs of the moments together from which on they read well, mm."""
+SHARES = 1.0, 0.75, 0.65
+"""Shares of it that are asked for in turn."""
+STEPS = 17
+"""So many steps of the series of scale factors are nearly two decades."""

@@ -1,0 +1,418 @@
+"""Diagrams of a flywheel: reduced moment, its work by graphical integration, change of kinetic energy, moment of inertia."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.given import Given, named
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.rules import GIVEN_NUMBER, taken
+from tmm_sheets.construction.scale import Scale
+from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.methods.flywheel.diagram_scales import Diagrams
+from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT
+from tmm_sheets.methods.integration import AREA, ON_CURVE, ORIGIN, SMOOTH, Floats, Quadrature, differentiate, integrate
+from tmm_sheets.numbers import is_zero
+from tmm_sheets.words import marked, tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.task.schema import FlywheelTable
+
+
+@primitive("gather ordinates", "real")
+def _gather(*points: Any) -> Any:
+    return np.array([np.imag(p) for p in points])
+
+
+@primitive("within the first turn", "real")
+def _within(phi: Any, turn: Any) -> Any:
+    """Angles of later turns as those of the first; whole turns but the first end it."""
+    later = phi > turn * (1 + 1e-12)
+    return np.where(later, np.mod(phi - 1e-12, turn) + 1e-12, phi)
+
+
+FIRST_TURN = Rule("angle of the first turn", _within, ("angle", "angle"), "angle", marked("Angle within a turn {name} = {value}."),
+                  unit="rad", exact=True)
+MOMENT_AT = taken("reduced moment at the positions", "N*m", marked("Reduced moment of forces {name} = {value} N·m."))
+INERTIA_AT = taken("reduced moment of inertia at the positions", "kg*m2",
+                   marked("Reduced moment of inertia {name} = {value} kg·m²."))
+SLOPE_AT = taken("slope of the moment of inertia at the positions", "kg*m2", marked("Derivative {name} = {value} kg·m²."))
+ORDINATE_AT = taken("ordinate of an interval", "mm", marked("Ordinate {name} = {value} mm."))
+STEEP = 3.0
+"""A curve between two points that is nowhere steeper at its ends, in slopes of the chord, neither rises nor falls beyond them
+(F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17, 1980).
+"""
+JUMP = 1e-6
+"""Ordinates of a graph on both sides of a border that differ by more, mm, are those of a jump."""
+BULGE = Rule("bulge of a curve", lambda y, a, b, share: y - ((1 - share) * a + share * b), ("number",) * 4, "number",
+             marked("The curve departs from the chord between neighbouring positions by {name} = {value} mm."), unit="mm",
+             exact=True)
+ON_DRAWN = Rule("ordinate of a drawn curve", lambda a, b, share, bulge: (1 - share) * a + share * b + bulge, ("number",) * 4,
+                "ordinate", marked("On the curve drawn through the points of the positions measure the ordinate {name} = {value}."),
+                unit="mm")
+BORDER_SLOPE = Rule("slope of an integral", lambda y, pole: y / pole, ("number", "length"), "number",
+                    marked("Slope of the graph of work {name} = {value}."))
+STEEPEST = Rule("greatest slope of an integral", lambda y, pole, most: most * y / pole, ("number", "length", "number"), "number",
+                marked("Slope of the graph of work {name} = {value}, {2} times that of the chord: a steeper curve would leave the "
+                       "interval between its ends."))
+SLOPE_OF_CHORD = taken("slope at the border of an interval", "",
+                       marked("Slope of the curve at the border of the interval {name} = {value}."))
+WORK_AT = taken("work of the cycle", "J", marked("Work of the cycle {name} = {value} J."))
+TO_PAPER = Rule("to scale", lambda value, mu: value / mu, ("number", "number"), "number",
+                marked("Ordinate on the drawing {name} = {0}/{1} = {value} mm."), unit="mm")
+FROM_PAPER = Rule("from scale", lambda y, mu: y * mu, ("ordinate", "number"), "number",
+                  marked("{name} = {0}·{1} J/mm = {value} J."), unit="J")
+TO_SLOPE = Rule("slope on paper", lambda value, mu, pole: value / (mu * pole), ("number",) * 3, "number",
+                marked("Slope {name} = M/(μ_M·H) = {value}."))
+ABSCISSA = Rule("abscissa of an angle", lambda phi, mu: phi / mu, ("number", "number"), "number",
+                marked("Abscissa of the angle {name} = {value} mm."), unit="mm", exact=True)
+BORDER_AT = replace(taken("abscissa of a border", "mm", marked("Abscissa of the border of an interval {name} = {value} mm.")),
+                    exact=True)
+PLOT = Rule(
+    "plot a point", lambda x, y: x + 1j * y, ("ordinate", "ordinate"), "point",
+    marked("At the abscissa {0} lay off the ordinate {1}: a point of the graph."),
+    lambda a, v: (Helper("line", complex(a[0], 0), v),),
+)
+BALANCE = Rule(
+    "balance the cycle", np.conj, ("point",), "point",
+    marked("Over the cycle the works are equal: lay off the final ordinate with the opposite sign, point {name}; the line from "
+           "the origin to it is the graph of the work of the constant moment."),
+    lambda a, v: (Helper("line", a[0], v), Helper("line", 0j, v)),
+)
+CONSTANT_MOMENT = Rule("constant moment", lambda p, mu: np.imag(p) * mu, ("point", "number"), "number",
+                       marked("Constant reduced moment that balances the cycle: {name} = y·μ_M = {value} N·m."), unit="N*m",
+                       source="000, 5.3")
+MEASURE = Rule("measure ordinates", _gather, (), "ordinate", marked("Measure the ordinate of the graph of work {name} = {value}."))
+ON_LINE = Rule("ordinate of a straight line", lambda x, end: x * np.imag(end) / np.real(end), ("ordinate", "point"), "ordinate",
+               marked("At the abscissa {0} measure the ordinate of the line {name} = {value}."))
+SUM = Rule("add ordinates", lambda a, b: a + b, ("ordinate", "ordinate"), "ordinate",
+           marked("Add the ordinates {0} and {1} with their signs: {name} = {value}."))
+AREA_ORDINATE = Rule("ordinate from an area", lambda a, mu: a / mu, ("number", "number"), "ordinate",
+                     marked("As a check, the area of the graph of the moment gives the final ordinate of work {name} = {value}."),
+                     beyond_paper=True)
+BESIDE_AREA = Rule("difference from the area", lambda end, area: np.imag(end) - area, ("point", "ordinate"), "ordinate",
+                   marked("The final ordinate {0} as constructed differs from it by {name} = {value}: the ordinate in the middle "
+                          "of an interval is not the mean ordinate of the curve."), beyond_paper=True)
+MEAN_MOMENT = Rule("mean moment from the work", lambda a, period: -a / period, ("number", "number"), "number",
+                   marked("By the area {name} = {value} N·m."), beyond_paper=True, unit="N*m")
+ENLARGE = Rule("enlarge ordinates", lambda y, mu, other: y * (mu / other), ("ordinate", "number", "number"), "ordinate",
+               marked("Convert the ordinate {0} from the scale factor μ_A = {1} J/mm to μ_E = {2} J/mm: {name} = {0}·μ_A/μ_E = "
+                      "{value}."))
+LAY_DOWN = Rule("lay off an ordinate", lambda y: y, ("ordinate",), "ordinate", marked("Lay off the ordinate {name} = {value}."))
+DIFFERENCE = Rule("difference in per cent", lambda drawn, exact: 100 * (np.divide(drawn, exact) - 1), ("number", "number"),
+                  "number", marked("The construction against the limit: {name} = {value} %."), beyond_paper=True, unit="%")
+
+
+class Works(Diagrams):
+    """The construction up to the change of the kinetic energy and the reduced moment of inertia: plans in mm of paper.
+
+    It takes the ordinate in the middle of each interval from the moment graph; the ends of the chords are joined by the smooth
+    curve whose slopes are the graph's own ordinates.
+    """
+
+    data: FlywheelTable
+
+    @property
+    def given(self) -> bool:
+        """True where the flywheel is given and the coefficient of non-uniformity is asked."""
+        return self.data.inertia is not None
+
+    @property
+    def permitted(self) -> float:
+        """Permitted coefficient of non-uniformity, of a flywheel that is asked."""
+        assert self.data.delta is not None
+        return named(self.data.delta, "flywheel.delta", "δ")
+
+    @cached_property
+    def closing(self) -> Given:
+        """Numbers of the positions over the closed cycle: the last is the first again."""
+        n = len(self.reduced.labels)
+        return Given(np.append(np.arange(n), 0), "positions of the closed cycle")
+
+    @cached_property
+    def across_plan(self) -> Plan:
+        """Abscissae of the positions, mm: ``x``; on the graph J(phi), where it has another scale, ``x_J``."""
+        plan = Plan(f"abscissae@positions{self.where}", tr("Abscissae of the positions"), "mm", self.labels)
+        phi = self.data_plan["φ1"]
+        plan.add("x", ABSCISSA, phi, self.mu("angle"))
+        if self.inertia_angle is not self.scales.angle:
+            mu = named(self.inertia_angle.mu, "scales.mu_phi", "μ_φ", "rad/mm")
+            turn = named(self.inertia_turn, "cycle", "2π", "rad")
+            plan.add("x_J", ABSCISSA, plan.auxiliary("φ1 of a turn", FIRST_TURN, phi, turn), mu)
+        return plan
+
+    @property
+    def across(self) -> Step:
+        """Abscissae of the positions, mm."""
+        return self.across_plan["x"]
+
+    @cached_property
+    def borders_plan(self) -> Plan:
+        """Angles ``φ`` of the borders of the intervals and their abscissae ``x``, mm; ``x_`` with a border's name is one alone."""
+        plan = Plan(f"abscissae@borders{self.where}", tr("Abscissae of the borders of the intervals"), "mm", self.borders)
+        choice = "positions, jumps and kinks of the moment"
+        phi = plan.add("φ", GIVEN_NUMBER, Given(self.edges, "borders of the intervals", "φ_1", "rad", choice=choice))
+        x = plan.add("x", ABSCISSA, phi, self.mu("angle"))
+        for k, name in enumerate(self.borders):
+            plan.auxiliary(f"x_{name}", BORDER_AT, x, k)
+        return plan
+
+    @cached_property
+    def data_plan(self) -> Plan:
+        """What is given: angles ``φ1`` of the positions and ``δ``, unless it is asked."""
+        plan = Plan(f"flywheel-data@given{self.where}", tr("Givens of the flywheel"), "", self.labels)
+        plan.add("φ1", GIVEN_NUMBER, Given(self.reduced.phi, "cycle", "φ_1", "rad"))
+        if not self.given:
+            plan.add("δ", GIVEN_NUMBER, self.permitted)
+        return plan
+
+    # --- the construction ---------------------------------------------------------------------------
+    @cached_property
+    def abscissae(self) -> Floats:
+        """Borders of the intervals on paper, mm."""
+        return np.asarray(self.scales.angle.mm(self.edges))
+
+    @cached_property
+    def moment_plan(self) -> Plan:
+        """Graph of the reduced moment: step ``M`` holds its points at the positions, mm, ``M_пр`` the moment, N m."""
+        plan = Plan(f"reduced-moment{self.where}", tr("Graph of the reduced moment"), "mm", self.labels)
+        moment = plan.add("M_пр", MOMENT_AT, self.reduced.numbered.moment(), self.closing, symbol=tr("M_red"))
+        plan.add("M", PLOT, self.across, plan.add("y_M", TO_PAPER, moment, self.mu("moment")))
+        return plan
+
+    @cached_property
+    def work_ends(self) -> tuple[Step, ...]:
+        """Ends of the chords of the work graph."""
+        return tuple(self.work_plan[name] for name in self.borders)
+
+    @cached_property
+    def middles_plan(self) -> Plan:
+        """Ordinates of the moment in the middles of the intervals, mm: ``y``."""
+        plan = Plan(f"ordinates@middles{self.where}", tr("Ordinates of the moment in the middles of the intervals"), "mm",
+                    self.intervals)
+        plan.add("y", TO_PAPER, self.at_middles.moment(), self.mu("moment"))
+        return plan
+
+    @cached_property
+    def slopes_plan(self) -> Plan:
+        """Slopes of the work curve on paper at the borders of the intervals, behind each (``+``) and before it (``−``)."""
+        plan = Plan(f"slopes@borders{self.where}", tr("Slopes of the graph of work at the borders of the intervals"), "mm",
+                    self.borders)
+        for name, side in (("+", 1), ("−", -1)):
+            plan.add(name, TO_SLOPE, self.at_borders.moment(side), self.mu("moment"), self.pole)
+        return plan
+
+    @cached_property
+    def intervals_plan(self) -> Plan:
+        """The same interval by interval: ``y``, ``+`` (at its beginning), ``−`` (at its end) with its name."""
+        plan = Plan(f"ordinates@intervals{self.where}", tr("Ordinates of the moment by intervals"), "mm")
+        slopes, middles = self.slopes_plan, self.middles_plan["y"]
+        for k, interval in enumerate(self.intervals):
+            left, right = self._drawn_at(plan, k, 1), self._drawn_at(plan, k + 1, -1)
+            y = plan.add(f"y°{interval}", ORDINATE_AT, middles, k)
+            if left is None and right is None:
+                plan.add(f"y{interval}", LAY_DOWN, y)
+            else:
+                self._on_drawn(plan, f"y{interval}", y, left or right, right or left, 0.5)
+            chord = float(middles.value[k])
+            steep = np.array([slopes["+"].value[k], slopes["−"].value[k + 1]]) * self.pole * chord
+            for side, at, border, ahead in zip("+−", (left, right), (k, k + 1), steep, strict=True):
+                plan.add(f"{side}{interval}", *(
+                    (STEEPEST, plan[f"y{interval}"], self.pole, STEEP) if steep.min() >= 0 and ahead > STEEP * chord**2 > 0 else
+                    (SLOPE_OF_CHORD, slopes[side], border) if at is None else (BORDER_SLOPE, at, self.pole)))
+        return plan
+
+    def _drawn_at(self, plan: Plan, border: int, side: int) -> Step | None:
+        """Ordinate of the moment at a border, mm, as it was drawn at a position; None where there is none or the moment jumps."""
+        if border not in self.at_positions:
+            return None
+        k = self.at_positions.index(border)
+        name, row = f"y_M{self.labels[k]}{'' if k else '°'}", self.moment_plan["y_M"]
+        # The graph has the value behind a jump at its positions.
+        if side < 0 and abs(float(self.at_borders.moment(-1).value[border] / self.scales.moment.mu - row.value[k])) > JUMP:
+            return None
+        return plan[name] if name in plan else plan.add(name, ORDINATE_AT, row, k)
+
+    @staticmethod
+    def _on_drawn(plan: Plan, name: str, exact: Step, a: Any, b: Any, share: float) -> Step:
+        """Ordinate between two drawn points: as exact as the curve is known, as wrong as the points are."""
+        bulge = plan.add(f"f_{name}", BULGE, exact, a, b, share)
+        return plan.add(name, ON_DRAWN, a, b, share, bulge)
+
+    @property
+    def pole(self) -> float:
+        """Pole distance, mm."""
+        return named(self.scales.pole, "scales.H", "H", "mm")
+
+    @cached_property
+    def work_plan(self) -> Plan:
+        """Graphical integration of the moment: see :func:`integrate` for the names of its steps; ``A(φ)`` is the smooth curve."""
+        plan, of = Plan(f"work{self.where}", tr("Graph of work"), "mm"), self.intervals_plan
+        across = [self.borders_plan.auxiliaries[f"x_{name}"] for name in self.borders]
+        ends = integrate(plan, "", across, [of[f"y{name}"] for name in self.intervals], self.pole,
+                         borders=self.borders, intervals=self.intervals, mark=self.mark)
+        plan.add("A(φ)", SMOOTH, *ends, *(of[f"{side}{name}"] for side in "+−" for name in self.intervals))
+        area = plan.add("∫M", AREA_ORDINATE, self.area_plan["A_Σ"], self.mu("work"))
+        plan.add("ΔA", BESIDE_AREA, ends[-1], area)
+        return plan
+
+    @cached_property
+    def area_plan(self) -> Plan:
+        """Work by the area of the graph of the moment: ``A`` at the positions, ``A_Σ`` of the cycle, J; ``M`` its mean, N m."""
+        plan = Plan(f"area@limit{self.where}", tr("Work by the area of the graph of the moment"), "", self.labels)
+        q = Quadrature(np.zeros_like, self.edges, 4)
+        moment = self.reduced.at("area", q.at).moment()
+        ends = Given(q.panels * np.array(self.at_positions), "borders of the positions")
+        row = plan.add("A", AREA, moment, Given(q.halves, "half widths of the panels", unit="rad", over="curve"),
+                       Given(q.weights, "weights of the quadrature", over="curve"), ends)
+        total = plan.add("A_Σ", WORK_AT, row, len(self.labels) - 1)
+        plan.add("M", MEAN_MOMENT, total, named(self.reduced.period, "cycle", "φ_ц", "rad"))
+        return plan
+
+    @cached_property
+    def driving_plan(self) -> Plan:
+        """Work of the constant moment (step ``K``, end of its line) and its differentiation (step ``dK``), mm; ``M``, N m."""
+        plan = Plan(f"driving-moment{self.where}", tr("Graph of the constant moment"), "mm")
+        origin = plan.add("0", ORIGIN, 0.0)
+        end = plan.add("K", BALANCE, self.work_ends[-1])
+        (found,) = differentiate(plan, "", [origin, end], self.pole, intervals=["K"])
+        plan.add("M", CONSTANT_MOMENT, found, self.mu("moment"))
+        return plan
+
+    @cached_property
+    def total_plan(self) -> Plan:
+        """Sum of works at the positions: ``ΣA`` at the scale of work, ``ΔE`` at that of energy, mm; ``A``, ``A_K``, ``E``, J.
+
+        Where the graph has its own scale ``ΔE`` is drawn to that, and ``ΔE′`` is what the energy-mass diagram takes from it.
+        ``δA`` is how much greater the work of the cycle is by the ordinates in the middles than by the area, % of the area.
+        """
+        plan = Plan(f"total-work{self.where}", tr("Graph of the total work"), "mm", self.labels)
+        line = plan.add("y_1", ON_LINE, self.across, self.driving_plan["K"])
+        curve = plan.add("y_2", MEASURE, *(self.work_ends[k] for k in self.at_positions))
+        total = plan.add("ΣA", SUM, curve, line)
+        own = self.scales.excess is not None
+        if own:
+            energy = plan.add("ΔE", ENLARGE, total, self.mu("work"), self.mu("excess"), say=tr(
+                "Convert the ordinate {0} from the scale factor μ_A = {1} J/mm to μ_{{ΔE}} = {2} J/mm: {name} = {0}·μ_A/μ_{{ΔE}} = "
+                "{value}."))
+            plan.add("ΔE′", ENLARGE, energy, self.mu("excess"), self.mu("energy"), say=tr(
+                "For the energy-mass diagram convert the ordinate {0} from the scale factor μ_{{ΔE}} = {1} J/mm to μ_E = {2} J/mm: "
+                "{name} = {0}·μ_{{ΔE}}/μ_E = {value}."))
+        else:
+            energy = plan.add("ΔE", ENLARGE, total, self.mu("work"), self.mu("energy"))
+        plan.add("points", PLOT, self.across, energy)
+        plan.add("A", FROM_PAPER, curve, self.mu("work"),
+                 say=tr("Work of the variable moment {name} = y_2·μ_A = {0}·{1} J/mm = {value} J."))
+        plan.add("A_K", FROM_PAPER, line, self.mu("work"),
+                 say=tr("Work of the constant moment {name} = y_1·μ_A = {0}·{1} J/mm = {value} J."))
+        plan.add("E", FROM_PAPER, energy, self.mu("excess" if own else "energy"),
+                 say=tr("Change of the kinetic energy {name} = ΔE·μ_{{ΔE}} = {0}·{1} J/mm = {value} J.") if own else
+                 tr("Change of the kinetic energy {name} = ΔE·μ_E = {0}·{1} J/mm = {value} J."))
+        done = plan.add("A_Σ", WORK_AT, plan["A"], len(self.labels) - 1)
+        plan.add("δA", DIFFERENCE, done, self.area_plan["A_Σ"],
+                 say=tr("The work of the cycle against that by the area of the graph: {name} = {value} %."))
+        return plan
+
+    @property
+    def excess_ordinates(self) -> Step:
+        """Ordinates of dE at the positions at the scale of energy, mm."""
+        return self.total_plan["ΔE′" if self.scales.excess is not None else "ΔE"]
+
+    @cached_property
+    def inertia_angle(self) -> Scale:
+        """Scale factor of the angle axis of the graph J(phi)."""
+        return self.scales.angle
+
+    @property
+    def inertia_turn(self) -> float:
+        """Angle over which that graph is drawn, rad."""
+        return self.reduced.period
+
+    @cached_property
+    def inertia_plan(self) -> Plan:
+        """Graph of the reduced moment of inertia: ``J`` the ordinates, ``points`` at the positions, mm; ``J_пр``, kg m2."""
+        plan = Plan(f"reduced-inertia{self.where}", tr("Graph of the reduced moment of inertia"), "mm", self.labels)
+        inertia = plan.add("J_пр", INERTIA_AT, self.mass(self.reduced.numbered), self.closing, symbol=tr("J_red"))
+        ordinate = plan.add("J", LAY_DOWN, plan.add("y_J", TO_PAPER, inertia, self.mu("inertia")))
+        plan.add("points", PLOT, self.across_plan["x_J" if "x_J" in self.across_plan else "x"], ordinate)
+        return plan
+
+    @cached_property
+    def contacts_plan(self) -> Plan:
+        """Ordinates of the graphs at the angles of the contacts, see :meth:`contact`."""
+        return Plan(f"ordinates@contacts{self.where}", tr("Ordinates of the graphs at the points of contact"), "mm")
+
+    def contact(self, name: str, phi: float, criterion: str) -> tuple[Step, Step, Step]:
+        """Abscissa, and ordinates of dE and J, mm, at the angle of a contact, chosen by a criterion."""
+        plan = self.contacts_plan
+        angle = Given(phi, f"angle of the contact {name}", f"φ_{{{name}}}", "rad", over="none", choice=criterion)
+        x = plan.add(f"x_{name}", ABSCISSA, angle, self.mu("angle"))
+        work = plan.add(f"A_{name}", ON_CURVE, self.work_plan["A(φ)"], x)
+        total = plan.add(f"ΣA_{name}", SUM, work, plan.add(f"K_{name}", ON_LINE, x, self.driving_plan["K"]))
+        energy = plan.add(f"ΔE_{name}", ENLARGE, total, self.mu("work"), self.mu("energy"))
+        at = self.at(f"contact-{name}", np.array([phi]), (name,))
+        mass = plan.add(f"J_пр_{name}", AT_CONTACT, self.mass(at), 0, symbol=tr("J_red_{contact}").format(contact=name))
+        exact, row = plan.add(f"J°_{name}", TO_PAPER, mass, self.mu("inertia")), self.inertia_plan["y_J"]
+        right = int(np.clip(np.searchsorted(self.reduced.phi, phi), 1, len(self.reduced.phi) - 1))
+        before, after = self.reduced.phi[right - 1:right + 1]
+        a, b = (plan.add(f"y_J{self.labels[k]}_{name}", ORDINATE_AT, row, k) for k in (right - 1, right))
+        share = named((phi - before) / (after - before), f"share of the interval at the contact {name}")
+        return x, energy, self._on_drawn(plan, f"J_{name}", exact, a, b, share)
+
+    # --- curves on paper, mm, over the angle ----------------------------------------------------------
+    def work_curve(self, phi: Any) -> Floats:
+        """Ordinate of the smooth work curve through the ends of the chords, mm."""
+        curve: Curve = self.work_plan["A(φ)"].value
+        return np.asarray(curve(self.scales.angle.mm(np.asarray(phi, dtype=float))))
+
+    def energy_curve(self, phi: Any) -> Floats:
+        """Ordinate of the graph dE(phi) at the scale of energy, mm."""
+        end = self.driving_plan["K"].value
+        line = self.scales.angle.mm(np.asarray(phi, dtype=float)) * (end.imag / end.real)
+        return np.asarray((self.work_curve(phi) + line) * (self.scales.work.mu / self.scales.energy.mu))
+
+    # --- results, SI -----------------------------------------------------------------------------------
+    @property
+    def M_reduced(self) -> Floats:
+        """Reduced moment of the technological forces at the positions, N m."""
+        return np.asarray(self.moment_plan["M_пр"].value)
+
+    @property
+    def work(self) -> Floats:
+        """Work of that moment from position 0, J: ends of the chords."""
+        return np.asarray(self.total_plan["A"].value)
+
+    @property
+    def work_converged(self) -> Floats:
+        """The same work by the area of the graph of the moment, for vanishing intervals, J."""
+        return np.asarray(self.area_plan["A"].value)
+
+    @property
+    def work_error(self) -> float:
+        """How much greater the work of the cycle is by the ordinates in the middles than by the area, in parts of the area.
+
+        0.0 where there is none: what comes back to where it was, or is nothing beside the energy of the links.
+        """
+        none = is_zero(float(self.work_converged[-1]), max(float(np.abs(self.work).max()), self._kinetic))
+        return 0.0 if none else float(self.total_plan["δA"].value) / 100
+
+    @property
+    def M_constant(self) -> float:
+        """Constant moment that balances the cycle, N m: the driving one of a working machine."""
+        return float(self.driving_plan["M"].value)
+
+    @property
+    def delta_E(self) -> Floats:
+        """Change of kinetic energy at the positions, J."""
+        return np.asarray(self.total_plan["E"].value)
+
+    @property
+    def J_reduced(self) -> Floats:
+        """Reduced moment of inertia at the positions, kg m2."""
+        return np.asarray(self.inertia_plan["J_пр"].value)
