@@ -2,9 +2,9 @@
 
 Usage: python -m tests.evenness [--ciphers N --seed S] [--each] [PROJECT ...]; without names all shipped projects and the ciphers.
 
-For every arrangement: share of cells of 50 mm without ink (mean, most), sheets with an empty rectangle of 160 x 120 mm, what
-position plans take of their places, and the longest vector of the velocity plans. Exit status 1 when an aim is missed. What cannot
-be built is told.
+For every arrangement: share of cells of 50 mm without ink (mean, most), sheets with an empty rectangle of more than 160 x 120 mm,
+what position plans take of their places, and what of the kinematics is below its floor (:mod:`tmm_sheets.sheets.floors`): one line
+for each, with "told" where the sheet itself says so. Exit status 1 when an aim is missed. What cannot be built is told.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import argparse
 import statistics
 import sys
 from collections import defaultdict
+from collections.abc import Iterator
 from multiprocessing import Pool
 from typing import NamedTuple
 
@@ -21,55 +22,95 @@ import numpy as np
 from tests.gallery import names
 from tests.labels import drawn_lots
 from tmm_sheets import catalogue
+from tmm_sheets.box import Box
 from tmm_sheets.drawing import evenness
-from tmm_sheets.drawing.marks import Drawing, Fill, Line, Mark
+from tmm_sheets.drawing.marks import Drawing, Text
 from tmm_sheets.project import Project
+from tmm_sheets.sheets.composed import Composed
+from tmm_sheets.sheets.floors import CRANK, EMPTY, LETTERED, SHARE, VECTOR, Floor
+from tmm_sheets.sheets.linkage import kinematic_frames
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.words import tr
 
-MEAN, MOST, GAP = 0.12, 0.18, (160.0, 120.0)
-"""At most so many cells are empty in the mean of a kind, on one sheet; an empty rectangle of these sides, lying or upright, is a
-gap.
-"""
-PLANS, LEAST_PLAN = 0.60, 0.40
-"""What position plans take of their places, at least: in the median, each."""
-VECTOR = 30.0, 100.0
-"""The longest vector of the velocity plans, mm."""
+MEAN, MOST = 0.12, 0.18
+"""At most so many cells are empty in the mean of a kind, on one sheet."""
+PLANS = 0.60
+"""What position plans take of their places, at least, in the median."""
+
+
+class Size(NamedTuple):
+    """Size of a view beside its floor, mm, or the share of its place; ``told`` where the sheet says that it is below."""
+
+    view: str
+    size: float
+    floor: Floor
+    told: bool
 
 
 class Sheet(NamedTuple):
-    """What is measured of a sheet; ``gap`` is the lower left corner of an empty rectangle."""
+    """What is measured of a sheet; ``gap`` is the largest empty rectangle, ``plans`` what position plans take of their places."""
 
     name: str
     kind: str
     empty: float
-    gap: tuple[float, float] | None
+    gap: Box
     plans: list[float]
-    vectors: list[float]
+    sizes: list[Size]
+
+    def below(self) -> list[Size]:
+        """What is below its floor."""
+        return [s for s in self.sizes if s.size < s.floor.least * (1 - 1e-6)]
 
 
-def gap(drawing: Drawing, step: float = 2.0) -> tuple[float, float] | None:
-    """Lower left corner of an empty rectangle of GAP's sides, mm, or None."""
+def gap(drawing: Drawing, step: float = 2.0) -> Box:
+    """The largest rectangle without ink, mm."""
     field = evenness.FIELD
-    shape = int(field.width / step), int(field.height / step)
-    inked = np.zeros(shape, np.int64)
+    nx, ny = int(field.width / step), int(field.height / step)
+    inked = np.zeros((ny, nx), bool)
     ink = evenness.dense((m for m in drawing.marks if m.of != evenness.FRAME), 1.0)
     z = np.concatenate((ink, *map(evenness.covering, evenness.TAKEN)))
     i, j = ((z.real - field.x0) / step).astype(int), ((z.imag - field.y0) / step).astype(int)
-    there = (i >= 0) & (i < shape[0]) & (j >= 0) & (j < shape[1])
-    inked[i[there], j[there]] = 1
-    total = np.pad(inked.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
-    for sides in (GAP, GAP[::-1]):
-        nx, ny = (int(side / step) for side in sides)
-        free = np.argwhere(total[nx:, ny:] - total[:-nx, ny:] - total[nx:, :-ny] + total[:-nx, :-ny] == 0)
-        if len(free):
-            return float(field.x0 + step * free[0][0]), float(field.y0 + step * free[0][1])
-    return None
+    there = (i >= 0) & (i < nx) & (j >= 0) & (j < ny)
+    inked[j[there], i[there]] = True
+    high, best = np.zeros(nx, int), (0, 0, 0, 0, 0)
+    for top, row in enumerate(inked, 1):
+        high = np.where(row, 0, high + 1)
+        rising = list[tuple[int, int]]()
+        for k, h in enumerate((*high.tolist(), 0)):
+            begin = k
+            while rising and rising[-1][1] >= h:
+                begin, tall = rising.pop()
+                best = max(best, (tall * (k - begin), begin, k, top - tall, top))
+            rising.append((begin, h))
+    _, i0, i1, j0, j1 = best
+    return Box(field.x0 + step * i0, field.y0 + step * j0, field.x0 + step * i1, field.y0 + step * j1)
 
 
-def _length(arrow: tuple[Mark, ...]) -> float:
-    """Length of an arrow from its beginning to its tip, mm; 0.0 for a head alone."""
-    lines, heads = ([m for m in arrow if isinstance(m, kind)] for kind in (Line, Fill))
-    return max((abs(complex(head.points[0]) - line.a) for line in lines for head in heads), default=0.0)
+def sizes(project: Project, sheet: Composed) -> Iterator[Size]:
+    """What the kinematics of a sheet measure beside their floors, by where the plans lie on it."""
+    draws = [part.draw for part in sheet.parts]
+    told = " ".join(str(remark) for remark in sheet.illegible)
+    vectors = defaultdict[tuple[str, float], float](float)
+    for n, frame in enumerate(sheet.frames):
+        if frame.view < 0 or (view := draws[frame.view]) not in OF_PLANS:
+            continue
+        study = project.study
+        if frame.plan == study.positions.plan.name:
+            yield Size(view, 2 * project.mechanism.crank.length / frame.mu[0], CRANK, tr(CRANK.what) in told)
+        plan = next((of.plan for of in (study.velocities, study.accelerations) if of.plan.name == frame.plan), None)
+        if plan is None:
+            continue
+        k = project.cycle.labels.index(frame.position)
+        z = np.array(list(kinematic_frames.plan_points(plan, k).values())) / frame.mu[0]
+        longest = max(abs(complex(seg.head.at(k)) - complex(seg.tail.at(k))) for seg in plan.segments) / frame.mu[0]
+        vectors[view, frame.mu[0]] = max(vectors[view, frame.mu[0]], longest)
+        if any(isinstance(m, Text) and m.by is not None and m.by.frame == n for m in sheet.drawing.marks):
+            yield Size(f"{view} {frame.position}", max(np.ptp(z.real), np.ptp(z.imag)), LETTERED, tr(LETTERED.what) in told)
+    yield from (Size(view, size, VECTOR, tr(VECTOR.what) in told) for (view, _), size in vectors.items())
+
+
+OF_PLANS = ("kinematics.position_plans", "kinematics.velocity_plans", "kinematics.acceleration_plan",
+            "kinematics.second_accelerations", "kinematics.enlarged_velocities")
 
 
 def measured(name: str) -> list[Sheet | str]:
@@ -86,11 +127,8 @@ def measured(name: str) -> list[Sheet | str]:
             found.append(f"{name} {n}: {type(e).__name__}: {e}")
             continue
         titles = {part.title for part in sheet.parts if part.draw == "kinematics.position_plans"}
-        vectors = [_length(arrow) for g in sheet.groups if g.kind == "arrow" and (arrow := sheet.drawing.marks[g.first : g.end])
-                   and arrow[0].of.startswith("velocity plan")]
         found.append(Sheet(f"{name} {n}", kind, evenness.empty_cells(sheet.drawing), gap(sheet.drawing),
-                           [share for title, share in evenness.fills(sheet.drawing) if title in titles],
-                           [max(vectors)] if vectors else []))
+                           [share for title, share in evenness.fills(sheet.drawing) if title in titles], [*sizes(project, sheet)]))
     return found
 
 
@@ -109,27 +147,42 @@ def main(args: list[str]) -> int:
     for s in sheets:
         kinds[s.kind].append(s)
         if asked.each:
-            print(f"{s.name:44} {s.empty:5.0%}{'  empty at {:.0f}, {:.0f}'.format(*s.gap) if s.gap else ''}")
+            print(f"{s.name:44} {s.empty:5.0%}  {_said(s.gap)}{''.join(f'  plans {share:.0%}' for share in s.plans)}")
     bad = []
-    print(f"{'kind':24}{'sheets':>7}{'mean':>7}{'most':>7}{'gaps':>6}")
+    print(f"{'kind':24}{'sheets':>7}{'mean':>7}{'most':>7}{'gaps':>6}  largest empty rectangle")
     for kind, of_kind in sorted(kinds.items()):
         mean, most = statistics.mean(s.empty for s in of_kind), max(of_kind, key=lambda s: s.empty)
-        print(f"{kind:24}{len(of_kind):7}{mean:7.1%}{most.empty:7.0%}{sum(bool(s.gap) for s in of_kind):6}")
+        largest = max((s.gap for s in of_kind), key=_area)
+        gaps = sum(_area(s.gap) > EMPTY for s in of_kind)
+        print(f"{kind:24}{len(of_kind):7}{mean:7.1%}{most.empty:7.0%}{gaps:6}  {_said(largest)}")
         bad += [f"{kind}: {mean:.1%} empty in the mean"] if mean > MEAN else []
+    if sheets:
+        print(f"cells without ink: {statistics.mean(s.empty for s in sheets):.1%} in the mean of all")
     bad += [f"{s.name}: {s.empty:.0%} empty" for s in sheets if s.empty > MOST]
-    bad += ["{}: empty rectangle at {:.0f}, {:.0f}".format(s.name, *s.gap) for s in sheets if s.gap]
+    bad += [f"{s.name}: empty rectangle {_said(s.gap)}" for s in sheets if _area(s.gap) > EMPTY]
     plans = [share for s in sheets for share in s.plans]
     if plans:
-        print(f"position plans take of their places: median {statistics.median(plans):.0%}, least {min(plans):.0%}")
+        print(f"position plans take of their places: mean {statistics.mean(plans):.0%}, median {statistics.median(plans):.0%}, "
+              f"least {min(plans):.0%}")
         bad += ["position plans: median"] if statistics.median(plans) < PLANS else []
-        bad += [f"{s.name}: position plan takes {min(s.plans):.0%}" for s in sheets if s.plans and min(s.plans) < LEAST_PLAN]
-    vectors = [length for s in sheets for length in s.vectors]
-    if vectors:
-        print(f"longest vectors of velocity plans: {min(vectors):.0f} .. {max(vectors):.0f} mm")
-        bad += [f"{s.name}: longest velocity {max(s.vectors):.1f} mm" for s in sheets
-                if s.vectors and not VECTOR[0] <= max(s.vectors) <= VECTOR[1]]
+        bad += [f"{s.name}: position plan takes {min(s.plans):.0%}" for s in sheets if s.plans and min(s.plans) < SHARE]
+    below = [(s.name, size) for s in sheets for size in s.below()]
+    print(f"views below their floors: {len(below)}, of these not told {sum(not size.told for _, size in below)}")
+    for floor in dict.fromkeys(size.floor for s in sheets for size in s.sizes):
+        every = [size.size for s in sheets for size in s.sizes if size.floor == floor]
+        under = sum(size.floor == floor for _, size in below)
+        print(f"  {floor.what}: least {min(every):.1f} mm, below {floor.least:.0f}: {under} of {len(every)}")
+    bad += [f"{name} {size.view}: {size.floor.what} {size.size:.1f} mm{', told' * size.told}" for name, size in below]
     print(*(f"not built: {s}" for s in found if isinstance(s, str)), *bad, sep="\n")
     return 1 if bad else 0
+
+
+def _area(box: Box) -> float:
+    return box.width * box.height
+
+
+def _said(box: Box) -> str:
+    return f"{box.width:.0f} x {box.height:.0f} mm at {box.x0:.0f}, {box.y0:.0f}"
 
 
 if __name__ == "__main__":
