@@ -26,8 +26,10 @@ def test_the_circle_of_a_detail_has_no_place_of_its_own():
     assert [name for name, _ in evenness.fills(drawing)] == ["plan"]
 
 
-@pytest.mark.parametrize(("pitch", "found"), [(110.0, False), (130.0, True), (400.0, True)])
-def test_a_gap_is_an_empty_rectangle_upright_or_lying(pitch, found):
-    """Level lines so far apart over the whole field leave 160 x 120 mm between them, or do not."""
+@pytest.mark.parametrize(("pitch", "high"), [(110.0, 110.0), (130.0, 130.0), (400.0, 345.0)])
+def test_the_gap_is_the_largest_empty_rectangle(pitch, high):
+    """Level lines so far apart over the whole field leave that between them, or what is over the title block."""
     lines = [Line(20.0 + 1j * y, 836.0 + 1j * y, "thin") for y in np.arange(5.0, 590.0, pitch)]
-    assert (gap(Drawing(841.0, 594.0, "", tuple(lines))) is not None) is found
+    found = gap(Drawing(841.0, 594.0, "", tuple(lines)))
+    assert found.height == pytest.approx(high, abs=4.0)
+    assert found.width == pytest.approx(816.0, abs=4.0)
