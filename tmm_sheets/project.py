@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.errors import CannotBuild, together
@@ -216,6 +217,17 @@ class Project:
         from tmm_sheets.methods.linkage.motion import Motion
 
         return Motion(self.study, self.study_at)
+
+    @cached_property
+    def course(self) -> Study:
+        """The study over the whole cycle, close together; at a dead point, where the load is switched, twice: curves end there."""
+        import numpy as np
+
+        edges = [0.0, *(b for b in self.reduced.breaks if 0 < b < self.cycle.period), self.cycle.period]
+        turned = self.motion.turned
+        every = np.concatenate([np.concatenate(([a + 1e-9], turned[(turned > a + 1e-6) & (turned < b - 1e-6)], [b - 1e-9]))
+                                for a, b in pairwise(edges)])
+        return self.study_at(every, tuple("" for _ in every))
 
     @cached_property
     def force_index(self) -> int:

@@ -8,7 +8,7 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.javascript_language import told
 from tmm_sheets.mechanism.groups import dead_centres, three_legs
-from tmm_sheets.methods.flywheel import flywheel
+from tmm_sheets.methods.flywheel import works
 from tmm_sheets.methods.integration import ordinate_of
 from tmm_sheets.methods.linkage import dead_positions, forces, loads, numbering, synthesis
 
@@ -49,7 +49,7 @@ ELEMENTWISE = {
     "value or its limit": (forces.in_limit, ("number", "known")),
     "angle turned": (np.vectorize(numbering._turned), ("angle", "angle", "side")),
     "angle turned to a point": (dead_positions._turned, ("point", "point", "angle", "side")),
-    "within the first turn": (flywheel._within, ("angle", "length")),
+    "within the first turn": (works._within, ("angle", "length")),
     "fraction of a swing": (loads._swung, ("direction", "side", "angle", "length")),
     "unit": (np.vectorize(ar.unit), ("angle",)),
     "round to a step": (np.vectorize(synthesis._nearest), ("number", "length")),

@@ -18,7 +18,7 @@ from tmm_sheets.project import Project
 from tmm_sheets.sheets import optional_views
 from tmm_sheets.sheets.composing import _code
 from tmm_sheets.sheets.gears import reducer, train
-from tmm_sheets.sheets.linkage import diagrams, hodograph, kinematics, kinetics, link_marks, moments
+from tmm_sheets.sheets.linkage import hodograph, kinematics, kinetics, link_marks, moments
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.sheets.tables import given_data, position_tables
 
@@ -249,7 +249,7 @@ def test_points_of_a_train_run_as_the_wheel_they_are_on_turns():
 def test_the_curve_of_the_power_of_friction_meets_the_numbers_of_the_positions():
     """Where nothing jumps; and friction takes power everywhere."""
     p = Project(read("tests/projects/pump.toml"))
-    every = diagrams.over_cycle(p)
+    every = p.course.turned
     assert np.all(np.diff(every) > 0)
     course = p.study_at(every, tuple("" for _ in every)).forces.friction.total.value
     smooth = [i for i, t in enumerate(p.cycle.turned) if t > 0 and min(abs(t - b) for b in p.reduced.breaks) > 1e-3]

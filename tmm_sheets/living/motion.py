@@ -120,8 +120,7 @@ def _pieces(load: Applied, period: float) -> tuple[list[float], dict[str, Any], 
     borders = sorted(ends)
     middles = [(a + b) / 2 for a, b in zip(borders, [*borders[1:], period], strict=True)]
     at, between = (load.law.strokes(np.array(t)) for t in (borders, middles))  # type: ignore[attr-defined]
-    rows = [{"at": told(x), "between": told(y)} for x, y in zip((at[0], *(s for _, s in at[1])),
-                                                                (between[0], *(s for _, s in between[1])), strict=True)]
+    rows = [{"at": told(x), "between": told(y)} for x, y in zip((at[0], *at[1]), (between[0], *between[1]), strict=True)]
     return borders, rows[0], rows[1:]
 
 

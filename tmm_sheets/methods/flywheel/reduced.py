@@ -10,14 +10,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import cached_property, reduce
 from operator import add
+from time import perf_counter
 from typing import Any
 
 import numpy as np
 
 from tmm_sheets.construction.given import Given, named
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.replay import Replay
 from tmm_sheets.construction.rules import GIVEN_INERTIA, taken
-from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.construction.step import Rule, Step, value_of
 from tmm_sheets.mechanism.model import Link, Mechanism
 from tmm_sheets.methods.flywheel.flywheel import WITHOUT_CRANK
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
@@ -63,6 +65,10 @@ EVERYWHERE = Rule("the same at all positions", lambda x, phi: x + 0 * phi, ("num
 
 TRIED = "@search"
 """Behind the names of plans that nobody keeps: they are counted."""
+PURPOSE = "reduced quantities"
+"""What they are made for."""
+MOMENT = "moment"
+"""The quantity that loads are chosen for."""
 
 
 class Reduction:
@@ -89,13 +95,17 @@ class Reduction:
         self.phi = phi
         self.labels = labels
         self._drawn = drawn
-        self.purpose = "reduced quantities" if where == TRIED else ""
+        self.purpose = PURPOSE if where == TRIED else ""
         search = reduced.mechanism.search(self.purpose)
         self.plan = Plan(f"reduction{where}", tr("Reduction of forces and masses"), "", labels, search=search)
         self.slope_plan = Plan(f"inertia-slope{where}", tr("Derivative of the reduced moment of inertia"), "", labels,
                                search=search)
         self._moments: dict[int, Step] = {}
         self.loads: dict[str, Step] = {}
+        self.over = Given(phi, "cycle", "φ_1", "rad")
+        self.turned = reduced.cycle.turned_row(phi)
+        self.angles = reduced.cycle.angles(phi) if drawn is None else None
+        self.chosen: list[Given] = []
 
     @cached_property
     def velocities(self) -> Velocities:
@@ -103,7 +113,7 @@ class Reduction:
         if self._drawn is not None:
             return self._drawn()
         r = self.reduced
-        return velocity_plan(position_plan(r.mechanism, r.cycle.angles(self.phi), self.labels, self.where, self.purpose))
+        return velocity_plan(position_plan(r.mechanism, self.angles, self.labels, self.where, self.purpose))
 
     @cached_property
     def accelerations(self) -> Accelerations:
@@ -131,9 +141,10 @@ class Reduction:
         mark = {1: "", 0: "(0)", -1: "(−)"}[side]
         vel, r, plan = self.velocities, self.reduced, self.plan
         powers: list[Any] = []
-        turned = r.cycle.turned_row(self.phi)
         for f in r.forces:
-            load = self.loads[f"{f.name}{mark}"] = f.record(plan, vel.positions, turned, side, mark)
+            chosen = f.chosen(self.phi, side)
+            load = self.loads[f"{f.name}{mark}"] = f.record(plan, vel.positions, self.turned, side, mark, chosen)
+            self.chosen += chosen
             powers.append(plan.add(f"N_{load.name}", MOMENT_POWER, load, vel.omega[f.link]) if f.point is None else
                           plan.add(f"N_{load.name}", POWER, load, vel.points[f.point]))
         if r.gravity:
@@ -176,7 +187,7 @@ class Reduction:
     def others(self) -> Step:
         """The same without the crank's: step ``J_II``."""
         if self.crank_alone:
-            return self.plan.add("J_II", EVERYWHERE, 0.0, Given(self.phi, "cycle", "φ_1", "rad"))
+            return self.plan.add("J_II", EVERYWHERE, 0.0, self.over)
         return self.plan.add("J_II", WITHOUT_CRANK, self.inertia, self.reduced.crank)
 
     @cached_property
@@ -200,11 +211,10 @@ class Reduction:
 
     def _sum(self, plan: Plan, name: str, rule: Rule, parts: list[Step]) -> Step:
         """Sum of terms by a rule, a number at every angle also where no term changes."""
-        over = Given(self.phi, "cycle", "φ_1", "rad")
         if not parts:
-            parts = [plan.add(f"{name}0", EVERYWHERE, 0.0, over)]
+            parts = [plan.add(f"{name}0", EVERYWHERE, 0.0, self.over)]
         elif np.shape(self.phi) and all(self.reduced.even(step) for step in parts):
-            parts = [plan.add(f"{step.name}′", EVERYWHERE, step, over) for step in parts]
+            parts = [plan.add(f"{step.name}′", EVERYWHERE, step, self.over) for step in parts]
         return plan.add(name, rule, self.reduced.omega, *parts)
 
 
@@ -242,6 +252,7 @@ class Reduced:
                                                 cycle.period) if x > 0)
         self.numbered = Reduction(self, "" if drawn else "@positions", cycle.turned, cycle.labels, drawn)
         self.kept: dict[str, Reduction] = {}
+        self._replays: dict[tuple[str, int], Replay] = {}
 
     def at(self, where: str, phi: Any, labels: tuple[str, ...] | None = None) -> Reduction:
         """Reduced quantities at some angles with plans that are kept under the name ``@where``."""
@@ -262,9 +273,21 @@ class Reduced:
                 if step.evaluated:
                     tally.append(sum(step.seconds))
 
-    def _search(self, phi: Any) -> Reduction:
-        """Reduced quantities at angles that are only tried: plans that nobody keeps."""
-        return Reduction(self, TRIED, phi)
+    def _tried(self, phi: Any, what: str, pick: Callable[[Reduction], Step], side: int = 0) -> Any:
+        """A quantity at angles that are only tried: its plans are recorded once, done again at other angles, and kept by nobody."""
+        if (replay := self._replays.get((what, side))) is None:
+            at = Reduction(self, TRIED, phi)
+            step = pick(at)
+            if np.ndim(phi) and not at.velocities.positions.chosen:
+                self._replays[what, side] = Replay([step], [at.angles, at.turned, at.over, *at.chosen])
+            return step.value
+        chosen = (row.value for f in self.forces for row in f.chosen(phi, side)) if what == MOMENT else ()
+        begin = perf_counter()
+        (value,) = replay([value_of(self.cycle.angles(phi)), phi, phi, *chosen])
+        tally = self.mechanism.search(PURPOSE)
+        assert tally is not None
+        tally.again(len(replay), perf_counter() - begin)
+        return value
 
     @cached_property
     def resisting(self) -> bool:
@@ -277,7 +300,7 @@ class Reduced:
 
         Resistances are negative; ``side`` picks the limit at a jump.
         """
-        return self._search(phi).moment(side).value
+        return self._tried(phi, MOMENT, lambda at: at.moment(side), side)
 
     @property
     def forces_are_moments(self) -> bool:
@@ -303,11 +326,11 @@ class Reduced:
 
     def inertia(self, phi: Any) -> Any:
         """Reduced moment of inertia of the moving links without the flywheel, kg m2."""
-        return self._search(phi).inertia.value
+        return self._tried(phi, "inertia", lambda at: at.inertia)
 
     def inertia_slope(self, phi: Any) -> Any:
         """Derivative of the reduced moment of inertia over the crank angle, kg m2/rad."""
-        return self._search(phi).slope.value
+        return self._tried(phi, "slope", lambda at: at.slope)
 
     @property
     def crank_inertia(self) -> float:
@@ -353,7 +376,7 @@ class Reduced:
 
     def inertia_parts(self, phi: Any) -> dict[str, Any]:
         """The terms of the reduced moment of inertia without the crank's, kg m2, by the names of :attr:`inertia_terms`."""
-        return self.parts(self._search(phi))
+        return self.parts(Reduction(self, TRIED, phi))
 
     def parts(self, at: Reduction) -> dict[str, Any]:
         """The same of a reduction that was made already."""

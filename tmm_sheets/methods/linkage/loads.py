@@ -289,18 +289,37 @@ class Applied:
     along: Any = None
     sign: Any = None
 
-    def record(self, plan: Plan, pos: Positions, turned: Any, side: int = 0, mark: str = "") -> Step:
+    def record(self, plan: Plan, pos: Positions, turned: Any, side: int = 0, mark: str = "", chosen: Sequence[Given] = ()) -> Step:
         """The force or moment as a step of a plan, ``turned`` the angles from position 0 as a row or a step.
 
-        ``side`` as in the law; ``mark`` goes behind the step's name.
+        ``side`` as in the law; ``mark`` goes behind the step's name. ``chosen`` is what is :meth:`chosen` there, if it is known.
         """
-        values = self._magnitudes(plan, pos, turned, side, mark)
+        values = self._magnitudes(plan, pos, turned, side, mark, chosen or self.chosen(value_of(turned), side))
         name = plan.named(f"{self.name}{mark}")
         if self.point is None:
             return plan.add(name, MOMENT, values)
         return plan.add(name, FORCE, values, self.toward if self.along is None else self.along)
 
-    def _magnitudes(self, plan: Plan, pos: Positions, turned: Any, side: int, mark: str) -> Step:
+    def chosen(self, turned: Any, side: int = 0) -> tuple[Given, ...]:
+        """What no plan tells of a load at the angles ``turned``, rad: rows.
+
+        Which way its diagrams are passed, the signs of the strokes that each of them acts on, and the travelled fractions where
+        they do not follow from the positions. Nothing of a load that is given over the angle.
+        """
+        law, motion = self.law, self.motion
+        if not isinstance(law, StrokeLaw):
+            return ()
+        assert motion is not None
+        ahead, signs = law.strokes(turned, side)
+        rows = [Given(ahead, f"sense of {self.name}", choice="which way its diagram is passed")]
+        rows += [Given(sign, f"sign of {self.name}", choice="strokes it acts on, against or along the motion") for sign in signs]
+        if motion.path is None:
+            x = motion.fraction(turned)
+            x = np.where(ahead < 0, np.where(x < NEAR, 1.0, x), x)
+            rows.append(Given(x, f"way of link {self.link}", choice="turns counted on"))
+        return tuple(rows)
+
+    def _magnitudes(self, plan: Plan, pos: Positions, turned: Any, side: int, mark: str, chosen: Sequence[Given]) -> Step:
         """Signed values, N or N m."""
         law, name = self.law, f"|{self.name}|{mark}"
         if not isinstance(law, StrokeLaw):
@@ -308,25 +327,22 @@ class Applied:
             if isinstance(d.curve, Given):
                 return plan.auxiliary(name, STEADY, d.curve, turned, *(() if self.sign is None else (self.sign,)))
             return plan.auxiliary(name, AT_ANGLE, d.curve, turned, d.turns, float(side))
-        ahead, signs = law.strokes(value_of(turned), side)
-        sense = Given(ahead, f"sense of {self.name}", choice="which way its diagram is passed")
+        sense, *signs = chosen
         terms: list[Any] = []
-        for n, (run, sign) in enumerate(signs):
-            d = next(d for d in self.diagrams if d.table is law.tables[run])
+        for n, (table, sign) in enumerate(zip(law.different, signs, strict=False)):
+            d = next(d for d in self.diagrams if d.table is table)
             ordinate: Any = d.curve if isinstance(d.curve, Given) else plan.auxiliary(
-                f"{self.name}{mark} ({n + 1})", ON_WAY, d.curve, self._way(plan, pos, turned, ahead), sense)
-            terms += [Given(sign, f"sign of {self.name}", choice="strokes it acts on, against or along the motion"), ordinate]
+                f"{self.name}{mark} ({n + 1})", ON_WAY, d.curve, self._way(plan, pos, chosen), sense)
+            terms += [sign, ordinate]
         return plan.auxiliary(name, SIGNED_SUM, *terms)
 
-    def _way(self, plan: Plan, pos: Positions, turned: Any, ahead: Any) -> Any:
+    def _way(self, plan: Plan, pos: Positions, chosen: Sequence[Given]) -> Any:
         """Travelled fractions, as a step where they follow from the positions."""
-        law, motion = self.law, self.motion
-        assert isinstance(law, StrokeLaw)
+        motion = self.motion
         assert motion is not None
         path = motion.path
         if path is None:
-            x = motion.fraction(value_of(turned))
-            return Given(np.where(ahead < 0, np.where(x < NEAR, 1.0, x), x), f"way of link {self.link}", choice="turns counted on")
+            return chosen[-1]
         step = pos.directions[path.name] if path.turning else pos.points[path.name]
         return plan.auxiliary(f"s {path.name} {self.name}", path.rule, step, *path.numbers)
 
@@ -597,18 +613,23 @@ class StrokeLaw:
         """Fractions of the way as the diagrams take them: the end of a turn is not the beginning of the next."""
         return np.where(x < NEAR, 1.0, x) if self.motion.endless and ahead < 0 else x
 
-    def strokes(self, turned: Any, side: int = 0) -> tuple[Any, list[tuple[int, Any]]]:
-        """Which way the diagrams are passed at each angle, +1 or -1, and for each of them its first run and the sign it has there.
+    @cached_property
+    def different(self) -> tuple[Table, ...]:
+        """The tables, each once."""
+        tables = [table for table in self.tables if table is not None]
+        return tuple(table for n, table in enumerate(tables) if not any(before is table for before in tables[:n]))
+
+    def strokes(self, turned: Any, side: int = 0) -> tuple[Any, list[Any]]:
+        """Which way the diagrams are passed at each angle, +1 or -1, and for each of the :attr:`different` the sign it has there.
 
         A sign of 0: that diagram does not act there.
         """
         motion, i = self.motion, self.run(turned, side)
         ahead = np.where(i < 0, 1, np.array([(side or 1) * run.sense * motion.way for run in motion.runs])[i])
-        signs: list[tuple[int, Any]] = []
-        for n, table in enumerate(self.tables):
-            if table is not None and not any(self.tables[k] is table for k, _ in signs):
-                acts = np.array([of_run is table for of_run in self.tables])[i] & (i >= 0)
-                signs.append((n, np.where(acts, np.array(self.signs)[i], 0.0)))
+        signs = []
+        for table in self.different:
+            acts = np.array([of_run is table for of_run in self.tables])[i] & (i >= 0)
+            signs.append(np.where(acts, np.array(self.signs)[i], 0.0))
         return ahead.astype(float), signs
 
 

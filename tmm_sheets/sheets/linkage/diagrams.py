@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -157,8 +156,7 @@ def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Option
     """Balancing moment over the whole cycle by kinetostatics, positive in the sense of rotation; its mean drives the machine."""
     if project.driver is not None:
         raise CannotBuild(*map(tell, _NO_MOMENT))
-    every = over_cycle(project)
-    step, course = project.study.balance["M"], project.study_at(every, tuple("" for _ in every)).balance["M"]
+    every, step, course = project.course.turned, project.study.balance["M"], project.course.balance["M"]
     values, at = _row(course, every), _row(step, project.cycle.turned)
     angle = graphs.angle_axis(project, box)[0]
     left = canvas.title(box, tr("Graph of the balancing moment"), str(angle))
@@ -173,14 +171,6 @@ def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Option
     constant = f"M_{{{tr_in('index of moment and work', 'r')}}}" if known else tr("M_d")
     name = constant if indexed(constant.replace("_", "")) != sign and not rubbing else tr("M_{dm}")
     _graph(project, canvas, left, angle, moment, level=(name, float(mean.value)))
-
-
-def over_cycle(project: Project) -> Any:
-    """Angles of the whole cycle, rad; at a dead point, where the load is switched, two: a curve has two ends there."""
-    edges = [0.0, *(b for b in project.reduced.breaks if 0 < b < project.cycle.period), project.cycle.period]
-    turned = project.motion.turned
-    return np.concatenate([np.concatenate(([a + 1e-9], turned[(turned > a + 1e-6) & (turned < b - 1e-6)], [b - 1e-9]))
-                           for a, b in pairwise(edges)])
 
 
 def single(project: Project, canvas: Canvas, box: Box, title: str, quantity: DiagramQuantity) -> None:

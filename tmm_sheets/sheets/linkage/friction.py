@@ -337,8 +337,7 @@ def power_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> tu
 
 def power(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Power of friction in all pairs over the whole cycle."""
-    every, step = diagrams.over_cycle(project), _friction(project).total
-    course = project.study_at(every, tuple("" for _ in every)).forces.friction
+    every, step, course = project.course.turned, _friction(project).total, project.course.forces.friction
     assert course is not None
     values = [np.broadcast_to(np.real(of.total.value), np.shape(at)) for of, at in
               ((course, every), (_friction(project), project.cycle.turned))]

@@ -14,7 +14,6 @@ from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.numbers import is_zero
 from tmm_sheets.sheets.components import graphs
 from tmm_sheets.sheets.frame import PlanFrame, extent
-from tmm_sheets.sheets.linkage import diagrams
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -90,6 +89,5 @@ def _reaction(project: Project) -> tuple[str, Step, Points]:
     """Name of the reaction of the frame on the crank, its step at the positions, and its values over the cycle, N."""
     m = project.mechanism
     name = f"F{pair_index(m.crank.link, m.frame)}"
-    every = diagrams.over_cycle(project)
-    course = project.study_at(every, tuple("" for _ in every)).forces.reactions[name]
-    return name, project.study.forces.reactions[name], np.broadcast_to(course.value, np.shape(every))
+    course = project.course.forces.reactions[name]
+    return name, project.study.forces.reactions[name], np.broadcast_to(course.value, np.shape(project.course.turned))
