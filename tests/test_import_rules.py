@@ -89,11 +89,13 @@ LATE = ("numpy", "shapely")
 NUMBERS = "mechanism construction drawing methods sheets backends compare lab project record note living"
 
 
+@cache
 def within(module, rooms):
     """Whether a module is one of some rooms, or in one."""
     return any(module == room or module.startswith(room + ".") for room in rooms.split())
 
 
+@cache
 def row(module):
     """The row that holds for a module: that of the innermost room it is in."""
     return max((room for room in RULES if within(module, room)), key=len, default=None)
@@ -119,6 +121,7 @@ def imports(tree):
     yield from visit(tree, False, False)
 
 
+@cache
 def ours(name):
     """Module of this package that an imported name is or is in."""
     name = name.removeprefix("tmm_sheets").removeprefix(".")

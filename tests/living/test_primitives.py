@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.few import few
 from tests.living import javascript
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.curve import Curve
@@ -12,11 +13,16 @@ from tmm_sheets.methods.flywheel import works
 from tmm_sheets.methods.integration import ordinate_of
 from tmm_sheets.methods.linkage import dead_positions, forces, loads, numbering, synthesis
 
-N = 10_000
 RUN = javascript.modules("digits", "primitives") + """
 const result = ({ name, rows }) => rows.map((args) => PRIMITIVES[name](...args));
 """
 pytestmark = javascript.needed
+
+
+@pytest.fixture(params=few((1_000, 10_000), 1_000))
+def n(request):
+    """How many arguments."""
+    return request.param
 
 
 def kind(rng, what, n):
@@ -78,17 +84,17 @@ def listed(args, n):
 
 @pytest.mark.parametrize(("name", "count"), [(name, count) for name, (_, takes) in ELEMENTWISE.items()
                                              for count in SHORTER.get(name, (len(takes),))])
-def test_one_by_one(name, count, tmp_path):
+def test_one_by_one(name, count, n, tmp_path):
     function, takes = ELEMENTWISE[name]
     rng = np.random.default_rng(11)
-    args = [kind(rng, what, N) for what in takes[:count]]
+    args = [kind(rng, what, n) for what in takes[:count]]
     with np.errstate(all="ignore"):
         own = function(*args)
         size = sum(np.nan_to_num(np.abs(a)) for a in args)
     # The greatest number that is met on the way: where lines cross under next to no angle, the point itself.
     if name in ("cross", "dot", "difference of products"):
         size = size * size
-    close(javascript.run(RUN, {"name": name, "rows": listed(args, N)}, tmp_path), own, size)
+    close(javascript.run(RUN, {"name": name, "rows": listed(args, n)}, tmp_path), own, size)
 
 
 def mechanisms(rng, n):
@@ -103,9 +109,9 @@ def mechanisms(rng, n):
 
 @pytest.mark.parametrize("name", ["distance from the crank's point", "half-chord of two arcs", "tangent from the crank's point",
                                   "half-chord of arc and line", "foot on a guide"])
-def test_from_the_crank_angle(name, tmp_path):
-    phi, l1, l2, l3, fixed, ahead, guide = mechanisms(np.random.default_rng(5), N)
-    zero = np.zeros(N, dtype=complex)
+def test_from_the_crank_angle(name, n, tmp_path):
+    phi, l1, l2, l3, fixed, ahead, guide = mechanisms(np.random.default_rng(5), n)
+    zero = np.zeros(n, dtype=complex)
     function, args = {
         "distance from the crank's point": (dead_centres.pin_distance, (phi, l1, ahead, zero, fixed)),
         "half-chord of two arcs": (dead_centres.half_of_arcs, (phi, l1, ahead, zero, fixed, l2, l3)),
@@ -115,7 +121,7 @@ def test_from_the_crank_angle(name, tmp_path):
     }[name]
     with np.errstate(all="ignore"):
         own = np.array([function(*(x.item() for x in row)) for row in zip(*args, strict=True)])
-    close(javascript.run(RUN, {"name": name, "rows": listed(args, N)}, tmp_path), own, 1e-3 * l1)
+    close(javascript.run(RUN, {"name": name, "rows": listed(args, n)}, tmp_path), own, 1e-3 * l1)
 
 
 def legs_of(rng, does, n):
@@ -145,7 +151,7 @@ def legs_of(rng, does, n):
 
 @pytest.mark.parametrize("name", ["corner of a triangle on three legs", "direction of a triangle on three legs", "false position",
                                   "side of a false position"])
-def test_triangles(name, tmp_path):
+def test_triangles(name, n, tmp_path):
     rng = np.random.default_rng(2)
     function = {"corner of a triangle on three legs": three_legs.corner_on_legs,
                 "direction of a triangle on three legs": three_legs.direction_on_legs,
@@ -153,16 +159,16 @@ def test_triangles(name, tmp_path):
     rows, owns, others = [], [], []
     kinds = [(a, b, c) for a in (0.0, 1.0) for b in (0.0, 1.0, 2.0) for c in (0.0, 1.0, 2.0)]
     for does in kinds:
-        n = (N // 10 if "false" in name else N) // len(kinds) + 1
-        k, u, legs = legs_of(rng, does, n)
-        more = (np.full(n, 0.02),) if "false" in name else ()
+        m = (n // 10 if "false" in name else n) // len(kinds) + 1
+        k, u, legs = legs_of(rng, does, m)
+        more = (np.full(m, 0.02),) if "false" in name else ()
         if not more:
-            k, u = k + 0.002 * rng.normal(size=n), u * np.exp(0.003j * rng.normal(size=n))
+            k, u = k + 0.002 * rng.normal(size=m), u * np.exp(0.003j * rng.normal(size=m))
         for place, values in ((k, owns), (k * (1 + 1e-15), others)):
             args = (place, u, *more, *legs)  # a false position is moved by a size that many would share
             with np.errstate(all="ignore"):
-                values.append([np.ravel(function(*(x[i] for x in args)))[0] for i in range(n)] if more else function(*args))
-        rows += listed((k, u, *more, *legs), n)
+                values.append([np.ravel(function(*(x[i] for x in args)))[0] for i in range(m)] if more else function(*args))
+        rows += listed((k, u, *more, *legs), m)
     own, other = np.concatenate(owns), np.concatenate(others)
     found = javascript.run(RUN, {"name": name, "rows": rows}, tmp_path)
     # Where the last digit of an argument moves the value there is nothing to compare: normals that all but meet in one point.
@@ -172,12 +178,12 @@ def test_triangles(name, tmp_path):
     close([f for f, t in zip(found, there, strict=True) if t], own[there], np.ones(there.sum()), 0.5)
 
 
-def test_course(tmp_path):
+def test_course(n, tmp_path):
     rng = np.random.default_rng(4)
     angles = np.sort(rng.uniform(0, 2 * np.pi, 40)) + 0.5
     angles = np.append(angles, angles[0] + 2 * np.pi)
     values = np.exp(1j * angles) * np.where(rng.random(41) < 0.2, np.nan, 1.0)
-    phi = np.append(rng.uniform(-7, 7, N - 42), [*angles, np.nan])
+    phi = np.append(rng.uniform(-7, 7, n - 42), [*angles, np.nan])
     with np.errstate(all="ignore"):
         own = three_legs.on_course(phi[:-1], angles, values)
     run = javascript.modules("digits", "primitives") + """
@@ -193,11 +199,11 @@ CURVES = [((0.0, 0.3, 0.3, 1.0), (1.0, 2.0, -1.0, 5.0)), ((0.0, 0.2, 0.5, 0.8, 1
 
 @pytest.mark.parametrize("smooth", [0.0, 1.0])
 @pytest.mark.parametrize("table", CURVES, ids=["jump", "hill", "valley", "one"])
-def test_diagrams(table, smooth, tmp_path):
+def test_diagrams(table, smooth, n, tmp_path):
     if smooth and len(table[0]) < 2:
         pytest.skip("a smooth curve has two points or more")
     rng = np.random.default_rng(9)
-    at = np.concatenate((rng.uniform(-0.5, 9, N), np.repeat(table[0], 3), [np.nan]))
+    at = np.concatenate((rng.uniform(-0.5, 9, n), np.repeat(table[0], 3), [np.nan]))
     ahead = rng.choice((1.0, -1.0), len(at))
     with np.errstate(all="ignore"):
         once, periodic = loads.diagram(*map(np.array, table), smooth, 0.0), loads.diagram(*map(np.array, table), smooth, 1.0)
@@ -215,10 +221,10 @@ def test_diagrams(table, smooth, tmp_path):
         close(found, values, np.ones(len(at)))
 
 
-def test_curve(tmp_path):
+def test_curve(n, tmp_path):
     rng = np.random.default_rng(9)
     x = np.sort(rng.uniform(0, 1, 12))
     curve = Curve(x, rng.normal(size=12), rng.normal(size=11), rng.normal(size=11))
-    at = rng.uniform(x[0], x[-1], N)
+    at = rng.uniform(x[0], x[-1], n)
     found = javascript.run(RUN, {"name": "ordinate of a curve", "rows": [[told(curve), t] for t in at.tolist()]}, tmp_path)
-    close(found, ordinate_of(curve, at), np.ones(N))
+    close(found, ordinate_of(curve, at), np.ones(n))
