@@ -1,4 +1,5 @@
 import json
+import re
 import subprocess
 import sys
 from itertools import pairwise
@@ -89,9 +90,24 @@ def test_fonts_in_the_repository_are_those_the_script_builds(tmp_path):
     subprocess.run([sys.executable, str(template("fonts/build.py")), str(tmp_path)], check=True)
     built = (tmp_path / "type_b.json").read_bytes()
     assert built == template("fonts/type_b.json").read_bytes()
+    assert (tmp_path / "tmm_sheets_b.lff").read_bytes() == template("fonts/tmm_sheets_b.lff").read_bytes()
     with TTFont(tmp_path / "TMMSheetsB.ttf") as new, TTFont(template("fonts/TMMSheetsB.ttf")) as old:
         assert new.getGlyphOrder() == old.getGlyphOrder()
         assert new["hmtx"].metrics == old["hmtx"].metrics
+
+
+def test_letters_of_librecad_end_where_the_next_one_can_follow():
+    """It puts a letter at the end of the ink of the one before and a distance that is the same for all."""
+    head, *blocks = template("fonts/tmm_sheets_b.lff").read_text(encoding="utf-8").split("\n\n")
+    space = float(re.search(r"LetterSpacing: *([\d.]+)", head)[1])
+    assert {chr(int(block[1:5], 16)) for block in blocks} == {char for char in TABLE if glyph(char).strokes}
+    for block in blocks:
+        name, *lines = block.strip().splitlines()
+        letter_of = glyph(chr(int(name[1:5], 16)))
+        drawn = [np.array([complex(*map(float, p.split(","))) for p in line.split(";")]) / 9 for line in lines]
+        assert max(s.real.max() for s in drawn) + space / 9 == pytest.approx(letter_of.advance, abs=2e-4)
+        moves = np.concatenate([mine - theirs for mine, theirs in zip(drawn, letter_of.strokes, strict=True)])
+        assert np.abs(moves - moves.mean()).max() < 2e-4
 
 
 def test_every_sign_of_the_sheets_is_there():

@@ -36,7 +36,7 @@ def contents(folder):
     return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
-FONTS = {"TMMSheetsB.ttf", "lc_opengost-br.lff", "OFL.txt"}
+FONTS = {"TMMSheetsB.ttf", "tmm_sheets_b.lff", "OFL.txt"}
 """What lies beside live drawings, written once."""
 
 

@@ -15,8 +15,8 @@ from typing import NamedTuple
 from tmm_sheets.drawing.layers import LayerStyle, layers, roles
 from tmm_sheets.drawing.styles import line_type
 
-STYLE = "lc_opengost-br"
-"""Name of the text style: LibreCAD takes it for that of a font, and it has this one; everybody else looks at the font file."""
+STYLE = "tmm_sheets_b"
+"""Name of the text style: LibreCAD takes it for that of a font, ``tmm_sheets_b.lff``; everybody else looks at the font file."""
 FONT_FILE = "TMMSheetsB.ttf"
 DIMENSION_STYLE = "TMM"
 LETTERS = 3.5

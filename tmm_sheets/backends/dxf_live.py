@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from functools import cache
 from math import cos, degrees, sin
 
-from tmm_sheets.backends.dxf_entities import entity, flat, head, letter_strokes, place, short
+from tmm_sheets.backends.dxf_entities import entity, flat, head, place, short
 from tmm_sheets.backends.dxf_frame import DIMENSION_STYLE, LETTERS, STYLE, DxfFrame, SheetParts, weight
 from tmm_sheets.drawing.dashes import interrupted
 from tmm_sheets.drawing.layers import layer
 from tmm_sheets.drawing.lettering import BAR, PEN, advance, glyph, lacking, letter
 from tmm_sheets.drawing.marks import Dimension, Drawing, Form, FormField, Mark, Text
 from tmm_sheets.drawing.styles import line_type
-from tmm_sheets.resources import template
 
-AFTER = 0.2
-"""What the last letter's advance is longer than the letter, in letter heights."""
 TEXT_LAYER = "TEXT"
+HIDDEN = "60\n1\n"
+"""Tags of what is not shown."""
 KINDS = {"linear": 33, "radius": 36}
 """Codes of dimensions: aligned, radius; 32 says that the block is the dimension's own."""
 
@@ -62,36 +60,16 @@ class LiveSheet:
             on = layer(mark)
             self.parts.layers.add(on.name)
             if isinstance(mark, Text):
-                made += self._text(mark, owner, on.name)
+                if word := mark.text.strip():
+                    start = mark.at + _direction(mark.angle) * advance(mark.text[: mark.text.index(word)], mark.height)
+                    handle = next(self.handles)
+                    made.append((handle, _text(handle, owner, on.name, mark._replace(at=start, text=word))))
             else:
                 for piece in interrupted(mark):
                     assert not isinstance(piece, Text)
                     handle = next(self.handles)
                     made.append((handle, entity(piece, handle, owner, on.name, dashed=bool(line_type(mark.style).pattern))))
         return made
-
-    def _text(self, mark: Text, owner: str, on: str) -> Iterator[tuple[int, str]]:
-        """A run of letters; those that LibreCAD's font has not are drawn."""
-        if (unknown := _unknown()).search(mark.text) is None and mark.text.strip() == mark.text:
-            handle = next(self.handles)
-            yield handle, _text(handle, owner, on, mark)
-            return
-        at, turn = mark.at, _direction(mark.angle)
-        for n, run in enumerate(unknown.split(mark.text)):
-            if n % 2:
-                for char in run:
-                    glyph(char)
-                first = next(self.handles)
-                strokes = sum(len(glyph(char).strokes) for char in run)
-                taken = iter((first, *(next(self.handles) for _ in range(strokes - 1))))
-                drawn = letter_strokes([mark._replace(at=at, text=run)], owner, on, taken)
-                yield from zip(range(first, first + strokes), re.findall(r"0\nLWPOLYLINE\n.*?(?=0\nLWPOLYLINE\n|\Z)", drawn, re.S),
-                               strict=True)
-            elif word := run.strip():
-                handle = next(self.handles)
-                start = at + turn * advance(run[: len(run) - len(run.lstrip())], mark.height)
-                yield handle, _text(handle, owner, on, mark._replace(at=start, text=word))
-            at += turn * advance(run, mark.height)
 
     def _block(self, name: str, flags: int) -> str:
         """Begin a block; returns the handle of its record."""
@@ -143,8 +121,9 @@ class LiveSheet:
         for f in form.fields:
             if value := self._value(f):
                 handle = next(self.handles)
-                self._add(form.first, [(handle, f"0\nTEXT\n5\n{handle:X}\n{head('AcDbText', owner, TEXT_LAYER, _hidden())}"
-                                                f"{_centred(f, value)}100\nAcDbText\n")])
+                left = f.at - _direction(f.angle) * _length(value, f.height) / 2
+                run = Text(left, value, f.height, f.angle)
+                self._add(form.first, [(handle, _text(handle, owner, TEXT_LAYER, run, HIDDEN))])
 
     def _value(self, f: FormField) -> str:
         """What stands in a field."""
@@ -176,18 +155,6 @@ def clean(name: str) -> str:
     return " ".join(re.sub(r'[<>/\\":;?*|,=`]', " ", name).split()) or "_"
 
 
-def _hidden() -> str:
-    return "60\n1\n"
-
-
-@cache
-def _unknown() -> re.Pattern[str]:
-    """Pattern of letters that are ours and not in LibreCAD's font, in a group."""
-    text = template("fonts/lc_opengost-br.lff").read_text(encoding="utf-8")
-    known = "".join(re.escape(chr(int(code, 16))) for code in re.findall(r"^\[#?([0-9a-fA-F]+)\]", text, re.M))
-    return re.compile(rf"([^\s{known}]+)")
-
-
 def _direction(angle: float) -> complex:
     return complex(cos(angle), sin(angle))
 
@@ -198,8 +165,8 @@ def _said(markup: str) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Text as it is: a caret and two per cent signs mean something to programs."""
-    return text.replace("%%", "%%%%%%").replace("^", "^ ").replace(BAR, "")
+    """Text as it is: a caret and two per cent signs mean something to programs, LibreCAD has no letter for a no-break space."""
+    return text.replace("%%", "%%%%%%").replace("^", "^ ").replace(BAR, "").replace("\u00a0", " ")
 
 
 def _look(mark_height: float) -> str:
@@ -207,20 +174,27 @@ def _look(mark_height: float) -> str:
     return "" if pen == weight(line_type("text").width) else f"370\n{pen}\n"
 
 
-def _text(handle: int, owner: str, on: str, mark: Text) -> str:
+def _text(handle: int, owner: str, on: str, mark: Text, more: str = "") -> str:
     """A run as TEXT from its left end; two letters and more are fitted to their length, whatever the font."""
     if missing := lacking(mark.text):
         raise ValueError(f"the drawing font has no character '{missing[0]}' (U+{ord(missing[0]):04X})")
-    turn = _direction(mark.angle)
-    end = mark.at + turn * (advance(mark.text, mark.height) - AFTER * mark.height)
+    end = mark.at + _direction(mark.angle) * _length(mark.text, mark.height)
     fit = f"72\n5\n{flat(11, end)}" if len(mark.text) > 1 else ""
     angle = f"50\n{short(degrees(mark.angle) % 360)}\n" if mark.angle else ""
-    return (f"0\nTEXT\n5\n{handle:X}\n{head('AcDbText', owner, on, _look(mark.height))}{flat(10, mark.at)}"
+    return (f"0\nTEXT\n5\n{handle:X}\n{head('AcDbText', owner, on, more + _look(mark.height))}{flat(10, mark.at)}"
             f"40\n{mark.height:g}\n1\n{_escaped(mark.text)}\n{angle}7\n{STYLE}\n{fit}100\nAcDbText\n")
+
+
+def _length(text: str, height: float) -> float:
+    """Length of a run, mm: to LibreCAD, which has no advances, a letter ends one pen before the next (``fonts/build.py``)."""
+    if not text:
+        return 0.0
+    first = glyph(text[0])
+    return height * (first.right - first.left - PEN) + advance(text[1:], height)
 
 
 def _centred(f: FormField, value: str) -> str:
     """Tags of lettering about the middle of its baseline; its left end is told too, as a matter of form."""
-    left = f.at - _direction(f.angle) * (advance(value, f.height) - AFTER * f.height if value else 0.0) / 2
+    left = f.at - _direction(f.angle) * _length(value, f.height) / 2
     angle = f"50\n{short(degrees(f.angle) % 360)}\n" if f.angle else ""
     return f"{place(10, left)}40\n{f.height:g}\n1\n{_escaped(value)}\n{angle}7\n{STYLE}\n72\n1\n{place(11, f.at)}"
