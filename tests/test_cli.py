@@ -12,9 +12,10 @@ import pytest
 
 from tests.few import seldom
 from tests.project_files import EVEN, SLIDER, from_file, write
-from tmm_sheets import __version__, catalogue
+from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.output.build_store import RECORD
+from tmm_sheets.version import __version__
 
 SHAPER = from_file("lugansk/shaper")
 ROOT = Path(__file__).parents[1]

@@ -10,7 +10,8 @@ ROOT = Path(__file__).parents[1] / "tmm_sheets"
 ROOMS = (
     "mechanism", "task", "methods/linkage", "methods/gears", "methods/cams", "methods/integration.py", "drawing", "backends",
     "output", "lab/stress", "lab/bench", "compare/cad", "compare/photo", "catalogue.py", "errors.py", "explain.py",
-    "askers.py", "files.py", "numbers.py", "project.py", "protocols.py", "resources.py", "results.py", "summary.py", "encodings.py",
+    "api.py", "askers.py", "files.py", "numbers.py", "project.py", "protocols.py", "resources.py", "result_arrays.py", "results.py",
+    "summary.py", "encodings.py",
 )  # fmt: skip
 """Rooms and modules whose docstrings are done; those of the command line are its help."""
 MODULES = sorted(p for room in ROOMS for p in ([ROOT / room] if room.endswith(".py") else (ROOT / room).rglob("*.py")))

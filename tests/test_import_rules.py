@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1] / "tmm_sheets"
 MODULES = {".".join(p.relative_to(ROOT).with_suffix("").parts): p for p in ROOT.rglob("*.py")}
-NEUTRAL = "box encodings errors files kept numbers program quoting remarks resources progress spelling words __init__"
+NEUTRAL = "box encodings errors files kept numbers program quoting remarks resources progress spelling version words"
 METHODS = "methods.linkage methods.flywheel methods.gears methods.cams methods.integration"
 
 RULES = {
@@ -37,7 +37,10 @@ RULES = {
     "project": (f"task {METHODS}", "construction mechanism"),
     "results": ("construction project result_files sheets", "methods.linkage"),
     "result_files": ("", ""),
+    "result_arrays": ("result_files", ""),
     "catalogue": ("task", ""),
+    "__init__": ("api", "api"),
+    "api": ("catalogue compare drawing living output project protocols record result_arrays results sheets summary task", ""),
     "summary": ("mechanism project task", ""),
     "explain": ("askers construction drawing", "project"),
     "askers": ("construction sheets", "drawing"),
@@ -66,7 +69,7 @@ RULES = {
     "lab.stress": ("construction mechanism methods.linkage", ""),
     "localized_cli": ("completion", ""),
     "completion": ("catalogue drawing note output project protocols record results", ""),
-    "cli": ("askers backends catalogue compare drawing explain lab living note output project protocols record result_files "
+    "cli": ("api askers backends catalogue compare drawing explain lab living note output project protocols record result_files "
             "results localized_cli sheets summary task", ""),
     "__main__": ("cli completion localized_cli", ""),
     **dict.fromkeys(NEUTRAL.split(), ("", "")),

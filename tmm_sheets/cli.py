@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tmm_sheets import __version__, kept, quoting, spelling, words
+from tmm_sheets import kept, quoting, spelling, words
 from tmm_sheets.box import Box
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of, together
 from tmm_sheets.localized_cli import Group, Option, argument, option
+from tmm_sheets.version import __version__
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
-    from tmm_sheets.compare.report import Report
+    from tmm_sheets.compare.report import Kind, Report
     from tmm_sheets.drawing.plotters import Plotter
     from tmm_sheets.output.building import Order
     from tmm_sheets.output.plot import Job, PlotLook
@@ -250,30 +251,17 @@ def check(project: str, corrected: bool, scheme: Path | None) -> None:
     """Read and assemble PROJECT, tell what no pencil can draw; write nothing but a scheme asked for."""
     if scheme is not None and scheme.suffix.lower() != ".svg":
         raise click.UsageError(tell("--scheme {file}: expected a name that ends in .svg").format(file=scheme))
-    opened = _open(project, corrected)
-    from tmm_sheets.sheets import composing, composition
+    from tmm_sheets.api import Opened
 
-    opened.check()
-    composition.check(opened)
-    for line in composing.shortened(opened):
-        click.echo(f"{opened.variant.called}: {line}", err=True)
-    if opened.variant.crank is not None:
-        from tmm_sheets import summary
-        from tmm_sheets.sheets import legibility
-        from tmm_sheets.sheets.components import flat_crossings
-
-        every = range(1, len(opened.sheets) + 1)
-        for told in (*composition.left_out(opened, every), *legibility.crowded(opened, every), *flat_crossings.lines(opened),
-                     *opened.dead_positions, *summary.swing(opened)):
-            click.echo(f"{opened.variant.called}: {told}", err=True)
-    for line in opened.flywheel.remarks if opened.variant.flywheel is not None else ():
-        click.echo(f"{opened.variant.called}: {line}", err=True)
+    opened = Opened(_read(project, corrected))
+    called = opened.project.variant.called
+    for told in opened.check():
+        click.echo(f"{called}: {told}", err=True)
     if scheme is not None:
         from tmm_sheets import files
-        from tmm_sheets.output import view_pictures
 
-        files.write_all({scheme: view_pictures.scheme(opened)})
-    click.echo(tell("{project}: OK").format(project=opened.variant.called))
+        files.write_all({scheme: opened.scheme.svg.encode()})
+    click.echo(tell("{project}: OK").format(project=called))
 
 
 @commands.command()
@@ -820,29 +808,17 @@ def _send(jobs: Mapping[Path, Job], printer: str, dry_run: bool) -> None:
 def _of_group(group: Path, opened: Project, corrected: bool, marks: Path | None, pencil: float, reading: float,
               say: Callable[[str], None]) -> Report:
     """The report on the work of a whole group."""
+    from tmm_sheets.api import compared
     from tmm_sheets.compare import group as whole
     from tmm_sheets.compare import marking
 
     scheme = marking.read(marks) if marks is not None else None
 
-    def drawing(project: Project, sheet: int | None, path: Path) -> Report:
-        from tmm_sheets.compare.cad import cad_drawing
-
-        return cad_drawing.compare(project, sheet, path, None, pencil, lambda what: None)
-
-    def numbers(project: Project, sheet: int | None, path: Path) -> Report:
-        from tmm_sheets.compare.measured import measured_lengths
-
-        return measured_lengths.compare(project, path, pencil, reading, lambda what: None)
-
-    def picture(project: Project, sheet: int | None, path: Path) -> Report:
-        from tmm_sheets.compare.photo import image
-
-        return image.compare(project, int(sheet or 1), path, None, pencil)
+    def judged(kind: Kind, project: Project, sheet: int | None, path: Path) -> Report:
+        return compared(project, kind, path, sheet, None, pencil, reading)
 
     name = opened.variant.called
-    return whole.compare(group, name, lambda other: opened if other == name else _open(other, corrected),
-                         {"drawing": drawing, "numbers": numbers, "picture": picture}, scheme, say)
+    return whole.compare(group, name, lambda other: opened if other == name else _open(other, corrected), judged, scheme, say)
 
 
 def _check_pages(pages: tuple[Path, ...]) -> None:
@@ -909,24 +885,18 @@ def compare(
             report = by_ruler.template(opened, folder, everything, say)
         elif group is not None:
             report = _of_group(group, opened, corrected, marks, pencil, reading, say)
-        elif measured is not None:
-            from tmm_sheets.compare.measured import measured_lengths as by_ruler
+        else:
+            from tmm_sheets.api import compared
 
-            report = by_ruler.compare(opened, measured, pencil, reading, say)
-        elif image is not None:
-            from tmm_sheets.compare.photo import image as by_eye
-
+            kinds: dict[Kind, Path | None] = {"measured": measured, "image": image, "dxf": dxf}
+            ((kind, path),) = [(kind, path) for kind, path in kinds.items() if path is not None]
             try:
-                report = by_eye.compare(opened, int(sheet or 1), image, views, pencil, say, read_numbers)
+                report = compared(opened, kind, path, sheet, views, pencil, reading, read_numbers, say)
             except CannotBuild as e:
                 files.write_all({folder / name: data for name, data in e.files.items()})
                 for name in e.files:
                     click.echo(folder / name, err=True)
                 raise
-        else:
-            from tmm_sheets.compare.cad import cad_drawing
-
-            report = cad_drawing.compare(opened, sheet, Path(str(dxf)), views, pencil, say)
     made = {folder / name: data for name, data in report.files.items()}
     if target is not None and target != "-":
         made[Path(target)] = (report.as_json() + "\n").encode()

@@ -17,8 +17,9 @@ from pathlib import Path
 from time import time_ns
 from typing import Any
 
-from tmm_sheets import __version__, kept
+from tmm_sheets import kept
 from tmm_sheets.resources import template
+from tmm_sheets.version import __version__
 
 LIBRARIES = ("numpy", "shapely")
 """Libraries whose numbers stand on the sheets."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from math import isfinite
 from typing import IO, Any
 
@@ -140,11 +140,11 @@ def write_csv(tree: dict[str, Any], file: IO[bytes]) -> None:
         raise CannotBuild(tell("there is nothing over positions to write a table of"),
                           tell("ask for positions, velocities, accelerations or forces, or take --json"))
     labels: list[str] = tree["cycle"]["labels"]
-    columns = list(_columns(tree, labels))
-    file.write((",".join(["label", *(_quoted(name) for name, _, _ in columns)]) + "\n").encode())
+    found = list(_columns(tree, labels))
+    file.write((",".join(["label", *(_quoted(name) for name, _, _ in found)]) + "\n").encode())
     for begin in range(0, len(labels), PIECE):
         here = range(begin, min(begin + PIECE, len(labels)))
-        written = [map(_quoted, labels[begin:begin + PIECE]), *(_cells(array, rows, here) for _, array, rows in columns)]
+        written = [map(_quoted, labels[begin:begin + PIECE]), *(_cells(array, rows, here) for _, array, rows in found)]
         file.write("".join(",".join(cells) + "\n" for cells in zip(*written, strict=True)).encode())
 
 
@@ -165,14 +165,22 @@ def _columns(tree: dict[str, Any], labels: list[str]) -> Iterator[tuple[str, Any
             yield f"{path}.y", array[:, 1], rows
 
 
-def _cells(array: Any, rows: dict[int, int] | None, here: Iterable[int]) -> Iterator[str]:
+def columns(tree: dict[str, Any]) -> dict[str, Any]:
+    """The columns of the table as arrays with a number for each position, NaN where there is none."""
+    labels = tree["cycle"]["labels"]
+    return {name: _spread(array, rows, range(len(labels))) for name, array, rows in _columns(tree, labels)}
+
+
+def _spread(array: Any, rows: dict[int, int] | None, here: range) -> Any:
     import numpy as np
 
-    if rows is not None:
-        own = [float(array[rows[i]]) if i in rows else np.nan for i in here]
-    else:
-        own = (array[here.start:here.stop] + 0.0).tolist() if isinstance(here, range) else []
-    return (repr(x) if np.isfinite(x) else "" for x in own)
+    if rows is None:
+        return array[here.start:here.stop] + 0.0
+    return np.array([float(array[rows[i]]) if i in rows else np.nan for i in here])
+
+
+def _cells(array: Any, rows: dict[int, int] | None, here: range) -> Iterator[str]:
+    return (repr(x) if isfinite(x) else "" for x in _spread(array, rows, here).tolist())
 
 
 def _quoted(text: str) -> str:

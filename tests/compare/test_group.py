@@ -64,8 +64,13 @@ def folder(tmp_path):
     return tmp_path / "g"
 
 
+def by(**kinds):
+    """Compares a file by its kind."""
+    return lambda kind, *of: kinds[kind](*of)
+
+
 def compared(folder, tmp_path, opened=lambda name: type("P", (), {"variant": type("V", (), {"sheets": [1, 2]})()})()):
-    return group.compare(folder, "own", opened, {"drawing": drawing}, scheme(tmp_path), lambda what: None)
+    return group.compare(folder, "own", opened, by(dxf=drawing), scheme(tmp_path), lambda what: None)
 
 
 def test_table_and_marks(folder, tmp_path):
@@ -101,7 +106,7 @@ def test_files_of_all_kinds(folder, tmp_path):
         return Report("", {}, findings=start, start=start)
 
     opened = type("P", (), {"variant": type("V", (), {"sheets": [1, 2]})()})()
-    report = group.compare(folder, "own", lambda name: opened, {"drawing": drawing, "numbers": numbers}, scheme(tmp_path),
+    report = group.compare(folder, "own", lambda name: opened, by(dxf=drawing, measured=numbers), scheme(tmp_path),
                            lambda what: None)
     found = {s["student"]: s for s in report.tree["students"]}
     assert found.keys() == {"Empty", "Five", "Four", "One", "Three", "Two", "Шесть и семь"}
@@ -123,7 +128,7 @@ def test_a_file_that_breaks_the_program_spoils_no_table(folder, tmp_path, monkey
 
     def report():
         opened = type("P", (), {"variant": type("V", (), {"sheets": [1, 2]})()})()
-        return group.compare(folder, "own", lambda name: opened, {"drawing": broken}, scheme(tmp_path), lambda what: None)
+        return group.compare(folder, "own", lambda name: opened, by(dxf=broken), scheme(tmp_path), lambda what: None)
 
     found = {s["student"]: s for s in report().tree["students"]}
     assert [found[n]["mark"] for n in ("Five", "One", "Two")] == [100, 76, None]

@@ -23,7 +23,7 @@ from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.finding_records import FindingRecord
 from tmm_sheets.compare.known_sheet import sheet_numbers
 from tmm_sheets.compare.marking import KINDS, MarkingScheme
-from tmm_sheets.compare.report import Report
+from tmm_sheets.compare.report import Kind, Report
 from tmm_sheets.compare.report_pages import page
 from tmm_sheets.compare.story import Story, StoryTable
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 DRAWINGS, NUMBERS, PICTURES = (".dxf",), (".csv",), (".jpg", ".jpeg", ".png", ".pdf")
 """Endings of the names of what is compared."""
 COMPARED = (*DRAWINGS, *NUMBERS, *PICTURES)
+Judge = Callable[[Kind, "Project", int | None, Path], Report]
+"""Compares a file of a kind with a sheet, where it is told which."""
 PROJECTS = "projects.toml"
 SHEET = re.compile(r"(?:sheet|лист|аркуш)[\s_-]*(\d+)", re.IGNORECASE)
 """How a file says of which sheet it is."""
@@ -90,8 +92,8 @@ class Student:
         return tuple(dict.fromkeys(m.told.said() for f in self.files for m in f.mistakes))
 
 
-def compare(folder: Path, project: str, opened: Callable[[str], Project], by_kind: Mapping[str, Callable[..., Report]],
-            scheme: MarkingScheme | None, say: Callable[[str], None]) -> Report:
+def compare(folder: Path, project: str, opened: Callable[[str], Project], judged: Judge, scheme: MarkingScheme | None,
+            say: Callable[[str], None]) -> Report:
     """Compare the work of every student in a folder.
 
     Parameters
@@ -99,7 +101,7 @@ def compare(folder: Path, project: str, opened: Callable[[str], Project], by_kin
     folder : where it is
     project : name of the project of those for whom ``projects.toml`` names no other
     opened : opens a project by its name
-    by_kind : compares a file of a kind, "drawing", "numbers", "picture": called with project, sheet (or None) and path
+    judged : compares a file
     scheme : for marks, None for none
     say : told what is being done
 
@@ -123,7 +125,7 @@ def compare(folder: Path, project: str, opened: Callable[[str], Project], by_kin
         files = []
         for path in paths:
             say(f"{name}: {path.name}")
-            files.append(_judged(path, _within(folder, path), own, project_of, by_kind))
+            files.append(_judged(path, _within(folder, path), own, project_of, judged))
         students.append(Student(name, own, tuple(files)))
     return _report(folder, students, scheme)
 
@@ -185,8 +187,7 @@ def _within(folder: Path, path: Path) -> str:
     return "/".join(inside[1:] or inside)
 
 
-def _judged(path: Path, file: str, name: str, opened: Callable[[str], Project],
-            by_kind: Mapping[str, Callable[..., Report]]) -> Judgement:
+def _judged(path: Path, file: str, name: str, opened: Callable[[str], Project], judge: Judge) -> Judgement:
     """One file; what cannot be judged is told, and the rest goes on."""
     try:
         project = opened(name)
@@ -195,12 +196,12 @@ def _judged(path: Path, file: str, name: str, opened: Callable[[str], Project],
         suffix = path.suffix.lower()
         if suffix not in COMPARED:
             raise BadInput(tell("such a file is not compared"), tell("save it as .dxf, .csv, .jpg, .png or .pdf"))
-        kind = "drawing" if suffix in DRAWINGS else "numbers" if suffix in NUMBERS else "picture"
-        if kind == "picture" and sheet is None:
+        kind: Kind = "dxf" if suffix in DRAWINGS else "measured" if suffix in NUMBERS else "image"
+        if kind == "image" and sheet is None:
             if len(sheet_numbers(project, None)) > 1:
                 raise BadInput(tell("its name does not say which sheet it shows"), tell("call it, for instance, sheet 2.jpg"))
             sheet = 1
-        report = by_kind[kind](project, sheet, path)
+        report = judge(kind, project, sheet, path)
     except (BadInput, CannotBuild) as e:
         return Judgement(file, {"unjudged": 1}, refused=re.sub(rf"^{re.escape(str(path))}:\s*", "", str(e), flags=re.MULTILINE))
     except Exception as e:  # a defect that one file shows must not cost all others their rows

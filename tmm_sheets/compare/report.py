@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 Verdict = Literal["green", "amber", "red"]
 """Within the tolerance of a pencil; within twice that; beyond."""
+Kind = Literal["measured", "dxf", "image"]
+"""What is compared: a table of measured numbers, a CAD drawing, a photograph."""
 _COLOURS: Mapping[Verdict, str] = {"green": marked("green"), "amber": marked("amber"), "red": marked("red")}
 
 

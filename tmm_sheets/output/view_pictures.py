@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from importlib import import_module
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from tmm_sheets import files, spelling
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Mark, Polyline, Text, flat
-from tmm_sheets.errors import CannotBuild
-from tmm_sheets.output.building import BACKENDS, folder_name
+from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.output.building import BACKENDS, SUFFIXES, folder_name
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -27,41 +29,109 @@ SCHEME = "kinematics.position_plans"
 """The view that shows how a mechanism was understood."""
 
 
+@dataclass(frozen=True)
+class Picture:
+    """A sheet, or a view alone, as large as it is; a notebook shows it."""
+
+    drawing: Drawing
+
+    def rendered(self, form: str, **settings: Any) -> bytes:
+        """The bytes of a file of a format (svg, png, pdf, dxf, hpgl); ``settings`` are those of its writer, such as ``dpi``."""
+        return import_module(BACKENDS[form]).render(self.drawing, **settings)  # type: ignore[no-any-return]
+
+    @property
+    def svg(self) -> str:
+        """The picture as SVG."""
+        return self.rendered("svg").decode()
+
+    def _repr_svg_(self) -> str:
+        return self.svg
+
+    def save(self, path: Path | str, **settings: Any) -> Path:
+        """Write a file of the format that its name ends in.
+
+        Raises
+        ------
+        BadInput
+            for a name that ends in no format of drawings.
+        """
+        path = Path(path)
+        form = {"plt": "hpgl"}.get(suffix := path.suffix.lower().lstrip("."), suffix)
+        if form not in BACKENDS:
+            raise BadInput(tell("{file}: expected a name that ends in one of {endings}").format(
+                file=path, endings=", ".join(f".{SUFFIXES.get(form, form)}" for form in BACKENDS)))
+        files.write_all({path: self.rendered(form, **settings)})
+        return path
+
+
+@dataclass(frozen=True)
+class ViewPicture(Picture):
+    """A view alone: ``draw`` is what draws it, ``plans`` are those that it shows, each with the label of its position."""
+
+    draw: str
+    plans: tuple[tuple[str, str], ...]
+
+
 def of_sheet(n: int, composed: Composed, formats: Sequence[str], dpi: float) -> Iterator[tuple[str, bytes]]:
     """Names and bytes of the pictures of a sheet's views."""
     from tmm_sheets.sheets.composing import FRAME
 
-    for draw, drawing in _views(composed):
-        if draw != FRAME:
-            stem = f"sheet{n}-{_named(drawing.title)}"
+    for view in views(composed):
+        if view.draw != FRAME:
+            stem = f"sheet{n}-{_named(view.drawing.title)}"
             for form in formats:
-                settings = {"dpi": dpi} if form == "png" else {}
-                yield f"{stem}.{form}", import_module(BACKENDS[form]).render(drawing, **settings)
+                yield f"{stem}.{form}", view.rendered(form, **({"dpi": dpi} if form == "png" else {}))
 
 
-def scheme(project: Project) -> bytes:
-    """The plan of positions as SVG.
+def scheme(project: Project) -> ViewPicture:
+    """The plan of positions.
 
     Raises
     ------
     CannotBuild
         when the project has no mechanism to draw.
     """
-    from tmm_sheets.backends import svg
     from tmm_sheets.sheets import sheet
 
     for n in range(1, len(project.sheets) + 1) if project.variant.crank is not None else ():
-        for draw, drawing in _views(sheet.composed(project, n)):
-            if draw == SCHEME:
-                return svg.render(drawing)
+        for view in views(sheet.composed(project, n)):
+            if view.draw == SCHEME:
+                return view
     raise CannotBuild(tell("no sheet of {project} shows a mechanism").format(project=project.variant.called))
 
 
-def _views(composed: Composed) -> Iterator[tuple[str, Drawing]]:
-    """What draws each view, and the view alone as a drawing as large as it is."""
+def named(project: Project, name: str, position: str = "") -> ViewPicture:
+    """The first view that shows a plan, or has a name in its title; with ``position`` the one of the position of that label.
+
+    Raises
+    ------
+    BadInput
+        when no sheet has such a view.
+    """
+    from tmm_sheets.sheets import sheet
+
+    of_plan, titles, labels = set[str](), list[str](), list[str]()
+    for n in range(1, len(project.variant.drawable()) + 1):
+        for view in views(sheet.composed(project, n)):
+            shown = [label for plan, label in view.plans if plan == name]
+            called = shown or name.casefold() in view.drawing.title.casefold()
+            if called and (not position or position in shown):
+                return view
+            labels += shown
+            of_plan |= {plan for plan, _ in view.plans}
+            titles.append(view.drawing.title)
+    if labels:
+        raise BadInput(tell('no view shows "{name}" in position {position}').format(name=name, position=position),
+                       tell("there are {names}").format(names=", ".join(dict.fromkeys(labels))))
+    near = spelling.near(name, (*sorted(of_plan), *titles), 6) or sorted(of_plan)
+    raise BadInput(tell('no view shows "{name}"').format(name=name), tell("there are {names}").format(names=", ".join(near)))
+
+
+def views(composed: Composed) -> Iterator[ViewPicture]:
+    """The views of a sheet, each as large as it is."""
     import numpy as np
 
-    whole = composed.drawing
+    whole, starts = composed.drawing, [part.first for part in composed.parts]
     for view in whole.views:
         marks = [whole.marks[k] for first, end in view.spans for k in range(first, end)]
         points = [p for m in marks for p in (letters(m) if isinstance(m, Text) else (flat(m, 3.0),)) if len(p)]
@@ -69,10 +139,12 @@ def _views(composed: Composed) -> Iterator[tuple[str, Drawing]]:
             continue
         first = view.spans[0][0]
         draw = next((part.draw for part in reversed(composed.parts) if part.first <= first), "")
+        plans = [(f.plan, f.position) for f in composed.frames
+                 if f.view >= 0 and any(a <= starts[f.view] < b for a, b in view.spans)]
         box = Box.around(np.concatenate(points), MARGIN)
         moved = tuple(_moved(m, -complex(box.x0, box.y0)) for m in marks)
-        yield draw, replace(whole, width=box.width, height=box.height, title=view.name, marks=moved, views=(), dimensions=(),
-                            forms=())
+        alone = replace(whole, width=box.width, height=box.height, title=view.name, marks=moved, views=(), dimensions=(), forms=())
+        yield ViewPicture(alone, draw, tuple(dict.fromkeys(plans)))
 
 
 def _moved(m: Mark, by: complex) -> Mark:

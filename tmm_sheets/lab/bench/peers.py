@@ -17,7 +17,6 @@ from math import pi
 
 import numpy as np
 
-from tmm_sheets import __version__
 from tmm_sheets.construction.function import Function
 from tmm_sheets.construction.program import depending
 from tmm_sheets.errors import CannotBuild
@@ -28,6 +27,7 @@ from tmm_sheets.lab.bench.records import Bench, BenchRecord, told
 from tmm_sheets.mechanism.groups import RRP
 from tmm_sheets.mechanism.model import Guide, Link, LinkPoint, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.study import Study
+from tmm_sheets.version import __version__
 from tmm_sheets.words import tell
 
 COUNTS = (12, 360, 10_000)

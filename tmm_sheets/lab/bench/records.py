@@ -12,8 +12,8 @@ from math import isfinite
 from time import perf_counter
 from typing import Any, TypeVar
 
-from tmm_sheets import __version__
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.version import __version__
 from tmm_sheets.words import tell
 
 Found = TypeVar("Found")

@@ -1,0 +1,227 @@
+"""A project in Python: docs/python.md and the notebook do what they say, numbers are those of the commands, messages too."""
+
+import csv
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tmm_sheets
+from tests import notebook
+from tests.project_files import FOUR_BAR
+from tmm_sheets import catalogue, results, words
+from tmm_sheets.project import Project
+from tmm_sheets.task import variant
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture(scope="module")
+def p():
+    return tmm_sheets.open("lugansk/shaper")
+
+
+def filled(p, folder, **off):
+    """A table of what velocities of position 2 measure, right but for those that are ``off``, mm."""
+    path = p.template(folder)
+    table = path.read_text("utf-8-sig").splitlines()
+
+    def judged(measured):
+        path.write_text("\n".join(line + measured(line.split(",")[3].strip("|")) if line.startswith("velocities/2/") else line
+                                  for line in table), encoding="utf-8")
+        return p.compare(path)
+
+    right = {f["quantity"].strip("|"): f["expected"] for f in judged(lambda name: "50")}
+    return judged(lambda name: f"{right[name] + off.get(name, 0):.2f}")
+
+
+def test_importing_loads_next_to_nothing():
+    code = "import sys, tmm_sheets; print(*(m for m in sys.modules if m.partition('.')[0] in ('tmm_sheets', 'numpy', 'click')))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert {*done.stdout.split()} == {"tmm_sheets", "tmm_sheets.version"}
+    assert (Path(tmm_sheets.__file__).parent / "py.typed").is_file()
+    assert {"open", "new", "projects", "BadInput"} <= {*dir(tmm_sheets)}
+    with pytest.raises(AttributeError):
+        tmm_sheets.shut
+
+
+def test_numbers_are_those_of_solve(p):
+    n = p.numbers(phi_deg=[30, 75])
+    told = results.assemble(Project(catalogue.read("lugansk/shaper")), None, phi=tuple(np.radians([30, 75]).tolist()))
+    assert n.tree == told
+    assert n["velocities.points.B"].tolist() == told["velocities"]["points"]["B"]
+    assert n["flywheel.J_flywheel"] == told["flywheel"]["J_flywheel"]
+    assert p.numbers("positions", phi=np.radians([30, 75])).tree["positions"] == told["positions"]
+    assert len(p.numbers("positions", positions=7)["positions.points.B"]) == 7
+    with pytest.raises(tmm_sheets.BadInput, match="one of phi"):
+        p.numbers(phi=[1], positions=7)
+    with pytest.raises(tmm_sheets.BadInput, match=r"did you mean velocities\.points\.B"):
+        n["velocities.point.B"]
+    with pytest.raises(tmm_sheets.BadInput, match="no part"):
+        p.numbers("reducer")
+
+
+def test_columns_are_those_of_the_table(p, tmp_path):
+    from tmm_sheets.result_files import write_csv
+
+    n = p.numbers()
+    with (tmp_path / "n.csv").open("wb") as file:
+        write_csv(n._told, file)
+    head, *rows = csv.reader((tmp_path / "n.csv").read_text("utf-8").splitlines())
+    assert head == [*n.columns]
+    for name, column in zip(head, zip(*rows, strict=True), strict=True):
+        assert [*column] == ["" if x != x else str(x) for x in n.columns[name]]
+    assert p.numbers("gear").columns == {}
+
+
+def test_a_part_that_cannot_be_computed_costs_no_other():
+    bars = tmm_sheets.new("own", **FOUR_BAR, gear={
+        "teeth": [5, 28], "module": "3.5 mm", "shift": "rule", "pressure_angle": "20 deg"})
+    n = bars.numbers()
+    assert len(n["positions.points.B"])
+    with pytest.raises(tmm_sheets.CannotBuild) as e:
+        n["gear.a_w"]
+    assert str(e.value) == str(n.refused["gear"])
+
+
+def test_other_values_are_those_of_another_file(p):
+    q = p.with_({"points.C": ("0 m", "-0.25 m")}, crank__length="60 mm", cam=None)
+    parts = ("positions", "flywheel")
+    assert results.assemble(Project(variant.parse(q.text, "again")), parts) == q.numbers(*parts).tree
+    assert "cam" not in q.project.parts
+    assert 'length = "60 mm"\n' in q.text  # the source of the number before is gone
+    assert "# steady running" in q.text
+    assert p.text == catalogue.read("lugansk/shaper").text
+    assert p.with_().text == p.text
+    assert q.project.variant.shipped
+
+
+def test_only_what_hangs_on_it_is_computed_again(p):
+    p.numbers("gear", "cam")
+    q = p.with_(crank__length="60 mm", gear__module="4 mm")
+    assert q.project.gear is not p.project.gear
+    assert q.project.cam is p.project.cam
+    assert "study" not in vars(q.project)
+    diesel = tmm_sheets.open("transport/diesel@01-Т-27")
+    diesel.numbers("gear", "reducer")
+    assert diesel.with_(crank__length="0.1 m").project.gear is diesel.project.gear
+    assert "gear" not in vars(diesel.with_(reducer__satellites=4).project)
+
+
+@pytest.mark.parametrize(("changes", "said"), [
+    ({"crank__length": 60}, r"lugansk/shaper:27: crank\.length: expected a length with its unit, not the bare number 60"),
+    ({"crank__lenght": "60 mm"}, "did you mean"), ({"group[7].kind": 1}, "no such place"), ({"crank.length.x": 1}, "no such place"),
+    ({"group[0].outer[5]": "B"}, "no such place"), ({"nothing": None}, "no such place"),
+])
+def test_what_cannot_be_changed(p, changes, said):
+    with pytest.raises(tmm_sheets.BadInput, match=said):
+        p.with_(changes)
+
+
+def test_a_mechanism_made_here():
+    bars = tmm_sheets.new("own", **FOUR_BAR)
+    assert bars.numbers("positions").tree["structure"]["W"] == 1
+    assert np.isfinite(bars.numbers("positions", positions=9)["positions.points.B"]).all()
+    longer = bars.with_(group__0__lengths__1="0.26 m")
+    assert longer.project.variant.group[0].lengths == (0.4, 0.26)
+    with pytest.raises(tmm_sheets.BadInput, match=r"own\.toml:\d+: crank\.length"):
+        bars.with_(crank__length=np.float64(0.1))
+
+
+def test_sheets_and_views(p, tmp_path):
+    sheet = p.sheet(1)
+    assert sheet.svg.encode() == (p.build(tmp_path / "a", formats=["svg"], sheets=[1])[0]).read_bytes()
+    view = p.view("accelerations", position=2)
+    assert view.plans == (("accelerations", "2"),)
+    assert view.drawing.width < sheet.drawing.width
+    assert p.view("энергомасс").drawing.title == "Диаграмма энергомасс"
+    for name, begins in (("v.pdf", b"%PDF"), ("v.png", b"\x89PNG"), ("v.dxf", b"  0"), ("v.plt", b""), ("v.svg", b"<?xml")):
+        assert view.save(tmp_path / name).read_bytes().startswith(begins)
+    with pytest.raises(tmm_sheets.BadInput, match=r"\.plt"):
+        view.save(tmp_path / "v.doc")
+    with pytest.raises(tmm_sheets.BadInput, match="there are 2"):
+        p.view("accelerations", position=3)
+    with pytest.raises(tmm_sheets.BadInput, match="there are accelerations"):
+        p.view("acelerations")
+    with pytest.raises(tmm_sheets.BadInput, match="no sheet 9"):
+        p.sheet(9)
+
+
+def test_language_and_names(tmp_path):
+    before = words.paper()
+    p = tmm_sheets.open("lugansk/shaper", language="en", student="Carnot")
+    assert "Acceleration polygon" in p.view("accelerations").drawing.title
+    assert p.record["lang"] == "en"
+    assert "Carnot" in str([m.text for m in p.sheet(1).drawing.marks if hasattr(m, "text")])
+    assert words.paper() == before
+
+
+def test_a_page_in_a_frame(p, tmp_path):
+    page = p.animate(sheets=[3])
+    assert page.lower().startswith("<!doctype html>")
+    assert page._repr_html_().lower().startswith('<iframe srcdoc="&lt;!doctype')
+    assert page.save(tmp_path / "p.html").read_text("utf-8") == page
+    assert len(repr(page)) < 50
+
+
+def test_a_drawing_is_judged(p, tmp_path):
+    right = filled(p, tmp_path / "right")
+    assert {f["verdict"] for f in right} == {"green"}
+    assert right.start == []
+    wrong = filled(p, tmp_path / "wrong", pd=6)
+    assert len(wrong) == len(right) > 8
+    assert [f["step"] for f in wrong.start] == ["velocities/d"]
+    assert str(wrong) == wrong.report.text
+    assert "<iframe" in wrong._repr_html_()
+    with pytest.raises(tmm_sheets.BadInput, match="which sheet"):
+        p.compare("sheet.jpg")
+
+
+# --- docs -------------------------------------------------------------------------------------------------------------------
+
+
+class Frame(dict):
+    """What docs ask of a DataFrame, where there is no pandas."""
+
+    def set_index(self, name):
+        return Frame((key, np.asarray(column)) for key, column in self.items() if key != name)
+
+
+@pytest.fixture
+def pandas(monkeypatch):
+    try:
+        import pandas
+    except ImportError:
+        pandas = type(sys)("pandas")
+        pandas.DataFrame = Frame
+        monkeypatch.setitem(sys.modules, "pandas", pandas)
+
+
+def test_python_in_docs_runs(p, tmp_path, monkeypatch, pandas, capsys):
+    monkeypatch.chdir(tmp_path)
+    p.save("my.toml")
+    filled(p, ".")
+    names = {}
+    blocks = re.findall(r"^```python\n(.*?)^```$", (ROOT / "docs/python.md").read_text("utf-8"), re.MULTILINE | re.DOTALL)
+    assert len(blocks) > 5
+    for block in blocks:
+        exec(block, names)
+    said = capsys.readouterr().out
+    assert "not the bare number 60" in said
+    assert "does not assemble at" in said
+    assert names["table"]["velocities.points.D.y"].max() > 0
+
+
+def test_without_pandas(p, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(tmm_sheets.CannotBuild, match="pip install pandas"):
+        p.numbers("positions").frame()
+
+
+def test_the_notebook_says_what_it_says():
+    text, rich = notebook.current()
+    assert text == notebook.NOTEBOOK.read_text("utf-8"), "run: python -m tests.notebook"
+    assert rich == ["_repr_svg_", "_repr_svg_", "_repr_svg_", "_repr_html_", "_repr_svg_"]

@@ -1,0 +1,420 @@
+"""A project in Python: numbers as arrays, sheets and views as pictures, the living page, the record, what a drawing has wrong.
+
+The commands are made of the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tmm_sheets import catalogue, words
+from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.project import Project
+from tmm_sheets.task import edited_text, title_entries
+from tmm_sheets.task import variant as variants
+from tmm_sheets.words import tell
+
+if TYPE_CHECKING:
+    from tmm_sheets.catalogue import Entry
+    from tmm_sheets.compare.report import Kind, Report
+    from tmm_sheets.output.view_pictures import Picture
+    from tmm_sheets.result_arrays import Numbers
+    from tmm_sheets.task.title_entries import Names
+    from tmm_sheets.task.variant import Variant
+
+__all__ = ["BadInput", "CannotBuild", "Findings", "Opened", "Page", "Said", "compared", "new", "open", "projects"]
+
+ALONE = ("gear", "reducer", "train", "cam")
+"""Parts that follow from their own tables and from nothing else of the file."""
+HEIGHT = 720
+"""Height of a page in a notebook, pixels."""
+
+
+def open(project: Path | str, *, corrected: bool = False, language: str = "", **title: str) -> Opened:
+    """A project of a shipped name (``lugansk/shaper``) or of a file.
+
+    Parameters
+    ----------
+    project
+        the name, or the path of the project file.
+    corrected
+        with the suggested values instead of suspected misprints.
+    language
+        of the sheets, ``ru``, ``uk`` or ``en``; the project's unless told.
+    title
+        what stands in the title blocks: ``student``, ``group``, ``supervisor``, ``institution``, ``designation``.
+
+    Raises
+    ------
+    BadInput
+        with everything that is wrong in the file: line, key, what was expected.
+    """
+    return Opened(catalogue.read(str(project), corrected), title_entries.given(title), language)
+
+
+def new(name: str = "mechanism", /, *, language: str = "", **tables: Any) -> Opened:
+    """A project made here: its tables as in a project file, ``crank={"length": "60 mm", ...}``, ``group=[{...}, ...]``.
+
+    The tables are written as TOML and read as every project file is.
+
+    Raises
+    ------
+    BadInput
+        with everything that is wrong in the tables.
+    """
+    head = {"name": name, "title": name} | dict(tables.pop("project", {}))
+    text = edited_text.written({"schema": 1, "project": head} | tables)
+    return Opened(variants.parse(text, f"{name}{catalogue.SUFFIX}"), title_entries.given({}), language)
+
+
+def projects(word: str = "") -> tuple[Entry, ...]:
+    """The shipped projects, or those with a word in their names or titles."""
+    return catalogue.found(word) if word else catalogue.entries()
+
+
+class Opened:
+    """A project that is open; what is asked of it is computed when it is asked, once.
+
+    Attributes
+    ----------
+    project
+        its plans and parts, for whoever wants the steps themselves.
+    language
+        of what stands on its sheets.
+    """
+
+    def __init__(self, variant: Variant, names: Names | None = None, language: str = "") -> None:
+        self._read, self._names = variant, names
+        self.language = language or words.of_project(variant.project.language)
+        self.project = Project(names.filled(variant) if names is not None else variant)
+
+    def __repr__(self) -> str:
+        return f"<{self.project.variant.called}: {', '.join(self.project.parts)}>"
+
+    # --- the file ---------------------------------------------------------------------------------------------------------
+
+    @property
+    def text(self) -> str:
+        """The project file."""
+        return self._read.text
+
+    def save(self, path: Path | str) -> Path:
+        """Write the project file."""
+        return _saved(path, self.text)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is doubtful in the numbers: suspected misprints of the manuals' tables."""
+        return self._read.warnings
+
+    def with_(self, changes: Mapping[str, Any] | None = None, /, **more: Any) -> Opened:
+        """The project with other values in its file: ``with_(crank__length="60 mm")``, ``with_({"group[0].lengths[1]": "0.2 m"})``.
+
+        Keys are named as ``why`` names them; in the name of an argument two underscores stand for a dot, and numbers count from 0.
+        None takes a key or a table away. Parts whose tables stay as they were are not computed again.
+
+        Raises
+        ------
+        BadInput
+            when there is no such place in the file, or what stands there then is wrong.
+        """
+        before = self._read
+        text = edited_text.changed(before.text, {**(changes or {}), **more})
+        read = variants.parse(text, before.called, before.warnings, before.misprints)
+        read = read.shipped_as(before.called) if before.shipped else read
+        changed = Opened(read, self._names, self.language)
+        for part in ALONE:
+            # Teeth of a gear may be those of the reducer.
+            if part in vars(self.project) and all(getattr(read, name) == getattr(before, name) for name in ("reducer", part)):
+                vars(changed.project)[part] = vars(self.project)[part]
+        return changed
+
+    # --- numbers ----------------------------------------------------------------------------------------------------------
+
+    def numbers(self, *parts: str, phi: Any = None, phi_deg: Any = None, positions: int | None = None) -> Numbers:
+        """Numbers of some parts, of all that the project has unless told, as arrays by their paths.
+
+        Parameters
+        ----------
+        parts
+            such as ``velocities``.
+        phi, phi_deg
+            crank angles of shape (n,), counter-clockwise from the x axis, rad or degrees; the numbered positions unless told.
+        positions
+            that many equal parts of the turn instead.
+
+        Raises
+        ------
+        BadInput
+            when the project has no such part.
+        CannotBuild
+            when nothing of it can be computed.
+        """
+        import numpy as np
+
+        from tmm_sheets import results
+        from tmm_sheets.result_arrays import Numbers
+
+        if sum(x is not None for x in (phi, phi_deg, positions)) > 1:
+            raise BadInput(tell("give one of phi, phi_deg and positions"))
+        at = phi if phi_deg is None else np.radians(np.asarray(phi_deg, dtype=float))
+        angles = None if at is None else tuple(np.atleast_1d(np.asarray(at, dtype=float)).tolist())
+        refused: dict[str, CannotBuild] = {}
+        with self._on_paper():
+            told = results.told(self.project, parts or None, phi=angles, positions=positions, refused=refused)
+            return Numbers(told, refused)
+
+    @cached_property
+    def record(self) -> dict[str, Any]:
+        """The record: every number with its step, every mark with what it shows, as docs/record.md tells."""
+        from tmm_sheets.record import recording
+
+        with self._on_paper():
+            return recording.record(self.project)[0]
+
+    def why(self, result: str) -> Said:
+        """The steps from the given numbers to a result, a line each."""
+        from tmm_sheets.record import why
+
+        with self._on_paper():
+            return Said("\n".join(why.lines(self.project, result)))
+
+    def protocol(self, plan: str | None = None) -> Said:
+        """The construction steps of the sheets, or of one plan, as sentences."""
+        from tmm_sheets import protocols
+
+        with self._on_paper():
+            return Said("\n".join(protocols.lines(self.project, plan)))
+
+    # --- sheets -----------------------------------------------------------------------------------------------------------
+
+    def check(self) -> tuple[str, ...]:
+        """Assemble everything; what no pencil can draw and what else is to be said, a line each.
+
+        Raises
+        ------
+        CannotBuild
+            when something cannot be built.
+        """
+        from tmm_sheets.sheets import composing, composition
+
+        project, variant = self.project, self.project.variant
+        with self._on_paper():
+            project.check()
+            composition.check(project)
+            told: list[object] = [*composing.shortened(project)]
+            if variant.crank is not None:
+                from tmm_sheets import summary
+                from tmm_sheets.sheets import legibility
+                from tmm_sheets.sheets.components import flat_crossings
+
+                every = range(1, len(project.sheets) + 1)
+                told += (*composition.left_out(project, every), *legibility.crowded(project, every),
+                         *flat_crossings.lines(project), *project.dead_positions, *summary.swing(project))
+            told += project.flywheel.remarks if variant.flywheel is not None else ()
+            return tuple(map(str, told))
+
+    def sheet(self, number: int) -> Picture:
+        """A sheet; a notebook shows it.
+
+        Raises
+        ------
+        BadInput
+            when there is no such sheet.
+        CannotBuild
+            when it cannot be drawn.
+        """
+        from tmm_sheets.output.building import chosen
+        from tmm_sheets.output.view_pictures import Picture
+        from tmm_sheets.sheets import sheet
+
+        with self._on_paper():
+            (n,) = chosen(self.project.variant, (number,))
+            return Picture(sheet.compose(self.project, n))
+
+    @property
+    def scheme(self) -> Picture:
+        """How the mechanism is understood: its plan of positions."""
+        from tmm_sheets.output import view_pictures
+
+        with self._on_paper():
+            return view_pictures.scheme(self.project)
+
+    def view(self, name: str, position: int | str = "") -> Picture:
+        """The first view that shows a plan (``accelerations``) or has a name in its title, of a position where one is told.
+
+        Raises
+        ------
+        BadInput
+            when no sheet has such a view.
+        """
+        from tmm_sheets.output import view_pictures
+
+        with self._on_paper():
+            return view_pictures.named(self.project, name, str(position))
+
+    def animate(self, sheets: Iterable[int] = (), plan: str = "") -> Page:
+        """The living page, in which plans are drawn, turned, changed and asked; a notebook shows it.
+
+        ``sheets`` are those that are in it, all unless told; it opens with ``plan``.
+        """
+        from tmm_sheets.living import page
+        from tmm_sheets.output.building import chosen
+
+        with self._on_paper():
+            return Page(page.page(self.project, chosen(self.project.variant, tuple(sheets)), plan)[0])
+
+    def build(self, folder: Path | str, *, formats: Sequence[str] = ("dxf", "pdf"), sheets: Iterable[int] = (),
+              force: bool = False) -> tuple[Path, ...]:
+        """Write the sheets into a folder; what is current is not made again.
+
+        Raises
+        ------
+        CannotBuild
+            when some of them cannot be drawn; the others are written.
+        """
+        from tmm_sheets.output import building
+
+        order = building.Order(tuple(sheets), tuple(formats), force=force, language=self.language)
+        with self._on_paper():
+            built = building.build(self.project.variant, order, order.outlet(Path(folder)))
+        if built.refused is not None:
+            raise built.refused
+        return built.paths
+
+    # --- what was drawn by hand -------------------------------------------------------------------------------------------
+
+    def compare(self, file: Path | str, sheet: int | None = None, *, kind: Kind | None = None, views: Path | None = None,
+                pencil: float = 0.25, reading: float = 0.5, read_numbers: bool = False) -> Findings:
+        """What a drawing has wrong: a table of measured numbers (.csv), a CAD drawing (.dxf), a photograph of sheet ``sheet``.
+
+        Parameters
+        ----------
+        kind
+            what the file is, where its name does not tell.
+        views
+            a file that tells where the views stand.
+        pencil, reading
+            errors of a point drawn by hand and of a length read off a ruler, mm.
+        read_numbers
+            also read the numbers of a photograph.
+
+        Raises
+        ------
+        BadInput
+            when the file cannot be read, or which sheet a photograph shows is not told.
+        CannotBuild
+            when the drawing cannot be judged.
+        """
+        path = Path(file)
+        by_name: Kind = {".csv": "measured", ".dxf": "dxf"}.get(path.suffix.lower(), "image")  # type: ignore[assignment]
+        with self._on_paper():
+            report = compared(self.project, kind or by_name, path, sheet, views, pencil, reading, read_numbers)
+        return Findings(report)
+
+    def template(self, folder: Path | str = ".", everything: bool = False) -> Path:
+        """Write a table to fill in with what is measured on one's own sheets: the main numbers, or ``everything`` that can be.
+
+        Raises
+        ------
+        BadInput
+            when the folder has one already.
+        """
+        from tmm_sheets import files
+        from tmm_sheets.compare.measured import measured_lengths
+
+        with self._on_paper():
+            report = measured_lengths.template(self.project, Path(folder), everything, lambda what: None)
+        made = {Path(folder) / name: data for name, data in report.files.items()}
+        files.write_all(made)
+        return next(iter(made))
+
+    def _on_paper(self) -> Any:
+        return words.on_paper(self.language)
+
+
+def compared(project: Project, kind: Kind, path: Path, sheet: int | None = None, views: Path | None = None, pencil: float = 0.25,
+             reading: float = 0.5, read_numbers: bool = False, say: Callable[[str], None] = lambda what: None) -> Report:
+    """The report on a drawing, see :meth:`Opened.compare`; ``say`` is told what is being done.
+
+    Raises
+    ------
+    BadInput
+        when the file cannot be read, or which sheet a photograph shows is not told.
+    CannotBuild
+        when the drawing cannot be judged.
+    """
+    if kind == "measured":
+        from tmm_sheets.compare.measured import measured_lengths
+
+        return measured_lengths.compare(project, path, pencil, reading, say)
+    if kind == "dxf":
+        from tmm_sheets.compare.cad import cad_drawing
+
+        return cad_drawing.compare(project, sheet, path, views, pencil, say)
+    from tmm_sheets.compare.photo import image
+
+    if sheet is None:
+        raise BadInput(tell("which sheet the photograph shows is not told"))
+    return image.compare(project, sheet, path, views, pencil, say, read_numbers)
+
+
+class Findings(list[dict[str, Any]]):
+    """What a comparison found, each as docs/findings.md tells; ``report`` is the whole of it, ``str()`` its table."""
+
+    def __init__(self, report: Report) -> None:
+        super().__init__(report.tree["findings"])
+        self.report = report
+
+    def __str__(self) -> str:
+        return self.report.text
+
+    @property
+    def start(self) -> list[dict[str, Any]]:
+        """Those from which others follow, the likeliest first."""
+        return [f for f in self if f["id"] in self.report.tree["start"]]
+
+    def _repr_html_(self) -> str:
+        from tmm_sheets.compare.report_pages import page
+
+        return _framed(page(self.report, ".html", str(self.report.tree["project"])).decode())
+
+
+class Page(str):
+    """A whole page of HTML; a notebook shows it in a frame."""
+
+    __slots__ = ()
+
+    def save(self, path: Path | str) -> Path:
+        """Write the page."""
+        return _saved(path, self)
+
+    def __repr__(self) -> str:
+        return f"<page, {len(self)} characters>"
+
+    def _repr_html_(self) -> str:
+        return _framed(self)
+
+
+class Said(str):
+    """Lines of text, shown as they are."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def _framed(page: str) -> str:
+    return f'<iframe srcdoc="{escape(page)}" style="width: 100%; height: {HEIGHT}px; border: 0"></iframe>'
+
+
+def _saved(path: Path | str, text: str) -> Path:
+    from tmm_sheets import files
+
+    files.write_all({Path(path): text.encode()})
+    return Path(path)

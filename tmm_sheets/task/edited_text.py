@@ -1,0 +1,84 @@
+"""The text of a project file with other values at some of its keys, everything else in it as it was; and a text of tables."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, MutableMapping
+from itertools import pairwise
+from typing import Any
+
+from tmm_sheets.errors import BadInput
+from tmm_sheets.words import tell
+
+
+def key_path(name: str) -> tuple[str | int, ...]:
+    """Keys on the way to a value, by its name: that of the record, or one that Python takes for the name of an argument.
+
+    >>> key_path("group[0].lengths[1]")
+    ('group', 0, 'lengths', 1)
+    >>> key_path("group__0__lengths__1")
+    ('group', 0, 'lengths', 1)
+    """
+    return tuple(int(part) if part.isdigit() else part for part in re.findall(r"[^.\[\]]+", name.replace("__", ".")))
+
+
+def changed(text: str, changes: Mapping[str, Any]) -> str:
+    """The text with these values, by the names of their keys; None takes a key away.
+
+    The comment behind a value says where it is from: a value that is changed has it no more.
+
+    Raises
+    ------
+    BadInput
+        when there is nothing on the way to a key.
+    """
+    import tomlkit
+
+    document = tomlkit.parse(text)
+    for name, value in changes.items():
+        try:
+            _put(document, key_path(name), value)
+        except (IndexError, KeyError, TypeError, ValueError):
+            raise BadInput(tell("{name}: there is no such place in the project file").format(name=name),
+                           hint=tell("places are named as by why, counted from 0: crank.length, group[0].lengths[1]")) from None
+    return tomlkit.dumps(document)
+
+
+def _put(document: Any, path: tuple[str | int, ...], value: Any) -> None:
+    at = document
+    for part, after in pairwise(path):
+        if isinstance(at, MutableMapping):
+            table, line = at, part
+            if isinstance(after, str):
+                at.setdefault(part, {})
+        at = at[part]
+    key = path[-1]
+    if value is None:
+        del at[key]
+        return
+    if isinstance(key, int) and key == len(at):
+        at.append(_plain(value))
+    else:
+        at[key] = _plain(value)
+    if isinstance(at, MutableMapping):
+        table, line = at, key
+    if (trivia := getattr(table[line], "trivia", None)) is not None:
+        trivia.comment = trivia.comment_ws = ""
+
+
+def written(tables: Mapping[str, Any]) -> str:
+    """A project file of these tables."""
+    import tomlkit
+
+    return tomlkit.dumps(_plain(tables))
+
+
+def _plain(value: Any) -> Any:
+    """Lists, tables and numbers that TOML has, of whatever Python has of them."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(inner) for key, inner in value.items() if inner is not None}
+    if hasattr(value, "tolist"):  # of numpy
+        return value.tolist()
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    return value
