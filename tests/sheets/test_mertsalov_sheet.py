@@ -88,7 +88,7 @@ def test_segment_and_axis_on_paper(press):
     assert axis.a.imag == pytest.approx((low + high) / 2, abs=0.005)
     assert high - low == pytest.approx(fw.ab_mm, abs=0.005)  # the polyline cuts the corner
     said = "".join(m.text for m in canvas.marks if isinstance(m, Text))
-    assert f"{fw.ab_mm:.1f}".replace(".", ",") in said
+    assert f"{fw.ab_mm:.2f}".replace(".", ",") in said
 
 
 def test_tangent_touches_the_graph_of_inertia(press):
@@ -179,13 +179,17 @@ def test_check_refuses_a_sheet_of_the_other_method(press, sheets, refused):
         composition.check(project)
 
 
-@pytest.mark.parametrize("name", ["press", "lugansk/shaper", "lugansk/engine", "loom", "screen"])
-def test_the_graphs_of_the_moments_read_well(name):
-    """M_c and M_d together are at least 80 mm high, over a pole distance that a ruler lays off (H = mu_A/(mu_M mu_phi))."""
+@pytest.mark.parametrize(("name", "least"), [("press", 80), ("lugansk/shaper", 80), ("lugansk/engine", 80), ("loom", 52),
+                                             ("screen", 52)])
+def test_the_graphs_of_the_moments_read_well(name, least):
+    """M_c and M_d together are at least 80 mm high, over a pole distance that a ruler lays off (H = mu_A/(mu_M mu_phi)).
+
+    Where dE is shown enlarged there is less room for them.
+    """
     fw = Project(catalogue.read(name)).flywheel
     s = fw.scales
     values = np.concatenate(([0.0, fw.M_constant], *(fw.at_samples.moment(side).value for side in (1, -1))))
-    assert np.ptp(values) / s.moment.mu >= 80
+    assert np.ptp(values) / s.moment.mu >= least
     pole = s.work.mu / (s.moment.mu * s.angle.mu)
     assert pole == pytest.approx(s.pole)
     assert 2 * pole == pytest.approx(round(2 * pole), abs=1e-6)

@@ -149,7 +149,7 @@ def test_the_segment_is_said_with_its_sign():
     f = project("lugansk/shaper", 600.0).flywheel
     assert list(sentences(f.energy_mass_plan, 0, float))[-1].endswith("ab = −2,7 мм.")
     f = project("lugansk/shaper", 0.0).flywheel
-    assert list(sentences(f.energy_mass_plan, 0, float))[-1].endswith("ab = 150,8 мм.")
+    assert list(sentences(f.energy_mass_plan, 0, float))[-1].endswith("ab = 113,1 мм.")
 
 
 # --- many points of a diagram ----------------------------------------------------------------------------------------

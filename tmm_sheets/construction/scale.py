@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import floor, isclose, log10
 from typing import Any
@@ -60,6 +61,15 @@ def fit(symbol: str, unit: str, span: float, mm: float) -> Scale:
     return Scale(symbol, handy(span / mm), unit)
 
 
+def reach(symbol: str, unit: str, span: float, mm: float) -> Scale:
+    """Largest handy scale factor with which the real ``span`` takes at least ``mm`` millimetres.
+
+    >>> reach("μ_F", "N/mm", 2800.0, 40.0).mu
+    60.0
+    """
+    return Scale(symbol, _largest(span / mm), unit)
+
+
 def fit_standard(span_mm: float, mm: float) -> tuple[int, int]:
     """Largest GOST 2.302 scale (real, drawn) with which ``span_mm`` millimetres of the object fit in ``mm``.
 
@@ -94,6 +104,16 @@ def times(ratio: float) -> str:
     return said.format(ratio=number(ratio))
 
 
+def plain(ratio: Any) -> Any:
+    """Whether a ratio of scale factors (number or array) is reckoned with in one's head: so many times, half times, or inverse.
+
+    >>> plain(4.0), plain(0.4), plain(10 / 3)
+    (True, True, False)
+    """
+    twice = 2 * abs(ratio) ** (1 - 2 * (ratio < 1))
+    return abs(twice % 1 - 0.5) > 0.5 - 1e-6
+
+
 def handy(least: float) -> float:
     """Smallest number of the series ``HANDY`` * 10^k that is not less than ``least``.
 
@@ -102,11 +122,21 @@ def handy(least: float) -> float:
     """
     if not least > 0:
         raise ValueError(f"a scale factor must be positive, not {least}")
-    power = floor(log10(least))
+    for candidate in _series(least):
+        if candidate > least or isclose(candidate, least, rel_tol=1e-9):
+            return candidate
+    raise AssertionError("unreachable: the series covers every decade")
+
+
+def _largest(most: float) -> float:
+    """Largest number of the series that is not greater than ``most``."""
+    return max(c for c in _series(most) if c < most or isclose(c, most, rel_tol=1e-9))
+
+
+def _series(about: float) -> Iterator[float]:
+    """The series ``HANDY`` * 10^k over three decades about a number."""
+    power = floor(log10(about))
     for k in (power - 1, power, power + 1):
         for mantissa in HANDY:
             # A decimal literal instead of a product: 2.5 * 10**-3 must be the number written 0.0025.
-            candidate = float(f"{mantissa}e{k}")
-            if candidate > least or isclose(candidate, least, rel_tol=1e-9):
-                return candidate
-    raise AssertionError("unreachable: the series covers every decade")
+            yield float(f"{mantissa}e{k}")

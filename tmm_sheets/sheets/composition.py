@@ -38,9 +38,9 @@ def arranged(project: Project, n: int) -> Arrangement:
     if any(view.needs == "forces" for view in plan.views):
         project.check_forces()
     if any("axis" in view.options for view in plan.views):
-        from tmm_sheets.sheets.flywheel import flywheel
+        from tmm_sheets.sheets.flywheel import enlarged, flywheel
 
-        return flywheel.apart(project, plan)
+        return enlarged.apart(project, flywheel.apart(project, plan))
     # Whoever sets scale factors by hand has the boxes as they are written.
     if project.variant.scales:
         return plan

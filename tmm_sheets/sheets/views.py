@@ -76,7 +76,7 @@ class ViewKind:
 
 ROOMS = {module: room for room, modules in {
     "cams": "cam cam_law cam_profile cam_sizes cam_zone",
-    "flywheel": "crank_speed flywheel mertsalov",
+    "flywheel": "crank_speed enlarged flywheel mertsalov",
     "linkage": "details diagrams false_positions friction friction_sizes given_position hodograph "
                "kinematic_frames kinematics kinetics lever_detail linkage_sizes load_diagram moments path_marks synthesis",
     "gears": "gear gear_equations gear_sizes plan_checks planet_motion rack reducer reducer_equations train wheel_sizes",
@@ -149,6 +149,8 @@ VIEWS = {view.draw: view for view in (
     # flywheel
     ViewKind("crank_speed.graph", "flywheel", sizes="crank_speed.graph_sizes", left="crank_speed.graph_left",
              after="flywheel.with_tangents"),
+    ViewKind("enlarged.change", "flywheel", sizes="enlarged.change_sizes", after="mertsalov.procedure"),
+    ViewKind("enlarged.energy_mass", "flywheel", sizes="enlarged.energy_mass_sizes", after="flywheel.with_tangents"),
     ViewKind("flywheel.column", "flywheel"),
     ViewKind("flywheel.energy_mass", "flywheel", name=marked("Energy-mass diagram"), after="flywheel.with_tangents"),
     ViewKind("flywheel.force_graph", "flywheel", name=marked("Graph of forces"), after="flywheel.with_tangents"),

@@ -13,7 +13,8 @@ import numpy as np
 
 from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.given import named
-from tmm_sheets.construction.scale import HANDY, Scale, fit, handy
+from tmm_sheets.construction.readable import CURVE, MAIN
+from tmm_sheets.construction.scale import HANDY, Scale, handy, plain, reach
 from tmm_sheets.construction.step import Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.energy_mass import AtAngles
@@ -34,21 +35,22 @@ class DiagramSpace:
 
     ``stack`` is the room together of the first ``stacked`` of moment, work, energy and inertia, which stand one under another:
     the extents of each are the most it may have. Of the heights multiplied that of the energy counts ``reading`` times. What is
-    drawn by few ordinates may take ``spare`` more, and what the graph of the forces leaves of ``force``, if it ``heads`` them.
+    drawn by few ordinates may take ``spare`` more. The graph of the forces stands over them if it ``heads`` them. A graph of dE
+    that is too low takes ``twice`` at least: it is drawn to a scale of its own, and the diagram under it enlarged.
     """
 
     angle: float = 256.0
-    force: float = 17.0
     moment: float = 130.0
     work: float = 240.0
     energy: float = 186.0
     inertia: float = 218.0
     pole: tuple[float, float] = (25.0, 80.0)
-    stack: float = 456.0
+    stack: float = 473.0
     stacked: int = 3
     reading: int = 1
     spare: float = 1.0
     heads: bool = True
+    twice: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -116,9 +118,11 @@ class Diagrams(Intervals, ABC):
             raise CannotBuild(tell("a flywheel needs links with masses"),
                               tell("add mass, centre and inertia to [[link]] of the project file"))
         spans = (float(np.ptp(moment)), float(np.ptp(done)), float(np.ptp(energies)), heaviest)
-        force = fit(*(("μ_M′", tr("N·m/mm")) if reduced.forces_are_moments else ("μ_F", tr("N/mm"))), largest, space.force)
-        spare = space.spare + (space.force - largest / force.mu if space.heads else 0.0)
-        mu_m, mu_a, mu_e, mu_j = _scaled(spans, self._drawn_spans(moment, mass, heaviest), mu_phi, space, spare)
+        # No larger than it has to be: the graphs that follow from it need the room.
+        force = reach(*(("μ_M′", tr("N·m/mm")) if reduced.forces_are_moments else ("μ_F", tr("N/mm"))), largest, CURVE)
+        stack = space.stack - (largest / force.mu if space.heads else 0.0)
+        own = float(np.ptp(np.append(excess, 0.0)))
+        mu_m, mu_a, mu_e, mu_j = _scaled(spans, self._drawn_spans(moment, mass, heaviest), mu_phi, space, stack, own)
         return FlywheelScales(
             angle=Scale("μ_φ", mu_phi, tr("rad/mm")),
             force=force,
@@ -127,7 +131,7 @@ class Diagrams(Intervals, ABC):
             energy=Scale("μ_E", mu_e, tr("J/mm")),
             inertia=Scale("μ_J", mu_j, tr("kg·m²/mm")),
             pole=mu_a / (mu_m * mu_phi),
-            excess=self._own_scale(float(np.ptp(np.append(excess, 0.0))), mu_e),
+            excess=self._own_scale(own, mu_e),
         )
 
     def _drawn_spans(self, moment: Floats, mass: Floats, heaviest: float) -> Four:
@@ -144,6 +148,14 @@ class Diagrams(Intervals, ABC):
     def _own_scale(self, excess: float, mu_energy: float) -> Scale | None:
         """Scale factor of the graph of dE, whose values span ``excess`` J, where that of energy is none for it."""
         return None
+
+    @staticmethod
+    def enlarged(energy: Scale, span: float) -> Scale:
+        """Scale factor with which a graph of energies that is ``span`` mm high gets ``MAIN``, so many times that of ``energy``."""
+        own = reach("μ_{ΔE}", energy.unit, span * energy.mu, MAIN)
+        while not plain(energy.mu / own.mu):
+            own = reach(own.symbol, own.unit, own.mu, 1 + 1e-6)
+        return own
 
     def _space(self) -> DiagramSpace:
         """Room for the diagrams when none is given."""
@@ -180,13 +192,14 @@ def _next_handy(mu: float) -> float:
 Four = tuple[float, float, float, float]
 
 
-def _scaled(spans: Four, drawn: Four, mu_phi: float, space: DiagramSpace, spare: float) -> Four:
+def _scaled(spans: Four, drawn: Four, mu_phi: float, space: DiagramSpace, stack: float, excess: float) -> Four:
     """Scale factors of moment, work, energy and inertia; those of moment and work suit the pole.
 
-    Of all with which the graphs one under another fit together those with the greatest product of their heights. The moments are
-    what everything else comes from: where they can, they get ``READABLE`` first, or one of the ``SHARES`` of it. What stands alone
-    fills its own room. What is ``drawn`` by few ordinates may be much higher than the extents: it has to fit, too, with ``spare``
-    mm more.
+    Of all with which the graphs one under another fit together in ``stack`` mm those with the greatest product of their heights.
+    What can be had of this comes first, in turn: all as high as they have to be, the graph of dE, which spans ``excess`` J, too;
+    a ratio of the scale factors of the energy and of the work that one reckons with; for the moments, which everything else comes
+    from, ``READABLE`` or one of the ``SHARES`` of it; a pole distance that a ruler lays off, in half millimetres. What stands
+    alone fills its own room. What is ``drawn`` by few ordinates may be much higher than the extents: it has to fit, too.
     """
     series = []
     for k, room in enumerate((space.moment, space.work, space.energy, space.inertia)):
@@ -195,13 +208,15 @@ def _scaled(spans: Four, drawn: Four, mu_phi: float, space: DiagramSpace, spare:
         for _ in range(0 if alone else STEPS):
             series[-1].append(_next_handy(series[-1][-1]))
     mu = np.meshgrid(*series, indexing="ij", sparse=True)
-    heights = [span / m for span, m in zip(spans, mu, strict=True)]
+    heights, ordinates = ([span / m for span, m in zip(of, mu, strict=True)] for of in (spans, drawn))
     pole = mu[1] / (mu[0] * mu_phi)
-    on_paper = sum(span / m for span, m in zip(drawn[:space.stacked], mu, strict=False))
-    fitting = (sum(heights[:space.stacked]) <= space.stack) & (on_paper <= space.stack + spare)
+    low = space.twice * (excess / mu[2] < MAIN)
+    one_under_another, on_paper = (sum(of[:space.stacked]) + np.maximum(low - of[2], 0.0) for of in (heights, ordinates))
+    fitting = (one_under_another <= stack) & (on_paper <= stack + space.spare)
     fitting = fitting & (pole >= space.pole[0]) & (pole <= space.pole[1])
-    # Then a pole distance that a ruler lays off, in half millimetres, where there is one.
-    for wanted in (*(heights[0] >= share * READABLE for share in SHARES), np.abs(2 * pole - np.round(2 * pole)) < 1e-6):
+    high = np.logical_and.reduce(np.broadcast_arrays(*(height >= CURVE for height in heights[:space.stacked])))
+    for wanted in (high, excess / mu[2] >= MAIN, plain(mu[1] / mu[2]),
+                   *(heights[0] >= share * READABLE for share in SHARES), np.abs(2 * pole - np.round(2 * pole)) < 1e-6):
         fitting = fitting & wanted if (fitting & wanted).any() else fitting
     product = heights[0] * heights[1] * heights[2]**space.reading * heights[3]
     products = np.where(fitting, product, 0.0)

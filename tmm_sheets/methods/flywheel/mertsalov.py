@@ -31,7 +31,7 @@ from tmm_sheets.methods.flywheel.works import FROM_PAPER, PLOT
 from tmm_sheets.methods.integration import CARRY, Floats, Quadrature
 from tmm_sheets.words import marked, tr
 
-SPACE = DiagramSpace(force=30.0, work=240.0, energy=220.0, inertia=175.0, stack=470.0, stacked=4, pole=(25.0, 80.0),
+SPACE = DiagramSpace(work=240.0, energy=220.0, inertia=175.0, stack=470.0, stacked=4, pole=(25.0, 80.0),
                      spare=4.0, heads=False)
 """Room for the diagrams: all four stand one under another over a common angle axis, mm."""
 

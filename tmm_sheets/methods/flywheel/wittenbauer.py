@@ -11,6 +11,7 @@ import numpy as np
 
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.readable import MAIN
 from tmm_sheets.construction.scale import Scale, fit
 from tmm_sheets.construction.step import Rule, Step, value_of
 from tmm_sheets.methods.flywheel.diagram_scales import DiagramSpace
@@ -30,10 +31,6 @@ from tmm_sheets.words import marked, tr
 
 TURN = 2 * pi
 """One turn of the crank, rad."""
-EXCESS_SEEN = 8.0
-"""Height of the graph of dE at the scale of the energy-mass diagram below which it gets a scale of its own, mm."""
-EXCESS_ALONE = 60.0
-"""Greatest height of the graph then, mm."""
 FASTEST = Rule("angular velocity at the upper tangent", lambda omega, delta: omega * (1 + delta / 2), ("number",) * 2, "number",
                marked("At the upper tangent the angular velocity is {name} = ω1·(1 + δ/2) = {0}·(1 + {1}/2) = {value} rad/s."),
                unit="rad/s", source="000, 5.5")
@@ -48,7 +45,7 @@ SPEED = Rule(
            "rad/s."), unit="rad/s")
 
 
-SPACE = DiagramSpace(reading=2)
+SPACE = DiagramSpace(reading=2, twice=200.0)
 """Room of the sheet: the segment ab is read off the energies."""
 
 
@@ -88,7 +85,8 @@ class Wittenbauer(Flywheel):
 
         So it is where the links' inertia decides and dE is little beside what it swallows and gives back.
         """
-        return fit("μ_{ΔE}", tr("J/mm"), excess, EXCESS_ALONE) if 0 < excess < EXCESS_SEEN * mu_energy else None
+        span = excess / mu_energy
+        return self.enlarged(Scale("μ_E", mu_energy, tr("J/mm")), span) if 0 < span < MAIN else None
 
     @cached_property
     def energy_mass_plan(self) -> Plan:

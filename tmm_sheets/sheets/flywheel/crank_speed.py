@@ -21,7 +21,7 @@ from tmm_sheets.words import tell, tr
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
-SIZES = ((260.0, 120.0), (220.0, 105.0), (180.0, 90.0), (150.0, 80.0))
+SIZES = ((260.0, 120.0), (220.0, 105.0), (180.0, 105.0), (150.0, 105.0))
 LEFT, RIGHT, BELOW, ABOVE = 22.0, 14.0, 9.0, 14.0
 """Room beside the axes for their signs and the names of the extremes, mm."""
 
@@ -32,7 +32,7 @@ def graph_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> tu
     if fw.method != "wittenbauer" or not fw.needed:
         return ()
     as_others = fw.scales.angle.mm(fw.reduced.period) + LEFT + RIGHT
-    return (*((as_others, high) for high in (145.0, 120.0, 100.0, 85.0)), *(size for size in SIZES if size[0] < as_others))
+    return (*((as_others, high) for high in (145.0, 120.0, 105.0)), *(size for size in SIZES if size[0] < as_others))
 
 
 def graph_left(options: dict[str, Any]) -> float:

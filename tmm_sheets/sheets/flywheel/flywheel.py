@@ -46,6 +46,8 @@ CROWD = 4
 """So many intervals between two positions on an average are drawn, with their rays, as they are."""
 FELT = 0.02
 """Error of the work by ordinates from which on the sheet tells what it does to the flywheel beside it."""
+ENLARGED = 52.0
+"""What the enlarged diagram needs for its title, signs, numbers and distance from all else, mm."""
 _BELOW = 7.0  # room of position numbers beside an axis
 _UNDER = 8.0  # room of the letter b under the energy-mass diagram
 
@@ -66,7 +68,7 @@ def _of_column(fw: Flywheel) -> tuple[Stacked, ...]:
     return (force_graph, float(np.ptp(forces)), _BELOW), *of_moments(fw)
 
 
-def apart(project: Any, plan: Arrangement) -> Arrangement:
+def apart(project: Project, plan: Arrangement) -> Arrangement:
     """The arrangement with the border between the column and the graph of dE under it where both have room to spare alike."""
     fw, views = project.flywheel, {view.draw: view for view in plan.views}
     upper, lower = views.get("flywheel.column"), views.get("flywheel.total_work")
@@ -74,9 +76,8 @@ def apart(project: Any, plan: Arrangement) -> Arrangement:
         return plan
     parts = _of_column(fw)
     needs = sum(height + below for _, height, below in parts) + len(parts) * (graphs.OVER + graphs.HEAD)
-    low, high = _energy_range(fw)
     gap = upper.box.y0 - lower.box.y1
-    spare = upper.box.y1 - lower.box.y0 - gap - needs - (_UNDER + high - low + graphs.HEAD + graphs.OVER)
+    spare = upper.box.y1 - lower.box.y0 - gap - needs - _of_energy(with_tangents(project))
     border = upper.box.y1 - needs - max(spare, 0.0) * (len(parts) - 1) / (len(parts) + 1)
     places = {upper.draw: upper.box._replace(y0=border), lower.draw: lower.box._replace(y1=border - gap)}
 
@@ -85,6 +86,16 @@ def apart(project: Any, plan: Arrangement) -> Arrangement:
         return replace(view, box=places.get(view.draw, view.box), options={**view.options, **energy})
 
     return replace(plan, views=tuple(map(placed, plan.views)))
+
+
+def _of_energy(fw: Wittenbauer) -> float:
+    """Height of the graph of dE with the ends of ab, or of one to a scale of its own over the enlarged diagram, mm."""
+    low, high = _energy_range(fw)
+    height = _UNDER + high - low
+    if fw.scales.excess is not None:
+        own = fw.scales.energy.mu / fw.scales.excess.mu * float(np.ptp(np.append(fw.energy_curve(fw.samples), 0.0)))
+        height = max(height, own + _UNDER + own + ENLARGED)
+    return height + graphs.HEAD + graphs.OVER
 
 
 def _view(draw: Callable[..., None]) -> Callable[..., None]:

@@ -1,0 +1,141 @@
+"""Graphs of energy enlarged along their ordinates, for room that a sheet has left: where dE is little beside what belongs to it.
+
+The links' own energy, or the segment ab, sets the scale factor of the construction. What is too low at it to be read is shown
+again, its tangencies too, at a scale factor of its own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.construction.readable import MAIN
+from tmm_sheets.construction.scale import fit
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.clipping import segment_inside
+from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.marks import Box
+from tmm_sheets.sheets.components import graphs
+from tmm_sheets.sheets.flywheel import flywheel, mertsalov
+from tmm_sheets.sheets.frame import together
+from tmm_sheets.sheets.player import stage
+from tmm_sheets.words import tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.flywheel.flywheel import Flywheel
+    from tmm_sheets.project import Project
+    from tmm_sheets.sheets.arrangement import Arrangement
+
+Options = dict[str, Any]
+LEFT, RIGHT, BELOW, ABOVE = 22.0, 14.0, 9.0, 12.0
+"""Room beside the axes for their signs and numbers, mm."""
+TITLE = 18.0
+"""Room of a title with the scale factors and what is said of them, mm."""
+SHARES = (1.0, 0.75, 0.6, 0.45)
+"""Shares of the abscissae's own scale that an enlarged graph can do with."""
+
+
+def _height(fw: Flywheel) -> float:
+    """Height of the enlarged graph of dE, from its axis on, mm; 0.0 where that of the construction is high enough."""
+    span = float(np.ptp(np.append(fw.energy_curve(fw.samples), 0.0)))
+    return 0.0 if span >= MAIN or not span else span * fw.scales.energy.mu / fw.enlarged(fw.scales.energy, span).mu
+
+
+def _sizes(fw: Flywheel, across: float) -> tuple[tuple[float, float], ...]:
+    high = _height(fw)
+    return tuple((share * across + LEFT + RIGHT, high + TITLE + ABOVE + BELOW) for share in SHARES) if high else ()
+
+
+def apart(project: Project, plan: Arrangement) -> Arrangement:
+    """The arrangement with as much of the place over the enlarged graph of dE as it needs: all or nothing of its own."""
+    own = next((view for view in plan.views if view.draw == "enlarged.change"), None)
+    if own is None:
+        return plan
+    wanted = change_sizes(project, Canvas(), own.options)
+    over = min((view for view in plan.views if view.box.x0 == own.box.x0 and view.box.y0 >= own.box.y1), key=lambda v: v.box.y0)
+    top = own.box.y0 + wanted[0][1] if wanted else own.box.y0 - (over.box.y0 - own.box.y1)
+    moved = {own.draw: replace(own, box=own.box._replace(y1=top)),
+             over.draw: replace(over, box=over.box._replace(y0=top + over.box.y0 - own.box.y1))}
+    return replace(plan, views=tuple(moved.get(view.draw, view) for view in plan.views if wanted or view is not own))
+
+
+def change_sizes(project: Project, canvas: Canvas, options: Options) -> tuple[tuple[float, float], ...]:
+    """Sizes of the graph of dE by Mertsalov's procedure, which shares its axis with the energies of the links, mm."""
+    fw = project.flywheel
+    return _sizes(fw, fw.scales.angle.mm(fw.reduced.period)) if fw.method == "mertsalov" else ()
+
+
+def change(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+    """The change of kinetic energy over the turn of the crank, alone and enlarged."""
+    fw = mertsalov.procedure(project)
+    name = tr(options.get("energies", mertsalov.ENERGIES)[0])
+    curve = fw.energy_curve(fw.samples)
+    y, x = fw.enlarged(fw.scales.energy, float(np.ptp(np.append(curve, 0.0)))), fw.scales.angle
+    length = x.mm(fw.reduced.period)
+    if length > box.width - LEFT - RIGHT + 1e-6:
+        x = fit(x.symbol, x.unit, fw.reduced.period, box.width - LEFT - RIGHT)
+    times = fw.scales.energy.mu / y.mu
+    left = canvas.title(box, tr("Graph of {change}(φ_1), enlarged").format(change=name), f"{y}, {x}")
+    canvas.of = fw.total_plan.name
+    low, high = min(0.0, times * float(curve.min())), max(0.0, times * float(curve.max()))
+    g = graphs.Graph(complex(left.x0 + LEFT, left.y1 - ABOVE - high))
+    narrower = fw.scales.angle.mu / x.mu
+    of = stage(canvas, fw.total_plan, None, g.place(1 / narrower, 1 / times))
+    of.curve("points", g(x.mm(fw.samples) + 1j * times * curve))
+    for k, p in enumerate(fw.total_plan["points"].value):
+        at = narrower * p.real
+        of.position(k).line("points", g(at), g(at + 1j * times * p.imag), "thin")
+    pen = of.pen("points", "axis")
+    graphs.axes(pen, g, x.mm(fw.reduced.period), low, high, tr("{quantity}, J").format(quantity=name))
+    graphs.numbers(pen, g, x.mm(fw.reduced.phi), fw.labels, fw.total_plan["points"].value.imag)
+
+
+def energy_mass_sizes(project: Project, canvas: Canvas, options: Options) -> tuple[tuple[float, float], ...]:
+    """Sizes of the energy-mass diagram beside which the segment ab is long, mm."""
+    fw = project.flywheel
+    if fw.method != "wittenbauer":
+        return ()
+    return _sizes(fw, float(fw.scales.inertia.mm(fw.inertia(fw.samples)).max()))
+
+
+def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+    """The curve with its points and the tangents where they touch it; what they cut off is measured on the diagram itself."""
+    fw = flywheel.with_tangents(project)
+    plan, curve = fw.energy_mass_plan, fw.energy_mass_curve(fw.samples)
+    y = fw.enlarged(fw.scales.energy, float(np.ptp(np.append(curve.imag, 0.0))))
+    x, widest = fw.scales.inertia, float(fw.inertia(fw.samples).max())
+    if x.mm(widest) > box.width - LEFT - RIGHT + 1e-6:
+        x = fit(x.symbol, x.unit, widest, box.width - LEFT - RIGHT)
+    times, narrower = fw.scales.energy.mu / y.mu, fw.scales.inertia.mu / x.mu
+    left = canvas.title(box, tr("Energy-mass diagram, enlarged"), f"{y}, {x}")
+    canvas.of = plan.name
+
+    def stretched(z: Any) -> Any:
+        return narrower * np.real(z) + 1j * times * np.imag(z)
+
+    low, high = min(0.0, times * float(curve.imag.min())), max(0.0, times * float(curve.imag.max()))
+    g = graphs.Graph(complex(left.x0 + LEFT, left.y1 - ABOVE - high))
+    of = stage(canvas, plan, None, g.place(1 / narrower, 1 / times))
+    of.curve("points", g(stretched(curve)))
+    room = Box(g.origin.real, g.origin.imag + low - BELOW, left.x1, g.origin.imag + high + ABOVE)
+    for name, end in (("max", "a"), ("min", "b")):
+        u = complex(stretched(plan[f"t_{name}"].value))
+        at, u = of.at(f"T_{name}"), u / abs(u)
+        ends = segment_inside(room, at - 45.0 * u, at + 45.0 * u)
+        if ends:
+            canvas.tracing("construction", plan[end].path).line(*ends, "axis")
+            canvas.label(ends[0], tr("to {point}").format(point=end), -u, 3.5, 1.0, leader=False)
+        of.dot(f"T_{name}", 0.9, "main")
+    points, middle = stretched(plan["points"].value), complex(stretched(curve).mean())
+    for near in together(points[:-1], 1.0):
+        of.position(near[0]).dot("points", 0.7, "main")
+        away = points[near[0]] - middle
+        of.position(near[0]).letters("points", ", ".join(fw.labels[k] for k in near), away / abs(away))
+    pen, reach = of.pen("points", "axis"), x.mm(widest) + graphs.OVER
+    pen.arrow(g(0j), g(reach), "axis", 3.0)
+    pen.arrow(g(1j * (low - 3.0 if low else 0.0)), g(1j * (high + graphs.OVER)), "axis", 3.0)
+    canvas.text(complex(g(1j * (high + graphs.OVER))) - 2.0 - 2.5j, tr("ΔE, J"), 3.5, "right")
+    sign = tr("J^red, kg·m^2")
+    pen.label(g(reach - letter(sign, 3.5).width / 2 - 2.0), sign, -1j, 3.5, 1.5, leader=False)
