@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.numpy_language import Source
-from tmm_sheets.construction.program import depending, program, rows_of
+from tmm_sheets.construction.program import depending, is_row, program
 from tmm_sheets.construction.replay import Replay
-from tmm_sheets.construction.step import Step, value_of
+from tmm_sheets.construction.step import Step, ordered, parents, value_of
 
 BLOCK = 2048
 """Positions computed at a time."""
@@ -100,7 +100,10 @@ def fill(steps: Iterable[Step], positions: int) -> None:
         when a rule has no formula.
     """
     asked = {id(step): step for step in steps if not step.evaluated}
-    rows = rows_of(asked.values(), positions)
+    unknown = list(ordered(asked.values(), lambda step: [p for p in parents(step) if not p.evaluated]))
+    # Values that are there already are taken as they are: all that hangs on one value hangs on the same digits of it.
+    known = [p for step in unknown for p in parents(step) if p.evaluated and np.shape(p.value) == (positions,)]
+    rows = [*{id(x): x for x in (*(a for step in unknown for a in step.args if is_row(a, positions)), *known)}.values()]
     wanted = {str(n): step for n, step in enumerate(depending(asked.values(), rows, ())) if id(step) in asked}
     if wanted:
         found = Function(wanted, rows)(*map(value_of, rows))

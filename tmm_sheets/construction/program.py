@@ -114,7 +114,7 @@ def rows_of(steps: Iterable[Step], positions: int) -> list[Any]:
 def depending(steps: Iterable[Step], rows: Iterable[Any], chosen: Collection[str]) -> list[Step]:
     """What some steps are made of, themselves included, in order: those steps that depend on rows or chosen givens."""
     asked, found = {id(x) for x in rows}, dict[int, Step]()
-    for step in ordered(steps, parents):
+    for step in ordered(steps, lambda step: [] if id(step) in asked else parents(step)):
         if id(step) in asked or any(id(a) in asked or id(_behind(a)) in found or name_of(a) in chosen for a in step.args):
             found[id(step)] = step
     return list(found.values())
