@@ -4,20 +4,15 @@ A line ``<!-- made: NAME ARGUMENT -->`` begins such a part, ``<!-- end -->`` end
 What a key means stands in a string under it in ``schema.py``, where only this module looks for it: the program starts no slower.
 """
 
-import ast
 import inspect
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from functools import cache
+from collections.abc import Iterator, Sequence
 from math import degrees
 from pathlib import Path
-from types import ModuleType, NoneType, UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+from types import ModuleType
+from typing import Any
 
 import click
-from pydantic import AfterValidator, BeforeValidator, WrapValidator
-from pydantic.fields import FieldInfo
-from pydantic_core import PydanticUndefined
 
 from tests.compare.languages import to_reader
 from tests.record import replayer
@@ -35,8 +30,9 @@ from tmm_sheets.sheets import frame
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.frame import PlanFrame
 from tmm_sheets.sheets.sheet import composed
-from tmm_sheets.task import messages, schema, units, variant
+from tmm_sheets.task import messages, units, variant
 from tmm_sheets.task.cam_keys import FOLLOWER_KEYS
+from tmm_sheets.task.keys import Key, keys_of, spaced
 from tmm_sheets.task.names import GROUP_KEYS
 from tmm_sheets.words import LANGUAGES, tell, tell_n
 
@@ -58,129 +54,24 @@ def code(*words: Any) -> str:
 # --- keys of the project file ---------------------------------------------------------------------------------------
 
 
-@cache
-def meanings(model: type[schema.Table]) -> dict[str, str]:
-    """What the strings under the keys of a table say, by key."""
-    (tree,) = ast.parse(inspect.getsource(model)).body
-    found, before = {}, None
-    for node in tree.body:
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and before is not None:
-            found[before] = " ".join(str(node.value.value).split())
-        before = node.target.id if isinstance(node, ast.AnnAssign) else None
-    return found
-
-
-def meaning(model: type[schema.Table], name: str, takes: str) -> str:
-    """Description (what a message about a missing key says) and the string under the key, without what ``takes`` says already."""
-    described = quoted(model.model_fields[name].description or "")
-    news = described.replace(",", " or") != takes.replace(",", " or")
-    return "; ".join(filter(None, (described if news else "", meanings(model).get(name))))
-
-
-def quoted(description: str) -> str:
-    """A description with its examples set as code."""
-    text, for_example, shown = description.partition("for example ")
-    return re.sub(r'("[^"]*")', r"`\1`", text) + for_example + " or ".join(f"`{x}`" for x in shown.split(" or ") if x)
-
-
-def value(hint: Any) -> str:
-    """What a key takes, in words, from its type."""
-    origin, args = get_origin(hint), get_args(hint)
-    if origin is Annotated:
-        return restricted(args[0], args[1:])
-    if origin in (Union, UnionType):
-        return " or ".join(value(a) for a in args if a is not NoneType)
-    if origin is Literal:
-        return " or ".join(f'`"{a}"`' if isinstance(a, str) else f"`{a}`" for a in args)
-    if origin is dict:
-        return f"{plural(value(args[1]))}, by name"
-    if origin is tuple:
-        return f"{'list of' if args[-1] is ... else 'two'} {plural(value(args[0]))}"
-    plain = {bool: "`true` or `false`", str: "text", int: "whole number", float: "number", NoneType: ""}
-    return plain.get(hint, "table")
-
-
-def plural(text: str) -> str:
-    return re.sub(r"^(whole )?([a-z]+)", r"\1\2s", text) if not text.startswith("two") else text
-
-
-def restricted(base: Any, validators: tuple[Any, ...]) -> str:
-    """Value of a type with validators: the named ones tell by their docstring, the others by what they were made with."""
-    said = []
-    for v in validators:
-        assert isinstance(v, BeforeValidator | AfterValidator | WrapValidator)
-        given = made_with(v)
-        if not given:
-            said.append(first_lower(inspect.getdoc(v.func).split("\n")[0].rstrip(".")))
-        elif "word" in given:
-            said.append(f'`"{given["word"]}"` or {given["quantity"].name if "quantity" in given else value(base)}')
-        elif "wording" in given:
-            said.append(without_article(given["wording"].removeprefix("expected ")))
-        elif "quantity" in given and not any(isinstance(o, AfterValidator) for o in validators):
-            said.append(given["quantity"].name)
-        elif "least" in given:
-            said.append(f"whole number, {given['least']} or more")
-    said = list(dict.fromkeys(said))
-    return ", ".join(reversed(said[:1] if len(said) == 2 and said[1] == "name in quotes" else said))
-
-
-def made_with(validator: Any) -> Mapping[str, Any]:
-    """What a validator holds in its closure: quantity, wording, least, word; nothing for a named function."""
-    return inspect.getclosurevars(validator.func).nonlocals
-
-
-def without_article(text: str) -> str:
-    return re.sub(r"^(a|an) ", "", text)
-
-
-def first_lower(text: str) -> str:
-    return re.sub(r"^(An? )?([A-Z])", lambda m: m[2].lower(), text)
-
-
-def default(hint: Any, field: FieldInfo) -> str:
-    if field.default is PydanticUndefined:
-        return "needed"
-    if field.default in (None, (), {}, "") or isinstance(field.default, schema.Table):
-        return "–"
-    if isinstance(field.default, bool):
-        return f"`{str(field.default).lower()}`"
-    if isinstance(field.default, tuple):
-        return f"`[{', '.join(f'{x:g}' for x in field.default)}]`"
-    if isinstance(field.default, str):
-        return f'`"{field.default}"`'
-    return f"`{field.default:g}`" if field.default == 0 or not unit(hint) else f'`"{field.default:g} {unit(hint)}"`'
-
-
-def unit(hint: Any) -> str:
-    """SI unit of a key; empty for a pure number."""
-    given = list(map(made_with, validators(hint)))
-    return next((name for g in given if "quantity" in g for name, f in g["quantity"].units.items() if f.si("1") == 1), "")
-
-
-def validators(hint: Any) -> tuple[Any, ...]:
-    return get_args(hint)[1:] if get_origin(hint) is Annotated else ()
-
-
 def keys(section: str) -> str:
     """Every key of a table of the project file; ``flywheel.motor`` is the table in a table."""
     model: Any = variant.Variant
     for key in section.split("."):
         model = messages.table_of(model.model_fields[key].annotation)
-    return table(("key", "value", "left out", "meaning"), *key_rows(model))
+    return table(HEAD, *map(set_as_code, keys_of(model)))
 
 
-def key_rows(model: type[schema.Table]) -> Iterator[tuple[str, ...]]:
-    hints = get_type_hints(model, include_extras=True)
-    for name, field in model.model_fields.items():
-        key = field.alias or name
-        takes = value(hints[name])
-        yield f"`{key}`", takes, default(hints[name], field), meaning(model, name, takes)
+HEAD = ("key", "value", "left out", "meaning")
+
+
+def set_as_code(key: Key) -> tuple[str, ...]:
+    return f"`{key.name}`", key.takes, key.left_out, key.means
 
 
 def whole() -> str:
     """Keys and tables of a project file that stand in no table of their own."""
-    rows = [row for row in key_rows(variant.Variant) if row[0] in ("`schema`", "`points`", "`scales`")]
-    return table(("key", "value", "left out", "meaning"), *rows)
+    return table(HEAD, *(set_as_code(key) for key in keys_of(variant.Variant) if key.name in ("schema", "points", "scales")))
 
 
 def groups() -> str:
@@ -198,11 +89,6 @@ def quantities() -> str:
     rows = ((q.name, code(*map(spaced, filter(None, q.units))), f"`{q.example}`" if q is units.NUMBER else f'`"{q.example}"`')
             for q in units.QUANTITIES)
     return table(("quantity", "units", "for example"), *rows)
-
-
-def spaced(name: str) -> str:
-    """A unit as people write it: kg m2, N mm."""
-    return re.sub(r"^(kg|кг|g|г|k?N|к?Н)(?=[mм])", r"\1 ", name)
 
 
 def example(path: str) -> str:

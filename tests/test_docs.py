@@ -16,7 +16,7 @@ from tests import docs, figures
 from tmm_sheets import __main__, catalogue, cli, resources
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
-from tmm_sheets.task import schema, variant
+from tmm_sheets.task import keys, schema, variant
 
 ROOT = docs.ROOT
 TEXTS = {p.relative_to(ROOT).as_posix(): p.read_text(encoding="utf-8") for p in docs.PAPERS}
@@ -167,6 +167,7 @@ NOT_RUN = {
     "--image": "needs a photograph; tests/compare takes some", "note": "tests/note writes some",
     "--group": "needs works; tests/compare/test_group.py has some", "--list": "needs a list of one's own",
     "new my": "asks, and my.toml is there; tests/task/test_new_file.py answers", "watch": "goes on until Ctrl-C",
+    "serve": "goes on until Ctrl-C; tests/page asks it",
     "roster": "needs a table; tests/output/test_roster.py has one",
     "--measured": "needs a table filled in; tests/test_quoted.py fills one in", "--dxf": "needs a drawing; tests/compare has some",
     "lugansk/shaper press my.toml": "three projects; tests/output/test_batch.py builds more",
@@ -262,17 +263,18 @@ def tables():
 
 @pytest.mark.parametrize("table", tables())
 def test_every_key_has_a_value_and_a_meaning(table):
-    assert set(docs.meanings(table)) <= set(table.model_fields), "a string under what is no key"
+    assert set(keys.meanings(table)) <= set(table.model_fields), "a string under what is no key"
     if table is not variant.Variant:
-        for row in docs.key_rows(table):
-            assert all(row), f"{table.__name__}: {row}"
+        for key in keys.keys_of(table):
+            assert all((key.takes, key.left_out, key.means)), f"{table.__name__}: {key}"
 
 
 def test_meanings_are_read():
-    rows = {row[0]: row[1:] for row in docs.key_rows(schema.CrankTable)}
-    assert rows["`length`"] == ("length greater than zero", "needed", "length with its unit, for example `\"0.08 m\"`")
-    assert rows["`angular_acceleration`"][:2] == ('`"flywheel"` or angular acceleration', "`0`")
-    assert {row[0]: row[2] for row in docs.key_rows(schema.ForcesTable)} == {"`gravity`": '`"9.81 m/s2"`'}
+    crank = {key.name: key for key in keys.keys_of(schema.CrankTable)}
+    assert crank["length"] == ("length", "length greater than zero", ("m", "mm", "cm"), "needed",
+                               "length with its unit, for example `\"0.08 m\"`")
+    assert crank["angular_acceleration"][1::2] == ('`"flywheel"` or angular acceleration', "`0`")
+    assert [key.left_out for key in keys.keys_of(schema.ForcesTable)] == ['`"9.81 m/s2"`']
 
 
 # --- messages -------------------------------------------------------------------------------------------------------

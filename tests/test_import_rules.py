@@ -34,6 +34,7 @@ RULES = {
     "task.families": ("task", ""),
     "task.title_entries": ("task", ""),
     "task.new_file": ("catalogue task", ""),
+    "task.keys": ("task", ""),
     "project": (f"task {METHODS}", "construction mechanism"),
     "results": ("construction project result_files sheets", "methods.linkage"),
     "result_files": ("", ""),
@@ -53,6 +54,7 @@ RULES = {
     "output.batch": ("catalogue output task.title_entries", ""),
     "output.roster": ("catalogue output", ""),
     "output.handouts": ("compare.measured living note output project", ""),
+    "page": ("backends catalogue compare drawing living output project sheets task", ""),
     "note": ("backends construction drawing project record results sheets task.synthesis_refs task.units", "task"),
     "compare": ("drawing sheets", "construction project"),
     "compare.story_pdf": ("backends compare drawing", ""),
@@ -69,8 +71,8 @@ RULES = {
     "lab.stress": ("construction mechanism methods.linkage", ""),
     "localized_cli": ("completion", ""),
     "completion": ("catalogue drawing note output project protocols record results", ""),
-    "cli": ("api askers backends catalogue compare drawing explain lab living note output project protocols record result_files "
-            "results localized_cli sheets summary task", ""),
+    "cli": ("api askers backends catalogue compare drawing explain lab living note output page project protocols record "
+            "result_files results localized_cli sheets summary task", ""),
     "__main__": ("cli completion localized_cli", ""),
     **dict.fromkeys(NEUTRAL.split(), ("", "")),
 }
@@ -80,10 +82,11 @@ LIBRARIES = {
     "ezdxf": "backends.dxf backends.dxf_frame_making lab.bench.plain compare.cad.cad_file",
     "reportlab": "backends.pdf lab.bench.plain compare.story_pdf",
     "matplotlib": "backends.png lab.bench.plots",
-    "pydantic": "task.values task.schema task.messages task.variant task.title_entries",
-    "pydantic_core": "task.messages", "cv2": "compare.photo", "pypdfium2": "compare.photo",
+    "pydantic": "task.values task.schema task.messages task.variant task.title_entries task.keys",
+    "pydantic_core": "task.messages task.keys", "cv2": "compare.photo", "pypdfium2": "compare.photo",
     "shapely": "drawing sheets methods lab.bench compare",
     "typst": "note.typst_writer", "docx": "note.docx_writer",
+    "starlette": "page", "uvicorn": "page.serving",
 }  # fmt: skip
 """Large libraries and the modules or rooms they belong to."""
 

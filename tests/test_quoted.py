@@ -144,7 +144,7 @@ def test_case_of_a_stress_run(quoted, capsys):
     started(command)
 
 
-@pytest.mark.parametrize("extra", ["compare", "note", "bench", "cluster", "peers", "ocr"])
+@pytest.mark.parametrize("extra", ["compare", "note", "bench", "cluster", "peers", "ocr", "page"])
 def test_extras(extra):
     """What pip is told to install are packages, those of the extra: the program's own name may be somebody else's there."""
     words = shlex.split(quoting.install(extra))

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from threading import Timer
 from time import monotonic
 from types import TracebackType
@@ -14,6 +17,18 @@ PATIENCE = 1.0
 """Seconds of silence before the first message."""
 WIDTH = 30
 """Characters of the bar."""
+
+_heard = ContextVar[Callable[[str], None] | None]("heard", default=None)
+
+
+@contextmanager
+def heard(listener: Callable[[str], None]) -> Iterator[None]:
+    """Somebody else is told meanwhile, at once, what is going on."""
+    token = _heard.set(listener)
+    try:
+        yield
+    finally:
+        _heard.reset(token)
 
 
 class Progress:
@@ -29,6 +44,8 @@ class Progress:
     def say(self, what: str) -> None:
         """Tell what comes next, if somebody watches and has waited long enough."""
         self.what = what
+        if (listener := _heard.get()) is not None:
+            listener(what)
         if monotonic() - self.start > PATIENCE:
             self._show()
 

@@ -50,6 +50,7 @@ function showEdits() {
   $("undo").disabled = !edits.done.length;
   $("redo").disabled = !edits.undone.length;
   $("reset").disabled = $("save").disabled = !changed().length;
+  if (parent !== window) parent.postMessage({ file: projectFile() }, "*");  // of a page that shows this one beside the project file
 }
 
 // The project file with the changed numbers in their lines.

@@ -100,6 +100,19 @@ def scheme(project: Project) -> ViewPicture:
     raise CannotBuild(tell("no sheet of {project} shows a mechanism").format(project=project.variant.called))
 
 
+def thumbnail(project: Project) -> Picture:
+    """The mechanism at the position of its thick lines, without letters; of a project without one its first sheet."""
+    from tmm_sheets.sheets import sheet
+
+    first = sheet.composed(project, 1)
+    for view in views(first) if project.variant.crank is not None else ():
+        thick = [m for m in view.drawing.marks if isinstance(m, Line | Arc | Polyline) and m.style == "main"]
+        cut = _cut(view.drawing, [m for m in thick if m.by is not None and m.by.role in ("link", "symbol")])
+        if view.draw == SCHEME and cut is not None:
+            return Picture(cut)
+    return Picture(first.drawing)
+
+
 def named(project: Project, name: str, position: str = "") -> ViewPicture:
     """The first view that shows a plan, or has a name in its title; with ``position`` the one of the position of that label.
 
@@ -129,22 +142,29 @@ def named(project: Project, name: str, position: str = "") -> ViewPicture:
 
 def views(composed: Composed) -> Iterator[ViewPicture]:
     """The views of a sheet, each as large as it is."""
-    import numpy as np
-
     whole, starts = composed.drawing, [part.first for part in composed.parts]
     for view in whole.views:
         marks = [whole.marks[k] for first, end in view.spans for k in range(first, end)]
-        points = [p for m in marks for p in (letters(m) if isinstance(m, Text) else (flat(m, 3.0),)) if len(p)]
-        if not points:
+        alone = _cut(replace(whole, title=view.name), marks)
+        if alone is None:
             continue
         first = view.spans[0][0]
         draw = next((part.draw for part in reversed(composed.parts) if part.first <= first), "")
         plans = [(f.plan, f.position) for f in composed.frames
                  if f.view >= 0 and any(a <= starts[f.view] < b for a, b in view.spans)]
-        box = Box.around(np.concatenate(points), MARGIN)
-        moved = tuple(_moved(m, -complex(box.x0, box.y0)) for m in marks)
-        alone = replace(whole, width=box.width, height=box.height, title=view.name, marks=moved, views=(), dimensions=(), forms=())
         yield ViewPicture(alone, draw, tuple(dict.fromkeys(plans)))
+
+
+def _cut(whole: Drawing, marks: Sequence[Mark]) -> Drawing | None:
+    """A drawing of some marks, as large as they are; None where there are none."""
+    import numpy as np
+
+    points = [p for m in marks for p in (letters(m) if isinstance(m, Text) else (flat(m, 3.0),)) if len(p)]
+    if not points:
+        return None
+    box = Box.around(np.concatenate(points), MARGIN)
+    moved = tuple(_moved(m, -complex(box.x0, box.y0)) for m in marks)
+    return replace(whole, width=box.width, height=box.height, marks=moved, views=(), dimensions=(), forms=())
 
 
 def _moved(m: Mark, by: complex) -> Mark:

@@ -14,7 +14,7 @@ def saved(paths: Sequence[Path], wait: Callable[[float], None] = sleep) -> Itera
     """At once, and then each time that one of some files is written, made or removed, until nobody asks."""
     before = None
     while True:
-        now = [_state(path) for path in paths]
+        now = [state(path) for path in paths]
         if now != before:
             before = now
             yield
@@ -22,7 +22,8 @@ def saved(paths: Sequence[Path], wait: Callable[[float], None] = sleep) -> Itera
             wait(EACH)
 
 
-def _state(path: Path) -> tuple[int, int] | None:
+def state(path: Path) -> tuple[int, int] | None:
+    """What is another one when a file has been written; None where there is none."""
     try:
         found = path.stat()
     except OSError:

@@ -39,7 +39,7 @@ def files(n: int, sheet: Drawing, exact: Sequence[Points], space: DrawingSpace,
     entries = [("line", tell("drawn")), ("line", tell("exact")), ("line", tell("of another type or width")), ("red", tell("wrong")),
                ("amber", tell("worth a look"))]
     said: list[list[Mark]] = [[Polyline(z, "axis") for z in strokes] for strokes in legend(entries)]
-    layers = ((_theirs(space) + said[0], GREY), (ours + said[1], BLUE), (_wrong_looks(looks) + said[2], ORANGE),
+    layers = ((theirs(space) + said[0], GREY), (ours + said[1], BLUE), (_wrong_looks(looks) + said[2], ORANGE),
               (_marked(found) + said[3] + said[4], RED))
     pages = [(Drawing(sheet.width, sheet.height, sheet.title, tuple(marks)), colour) for marks, colour in layers]
     numbered = [(z, number if k == 0 else "") for places, number in looks for k, z in enumerate(places)]
@@ -48,7 +48,8 @@ def files(n: int, sheet: Drawing, exact: Sequence[Points], space: DrawingSpace,
             f"sheet{n}-overlay.dxf": cad_file.overlay(exact, drawn, circled, numbered)}
 
 
-def _theirs(space: DrawingSpace) -> list[Mark]:
+def theirs(space: DrawingSpace) -> list[Mark]:
+    """What a drawing shows, as marks of our own."""
     canvas = Canvas()
     for s in space.strokes:
         canvas.polyline(s.points, "axis")

@@ -1,0 +1,66 @@
+// Words and nodes.
+
+export const $ = (id) => document.getElementById(id);
+
+let words = {};
+export const speak = (found) => { words = found; };
+export const say = (key, values = {}) => (words[key] ?? key).replace(/\{(\w+)\}/g, (all, name) => values[name] ?? all);
+
+export function node(name, attributes = {}, ...inside) {
+  const found = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (key.startsWith("on")) found.addEventListener(key.slice(2), value);
+    else if (value !== false && value !== undefined && value !== null) found.setAttribute(key, value === true ? "" : value);
+  }
+  found.append(...inside.flat().filter((one) => one || one === ""));
+  return found;
+}
+
+export const button = (text, act, attributes = {}) => node("button", { type: "button", ...attributes, onclick: act }, text);
+
+// A picture from its bytes; the one it takes the place of is let go.
+export function picture(img, data, type = "image/svg+xml") {
+  if (img.src.startsWith("blob:")) URL.revokeObjectURL(img.src);
+  img.src = URL.createObjectURL(new Blob([data], { type }));
+  return img;
+}
+
+export const bytesOf = (packed) => Uint8Array.from(atob(packed), (c) => c.charCodeAt(0));
+
+export function download(name, data, type = "application/octet-stream") {
+  const link = node("a", { download: name, href: URL.createObjectURL(new Blob([data], { type })) });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+}
+
+// A place where files are dropped or chosen; `folder` takes a whole one.
+export function dropZone(text, accept, take, folder = false) {
+  const input = node("input", { type: "file", accept, webkitdirectory: folder, onchange: () => { if (input.files.length) take([...input.files]); input.value = ""; } });
+  const zone = node("label", { class: "drop" }, text, input);
+  for (const kind of ["dragenter", "dragover"]) zone.addEventListener(kind, (event) => { event.preventDefault(); zone.classList.add("over"); });
+  zone.addEventListener("dragleave", () => zone.classList.remove("over"));
+  zone.addEventListener("drop", async (event) => {
+    event.preventDefault();
+    zone.classList.remove("over");
+    const found = await dropped(event.dataTransfer);
+    if (found.length) take(found);
+  });
+  return zone;
+}
+
+// Files that were dropped, those in folders too, each with its path.
+async function dropped(data) {
+  const found = [], entries = [...data.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
+  const walk = async (entry, path) => {
+    if (entry.isFile) {
+      const file = await new Promise((done, fail) => { entry.file(done, fail); });
+      file.path = path + entry.name;
+      found.push(file);
+      return;
+    }
+    const reader = entry.createReader();
+    for (let some; (some = await new Promise((done, fail) => { reader.readEntries(done, fail); })).length;) for (const one of some) await walk(one, `${path}${entry.name}/`);
+  };
+  for (const entry of entries) await walk(entry, "");
+  return entries.length ? found : [...data.files];
+}

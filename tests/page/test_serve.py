@@ -1,0 +1,318 @@
+"""The page in the browser: what each door gives, who is not let in, and hostile files, which end in a message."""
+
+import asyncio
+import json
+import re
+from base64 import b64decode
+from io import BytesIO
+from pathlib import Path
+from zipfile import ZipFile
+
+import pytest
+
+from tmm_sheets import catalogue
+from tmm_sheets.__main__ import run
+from tmm_sheets.page import choice, doors, jobs, serving
+from tmm_sheets.page.shown import Shown, following
+from tmm_sheets.page.workers import Languages, Limits, Workers
+from tmm_sheets.task import keys
+
+starlette = pytest.importorskip("starlette.testclient")
+TOKEN, HERE = "t0ken", "http://127.0.0.1:8731"
+NEAR = Path("tests/sheets/near.toml").read_text(encoding="utf-8")
+CAM = catalogue.read("lugansk/cam_flat").text
+
+
+@pytest.fixture(scope="module")
+def client():
+    with starlette.TestClient(doors.app(TOKEN, "127.0.0.1", Shown("mine", CAM)), base_url=f"{HERE}/{TOKEN}/") as found:
+        yield found
+
+
+def asked(client, door, files=None, **fields):
+    """What came before the last message, and the last one."""
+    answer = client.post(door, data={"lang": "en", **fields}, files=files or {"none": (None, "")})
+    assert answer.status_code == 200, answer.text
+    *before, last = map(json.loads, answer.text.splitlines())
+    return before, last.get("done", last)
+
+
+# --- what the doors give ----------------------------------------------------------------------------------------------------
+
+
+def test_the_page_and_its_modules(client):
+    page = client.get("").text
+    assert re.findall(r'(?:src|href)="(?!data:)([^"]+)"', page) == ["page/page.css", "page/main.js"]
+    for path in doors.template("page").glob("*.js"):
+        told = client.get(f"page/{path.name}")
+        assert told.headers["content-type"].startswith("text/javascript")
+        for other in re.findall(r'from "\./([\w.]+)"', told.text):
+            assert client.get(f"page/{other}").status_code == 200
+
+
+def test_every_word_that_a_module_asks_for_is_told(client):
+    words = client.get("words?lang=uk").json()
+    texts = [path.read_text(encoding="utf-8") for path in doors.template("page").glob("*.js")]
+    wanted = {key for text in texts for key in re.findall(r'say\("([^"]+)"', text)}
+    assert wanted - set(words) == set()
+    assert words["language"] == "uk"
+    assert words["tab choose"] != client.get("words?lang=en").json()["tab choose"]
+
+
+def test_every_shipped_project_can_be_chosen(client):
+    tasks = [task for manual in client.get("tasks").json() for task in manual["tasks"]]
+    assert {v["name"] for task in tasks for v in task["variants"]} == set(catalogue.shipped())
+    assert {task["machine"] for task in tasks if task["machine"]} == {f"transport/{m}" for m in
+                                                                     ("diesel", "press", "compressor", "crusher")}
+    assert len(tasks) == sum(len(manual["tasks"]) for manual in choice.manuals()) < 30
+
+
+def test_a_cipher_of_ones_own(client):
+    _, told = asked(client, "project", project="transport/press@07-ЭПС-718")
+    assert "07-ЭПС-718" in told["text"]
+    _, told = asked(client, "project", project="transport/press@nonsense")
+    assert "nonsense" in told["problem"]
+
+
+def test_a_scheme_is_small(client):
+    _, told = asked(client, "scheme", project="loom")
+    assert 0 < told["svg"].count("<path") < 120
+
+
+def test_keys_have_units_and_meaning(client):
+    tables = client.get("keys?lang=en").json()
+    length = next(key for key in tables["crank"] if key["name"] == "length")
+    assert length == {"name": "length", "takes": "length greater than zero", "units": ["m", "mm", "cm"], "left_out": "needed",
+                      "means": 'length with its unit, for example `"0.08 m"`'}
+    assert set(tables) == set(keys.tables())
+    assert next(key for key in client.get("keys?lang=ru").json()["crank"] if key["name"] == "length")["means"] != length["means"]
+
+
+def test_mistakes_are_those_of_the_command_line(client, tmp_path, capsys):
+    text = CAM.replace("stroke = ", "strok = ").replace('"35 deg"', '"-35 deg"')
+    _, told = asked(client, "check", text=text, name="mine")
+    path = tmp_path / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    assert run(["check", str(path), "--lang", "en"]) == 2
+    said = capsys.readouterr().err
+    assert told["mistakes"]
+    for one in told["mistakes"]:
+        assert f"mine.toml:{one['line']}: {one['field']}: {one['message']}" in said
+        assert one["hint"] in said
+
+
+def test_a_sound_file_has_sheets_and_remarks(client):
+    _, told = asked(client, "check", text=catalogue.read("sixbar/1:1").text, name="mine")
+    assert told["sheets"] == ["sixbar_1", "sixbar_2"]
+    _, told = asked(client, "remarks", text=NEAR, name="mine")
+    assert told["sound"]
+    assert told["remarks"]
+    assert not any("mine.toml" in line for line in told["remarks"])
+    _, told = asked(client, "sheet", text=CAM.replace("\n", "\r\n"), name="mine", sheet="1")
+    assert told["svg"].startswith("<?xml")
+    _, told = asked(client, "sheet", text=CAM, sheet="7")
+    assert "no sheet 7" in told["problem"]
+
+
+def test_the_living_page_carries_out_its_own_script_alone(client):
+    answer = client.post("living", data={"text": CAM, "name": "mine"}, files={"none": (None, "")})
+    policy = answer.headers["content-security-policy"]
+    assert policy.startswith("sandbox allow-scripts allow-downloads; ")
+    assert re.search(r"script-src 'sha256-[\w+/]{43}='; ", policy)
+    assert 'id="record"' in answer.text
+    answer = client.post("living", data={"text": "<script>alert(1)</script>", "name": "x"}, files={"none": (None, "")})
+    assert "<script>" not in answer.text
+
+
+def test_taking_one_file_and_several(client):
+    _, told = asked(client, "take", text=CAM, name="mine", wanted="pdf", student="Петренко О.В.")
+    assert (told["name"], b64decode(told["data"])[:5]) == ("sheet1.pdf", b"%PDF-")
+    before, told = asked(client, "take", text=CAM, name="моя работа", wanted="svg,dxf,a4,table,record,page")
+    with ZipFile(BytesIO(b64decode(told["data"]))) as archive:
+        assert set(archive.namelist()) >= {"sheet1.svg", "sheet1.dxf", "record.json", "page.html", "моя-работа.toml",
+                                           "sheet1-a4.pdf"}
+    assert told["name"] == "моя-работа.zip"
+    assert any("dxf" in message.get("say", "") for message in before)
+    assert "nothing" in asked(client, "take", text=CAM, wanted="nothing")[1]["problem"]
+
+
+def test_a_drawing_is_laid_over_ours(client, tmp_path):
+    pytest.importorskip("ezdxf")
+    _, made = asked(client, "take", text=CAM, wanted="dxf")
+    with ZipFile(BytesIO(b64decode(made["data"]))) as archive:
+        drawing = archive.read("sheet1.dxf")
+    before, told = asked(client, "compare", {"file": ("../../Лист 1.DXF", drawing)}, text=CAM)
+    assert before
+    assert told["findings"] == []
+    assert told["summary"]["green"] > 100
+    assert b"<svg" in b64decode(told["ours"]["data"])
+    assert b"<svg" in b64decode(told["theirs"]["data"])
+
+
+def test_a_group_is_a_table(client):
+    _, made = asked(client, "take", text=CAM, wanted="dxf")
+    with ZipFile(BytesIO(b64decode(made["data"]))) as archive:
+        drawing = archive.read("sheet1.dxf")
+    files = [("file", ("group/Петренко О.В/sheet 1.dxf", drawing)), ("file", ("group/../../Іваненко/лист 1.dxf", b"0")),
+             ("file", ("group/Nobody/readme.txt", b"x"))]
+    _, told = asked(client, "group", files, text=CAM)
+    assert {s["student"] for s in told["group"]["students"]} == {"Петренко О.В", "Іваненко", "Nobody"}
+    assert told["name"] == "reports.zip"
+
+
+# --- who is not let in ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("path", "headers", "status"), [
+    ("/t0ken/words", {}, 200), ("/wrong/words", {}, 403), ("/words", {}, 403), ("/", {}, 403), ("/t0ken", {}, 200),
+    ("/t0ken/words", {"host": "evil.example:8731"}, 421), ("/t0ken/words", {"host": "127.0.0.1.evil.example"}, 421),
+    ("/t0ken/words", {"host": "localhost:8731"}, 200), ("/t0ken/words", {"origin": "http://evil.example"}, 403),
+    ("/t0ken/words", {"origin": "null"}, 403), ("/t0ken/words", {"origin": HERE}, 200),
+    ("/t0ken/page/../../pyproject.toml", {}, 403), ("/t0ken/page/%2e%2e%2f%2e%2e%2fpyproject.toml", {}, 404),
+    ("/t0ken/page//etc/passwd", {}, 404), ("/t0ken/page/__init__.py", {}, 404),
+])  # fmt: skip
+def test_doors_are_shut_for_others(client, path, headers, status):
+    answer = client.get(f"{HERE}{path}", headers=headers)
+    assert answer.status_code == status
+    assert "default-src 'none'" in answer.headers["content-security-policy"]
+    assert answer.headers["x-content-type-options"] == "nosniff"
+
+
+@pytest.mark.parametrize("headers", [{"origin": "http://evil.example"}, {"origin": "null"}, {"sec-fetch-site": "cross-site"}])
+def test_work_is_not_done_for_other_pages(client, headers):
+    assert client.post("check", files={"text": (None, CAM)}, headers=headers).status_code == 403
+
+
+def test_a_server_for_others_knows_its_own_names():
+    with starlette.TestClient(doors.app(TOKEN, "0.0.0.0", Shown()), base_url=f"http://192.168.1.7:8731/{TOKEN}/") as client:
+        assert client.get("words").status_code == 200
+        assert client.get("words", headers={"host": "evil.example"}).status_code == 421
+
+
+@pytest.mark.parametrize("project", ["../../etc/passwd", "/etc/passwd", "./pyproject.toml", "lugansk/../press", "sixbar/1:9"])
+def test_no_path_of_the_client_is_opened(client, project):
+    for door in ("project", "scheme"):
+        assert "problem" in asked(client, door, project=project)[1]
+
+
+def test_names_of_the_client_are_names():
+    for name in ("../../etc/cron", "/abs", "a/b\\c", "..", "", "x" * 500, "con\x00", "-rf"):
+        file = jobs.file_of(name)
+        assert re.fullmatch(r"[\w@+=][\w@.+=-]*\.toml", file)
+        assert len(file) < 80
+    assert doors._place("a/../../b/../c d.png", True) == "group/b/c d.png"
+    assert doors._place("..", False) == "drawing.other"
+    with pytest.raises(doors.HTTPException):
+        doors._place("../..", True)
+
+
+def test_markup_of_a_project_stays_text(client):
+    text = CAM.replace("title = ", 'title = "<img src=x onerror=alert(1)>" # ', 1)
+    assert asked(client, "check", text=text)[1]["title"].startswith("<img")  # as text: no module writes markup
+    texts = [path.read_text(encoding="utf-8") for path in doors.template("page").glob("*.js")]
+    assert not [text for text in texts if re.search(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval\(", text)]
+    assert "<img" not in asked(client, "sheet", text=text)[1]["svg"]
+
+
+# --- hostile files ----------------------------------------------------------------------------------------------------------
+
+
+def test_too_much_is_not_taken(client):
+    form = {"content-type": "multipart/form-data; boundary=x"}
+    head = b'--x\r\ncontent-disposition: form-data; name="file"; filename="a"\r\n\r\n'
+    assert client.post("check", files={"file": b"x" * 3_000_000}).status_code == 413
+    assert client.post("check", content=iter([head, *[b"x" * 1_000_000] * 4]), headers=form).status_code == 413
+    assert client.post("check", content=b"", headers=form | {"content-length": "9" * 5000}).status_code == 413
+    assert client.post("check", content=b"", headers=form | {"content-length": "-1"}).status_code == 413
+    assert client.post("check", content=iter([b"x" * 1_000_000] * 4)).status_code == 415
+    assert client.post("check", content=b"--x--", headers=form).status_code == 200  # an empty form has mistakes
+
+
+BOMB = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\xff\xff\x00\x00\xff\xff\x08\x00\x00\x00\x00"
+
+
+@pytest.mark.parametrize(("name", "data"), [
+    ("bomb.png", BOMB), ("bomb.dxf", b"0\nSECTION\n" * 1000), ("x.zip", b"PK\x03\x04" + b"0" * 100),
+    ("x.csv", b"\xff\xfe\x00" * 50), ("x.pdf", b"%PDF-1.4\n" + b"<</Length 999999999999>>stream" * 9), ("x", b""),
+])  # fmt: skip
+def test_a_hostile_drawing_ends_in_a_message(client, name, data):
+    _, told = asked(client, "compare", {"file": (name, data)}, text=CAM)
+    assert told["problem"]
+
+
+ENDLESS = re.sub(r"(?m)^positions = .*", "positions = 99999", catalogue.read("sixbar/1:1").text)
+
+
+@pytest.mark.parametrize("text", [
+    "a = " + "[" * 100_000, "[x]\n" * 50_000, "schema = 1\n" + "x = {" * 5000, '"' * 100_000, "\x00", "",
+])  # fmt: skip
+def test_a_hostile_file_has_mistakes(client, text):
+    _, told = asked(client, "check", text=text)
+    assert told["mistakes"]
+
+
+def work(job, limits, **fields):
+    async def last():
+        return await Workers(1).last(job, fields, Languages("en"), limits)
+
+    return asyncio.run(last())
+
+
+def test_an_endless_file_is_stopped():
+    assert "more than 1 seconds" in work(jobs.sheet, Limits(1), text=ENDLESS)["problem"]
+
+
+def hungry(asked, say):
+    return {"n": len(bytearray(1_000_000_000))}
+
+
+def test_a_file_too_large_for_the_memory_is_stopped():
+    assert work(hungry, Limits(20, 2_000_000_000))["done"] == {"n": 1_000_000_000}
+    assert "memory" in work(hungry, Limits(20, 900_000_000))["problem"]
+
+
+def test_who_goes_away_takes_the_work_along():
+    async def begun():
+        workers = Workers(1)
+        messages = workers.messages(jobs.take, {"text": CAM, "wanted": "dxf,pdf,note-pdf"}, Languages("en"), Limits())
+        assert "say" in await anext(messages)
+        await messages.aclose()
+        return workers.free[False].locked()
+
+    assert asyncio.run(begun()) is False
+
+
+# --- the command ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_file_is_followed(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(CAM, encoding="utf-8")
+
+    async def saved():
+        texts = following(path).saved()
+        waits = asyncio.create_task(anext(texts))
+        await asyncio.sleep(0.1)
+        path.write_text("schema = 1\n", encoding="utf-8")
+        return await asyncio.wait_for(waits, 10)
+
+    assert asyncio.run(saved()) == {"name": "mine", "text": "schema = 1\n", "followed": True}
+
+
+def test_what_the_command_line_names_is_shown(client):
+    assert client.get("opened").json() == {"name": "mine", "text": CAM, "followed": False}
+
+
+def test_missing_packages_are_named(monkeypatch, capsys):
+    monkeypatch.setattr(serving, "find_spec", lambda name: None if name == "uvicorn" else object())
+    assert run(["serve", "--no-browser"]) == 1
+    said = capsys.readouterr().err
+    assert "uvicorn" in said
+    assert "pip install" in said
+
+
+def test_what_cannot_be_served(capsys, tmp_path):
+    assert run(["serve", "press", "--watch", str(tmp_path / "x.toml")]) == 2
+    assert run(["serve", str(tmp_path / "none.toml"), "--no-browser"]) == 2
+    assert run(["serve", "--host", "203.0.113.7", "--no-browser"]) == 2
+    assert "nobody can listen there" in capsys.readouterr().err

@@ -1,0 +1,153 @@
+"""The doors of the page: each request that is let in, and what answers it."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import re
+from collections.abc import AsyncIterator, Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.datastructures import UploadFile
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, JSONResponse, Response, StreamingResponse
+from starlette.routing import Route
+
+from tmm_sheets import words
+from tmm_sheets.compare.group import COMPARED
+from tmm_sheets.output import batch
+from tmm_sheets.page import choice, compared, jobs, served_words
+from tmm_sheets.page.guard import Guard
+from tmm_sheets.page.shown import Shown
+from tmm_sheets.page.workers import Job, Languages, Limits, Workers
+from tmm_sheets.resources import template
+from tmm_sheets.task import keys
+from tmm_sheets.words import LANGUAGES, tell
+
+QUICK, BEHIND, LONG = Limits(30), Limits(30, behind=True), Limits(240, 4_000_000_000, behind=True)
+JOBS: Mapping[str, tuple[Job, Limits]] = {
+    "project": (jobs.project, QUICK), "check": (jobs.check, QUICK), "sheet": (jobs.sheet, QUICK),
+    "remarks": (jobs.remarks, BEHIND), "scheme": (jobs.scheme, BEHIND), "living": (jobs.living, BEHIND),
+    "take": (jobs.take, LONG), "compare": (compared.compare, LONG), "group": (jobs.group, LONG),
+}  # fmt: skip
+FILES = {"compare": 80_000_000, "group": 400_000_000}
+"""Doors that take files, and how many bytes."""
+NOTHING = "'none'"
+MOST_FILES = 1000
+TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".ttf": "font/ttf"}
+_SCRIPT = re.compile("<script>(.*?)</script>", re.DOTALL)
+
+
+def app(token: str, host: str, shown: Shown, processes: int | None = None) -> Guard:
+    """The application behind its guard; ``shown`` is the project that it opens with."""
+    workers = Workers(processes or batch.processors())
+    ways = {path.name: path for path in sorted(template("page").iterdir()) if path.suffix in TYPES}
+    ways["font.ttf"] = template("fonts/TMMSheetsB.ttf")
+
+    def file(request: Request) -> Response:
+        name = request.path_params.get("name", "index.html")
+        if name not in ways:
+            return Response(status_code=404)
+        return Response(ways[name].read_bytes(), media_type=TYPES[ways[name].suffix])
+
+    async def words_of(request: Request) -> Response:
+        _languages(request.query_params).speak_here()
+        return JSONResponse(served_words.served_words())
+
+    async def tasks(request: Request) -> Response:
+        _languages(request.query_params).speak_here()
+        return JSONResponse(choice.manuals())
+
+    async def keys_of(request: Request) -> Response:
+        _languages(request.query_params).speak_here()
+        return JSONResponse(keys.tables())
+
+    async def opened(request: Request) -> Response:
+        return JSONResponse(shown.now())
+
+    async def saved(request: Request) -> Response:
+        async def texts() -> AsyncIterator[str]:
+            async for now in shown.saved():
+                yield f"data: {json.dumps(now)}\n\n"
+
+        return StreamingResponse(texts(), media_type="text/event-stream")
+
+    async def work(request: Request) -> Response:
+        name = request.path_params["job"]
+        if name not in JOBS:
+            return Response(status_code=404)
+        asked, folder, files = await _asked(request)
+        job, limits = JOBS[name]
+        limits = BEHIND if limits is QUICK and asked.get("behind") else limits
+
+        async def lines() -> AsyncIterator[str]:
+            with folder:
+                async for message in workers.messages(job, asked, _languages(asked), limits, files):
+                    yield json.dumps(message, ensure_ascii=False) + "\n"
+
+        return StreamingResponse(lines(), media_type="application/x-ndjson")
+
+    async def living(request: Request) -> Response:
+        asked, folder, _ = await _asked(request)
+        with folder:
+            last = await workers.last(*JOBS["living"][:1], asked, _languages(asked), JOBS["living"][1])
+        page = last["done"]["html"] if "done" in last else jobs.refusal(last["problem"])
+        return HTMLResponse(page, headers={"content-security-policy": _own_policy(page)})
+
+    return Guard(Starlette(routes=[
+        Route("/", file), Route("/page/{name}", file), Route("/words", words_of), Route("/tasks", tasks), Route("/keys", keys_of),
+        Route("/opened", opened), Route("/saved", saved), Route("/living", living, methods=["POST"]),
+        Route("/{job}", work, methods=["POST"]),
+    ]), token, host, FILES)  # fmt: skip
+
+
+def _own_policy(page: str) -> str:
+    """What the living page may do: carry out its own scripts, as they are, and nothing else; it has no origin."""
+    own = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(s.encode()).digest()).decode()}'" for s in _SCRIPT.findall(page))
+    return (f"sandbox allow-scripts allow-downloads; default-src 'none'; script-src {own or NOTHING}; style-src 'unsafe-inline'; "
+            "font-src data:; img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'self'")
+
+
+def _languages(asked: Mapping[str, Any]) -> Languages:
+    """The languages of a request: as ``--lang`` where it tells one, else those of the server."""
+    told = asked.get("lang", "")
+    return Languages(told, told) if told in LANGUAGES else Languages(words.reader(), words.asked())
+
+
+async def _asked(request: Request) -> tuple[dict[str, str], Any, dict[str, Path]]:
+    """Fields of a form, and its files in a folder under names of our own."""
+    asked: dict[str, str] = {}
+    files: dict[str, Path] = {}
+    folder = TemporaryDirectory(prefix="tmm-sheets-files-", ignore_cleanup_errors=True)
+    try:
+        async with request.form(max_files=MOST_FILES, max_fields=40, max_part_size=2_000_000) as form:
+            for key, value in form.multi_items():
+                if isinstance(value, UploadFile):
+                    path = Path(folder.name) / str(len(files))
+                    with path.open("wb") as file:
+                        while piece := await value.read(1 << 20):
+                            file.write(piece)
+                    files[_place(str(value.filename or ""), request.path_params.get("job") == "group")] = path
+                else:
+                    asked[key] = value
+        return asked, folder, files
+    except BaseException:
+        folder.cleanup()
+        raise
+
+
+def _place(name: str, of_group: bool) -> str:
+    """Where a file goes: of a group into the folder of its student; the client's name is made of letters and figures."""
+    parts = [re.sub(r"[^\w @.+=,()-]+", "-", part)[:80].strip(" .-") for part in name.replace("\\", "/").split("/")]
+    suffix = Path(parts[-1]).suffix.lower()
+    if not of_group:
+        return f"{compared.NAME}{suffix}" if suffix in COMPARED else f"{compared.NAME}.other"
+    inside = [part for part in parts if part]
+    if not inside:
+        raise HTTPException(400, tell("a file without a name"))
+    return "/".join(("group", *inside[1:2], *(inside[2:] and ["-".join(inside[2:])])) if inside[1:] else ("group", inside[0]))

@@ -1,0 +1,67 @@
+"""The server: its address with the token, the browser, Ctrl-C."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from collections.abc import Callable
+from importlib.util import find_spec
+from secrets import token_urlsafe
+
+from tmm_sheets import quoting
+from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
+from tmm_sheets.page.shown import Shown
+from tmm_sheets.words import both, tell
+
+PORT = 8731
+"""Where it listens unless told: another free one where somebody is there already."""
+PACKAGES = {"starlette": "starlette", "uvicorn": "uvicorn", "python_multipart": "python-multipart"}
+
+
+def check_packages() -> None:
+    """Tell at once that a package is missing.
+
+    Raises
+    ------
+    CannotBuild
+        which one, and how to install it.
+    """
+    missing = [package for module, package in PACKAGES.items() if find_spec(module) is None]
+    if missing:
+        raise CannotBuild(tell("the page needs {names}").format(names=both(missing)), quoting.install("page"))
+
+
+def serve(shown: Shown, host: str, port: int | None, tell_address: Callable[[str], None]) -> None:
+    """Serve until Ctrl-C; ``tell_address`` is told the address when somebody can come.
+
+    Raises
+    ------
+    BadInput
+        when nobody can listen there.
+    """
+    import uvicorn
+
+    from tmm_sheets.page import doors, workers
+
+    listening = _listening(host, port)
+    token = token_urlsafe(24)
+    number = listening.getsockname()[1]
+    named = f"[{host}]" if ":" in host else "127.0.0.1" if host == "0.0.0.0" else host
+    app = doors.app(token, host, shown)
+    config = uvicorn.Config(app, log_level="error", access_log=False, server_header=False, lifespan="off", ws="none",
+                            timeout_graceful_shutdown=1, limit_concurrency=200)
+    threading.Thread(target=workers.warm, daemon=True).start()
+    tell_address(f"http://{named}:{number}/{token}/")
+    uvicorn.Server(config).run(sockets=[listening])
+
+
+def _listening(host: str, port: int | None) -> socket.socket:
+    """A socket that listens: at the port asked for, else at ours or at a free one."""
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    for number in (PORT, 0) if port is None else (port,):
+        try:
+            return socket.create_server((host, number), family=family)
+        except OSError as e:
+            why = e
+    raise BadInput(Problem(tell("nobody can listen there: {why}").format(why=reason_of(why)), f"{host}:{port or PORT}",
+                           hint=tell("choose another --port or --host")))

@@ -1,0 +1,196 @@
+"""Work in processes of their own: each is a fork of one that has loaded everything, ends with its work, and has limits.
+
+So a file that asks for an endless turn or a thousand megapixels ends in a message: the server itself reads no project. Whoever
+goes away takes the work along.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import multiprocessing
+import os
+import signal
+from collections.abc import AsyncIterator, Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cache
+from multiprocessing.connection import Connection
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from tmm_sheets import words
+from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
+from tmm_sheets.words import tell
+
+LARGEST_ANSWER = 400_000_000
+"""Bytes of the largest message from a process."""
+NICE = 10
+"""By how much work behind other work gives way to it."""
+WAITING = 4.0
+"""How many times its seconds of processor a piece of work may take by the clock: others work too."""
+
+Message = dict[str, Any]
+Say = Callable[..., None]
+"""Sends a message, its keys by name."""
+Job = Callable[[Mapping[str, str], Say], Message]
+"""Work in the folder that the process stands in, for what was asked; gives what comes last."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a piece of work may take: seconds of processor, bytes of memory; ``behind``: it is not waited for as others are."""
+
+    seconds: int = 30
+    memory: int = 2_000_000_000
+    behind: bool = False
+
+
+@dataclass(frozen=True)
+class Languages:
+    """The reader's language, and that asked for the paper, empty for the project's."""
+
+    reader: str
+    asked: str = ""
+
+    def speak_here(self) -> None:
+        """Speak them in what comes of this request."""
+        words.set_reader(self.reader)
+        words.ask_paper(self.asked)
+
+    def speak(self) -> None:
+        """Speak them from here on, in all of this process."""
+        self.speak_here()
+        os.environ["LANGUAGE"] = self.reader  # for commands that are carried out
+
+
+def told(problem: Problem) -> Message:
+    """A problem of a project file for the page."""
+    return {"line": problem.line, "field": problem.field, "message": problem.message, "hint": problem.hint}
+
+
+def _carry_out(end: Connection, job: Job, asked: Mapping[str, str], folder: str, languages: Languages, limits: Limits) -> None:
+    """The life of a process: whatever happens, what is sent last has ``done`` or ``problem``."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # it ends the server, which ends its work
+    languages.speak()
+    _limit(limits)
+    os.chdir(folder)
+
+    def say(**message: Any) -> None:
+        end.send_bytes(json.dumps(message, ensure_ascii=False, allow_nan=False).encode())
+
+    try:
+        say(done=job(asked, say))
+    except BadInput as e:
+        say(problem=str(e), mistakes=[told(p) for p in e.problems])
+    except CannotBuild as e:
+        say(problem=str(e))
+    except MemoryError:
+        say(problem=tell("this takes more memory than the page gives one piece of work"))
+    except BrokenPipeError:
+        pass
+    except OSError as e:
+        say(problem=reason_of(e))
+    except Exception as e:
+        if os.environ.get("TMM_SHEETS_TRACEBACK"):
+            raise
+        say(problem=tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}"))
+
+
+def _limit(limits: Limits) -> None:
+    """Let the system hold this process within limits, where it can."""
+    if limits.behind and hasattr(os, "nice"):
+        os.nice(NICE)
+    with suppress(ImportError, ValueError, OSError):
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CPU, (limits.seconds, limits.seconds + 1))
+        resource.setrlimit(resource.RLIMIT_AS, (limits.memory, limits.memory))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (LARGEST_ANSWER, LARGEST_ANSWER))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+@cache
+def _context() -> Any:
+    """Where processes come from: forks of one that has loaded everything; on Windows each loads for itself."""
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["tmm_sheets.page.loaded"])
+    return context
+
+
+def warm() -> None:
+    """Let the process that others are forks of load everything now, and wait for it."""
+    process = _context().Process(target=os.getpid, daemon=True)
+    process.start()
+    process.join()
+
+
+def _begin(*what: Any) -> tuple[Any, Connection]:
+    ours, theirs = _context().Pipe(duplex=False)
+    process = _context().Process(target=_carry_out, args=(theirs, *what), daemon=True)
+    process.start()
+    theirs.close()
+    return process, ours
+
+
+class Workers:
+    """So many pieces of work at a time, and so many behind them; others wait for their turn."""
+
+    def __init__(self, many: int) -> None:
+        self.free = {behind: asyncio.Semaphore(many) for behind in (False, True)}
+
+    async def messages(self, job: Job, asked: Mapping[str, str], languages: Languages, limits: Limits,
+                       files: Mapping[str, Path] | None = None) -> AsyncIterator[Message]:
+        """What a piece of work says, the last with ``done`` or ``problem``; who stops listening ends it.
+
+        ``files`` are put into its folder by their names there, which are no client's.
+        """
+        free = self.free[limits.behind]
+        if free.locked():
+            yield {"say": tell("waiting for its turn ...")}
+        async with free:
+            with TemporaryDirectory(prefix="tmm-sheets-page-", ignore_cleanup_errors=True) as folder:
+                for name, path in (files or {}).items():
+                    place = Path(folder) / name
+                    place.parent.mkdir(parents=True, exist_ok=True)
+                    path.replace(place)
+                process, connection = await asyncio.to_thread(_begin, job, asked, folder, languages, limits)
+                try:
+                    async for message in _said(process, connection, limits):
+                        yield message
+                finally:
+                    process.kill()
+                    process.join(5)
+
+    async def last(self, *what: Any) -> Message:
+        """The last message of a piece of work."""
+        message: Message = {}
+        async for one in self.messages(*what):
+            message = one
+        return message
+
+
+async def _said(process: Any, connection: Connection, limits: Limits) -> AsyncIterator[Message]:
+    """Messages of a process, and what is to be told of one that was ended."""
+    clock = asyncio.get_running_loop().time
+    latest = clock() + WAITING * limits.seconds
+    try:
+        while True:
+            data = await asyncio.wait_for(asyncio.to_thread(connection.recv_bytes, LARGEST_ANSWER), latest - clock())
+            message = json.loads(data)
+            yield message
+            if "done" in message or "problem" in message:
+                return
+    except TimeoutError:
+        yield {"problem": _too_long(limits)}
+    except (EOFError, OSError):
+        process.join(5)
+        of_time = process.exitcode in (-signal.SIGXCPU, -signal.SIGKILL) if hasattr(signal, "SIGXCPU") else False
+        yield {"problem": _too_long(limits) if of_time else tell("the work was ended by the system, perhaps for want of memory")}
+
+
+def _too_long(limits: Limits) -> str:
+    return tell("stopped: this takes more than {n} seconds of processor").format(n=limits.seconds)
