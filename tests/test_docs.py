@@ -1,6 +1,5 @@
 """README and docs/ say what is so: links lead somewhere, commands can be typed, messages are the program's, tables are current."""
 
-import ast
 import importlib
 import re
 import shlex
@@ -12,7 +11,8 @@ from pathlib import Path
 import click
 import pytest
 
-from tests import docs, figures
+from tests import catalogues, docs, figures
+from tests.few import few
 from tmm_sheets import __main__, catalogue, cli, resources
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
@@ -142,10 +142,14 @@ def test_extras_are_there():
     assert set(re.findall(r"\.\[(\w+)\]", EVERYWHERE)) <= set(extras)
 
 
+def first_project():
+    """Commands of the way to a first own project."""
+    return typed(TEXTS["README.md"].split("## Your first own project")[1].split("\n##")[0], "tmm-sheets")
+
+
 def test_the_first_project_works(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    block = TEXTS["README.md"].split("## Your first own project")[1].split("\n##")[0]
-    commands = typed(block, "tmm-sheets")
+    commands = first_project()
     assert len(commands) == 11
     for arguments in commands:
         assert __main__.run(arguments) == __main__.DONE, (arguments, capsys.readouterr().err)
@@ -175,14 +179,27 @@ NOT_RUN = {
 """Commands of docs/ that the next test leaves out, by what they have in them, and why."""
 
 
-def test_other_commands_work(tmp_path, monkeypatch, capsys):
-    """Each command of all papers once, in one folder, in the order of the papers; of a plot, which takes long, one sheet."""
+def shape(command):
+    """The command with its options, whatever project and files are named."""
+    name, *rest = shlex.split(command)
+    return name, *sorted({word for word in rest if word.startswith("--")})
+
+
+@pytest.mark.parametrize("every", few((False, True), False))
+def test_other_commands_work(every, tmp_path, monkeypatch, capsys):
+    """Each command of all papers once, in one folder, in the order of the papers; of a plot, which takes long, one sheet.
+
+    Where not ``every`` command is tried, each has other options than those before it and those of the first own project.
+    """
     monkeypatch.chdir(tmp_path)
     Path("my.toml").write_text(catalogue.read("lugansk/shaper").text, encoding="utf-8")
     commands = dict.fromkeys(shlex.join(c) for text in TEXTS.values() for c in typed(text, "tmm-sheets") if c and c[0] not in QUICK)
     left = [c for c in commands if not any(word in c for word in NOT_RUN) and not re.search("PROJECT|COMMAND", c)]
     assert len(left) > 20
-    for command in left:
+    own = {shape(shlex.join(arguments)) for arguments in first_project()}
+    once = list({shape(c): c for c in reversed(left) if shape(c) not in own}.values())[::-1]
+    assert 10 < len(once) < len(left)
+    for command in left if every else once:
         shutil.rmtree("mine", ignore_errors=True)
         for template in Path().rglob("measured.csv"):
             template.unlink()
@@ -349,20 +366,11 @@ def test_explained_messages_of_shipped_projects_come(message):
 
 @cache
 def known():
-    """Every string of the source, the fields of f-strings as {}."""
-    return "\n".join(constants())
-
-
-def constants():
-    for path in (ROOT / "tmm_sheets").rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.JoinedStr):
-                yield "".join(str(v.value) if isinstance(v, ast.Constant) else "{}" for v in node.values)
-            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-                yield node.value
+    """Every text of the program: tests/test_words.py holds that the catalogues have them all."""
+    return "\n".join("\n".join(m.id) if isinstance(m.id, tuple) else m.id for m in catalogues.read("ru"))
 
 
 @pytest.mark.parametrize("paper", ["docs/commands.md", "docs/comparing.md"])
-def test_other_explained_messages_are_in_the_source(paper):
+def test_other_explained_messages_are_texts_of_the_program(paper):
     for message in explained(paper):
         assert message in known(), message

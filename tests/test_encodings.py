@@ -39,7 +39,7 @@ def command(*arguments, console, **options):
 @pytest.mark.parametrize("console", few(sorted(CONSOLES.keys() - {"utf-8"}), "C"))
 def test_redirected_output_is_utf_8(console, tmp_path, capsys):
     """Greek and subscripts stand in all of these; the expected text is what the command says in this process."""
-    for line in ("show sixbar/6:3", "solve sixbar/6:3 --part positions", "protocol lugansk/cam_flat"):
+    for line in ("show sixbar/6:3", "protocol lugansk/cam_flat"):
         done = command(*line.split(), console=console)
         assert (done.returncode, done.stderr) == (0, b"")
         assert run(line.split()) == 0
@@ -53,7 +53,7 @@ def test_redirected_output_is_utf_8(console, tmp_path, capsys):
     assert done.stdout.decode("utf-8")
 
 
-@pytest.mark.parametrize("console", CONSOLES)
+@pytest.mark.parametrize("console", few(CONSOLES, "cp1251", "C"))
 def test_a_message_in_a_pipe_is_utf_8(console, tmp_path):
     file = tmp_path / "my.toml"
     file.write_text("schema = 1\n[project]\ntitle = Ωж\n", encoding="utf-8")
@@ -82,7 +82,7 @@ def test_where_a_project_file_may_go(tmp_path, capsys):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals")
-@pytest.mark.parametrize("encoding", ["cp866", "ascii"])
+@pytest.mark.parametrize("encoding", few(["cp866", "ascii"], "cp866"))
 def test_a_terminal_without_the_letter_shows_another(encoding):
     import pty
 

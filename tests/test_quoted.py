@@ -70,7 +70,8 @@ def started(command, status=0):
 @pytest.mark.parametrize("arguments", [
     ["check", "nothing/like/it"], ["check", "no/such.toml"], ["why", "b.toml", "structure.W"],
     ["why", "my own.toml", "structure.W"],
-    ["protocol", "b.toml", "--plan", "quite another"], ["protocol", "my own.toml", "--plan", "quite another", "--lang", "uk"],
+    seldom(["protocol", "b.toml", "--plan", "quite another"]),
+    ["protocol", "my own.toml", "--plan", "quite another", "--lang", "uk"],
     ["draw"], ["build", "--shet"], ["compare", "b.toml"], ["--nonsense"], ["solve", "b.toml", "--part", "x"],
 ])  # fmt: skip
 def test_it_runs(arguments, desk, quoted, capsys):
@@ -98,7 +99,6 @@ def test_measured_numbers(name, desk, quoted, capsys):
         found, said = quoted("compare", other, "--measured", file)
         assert f"of the project {name}, not of {other}" in said
         assert found == [command]
-    started(found[0])
     Path(name).rename("renamed.toml")
     found, said = quoted("compare", "renamed.toml", "--measured", file)
     assert found == []  # it would not run
@@ -130,12 +130,11 @@ def test_too_many_positions(desk, quoted):
 
 
 def test_passes_of_a_small_plotter(desk, capsys):
-    """The first and the last window that are proposed are such as the plotter takes."""
+    """The last window that is proposed, a narrower one, is such as the plotter takes."""
     assert run(["plot", "lugansk/cam_flat", "--plotter", "a3", "--dry-run"]) == 0
     windows = re.findall(r"--window (\S+)", capsys.readouterr().out)
     assert len(windows) > 1
-    for window in (windows[0], windows[-1]):
-        assert run(["plot", "lugansk/cam_flat", "--plotter", "a3", "--dry-run", "--window", window]) == 0
+    assert run(["plot", "lugansk/cam_flat", "--plotter", "a3", "--dry-run", "--window", windows[-1]]) == 0
 
 
 def test_case_of_a_stress_run(quoted, capsys):

@@ -91,6 +91,7 @@ def test_what_follows_is_told_as_such(coriolis):
     assert all(f.element is by_number[n] for n, f in bad.items())  # judged by, and shown beside, what ought to be there
 
 
+@pytest.mark.trial
 def test_two_mistakes_are_both_named():
     built, findings = examined(slipped(coriolis=other_way, inertia=backwards)[0])
     assert {v.name: plan.mistake.kind for v, (plan, _) in built.items()} == dict(zip(NAMES, ("coriolis", "inertia"), strict=True))
@@ -99,6 +100,7 @@ def test_two_mistakes_are_both_named():
     assert all("as follows from the mistake" in f.what for f in bad)
 
 
+@pytest.mark.trial
 def test_a_mistake_is_named_though_part_of_the_plan_is_hidden():
     elements, wrong = slipped(coriolis=other_way)
     plan = [e for e in elements if e.view.name == NAMES[0] and e.role == "vector"]

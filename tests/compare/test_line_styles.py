@@ -107,6 +107,7 @@ def test_a_scale_of_line_types_that_was_not_set_gets_a_remark(tmp_path):
     assert note == "dash-dot lines have strokes of 0.635 mm: GOST 2.303 asks for 5 to 30 mm (scale of line types, LTSCALE)"
 
 
+@pytest.mark.trial
 def test_main_lines_that_are_not_wider_get_one_remark(tmp_path):
     found = compared([replace(e, style="thin") if e.style in ("main", "curve", "vector") else e for e in EXACT], tmp_path)
     assert found.outcome.looks == ()

@@ -154,6 +154,7 @@ def test_a_vast_page_and_a_vast_unit(path):
     assert read(path).grey.size <= 200_100_000
 
 
+@pytest.mark.trial
 def test_a_vast_image_in_a_pdf(path):
     Image.new("1", (21000, 21000), 1).save(path, "PDF")
     with pytest.raises(CannotBuild, match="21000 x 21000 pixels are more"):

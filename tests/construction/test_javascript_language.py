@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.few import few
 from tests.living import javascript
 from tests.methods.linkage.test_function import CLOSE, N, forceless, over_positions, studied
 from tmm_sheets.construction.javascript_language import Source, literal, told
@@ -31,7 +32,7 @@ def test_constants():
 
 
 @javascript.needed
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", few(NAMES, "lugansk/engine", "sixbar/7:3", "tests/projects/sieve.toml"))
 def test_a_page_computes_what_the_steps_are(name, tmp_path):
     study = studied(name)
     found = list(over_positions(study))

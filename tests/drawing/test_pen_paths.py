@@ -90,7 +90,7 @@ def test_order_of_a_few_is_near_the_best():
 
 
 @given(st.lists(corner, min_size=3, max_size=5, unique=True), st.sampled_from([0.2, 0.3, 0.5]))
-@settings(max_examples=60)
+@settings(max_examples=20)
 def test_passes_cover_a_thick_bent_line(corners, pen):
     points = np.array(corners) @ [1, 1j]
     band = inked([points], 1.0)

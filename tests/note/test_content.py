@@ -320,7 +320,8 @@ def _asked(line):
     yield from sorted(re.findall(r"\{@[^{}]*\}", line))
 
 
-@pytest.mark.parametrize(("language", "name", "foreign"), [("en", "lugansk/shaper", "[а-яА-Я]"), ("uk", "press", "[ыэъёЫЭЪЁ]")])
+@pytest.mark.parametrize(("language", "name", "foreign"), [
+    ("en", "lugansk/shaper", "[а-яА-Я]"), seldom("uk", "press", "[ыэъёЫЭЪЁ]")])
 def test_a_note_in_another_language(language, name, foreign):
     made = composed(opened(name), language)
     sources = [b for b in made.body if isinstance(b, Paragraph) and re.match(r"\d+\. ", plain_text(b.text))]

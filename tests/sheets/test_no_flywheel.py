@@ -25,6 +25,7 @@ from tmm_sheets.sheets.sheet import composed
 
 SHEET = {"lugansk/shaper": 2, "press": 1}
 BOTH = pytest.mark.parametrize("name", SHEET)
+ONE = pytest.mark.parametrize("name", few(SHEET, "lugansk/shaper"))
 
 
 def with_crank(name, inertia):
@@ -57,7 +58,7 @@ def running(name, p, first):
     return np.ptp(speed) / omega
 
 
-@BOTH
+@ONE
 def test_the_flywheel_falls_by_what_the_crank_gains(name):
     bare = project(name, 0.0).flywheel
     for inertia in (100.0, 290.0, 300.0, 310.0, 320.0, 600.0, 2000.0):
@@ -68,7 +69,7 @@ def test_the_flywheel_falls_by_what_the_crank_gains(name):
         assert f.J_running == pytest.approx(max(inertia, bare.J_first), rel=1e-9)
 
 
-@BOTH
+@ONE
 @pytest.mark.parametrize("side", [-1, 1])
 @pytest.mark.parametrize("step", [1e-6, seldom(0.1), seldom(20.0)])
 def test_just_above_and_below_zero(name, side, step):
@@ -116,7 +117,7 @@ def test_the_sheet_says_it_in_words_and_draws_no_wheel(name):
     assert any("|ab|" in w or "ab=" in w for w in words)
 
 
-@pytest.mark.parametrize("name", few(SHEET, "lugansk/shaper"))
+@ONE
 def test_results_check_protocol_and_compare(name, tmp_path, capsys):
     file = files.write(tmp_path, *with_crank(name, 600.0))
     assert run(["solve", file, "--json", "-", "--part", "flywheel"]) == 0

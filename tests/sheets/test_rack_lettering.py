@@ -3,6 +3,7 @@
 import pytest
 
 from tests import project_files as files
+from tests.few import seldom
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.clipping import polyline_inside
 from tmm_sheets.drawing.labels import text_box
@@ -25,7 +26,7 @@ def struck(sheet):
                     yield group.text
 
 
-@pytest.mark.parametrize("language", ["en", "ru"])
+@pytest.mark.parametrize("language", ["en", seldom("ru")])
 @pytest.mark.parametrize(("teeth", "module", "shift"), [
     ([13, 38], "5 mm", "rule"),  # "reference line of the rack" and the fillet's radius on the axis, the shift on the frame
     ([20, 22], "3 mm", "rule"),  # reference and pitch line are one; the angle's sign on its arc

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.few import few
+from tests.few import few, seldom
 from tests.project_files import EVEN, MASS, MOMENT, SLIDER, read
 from tmm_sheets import summary
 from tmm_sheets.__main__ import run
@@ -72,7 +72,7 @@ def test_sheets_are_clean(project, sheet):
 
 @pytest.mark.parametrize("project", few(FILES, next(path for path in FILES if path.stem == "feeder")), indirect=True, ids=NAME)
 def test_other_positions_can_be_the_analysed_one(project):
-    for label in project.cycle.labels[::3]:
+    for label in project.cycle.labels[1::5]:
         cycle = project.variant.cycle.model_copy(update={"force_position": label})
         other = Project(project.variant.model_copy(update={"cycle": cycle}))
         other.study = project.study
@@ -103,7 +103,7 @@ def test_one_group_alone():
     assert not composed(Project(read(*MASSLESS, MASS, MOMENT)), 1).crowded
 
 
-@pytest.mark.parametrize(("sheets", "codes"), [(["kinematics_forces", "friction", "engine_2"], ["Д1", "Д2", "Д3"]),
+@pytest.mark.parametrize(("sheets", "codes"), [seldom(["kinematics_forces", "friction", "engine_2"], ["Д1", "Д2", "Д3"]),
                                                (["kinematics_forces", "engine_2", "friction"], ["Д1", "Д2", "Д5"])])
 def test_no_two_sheets_of_a_project_have_one_designation(sheets, codes):
     given = variant.read(Path(__file__).parents[1] / "projects" / "pump.toml")

@@ -51,7 +51,7 @@ SHAPES = {
 @pytest.mark.parametrize("shape", few(SHAPES, "coupler point behind", "tall"))
 def test_mechanisms_of_every_shape_keep_their_places(shape):
     mechanism, *place = SHAPES[shape]
-    for position in range(0, 12, 3):
+    for position in (0, 6):
         opened = project(mechanism, EVEN, MOMENT, masses(*place), {"cycle.force_position": str(position)})
         done = composed(opened, 1)
         assert not done.leaving

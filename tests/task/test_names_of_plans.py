@@ -92,7 +92,7 @@ def chunks(kind, size):
     return [names[k : k + size] + PLAIN[: max(0, k + size - len(names))] for k in range(0, len(names), size)]
 
 
-parts = pytest.mark.parametrize("part", few(range(60), 3))
+parts = pytest.mark.parametrize("part", few(range(180), 3))
 
 
 def fitting(kind, names, taken=()):
@@ -102,7 +102,7 @@ def fitting(kind, names, taken=()):
 
 @parts
 def test_points_guides_loads_and_positions_with_signs_of_plans(part, truth):
-    for names in chunks("position", MANY)[part::60]:
+    for names in chunks("position", MANY)[part::180]:
         points = fitting("point", names, {"A", "B", "C", "D", "S2", "S3"})
         loads = fitting("force", names, {"Fc", "Mt", "M10", *filter(OWN.fullmatch, names)})
         p, found = solved(machine(points, fitting("guide", names), loads, fitting("position", names, set("0123456")), LINKS))
@@ -112,6 +112,6 @@ def test_points_guides_loads_and_positions_with_signs_of_plans(part, truth):
 
 @parts
 def test_links_with_signs_of_plans(part, truth):
-    for names in chunks("link", len(LINKS))[part::60]:
+    for names in chunks("link", len(LINKS))[part::180]:
         links = [name if name not in {"0", "1", "10", "11"} else plain for name, plain in zip(names, LINKS, strict=False)]
         assert solved(machine(PLAIN, PLAIN, PLAIN, PLAIN, links))[1] == truth, names

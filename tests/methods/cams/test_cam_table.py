@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from shapely import Polygon
 
+from tests.few import few
 from tests.methods.cams.cam_cases import cam_data, rocker_data
 from tmm_sheets.methods.cams.cam_laws import Phase
 from tmm_sheets.methods.cams.cam_profile import cam
@@ -55,9 +56,10 @@ def rocker(number, rotation):
                        follower_inertia=float(v["J_1e4"]) * 1e-4, rotation=rotation)
 
 
-def test_all_translating_followers_have_their_dimensions():
+@pytest.mark.parametrize("step", few((1, 7), 7))
+def test_all_translating_followers_have_their_dimensions(step):
     found = []
-    for number in range(1000):
+    for number in range(0, 1000, step):
         data = tappet(number)
         law = cam(data).law
         # The exact ordinates instead of the drawn ones, which are equal: the drawn ones take ten times longer.
@@ -73,7 +75,8 @@ def test_all_translating_followers_have_their_dimensions():
         assert found_zone.s0 >= max(worst) / t * (1 - 1e-12)
         assert found_zone.r0 == pytest.approx(hypot(e, found_zone.s0), rel=1e-14)
         found.append(found_zone.r0 * 1e3)
-    assert (min(found), max(found)) == pytest.approx((14.2, 103.5), abs=0.05)
+    if step == 1:
+        assert (min(found), max(found)) == pytest.approx((14.2, 103.5), abs=0.05)
 
 
 @pytest.mark.parametrize("kind", ["tappet", "same", "opposite"])
