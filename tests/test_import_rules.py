@@ -231,9 +231,10 @@ def changed_globals(tree):
     names = {t.id for node in tree.body if isinstance(node, ast.Assign | ast.AnnAssign) for t in ast.walk(node)
              if isinstance(t, ast.Name) and isinstance(t.ctx, ast.Store)}  # fmt: skip
     for function in (n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef)):
-        local = {a.arg for a in ast.walk(function) if isinstance(a, ast.arg)}
-        local |= {n.id for n in ast.walk(function) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
-        for node in ast.walk(function):
+        nodes = [*ast.walk(function)]
+        local = {a.arg for a in nodes if isinstance(a, ast.arg)}
+        local |= {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+        for node in nodes:
             if isinstance(node, ast.Global):
                 yield from node.names
             elif isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store | ast.Del):

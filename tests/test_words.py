@@ -308,6 +308,7 @@ def test_an_order_takes_its_languages_along(workers, tmp_path):
     assert 'xml:lang="en"' in (tmp_path / "lugansk-cam_rocker" / "sheet1.svg").read_text("utf-8")
 
 
+@pytest.mark.trial
 def test_an_order_takes_its_languages_along_to_a_fresh_process(tmp_path, monkeypatch):
     """As on systems without fork, and on a cluster: nothing is inherited but the environment."""
     monkeypatch.setattr(batch.multiprocessing, "get_all_start_methods", lambda: ["spawn"])

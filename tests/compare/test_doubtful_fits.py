@@ -144,6 +144,7 @@ def test_homographies_of_many_quadrilaterals():
         assert projected(h, CORNERS) == pytest.approx(quad, abs=1e-6)
 
 
+@pytest.mark.trial
 def test_a_frame_found_elsewhere_is_fitted_as_finely_as_the_first(monkeypatch):
     def nothing(*_):
         raise CannotBuild("no frame")

@@ -119,6 +119,7 @@ def test_a_view_that_is_not_named_and_not_there_is_left_out():
     assert "left out" in placed.notes[-1]
 
 
+@pytest.mark.trial
 def test_lines_side_by_side_are_not_taken_for_one_another():
     """Force plans with long vectors side by side, in their places across them: along them such vectors tell next to nothing."""
     sheet = composed(Project(catalogue.read("transport/compressor@09-В-5")), 1)

@@ -41,6 +41,7 @@ def test_one_accusation(wrong):
     assert len(outcome.extras) == sum(way == "twice" for _, way in wrong)
 
 
+@pytest.mark.trial
 def test_an_arc_goes_with_its_head():
     e = next(e for e in EXACT if e.kind == "arc" and len(e.fills) == 1)
     made = done(e, "shifted", random.Random(1))
@@ -60,6 +61,7 @@ def test_a_hatching_is_missing_though_other_lines_slant_in_its_place():
     assert [f.element.number for f in outcome.findings if f.verdict in ("red", "amber")] == [e.number]
 
 
+@pytest.mark.trial
 def test_lines_through_the_place_of_a_text_are_no_other_letters():
     """Half of the strokes of the digits lie on them."""
     e = next(e for e in EXACT if e.kind == "text" and e.text == "14")

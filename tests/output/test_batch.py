@@ -428,7 +428,7 @@ def children(pid):
 
 def begun(folder, *more):
     """A batch of two processes in the middle of its work, and these processes."""
-    running = command("build", "--all", "sixbar", "--format", "svg", "--jobs", "2", "-o", folder, *more, start_new_session=True)
+    running = command("build", "--all", "sixbar", "--sheet", "2", "--format", "svg", "--jobs", "2", "-o", folder, *more, start_new_session=True)
     until(lambda: folder.exists() and len(list(folder.iterdir())) > 2, "the first sheets")
     return running, children(running.pid)
 
@@ -436,7 +436,7 @@ def begun(folder, *more):
 def whole(folder):
     """Everything below a folder is a finished file; the number of sheets."""
     built = contents(folder)
-    assert {name.rpartition("/")[2] for name in built} <= {RECORD, "sheet1.svg", "sheet2.svg"}
+    assert {name.rpartition("/")[2] for name in built} <= {RECORD, "sheet2.svg"}
     assert all(data.endswith((b"</svg>\n", b"}\n")) for data in built.values())
     return sum(name.endswith(".svg") for name in built)
 
@@ -459,7 +459,7 @@ def waiting(*arguments):
 
 @needs_proc
 @pytest.mark.usefixtures("heard")
-@pytest.mark.parametrize(("number", "to_all"), [(signal.SIGINT, True), (signal.SIGTERM, False), seldom(signal.SIGHUP, True)])
+@pytest.mark.parametrize(("number", "to_all"), [(signal.SIGINT, True), seldom(signal.SIGTERM, False), seldom(signal.SIGHUP, True)])
 def test_a_signal_ends_a_batch_in_order(number, to_all, tmp_path):
     running, workers = begun(tmp_path)
     (os.killpg if to_all else os.kill)(running.pid, number)
@@ -472,8 +472,8 @@ def test_a_signal_ends_a_batch_in_order(number, to_all, tmp_path):
     counts = re.search(r"(\d+) built; (\d+) files", said)
     assert counts, said
     assert int(counts[1]) + int(told[1]) == 50
-    assert 0 < int(counts[2]) < 100
-    assert int(counts[2]) <= whole(tmp_path) <= int(counts[2]) + 2 * len(workers)  # of those ended at once some were not told
+    assert 0 < int(counts[2]) < 50
+    assert int(counts[2]) <= whole(tmp_path) <= int(counts[2]) + len(workers)  # of those ended at once some were not told
     until(lambda: not any(map(alive, workers)), "the end of the workers")
 
 
@@ -544,6 +544,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.trial
 def test_dask_cluster_of_two_workers(tmp_path):
     if find_spec("distributed") is None:
         pytest.skip("dask.distributed is not installed")

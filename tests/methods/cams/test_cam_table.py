@@ -20,7 +20,7 @@ from tmm_sheets.methods.cams.cam_profile import cam
 from tmm_sheets.methods.cams.cam_zone import zone
 
 TABLE = Path(__file__).parents[2] / "manuals" / "cam_table_2_9.csv"
-SAMPLE = range(0, 1000, 41)
+SAMPLE = range(0, 1000, 83)
 
 
 def columns():

@@ -21,6 +21,8 @@ CELL = 3.0
 """Cell size of the pictures that are correlated, mm."""
 CELLS = 540
 """Cells along each side of such a picture: drawings larger than 1.6 m are out of the question."""
+AT_ONCE = 4096
+"""Points whose nearest lines are looked for at once: what is about them stays in memory."""
 HIT = 1.0
 """Distance, mm, within which a line must pass a point for :meth:`KnownLines.share` to count it."""
 
@@ -72,14 +74,24 @@ class KnownLines:
         import shapely
 
         foot, unit, found = points.copy(), np.ones(len(points), complex), np.zeros(len(points), bool)
-        if not len(self.a):
-            return foot, unit, found
-        i, j = self.tree.query_nearest(shapely.points(points.real, points.imag), max_distance=within, all_matches=False)
-        a, d = self.a[j], (self.b - self.a)[j]
-        size = np.maximum(np.abs(d), 1e-12)
-        u = d / size
-        t = np.clip(((points[i] - a) * np.conj(u)).real, 0.0, size)
-        foot[i], unit[i], found[i] = a + t * u, u, True
+        for first in range(0, len(points) if len(self.a) else 0, AT_ONCE):
+            z = points[first : first + AT_ONCE]
+            # All pieces about a point: their distances in one array take a seventh of what the index needs for the nearest.
+            i, j = self.tree.query(shapely.box(z.real - within, z.imag - within, z.real + within, z.imag + within))
+            a, d = self.a[j], (self.b - self.a)[j]
+            size = np.maximum(np.abs(d), 1e-12)
+            u = d / size
+            from_a = (z[i] - a) * np.conj(u)
+            t = np.clip(from_a.real, 0.0, size)
+            off = np.abs(from_a - t)
+            # Of each point the first piece that is as near as any.
+            begin = np.flatnonzero(np.diff(i, prepend=-1))
+            least = np.repeat(np.minimum.reduceat(off, begin), np.diff(begin, append=len(i))) if len(i) else off
+            nearest = np.flatnonzero(off == least)
+            k = nearest[np.flatnonzero(np.diff(i[nearest], prepend=-1))]
+            k = k[off[k] <= within]
+            at = first + i[k]
+            foot[at], unit[at], found[at] = a[k] + t[k] * u[k], u[k], True
         return foot, unit, found
 
 
