@@ -187,7 +187,7 @@ def shape(command):
 
 @pytest.mark.parametrize("every", few((False, True), False))
 def test_other_commands_work(every, tmp_path, monkeypatch, capsys):
-    """Each command of all papers once, in one folder, in the order of the papers; of a plot and of pictures, which take long, one sheet.
+    """Each command of all papers once, in one folder, in the order of the papers; of plots and pictures, which are long, one sheet.
 
     Where not ``every`` command is tried, each has other options than those before it and those of the first own project.
     """
@@ -217,7 +217,8 @@ QUICK = ("list", "show", "check", "solve", "protocol")
 def test_quick_commands_work(paper, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     Path("my.toml").write_text(catalogue.read("lugansk/shaper").text, encoding="utf-8")
-    before = [shape(shlex.join(c)) for text in list(TEXTS.values())[:list(TEXTS).index(paper)] for c in typed(text, "tmm-sheets") if c]
+    texts = list(TEXTS.values())[:list(TEXTS).index(paper)]
+    before = [shape(shlex.join(c)) for text in texts for c in typed(text, "tmm-sheets") if c]
     for arguments in typed(TEXTS[paper], "tmm-sheets"):
         if arguments and arguments[0] in QUICK and "PROJECT" not in arguments and shape(shlex.join(arguments)) not in before:
             if "-o" in arguments:

@@ -327,12 +327,12 @@ def test_a_bad_file_of_views(tmp_path, text, said):
 
 
 def test_the_wrong_sheet_is_told_and_the_right_one_named(tmp_path):
-    both = project_files.project(project_files.GEAR, project_files.CAM)
-    gear = drawn(elements(composed(both, 1)))
+    both = project_files.project(project_files.CRANK, project_files.REDUCER)
+    first = drawn(elements(composed(both, 1)))
     with pytest.raises(BadInput, match=r"only \d+ % of the lines of sheet 2 are in this drawing") as e:
-        compare(gear, tmp_path, 2, project=both)
+        compare(first, tmp_path, 2, project=both)
     assert "it looks like sheet 1: use --sheet 1" in e.value.problems[0].hint
-    assert compare(gear, tmp_path, None, project=both).tree["sheet"] == 1
+    assert compare(first, tmp_path, None, project=both).tree["sheet"] == 1
 
 
 @pytest.mark.trial

@@ -428,7 +428,8 @@ def children(pid):
 
 def begun(folder, *more):
     """A batch of two processes in the middle of its work, and these processes."""
-    running = command("build", "--all", "sixbar", "--sheet", "2", "--format", "svg", "--jobs", "2", "-o", folder, *more, start_new_session=True)
+    running = command("build", "--all", "sixbar", "--sheet", "2", "--format", "svg", "--jobs", "2", "-o", folder, *more,
+                      start_new_session=True)
     until(lambda: folder.exists() and len(list(folder.iterdir())) > 2, "the first sheets")
     return running, children(running.pid)
 
