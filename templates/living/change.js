@@ -45,8 +45,7 @@ const changed = () => record.motion.givens.filter((g) => String(machine.given[g.
 
 function showEdits() {
   if (!$("undo")) return;
-  // Searches are the project's: what they found does not follow other numbers.
-  $("stale").hidden = !changed().length || !record.motion.inputs.some((input) => "strokes" in input || "fixed" in input);
+  $("stale").hidden = !changed().length || !record.motion.all.inputs.some((input) => "found" in input);
   $("undo").disabled = !edits.done.length;
   $("redo").disabled = !edits.undone.length;
   $("reset").disabled = $("save").disabled = !changed().length;
@@ -61,11 +60,11 @@ function projectFile() {
     const value = machine.given[g.name], n = g.line - 1, unit = g.unit ? ` ${g.unit.replaceAll("*", "·")}` : "";
     const text = (x) => (g.unit ? `"${Number(x.toPrecision(12))}${unit}"` : `${Number(x.toPrecision(12))}`);
     const written = Array.isArray(value) ? `[${value.map(text).join(", ")}]` : text(value);
-    const place = /\[(\d+)\]$/.exec(g.name);  // one of a row of numbers
+    const place = /\[(\d+)\]$/.exec(g.name), key = /([^.\[\]]+)(\[\d+\])?$/.exec(g.name)[1]; // one of a row of numbers; in a line or in { }
+    const behind = new RegExp(`((?:^|[{,\\s"'])${key.replace(/[^\p{L}\p{N}_]/gu, "\\$&")}["']?\\s*=\\s*)(\\[[^\\]]*\\]|"[^"]*"|[^#\\s,}]+)`, "u");
     let at = -1;
-    lines[n] = place
-      ? lines[n].replace(/=\s*\[[^\]]*\]/, (row) => row.replace(/"[^"]*"|[\d.eE+-]+/g, (one) => (++at === Number(place[1]) ? written : one)))
-      : lines[n].replace(/=\s*(\[[^\]]*\]|"[^"]*"|[^#\s]+)/, () => `= ${written}`);
+    lines[n] = lines[n].replace(behind, (all, before2, old) => before2 + (place
+      ? old.replace(/"[^"]*"|[\d.eE+-]+/g, (one) => (++at === Number(place[1]) ? written : one)) : written));
   }
   return lines.join("\n");
 }
@@ -81,7 +80,7 @@ function tellLost(lost, values) {
   if (!place) return;
   place.hidden = !lost;
   if (!lost) return;
-  const first = Object.entries(record.motion.results).find(([id, [p]]) => id.startsWith("positions") && Number.isNaN(values[p]));
+  const first = Object.entries(record.motion.all.results).find(([id, [p]]) => id.startsWith("positions") && Number.isNaN(values[p]));
   const gap = first && gapOf(first[0], values);
   place.textContent = say("does not assemble at this angle") + (first ? `: ${stepOf(first[0]).name}` : "") + (gap ? `, ${say("gap")} ${told(gap, "m")}` : "");
 }
@@ -89,7 +88,7 @@ function tellLost(lost, values) {
 // By how much two arcs, or an arc and a line, miss each other, m.
 function gapOf(id, values) {
   const s = stepOf(id), own = (arg) => {
-    if (arg.step !== undefined) { const r = record.motion.results[arg.step]; return r ? (r[1] === 2 ? [values[r[0]], values[r[0] + 1]] : values[r[0]]) : stepOf(arg.step).value; }
+    if (arg.step !== undefined) { const r = record.motion.all.results[arg.step]; return r ? (r[1] === 2 ? [values[r[0]], values[r[0] + 1]] : values[r[0]]) : stepOf(arg.step).value; }
     return machine.given[arg.name] ?? arg.given;
   };
   const args = s.args.map(own);
@@ -109,7 +108,7 @@ function changePanel() {
   const fixed2 = wanted.filter((g) => Array.isArray(g.value));
   const found = [node("p", { class: "bad", id: "lost", role: "alert", hidden: true }), node("p", { class: "hint" }, say("drag the crank pin or a slider")),
     node("div", { class: "chips" }, button("undo", "undo", undo), button("redo", "redo", redo), button("reset", "reset", reset), button("save", "save as project file", save)),
-    node("p", { class: "hint", id: "stale", hidden: true }, say("found by searches")),
+    node("p", { class: "hint", id: "stale", hidden: true }, say("by the flywheel")),
     ...group("lengths", ["m"]), ...group("angles", ["rad"]), ...group("speeds", ["rad/s", "m/s"]), ...group("masses", ["kg", "kg*m2"]),
     ...(fixed2.length ? [node("h3", {}, say("fixed points")), ...fixed2.flatMap(slidersOf)] : [])];
   return found;

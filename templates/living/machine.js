@@ -1,39 +1,64 @@
 // The linkage in numbers: its program run for a crank angle and for given numbers, which may be other than those of the project.
 
-const machine = { phi: 0, given: {}, made: {}, watchers: [] };
+const machine = { phi: 0, given: {}, made: {}, found: null, watchers: [] };
 
 function startMachine() {
   const m = record.motion;
   if (!m) return;
   const told = (x) => (x === null ? NaN : Array.isArray(x) ? x.map(told) : x && typeof x === "object"
     ? Object.fromEntries(Object.entries(x).map(([k, v]) => [k, told(v)])) : x);
-  m.constants = m.constants.map(told);
-  for (const input of m.inputs) if ("fixed" in input) input.fixed = told(input.fixed);
+  for (const [part, program] of [["all", PROGRAM], ["watched", WATCHED]]) {
+    m[part].program = program;
+    m[part].constants = m[part].constants.map(told);
+    for (const input of m[part].inputs) if ("fixed" in input) input.fixed = told(input.fixed);
+  }
   for (const g of m.givens) machine.made[g.name] = machine.given[g.name] = g.value;
 }
 
-// Value of a row that follows strokes, at an angle turned.
-function byStroke({ borders, at: there, between }, turned, period) {
-  const t = mod(turned, period);
-  for (let i = 0; i < borders.length; i++) {
-    if (Math.abs(t - borders[i]) < NEAR || (i === 0 && period - t + borders[0] < NEAR)) return there[i];
+// What searches find for the given numbers as they are.
+const found = () => (machine.found?.given === machine.given ? machine.found : (machine.found = searched(machine.given)));
+
+const isMade = (given) => Object.entries(machine.made).every(([name, value]) => given[name] === value);
+
+// Parts of the results of a program at a crank angle, with what is found of the searches up to now.
+function run({ program, inputs, constants }, phi, { given, start, courses, loads }, assumed = []) {
+  const turned = record.motion.sense * (phi - start);
+  return program(inputs.map((input) => {
+    if (input.given !== undefined) return given[input.given];
+    if (input.angle !== undefined) return input.angle === "world" ? phi : turned;
+    if (input.course !== undefined) return (courses[input.course] ?? NO_COURSE)[input.row];
+    if (input.load !== undefined) return loads[input.load] ? rowOf(loads[input.load], input, turned) : NaN;
+    if (input.friction !== undefined) return assumed[input.friction] ?? 0;
+    // What plans found that the page does not have holds for the project's own numbers alone.
+    return input.fixed ?? (isMade(given) ? input.found : NaN);
+  }), constants, PRIMITIVES);
+}
+
+const MOST = 400, DAMPED = 60, SETTLED = 1e-13;
+
+// The same with friction: approximations until every reaction stays, as methods/linkage/approximations.py does.
+function settled(phi, now) {
+  const pairs = record.motion.searches.friction, { all } = record.motion, reaction = (pair, values) => argumentOf(pair.force, values, now.given, all);
+  let assumed = pairs.map(() => 0);
+  for (let n = 0; n < MOST; n++) {
+    const values = run(all, phi, now, assumed), most = Math.max(...pairs.map((pair) => size(reaction(pair, values))));
+    const next = pairs.map((pair) => {
+      const force = reaction(pair, values);
+      return pair.slides ? Math.sign(plainCross(argumentOf(pair.slides, values, now.given, all), force)) : size(force);
+    });
+    if (n && next.every((x, i) => !(Math.abs(x - assumed[i]) > SETTLED * (pairs[i].slides ? 1 : most)))) return run(all, phi, now, next);
+    assumed = next.map((x, i) => (n > DAMPED && !pairs[i].slides ? (x + assumed[i]) / 2 : x));
   }
-  const i = upTo(borders, t) - 1;
-  return between[i < 0 ? borders.length - 1 : i];
+  return run(all, phi, now, pairs.map(() => NaN));
 }
 
 // Parts of all results at a crank angle, rad, counter-clockwise from the x axis.
-function parts(phi, given = machine.given) {
-  const m = record.motion, turned = m.sense * (phi - m.start);
-  const x = m.inputs.map((input) => ("given" in input ? given[input.given] : "fixed" in input ? input.fixed
-    : "strokes" in input ? byStroke(input.strokes, turned, m.period) : input.angle === "world" ? phi : turned));
-  return PROGRAM(x, m.constants, PRIMITIVES);
-}
+const parts = (phi) => (record.motion.searches.friction.length ? settled(phi, found()) : run(record.motion.all, phi, found()));
 
 function valuesAt(phi) {
-  const found = parts(phi), named = {};
-  for (const [id, [place, count]] of Object.entries(record.motion.results)) {
-    named[id] = count === 2 ? [found[place], found[place + 1]] : found[place];
+  const values = parts(phi), named = {};
+  for (const [id, [place, count]] of Object.entries(record.motion.all.results)) {
+    named[id] = count === 2 ? [values[place], values[place + 1]] : values[place];
   }
   return named;
 }

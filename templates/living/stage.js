@@ -17,7 +17,7 @@ function liveViews() {
 
 // Anchors of a mark and its direction on the sheet, mm, y upwards; distances are so many times smaller than there.
 function placer(values, shrunk = 1) {
-  const number = (id) => { const [place, count] = record.motion.results[id]; return count === 2 ? [values[place], values[place + 1]] : values[place]; };
+  const number = (id) => { const [place, count] = record.motion.all.results[id]; return count === 2 ? [values[place], values[place + 1]] : values[place]; };
   const turnedBy = (mark, [x, y]) => {
     const w = [x / mark.mu[0] / shrunk, (mark.mirror ? -1 : 1) * y / mark.mu[1] / shrunk];
     return mark.turn ? mul(cis(mark.turn), w) : w;
@@ -196,11 +196,11 @@ function drawVanes(placed, values) {
   for (const old of over.querySelectorAll(".vane, .vanehead")) old.remove();
   const scaled = stage.cards.find((card) => card.live.plan === "velocities");
   if (!stage.vanes || !scaled) return;
-  const mark = first.marks[0], mu = scaled.marks[0].mu[0], result = (id) => { const [p] = record.motion.results[id]; return [values[p], values[p + 1]]; };
-  for (const id of Object.keys(record.motion.results)) {
-    if (!id.startsWith("velocities/") || record.motion.results[id][1] !== 2) continue;
+  const mark = first.marks[0], mu = scaled.marks[0].mu[0], result = (id) => { const [p] = record.motion.all.results[id]; return [values[p], values[p + 1]]; };
+  for (const id of Object.keys(record.motion.all.results)) {
+    if (!id.startsWith("velocities/") || record.motion.all.results[id][1] !== 2) continue;
     const point = `positions/${id.slice(11, 12).toUpperCase()}${id.slice(12)}`;
-    if (!(point in record.motion.results) || !["point", "vector"].includes(stepOf(id).kind)) continue;
+    if (!(point in record.motion.all.results) || !["point", "vector"].includes(stepOf(id).kind)) continue;
     const a = placed.point(mark, point), v = scale(VANE / mu / scaled.shrunk, result(id)), long = size(v), b = add(a, v), u = straight(v);
     if (!(long > 3)) continue;
     over.append(svgNode("path", { class: "vane", d: polyPath([a, b], 0) }),

@@ -18,9 +18,13 @@ from tmm_sheets.living.page import MODULES, page
 from tmm_sheets.project import Project
 from tmm_sheets.resources import template
 
-FEEDER = "tests/projects/feeder.toml"
-NAMES = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/3:2", "loom", FEEDER)
+FEEDER, PUMP = "tests/projects/feeder.toml", "tests/projects/pump.toml"
+NAMES = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/3:2", "loom", FEEDER, PUMP)
 each = pytest.mark.parametrize("name", few(NAMES, "lugansk/shaper", "sixbar/3:2"))
+UNEVEN = ("press",)
+"""Cranks that run as the flywheel lets them."""
+CHOSEN = ("positions.special.", "forces.friction.approximations")
+"""Chosen by the very angles that are asked: the legs whose normals meet best, how many approximations."""
 LARGEST = 3_000_000
 
 
@@ -35,7 +39,8 @@ def record_of(text):
 
 
 def program_of(text):
-    return re.search("const PROGRAM = (.*?);\n//", text, re.S)[1]
+    """Both programs of a page, as they stand in it."""
+    return re.search("const PROGRAM = .*?;\n(?=//)", text, re.S)[0]
 
 
 def test_one_file_without_network():
@@ -88,11 +93,12 @@ def test_a_project_without_a_linkage_has_no_motion(tmp_path):
     assert "motion" not in record_of(found)
 
 
-RUN = javascript.modules("digits", "primitives", "machine") + """
+NUMBERS = ("digits", "primitives", "strokes", "courses", "searches", "machine")
+RUN = javascript.modules(*NUMBERS) + """
 const result = ({ motion, cases }) => {
   record = { motion };
   startMachine();
-  return cases.map(([phi, given]) => { Object.assign(machine.given, machine.made, given); return valuesAt(phi); });
+  return cases.map(([phi, given]) => { if (given) machine.given = { ...machine.made, ...given }; return valuesAt(phi); });
 };
 """
 
@@ -103,14 +109,14 @@ def told_at(project, phi):
 
 
 def compare(told, values, record, parts):
-    """How many quantities of `solve` the page has; all of them alike to 1e-9 of the greatest of each."""
-    compared = 0
+    """Quantities of `solve` that the page has: their names, values in the page and those of `solve`."""
     for part in parts:
         for quantity, of in told.get(part, {}).items():
             for key in of if hasattr(of, "keys") else ():
                 path = f"{part}.{quantity}.{key}"
                 result = record["results"].get(path)
-                if result is None or result["step"] not in values[0] or key == "difference_percent":  # that is rounding alone
+                # A difference in per cent is rounding alone.
+                if result is None or result["step"] not in values[0] or key == "difference_percent" or path.startswith(CHOSEN):
                     continue
                 own = np.asarray(getattr(of[key], "value", of[key]))
                 own = np.broadcast_to(own, (len(values),)) if own.ndim == 0 else own
@@ -120,8 +126,9 @@ def compare(told, values, record, parts):
                 found = np.asarray(found)
                 if result.get("part"):
                     found = {"x": np.real, "y": np.imag, "abs": np.abs, "angle": np.angle}[result["part"]](found)
+                if ".arms." in path:  # a moment by a force that may all but vanish
+                    found, own = found / (1 + found), own / (1 + own)
                 yield path, found, own
-                compared += 1
 
 
 @javascript.needed
@@ -132,51 +139,64 @@ def test_values_are_those_of_solve(name, tmp_path):
     record = record_of(text)
     phi = np.random.default_rng(1).uniform(-np.pi, np.pi, 200)
     told = told_at(Project(catalogue.read(name)), tuple(phi))
-    run = f"let record;\nconst PROGRAM = {program_of(text)};\n{RUN}"
-    values = javascript.run(run, {"motion": record["motion"], "cases": [[x, {}] for x in phi.tolist()]}, tmp_path)
-    compared = 0
+    run = f"let record;\n{program_of(text)}\n{RUN}"
+    values = javascript.run(run, {"motion": record["motion"], "cases": [[x, None] for x in phi.tolist()]}, tmp_path)
+    compared, seen = 0, set()
     for path, found, own in compare(told, values, record, ("positions", "velocities", "accelerations", "forces")):
         np.testing.assert_allclose(found, own, rtol=0, atol=1e-9 * (np.nanmax(np.abs(own)) or 1.0), err_msg=path)
         compared += 1
+        seen.add(path.partition(".")[0])
     assert compared > 8
+    assert {p for p in ("accelerations", "forces") if p in told} <= seen
 
 
-SAVED = javascript.modules("digits", "primitives", "machine", "change") + """
+SAVED = javascript.modules(*NUMBERS, "change") + """
 const result = ({ motion, file, cases }) => {
   record = { motion, file };
   startMachine();
   return cases.map(([phi, given]) => {
-    machine.given = { ...machine.made, ...given };
+    if (given) machine.given = { ...machine.made, ...given };
     return { values: valuesAt(phi), file: projectFile() };
   });
 };
 """
-LENGTHS = 3
+SETS, ANGLES = 10, 20
+"""So many sets of other lengths, masses and speeds, and angles for each of them."""
 
 
 def other_numbers(record, rng, share):
-    """Other lengths, masses and a speed, different by some share, for as many cases as LENGTHS."""
+    """Other lengths, masses and a speed, different by some share; the fixed points as well."""
     own = [g for g in record["motion"]["givens"] if "line" in g and g["unit"] in ("m", "kg", "kg*m2", "rad/s")]
-    for _ in range(LENGTHS):
-        yield [rng.uniform(-3, 3), {g["name"]: (np.asarray(g["value"]) * rng.uniform(1 - share, 1 + share)).tolist() for g in own}]
+    return {g["name"]: (np.asarray(g["value"]) * rng.uniform(1 - share, 1 + share)).tolist() for g in own}
 
 
 @javascript.needed
-@each
-def test_a_saved_file_gives_what_the_page_showed(name, tmp_path):
-    """Other lengths and masses: the project file that is saved can be read, and its values are those of the page."""
+@pytest.mark.parametrize("name", few(NAMES, "press", FEEDER))
+def test_other_lengths_give_what_solve_gives(name, tmp_path):
+    """At random angles and lengths: the project file that is saved can be read, and its values are those of the page.
+
+    What hangs on a flywheel that the page does not compute is undefined there, not near.
+    """
     text = made(name)
-    record = record_of(text)
-    # A group of class III is put together next to where it stands in the project.
-    cases = list(other_numbers(record, np.random.default_rng(2), 0.003 if name == "loom" else 0.02))
-    run = f"let record;\nconst PROGRAM = {program_of(text)};\n{SAVED}"
-    for (phi, _), found in zip(cases, javascript.run(run, {**record, "cases": cases}, tmp_path), strict=True):
+    record, rng = record_of(text), np.random.default_rng(2)
+    sets = [other_numbers(record, rng, 0.05) for _ in range(SETS)]
+    cases = [[x, given if n == 0 else None] for given in sets for n, x in enumerate(rng.uniform(-np.pi, np.pi, ANGLES).tolist())]
+    shown = javascript.run(f"let record;\n{program_of(text)};\n{SAVED}", {**record, "cases": cases}, tmp_path)
+    parts = ("positions", "velocities", "accelerations", "forces")
+    compared = undefined = 0
+    for n in range(SETS):
+        own = slice(n * ANGLES, (n + 1) * ANGLES)
         path = tmp_path / "saved.toml"
-        path.write_text(found["file"], encoding="utf-8")
-        project = Project(catalogue.read(str(path)))
-        told = told_at(project, (phi,))
-        for quantity, value, own in compare(told, [found["values"]], record, ("positions", "velocities")):
-            np.testing.assert_allclose(value, own, rtol=0, atol=1e-9 * max(np.abs(own).max(), 0.1), err_msg=quantity)
+        path.write_text(shown[own][0]["file"], encoding="utf-8")
+        told = told_at(Project(catalogue.read(str(path))), tuple(phi for phi, _ in cases[own]))
+        for quantity, value, exact in compare(told, [one["values"] for one in shown[own]], record, parts):
+            if name in UNEVEN and quantity.startswith(("accelerations", "forces")) and np.isnan(value).all():
+                undefined += 1
+                continue
+            np.testing.assert_allclose(value, exact, rtol=0, atol=1e-9 * (np.nanmax(np.abs(exact)) or 1.0), err_msg=quantity)
+            compared += 1
+    assert compared > 8 * SETS
+    assert (undefined > 0) == (name in UNEVEN)
 
 
 EVERY_FILM = """<script>

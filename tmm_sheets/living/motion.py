@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.given import Given, GivenNumber, GivenPoint
+from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.given import GivenNumber, GivenPoint
 from tmm_sheets.construction.javascript_language import Source, told
 from tmm_sheets.construction.program import depending, is_row, program, rows_of
 from tmm_sheets.construction.step import Step, ordered, parents, value_of
+from tmm_sheets.living.searches import Searches
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.linkage.loads import Applied
     from tmm_sheets.methods.linkage.study import Study
     from tmm_sheets.project import Project
     from tmm_sheets.record.step_index import StepIndex
@@ -33,51 +34,83 @@ ANY = 101
 
 
 @dataclass(frozen=True)
-class Motion:
-    """The program of a linkage's plans with what it takes.
+class Written:
+    """A program as text with how the page has each of its inputs.
 
-    ``source`` is its text; ``inputs`` say how each input is had in the page: {"angle": "world"} or "turned", {"strokes": ...} by
-    the angle turned, {"fixed": value}, or {"given": name}. ``crank`` are the ids of its pivot and its pin; ``start`` its angle in
-    position 0, rad.
+    {"angle": "world"} or "turned", {"course": ...}, {"load": ...} or {"friction": ...} by a search, {"fixed": value},
+    {"found": value} by plans that the page does not have, {"given": name}.
     """
 
     source: Source
     inputs: list[dict[str, Any]]
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """What the page takes besides the text."""
+        return {"inputs": self.inputs, "results": self.source.results, "constants": self.source.constants}
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The program of a linkage's plans with what it takes.
+
+    ``all`` computes every plan, ``watched`` what ``searches`` ask for. ``crank`` are the ids of its pivot and its pin; ``start``
+    its angle in position 0, rad.
+    """
+
+    all: Written
+    watched: Written
     givens: list[dict[str, Any]]
     crank: tuple[str, str]
     start: float
     sense: float
     period: float
+    searches: dict[str, Any]
 
     def told(self) -> dict[str, Any]:
-        """What the page takes besides the program's text."""
-        return {"inputs": self.inputs, "givens": self.givens, "results": self.source.results, "constants": self.source.constants,
-                "crank": self.crank, "start": self.start, "sense": self.sense, "period": self.period}
+        """What the page takes besides the programs' texts."""
+        return {"all": self.all.told, "watched": self.watched.told, "givens": self.givens, "crank": self.crank,
+                "start": self.start, "sense": self.sense, "period": self.period, "searches": self.searches}
 
 
 def motion(project: Project, index: StepIndex) -> Motion:
     """The program of all plans of a project's linkage, by the ids of their steps in the record."""
     study, cycle = _studied(project), project.cycle
     own = [step for plan in study.plans.values() for step in (*plan.auxiliaries.values(), *plan)]
-    rows, objects = dict(_strokes(study, own)), dict[int, Any]()
-    for x in (study.positions.angle, cycle.turned_row(study.turned), *rows_of(own, len(study.turned))):
-        for name, angles in (("world", study.positions.phi), ("turned", study.turned)):
-            if np.array_equal(value_of(x), angles) and id(x) not in rows:
+    search = Searches(project, study, own)
+    rows = dict(search.inputs)
+    taken = {id(a): a for step in ordered(own, parents) for a in step.args if id(a) in rows}
+    angles = (study.positions.angle, cycle.turned_row(study.turned), *rows_of(own, len(study.turned)))
+    for x in angles:
+        for name, row in (("world", study.positions.phi), ("turned", study.turned)):
+            if np.array_equal(value_of(x), row) and id(x) not in rows:
                 rows[id(x)] = {"angle": name}
-        if id(x) in rows:
-            objects[id(x)] = x
-    lost = _lost(own, objects, len(study.turned))
+    objects = {id(x): x for x in angles if id(x) in rows} | taken
+    # A number that a search finds makes nothing move by itself.
+    over = {key: x for key, x in objects.items() if "row" not in rows[key] or rows[key]["row"] in ("ahead", "sign")}
+    lost = _lost(own, over, len(study.turned))
     wanted = {step.path: step for step in own
-              if step.path in index.steps and id(step) not in lost and np.ndim(step.value) < 2 and _plain(step)}
-    frozen = dict(_frozen(wanted.values(), objects))
-    fixed = [{"fixed": told(step.value)} for step in frozen.values()]
-    chosen = _givens(wanted.values(), {*objects, *frozen})
-    made = program(wanted, [*objects.values(), *frozen.values()], [*chosen], exact=True)
-    inputs = [*(rows[key] for key in objects), *fixed, *({"given": name} for name in chosen)]
+              if step.path in index.steps and id(step) not in lost and np.ndim(step.value) < 2 and _plain(step)} | search.forces
+    chosen: dict[str, GivenNumber | GivenPoint] = {}
+
+    def written(steps: Mapping[str, Step]) -> Written:
+        frozen = dict(_frozen(steps.values(), over))
+        own = _givens(steps.values(), {*objects, *frozen})
+        chosen.update(own)
+        made = program(steps, [*objects.values(), *frozen.values()], [*own], exact=True)
+        inputs = [*(rows[key] for key in objects), *map(_fixed, frozen.values()), *({"given": name} for name in own)]
+        return Written(Source(made), inputs)
+
     points, crank = study.positions.points, study.mechanism.crank
     ends = points[crank.pivot].path, points[crank.pin].path
-    return Motion(Source(made), inputs, [_told_given(g) for g in chosen.values()], ends,
-                  float(cycle.start), float(cycle.sense), float(cycle.period))
+    every, watched = written(wanted), written(search.watched)
+    return Motion(every, watched, [_told_given(g) for g in chosen.values()], ends, float(cycle.start), float(cycle.sense),
+                  float(cycle.period), search.told)
+
+
+def _fixed(step: Step) -> dict[str, Any]:
+    """A step that is taken as it is: a diagram of a load, or a number that other plans found."""
+    return {"fixed": told(step.value)} if isinstance(step.value, Curve) else {"found": told(step.value)}
 
 
 def _studied(project: Project) -> Study:
@@ -96,32 +129,6 @@ def _studied(project: Project) -> Study:
 
 def _plain(step: Step) -> bool:
     return np.asarray(step.value).dtype.kind in "fci"
-
-
-def _strokes(study: Study, steps: Iterable[Step]) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Rows of loads that follow strokes: which way a diagram is passed, and the sign it has."""
-    named: dict[str, list[Given]] = {}
-    for row in rows_of(steps, len(study.turned)):
-        if isinstance(row, Given):
-            named.setdefault(row.name, []).append(row)
-    for load in study.applied if "loads" in vars(study) else ():
-        if hasattr(load.law, "strokes"):
-            borders, ahead, signs = _pieces(load, study.cycle.period)
-            for row in named.get(f"sense of {load.name}", ()):
-                yield id(row), {"strokes": {"borders": borders, **ahead}}
-            for n, row in enumerate(named.get(f"sign of {load.name}", ())):  # recorded once more for the reduced moment
-                yield id(row), {"strokes": {"borders": borders, **signs[n % len(signs)]}}
-
-
-def _pieces(load: Applied, period: float) -> tuple[list[float], dict[str, Any], list[dict[str, Any]]]:
-    """Angles turned where a load changes its stroke, its rows at them and between each and the next."""
-    assert load.motion is not None
-    ends = {float(np.mod(t, period)) for r in load.motion.runs for t in (r.begin, r.end)} | {0.0}
-    borders = sorted(ends)
-    middles = [(a + b) / 2 for a, b in zip(borders, [*borders[1:], period], strict=True)]
-    at, between = (load.law.strokes(np.array(t)) for t in (borders, middles))  # type: ignore[attr-defined]
-    rows = [{"at": told(x), "between": told(y)} for x, y in zip((at[0], *at[1]), (between[0], *between[1]), strict=True)]
-    return borders, rows[0], rows[1:]
 
 
 def _lost(steps: Iterable[Step], known: Mapping[int, Any], positions: int) -> set[int]:
@@ -159,6 +166,7 @@ def _called(tree: Any, seen: dict[int, None]) -> Iterator[str]:
 
 def _frozen(wanted: Iterable[Step], known: Mapping[int, Any]) -> Iterator[tuple[int, Step]]:
     """Steps taken as they are: what plans with other positions gave, such as how unevenly the crank runs."""
+    wanted = list(wanted)
     moving = {id(step) for step in depending(wanted, known.values(), ())}
     still: set[int] = set()
     for step in ordered(wanted, parents):
@@ -170,6 +178,7 @@ def _frozen(wanted: Iterable[Step], known: Mapping[int, Any]) -> Iterator[tuple[
             for p in parents(step):
                 if id(p) in still and id(p) not in known:
                     yield id(p), p
+    yield from ((id(step), step) for step in wanted if id(step) in still)
 
 
 def _givens(wanted: Iterable[Step], stop: set[int]) -> dict[str, GivenNumber | GivenPoint]:

@@ -14,7 +14,7 @@ from tmm_sheets import results, spelling, words
 from tmm_sheets.drawing.styles import line_types
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.living.hanging import hung
-from tmm_sheets.living.motion import Motion, motion
+from tmm_sheets.living.motion import Motion, Written, motion
 from tmm_sheets.living.page_words import page_words
 from tmm_sheets.note import phrases
 from tmm_sheets.record import recording
@@ -25,8 +25,8 @@ from tmm_sheets.words import tell
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
-MODULES = ("digits", "primitives", "formula", "data", "machine", "sheet", "viewport", "steps", "ask", "player", "stage", "drag",
-           "change", "main")
+MODULES = ("digits", "primitives", "strokes", "courses", "searches", "formula", "data", "machine", "sheet", "viewport", "steps",
+           "ask", "player", "stage", "drag", "change", "main")
 """Modules of the page in templates/living, in the order in which they stand in it."""
 
 
@@ -49,7 +49,7 @@ def page(project: Project, numbers: Iterable[int] = (), plan: str = "") -> tuple
         lines = scan(project.variant.text).lines
         record["motion"] = made.told() | {"givens": [g | _line(lines, g["name"]) for g in made.givens]}
         for sheet in record["sheets"]:
-            sheet["live"] = hung(record, sheet, made.source.results)
+            sheet["live"] = hung(record, sheet, made.all.source.results)
     _check_plan(record, plan)
     variant = project.variant
     record |= {
@@ -99,10 +99,15 @@ def _written(record: Mapping[str, Any], made: Motion | None) -> str:
     parts = {
         "lang": str(record["lang"]), "title": escape(", ".join(filter(None, (record["project"], record["variant"])))),
         "style": _text("page.css"), "font": b64encode(template("fonts/TMMSheetsB.ttf").read_bytes()).decode(),
-        "record": b64encode(packed).decode(), "program": made.source.text.replace("</", "<\\/") if made is not None else "null",
+        "record": b64encode(packed).decode(), "program": _program(made.all) if made is not None else "null",
+        "watched": _program(made.watched) if made is not None else "null",
         "modules": "\n".join(_text(f"{name}.js") for name in MODULES),
     }  # fmt: skip
     return re.sub(r"<!--(\w+)-->", lambda m: parts[m[1]], _text("page.html"))
+
+
+def _program(written: Written) -> str:
+    return written.source.text.replace("</", "<\\/")
 
 
 def _text(name: str) -> str:

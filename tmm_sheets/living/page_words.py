@@ -12,6 +12,8 @@ def page_words() -> dict[str, str]:
         "and {n} more": tr("and {n} more"),
         "angles": tr("Angles"),
         "back": tr("← Back"),
+        "by the flywheel": tr("How unevenly the crank runs comes from the flywheel, which this page does not compute: with other "
+                              "numbers there are no accelerations and forces here. Save the file and solve it."),
         "click a line": tr("Click a line, a point or a letter: the step that made it, what it is made of, why."),
         "crank angle": tr("Crank angle"),
         "crank pin: drag it round": tr("Crank pin: drag it round"),
@@ -19,9 +21,6 @@ def page_words() -> dict[str, str]:
         "drag the crank pin or a slider": tr("Drag the crank pin round, or a slider: all plans follow."),
         "fixed points": tr("Fixed points"),
         "find": tr("Find a step or a result"),
-        "found by searches": tr("Strokes of the loads and the uneven running of the crank stay those of the project: forces, and "
-                                "accelerations of an uneven crank, are then only near. "
-                                "Save the file and solve it for the exact ones."),
         "from it follow": tr("From it follow"),
         "gap": tr("gap"),
         "given": tr("given"),
