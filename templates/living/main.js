@@ -23,6 +23,7 @@ function openTab(name, sheet) {
     showEdits();
     openStage();
   } else {
+    machine.watchers = [drawPointers];
     openSheet(sheet ?? leaf.sheet.sheet, true);
     unask();
     showPlaying();
@@ -60,6 +61,7 @@ async function start() {
   const tab = (attributes, text, act) => node("button", { type: "button", role: "tab", ...attributes, onclick: act }, text);
   $("tabs").append(...record.sheets.map((s) => tab({ "data-sheet": s.sheet }, say("sheet {n}", { n: s.sheet }), () => openTab("draw", s.sheet))));
   if (record.motion && record.sheets.some((s) => s.live?.length)) $("tabs").append(tab({ "data-tab": "turn" }, say("in motion"), () => openTab("turn")));
+  makeTurner();
   watchViewport(clicked);
   setTimeout(watchFind);
   if (record.motion) machine.phi = phiOf(record.sheets.flatMap((s) => s.live ?? []).find((v) => v.plan === "positions"));

@@ -49,6 +49,7 @@ function drawSheet(sheet) {
   svg.setAttribute("aria-label", sheet.title);
   leaf.elements = [...svg.querySelectorAll("#marks > *")];
   leaf.outlines = null;
+  drawMarkers(sheet);
 }
 
 // Points along each mark that comes from a step, to find the one that is meant.

@@ -227,7 +227,7 @@ function openStage() {
 function stageBar() {
   const degrees = record.motion.period * 180 / Math.PI;
   return [
-    node("button", { type: "button", class: "play", id: "spin", "aria-label": say("play"), onclick: () => spin(!stage.playing) }, "▶"),
+    node("button", { type: "button", class: "play spin", id: "spin", "aria-label": say("play"), onclick: () => spin(!stage.playing) }, "▶"),
     node("input", { type: "range", class: "scrub", id: "angle", min: 0, max: degrees, step: 0.1, "aria-label": say("crank angle"),
       oninput: (event) => { spin(false); turn(record.motion.start + record.motion.sense * Number(event.target.value) * Math.PI / 180); } }),
     node("output", { class: "count", id: "degrees" }),
@@ -243,13 +243,15 @@ function stageBar() {
 
 function spin(on) {
   stage.playing = on;
-  const button = $("spin");
-  if (button) { button.textContent = on ? "❚❚" : "▶"; button.setAttribute("aria-label", say(on ? "pause" : "play")); }
+  for (const button of document.querySelectorAll(".spin")) {
+    button.textContent = on ? "❚❚" : button.id ? "▶" : "⟳";
+    button.setAttribute("aria-label", say(on ? "pause" : button.id ? "play" : "turn the crank on the sheet"));
+  }
   if (!on) return;
   stage.last = performance.now();
   const frame = (now) => {
     if (!stage.playing) return;
-    turn(machine.phi + record.motion.sense * 2 * Math.PI * (now - stage.last) / 1000 / stage.seconds);
+    turn(machine.phi + senseOfTurn() * 2 * Math.PI * (now - stage.last) / 1000 / stage.seconds);
     stage.last = now;
     requestAnimationFrame(frame);
   };

@@ -199,6 +199,35 @@ def test_other_lengths_give_what_solve_gives(name, tmp_path):
     assert (undefined > 0) == (name in UNEVEN)
 
 
+MARKED = javascript.modules(*NUMBERS, "markers") + """
+const result = ({ sheet, angles }) => {
+  takeMarkers(sheet);
+  return pointers.all.map((marker) => angles.map((angle) => placeOnCurve(marker, angle)));
+};
+"""
+
+
+@javascript.needed
+@pytest.mark.parametrize(("name", "number", "step"), [
+    ("lugansk/shaper", 2, "total-work/points"), ("lugansk/shaper", 2, "energy-mass/points"), seldom("press", 2, "motion/S_B")])
+def test_markers_are_where_the_positions_are(name, number, step, tmp_path):
+    """A marker passes the ordinates of the numbered positions at their crank angles."""
+    text = made(name)
+    record = record_of(text)
+    sheet = next(s for s in record["sheets"] if s["sheet"] == number)
+    marks = {m["id"]: m for m in sheet["marks"]}
+    project = Project(catalogue.read(name))
+    turned = project.cycle.turned.tolist()
+    run = f"let record;\n{program_of(text)};\n{MARKED}"
+    places = javascript.run(run, {"sheet": sheet, "angles": turned}, tmp_path)
+    ((marker, found),) = [(m, p) for m, p in zip(sheet["markers"], places, strict=True) if marks[m["mark"]].get("step") == step]
+    frame = sheet["frames"][marks[marker["mark"]]["frame"]]
+    value = record["steps"][step]["value"][:len(turned)]
+    own = [complex(*z).imag if isinstance(z, list) else z for z in value]
+    for z, y in zip(found, own, strict=True):
+        assert abs(z[1] - frame["origin"][1] - y / frame["mu"][1]) < 0.1
+
+
 EVERY_FILM = """<script>
 window.said = [];
 for (const name of ["error", "unhandledrejection"]) addEventListener(name, (e) => said.push(String(e.message ?? e.reason)));

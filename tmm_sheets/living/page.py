@@ -14,6 +14,7 @@ from tmm_sheets import results, spelling, words
 from tmm_sheets.drawing.styles import line_types
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.living.hanging import hung
+from tmm_sheets.living.markers import markers
 from tmm_sheets.living.motion import Motion, Written, motion
 from tmm_sheets.living.page_words import page_words
 from tmm_sheets.note import phrases
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
 MODULES = ("digits", "primitives", "strokes", "courses", "searches", "formula", "data", "machine", "sheet", "viewport", "steps",
-           "ask", "player", "stage", "drag", "change", "main")
+           "ask", "markers", "player", "stage", "drag", "change", "main")
 """Modules of the page in templates/living, in the order in which they stand in it."""
 
 
@@ -50,6 +51,8 @@ def page(project: Project, numbers: Iterable[int] = (), plan: str = "") -> tuple
         record["motion"] = made.told() | {"givens": [g | _line(lines, g["name"]) for g in made.givens]}
         for sheet in record["sheets"]:
             sheet["live"] = hung(record, sheet, made.all.source.results)
+    for sheet in record["sheets"]:
+        sheet["markers"] = markers(project, record, sheet)
     _check_plan(record, plan)
     variant = project.variant
     record |= {

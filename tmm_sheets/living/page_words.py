@@ -47,6 +47,7 @@ def page_words() -> dict[str, str]:
         "steps": tr("Steps"),
         "the whole sheet": tr("The whole sheet"),
         "turn the crank": tr("In motion: turn the crank, change lengths and masses; the plans follow."),
+        "turn the crank on the sheet": tr("Turn the crank: markers follow on the diagrams"),
         "undo": tr("Undo"),
         "velocities": tr("Velocities"),
         "views of this sheet": tr("Views of this sheet"),
