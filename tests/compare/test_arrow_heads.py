@@ -13,6 +13,8 @@ from tmm_sheets.compare.photo.masking import fill
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.traces import InkTrace
 
+pytestmark = [pytest.mark.judging, pytest.mark.trial]
+
 A, B = 130 + 440j, 160 + 460j
 WAY = (B - A) / abs(B - A)
 BACK = 160 + 460j, float(np.angle(WAY))

@@ -12,6 +12,8 @@ from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Provenance as By
 from tmm_sheets.drawing.marks import Text
 
+pytestmark = pytest.mark.judging
+
 VIEW = ElementView(0, "view", Box(0, 0, 841, 594))
 
 

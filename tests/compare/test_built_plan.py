@@ -11,6 +11,8 @@ from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.diagnosis.built_plan import StudentDrawing, _share
 from tmm_sheets.compare.placing import Placing
 
+pytestmark = pytest.mark.judging
+
 
 def share(vectors, ink, move):
     """Share of a plan of these vectors that is drawn in some lines, both of our sheet; the drawing is placed by ``move``."""

@@ -10,6 +10,8 @@ from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.tracing import trace
 from tmm_sheets.drawing.marks import Text
 
+pytestmark = pytest.mark.judging
+
 A, B = 80 + 440j, 120 + 440j
 TIP = B - 5
 """A vector ends where its helper line goes on for five millimetres."""

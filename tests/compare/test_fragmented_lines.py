@@ -13,6 +13,8 @@ from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Map, homography
 from tmm_sheets.compare.photo.traces import InkTrace
 
+pytestmark = pytest.mark.judging
+
 VIEW = ElementView(1, "plan", Box(0, 0, 841, 594))
 THIN, THICK = "thin", "main"
 

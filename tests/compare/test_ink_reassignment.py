@@ -9,6 +9,8 @@ from tmm_sheets.compare.photo.coincident_lines import coincident_lines
 from tmm_sheets.compare.photo.ink_reassignment import reassign_ink
 from tmm_sheets.compare.photo.traces import InkTrace
 
+pytestmark = pytest.mark.judging
+
 PLAN, OTHER = (ElementView(k, "plan", Box(0, 0, 841, 594)) for k in (1, 2))
 
 

@@ -10,6 +10,8 @@ from tmm_sheets.compare.photo.meeting_ends import ignore_junction_ends
 from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.marks import Provenance as By
 
+pytestmark = pytest.mark.judging
+
 VIEW = ElementView(1, "plan", Box(0, 0, 841, 594))
 LINE = Element(1, VIEW, "A–B", "line", np.array([100 + 300j, 150 + 300j]), "main")
 ALONG = Element(2, VIEW, "A–C", "line", np.array([100 + 300j, 120 + 300j]), "thin")

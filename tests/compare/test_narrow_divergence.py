@@ -12,6 +12,8 @@ from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.compare.photo.tracing import trace
 
+pytestmark = pytest.mark.judging
+
 A, B = 80 + 440j, 105 + 440j
 STROKE = [(A, B, "axis"), (A, B, "vector")]
 BLUR = 2.0

@@ -12,6 +12,8 @@ from tmm_sheets.compare.photo.profiles import SCALE, pixels
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.traces import InkTrace
 
+pytestmark = pytest.mark.judging
+
 VIEWS = [ElementView(k, "plan", Box(0, 0, 841, 594)) for k in (1, 2)]
 ROWS, COLUMNS = round(PAPER.height * SCALE), round(PAPER.width * SCALE)
 

@@ -24,6 +24,8 @@ from tmm_sheets.drawing.marks import Provenance as By
 from tmm_sheets.drawing.marks import Text
 from tmm_sheets.drawing.styles import line_type
 
+pytestmark = pytest.mark.judging
+
 HIGH, WIDE = 264, 290
 """Of the sheet so much from the top and from the left, in mm: all that is drawn here lies there."""
 ROWS, COLUMNS = 6 * HIGH, 6 * WIDE

@@ -15,6 +15,8 @@ from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.drawing.marks import Provenance
 
+pytestmark = pytest.mark.judging
+
 STAR = ((0j, 60 + 10j), (0j, -30 + 45j), (60 + 10j, -30 + 45j), (0j, 12 - 40j), (12 - 40j, 60 + 10j))
 OPPOSITE = ((0j, 40 + 40j), (0j, -40 - 40j), (0j, 48j), (0j, -48j), (40 + 40j, 48j), (-40 - 40j, -48j))
 ALONG = ((0j, 34 + 0j), (0j, -34 + 0j), (34 + 0j, 0j), (0j, 24 + 0j), (0j, -24 + 0j))

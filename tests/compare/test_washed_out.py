@@ -13,6 +13,8 @@ from tmm_sheets.compare.photo.washed_out import mask_washed_out, taken, uneven_p
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Text
 
+pytestmark = pytest.mark.judging
+
 VIEW = ElementView(0, "view", Box(0, 0, 841, 594))
 FLAT = SimpleNamespace(to_picture=lambda z: 2 * (z.real + 1j * (PAPER.y1 - z.imag)))
 

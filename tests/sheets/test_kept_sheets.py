@@ -158,9 +158,9 @@ def test_what_a_sheet_is_made_of_names_it(monkeypatch):
 
 def test_loading_imports_nothing_that_draws(place, tmp_path):
     """Neither views nor methods nor the libraries of geometry."""
-    run(["build", "press", "--sheet", "4", "--format", "svg", "-o", str(tmp_path)])
+    run(["build", "lugansk/cam_rocker", "--format", "svg", "-o", str(tmp_path)])
     code = ("import sys\nfrom tmm_sheets.__main__ import run\n"
-            f"assert run(['build', 'press', '--sheet', '4', '--format', 'svg', '--force', '-o', {str(tmp_path)!r}]) == 0\n"
+            f"assert run(['build', 'lugansk/cam_rocker', '--format', 'svg', '--force', '-o', {str(tmp_path)!r}]) == 0\n"
             "print(*(m for m in sys.modules if m.startswith(('tmm_sheets.', 'shapely', 'scipy'))), file=sys.stderr)")  # fmt: skip
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=Path(__file__).parents[2])
     modules = told.stderr.splitlines()[-1].split()
