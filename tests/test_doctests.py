@@ -1,11 +1,12 @@
-"""The examples in docstrings of the construction are true."""
+"""The examples in docstrings are true."""
 
 import doctest
 from importlib import import_module
 
 import pytest
 
-ROOMS = ("construction.arithmetic", "construction.expression", "construction.scale", "task.edited_text")
+ROOMS = ("construction.arithmetic", "construction.expression", "construction.scale", "task.edited_text",
+         "mechanism.model", "mechanism.structure")
 
 
 @pytest.mark.parametrize("room", ROOMS)

@@ -289,7 +289,35 @@ class Crank:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """A mechanism of class II or III: crank and groups in order of attachment, with the points and links they carry."""
+    """A mechanism of class II or III: crank and groups in order of attachment, with the points and links they carry.
+
+    Lengths in m, angles in rad, speeds in rad/s; the axes x right and y up.
+
+    Examples
+    --------
+    A slider-crank: crank 1 about A, rod 2 from its pin B to C, which slider 3 carries along a horizontal guide.
+
+    >>> from tmm_sheets.mechanism.groups import RRP
+    >>> rod = StructuralGroup(RRP, ("2", "3"), ("B",), "C", lengths=(0.3,), guides=("rail",))
+    >>> guide = Guide("rail", "0", 0j, 0.0)
+    >>> m = Mechanism(Crank("1", "A", "B", 0.1, 10.0, sense=1), {"A": 0j}, {"rail": guide}, (rod,), (), {n: Link(n) for n in "123"})
+    >>> m.mobility, m.structure, m.grade
+    (1, 'I(0,1) → II(2,3)', 2)
+    >>> [(pair.name, pair.links, pair.motion) for pair in m.pairs]  # doctest: +NORMALIZE_WHITESPACE
+    [('A', ('0', '1'), 'rotation'), ('B', ('1', '2'), 'rotation'), ('C', ('2', '3'), 'rotation'),
+     ('C′', ('3', '0'), 'translation')]
+
+    Its positions, and the velocities of the slider's pin, at as many crank angles as are asked for:
+
+    >>> import numpy as np
+    >>> from tmm_sheets.methods.linkage.positions import position_plan
+    >>> from tmm_sheets.methods.linkage.velocities import velocity_plan
+    >>> positions = position_plan(m, np.array([0.0, np.pi / 2, np.pi]))
+    >>> positions.points["C"].value.real.round(6).tolist()
+    [0.4, 0.282843, 0.2]
+    >>> velocity_plan(positions).points["C"].value[1].real.round(6).item()
+    -1.0
+    """
 
     crank: Crank
     fixed: dict[str, complex]

@@ -20,6 +20,15 @@ def decompose(m: Mechanism) -> tuple[StructuralGroup, ...]:
     ------
     ValueError
         when what remains is no mechanism of class II or III.
+
+    Examples
+    --------
+    A rod and a slider behind a crank, given in whatever way, are a group of two turning pairs and a sliding one.
+
+    >>> from tmm_sheets import catalogue
+    >>> from tmm_sheets.project import Project
+    >>> [(group.name, group.form) for group in decompose(Project(catalogue.read("lugansk/shaper")).mechanism)]
+    [('4–5', 'RPP'), ('2–3', 'RPR')]
     """
     placed, order = {m.frame, m.crank.link}, []
     pairs = [p for p in m.pairs if set(p.links) != placed]
