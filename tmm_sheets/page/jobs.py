@@ -89,7 +89,8 @@ def check(asked: Mapping[str, str], say: Say) -> Message:
     """Mistakes of a project file by their lines, or its title and its sheets."""
     try:
         found = opened(asked).variant
-        return {"sheets": found.drawable(), "title": ", ".join(filter(None, (found.project.title, found.project.variant)))}
+        title = [words.of_file(text, tell) for text in (found.project.title, found.project.variant) if text]
+        return {"sheets": found.drawable(), "title": ", ".join(title)}
     except BadInput as e:
         return {"mistakes": [told(p) for p in e.problems]}
 

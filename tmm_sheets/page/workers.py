@@ -26,7 +26,7 @@ from tmm_sheets.words import tell
 
 LARGEST_ANSWER = 400_000_000
 """Bytes of the largest message from a process."""
-NICE = 10
+NICE = 5
 """By how much work behind other work gives way to it."""
 WAITING = 4.0
 """How many times its seconds of processor a piece of work may take by the clock: others work too."""

@@ -136,8 +136,8 @@ def made_with(validator: Any) -> Mapping[str, Any]:
 
 
 def without_article(text: str) -> str:
-    """What was expected, in English without the word and its article."""
-    return re.sub(r"^expected (an? )?", "", text)
+    """What was expected, without that word, and in English without an article."""
+    return re.sub(r"^an? ", "", text.removeprefix(tell("expected {what}").partition("{")[0]))
 
 
 def first_lower(text: str) -> str:
