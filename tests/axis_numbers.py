@@ -16,7 +16,7 @@ import numpy as np
 
 from tests.gallery import names
 from tmm_sheets import catalogue
-from tmm_sheets.drawing import owners
+from tmm_sheets.drawing import ink_index
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.project import Project
@@ -41,7 +41,7 @@ class Number(NamedTuple):
 def of_sheet(composed):
     """All numbers at the axes of the graphs of a finished sheet."""
     drawing = composed.drawing
-    ink = owners.Ink(drawing.marks)
+    ink = ink_index.Ink(drawing.marks)
     found = []
     for n in sorted({n for view in drawing.views for a, b in view.spans for n in range(a, b)}):
         mark = drawing.marks[n]
@@ -52,7 +52,7 @@ def of_sheet(composed):
             if _at_axis(composed, box, upright=primed):
                 inner = box.inset(TOUCH, TOUCH, TOUCH, TOUCH)
                 near = ink.near(inner, 0.0)
-                over = near[owners.enters(ink.a[near], ink.b[near] - ink.a[near], *inner)]
+                over = near[ink_index.enters(ink.a[near], ink.b[near] - ink.a[near], *inner)]
                 styles = tuple(sorted({ink.marks[k].style for k in ink.of[over]}))
                 found.append(Number(mark.text, box, styles, primed))
     return found

@@ -22,8 +22,8 @@ import numpy as np
 from tests.gallery import names
 from tmm_sheets import catalogue
 from tmm_sheets import kept as stored
+from tmm_sheets.drawing import ink_index, lettering, owners
 from tmm_sheets.drawing import labels as placing
-from tmm_sheets.drawing import lettering, owners
 from tmm_sheets.drawing.canvas import Label
 from tmm_sheets.drawing.dashes import strokes
 from tmm_sheets.drawing.marks import Box, Line, Text
@@ -75,7 +75,7 @@ def judged(project, n):
             composed = sheet.composed(project, n)
     finally:
         placing._draw = original
-    ink = owners.Ink([m for n, m in enumerate(composed.drawing.marks[: composed.parts[-1].first]) if n not in windows])
+    ink = ink_index.Ink([m for n, m in enumerate(composed.drawing.marks[: composed.parts[-1].first]) if n not in windows])
     corners = [placing.text_box(m) for m in composed.drawing.marks[: composed.parts[-1].first] if isinstance(m, Text)]
     written = np.array([(z.real.min(), z.imag.min(), z.real.max(), z.imag.max()) for z in corners]).reshape(-1, 4)
     widths = [line_type(m.style).width if hasattr(m, "style") else 0.0 for m in ink.marks]
@@ -83,7 +83,7 @@ def judged(project, n):
     for p in kept:
         what = "" if p.leader else owners.Round(ink, p.label, 60.0).reads(p.box)
         near = ink.near(p.box, 0.0)
-        over = near[owners.enters(ink.a[near], ink.b[near] - ink.a[near], *p.box)]
+        over = near[ink_index.enters(ink.a[near], ink.b[near] - ink.a[near], *p.box)]
         if any(widths[ink.of[k]] > THICK for k in over):
             what = f"{what} covers".strip()
         what = f"{what} {_badly_led(p, kept, written)}".strip()
@@ -98,7 +98,7 @@ def judged(project, n):
 def crossings(drawing):
     """Lines that cross the ink of level letters: what is lettered, the style of the line, and where."""
     marks = list(strokes(drawing.marks))
-    ink = owners.Ink(marks)
+    ink = ink_index.Ink(marks)
     found = []
     for text in marks:
         drawn = lettering.strokes(text.text, text.height) if isinstance(text, Text) and abs(np.sin(2 * text.angle)) < 0.01 else []
@@ -106,7 +106,7 @@ def crossings(drawing):
             z = text.at + np.exp(1j * text.angle) * np.concatenate(drawn)
             box = Box(z.real.min(), z.imag.min(), z.real.max(), z.imag.max())
             near = ink.near(box, 0.0)
-            over = near[owners.enters(ink.a[near], ink.b[near] - ink.a[near], *box)]
+            over = near[ink_index.enters(ink.a[near], ink.b[near] - ink.a[near], *box)]
             lines = {ink.of[k] for k in over}
             found += [(text.text, ink.marks[k].style, text.at) for k in lines
                       if not isinstance(ink.marks[k], Text) and not (ink.marks[k].by and ink.marks[k].by.role in STAYS)]
@@ -118,9 +118,9 @@ def _badly_led(p, kept, written):
     boxes = np.vstack([written, *(q.box for q in kept if q is not p)])
     a, b = (np.array([getattr(m, end) for q in kept if q is not p for m in q.leader]) for end in "ab")
     for line in p.leader:
-        if owners.enters(line.a, line.b - line.a, *boxes.T).any():
+        if ink_index.enters(line.a, line.b - line.a, *boxes.T).any():
             return LED[0]
-        if len(a) and owners.crossing(a, b, line.a, line.b).any():
+        if len(a) and ink_index.crossing(a, b, line.a, line.b).any():
             return LED[1]
     return ""
 

@@ -5,9 +5,9 @@ import pytest
 
 from tmm_sheets.drawing import axis_numbers
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.ink_index import Ink, enters
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Text
-from tmm_sheets.drawing.owners import Ink, enters
 
 PITCH = 12.0
 

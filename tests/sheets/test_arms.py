@@ -8,7 +8,7 @@ import pytest
 from tests import project_files
 from tmm_sheets import kept as stored
 from tmm_sheets.catalogue import read
-from tmm_sheets.drawing import labels, owners
+from tmm_sheets.drawing import ink_index, labels
 from tmm_sheets.drawing.marks import Line, Provenance
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.linkage import friction, kinetic_frames, kinetics, link_marks, moments
@@ -80,7 +80,7 @@ def test_an_arm_among_those_of_a_sum_is_known_by_its_name():
     """All arms about a point come from one sum: the letter of one is no letter of the next."""
     first, second = (Line(0j, z, "thin", by=Provenance("construction", "moments/ΣM", "2", 0, name))
                      for z, name in ((20 + 0j, "hG2"), (20j, "hG3")))
-    ink = owners.Ink([first, second])
+    ink = ink_index.Ink([first, second])
     assert ink.of_step(Provenance("text", "moments/ΣM", "2", 0, "hG2")) == [0]
     assert ink.of_step(Provenance("text", "moments/ΣM", "2", 0, "hG4")) == [0, 1]  # no line of this name
     assert ink.of_step(Provenance("text", "moments/ΣM", "2", 0)) == [0, 1]
@@ -158,4 +158,4 @@ def test_an_arm_does_not_strike_its_own_letter():
            if isinstance(mark, Line) and mark.by and mark.by.role == "construction" and mark.by.name.startswith("h")}
     for label, box in arms:
         line = own[label.by.name]
-        assert not owners.enters(line.a, line.b - line.a, box.x0 + 0.2, box.y0 + 0.2, box.x1 - 0.2, box.y1 - 0.2), label.text
+        assert not ink_index.enters(line.a, line.b - line.a, box.x0 + 0.2, box.y0 + 0.2, box.x1 - 0.2, box.y1 - 0.2), label.text

@@ -8,9 +8,9 @@ import pytest
 
 from tests.few import few, seldom
 from tests.project_files import project
+from tmm_sheets.drawing.ink_index import Ink, enters
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Text
-from tmm_sheets.drawing.owners import Ink, enters
 from tmm_sheets.sheets.sheet import composed
 
 TAPPET = {"follower": "translating roller", "law": "sine", "rise": "100 deg", "upper_dwell": "30 deg", "fall": "80 deg",

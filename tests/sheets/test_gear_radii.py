@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tmm_sheets import catalogue
+from tmm_sheets.drawing.ink_index import Ink, enters
 from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Text
-from tmm_sheets.drawing.owners import Ink, enters
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 

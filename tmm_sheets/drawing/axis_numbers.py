@@ -15,10 +15,11 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.drawing.canvas import SMALLEST, AxisNumber, Canvas
+from tmm_sheets.drawing.ink_index import STRONG, Ink, distance, enters
 from tmm_sheets.drawing.labels import bounds_of, text_boxes
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Fill, Text
-from tmm_sheets.drawing.owners import AT, STRONG, Ink, distance, enters
+from tmm_sheets.drawing.owners import AT
 from tmm_sheets.drawing.styles import line_type
 
 TOUCH, CLEAR = 0.1, 0.4

@@ -9,12 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.ink_index import ROUNDING, Ink, crossing, enters, sides, within
 from tmm_sheets.drawing.labels import text_boxes
 from tmm_sheets.drawing.marks import Arc, Box, Text
-from tmm_sheets.drawing.owners import Ink, crossing, enters, sides, within
-
-ROUNDING = 1e-6
-"""mm by which what is looked at may lie farther off."""
 
 
 class Drawn:

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.drawing import owners
+from tmm_sheets.drawing import ink_index, owners
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.crowded import Crowded
 from tmm_sheets.drawing.lettering import advance, letter
@@ -111,7 +111,7 @@ def set_labels(canvas: Canvas, grid: Grid) -> list[Crowded]:
     """
     first = len(canvas.marks)
     grid.expect(len(canvas.labels), [part.box for part in canvas.parts])
-    ink = owners.Ink([m for n, m in enumerate(canvas.marks) if n not in canvas.windows])
+    ink = ink_index.Ink([m for n, m in enumerate(canvas.marks) if n not in canvas.windows])
     found = [*_first(grid, ink, canvas.labels)]
     for around in (USUAL, USUAL, CLOSER):
         for k in range(len(found)):
@@ -194,7 +194,7 @@ class Grid:
         """What it had better not."""
         return _summed(self._light)
 
-    def put(self, ink: owners.Ink, k: int, label: Label, box: Box) -> None:
+    def put(self, ink: ink_index.Ink, k: int, label: Label, box: Box) -> None:
         """Label ``k`` is set; the shelf it may stand on is part of it."""
         self.boxes[k] = box._replace(y0=box.y0 - SHELF - CLEAR) if label.shelf else box
         before = self._led.pop(k, None)
@@ -203,41 +203,41 @@ class Grid:
         if before is not None or k in self._led:
             self._lead(ink)
 
-    def lift(self, ink: owners.Ink, k: int) -> None:
+    def lift(self, ink: ink_index.Ink, k: int) -> None:
         """Label ``k`` is taken off."""
         self.boxes[k] = np.nan
         if self._led.pop(k, None) is not None:
             self._lead(ink)
 
-    def _lead(self, ink: owners.Ink | None) -> None:
+    def _lead(self, ink: ink_index.Ink | None) -> None:
         self._whose = np.array(list(self._led), int)
         self._ends = np.array(list(self._led.values()), complex).reshape(-1, 2)
-        self._led_sides = owners.sides(*self._ends.T)
+        self._led_sides = ink_index.sides(*self._ends.T)
         self.leaders = _sampled(list(self._ends)) if len(self._ends) else np.empty(0, complex)
         if ink is not None:
             ink.lead(*self._ends.T)
 
     def quiet(self, k: int) -> bool:
         """Whether label ``k`` has no leader, and none is near it: nothing can be wrong with it that was not before."""
-        return k not in self._led and not len(owners.within(self._led_sides, Box(*self.boxes[k]), NEAR + owners.ROUNDING))
+        return k not in self._led and not len(ink_index.within(self._led_sides, Box(*self.boxes[k]), NEAR + ink_index.ROUNDING))
 
     def ill(self, k: int) -> int:
         """How many other leaders and how much other lettering the leader of label ``k`` meets; how many leaders its lettering."""
         _, a, b = self._others(k)
-        over = int(owners.enters(a, b - a, *self.boxes[k]).sum())
+        over = int(ink_index.enters(a, b - a, *self.boxes[k]).sum())
         if k not in self._led:
             return over
         written = np.delete(self.written, len(self.written) - len(self.boxes) + k, axis=0)
-        return int(owners.crossing(a, b, *self._led[k]).sum()) + _over(written, *self._led[k]) + over
+        return int(ink_index.crossing(a, b, *self._led[k]).sum()) + _over(written, *self._led[k]) + over
 
     def met(self, k: int) -> list[int]:
         """Labels whose leader or lettering the leader of label ``k`` meets, and those whose leader meets its lettering."""
         others, a, b = self._others(k)
-        found = others[owners.enters(a, b - a, *self.boxes[k])].tolist()
+        found = others[ink_index.enters(a, b - a, *self.boxes[k])].tolist()
         if k in self._led:
             start, end = self._led[k]
-            found += others[owners.crossing(a, b, start, end)].tolist()
-            found += [n for n in np.flatnonzero(owners.enters(start, end - start, *self.boxes.T)).tolist() if n != k]
+            found += others[ink_index.crossing(a, b, start, end)].tolist()
+            found += [n for n in np.flatnonzero(ink_index.enters(start, end - start, *self.boxes.T)).tolist() if n != k]
         return list(dict.fromkeys(found))
 
     def _others(self, k: int) -> tuple[npt.NDArray[np.int_], Points, Points]:
@@ -259,7 +259,7 @@ class Grid:
     def free(self, box: Box) -> bool:
         """Whether a rectangle lies inside the sheet, clear of heavy lines, lettering and the labels that are set."""
         sides = np.array(box)[:, None]
-        near = self.boxes[owners.within(self.boxes.T, box, CLEAR)]
+        near = self.boxes[ink_index.within(self.boxes.T, box, CLEAR)]
         return bool(self.clear(sides)[0] and not _meeting(sides + _MARGIN, near)[0])
 
     def clear(self, sides: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
@@ -359,13 +359,13 @@ class _Places:
         self.label, self._grid = label, grid
         self.sides, cost, beyond, clear, around = lattice
         free = np.flatnonzero(clear)
-        near = grid.boxes[owners.within(grid.boxes.T, around, CLEAR)]
+        near = grid.boxes[ink_index.within(grid.boxes.T, around, CLEAR)]
         if len(free) and len(near):
             free = free[~_meeting(self.sides[:, free] + _MARGIN, near)]
         some = free if len(free) else np.arange(len(cost))  # what the others would cost nobody asks
         there = self.sides[:, some]
         gap = WORD * label.height
-        read_on = _beside(there, grid.written[owners.within(grid.written.T, around, gap)], gap)
+        read_on = _beside(there, grid.written[ink_index.within(grid.written.T, around, gap)], gap)
         more = cost[some] + RUN_ON * read_on
         self._strayed = None
         if beyond is not None:
@@ -454,7 +454,7 @@ Found = tuple[Label, Box, bool]
 """A label, which may have moved, its place, whether there was room for it."""
 
 
-def _first(grid: Grid, ink: owners.Ink, labels: Sequence[Label]) -> Iterator[Found]:
+def _first(grid: Grid, ink: ink_index.Ink, labels: Sequence[Label]) -> Iterator[Found]:
     """Set labels one after another."""
     for begin in range(0, len(labels), TOGETHER):
         some = labels[begin:begin + TOGETHER]
@@ -464,19 +464,19 @@ def _first(grid: Grid, ink: owners.Ink, labels: Sequence[Label]) -> Iterator[Fou
             yield found
 
 
-def _found(grid: Grid, ink: owners.Ink, k: int, label: Label, around: Around) -> Found:
+def _found(grid: Grid, ink: ink_index.Ink, k: int, label: Label, around: Around) -> Found:
     (lattice,) = _lattices(grid, [label], around)
     found = _placed(grid, ink, label, lattice, around)
     grid.put(ink, k, *found[:2])
     return found
 
 
-def _ill(grid: Grid, ink: owners.Ink, found: list[Found], some: tuple[int, ...]) -> int:
+def _ill(grid: Grid, ink: ink_index.Ink, found: list[Found], some: tuple[int, ...]) -> int:
     """What is wrong with some labels where they stand, see :meth:`Grid.ill` and :func:`_misread`."""
     return sum(grid.ill(k) + _misread(grid, ink, *found[k][:2]) for k in some)
 
 
-def _set_again(grid: Grid, ink: owners.Ink, labels: list[Label], found: list[Found], some: tuple[int, ...],
+def _set_again(grid: Grid, ink: ink_index.Ink, labels: list[Label], found: list[Found], some: tuple[int, ...],
                around: Around) -> bool:
     """Take some labels off and set them again in this order; they stay where they were unless that makes it better."""
     before, ill = [found[k] for k in some], _ill(grid, ink, found, some)
@@ -487,7 +487,7 @@ def _set_again(grid: Grid, ink: owners.Ink, labels: list[Label], found: list[Fou
     return _kept(grid, ink, found, some, before, ill)
 
 
-def _made_room(grid: Grid, ink: owners.Ink, labels: list[Label], found: list[Found], k: int, q: int) -> bool:
+def _made_room(grid: Grid, ink: ink_index.Ink, labels: list[Label], found: list[Found], k: int, q: int) -> bool:
     """Try the places of label ``k`` one after another until label ``q`` has a good one, too; else both stay where they were."""
     before, label = [found[k], found[q]], labels[k]
     for n in (k, q):
@@ -507,7 +507,7 @@ def _made_room(grid: Grid, ink: owners.Ink, labels: list[Label], found: list[Fou
     return False
 
 
-def _exchanged(grid: Grid, ink: owners.Ink, found: list[Found], k: int, q: int) -> bool:
+def _exchanged(grid: Grid, ink: ink_index.Ink, found: list[Found], k: int, q: int) -> bool:
     """Let two labels change places, as leaders that cross ask for, if both have room there and that makes it better."""
     before, ill = [found[k], found[q]], _ill(grid, ink, found, (k, q))
     for n in (k, q):
@@ -520,7 +520,7 @@ def _exchanged(grid: Grid, ink: owners.Ink, found: list[Found], k: int, q: int) 
     return _kept(grid, ink, found, (k, q), before, ill if found[k][2] and found[q][2] else 0)
 
 
-def _kept(grid: Grid, ink: owners.Ink, found: list[Found], some: tuple[int, ...], before: list[Found], ill: int) -> bool:
+def _kept(grid: Grid, ink: ink_index.Ink, found: list[Found], some: tuple[int, ...], before: list[Found], ill: int) -> bool:
     """Whether labels stand better than ``ill`` now; else they go back to where they were before."""
     if _ill(grid, ink, found, some) < ill:
         return True
@@ -541,7 +541,7 @@ def _draw(canvas: Canvas, label: Label, box: Box) -> None:
         canvas.groups[-1] = canvas.groups[-1]._replace(end=len(canvas.marks), part=label.part, anchor=label.anchor)
 
 
-def _placed(grid: Grid, ink: owners.Ink, label: Label, lattice: _Lattice, around: Around) -> Found:
+def _placed(grid: Grid, ink: ink_index.Ink, label: Label, lattice: _Lattice, around: Around) -> Found:
     """Place of a label, which may have moved along the vector it names rather than have a leader; whether there is room for it."""
     places, reach = _Places(grid, label, lattice), 2 * (NEAR + label.gap) + _size(label)[0]
     here = owners.Round(ink, label, reach)
@@ -558,7 +558,7 @@ def _placed(grid: Grid, ink: owners.Ink, label: Label, lattice: _Lattice, around
     return label, Box(*places.sides[:, places.least() if k is None else k]), bool(len(places.free))
 
 
-def _misread(grid: Grid, ink: owners.Ink, label: Label, box: Box) -> int:
+def _misread(grid: Grid, ink: ink_index.Ink, label: Label, box: Box) -> int:
     """Whether a label without a leader is read as another's because of the leader of one: more than a crossing of two leaders."""
     p = grid.leaders
     near = (p.real > box.x0 - NEAR) & (p.real < box.x1 + NEAR) & (p.imag > box.y0 - NEAR) & (p.imag < box.y1 + NEAR)
@@ -567,7 +567,7 @@ def _misread(grid: Grid, ink: owners.Ink, label: Label, box: Box) -> int:
     return SEVERAL * bool(_reads(ink, label, box))
 
 
-def _reads(ink: owners.Ink, label: Label, box: Box) -> str:
+def _reads(ink: ink_index.Ink, label: Label, box: Box) -> str:
     """What is wrong with a label there that has no leader, see :meth:`owners.Round.reads`."""
     return owners.Round(ink, label, 2 * (NEAR + label.gap) + box.width).reads(box)
 
@@ -593,7 +593,7 @@ def _shelf(box: Box) -> tuple[complex, complex]:
 def _over(boxes: npt.NDArray[np.float64], a: complex, b: complex) -> int:
     """Over how much lettering a leader runs."""
     x0, y0, x1, y1 = boxes[(boxes[:, 2] > min(a.real, b.real)) & (boxes[:, 0] < max(a.real, b.real))].T
-    return int(owners.enters(a, b - a, x0, y0, x1, y1).sum())
+    return int(ink_index.enters(a, b - a, x0, y0, x1, y1).sum())
 
 
 def _leader(canvas: Canvas, label: Label, box: Box) -> None:

@@ -12,9 +12,9 @@ import numpy as np
 from tmm_sheets.drawing.canvas import KEPT_OFF
 from tmm_sheets.drawing.clipping import arcs_inside
 from tmm_sheets.drawing.free_space import Drawn
+from tmm_sheets.drawing.ink_index import enters
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Dimension
-from tmm_sheets.drawing.owners import enters
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets.gears.gear_marks import CIRCLES
 
