@@ -9,7 +9,8 @@ import pytest
 ROOT = Path(__file__).parents[1] / "tmm_sheets"
 ROOMS = (
     "mechanism", "task", "methods/linkage", "methods/gears", "methods/cams", "methods/integration.py", "drawing", "backends",
-    "output", "lab/stress", "lab/bench", "compare/cad", "compare/photo", "page", "catalogue.py", "errors.py", "explain.py",
+    "output", "lab/stress", "lab/bench", "compare/cad", "compare/photo", "optimising", "page", "catalogue.py", "errors.py",
+    "explain.py",
     "api.py", "askers.py", "files.py", "numbers.py", "project.py", "protocols.py", "resources.py", "result_arrays.py", "results.py",
     "summary.py", "encodings.py",
 )  # fmt: skip

@@ -41,7 +41,9 @@ RULES = {
     "result_arrays": ("result_files", ""),
     "catalogue": ("task", ""),
     "__init__": ("api", "api"),
-    "api": ("catalogue compare drawing living output project protocols record result_arrays results sheets summary task", ""),
+    "optimising": ("construction project result_files results task", ""),
+    "api": ("catalogue compare drawing living optimising output project protocols record result_arrays results sheets summary "
+            "task", ""),
     "summary": ("mechanism project task", ""),
     "explain": ("askers construction drawing", "project"),
     "askers": ("construction sheets", "drawing"),
@@ -81,7 +83,7 @@ RULES = {
 LIBRARIES = {
     "ezdxf": "backends.dxf backends.dxf_frame_making lab.bench.plain compare.cad.cad_file",
     "reportlab": "backends.pdf lab.bench.plain compare.story_pdf",
-    "matplotlib": "backends.png lab.bench.plots",
+    "matplotlib": "backends.png lab.bench.plots optimising.picture",
     "pydantic": "task.values task.schema task.messages task.variant task.title_entries task.keys",
     "pydantic_core": "task.messages task.keys", "cv2": "compare.photo", "pypdfium2": "compare.photo",
     "shapely": "drawing sheets methods lab.bench compare",
@@ -92,7 +94,7 @@ LIBRARIES = {
 
 LATE = ("numpy", "shapely")
 """Libraries the command line must not wait for: numpy is imported at the top only where numbers are made, shapely nowhere."""
-NUMBERS = "mechanism construction drawing methods sheets backends compare lab project record note living"
+NUMBERS = "mechanism construction drawing methods sheets backends compare lab project record note living optimising"
 
 
 @cache

@@ -21,12 +21,13 @@ from tmm_sheets.words import tell
 if TYPE_CHECKING:
     from tmm_sheets.catalogue import Entry
     from tmm_sheets.compare.report import Kind, Report
+    from tmm_sheets.optimising.optimum import Optimum
     from tmm_sheets.output.view_pictures import Picture
     from tmm_sheets.result_arrays import Numbers
     from tmm_sheets.task.title_entries import Names
     from tmm_sheets.task.variant import Variant
 
-__all__ = ["BadInput", "CannotBuild", "Findings", "Opened", "Page", "Said", "compared", "new", "open", "projects"]
+__all__ = ["BadInput", "CannotBuild", "Findings", "Opened", "Optimised", "Page", "Said", "compared", "new", "open", "projects"]
 
 ALONE = ("gear", "reducer", "train", "cam")
 """Parts that follow from their own tables and from nothing else of the file."""
@@ -189,6 +190,39 @@ class Opened:
 
         with self._on_paper():
             return Said("\n".join(protocols.lines(self.project, plan)))
+
+    def optimise(self, vary: Mapping[str, str] | Iterable[str], least: str = "", *, most: str = "", subject_to: Iterable[str] = (),
+                 positions: int | None = None, tries: int | None = None, say: Callable[[int], None] = lambda n: None) -> Optimised:
+        """Look for numbers of the file that make a wish least, or greatest, within bounds (docs/optimise.md).
+
+        Parameters
+        ----------
+        vary
+            ranges by names, ``{"crank.length": "70..90 mm"}``, or ``crank.length=70..90 mm`` in a row.
+        least, most
+            what is wished of results: ``max |cam.pressure_angle|``.
+        subject_to
+            bounds: ``range(positions.points.D.x) >= 340 mm``.
+        positions, tries
+            how many crank angles of a turn are looked at, how many numbers are tried at most.
+
+        Raises
+        ------
+        BadInput
+            when something cannot be read.
+        CannotBuild
+            when nothing that was tried can be built and keeps the bounds.
+        """
+        from tmm_sheets.optimising import optimum
+
+        if bool(least) == bool(most):
+            raise BadInput(tell("give either least or most"))
+        some = [f"{name.replace('__', '.')}={spread}" for name, spread in vary.items()] if isinstance(vary, Mapping) else [*vary]
+        with self._on_paper():
+            found = optimum.optimum(self.project, lambda changes: self.with_(changes).project, some, least or most, most=bool(most),
+                                    subject_to=subject_to, positions=positions or optimum.POSITIONS,
+                                    tries=tries or optimum.TRIES, say=say)
+        return Optimised(found, self.with_(found.changes))
 
     # --- sheets -----------------------------------------------------------------------------------------------------------
 
@@ -382,6 +416,26 @@ class Findings(list[dict[str, Any]]):
         from tmm_sheets.compare.report_pages import page
 
         return _framed(page(self.report, ".html", str(self.report.tree["project"])).decode())
+
+
+class Optimised:
+    """What a search came to: ``opened`` is the project with the best numbers, ``search`` all that was tried; ``str()`` tells it."""
+
+    def __init__(self, search: Optimum, opened: Opened) -> None:
+        self.search, self.opened = search, opened
+
+    def __str__(self) -> str:
+        return "\n".join(self.search.said())
+
+    @property
+    def svg(self) -> str:
+        """The search as a picture."""
+        from tmm_sheets.optimising import picture
+
+        return picture.svg(self.search).decode()
+
+    def _repr_svg_(self) -> str:
+        return self.svg
 
 
 class Page(str):

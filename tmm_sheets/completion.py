@@ -298,6 +298,22 @@ def results(context: click.Context, incomplete: str) -> Items:
     return _begun((name for name, _ in leaves(results.told(project, [part]))), incomplete)
 
 
+def varied(context: click.Context, incomplete: str) -> Items:
+    """Numbers of the project file by their names, each with what stands there."""
+    project = _project(context)
+    if project is None or "=" in incomplete:
+        return []
+    from tmm_sheets.task.edited_text import numbers
+
+    return _begun(((f"{name}=", str(value)) for name, value in numbers(project.variant.data)), incomplete)
+
+
+def wished(context: click.Context, incomplete: str) -> Items:
+    """The same as :func:`results` for the last word of a wish."""
+    before, sign, last = incomplete.rpartition(next((c for c in reversed(incomplete) if c in " |(,-+*/"), " "))
+    return [CompletionItem(f"{before}{sign}{item.value}", item.type, item.help) for item in results(context, last)]
+
+
 def _project(context: click.Context) -> Project | None:
     """The project that is written before; None where there is none, or none that can be read."""
     left = [word for word in context.args if not word.startswith("-")]
@@ -321,7 +337,8 @@ _BY_NAME: dict[str, Completer] = {
     "sheets": sheets, "sheet": sheets, "result": results,
 }
 _BY_METAVAR: dict[str, Completer] = {
-    "PROJECT": projects, "PROJECT|FILE": plots, "PLAN": plans, "FILE": files, "DIR": folders, "FOLDER": folders,
+    "PROJECT": projects, "NAME=A..B": varied, "WISH": wished, "BOUND": wished,
+    "PROJECT|FILE": plots, "PLAN": plans, "FILE": files, "DIR": folders, "FOLDER": folders,
 }
 
 

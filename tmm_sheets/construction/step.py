@@ -201,11 +201,15 @@ class Reported:
     @property
     def value(self) -> Any:
         """The number or numbers, of all positions."""
-        value = self.step.value
-        return _PARTS[self.part](value) if self.part else value
+        return part_of(self.step.value, self.part)
 
 
 _PARTS: dict[str, Callable[[Any], Any]] = {"x": np.real, "y": np.imag, "abs": np.abs, "angle": np.angle}
+
+
+def part_of(value: Any, part: Part) -> Any:
+    """A part of values; themselves where none is told."""
+    return _PARTS[part](value) if part else value
 
 
 def value_of(x: Any) -> Any:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, MutableMapping
+from collections.abc import Iterator, Mapping, MutableMapping
 from itertools import pairwise
 from typing import Any
 
 from tmm_sheets.errors import BadInput
+from tmm_sheets.task import units
 from tmm_sheets.words import tell
 
 
@@ -20,6 +21,28 @@ def key_path(name: str) -> tuple[str | int, ...]:
     ('group', 0, 'lengths', 1)
     """
     return tuple(int(part) if part.isdigit() else part for part in re.findall(r"[^.\[\]]+", name.replace("__", ".")))
+
+
+def numbers(table: Any, name: str = "") -> Iterator[tuple[str, Any]]:
+    """Numbers of the tables of a project file, with their units, by their names."""
+    if isinstance(table, Mapping):
+        for key, value in table.items():
+            yield from numbers(value, f"{name}.{key}" if name else key)
+    elif isinstance(table, list):
+        for n, value in enumerate(table):
+            yield from numbers(value, f"{name}[{n}]")
+    elif units.split(table)[0] and name != "schema" and (units.split(table)[1] == "" or units.quantity_of(units.split(table)[1])):
+        yield name, table
+
+
+def at(table: Any, name: str) -> Any:
+    """What stands at a name in the tables of a project file; None where nothing does."""
+    for part in key_path(name):
+        try:
+            table = table[part]
+        except (IndexError, KeyError, TypeError):
+            return None
+    return table
 
 
 def changed(text: str, changes: Mapping[str, Any]) -> str:
@@ -45,23 +68,23 @@ def changed(text: str, changes: Mapping[str, Any]) -> str:
 
 
 def _put(document: Any, path: tuple[str | int, ...], value: Any) -> None:
-    at = document
+    place = document
     for part, after in pairwise(path):
-        if isinstance(at, MutableMapping):
-            table, line = at, part
+        if isinstance(place, MutableMapping):
+            table, line = place, part
             if isinstance(after, str):
-                at.setdefault(part, {})
-        at = at[part]
+                place.setdefault(part, {})
+        place = place[part]
     key = path[-1]
     if value is None:
-        del at[key]
+        del place[key]
         return
-    if isinstance(key, int) and key == len(at):
-        at.append(_plain(value))
+    if isinstance(key, int) and key == len(place):
+        place.append(_plain(value))
     else:
-        at[key] = _plain(value)
-    if isinstance(at, MutableMapping):
-        table, line = at, key
+        place[key] = _plain(value)
+    if isinstance(place, MutableMapping):
+        table, line = place, key
     if (trivia := getattr(table[line], "trivia", None)) is not None:
         trivia.comment = trivia.comment_ws = ""
 

@@ -1,0 +1,350 @@
+"""The numbers of a project file that make a wish least, within bounds: what is tried, how it is computed, what came of it.
+
+A number that is tried is one that can be written: with as many decimals as make a thousand steps of its range or more. So the file
+that is written gives the very numbers that are told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import floor, inf, isfinite, log10
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets import results
+from tmm_sheets.construction.function import Function
+from tmm_sheets.construction.program import rows_of
+from tmm_sheets.construction.step import Reported, part_of, value_of
+from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.numbers import listed, of_reader
+from tmm_sheets.optimising import search
+from tmm_sheets.optimising.wishes import Bound, Values, Wish, bound, wish
+from tmm_sheets.result_files import leaves
+from tmm_sheets.task import edited_text, units
+from tmm_sheets.words import tell
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+KINEMATIC = ("positions", "velocities", "accelerations")
+"""Parts whose numbers at a crank angle follow from the lengths alone: one function gives them for other lengths."""
+OF_LINKAGE = (*KINEMATIC, "forces", "cycle")
+"""Parts that are told of positions."""
+POSITIONS = 120
+"""Crank angles of a turn at which results are looked at."""
+TRIES = 400
+STEPS = 1000
+"""Steps of a range, at least."""
+SAME = 1e-9
+"""Share by which the function and a project made anew may differ."""
+
+
+@dataclass(frozen=True)
+class Varied:
+    """A number of the project file and its range, in its unit; ``decimals`` it is written with, ``whole`` of a whole number."""
+
+    name: str
+    low: float
+    high: float
+    unit: str
+    decimals: int
+    whole: bool
+
+    def at(self, share: float) -> float:
+        """The number at a share of the range, as it can be written."""
+        return min(max(round(self.low + share * (self.high - self.low), self.decimals), self.low), self.high)
+
+    def value(self, x: float) -> Any:
+        """The number as it stands in the file."""
+        if not self.unit:
+            return int(x) if self.whole else x
+        return f"{self.text(x)} {self.unit}"
+
+    def text(self, x: float) -> str:
+        """Its digits."""
+        return f"{x:.{max(self.decimals, 0)}f}".rstrip("0").rstrip(".") if self.decimals > 0 else f"{x:.0f}"
+
+    def si(self, x: float) -> float:
+        """The number in SI."""
+        return units.si(f"{self.text(x)} {self.unit}")
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What came of some numbers: the wish, by how much bounds are missed altogether, why there is nothing (else empty)."""
+
+    numbers: tuple[float, ...]
+    value: float
+    missed: float
+    refused: str = ""
+
+    @property
+    def key(self) -> tuple[float, float]:
+        """The less the better: bounds go before the wish."""
+        return (self.missed, self.value) if isfinite(self.value) and isfinite(self.missed) else (inf, inf)
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """What a search came to.
+
+    Attributes
+    ----------
+    varied, wish, most, bounds : what was looked for; ``most`` where the wish was to be greatest
+    trials : all that were made, in their order; the values of a wish to be greatest have the other sign
+    best : that of them which is best
+    now : what the project has as it is; None where a number that is varied does not stand in its file
+    by_function : whether one function computed them
+    """
+
+    varied: tuple[Varied, ...]
+    wish: Wish
+    most: bool
+    bounds: tuple[Bound, ...]
+    trials: tuple[Trial, ...]
+    best: Trial
+    now: Trial | None
+    by_function: bool
+
+    @property
+    def changes(self) -> dict[str, Any]:
+        """The best numbers, as the file has them."""
+        return {v.name: v.value(x) for v, x in zip(self.varied, self.best.numbers, strict=True)}
+
+    def said(self) -> list[str]:
+        """The outcome for people, a line each."""
+        sign = -1 if self.most else 1
+        rows = []
+        for k, v in enumerate(self.varied):
+            before = "" if self.now is None else of_reader(f"{v.text(self.now.numbers[k])} -> ")
+            spread = of_reader(f"{v.text(v.low)}..{v.text(v.high)}")
+            rows.append((v.name, f"{before}{of_reader(v.text(self.best.numbers[k]))} {v.unit}".rstrip(), f"({spread})"))
+        before = "" if self.now is None or not isfinite(self.now.value) else f"{listed(sign * self.now.value)} -> "
+        rows.append((self.wish.text, f"{before}{listed(sign * self.best.value)}", tell("most") if self.most else tell("least")))
+        rows += [(b.text, tell("kept"), "") for b in self.bounds]
+        widths = [max(len(row[k]) for row in rows) for k in range(3)]
+        lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+        lost = sum(bool(t.refused) for t in self.trials)
+        return [*lines, tell("{n} tries, {lost} of them cannot be built; {how}").format(
+            n=len(self.trials), lost=lost,
+            how=tell("by one function") if self.by_function else tell("each a project made anew"))]
+
+
+def varied(text: str, data: Mapping[str, Any]) -> Varied:
+    """Read ``crank.length=70..90 mm``; ``data`` are the tables of the project file.
+
+    Raises
+    ------
+    BadInput
+        when it cannot be read.
+    """
+    name, sign, spread = (part.strip() for part in text.partition("="))
+    low, dots, high = spread.partition("..")
+    first, unit_of_low = units.split(low)
+    last, unit = units.split(high)
+    if not (name and sign and dots and first and last) or unit_of_low not in ("", unit):
+        raise BadInput(tell("{text}: expected a name and a range").format(text=text),
+                       tell("for example {wish}").format(wish='"crank.length=70..90 mm"'))
+    a, b = float(first), float(last)
+    if not a < b:
+        raise BadInput(tell("{text}: the range is empty").format(text=text), tell("write the less of both first"))
+    own = edited_text.at(data, name)
+    whole = isinstance(own, int) and not isinstance(own, bool) and a == int(a) and b == int(b)
+    decimals = 0 if whole else max(0, -floor(log10((b - a) / STEPS)))
+    return Varied(name, a, b, unit, decimals, whole)
+
+
+def optimum(project: Project, changed: Callable[[Mapping[str, Any]], Project], vary: Sequence[str], aim: str, *, most: bool = False,
+            subject_to: Iterable[str] = (), positions: int = POSITIONS, tries: int = TRIES,
+            say: Callable[[int], None] = lambda n: None) -> Optimum:
+    """Look for the numbers that make a wish least.
+
+    Parameters
+    ----------
+    project
+        the project as it is.
+    changed
+        makes one with other values at some keys of its file.
+    vary
+        numbers and ranges, see :func:`varied`.
+    aim, most, subject_to
+        the wish, whether it is to be greatest, and bounds (:mod:`~tmm_sheets.optimising.wishes`).
+    positions
+        crank angles of a turn at which results are looked at.
+    tries
+        how many numbers may be tried.
+    say
+        told how many were.
+
+    Raises
+    ------
+    BadInput
+        when something that is asked cannot be read.
+    CannotBuild
+        when nothing that was tried can be built and keeps the bounds.
+    """
+    some = tuple(varied(text, project.variant.data) for text in vary)
+    if not some:
+        raise BadInput(tell("nothing is varied"), tell("for example {wish}").format(wish='--vary "crank.length=70..90 mm"'))
+    known = _Known(project, positions)
+    wishes = wish(aim, known.names), tuple(bound(text, known.names) for text in subject_to)
+    for way in (_Quick, _Whole):
+        asked = _Asked(some, *wishes, most, way(known, some, changed, _names(*wishes)), tries, say)
+        if asked.way.ready and (found := asked.run()) is not None:
+            return found
+    raise AssertionError
+
+
+def _names(of: Wish, bounds: Iterable[Bound]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys((*of.names, *(name for b in bounds for w in (b.left, b.right) for name in w.names))))
+
+
+class _Known:
+    """The results of the project as it is, and the crank angles that results are looked at."""
+
+    def __init__(self, project: Project, positions: int) -> None:
+        self.project, self.positions = project, positions
+        told = results.told(project, None, refused={})
+        self.names = [name for name, value in leaves(told) if not name.startswith(("scales.", "condition."))]
+
+    @cached_property
+    def angles(self) -> tuple[float, ...]:
+        """Crank angles, rad."""
+        return tuple(value_of(results.told(self.project, ["positions"], positions=self.positions)["cycle"]["phi"]).tolist())
+
+    def told(self, project: Project, names: Iterable[str]) -> dict[str, Any]:
+        """Results by their names, whose numbers are the steps they come from."""
+        parts = dict.fromkeys("positions" if (part := name.partition(".")[0]) == "cycle" else part for name in names)
+        angles = self.angles if {*parts} & {*OF_LINKAGE} else None
+        return dict(leaves(results.told(project, parts, phi=angles)))
+
+
+class _Whole:
+    """Numbers of a project made anew for each try."""
+
+    ready = True
+
+    def __init__(self, known: _Known, some: Sequence[Varied], changed: Callable[[Mapping[str, Any]], Project],
+                 names: Sequence[str]) -> None:
+        self.known, self.some, self.changed, self.names = known, some, changed, names
+
+    def values(self, numbers: Sequence[float]) -> Values:
+        """The results of some numbers; CannotBuild, BadInput when they have none."""
+        project = self.changed({v.name: v.value(x) for v, x in zip(self.some, numbers, strict=True)})
+        return self.of(project)
+
+    def of(self, project: Project) -> Values:
+        """The results of a project."""
+        told = self.known.told(project, self.names)
+        return {name: getattr(told.get(name), "value", told.get(name)) for name in self.names}
+
+
+class _Quick(_Whole):
+    """Numbers by one function of the crank angle and what is varied, made of the steps of the project as it is.
+
+    What a search found stays in it as it was. Hence it is relied on only where it gives, at the ends of all ranges, what a project
+    made anew gives.
+    """
+
+    ready = False
+
+    def __init__(self, known: _Known, some: Sequence[Varied], changed: Callable[[Mapping[str, Any]], Project],
+                 names: Sequence[str]) -> None:
+        super().__init__(known, some, changed, names)
+        if {name.partition(".")[0] for name in names} - {*KINEMATIC} or any(v.whole for v in some):
+            return
+        told = known.told(known.project, names)
+        self.told = {name: told[name] for name in names if isinstance(told[name], Reported)}
+        steps = {name: reported.step for name, reported in self.told.items()}
+        rows = rows_of(steps.values(), len(known.angles))
+        try:
+            self.function = Function(steps, rows, [v.name for v in some])
+        except CannotBuild:
+            return
+        self.rows = [*map(value_of, rows)]
+        self.ready = len(self.told) == len(names) and all(map(self.agrees, self._ends()))
+
+    def _ends(self) -> list[tuple[float, ...]]:
+        low, high = tuple(v.low for v in self.some), tuple(v.high for v in self.some)
+        return [low, high, (low[0], *high[1:]), tuple(v.at(0.5) for v in self.some)]
+
+    def values(self, numbers: Sequence[float]) -> Values:
+        """The results of some numbers; NaN where they have none."""
+        given = {v.name: v.si(x) for v, x in zip(self.some, numbers, strict=True)}
+        found = self.function(*self.rows, given=given)
+        return {name: part_of(found[name], of.part) for name, of in self.told.items()}
+
+    def agrees(self, numbers: Sequence[float]) -> bool:
+        """Whether a project made anew gives the same; where none can be made, whether there is nothing either."""
+        quick = self.values(numbers)
+        try:
+            whole = super().values(numbers)
+        except (BadInput, CannotBuild):
+            return True
+        return all(np.allclose(quick[name], whole[name], rtol=SAME, atol=SAME * np.max(np.abs(whole[name]))) for name in self.names)
+
+
+class _Asked:
+    """Tries, each made once."""
+
+    def __init__(self, some: tuple[Varied, ...], aim: Wish, bounds: tuple[Bound, ...], most: bool, way: _Whole, tries: int,
+                 say: Callable[[int], None]) -> None:
+        self.some, self.aim, self.bounds, self.most, self.way, self.tries, self.say = some, aim, bounds, most, way, tries, say
+        self.made: dict[tuple[float, ...], Trial] = {}
+
+    def run(self) -> Optimum | None:
+        """The search; None where the function promised what a project made anew does not keep."""
+        search.search(lambda x: self.trial(tuple(v.at(s) for v, s in zip(self.some, x.tolist(), strict=True))).key,
+                      len(self.some), self.tries)
+        best = min(self.made.values(), key=lambda t: t.key)
+        if best.key[0] > 0:
+            reason = next((t.refused for t in self.made.values() if t.refused), "")
+            if best.refused or not isfinite(best.missed):
+                raise CannotBuild(tell("nothing that was tried can be built"), reason)
+            raise CannotBuild(tell("nothing that was tried keeps the bounds"),
+                              tell("nearest come {numbers}").format(numbers=", ".join(
+                                  f"{v.name} = {v.value(x)}" for v, x in zip(self.some, best.numbers, strict=True))))
+        if isinstance(self.way, _Quick) and not self._kept(best):
+            return None
+        trials = tuple(self.made.values())
+        return Optimum(self.some, self.aim, self.most, self.bounds, trials, best, self._now(), isinstance(self.way, _Quick))
+
+    def trial(self, numbers: tuple[float, ...]) -> Trial:
+        """What comes of some numbers."""
+        if numbers not in self.made:
+            self.made[numbers] = self._tried(numbers, lambda: self.way.values(numbers))
+            self.say(len(self.made))
+        return self.made[numbers]
+
+    def _tried(self, numbers: tuple[float, ...], values: Callable[[], Values]) -> Trial:
+        try:
+            found = values()
+        except (BadInput, CannotBuild) as e:
+            return Trial(numbers, inf, inf, str(e))
+        with np.errstate(all="ignore"):
+            value = self.aim(found) * (-1 if self.most else 1)
+            return Trial(numbers, value, sum(b.missed(found) for b in self.bounds), "" if isfinite(value) else
+                         tell("{wish} is not defined").format(wish=self.aim.text))
+
+    def _kept(self, best: Trial) -> bool:
+        """Whether the best can be built, and is what the function says."""
+        try:
+            project = self.way.changed({v.name: v.value(x) for v, x in zip(self.some, best.numbers, strict=True)})
+            _ = project.study
+        except (BadInput, CannotBuild):
+            return False
+        assert isinstance(self.way, _Quick)
+        return self.way.agrees(best.numbers)
+
+    def _now(self) -> Trial | None:
+        """The project as it is."""
+        numbers = []
+        for v in self.some:
+            digits, unit = units.split(edited_text.at(self.way.known.project.variant.data, v.name))
+            if not digits or units.quantity_of(unit) != units.quantity_of(v.unit):
+                return None
+            numbers.append(round(units.si(f"{digits} {unit}") / units.si(f"1 {v.unit}"), 12))
+        return self._tried(tuple(numbers), lambda: self.way.of(self.way.known.project))
