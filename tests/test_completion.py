@@ -94,6 +94,14 @@ def test_plans_and_results_are_those_that_the_commands_take(offered, monkeypatch
     assert set(results) == {name for name, _ in leaves(told(project, ["cam"])) if name.startswith("cam.r")}
 
 
+def test_what_is_varied_and_wished(offered):
+    line = "tmm-sheets optimise lugansk/cam_rocker --vary "
+    assert {"cam.arm=", "cam.swing="} <= {*offered(f"{line}cam.")}
+    assert offered(f"{line}cam.arm=") == []
+    assert not any(name.startswith("schema") for name in offered(line))
+    assert "max(cam.r0" in offered("tmm-sheets optimise lugansk/cam_rocker --least max(cam.r")
+
+
 def test_it_is_said_in_the_readers_language(monkeypatch, capsys):
     for variable, value in (("_TMM_SHEETS_COMPLETE", "zsh_complete"), ("COMP_WORDS", "tmm-sheets lis"), ("COMP_CWORD", "1")):
         monkeypatch.setenv(variable, value)

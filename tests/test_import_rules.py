@@ -72,7 +72,7 @@ RULES = {
     "lab.bench": (f"backends catalogue construction drawing explain mechanism {METHODS} output project results sheets task", ""),
     "lab.stress": ("construction mechanism methods.linkage", ""),
     "localized_cli": ("completion", ""),
-    "completion": ("catalogue drawing note output project protocols record results", ""),
+    "completion": ("catalogue drawing note output project protocols record results task.edited_text", ""),
     "cli": ("api askers backends catalogue compare drawing explain lab living note output page project protocols record "
             "result_files results localized_cli sheets summary task", ""),
     "__main__": ("cli completion localized_cli", ""),

@@ -191,11 +191,15 @@ def optimum(project: Project, changed: Callable[[Mapping[str, Any]], Project], v
         raise BadInput(tell("nothing is varied"), tell("for example {wish}").format(wish='--vary "crank.length=70..90 mm"'))
     known = _Known(project, positions)
     wishes = wish(aim, known.names), tuple(bound(text, known.names) for text in subject_to)
-    for way in (_Quick, _Whole):
-        asked = _Asked(some, *wishes, most, way(known, some, changed, _names(*wishes)), tries, say)
-        if asked.way.ready and (found := asked.run()) is not None:
-            return found
-    raise AssertionError
+    names = _names(*wishes)
+
+    def found(way: _Whole) -> Optimum:
+        return _Asked(some, *wishes, most, way, tries, say).run()
+
+    quick = _Quick(known, some, changed, names)
+    if quick.ready and quick.keeps((best := found(quick)).best.numbers):
+        return best
+    return found(_Whole(known, some, changed, names))
 
 
 def _names(of: Wish, bounds: Iterable[Bound]) -> tuple[str, ...]:
@@ -225,16 +229,17 @@ class _Known:
 class _Whole:
     """Numbers of a project made anew for each try."""
 
-    ready = True
-
     def __init__(self, known: _Known, some: Sequence[Varied], changed: Callable[[Mapping[str, Any]], Project],
                  names: Sequence[str]) -> None:
         self.known, self.some, self.changed, self.names = known, some, changed, names
 
     def values(self, numbers: Sequence[float]) -> Values:
         """The results of some numbers; CannotBuild, BadInput when they have none."""
-        project = self.changed({v.name: v.value(x) for v, x in zip(self.some, numbers, strict=True)})
-        return self.of(project)
+        return self.of(self.project(numbers))
+
+    def project(self, numbers: Sequence[float]) -> Project:
+        """The project with some numbers."""
+        return self.changed({v.name: v.value(x) for v, x in zip(self.some, numbers, strict=True)})
 
     def of(self, project: Project) -> Values:
         """The results of a project."""
@@ -277,6 +282,14 @@ class _Quick(_Whole):
         found = self.function(*self.rows, given=given)
         return {name: part_of(found[name], of.part) for name, of in self.told.items()}
 
+    def keeps(self, numbers: Sequence[float]) -> bool:
+        """Whether some numbers can be built, all round the turn, and give what the function says."""
+        try:
+            _ = self.project(numbers).study
+        except (BadInput, CannotBuild):
+            return False
+        return self.agrees(numbers)
+
     def agrees(self, numbers: Sequence[float]) -> bool:
         """Whether a project made anew gives the same; where none can be made, whether there is nothing either."""
         quick = self.values(numbers)
@@ -295,8 +308,8 @@ class _Asked:
         self.some, self.aim, self.bounds, self.most, self.way, self.tries, self.say = some, aim, bounds, most, way, tries, say
         self.made: dict[tuple[float, ...], Trial] = {}
 
-    def run(self) -> Optimum | None:
-        """The search; None where the function promised what a project made anew does not keep."""
+    def run(self) -> Optimum:
+        """The search; CannotBuild when nothing keeps the bounds."""
         search.search(lambda x: self.trial(tuple(v.at(s) for v, s in zip(self.some, x.tolist(), strict=True))).key,
                       len(self.some), self.tries)
         best = min(self.made.values(), key=lambda t: t.key)
@@ -307,8 +320,6 @@ class _Asked:
             raise CannotBuild(tell("nothing that was tried keeps the bounds"),
                               tell("nearest come {numbers}").format(numbers=", ".join(
                                   f"{v.name} = {v.value(x)}" for v, x in zip(self.some, best.numbers, strict=True))))
-        if isinstance(self.way, _Quick) and not self._kept(best):
-            return None
         trials = tuple(self.made.values())
         return Optimum(self.some, self.aim, self.most, self.bounds, trials, best, self._now(), isinstance(self.way, _Quick))
 
@@ -328,16 +339,6 @@ class _Asked:
             value = self.aim(found) * (-1 if self.most else 1)
             return Trial(numbers, value, sum(b.missed(found) for b in self.bounds), "" if isfinite(value) else
                          tell("{wish} is not defined").format(wish=self.aim.text))
-
-    def _kept(self, best: Trial) -> bool:
-        """Whether the best can be built, and is what the function says."""
-        try:
-            project = self.way.changed({v.name: v.value(x) for v, x in zip(self.some, best.numbers, strict=True)})
-            _ = project.study
-        except (BadInput, CannotBuild):
-            return False
-        assert isinstance(self.way, _Quick)
-        return self.way.agrees(best.numbers)
 
     def _now(self) -> Trial | None:
         """The project as it is."""
