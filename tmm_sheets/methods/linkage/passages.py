@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from math import pi
+from math import inf, pi
 from typing import Any
 
 import numpy as np
@@ -272,7 +272,7 @@ def _touch(gap: Callable[[Any], tuple[Any, Any]], near: float) -> float | None:
     for step in (2 * pi / SWEEP, 1e-4):
         a, b, c = gap(near + step * np.array([-1.0, 0.0, 1.0]))[0]
         bend = a - 2 * b + c
-        if not bend > 0:
+        if not 0 < bend < inf:
             return None
         near += float(np.clip(step * (a - c) / (2 * bend), -step, step))
     least, rounding = gap(np.array([near]))
