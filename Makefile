@@ -16,8 +16,8 @@ sheets: $(OUT)/sheet1.pdf  ## the sheets of PROJECT (default lugansk/shaper) in 
 $(OUT)/sheet1.pdf: $(VENV)/.installed $(SOURCES)
 	$(BIN)/tmm-sheets build $(PROJECT) -o $(OUT)
 
-test: lint types  ## everything the tests prove: ruff, mypy, pytest
-	$(PYTEST)
+test: lint  ## everything the tests prove: ruff, mypy beside pytest
+	@$(BIN)/mypy & types=$$!; $(PYTEST); tests=$$?; wait $$types && exit $$tests
 
 trials: $(VENV)/.tested  ## the long tests: every project, every language, random students, photographs, kills, clusters
 	$(PYTEST) -m trial

@@ -52,7 +52,8 @@ def test_every_command_on_it(name, tmp_path, capsys):
     assert "forces" not in tree or "forces" in parts
 
 
-@pytest.mark.parametrize("name", [n for n, (made_of, _, _) in FILES.items() if CRANK.keys() <= made_of[0].keys()])
+@pytest.mark.parametrize("name", few(
+    [n for n, (made_of, _, _) in FILES.items() if CRANK.keys() <= made_of[0].keys()], "bare crank", "masses", "force"))
 def test_nothing_empty_and_nothing_crowded_on_its_sheet(name):
     done = composed(project(*FILES[name][0]), 1)
     assert not done.crowded

@@ -21,7 +21,7 @@ from tmm_sheets.cli import commands
 def desk(tmp_path, monkeypatch):
     """A folder with a student's files, one with a space in its name: copies of a task that keep its name, with other numbers."""
     monkeypatch.chdir(tmp_path)
-    text = catalogue.read("sixbar/3:2").text
+    text = catalogue.read("sixbar/3:2").text.replace('"sixbar_1", "sixbar_2"', '"sixbar_1"')
     for name in ("b.toml", "my own.toml"):
         Path(name).write_text(text.replace('student = ""', 'student = "Коваль"'), encoding="utf-8")
     shutil.copy("b.toml", "c.toml")

@@ -15,13 +15,13 @@ from tmm_sheets.construction.scale import times
 from tmm_sheets.project import Project
 from tmm_sheets.record import recording
 
-PROJECTS = ("lugansk/engine", "lugansk/cam_flat", "sixbar/9:4", "transport/crusher@12-СДМ-1908")
+PROJECTS = ("lugansk/engine", "lugansk/cam_flat", "sixbar/9:4", "transport/crusher@12-СДМ-1908", "tests/projects/feeder.toml")
 CYRILLIC = re.compile("[\u0400-\u04ff]+")
 RUSSIAN_ONLY = re.compile("[ыэъё]", re.IGNORECASE)
 NUMBER = re.compile(r"\d+(?:[.,]\d+)?")
 
 
-@pytest.fixture(scope="module", params=few(PROJECTS, "lugansk/cam_flat", "transport/crusher@12-СДМ-1908"))
+@pytest.fixture(scope="module", params=few(PROJECTS, "lugansk/cam_flat", "tests/projects/feeder.toml"))
 def protocol(request):
     """Lines in each language, without the scale factors behind the titles, and the names in its file."""
     found = {}

@@ -88,7 +88,7 @@ def test_creases_are_followed_by_the_finer_relief_only():
     assert np.abs(m.to_picture(m.to_sheet(place(GRID))) - place(GRID)).max() < 0.01
 
 
-@pytest.mark.parametrize("tall", [0.0, seldom(7.0)])
+@pytest.mark.parametrize("tall", [seldom(0.0), seldom(7.0)])
 def test_waves_are_followed_from_a_frame_alone_and_by_no_single_line(tall):
     flat, (columns, rows) = projection(Camera(curl=0.0, tilt=0.1), 841.0, 594.0)
 

@@ -37,7 +37,9 @@ PROJECTS = {
     "compressor 2": project("compressor", 2), "compressor 4, rings driven": project("compressor", 4, driver="ring"),
     "compressor 6": project("compressor", 6), "crusher 4": project("crusher", 4), "crusher 9": project("crusher", 9),
 }
-ALL = pytest.mark.parametrize("data", PROJECTS.values(), ids=PROJECTS.keys())
+KEPT = ("diesel 0", "press 7, rings", "compressor 4, rings driven", "crusher 9")
+ALL = pytest.mark.parametrize("data", [
+    pytest.param(data, id=name, marks=[] if name in KEPT else pytest.mark.trial) for name, data in PROJECTS.items()])
 
 
 def arrangement():

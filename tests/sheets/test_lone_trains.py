@@ -5,6 +5,7 @@ from functools import cache
 import pytest
 
 from tests.evenness import gap
+from tests.few import few, seldom
 from tests.project_files import project
 from tmm_sheets.drawing.evenness import empty_cells
 from tmm_sheets.drawing.marks import Line, Text
@@ -38,7 +39,8 @@ def drawn(name):
     return own, composed(own, 1)
 
 
-@pytest.mark.parametrize("name", [name for name in PROJECTS if name not in ("shafts", "one ring")])
+@pytest.mark.parametrize("name", [
+    name if name in ("two rings", "planetary train") else seldom(name) for name in PROJECTS if name not in ("shafts", "one ring")])
 def test_a_sheet_of_gears_alone_is_filled(name):
     _, sheet = drawn(name)
     assert empty_cells(sheet.drawing) <= 0.18
@@ -46,7 +48,7 @@ def test_a_sheet_of_gears_alone_is_filled(name):
     assert min(empty.width, empty.height) < 100.0
 
 
-@pytest.mark.parametrize("name", PROJECTS)
+@pytest.mark.parametrize("name", few(PROJECTS, "shafts", "two rings", "planetary train"))
 def test_views_keep_their_places(name):
     _, sheet = drawn(name)
     assert [str(left) for left in sheet.leaving] == []

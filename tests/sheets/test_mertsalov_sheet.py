@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from tests.few import seldom
 from tests.methods.flywheel.press_truth import OMEGA, inertia
 from tests.methods.linkage.shaper_truth import Shaper
 from tmm_sheets import catalogue
@@ -179,8 +180,8 @@ def test_check_refuses_a_sheet_of_the_other_method(press, sheets, refused):
         composition.check(project)
 
 
-@pytest.mark.parametrize(("name", "least"), [("press", 80), ("lugansk/shaper", 80), ("lugansk/engine", 80), ("loom", 52),
-                                             ("screen", 52)])
+@pytest.mark.parametrize(("name", "least"), [
+    seldom("press", 80), ("lugansk/shaper", 80), seldom("lugansk/engine", 80), seldom("loom", 52), ("screen", 52)])
 def test_the_graphs_of_the_moments_read_well(name, least):
     """M_c and M_d together are at least 80 mm high, over a pole distance that a ruler lays off (H = mu_A/(mu_M mu_phi)).
 

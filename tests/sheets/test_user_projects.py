@@ -53,6 +53,7 @@ def test_lever_agrees_with_kinetostatics_at_every_position(project):
     np.testing.assert_allclose(kinetic, lever.balancing.value, atol=1e-9 * np.abs(lever.balancing.value).max())
 
 
+@pytest.mark.parametrize("project", few(FILES, next(path for path in FILES if path.stem == "planer")), indirect=True, ids=NAME)
 @pytest.mark.parametrize("sheet", [1, 2])
 def test_sheets_are_clean(project, sheet):
     done = composed(project, sheet)
