@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,7 @@ from tmm_sheets.words import tell
 if TYPE_CHECKING:
     from tmm_sheets.compare.report import Kind, Report
     from tmm_sheets.drawing.plotters import Plotter
+    from tmm_sheets.output.batch import Outcome
     from tmm_sheets.output.building import Order
     from tmm_sheets.output.plot import Job, PlotLook
     from tmm_sheets.progress import Progress
@@ -457,7 +458,6 @@ def _build_many(
 
     from tmm_sheets import files
     from tmm_sheets.output import batch
-    from tmm_sheets.progress import Bar
 
     names = batch.chosen(projects, families, [_listed(file) for file in lists])
     if not names:
@@ -466,15 +466,7 @@ def _build_many(
     start = monotonic()
     running = (batch.run(names, order, parent, jobs or batch.processors()) if scheduler is None
                else batch.run_on_dask(names, order, parent, scheduler))  # fmt: skip
-    done = []
-    stopped: KeyboardInterrupt | None = None
-    try:
-        with Bar(len(names)) as bar:
-            for outcome in running:
-                done.append(outcome)
-                bar.step(bool(outcome.problem))
-    except KeyboardInterrupt as e:
-        stopped = e
+    done, stopped = _come_of(running, len(names))
     for outcome in sorted(done, key=lambda o: o.project):
         for warning in outcome.warnings:
             click.echo(f"{outcome.project}: {warning}", err=True)
@@ -483,14 +475,30 @@ def _build_many(
     if stopped is not None:
         if failures:
             click.echo(batch.table(failures, len(names)), err=True)
-        left = len(names) - len(done)
-        click.echo(
-            tell("stopped, {n} of {total} projects left; the same command goes on from there").format(n=left, total=len(names)),
-            err=True,
-        )
+        _say_stopped(len(names) - len(done), len(names))
         raise stopped
     if failures:
         raise CannotBuild(batch.table(failures, len(names)))
+
+
+def _come_of(running: Iterable[Outcome], total: int) -> tuple[list[Outcome], KeyboardInterrupt | None]:
+    """Outcomes of a batch as they come, with a bar; and what told it to end before."""
+    from tmm_sheets.progress import Bar
+
+    done: list[Outcome] = []
+    try:
+        with Bar(total) as bar:
+            for outcome in running:
+                done.append(outcome)
+                bar.step(bool(outcome.problem))
+    except KeyboardInterrupt as e:
+        return done, e
+    return done, None
+
+
+def _say_stopped(left: int, total: int) -> None:
+    said = tell("stopped, {n} of {total} projects left; the same command goes on from there")
+    click.echo(said.format(n=left, total=total), err=True)
 
 
 @commands.command()
@@ -511,19 +519,15 @@ def roster(table: Path, task: str, corrected: bool, formats: tuple[str, ...], ou
     from tmm_sheets.output import batch
     from tmm_sheets.output import roster as rosters
     from tmm_sheets.output.building import Order
-    from tmm_sheets.progress import Bar
 
     students = rosters.read(table, task)
     files.check_folder(output)
     settings: dict[str, dict[str, Any]] = {"pdf": {"date": files.source_date()}}
     order = Order((), formats, settings, corrected, force, False, False, words.asked(), words.reader(), kept.used(), _names())
     works = [batch.Task(s.project, s.folder, s.student, s.group) for s in students]
-    done = {}
-    with Bar(len(works)) as bar:
-        for outcome in batch.carry_out(works, order, output, jobs or batch.processors()):
-            done[outcome.folder] = outcome
-            bar.step(bool(outcome.problem))
-    written, hand = _put(output, rosters.lists(students, done), force)
+    came, stopped = _come_of(batch.carry_out(works, order, output, jobs or batch.processors()), len(works))
+    done = {outcome.folder: outcome for outcome in came}
+    written, hand = _put(output, rosters.lists(students, done, output), force)
     for s in students:
         for warning in done[s.folder].warnings if s.folder in done else ():
             click.echo(f"{s.student}: {warning}", err=True)
@@ -532,9 +536,12 @@ def roster(table: Path, task: str, corrected: bool, formats: tuple[str, ...], ou
     click.echo(rosters.told(students, done))
     for path in written:
         click.echo(path)
-    failed = [s for s in students if s.folder not in done or done[s.folder].problem]
+    if stopped is not None:
+        _say_stopped(len(students) - len(done), len(students))
+        raise stopped
+    failed = [s for s in students if done[s.folder].problem]
     if failed:
-        raise CannotBuild("\n".join(f"{s.student}: {done[s.folder].problem}" for s in failed if s.folder in done))
+        raise CannotBuild("\n".join(f"{s.student}: {done[s.folder].problem}" for s in failed))
 
 
 @commands.command()

@@ -80,7 +80,8 @@ def test_table_and_marks(folder, tmp_path):
     assert [found[n]["project"] for n in ("One", "Two")] == ["own", "other"]
     # 100 - 10 for the mistake, 2 for a red one besides, at most 1 for three amber ones, 8 for the view, 3 for the table.
     assert [(s["mark"], s["grade"]) for s in found.values()] == [(100, "5"), (None, None), (76, "3"), (76, "3"), (76, "3")]
-    assert found["One"]["costs"] == {"mistake": 10, "red": 2, "amber": 1, "missing_view": 8, "missing_table": 3, "unjudged": 0}
+    assert found["One"]["costs"] == {"mistake": 10, "red": 2, "amber": 1, "missing_view": 8, "missing_table": 3, "unjudged": 0,
+                                     "unfilled": 0, "missing_sheet": 0}
     marks = next(t for t in report.story.tables if t.title == "How the marks came about")
     assert marks.rows[1] == ("One", "100", "−10", "−2", "−1 (at most, not 3 × 0.5)", "−8", "−3", "76")
     assert [row[0] for row in marks.rows] == ["Five", "One", "Three", "Two"]  # nothing of Four's could be judged
@@ -90,6 +91,34 @@ def test_table_and_marks(folder, tmp_path):
     assert set(report.files) == {"Five/sound.dxf.html", "One/sheet 1.dxf.html", "Three/Three.dxf.html", "Two/two.dxf.html"}
     led = re.findall(r'href="([^"]*)"', page(report, ".html", "", seen_from(Path("a/group.html"), Path("out/g"))).decode())
     assert [unquote(to) for to in led] == [f"../out/g/{name}" for name in sorted(report.files)]
+
+
+def test_marks_go_by_what_was_handed_in(folder, tmp_path):
+    """21 of 340 numbers, all of them right, are no good work; nor is one sheet of two. Numbers are of all sheets."""
+    (folder / "Two/numbers.csv").write_bytes(b"")
+
+    def numbers(project, sheet, path):
+        return Report("", {"source": "measured", "findings": [{"measured": 1.0}] * 21, "summary": {"empty": 319}})
+
+    def drawing(project, sheet, path):
+        return Report("", {"source": "cad", "sheet": sheet or 1, "findings": []})
+
+    opened = type("P", (), {"variant": type("V", (), {"sheets": [1, 2]})()})()
+    marks = scheme(tmp_path, "full = 100\n[costs]\nunfilled = 0.5\nmissing_sheet = 20\n")
+    report = group.compare(folder, "own", lambda name: opened, by(dxf=drawing, measured=numbers), marks, lambda what: None)
+    found = {s["student"]: s for s in report.tree["students"]}
+    assert (found["Two"]["mark"], found["Two"]["handed_in"]) == (53, "sheets 1; 21 of 340 numbers")
+    assert (found["One"]["mark"], found["One"]["faults"]["missing_sheet"]) == (80, 1)
+    assert found["Four"]["mark"] is None
+    assert "−47 (94 × 0.5)" in report.text
+
+
+def test_a_project_file_is_seen_from_the_folder(folder, tmp_path):
+    (tmp_path / "own.toml").touch()
+    (folder / "projects.toml").write_text('"Two" = "../own.toml"\n"One" = "elsewhere.toml"\n', encoding="utf-8")
+    asked = []
+    compared(folder, tmp_path, lambda name: asked.append(name) or type("P", (), {"variant": type("V", (), {"sheets": [1]})()})())
+    assert set(asked) == {"own", "elsewhere.toml", str(folder / "../own.toml")}
 
 
 def test_files_of_all_kinds(folder, tmp_path):

@@ -2,11 +2,12 @@
 
 import pytest
 
+from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.compare import group
 from tmm_sheets.compare.measured import measured_lengths
-from tmm_sheets.errors import BadInput
-from tmm_sheets.output import roster
+from tmm_sheets.errors import BadInput, Stopped
+from tmm_sheets.output import batch, roster
 
 
 def read(folder, text, task=""):
@@ -69,3 +70,26 @@ def test_a_group_is_made_and_handed_in(tmp_path, monkeypatch, capsys):
     assert measured.read_text("utf-8") == "\n".join(lines)
     assert run(["compare", "press", "--group", "works", "-o", "reports"]) == 0
     assert "1 of " in capsys.readouterr().out
+
+
+def test_who_is_told_to_stop_says_how_to_go_on(tmp_path, monkeypatch, capsys):
+    """What was made is whole and listed; the rest is made by the same command."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own/my.toml").write_text(catalogue.read("lugansk/cam_flat").text, encoding="utf-8")
+    (tmp_path / "group.csv").write_text("student;task\nA;lugansk/cam_flat\nB;own/my.toml\n", encoding="utf-8")
+    whole = batch.carry_out
+
+    def stopped(works, *rest):
+        yield from whole(works[:1], *rest)
+        raise Stopped(2)
+
+    monkeypatch.setattr(batch, "carry_out", stopped)
+    command = ["roster", "group.csv", "-o", "works", "--format", "svg", "--jobs", "1", "--lang", "en"]
+    assert run(command) == 130
+    said = capsys.readouterr()
+    assert said.err.splitlines()[-1] == "stopped, 1 of 2 projects left; the same command goes on from there"
+    made = {path.relative_to(tmp_path / "works").as_posix() for path in (tmp_path / "works").rglob("*") if path.is_file()}
+    assert {"made.csv", "projects.toml", "A/note.pdf", "A/sheet1.svg"} <= made
+    assert not any(name.startswith("B/") or name.endswith((".part", ".tmp")) for name in made)
+    assert 'B" = "../own/my.toml"' in (tmp_path / "works/projects.toml").read_text("utf-8")

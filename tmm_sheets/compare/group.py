@@ -1,9 +1,9 @@
 """A whole group at once: a folder with every student's drawings, measured files and photographs; a table, the mistakes, the marks.
 
 A folder in it, or a file that lies in it alone, is a student's; ``projects.toml`` in it says whose project is another one than that
-of the command: ``"Petrenko" = "sixbar/3:2"``. What is compared how follows from the names: ``.dxf`` drawings, ``.csv`` measured
-numbers, ``.jpg``, ``.png``, ``.pdf`` photographs, which say their sheet in their names (``sheet 2.jpg``). What the program itself
-put there (``roster``) and nobody has changed is not handed in.
+of the command: ``"Petrenko" = "sixbar/3:2"``; a path there is seen from the folder. What is compared how follows from the names:
+``.dxf`` drawings, ``.csv`` measured numbers, ``.jpg``, ``.png``, ``.pdf`` photographs, which say their sheet in their names
+(``sheet 2.jpg``). What the program itself put there (``roster``) and nobody has changed is not handed in.
 """
 
 from __future__ import annotations
@@ -59,31 +59,49 @@ class Judgement:
 
 @dataclass(frozen=True)
 class Student:
-    """A student's work: the project, and what came of each file."""
+    """A student's work: the project, what came of each file, and how many sheets the project has."""
 
     name: str
     project: str
     files: tuple[Judgement, ...]
+    of_sheets: int = 0
 
     @property
     def faults(self) -> dict[str, int]:
-        """Faults of each kind in all files together."""
-        return {kind: sum(f.faults.get(kind, 0) for f in self.files) for kind in KINDS}
+        """Faults of each kind in all files together, and what is missing of the whole work."""
+        found = {kind: sum(f.faults.get(kind, 0) for f in self.files) for kind in KINDS}
+        filled, asked = self.numbers
+        shown = len({*self.sheets} & {*range(1, self.of_sheets + 1)})
+        return found | {"unfilled": round(100 * (asked - filled) / asked) if asked else 0,
+                        "missing_sheet": self.of_sheets - shown if not asked and self.judged else 0}
 
     def mark(self, scheme: MarkingScheme) -> float | None:
         """The mark by a scheme; None where no file could be judged."""
-        return scheme.mark(self.faults) if any(not f.refused for f in self.files) else None
+        return scheme.mark(self.faults) if self.judged else None
+
+    @property
+    def judged(self) -> list[Mapping[str, Any]]:
+        """What could be judged, as the JSON of each has it."""
+        return [f.report.tree for f in self.files if f.report is not None]
+
+    @property
+    def sheets(self) -> list[int]:
+        """Numbers of the sheets that are shown."""
+        return sorted({int(tree["sheet"]) for tree in self.judged if tree.get("sheet")})
+
+    @property
+    def numbers(self) -> tuple[int, int]:
+        """How many numbers are filled in, of how many that the tables ask for."""
+        tables = [tree for tree in self.judged if tree.get("source") == "measured"]
+        filled = sum("measured" in finding for tree in tables for finding in tree["findings"])
+        return filled, filled + sum(tree["summary"].get("empty", 0) for tree in tables)
 
     @property
     def handed_in(self) -> str:
         """How much of the work can be judged: sheets, and numbers of those that the tables ask for."""
-        judged = [f.report.tree for f in self.files if f.report is not None]
-        sheets = sorted({int(tree["sheet"]) for tree in judged if tree.get("sheet")})
-        tables = [tree for tree in judged if tree.get("source") == "measured"]
-        filled = sum("measured" in finding for tree in tables for finding in tree["findings"])
-        asked = filled + sum(tree["summary"].get("empty", 0) for tree in tables)
-        said = [tell("sheets {numbers}").format(numbers=", ".join(map(str, sheets)))] if sheets else []
-        said += [tell("{n} of {total} numbers").format(n=filled, total=asked)] if tables else []
+        filled, asked = self.numbers
+        said = [tell("sheets {numbers}").format(numbers=", ".join(map(str, self.sheets)))] if self.sheets else []
+        said += [tell("{n} of {total} numbers").format(n=filled, total=asked)] if asked else []
         return "; ".join(said) or "–"
 
     @property
@@ -121,12 +139,13 @@ def compare(folder: Path, project: str, opened: Callable[[str], Project], judged
 
     students = []
     for name, paths in works.items():
-        own = projects.get(name, project)
+        own = _seen_from(folder, projects.get(name, project))
         files = []
         for path in paths:
             say(f"{name}: {path.name}")
             files.append(_judged(path, _within(folder, path), own, project_of, judged))
-        students.append(Student(name, own, tuple(files)))
+        count = len(project_of(own).variant.sheets) if any(f.report is not None for f in files) else 0
+        students.append(Student(name, own, tuple(files), count))
     return _report(folder, students, scheme)
 
 
@@ -179,6 +198,12 @@ def _projects(path: Path, works: Mapping[str, object]) -> dict[str, str]:
     if problems:
         raise BadInput(problems)
     return data
+
+
+def _seen_from(folder: Path, project: str) -> str:
+    """A project as commands call it: the path of a file may be told as it is seen from the folder."""
+    path = folder / project
+    return str(path) if project.endswith(".toml") and not Path(project).is_absolute() and path.is_file() else project
 
 
 def _within(folder: Path, path: Path) -> str:
@@ -287,7 +312,7 @@ def _marks(students: Sequence[Student], scheme: MarkingScheme) -> StoryTable:
 def _kinds() -> tuple[str, ...]:
     """What the kinds of faults are called."""
     return (tell("mistakes named"), tell("other red"), tell("other amber"), tell("views missing"), tell("tables, texts missing"),
-            tell("not judged"))
+            tell("not judged"), tell("numbers left empty, %"), tell("sheets missing"))
 
 
 def _most_made(students: Sequence[Student]) -> list[tuple[str, int]]:

@@ -11,6 +11,8 @@
     missing_view = 8          # each view that is not there
     missing_table = 1         # each table, text or detail that is not found as it is on the sheet
     unjudged = 0              # each file that could not be judged
+    unfilled = 0.5            # each percent of the numbers asked for that is left empty
+    missing_sheet = 20        # each sheet that nothing handed in shows, where no numbers were measured either
 
     [at_most]                 # may be left out: the most that all faults of a kind cost together
     amber = 5
@@ -34,7 +36,7 @@ from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.numbers import told
 from tmm_sheets.words import tell
 
-KINDS = ("mistake", "red", "amber", "missing_view", "missing_table", "unjudged")
+KINDS = ("mistake", "red", "amber", "missing_view", "missing_table", "unjudged", "unfilled", "missing_sheet")
 """Kinds of faults a scheme gives costs for."""
 
 

@@ -193,13 +193,23 @@ def told(students: Sequence[Enrolled], done: Mapping[str, Outcome]) -> str:
     return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows)
 
 
-def lists(students: Sequence[Enrolled], done: Mapping[str, Outcome]) -> dict[str, bytes]:
-    """The table as CSV, and ``projects.toml`` for ``compare --group``, which compares works with the projects named there."""
+def lists(students: Sequence[Enrolled], done: Mapping[str, Outcome], folder: Path) -> dict[str, bytes]:
+    """The table as CSV, and ``projects.toml`` for ``compare --group``, which compares works with the projects named there.
+
+    Paths of project files are as seen from the folder of both: it may be moved, or put on another machine, with what it is about.
+    """
     out = io.StringIO()
     csv.writer(out, delimiter=";", lineterminator="\r\n").writerows(_table(students, done))
-    lines = [f"{_quoted(s.folder)} = {_quoted(s.project if catalogue.is_shipped(s.project) else os.path.abspath(s.project))}\n"
+    lines = [f"{_quoted(s.folder)} = {_quoted(s.project if catalogue.is_shipped(s.project) else _from(folder, s.project))}\n"
              for s in students]
     return {TABLE: ("\ufeff" + out.getvalue()).encode(), PROJECTS: "".join(lines).encode()}
+
+
+def _from(folder: Path, project: str) -> str:
+    try:
+        return Path(os.path.relpath(project, folder)).as_posix()
+    except ValueError:  # on another drive of Windows
+        return os.path.abspath(project)
 
 
 def _quoted(text: str) -> str:
