@@ -64,7 +64,7 @@ def test_names_ids_and_numbers_are_the_same_in_every_language(other):
     found = {}
     for language in ("ru", other):
         with words.on_paper(language):
-            project = Project(catalogue.read("sixbar/1:1"))
+            project = Project(catalogue.read("tests/projects/feeder.toml"))
             record, _ = recording.record(project)
             entries = collecting.measurables(project, lambda what: None).entries
             solved = results.as_json(results.assemble(project, None))

@@ -6,6 +6,7 @@ from math import cos, pi, radians, sin, tan
 import numpy as np
 import pytest
 
+from tests.few import few
 from tests.note.printed_formulas import equalities, line_of
 from tmm_sheets.construction import expression as e
 from tmm_sheets.note.alphabets import equation
@@ -39,7 +40,7 @@ SHAPES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("shape", few(SHAPES, *[*SHAPES][::3]))
 def test_what_stands_there_gives_what_stands_there(shape):
     drawn = random.Random(shape)
     for _ in range(300):

@@ -80,6 +80,7 @@ def test_other_positions_can_be_the_analysed_one(project):
         assert not composed(other, 1).crowded
 
 
+@pytest.mark.trial
 def test_command_line(tmp_path):
     assert run(["build", str(FILES[0]), "-o", str(tmp_path)]) == 0
     sheets = sorted(p.name for p in tmp_path.iterdir() if not p.name.startswith("."))
