@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from math import floor, isclose, log10
 from typing import Any
 
@@ -133,10 +133,12 @@ def _largest(most: float) -> float:
     return max(c for c in _series(most) if c < most or isclose(c, most, rel_tol=1e-9))
 
 
-def _series(about: float) -> Iterator[float]:
+def _series(about: float) -> tuple[float, ...]:
     """The series ``HANDY`` * 10^k over three decades about a number."""
-    power = floor(log10(about))
-    for k in (power - 1, power, power + 1):
-        for mantissa in HANDY:
-            # A decimal literal instead of a product: 2.5 * 10**-3 must be the number written 0.0025.
-            yield float(f"{mantissa}e{k}")
+    return _decades(floor(log10(about)))
+
+
+@cache
+def _decades(power: int) -> tuple[float, ...]:
+    # Decimal literals instead of products: 2.5 * 10**-3 must be the number written 0.0025.
+    return tuple(float(f"{mantissa}e{k}") for k in (power - 1, power, power + 1) for mantissa in HANDY)

@@ -5,7 +5,9 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
+from functools import cache
 from itertools import combinations
+from pathlib import Path
 from typing import Any
 
 from tmm_sheets.box import Box
@@ -102,7 +104,12 @@ def arrangement(name: str) -> Arrangement:
     ``like`` names another arrangement whose views it has, under a code or a title of its own and with further ``options`` for all
     of them; ``without`` by part of the results that a project may lack the arrangement to take instead.
     """
-    path = template(f"sheets/{name}.toml")
+    return _read(template(f"sheets/{name}.toml"), name)
+
+
+@cache
+def _read(path: Path, name: str) -> Arrangement:
+    """The arrangement of a file, read once: sheets ask for it many times, and nobody changes it."""
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
