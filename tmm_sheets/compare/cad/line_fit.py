@@ -71,13 +71,13 @@ class KnownLines:
 
     def nearest(self, points: Points, within: float) -> tuple[Points, Points, npt.NDArray[np.bool_]]:
         """For each point the nearest point on a line, the direction of that line (unit), and whether there is one near enough."""
-        import shapely
-
         foot, unit, found = points.copy(), np.ones(len(points), complex), np.zeros(len(points), bool)
         for first in range(0, len(points) if len(self.a) else 0, AT_ONCE):
             z = points[first : first + AT_ONCE]
             # All pieces about a point: their distances in one array take a seventh of what the index needs for the nearest.
-            i, j = self.tree.query(shapely.box(z.real - within, z.imag - within, z.real + within, z.imag + within))
+            i, j = self.tree.query(shapes(z - within * (1 + 1j), z + within * (1 + 1j)))
+            if not len(i):
+                continue
             a, d = self.a[j], (self.b - self.a)[j]
             size = np.maximum(np.abs(d), 1e-12)
             u = d / size
@@ -85,14 +85,18 @@ class KnownLines:
             t = np.clip(from_a.real, 0.0, size)
             off = np.abs(from_a - t)
             # Of each point the first piece that is as near as any.
-            begin = np.flatnonzero(np.diff(i, prepend=-1))
-            least = np.repeat(np.minimum.reduceat(off, begin), np.diff(begin, append=len(i))) if len(i) else off
-            nearest = np.flatnonzero(off == least)
-            k = nearest[np.flatnonzero(np.diff(i[nearest], prepend=-1))]
-            k = k[off[k] <= within]
+            begin = _begins(i)
+            least = np.repeat(np.minimum.reduceat(off, begin), np.diff(np.append(begin, len(i))))
+            nearest = np.flatnonzero((off == least) & (least <= within))
+            k = nearest[_begins(i[nearest])]
             at = first + i[k]
             foot[at], unit[at], found[at] = a[k] + t[k] * u[k], u[k], True
         return foot, unit, found
+
+
+def _begins(values: npt.NDArray[np.int64]) -> npt.NDArray[np.intp]:
+    """Where runs of equal values begin."""
+    return np.flatnonzero(np.concatenate(([True], values[1:] != values[:-1]))[: len(values)])
 
 
 def shapes(a: Points, b: Points) -> Any:
