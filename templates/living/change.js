@@ -1,29 +1,71 @@
 // Given numbers as sliders; what does not assemble is told; undo, the project's own numbers again, a project file.
 
 const edits = { done: [], undone: [] };
-const SHOWN = { m: ["mm", 1000], rad: ["°", 180 / Math.PI] };
+const SHOWN = { m: ["mm", 1 / 1000], rad: ["°", Math.PI / 180] };
 
-const told = (value, unit) => { const [u, by] = SHOWN[unit] ?? [unit, 1]; return `${digits(value * by)} ${UNITS()[u] ?? u}`; };
+const told = (value, unit, as = SHOWN[unit] ?? [unit, 1]) => { const [u, by] = as; return `${digits(value / by)} ${UNITS()[u] ?? u}`; };
+
+// What may wait until the page is idle.
+const soon = (act) => (window.requestIdleCallback ?? setTimeout)(act);
+
+const isLoad = (g) => /^(force|moment)\[/.test(g.name), isTable = (g) => /\.tables?(\[\d+\])?$/.test(g.name);
 
 function sizeOfAll() {
   return Math.max(...record.motion.givens.filter((g) => g.unit === "m").flatMap((g) => [g.value].flat().map(Math.abs)), 0.01);
+}
+
+const LOOKS = 24, HALVES = 6, TIMES = 3;
+
+// Whether all points have a place at some angles of the turn.
+function assembles(given) {
+  const now = { given, start: record.motion.start, courses: coursesOf(given), loads: [] }, { all } = record.motion;
+  assembles.places ??= Object.entries(all.results).filter(([id]) => id.startsWith("positions/")).map(([, [place]]) => place);
+  return round(LOOKS).every((phi) => { const values = run(all, phi, now); return assembles.places.every((place) => !Number.isNaN(values[place])); });
+}
+
+// From a slider's own number to an end of it: as far as the mechanism goes round, to a part of the way.
+function reachOf(own, far, put) {
+  if (assembles(put(far))) return far;
+  let near = own, beyond = far;
+  for (let i = 0; i < HALVES; i++) { const middle = (near + beyond) / 2; if (assembles(put(middle))) near = middle; else beyond = middle; }
+  return near;
+}
+
+// Where a slider ends: at limits of the schema, and of what assembles with the project's other numbers.
+function limitsOf(g, i) {
+  const own = i === null ? g.value : g.value[i], moves = g.unit === "m" || g.unit === "rad";
+  const wide = g.unit === "rad" ? Math.PI / 2 : i !== null || own === 0 ? sizeOfAll() / 2 : Math.abs(own) * (TIMES - 1);
+  const low = Math.max(own - wide, g.low ?? (moves ? -Infinity : 0)), high = Math.min(own + wide, g.high ?? Infinity);
+  const put = (x) => ({ ...machine.made, [g.name]: i === null ? x : g.value.map((v, k) => (k === i ? x : v)) });
+  const ends = () => (moves && assembles(machine.made) ? [reachOf(own, low, put), reachOf(own, high, put)] : [low, high]);
+  g.limits ??= [];
+  return (g.limits[i ?? 0] ??= { low, high, ends });
+}
+
+// A number of a slider as one would write it, in the unit of the file.
+function handy(x, step2, g) {
+  const by = (g.shown ?? SHOWN[g.unit] ?? ["", 1])[1], digit = 10 ** Math.floor(Math.log10(step2 / by));
+  return Number((Math.round(x / by / digit) * digit).toPrecision(12)) * by;
 }
 
 // One slider for a number, two for a point.
 function slidersOf(g) {
   const parts2 = Array.isArray(g.value) ? [0, 1] : [null];
   return parts2.map((i) => {
-    const own = i === null ? g.value : g.value[i], now = () => (i === null ? machine.given[g.name] : machine.given[g.name][i]);
-    const reach = g.unit === "rad" ? Math.PI / 4 : i !== null || own === 0 ? sizeOfAll() / 3 : Math.abs(own) * 0.6;
-    const low = own - reach, high = own + reach;
-    const name = `${g.symbol ? lettered(g.symbol) : plain(g.name)}${i === null ? "" : `<sub>${"xy"[i]}</sub>`}`;
-    const out = node("output"), input = node("input", { type: "range", min: low, max: high, step: (high - low) / 400, value: now(), "aria-label": `${g.name}${i === null ? "" : ` ${"xy"[i]}`}` });
+    const own = i === null ? g.value : g.value[i], now = () => (i === null ? machine.given[g.name] : machine.given[g.name][i]), limits = limitsOf(g, i);
+    const letter = g.symbol ? lettered(g.symbol) : plain(g.name), name = `${letter}${i === null ? "" : `<sub>${"xy"[i]}</sub>`}`;
+    const out = node("output"), input = node("input", { type: "range", "aria-label": `${g.name}${i === null ? "" : ` ${"xy"[i]}`}` });
+    const range = ([low, high]) => { Object.assign(input, { min: low, max: high, step: (high - low) / 400 }); input.value = now(); };
+    range([limits.low, limits.high]);
+    if (limits.ends) {
+      soon(() => { if (limits.ends) { [limits.low, limits.high] = limits.ends(); delete limits.ends; } range([limits.low, limits.high]); });
+    }
     const row = node("label", { class: "slide", title: g.name }, node("span", { html: name }), out, input);
-    const refresh = () => { out.textContent = told(now(), g.unit); row.classList.toggle("changed", now() !== own); input.value = now(); };
+    const refresh = () => { out.textContent = isTable(g) ? `×${digits(now())}` : told(now(), g.unit, g.shown); row.classList.toggle("changed", now() !== own); input.value = now(); };
     const put = (x) => setGiven(g.name, i === null ? x : machine.given[g.name].map((v, k) => (k === i ? x : v)));
     let before = null;
     input.addEventListener("pointerdown", () => { before = machine.given; });
-    input.addEventListener("input", () => { before ??= machine.given; put(Number(input.value)); });
+    input.addEventListener("input", () => { before ??= machine.given; put(handy(Number(input.value), Number(input.step), g)); });
     input.addEventListener("change", () => { if (before) { edits.done.push(before); edits.undone = []; before = null; } showEdits(); });
     machine.watchers.push(refresh);
     refresh();
@@ -57,8 +99,9 @@ function projectFile() {
   const lines = record.file.split("\n");
   for (const g of changed()) {
     if (g.line === undefined) continue;
-    const value = machine.given[g.name], n = g.line - 1, unit = g.unit ? ` ${g.unit.replaceAll("*", "·")}` : "";
-    const text = (x) => (g.unit ? `"${Number(x.toPrecision(12))}${unit}"` : `${Number(x.toPrecision(12))}`);
+    if (isTable(g)) { multiplyTable(lines, g); continue; }
+    const value = machine.given[g.name], n = g.line - 1, [unit, by] = g.shown ?? [g.unit.replaceAll("*", "·"), 1];
+    const text = (x) => { const number = Number((x / by).toPrecision(12)); return unit ? `"${number} ${unit}"` : String(number); };
     const written = Array.isArray(value) ? `[${value.map(text).join(", ")}]` : text(value);
     const place = /\[(\d+)\]$/.exec(g.name), key = /([^.\[\]]+)(\[\d+\])?$/.exec(g.name)[1]; // one of a row of numbers; in a line or in { }
     const behind = new RegExp(`((?:^|[{,\\s"'])${key.replace(/[^\p{L}\p{N}_]/gu, "\\$&")}["']?\\s*=\\s*)(\\[[^\\]]*\\]|"[^"]*"|[^#\\s,}]+)`, "u");
@@ -67,6 +110,23 @@ function projectFile() {
       ? old.replace(/"[^"]*"|[\d.eE+-]+/g, (one) => (++at === Number(place[1]) ? written : one)) : written));
   }
   return lines.join("\n");
+}
+
+// The values of a load's table times a factor, from its line on: what stands last in each innermost row.
+function multiplyTable(lines, g) {
+  const index = /\[(\d+)\]$/.exec(g.name), factor = machine.given[g.name];
+  let depth = 0, table = -1, rows = false;
+  for (let n = g.line - 1; n < lines.length; n++) {
+    const [, code, comment] = /^((?:"[^"]*"|[^"#])*)(.*)$/.exec(lines[n]);
+    lines[n] = code.replace(/\[|\]|"[^"]*"|[-+\d.eE]+(?=\s*\])/g, (sign, at) => {
+      if (sign === "[") { depth++; if (index && depth === 2) table++; rows = true; return sign; }
+      if (sign === "]") { depth--; return sign; }
+      const last = /^\s*\]/.test(code.slice(at + sign.length)), own = !index || table === Number(index[1]);
+      if (!last || !own || depth < 2) return sign;
+      return sign.replace(/[-+]?\d[\d.,]*(?:[eE][-+]?\d+)?/, (x) => String(Number((Number(x.replace(",", ".")) * factor).toPrecision(12))));
+    }) + comment;
+    if (rows && depth === 0) return;
+  }
 }
 
 function save() {
@@ -98,10 +158,10 @@ function gapOf(id, values) {
 }
 
 function changePanel() {
-  const wanted = record.motion.givens.filter((g) => ["m", "kg", "kg*m2", "rad/s", "rad", "m/s", "m/s2"].includes(g.unit) && g.line !== undefined
-    && (g.symbol || g.unit !== "rad"));
+  const wanted = record.motion.givens.filter((g) => g.line !== undefined && (isLoad(g) ? isTable(g) || /\.value$/.test(g.name)
+    : ["m", "kg", "kg*m2", "rad/s", "rad", "m/s", "m/s2"].includes(g.unit) && (g.symbol || g.unit !== "rad")));
   const group = (title, units) => {
-    const own = wanted.filter((g) => units.includes(g.unit) && !Array.isArray(g.value));
+    const own = wanted.filter((g) => (units ? !isLoad(g) && units.includes(g.unit) : isLoad(g)) && !Array.isArray(g.value));
     return own.length ? [node("h3", {}, say(title)), ...own.flatMap(slidersOf)] : [];
   };
   const button = (id, key, act) => node("button", { type: "button", class: "chip", id, onclick: act }, say(key));
@@ -109,7 +169,7 @@ function changePanel() {
   const found = [node("p", { class: "bad", id: "lost", role: "alert", hidden: true }), node("p", { class: "hint" }, say("drag the crank pin or a slider")),
     node("div", { class: "chips" }, button("undo", "undo", undo), button("redo", "redo", redo), button("reset", "reset", reset), button("save", "save as project file", save)),
     node("p", { class: "hint", id: "stale", hidden: true }, say("by the flywheel")),
-    ...group("lengths", ["m"]), ...group("angles", ["rad"]), ...group("speeds", ["rad/s", "m/s"]), ...group("masses", ["kg", "kg*m2"]),
+    ...group("lengths", ["m"]), ...group("angles", ["rad"]), ...group("speeds", ["rad/s", "m/s"]), ...group("loads"), ...group("masses", ["kg", "kg*m2"]),
     ...(fixed2.length ? [node("h3", {}, say("fixed points")), ...fixed2.flatMap(slidersOf)] : [])];
   return found;
 }

@@ -10,7 +10,6 @@ function startMachine() {
   for (const [part, program] of [["all", PROGRAM], ["watched", WATCHED]]) {
     m[part].program = program;
     m[part].constants = m[part].constants.map(told);
-    for (const input of m[part].inputs) if ("fixed" in input) input.fixed = told(input.fixed);
   }
   for (const g of m.givens) machine.made[g.name] = machine.given[g.name] = g.value;
 }
@@ -29,9 +28,20 @@ function run({ program, inputs, constants }, phi, { given, start, courses, loads
     if (input.course !== undefined) return (courses[input.course] ?? NO_COURSE)[input.row];
     if (input.load !== undefined) return loads[input.load] ? rowOf(loads[input.load], input, turned) : NaN;
     if (input.friction !== undefined) return assumed[input.friction] ?? 0;
+    if (input.diagram !== undefined) return curveOf(input, given[input.diagram]);
     // What plans found that the page does not have holds for the project's own numbers alone.
-    return input.fixed ?? (isMade(given) ? input.found : NaN);
+    return isMade(given) ? input.found : NaN;
   }), constants, PRIMITIVES);
+}
+
+// Diagram of a load whose table is multiplied; made once for a factor.
+function curveOf(input, factor) {
+  if (input.factor !== factor) {
+    const [bore, ambient] = input.piston ?? [], area = Math.PI * bore ** 2 / 4;
+    const y = input.y.map((one) => (input.piston ? area * (factor * one - ambient) : (input.sign ?? 1) * factor * one));
+    Object.assign(input, { factor, curve: loadDiagram(input.x, y, input.smooth, input.turns) });
+  }
+  return input.curve;
 }
 
 const MOST = 400, DAMPED = 60, SETTLED = 1e-13;

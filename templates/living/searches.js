@@ -2,13 +2,7 @@
 
 // One set of given numbers with what is found for it; the program is run without what comes later.
 function searched(given) {
-  const m = record.motion, found = { given, start: m.searches.dead ? NaN : m.start, courses: [], loads: [] };
-  for (const course of m.searches.courses) {
-    found.courses.push(courseOf((phi) => {
-      const values = run(m.watched, phi, found);
-      return pointed(course.legs.map((arg) => argumentOf(arg, values, given)));
-    }, course.at, course.near));
-  }
+  const m = record.motion, found = { given, start: m.searches.dead ? NaN : m.start, courses: coursesOf(given), loads: [] };
   const known = new Map(); // all searches look at the same angles of their sweeps
   const at = (phi) => {
     if (!known.has(phi)) known.set(phi, run(m.watched, phi, found));
@@ -18,6 +12,18 @@ function searched(given) {
   if (m.searches.dead) found.start = startOf(m.searches.dead, asked, given);
   for (const load of m.searches.loads) found.loads.push(motionOf(load, asked, found.start));
   return found;
+}
+
+// Ways of assembly of the groups of class III, one after another.
+function coursesOf(given) {
+  const m = record.motion, found = { given, start: NaN, courses: [], loads: [] };
+  for (const course of m.searches.courses) {
+    found.courses.push(courseOf((phi) => {
+      const values = run(m.watched, phi, found);
+      return pointed(course.legs.map((arg) => argumentOf(arg, values, given)));
+    }, course.at, course.near));
+  }
+  return found.courses;
 }
 
 function argumentOf(arg, values, given, of = record.motion.watched) {

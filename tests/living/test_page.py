@@ -165,8 +165,9 @@ SETS, ANGLES = 10, 20
 
 
 def other_numbers(record, rng, share):
-    """Other lengths, masses and a speed, different by some share; the fixed points as well."""
-    own = [g for g in record["motion"]["givens"] if "line" in g and g["unit"] in ("m", "kg", "kg*m2", "rad/s")]
+    """Other lengths, masses, loads and a speed, different by some share; the fixed points as well."""
+    own = [g for g in record["motion"]["givens"] if "line" in g and (
+        g["unit"] in ("m", "kg", "kg*m2", "rad/s", "N", "N*m") or ".table" in g["name"])]
     return {g["name"]: (np.asarray(g["value"]) * rng.uniform(1 - share, 1 + share)).tolist() for g in own}
 
 
@@ -197,6 +198,37 @@ def test_other_lengths_give_what_solve_gives(name, tmp_path):
             compared += 1
     assert compared > 8 * SETS
     assert (undefined > 0) == (name in UNEVEN)
+
+
+LIMITS = javascript.modules(*NUMBERS, "stage", "change") + """
+const result = ({ motion, name }) => {
+  record = { motion };
+  startMachine();
+  const g = motion.givens.find((one) => one.name === name), [low, high] = limitsOf(g, null).ends();
+  const alone = (x) => assembles({ ...machine.made, [name]: x });
+  const beyond = alone(high + 0.1 * (high - g.value));
+  return { low, high, there: [alone(low), alone(high)], beyond, reached: handy(0.0712345, 0.0004, g) };
+};
+"""
+
+
+@javascript.needed
+def test_a_slider_ends_where_the_mechanism_does(tmp_path):
+    """The rod of a feeder: as long and as short as it goes round with; masses from zero, lengths above it, by the schema."""
+    text = made(FEEDER)
+    record = record_of(text)
+    run = f"let record;\n{program_of(text)};\n{LIMITS}"
+    found = javascript.run(run, {**record, "name": "group[0].lengths[0]"}, tmp_path)
+    assert found["there"] == [True, True]
+    assert not found["beyond"]
+    assert 0 < found["low"] < 0.19 < found["high"]
+    assert found["reached"] == pytest.approx(0.0712, abs=1e-12)
+    given = {g["name"]: g for g in record["motion"]["givens"]}
+    assert given["group[0].lengths[0]"]["shown"] == ["mm", 0.001]
+    assert 0 < given["group[0].lengths[0]"]["low"] < 0.01
+    assert given["link[1].mass"]["low"] == 0
+    assert "low" not in given["points.D"]
+    assert given["force[0].table"]["value"] == 1
 
 
 MARKED = javascript.modules(*NUMBERS, "markers") + """

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.curve import Curve
-from tmm_sheets.construction.given import GivenNumber, GivenPoint
+from tmm_sheets.construction.given import Given, GivenNumber, GivenPoint
 from tmm_sheets.construction.javascript_language import Source, told
 from tmm_sheets.construction.program import depending, is_row, program, rows_of
 from tmm_sheets.construction.step import Step, ordered, parents, value_of
 from tmm_sheets.living.searches import Searches
+from tmm_sheets.methods.linkage.loads import DIAGRAM, PISTON
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.study import Study
@@ -37,7 +37,7 @@ ANY = 101
 class Written:
     """A program as text with how the page has each of its inputs.
 
-    {"angle": "world"} or "turned", {"course": ...}, {"load": ...} or {"friction": ...} by a search, {"fixed": value},
+    {"angle": "world"} or "turned", {"course": ...}, {"load": ...} or {"friction": ...} by a search, {"diagram": its name, ...},
     {"found": value} by plans that the page does not have, {"given": name}.
     """
 
@@ -91,7 +91,7 @@ def motion(project: Project, index: StepIndex) -> Motion:
     lost = _lost(own, over, len(study.turned))
     wanted = {step.path: step for step in own
               if step.path in index.steps and id(step) not in lost and np.ndim(step.value) < 2 and _plain(step)} | search.forces
-    chosen: dict[str, GivenNumber | GivenPoint] = {}
+    chosen: dict[str, _Told] = {}
 
     def written(steps: Mapping[str, Step]) -> Written:
         frozen = dict(_frozen(steps.values(), over))
@@ -104,13 +104,21 @@ def motion(project: Project, index: StepIndex) -> Motion:
     points, crank = study.positions.points, study.mechanism.crank
     ends = points[crank.pivot].path, points[crank.pin].path
     every, watched = written(wanted), written(search.watched)
-    return Motion(every, watched, [_told_given(g) for g in chosen.values()], ends, float(cycle.start), float(cycle.sense),
+    factors = [{"name": one["diagram"], "symbol": one["symbol"], "unit": "", "value": 1.0}
+               for one in every.inputs if "diagram" in one]
+    return Motion(every, watched, [*map(_told_given, chosen.values()), *factors], ends, float(cycle.start), float(cycle.sense),
                   float(cycle.period), search.told)
 
 
 def _fixed(step: Step) -> dict[str, Any]:
-    """A step that is taken as it is: a diagram of a load, or a number that other plans found."""
-    return {"fixed": told(step.value)} if isinstance(step.value, Curve) else {"found": told(step.value)}
+    """A step that is taken as it is: a diagram of a load, whose table may be multiplied, or a number that other plans found."""
+    if step.rule is not DIAGRAM:
+        return {"found": told(step.value)}
+    x, acts, smooth, turns = step.args
+    y, *more = acts.args if isinstance(acts, Step) else (acts,)
+    kind = {"piston": more} if isinstance(acts, Step) and acts.rule is PISTON else {"sign": more[0]} if more else {}
+    return {"diagram": y.name, "symbol": y.symbol, "x": told(value_of(x)), "y": told(value_of(y)), "smooth": float(smooth),
+            "turns": float(turns), **kind}
 
 
 def _studied(project: Project) -> Study:
@@ -181,16 +189,20 @@ def _frozen(wanted: Iterable[Step], known: Mapping[int, Any]) -> Iterator[tuple[
     yield from ((id(step), step) for step in wanted if id(step) in still)
 
 
-def _givens(wanted: Iterable[Step], stop: set[int]) -> dict[str, GivenNumber | GivenPoint]:
+_Told = GivenNumber | GivenPoint | Given
+
+
+def _givens(wanted: Iterable[Step], stop: set[int]) -> dict[str, _Told]:
     """Given numbers that the wanted steps are made of, by their names, in the order in which they are met."""
-    found: dict[str, GivenNumber | GivenPoint] = {}
+    found: dict[str, _Told] = {}
     for step in ordered(wanted, lambda s: [] if id(s) in stop else parents(s)):
         if id(step) not in stop:
             for a in step.args:
-                if isinstance(a, GivenNumber | GivenPoint):
+                number = isinstance(a, Given) and a.over == "none" and not a.choice and id(a) not in stop
+                if number or isinstance(a, GivenNumber | GivenPoint):
                     found.setdefault(a.name, a)
     return found
 
 
-def _told_given(g: GivenNumber | GivenPoint) -> dict[str, Any]:
-    return {"name": g.name, "symbol": g.symbol, "unit": g.unit, "value": told(g)}
+def _told_given(g: _Told) -> dict[str, Any]:
+    return {"name": g.name, "symbol": g.symbol, "unit": g.unit, "value": told(value_of(g))}

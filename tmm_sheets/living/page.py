@@ -17,10 +17,11 @@ from tmm_sheets.living.hanging import hung
 from tmm_sheets.living.markers import markers
 from tmm_sheets.living.motion import Motion, Written, motion
 from tmm_sheets.living.page_words import page_words
+from tmm_sheets.living.sliders import slider
 from tmm_sheets.note import phrases
 from tmm_sheets.record import recording
 from tmm_sheets.resources import template
-from tmm_sheets.task.toml_lines import KeyPath, scan
+from tmm_sheets.task.toml_lines import scan
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ def page(project: Project, numbers: Iterable[int] = (), plan: str = "") -> tuple
     made = motion(project, recording.book_of(project)) if moving else None
     if made is not None:
         lines = scan(project.variant.text).lines
-        record["motion"] = made.told() | {"givens": [g | _line(lines, g["name"]) for g in made.givens]}
+        record["motion"] = made.told() | {"givens": [g | slider(project.variant, lines, g["name"]) for g in made.givens]}
         for sheet in record["sheets"]:
             sheet["live"] = hung(record, sheet, made.all.source.results)
     for sheet in record["sheets"]:
@@ -72,12 +73,6 @@ def _moves(project: Project) -> bool:
     except CannotBuild:
         return False
     return True
-
-
-def _line(lines: Mapping[KeyPath, int], name: str) -> dict[str, int]:
-    """Line of the project file in which a given number stands; nothing of one that the file leaves out."""
-    path = tuple(int(part) if part.isdigit() else part for part in re.findall(r"[^.\[\]]+", name))
-    return {"line": lines[path]} if path in lines else {}
 
 
 def _check_plan(record: Mapping[str, Any], plan: str) -> None:

@@ -30,6 +30,7 @@ def page_words() -> dict[str, str]:
         "lengths": tr("Lengths"),
         "list of keys": tr("Space: play or pause\n← →: a step, or a degree\nHome, End: beginning, end\n"
                            "+ −: zoom, 0: the whole sheet\nEsc: leave a step\nCtrl+Z: undo"),
+        "loads": tr("Loads"),
         "made of": tr("Made of"),
         "masses": tr("Masses and moments of inertia"),
         "pause": tr("Pause"),
