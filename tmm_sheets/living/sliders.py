@@ -9,8 +9,6 @@ from functools import reduce
 from operator import getitem
 from typing import TYPE_CHECKING, Any
 
-from pydantic import ValidationError
-
 from tmm_sheets.task import units
 from tmm_sheets.task.toml_lines import KeyPath
 
@@ -56,7 +54,7 @@ def slider(variant: Variant, lines: Mapping[KeyPath, int], name: str) -> dict[st
         place[path[-1]] = f"{x!r} {unit}" if unit else x  # type: ignore[index]
         try:
             type(variant).model_validate(data)
-        except ValidationError:
+        except ValueError:
             return False
         return True
 
