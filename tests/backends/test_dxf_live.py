@@ -13,8 +13,10 @@ from fontTools.ttLib import TTFont
 
 from tmm_sheets import catalogue
 from tmm_sheets.backends import dxf
+from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.dashes import interrupted
+from tmm_sheets.drawing.labels import place
 from tmm_sheets.drawing.lettering import glyph
 from tmm_sheets.drawing.marks import Arc, Drawing, Form, FormField, Line, Polyline, Text, View
 from tmm_sheets.drawing.styles import line_type
@@ -125,16 +127,56 @@ def test_dimensions_measure_what_they_say():
     said = {}
     for d in doc.modelspace().query("DIMENSION"):
         name, _, number = d.dxf.text.partition(" = ")
-        said[name] = float(number.replace(",", ".")), d.get_measurement() / 4, d.dimtype  # the picture's scale is 4:1
+        assert name.strip()
         assert len(doc.blocks.get(d.dxf.geometry)) > 2
+        if d.dimtype == 2:
+            assert not number or _degrees(number) == pytest.approx(d.get_measurement(), abs=0.009)
+        elif number:
+            factor = d.override().get("dimlfac")
+            said[name] = float(number.replace(",", ".")), d.get_measurement() * factor, d.dimtype
+            assert d.dxf.actual_measurement == pytest.approx(d.get_measurement() * factor, abs=1e-3)
     one, two = gear.wheels
-    real = {"aw": gear.a_w} | {f"{name}{i}": getattr(w, key) for i, w in ((1, one), (2, two)) for name, key in (
-        ("ra", "ra"), ("rw", "rw"), ("r", "r"), ("rb", "rb"), ("rf", "rf"), ("s", "s_chord"), ("p", "p_chord"))}
-    assert said.keys() == real.keys()
+    real = {r"a\S^ w;": gear.a_w, r"c\S*^ ;m": gear.clearance * gear.m, "ym": gear.ym}
+    real |= {f"{name}{index}{i};": getattr(w, key) for i, w in ((1, one), (2, two)) for name, index, key in (
+        ("r", r"\S^ a", "ra"), ("r", r"\S^ w", "rw"), ("r", r"\S^ ", "r"), ("r", r"\S^ b", "rb"), ("r", r"\S^ f", "rf"),
+        ("s", r"\S^ ", "s_chord"), ("p", r"\S^ ", "p_chord"), ("ρ", r"\S^ f", "fillet"))}
+    shift, measured, _ = said.pop("xm")  # of the rack
+    assert shift == pytest.approx(measured, abs=0.0051)
+    assert said.keys() <= real.keys()
+    assert len(said) >= 15
     for name, (number, measured, kind) in said.items():
         assert number == pytest.approx(1e3 * real[name], abs=0.0051)
-        assert measured == pytest.approx(1e3 * real[name], abs=0.01 if name[0] == "s" else 1e-4)
-        assert kind == (4 if name[0] == "r" else 1)
+        assert measured == pytest.approx(1e3 * real[name], abs=0.01 if name[0] in "sρ" else 1e-4)
+        assert kind == (4 if name[0] in "rρ" else 1)
+
+
+def _degrees(text):
+    """Degrees of "21°14′" or "38,10°"."""
+    whole, _, minutes = text.replace(",", ".").strip("°′").partition("°")
+    return float(whole) + float(minutes or 0) / 60
+
+
+def test_no_dimension_says_nothing():
+    for name, n in (("lugansk/shaper", 2), ("lugansk/shaper", 4), ("press", 1)):
+        doc = opened(dxf.render(composed(Project(catalogue.read(name)), n).drawing))
+        texts = [d.dxf.text for d in doc.modelspace().query("DIMENSION")]
+        assert texts
+        assert all(text.strip() for text in texts)
+
+
+def test_angles_are_dimensions_with_their_lettering_in_them():
+    canvas = Canvas()
+    canvas.begin(Box(0, 0, 841, 594), "", "view")
+    canvas.angle_mark(100 + 100j, 0.2, 1.2, 40.0, "α_w = 57°")
+    canvas.angle_mark(300 + 100j, 0.2, 4.2, 40.0, "φ")
+    place(canvas, Box(0, 0, 841, 594))
+    doc = opened(dxf.render(Drawing(841, 594, "", tuple(canvas.marks), dimensions=tuple(canvas.dimensions))))
+    (d,) = doc.modelspace().query("DIMENSION")  # two lines have no angle of more than half a turn
+    assert d.get_measurement() == pytest.approx(degrees(1.0), abs=1e-3)
+    assert d.dxf.text == r"α\S^ w; = 57°"
+    assert [e.dxf.text for e in doc.blocks.get(d.dxf.geometry).query("TEXT")] == ["α", "w", "= 57°"]
+    assert [e.dxf.text for e in doc.modelspace().query("TEXT")] == ["φ"]
+    assert not doc.audit().has_issues
 
 
 def test_a_dimension_drawn_by_hand_has_its_places():
@@ -146,7 +188,7 @@ def test_a_dimension_drawn_by_hand_has_its_places():
     assert (z(d.dxf.defpoint2), z(d.dxf.defpoint3)) == (100 + 100j, 160 + 180j)
     n = 1j * (0.6 + 0.8j)
     assert z(d.dxf.defpoint) == pytest.approx(160 + 180j + 12 * n, abs=1e-4)
-    assert d.dxf.text == "lAB = 100"
+    assert d.dxf.text == r"l\S^ AB; = 100"
     drawn = bbox.extents(doc.blocks.get(d.dxf.geometry))
     assert drawn.extmin.x >= 100 + (14 * n).real - 1
     assert [e.dxf.text for e in doc.blocks.get(d.dxf.geometry).query("TEXT")] == ["l", "AB", "= 100"]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+from cmath import phase
 from collections.abc import Iterator
-from math import cos, degrees, sin
+from math import cos, degrees, pi, sin
 
 from tmm_sheets.backends.dxf_entities import entity, flat, head, place, short
 from tmm_sheets.backends.dxf_frame import DIMENSION_STYLE, LETTERS, STYLE, DxfFrame, SheetParts, weight
@@ -17,8 +18,10 @@ from tmm_sheets.drawing.styles import line_type
 TEXT_LAYER = "TEXT"
 HIDDEN = "60\n1\n"
 """Tags of what is not shown."""
-KINDS = {"linear": 33, "radius": 36}
-"""Codes of dimensions: aligned, radius; 32 says that the block is the dimension's own."""
+OWN_BLOCK = 32
+"""Flag of a dimension whose block is its own."""
+FACTOR = 144
+"""Number of the variable DIMLFAC: what a dimension measures per unit of the drawing."""
 
 
 class LiveSheet:
@@ -29,13 +32,17 @@ class LiveSheet:
         self.parts = SheetParts()
         self.found: dict[int, list[int]] = {}  # handles in model space by the first mark they stand for
         self.places: dict[int, int] = {}  # of the entities with these handles
-        wholes: dict[int, Form | Dimension] = {d.first: d for d in drawing.dimensions}
+        # Two lines make no angle of more than half a turn, and LibreCAD knows no other dimensions of angles.
+        dimensions = [d for d in drawing.dimensions if d.kind != "angle" or _turned(d) < pi]
+        wholes: dict[int, Form | Dimension] = {d.first: d for d in dimensions}
         wholes.update({form.first: form for form in drawing.forms})
+        lettered = {k for d in dimensions for k in range(*d.label)}
         i = 0
         while i < len(self.marks):
             whole = wholes.get(i)
             if whole is None:
-                self._add(i, self._marks(self.marks[i : i + 1], frame.owner))
+                if i not in lettered:
+                    self._add(i, self._marks(self.marks[i : i + 1], frame.owner))
                 i += 1
                 continue
             if isinstance(whole, Form):
@@ -85,19 +92,17 @@ class LiveSheet:
 
     def _dimension(self, d: Dimension) -> None:
         """A dimension with the picture of it that was drawn: programs show that until somebody changes the dimension."""
-        on = "DIMENSION"
         name = f"*D{len(self.parts.records) + 1}"
         record = self._block(name, 1)
-        self.parts.blocks += (text for _, text in self._marks(self.marks[d.first : d.end], record))
+        marks = (*self.marks[d.first : d.end], *self.marks[slice(*d.label)])
+        self.parts.blocks += (text for _, text in self._marks(marks, record))
         self._end_block(record)
         handle = next(self.handles)
-        radius = d.kind == "radius"
+        kind, at, measured, points = _measuring(d)
         self._add(d.first, [(handle, (
-            f"0\nDIMENSION\n5\n{handle:X}\n{head('AcDbDimension', self.frame.owner, on)}280\n0\n2\n{name}\n3\n{DIMENSION_STYLE}\n"
-            f"{place(10, d.a if radius else d.line + (d.b - d.a))}{place(11, d.middle)}70\n{KINDS[d.kind]}\n71\n5\n"
-            f"42\n{short(abs(d.b - d.a))}\n1\n{_escaped(_said(d.text)) or ' '}\n"
-            + (f"100\nAcDbRadialDimension\n{place(15, d.b)}40\n0\n" if radius else
-               f"100\nAcDbAlignedDimension\n{place(13, d.a)}{place(14, d.b)}")))])
+            f"0\nDIMENSION\n5\n{handle:X}\n{head('AcDbDimension', self.frame.owner, 'DIMENSION')}280\n0\n2\n{name}\n"
+            f"3\n{DIMENSION_STYLE}\n{place(10, at)}{place(11, d.middle)}70\n{kind + OWN_BLOCK}\n71\n5\n42\n{short(measured)}\n"
+            f"1\n{_stacked(d.text)}\n{points}{_factor(d.factor)}"))])
 
     def _form(self, form: Form) -> None:
         """A block with attributes.
@@ -159,9 +164,38 @@ def _direction(angle: float) -> complex:
     return complex(cos(angle), sin(angle))
 
 
-def _said(markup: str) -> str:
-    """Lettering in one line of plain letters: programs that draw a dimension anew know no indices."""
-    return "".join(run.text for run in letter(markup, LETTERS).runs)
+def _turned(d: Dimension) -> float:
+    """Angle of a dimension, rad."""
+    return phase((d.b - d.vertex) / (d.a - d.vertex)) % (2 * pi)
+
+
+def _measuring(d: Dimension) -> tuple[int, complex, float, str]:
+    """Kind of a dimension, its definition point, what it measures (mm, rad), and the tags of its class with its places."""
+    if d.kind == "angle":
+        sides = f"{place(13, d.vertex)}{place(14, d.a)}{place(15, d.vertex)}{place(16, d.line)}"
+        return 2, d.b, _turned(d), f"100\nAcDb2LineAngularDimension\n{sides}"
+    length = abs(d.b - d.a) * d.factor
+    if d.kind == "radius":
+        return 4, d.a, length, f"100\nAcDbRadialDimension\n{place(15, d.b)}40\n0\n"
+    return 1, d.line + (d.b - d.a), length, f"100\nAcDbAlignedDimension\n{place(13, d.a)}{place(14, d.b)}"
+
+
+def _factor(value: float) -> str:
+    """Tags of a dimension that measures otherwise than its style."""
+    return "" if value == 1.0 else f"1001\nACAD\n1000\nDSTYLE\n1002\n{{\n1070\n{FACTOR}\n1040\n{value:.9g}\n1002\n}}\n"
+
+
+def _stacked(markup: str) -> str:
+    """Lettering as MTEXT has it, an index as the lower or upper half of a fraction without its line."""
+    said = ""
+    for run in letter(markup, LETTERS).runs:
+        text = re.sub(r"([\\{}])", r"\\\1", run.text.replace(BAR, "").replace("\u00a0", " "))
+        if not run.at.imag:
+            said += text.replace("^", "^ ")
+        else:
+            upper, lower = (text, "") if run.at.imag > 0 else ("", text)
+            said += rf"\S{upper}^ {lower};"
+    return said
 
 
 def _escaped(text: str) -> str:

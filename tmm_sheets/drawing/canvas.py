@@ -50,7 +50,7 @@ class Label:
     ``away`` is the preferred direction from the anchor (0 when any will do), ``gap`` the clear distance to it.
     with ``leader`` it may as well stand farther off with a leader line; without, only where nothing near is free.
     Lettering with a ``shelf`` stands on one, at the end of a leader that begins at this distance from the anchor.
-    It keeps off ``thin`` lines so many times more than usual.
+    It keeps off ``thin`` lines so many times more than usual. ``dimension`` is the number of the dimension it letters.
     ``of``, ``part`` (its number) and ``by`` (the step it names) are those of the canvas when the label was asked for.
     """
 
@@ -65,6 +65,7 @@ class Label:
     by: Provenance | None = None
     shelf: float = 0.0
     thin: float = 1.0
+    dimension: int = -1
 
 
 class AxisNumber(NamedTuple):
@@ -365,12 +366,12 @@ class Canvas:
         self._one("lettering", first, markup)
 
     def label(self, anchor: complex, markup: str, away: complex = 0j, height: float = 3.5, gap: float = 1.0,
-              leader: bool = True, shelf: float = 0.0, thin: float = 1.0) -> None:
+              leader: bool = True, shelf: float = 0.0, thin: float = 1.0, dimension: int = -1) -> None:
         """Ask for lettering near a point; see :class:`Label`."""
         if anchor == anchor:
             self.labels.append(
                 Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1, self.by, shelf,
-                      thin))
+                      thin, dimension))
 
     def note(self, box: Box, text: str, signs: Iterable[str] = (), about: Any = None) -> None:
         """Ask for a remark in words to the view in ``box``; see :class:`Note`."""
@@ -391,10 +392,12 @@ class Canvas:
         return Box(box.x0, box.y0, box.x1, y - 3.0)
 
     @in_role("dimension")
-    def dimension(self, a: complex, b: complex, offset: float, markup: str, height: float = 3.5, share: float = 0.5) -> None:
+    def dimension(self, a: complex, b: complex, offset: float, markup: str, height: float = 3.5, share: float = 0.5,
+                  factor: float = 1.0, apart: tuple[complex, complex] | None = None) -> None:
         """Linear dimension of ``a`` .. ``b`` with extension lines; the dimension line lies ``offset`` mm to the left.
 
-        Its lettering is at this ``share`` of the way.
+        It measures ``factor`` per mm. Its lettering is at this ``share`` of the way, or looks for a place near a point in a
+        direction, where these are given (``apart``).
         """
         if not abs(b - a) > 0:
             return
@@ -416,8 +419,12 @@ class Canvas:
                 self.line(tip, tip + 2 * size * w, "thin")
         self._one("arrow", first)
         base, u = lettered(a, b, offset, markup, height, share)
-        self.text(base, markup, height, "centre", phase(u))
-        self.dimensions.append(Dimension("linear", start, len(self.marks), a, b, p, markup, base + 1j * u * height / 2))
+        if apart is None:
+            self.text(base, markup, height, "centre", phase(u))
+        else:
+            self.label(apart[0], markup, apart[1], height, 1.5, leader=False, dimension=len(self.dimensions))
+        middle = base + 1j * u * height / 2
+        self.dimensions.append(Dimension("linear", start, len(self.marks), a, b, p, markup, middle, factor))
 
     @in_role("table")
     def table(self, corner: complex, widths: Sequence[float], rows: Sequence[Sequence[str]], row: float = 7.0,
@@ -463,7 +470,13 @@ class Canvas:
         self._one("arrow", first)
         mid = rect(1, start + share * (end - start))
         # Beside outer heads it would stand over the arc drawn on.
-        self.label(vertex + radius * mid, markup, mid, height, thin=KEPT_OFF if outside else thin)
+        self.label(vertex + radius * mid, markup, mid, height, thin=KEPT_OFF if outside else thin, dimension=len(self.dimensions))
+        self.angle(first, vertex, start, end, radius, markup)
+
+    def angle(self, first: int, vertex: complex, start: float, end: float, radius: float, markup: str) -> None:
+        """What was drawn from the mark ``first`` on is the dimension of an angle."""
+        a, middle, b = (vertex + rect(radius, turn) for turn in (start, (start + end) / 2, end))
+        self.dimensions.append(Dimension("angle", first, len(self.marks), a, b, middle, markup, middle, vertex=vertex))
 
 
 def _for_text(widths: Sequence[float], rows: Sequence[Sequence[str]]) -> list[float]:

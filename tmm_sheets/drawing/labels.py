@@ -539,6 +539,9 @@ def _draw(canvas: Canvas, label: Label, box: Box) -> None:
     if len(canvas.marks) > first:
         # The leader line belongs to its label.
         canvas.groups[-1] = canvas.groups[-1]._replace(end=len(canvas.marks), part=label.part, anchor=label.anchor)
+    if label.dimension >= 0:
+        d = canvas.dimensions[label.dimension]
+        canvas.dimensions[label.dimension] = d._replace(label=(first, len(canvas.marks)), middle=box.centre)
 
 
 def _placed(grid: Grid, ink: ink_index.Ink, label: Label, lattice: _Lattice, around: Around) -> Found:

@@ -129,10 +129,12 @@ class View(NamedTuple):
 class Dimension(NamedTuple):
     """Marks ``first`` .. ``end`` - 1 are a dimension of ``a`` .. ``b``, of a radius from the centre ``a`` to the circle at ``b``.
 
-    ``line`` is a point of the dimension line, ``text`` the markup of its lettering (may be empty), ``middle`` the middle of it.
+    Of an angle with its ``vertex``, ``a`` and ``b`` are the ends of the arc. ``line`` is a point of the dimension line, ``text``
+    the markup of its lettering, ``middle`` the middle of it; ``factor`` is what it measures per mm of the sheet. ``label`` are the
+    marks of lettering that looked for its place, from where to where.
     """
 
-    kind: Literal["linear", "radius"]
+    kind: Literal["linear", "radius", "angle"]
     first: int
     end: int
     a: complex
@@ -140,6 +142,9 @@ class Dimension(NamedTuple):
     line: complex
     text: str
     middle: complex
+    factor: float = 1.0
+    vertex: complex = 0j
+    label: tuple[int, int] = (0, 0)
 
 
 class FormField(NamedTuple):

@@ -34,7 +34,7 @@ from tmm_sheets.drawing.marks import (
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.composed import Composed, Leaving
 
-FORM = "2"
+FORM = "3"
 """Number of the form, another one for every change of it."""
 NUMBERS = np.dtype("<f8")
 KINDS: dict[str, type[Any]] = {"L": Line, "A": Arc, "P": Polyline, "T": Text, "F": Fill}
@@ -78,8 +78,9 @@ def _sheet(tree: dict[str, Any], points: Any) -> Composed:
     drawing = Drawing(
         width, height, title, tuple(_marks_of(tree["marks"], points)), author, subject, keywords,
         views=tuple(View(name, _exactly(box, plain), tuple(map(_pair, spans))) for name, box, spans, plain in tree["views"]),
-        dimensions=tuple(Dimension(kind, first, end, _point(a), _point(b), _point(line), text, _point(middle))
-                         for kind, first, end, a, b, line, text, middle in tree["dimensions"]),
+        dimensions=tuple(Dimension(kind, first, end, _point(a), _point(b), _point(line), text, _point(middle), factor,
+                                   _point(vertex), _pair(label))
+                         for kind, first, end, a, b, line, text, middle, factor, vertex, label in tree["dimensions"]),
         forms=tuple(Form(name, first, end, tuple(FormField(field, a, b, _point(at), size, angle)
                                                  for field, a, b, at, size, angle in fields))
                     for name, first, end, fields in tree["forms"]))

@@ -182,9 +182,7 @@ def _phase_angles(canvas: Canvas, m: FollowerMotion, base: complex) -> None:
             a, b = (base + float(m.scales.phi.mm(v)) for v in (p.start, p.end))
             full = f"{p.letters} = {number(degrees(p.angle))}°"
             inside = letter(full, 3.5).width <= abs(b - a) - 2.0
-            canvas.dimension(a, b, -8.0, full if inside else "")
-            if not inside:
-                canvas.label((a + b) / 2 - 8j, full, -1j, 3.5, 1.5, leader=False)
+            canvas.dimension(a, b, -8.0, full, factor=degrees(m.scales.phi.mu), apart=None if inside else ((a + b) / 2 - 8j, -1j))
 
 
 def _relations(m: FollowerMotion) -> list[str]:

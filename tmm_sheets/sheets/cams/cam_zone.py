@@ -137,7 +137,8 @@ def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
     # Beside the lines that run along CB: the axis of the zone, r0 and the path of B.
     sides = ((side * z.right * off, (b + side * z.right * off * 1j * (b - c) / abs(b - c)).real)
              for off in np.arange(9.0, room.width, 1.5) for side in (1, -1))
-    clear_dimensions.dimension(canvas, first, c, b, [off for off, x in sides if room.x0 <= x <= room.x1], "S_0")
+    clear_dimensions.dimension(canvas, first, c, b, [off for off, x in sides if room.x0 <= x <= room.x1], "S_0",
+                               1e3 * scale.mu)
     if abs(o - c) > 6:
         canvas.label((o + c) / 2, "e", -1j, 3.5, 0.8, thin=KEPT_OFF)
     canvas.label((o + b) / 2, "r_0", z.right * 1 + 0.6j, 3.5, 0.6)
@@ -378,8 +379,8 @@ def plate(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
         axis = _plate_symbol(canvas, room, scale.mm(left), scale.mm(right))
     a, b = axis - scale.mm(left), axis + scale.mm(right)
     names = ("l_1", "l_2") if cam.right > 0 else ("l_2", "l_1")
-    canvas.dimension(a, axis, -11.0, f"{names[0]} = {fixed(left * 1e3, 1)}")
-    canvas.dimension(axis, b, -11.0, f"{names[1]} = {fixed(right * 1e3, 1)}")
+    canvas.dimension(a, axis, -11.0, f"{names[0]} = {fixed(left * 1e3, 1)}", factor=1e3 * scale.mu)
+    canvas.dimension(axis, b, -11.0, f"{names[1]} = {fixed(right * 1e3, 1)}", factor=1e3 * scale.mu)
     centred(canvas, box, 4.0, tr("The point of contact must not leave the plate"))
 
 

@@ -30,10 +30,11 @@ def crossed(ink: Drawn, a: complex, b: complex, offset: float, text: str, share:
     return ink.count(around(text), at, phase(along))
 
 
-def dimension(canvas: Canvas, first: int, a: complex, b: complex, offsets: Iterable[float], text: str) -> None:
+def dimension(canvas: Canvas, first: int, a: complex, b: complex, offsets: Iterable[float], text: str,
+              factor: float = 1.0) -> None:
     """A dimension at the first of the offsets with nothing in its lettering and little along its line.
 
-    What is drawn is seen from the mark ``first`` on.
+    What is drawn is seen from the mark ``first`` on; it measures ``factor`` per mm.
     """
     if not abs(b - a) > 0:
         return
@@ -44,4 +45,4 @@ def dimension(canvas: Canvas, first: int, a: complex, b: complex, offsets: Itera
         return 10 * crossed(ink, a, b, place[0], text, place[1]) + ink.count(long, a + place[0] * 1j * u, phase(u))
 
     offset, share = min(((offset, share) for offset in offsets for share in SHARES), key=ill)
-    canvas.dimension(a, b, offset, text, share=share)
+    canvas.dimension(a, b, offset, text, share=share, factor=factor)

@@ -508,6 +508,10 @@ def wheel(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
             _sketch(w, canvas, box)
 
 
+LEFT, BETWEEN, RIGHT = 6.0, 17.0, 22.0
+"""Least room at the left of a wheel's sketch, between its views and at the right, for axes and dimensions, mm."""
+
+
 def _sketch(w: RimWheel, canvas: Canvas, box: Box) -> None:
     rim = w.form == "rim"
     d, b, h = 1000 * w.diameter, 1000 * w.width, 1000 * w.thickness if rim else 0.0
@@ -515,10 +519,10 @@ def _sketch(w: RimWheel, canvas: Canvas, box: Box) -> None:
     scale = standard(((outer + b) * 1e-3, box.width - 56), (outer * 1e-3, box.height - 36))
     left = canvas.title(box, tr("Sketch of the flywheel"), ratio(scale))
     k = 1e-3 / scale.mu
-    gap = (box.width - (outer + b) * k - 20) / 3
-    centre = complex(box.x0 + gap + outer * k / 2, (left.y0 + left.y1) / 2 - 2)
-    side = complex(box.x1 - gap - 20 - b * k / 2, centre.imag)
-    hub, bore = 0.24 * d * k / 2, 0.12 * d * k / 2
+    gap = (box.width - (outer + b) * k - LEFT - BETWEEN - RIGHT) / 3
+    centre = complex(box.x0 + LEFT + gap + outer * k / 2, (left.y0 + left.y1) / 2 - 2)
+    side = complex(box.x1 - RIGHT - gap - b * k / 2, centre.imag)
+    hub, bore = 0.24 * d * k / 2, round(0.12 * d) * k / 2
     r = outer * k / 2
     for radius in ({r, r - h * k, hub, bore} if rim else {r, bore}):
         canvas.circle(centre, radius, "main")
@@ -543,15 +547,18 @@ def _sketch(w: RimWheel, canvas: Canvas, box: Box) -> None:
     for x in (-half, half):
         canvas.line(side + x - 1j * bore, side + x + 1j * bore, "main")
     at = (d if rim else 2 * r / k) * k / 2
-    canvas.dimension(side + half - 1j * at, side + half + 1j * at, -12.0, f"D = {fixed(d, 0)}")
+    right = side + half
+    canvas.dimension(right - 1j * at, right + 1j * at, -10.0, f"D = Ø{fixed(d, 0)}", factor=1 / k)
+    if rim:
+        canvas.dimension(right - 1j * r, right + 1j * r, -18.0, f"Ø{fixed(outer, 0)}", factor=1 / k)
+    canvas.dimension(side - half - 1j * bore, side - half + 1j * bore, 7.0, f"Ø{fixed(2 * bore / k, 0)}", factor=1 / k)
     width = f"B = {fixed(b, 0)}"
     inside = letter(width, 3.5).width <= 2 * half - 1
-    canvas.dimension(side - half - 1j * r, side + half - 1j * r, -9.0, width if inside else "")
-    if not inside:
-        canvas.text(side - half - 8.5 - 1j * (r + 8.0), width, 3.5, "right")
+    foot = side - half - 1j * r
+    canvas.dimension(foot, foot + 2 * half, -9.0, width, factor=1 / k, apart=None if inside else (foot - 7.0 - 9.0j, -1 + 0j))
     if rim:
-        canvas.dimension(side - half + 1j * (r - h * k), side - half + 1j * r, 7.0, "")
-        canvas.text(side - half - 8.5 + 1j * (r - h * k / 2 - 1.75), f"H = {fixed(h, 0)}", 3.5, "right")
+        top = side - half + 1j * r
+        canvas.dimension(top - 1j * h * k, top, 7.0, f"H = {fixed(h, 0)}", factor=1 / k, apart=(top - 7.0 - 0.5j * h * k, -1 + 0j))
 
 
 def _given_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:

@@ -14,7 +14,7 @@ from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, lettered
 from tmm_sheets.drawing.clipping import arcs_inside, segment_inside
 from tmm_sheets.drawing.free_space import Drawn
 from tmm_sheets.drawing.lettering import fitted, letter
-from tmm_sheets.drawing.marks import Box, Line
+from tmm_sheets.drawing.marks import Box, Dimension, Line
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets.components.clear_dimensions import around, crossed
 from tmm_sheets.sheets.frame import PlanFrame, proportion, ratio, standard
@@ -304,7 +304,7 @@ class _GearPicture:
                 and all(y + half <= low or high <= y - half for low, high in crossed)]
         at = min(free, key=lambda y: abs(y - middle), default=middle)
         self.canvas.dimension(bottom + 12, top + 12, 12 - (x - top.real), text, 5.0,
-                              (at - bottom.imag) / (top.imag - bottom.imag))
+                              (at - bottom.imag) / (top.imag - bottom.imag), 1e3 * self.gear.a_w / abs(top - bottom))
 
     def unrolling(self, wheel: Any) -> None:
         """Divisions of P_wN, equal arcs, tangents and the involute through their ends."""
@@ -403,7 +403,7 @@ class _GearPicture:
             # the side of the centre is the left of a .. b
             a, b = (a, b) if side * (np.conj(b - a) * (centre - a)).imag > 0 else (b, a)
             offset = self.clear_of_lines(a, b, inside + DIMENSION, text)
-            c.dimension(a, b, offset, text)
+            c.dimension(a, b, offset, text, factor=1e3 * self.mu.mu)
             self.interrupt(*lettered(a, b, offset, text), text)
 
     def clear_of_lines(self, a: complex, b: complex, offset: float, text: str) -> float:
@@ -448,13 +448,15 @@ def angle_beside(canvas: Canvas, vertex: complex, start: float, end: float, radi
     lo, hi = sorted((start % (2 * pi), end % (2 * pi)))
     if hi - lo > pi:
         lo, hi = hi, lo + 2 * pi
+    first = len(canvas.marks)
     canvas.arc(vertex, radius, lo, hi, "thin")
     if (hi - lo) * radius > 8:
         for tip, sense in ((lo, -1), (hi, 1)):
             canvas.arrow_head(vertex + rect(radius, tip), rect(1, tip + sense * (pi / 2 - 1.75 / radius)))
     ray = rect(1, start)
     away = 1j * ray if (np.conj(ray) * rect(1, end)).imag < 0 else -1j * ray
-    canvas.label(vertex + radius * ray, markup, away=away, gap=2)
+    canvas.label(vertex + radius * ray, markup, away=away, gap=2, dimension=len(canvas.dimensions))
+    canvas.angle(first, vertex, lo, hi, radius, markup)
 
 
 def mesh(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -516,10 +518,12 @@ class _Detail:
             return  # a trochoid has no radius to show
         fillet, touch = s.at("C"), s.at("R")
         s.dot("C", 0.5, "thin")
-        pen = s.pen("rho", "dimension")
+        pen, first, text = s.pen("rho", "dimension"), len(c.marks), f"ρ_{{f{wheel.number}}} = {fixed(wheel.fillet * 1e3, 2)}"
         pen.line(fillet, touch, "thin")
         pen.arrow_head(touch, (touch - fillet) / abs(touch - fillet), 2.5)
-        c.label(fillet, f"ρ_{{f{wheel.number}}} = {fixed(wheel.fillet * 1e3, 2)}", away=fillet - self.pole, gap=1.5)
+        c.label(fillet, text, away=fillet - self.pole, gap=1.5, dimension=len(c.dimensions))
+        factor = 1e3 * self.at.scale.mu
+        c.dimensions.append(Dimension("radius", first, len(c.marks), fillet, touch, touch, text, fillet, factor))
 
     def gaps(self, c: Canvas) -> None:
         """Radial clearances and the distance between the pitch circles, on the line of centres."""
@@ -534,7 +538,7 @@ class _Detail:
             if abs(high - low) < 1e-9:
                 continue
             a, b = (self.pole + 1j * v / self.at.scale.mu for v in sorted((low, high)))
-            gap(c, a, b, text, complex(side, 0), 4)
+            gap(c, a, b, text, complex(side, 0), 4, 1e3 * self.at.scale.mu)
 
 
 def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

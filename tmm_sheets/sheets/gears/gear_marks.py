@@ -13,7 +13,7 @@ from tmm_sheets.drawing.canvas import Canvas, in_role
 from tmm_sheets.drawing.clipping import arcs_inside, chords, polyline_inside, segment_inside
 from tmm_sheets.drawing.free_space import spread
 from tmm_sheets.drawing.lettering import fitted, letter
-from tmm_sheets.drawing.marks import Box, Role
+from tmm_sheets.drawing.marks import Box, Dimension, Role
 from tmm_sheets.drawing.tables import LEAST, needs
 from tmm_sheets.sheets.player import PlayerStage
 
@@ -27,10 +27,12 @@ KINKS, OVER = 120.0, 3.0
 """Distance of the kinks of a break line, and how far it runs beyond what it cuts, mm."""
 
 
-def gap(canvas: Canvas, a: complex, b: complex, text: str, away: complex, space: float) -> None:
-    """A small upright distance, its arrows outside, lettering beside it."""
+def gap(canvas: Canvas, a: complex, b: complex, text: str, away: complex, space: float, factor: float) -> None:
+    """A small upright distance, its arrows outside, lettering beside it; it measures ``factor`` per mm."""
+    first = len(canvas.marks)
     distance(canvas, a, b)
-    canvas.label((a + b) / 2, text, away=away, gap=space)
+    canvas.label((a + b) / 2, text, away=away, gap=space, dimension=len(canvas.dimensions))
+    canvas.dimensions.append(Dimension("linear", first, len(canvas.marks), a, b, a, text, (a + b) / 2, factor))
 
 
 def distance(canvas: Canvas, a: complex, b: complex) -> None:

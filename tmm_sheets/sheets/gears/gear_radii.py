@@ -80,7 +80,12 @@ class _Radii:
         start, up = self.outer if back else self.outer - laid.width, rect(1, turned + pi / 2)
         canvas.put(laid, self.centre + start * u + OVER * up, turned, text)
         middle = self.centre + (self.outer - laid.width / 2) * u + (OVER + HEIGHT / 2) * up
-        canvas.dimensions.append(Dimension("radius", first, len(canvas.marks), self.centre, tip, tip, text, middle))
+        self.dimension(first, tip, text, middle)
+
+    def dimension(self, first: int, tip: complex, text: str, middle: complex) -> None:
+        """What was drawn from the mark ``first`` on is the dimension of a radius."""
+        last, factor = len(self.canvas.marks), 1e3 * self.picture.mu.mu
+        self.canvas.dimensions.append(Dimension("radius", first, last, self.centre, tip, tip, text, middle, factor))
 
     def directions(self) -> dict[str, tuple[float, float]]:
         """Directions in which circles lie inside the picture, and how far from the centre their radii begin, mm.
@@ -175,7 +180,7 @@ class _Radii:
             at = complex(x0 + 0.5, end.imag + SHELF + laid.descent)
             self.canvas.put(laid, at, 0.0, text)
             middle = at + complex(laid.width, HEIGHT) / 2
-            self.canvas.dimensions.append(Dimension("radius", first, len(self.canvas.marks), self.centre, tip, tip, text, middle))
+            self.dimension(first, tip, text, middle)
             return True
         return False
 

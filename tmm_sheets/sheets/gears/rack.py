@@ -206,7 +206,8 @@ class _RackPicture:
             y = self.height(level)
             c.line(complex(x - 2, y), complex(w.x0 + 6, y), "thin")
         low, high = self.height(-rack.depth), self.height(-rack.addendum * m)
-        gap(c, complex(x, low), complex(x, high), f"c^{{*}}m = {number(gear.clearance * m * 1e3, 3)}", -1, 1.5)
+        clearance = f"c^{{*}}m = {number(gear.clearance * m * 1e3, 3)}"
+        gap(c, complex(x, low), complex(x, high), clearance, -1, 1.5, 1e3 * self.at.scale.mu)
         if abs(rack.shift) * m / self.at.scale.mu > 0.3:
             low, high = sorted((self.height(0.0), self.height(-rack.shift * m)))
             self.shift(c, low, high, f"xm = {fixed(rack.shift * m * 1e3, 2)}")
@@ -256,4 +257,4 @@ class _RackPicture:
                     distance(c, complex(x, low), complex(x, high))
                     c.put(laid, complex(left, y), 0.0, text)
                     return
-        gap(c, complex(w.x1 - 26, low), complex(w.x1 - 26, high), text, -1, 2.5)
+        gap(c, complex(w.x1 - 26, low), complex(w.x1 - 26, high), text, -1, 2.5, 1e3 * self.at.scale.mu)

@@ -81,7 +81,7 @@ def _quick_return(project: Project, canvas: Canvas, box: Box) -> None:
         canvas.label(right.at(name), name, -1 + 0.5j, 3.5, 2.8)
     half, radius = float(found.plan["θ"].value) / 2, min(0.45 * frame.scale.mm(found.exact["l_AC"]), 22.0)
     canvas.angle_mark(frame(c), pi / 2 - half, pi / 2 + half, radius, "θ")
-    canvas.dimension(left.at("D"), right.at("D"), 5.0, "H")
+    canvas.dimension(left.at("D"), right.at("D"), 5.0, "H", factor=1e3 * frame.scale.mu)
 
 
 def _hinge(s: PlayerStage, name: str, letters: str, away: complex, gap: float) -> None:
@@ -111,4 +111,4 @@ def _engine(project: Project, canvas: Canvas, box: Box) -> None:
             _hinge(s, name, name, axis * -1j, 2.8)
     symbols.pivot(canvas, frame(0j))
     canvas.label(frame(0j), "A", -1 + 1j, 3.5, 2.8)
-    canvas.dimension(s.at("C″"), s.at("C′"), 8.0 if turn == -1j else -8.0, "H")
+    canvas.dimension(s.at("C″"), s.at("C′"), 8.0 if turn == -1j else -8.0, "H", factor=1e3 * frame.scale.mu)
