@@ -277,7 +277,7 @@ def test_who_goes_away_takes_the_work_along():
         messages = workers.messages(jobs.take, {"text": CAM, "wanted": "dxf,pdf,note-pdf"}, Languages("en"), Limits())
         assert "say" in await anext(messages)
         await messages.aclose()
-        return workers.free[False].locked()
+        return workers.free["front"].locked()
 
     assert asyncio.run(begun()) is False
 

@@ -9,7 +9,7 @@ import re
 from collections.abc import AsyncIterator, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, get_args
 
 from starlette.applications import Starlette
 from starlette.datastructures import UploadFile
@@ -24,15 +24,16 @@ from tmm_sheets.output import batch
 from tmm_sheets.page import choice, compared, jobs, served_words
 from tmm_sheets.page.guard import Guard
 from tmm_sheets.page.shown import Shown
-from tmm_sheets.page.workers import Job, Languages, Limits, Workers
+from tmm_sheets.page.workers import Job, Lane, Languages, Limits, Workers
 from tmm_sheets.resources import template
 from tmm_sheets.task import keys
 from tmm_sheets.words import LANGUAGES, tell
 
-QUICK, BEHIND, LONG = Limits(30), Limits(30, behind=True), Limits(240, 4_000_000_000, behind=True)
+AT_ONCE, FRONT, _, BEHIND = (Limits(30, lane=lane) for lane in get_args(Lane))
+LONG = Limits(240, 4_000_000_000, "long")
 JOBS: Mapping[str, tuple[Job, Limits]] = {
-    "project": (jobs.project, QUICK), "check": (jobs.check, QUICK), "sheet": (jobs.sheet, QUICK),
-    "remarks": (jobs.remarks, BEHIND), "scheme": (jobs.scheme, BEHIND), "living": (jobs.living, BEHIND),
+    "project": (jobs.project, AT_ONCE), "check": (jobs.check, AT_ONCE), "sheet": (jobs.sheet, FRONT),
+    "remarks": (jobs.remarks, BEHIND), "scheme": (jobs.scheme, BEHIND), "living": (jobs.living, LONG),
     "take": (jobs.take, LONG), "compare": (compared.compare, LONG), "group": (jobs.group, LONG),
 }  # fmt: skip
 FILES = {"compare": 80_000_000, "group": 400_000_000}
@@ -83,7 +84,7 @@ def app(token: str, host: str, shown: Shown, processes: int | None = None) -> Gu
             return Response(status_code=404)
         asked, folder, files = await _asked(request)
         job, limits = JOBS[name]
-        limits = BEHIND if limits is QUICK and asked.get("behind") else limits
+        limits = BEHIND if limits is FRONT and asked.get("behind") else limits
 
         async def lines() -> AsyncIterator[str]:
             with folder:

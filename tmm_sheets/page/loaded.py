@@ -1,4 +1,4 @@
-"""What the process whose forks do the work has loaded: all modules that draw and write, and what they keep of one drawn sheet."""
+"""What the process whose forks do the work has loaded: all modules that draw and write, and what they keep of drawn sheets."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ def _load() -> None:
                     import_module(module.name)
     program.maker()
     with kept.unused():
-        drawn = sheet.compose(Project(catalogue.read("lugansk/shaper")), 3)
+        drawn = sheet.every(Project(catalogue.read("lugansk/shaper"))).drawn
     for backend in (dxf, pdf, svg):
-        backend.render(drawn)
+        backend.render(drawn[1].drawing)
     for language in LANGUAGES:
         with words.on_paper(language):
             words.tr("sheet {n}")

@@ -18,7 +18,7 @@ from functools import cache
 from multiprocessing.connection import Connection
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, Literal, get_args
 
 from tmm_sheets import words
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
@@ -26,8 +26,8 @@ from tmm_sheets.words import tell
 
 LARGEST_ANSWER = 400_000_000
 """Bytes of the largest message from a process."""
-NICE = 5
-"""By how much work behind other work gives way to it."""
+NICE = {"long": 5, "behind": 15}
+"""By how much work in a lane gives way to other work."""
 WAITING = 4.0
 """How many times its seconds of processor a piece of work may take by the clock: others work too."""
 
@@ -38,13 +38,17 @@ Job = Callable[[Mapping[str, str], Say], Message]
 """Work in the folder that the process stands in, for what was asked; gives what comes last."""
 
 
+Lane = Literal["at once", "front", "long", "behind"]
+"""What takes no time; what somebody looks at; what takes long; what nobody looks at yet. None waits for another."""
+
+
 @dataclass(frozen=True)
 class Limits:
-    """What a piece of work may take: seconds of processor, bytes of memory; ``behind``: it is not waited for as others are."""
+    """What a piece of work may take: seconds of processor, bytes of memory; and the lane it goes in."""
 
     seconds: int = 30
     memory: int = 2_000_000_000
-    behind: bool = False
+    lane: Lane = "front"
 
 
 @dataclass(frozen=True)
@@ -100,8 +104,8 @@ def _carry_out(end: Connection, job: Job, asked: Mapping[str, str], folder: str,
 
 def _limit(limits: Limits) -> None:
     """Let the system hold this process within limits, where it can."""
-    if limits.behind and hasattr(os, "nice"):
-        os.nice(NICE)
+    if hasattr(os, "nice"):
+        os.nice(NICE.get(limits.lane, 0))
     with suppress(ImportError, ValueError, OSError):
         import resource
 
@@ -137,10 +141,10 @@ def _begin(*what: Any) -> tuple[Any, Connection]:
 
 
 class Workers:
-    """So many pieces of work at a time, and so many behind them; others wait for their turn."""
+    """So many pieces of work at a time in each lane; others wait for their turn."""
 
     def __init__(self, many: int) -> None:
-        self.free = {behind: asyncio.Semaphore(many) for behind in (False, True)}
+        self.free = {lane: asyncio.Semaphore(many) for lane in get_args(Lane)}
 
     async def messages(self, job: Job, asked: Mapping[str, str], languages: Languages, limits: Limits,
                        files: Mapping[str, Path] | None = None) -> AsyncIterator[Message]:
@@ -148,7 +152,7 @@ class Workers:
 
         ``files`` are put into its folder by their names there, which are no client's.
         """
-        free = self.free[limits.behind]
+        free = self.free[limits.lane]
         if free.locked():
             yield {"say": tell("waiting for its turn ...")}
         async with free:
