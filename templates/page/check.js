@@ -69,11 +69,11 @@ function overlay(found, numbers) {
 }
 
 function showGroup(place, found) {
-  const students = found.group.students, sum = (one) => Object.values(one.faults).reduce((a, b) => a + b, 0);
-  const head = ["student", "handed in", "faults", "mistakes"].map((key) => node("th", { scope: "col" }, say(key)));
-  place.replaceChildren(node("div", { class: "bar" }, button(say("all reports"), () => download(found.name, bytesOf(found.data)), { class: "main" })),
+  const students = found.group.students, kinds = Object.keys(found.kinds);
+  const head = [say("student"), say("handed in"), ...Object.values(found.kinds), say("mistakes")].map((text) => node("th", { scope: "col" }, text));
+  place.replaceChildren(node("div", {}, node("div", { class: "bar" }, button(say("all reports"), () => download(found.name, bytesOf(found.data)), { class: "main" })),
     node("div", { class: "wide" }, node("table", {}, node("thead", {}, node("tr", {}, ...head)), node("tbody", {}, ...students.map((one) => node("tr", {},
-      node("th", { scope: "row" }, one.student), node("td", {}, one.handed_in), node("td", { class: "number" }, String(sum(one))),
+      node("th", { scope: "row" }, one.student), node("td", {}, one.handed_in), ...kinds.map((kind) => node("td", { class: "number" }, String(one.faults[kind]))),
       node("td", {}, ...one.mistakes.map((m) => node("p", {}, m)), ...one.files.filter((f) => f.refused).map((f) => node("p", { class: "bad" }, `${f.file}: ${f.refused}`)))))))),
-    found.group.most_made.length && node("div", {}, node("h3", {}, say("most made")), node("ol", {}, ...found.group.most_made.map((one) => node("li", {}, `${one.students} × ${one.mistake}`)))));
+    found.group.most_made.length && node("div", {}, node("h3", {}, say("most made")), node("ol", {}, ...found.group.most_made.map((one) => node("li", {}, `${one.students} × ${one.mistake}`))))));
 }

@@ -153,10 +153,10 @@ def test_a_group_is_a_table(client):
     _, made = asked(client, "take", text=CAM, wanted="dxf")
     with ZipFile(BytesIO(b64decode(made["data"]))) as archive:
         drawing = archive.read("sheet1.dxf")
-    files = [("file", ("group/Петренко О.В/sheet 1.dxf", drawing)), ("file", ("group/../../Іваненко/лист 1.dxf", b"0")),
+    files = [("file", ("group/Петренко О.В./sheet 1.dxf", drawing)), ("file", ("group/../../Іваненко/лист 1.dxf", b"0")),
              ("file", ("group/Nobody/readme.txt", b"x"))]
     _, told = asked(client, "group", files, text=CAM)
-    assert {s["student"] for s in told["group"]["students"]} == {"Петренко О.В", "Іваненко", "Nobody"}
+    assert {s["student"] for s in told["group"]["students"]} == {"Петренко О.В.", "Іваненко", "Nobody"}
     assert told["name"] == "reports.zip"
 
 

@@ -274,7 +274,7 @@ def _report(folder: Path, students: Sequence[Student], scheme: MarkingScheme | N
 
 
 def _tables(students: Sequence[Student], scheme: MarkingScheme | None) -> Iterator[StoryTable]:
-    head = [tell("student"), tell("project"), tell("files"), tell("handed in"), *_kinds()]
+    head = [tell("student"), tell("project"), tell("files"), tell("handed in"), *called_kinds()]
     if scheme is not None:
         head += [tell("mark"), *([tell("grade")] if scheme.grades else [])]
     rows = []
@@ -291,7 +291,7 @@ def _tables(students: Sequence[Student], scheme: MarkingScheme | None) -> Iterat
         yield _marks(students, scheme)
     made = [(s.name, m) for s in students for m in s.mistakes]
     files = [(s, f) for s in students for f in s.files]
-    yield StoryTable(tell("Reports"), (tell("student"), tell("file"), *_kinds()),
+    yield StoryTable(tell("Reports"), (tell("student"), tell("file"), *called_kinds()),
                 tuple((s.name, f.file, *(str(f.faults.get(kind, 0)) for kind in KINDS)) for s, f in files),
                 pages=tuple("" if f.report is None else f"{s.name}/{f.file}.html" for s, f in files))
     if made:
@@ -302,14 +302,14 @@ def _tables(students: Sequence[Student], scheme: MarkingScheme | None) -> Iterat
 
 def _marks(students: Sequence[Student], scheme: MarkingScheme) -> StoryTable:
     """How the marks came about: what the faults of each kind that cost anything cost each student."""
-    kinds = [(kind, said) for kind, said in zip(KINDS, _kinds(), strict=True) if scheme.costs.get(kind)]
+    kinds = [(kind, said) for kind, said in zip(KINDS, called_kinds(), strict=True) if scheme.costs.get(kind)]
     rows = [(s.name, told(f"{scheme.full:g}"), *(scheme.counted(kind, s.faults[kind]) for kind, _ in kinds), told(f"{mark:.4g}"))
             for s in students if (mark := s.mark(scheme)) is not None]
     head = (tell("student"), tell("without faults"), *(said for _, said in kinds), tell("mark"))
     return StoryTable(tell("How the marks came about"), head, tuple(rows))
 
 
-def _kinds() -> tuple[str, ...]:
+def called_kinds() -> tuple[str, ...]:
     """What the kinds of faults are called."""
     return (tell("mistakes named"), tell("other red"), tell("other amber"), tell("views missing"), tell("tables, texts missing"),
             tell("not judged"), tell("numbers left empty, %"), tell("sheets missing"))

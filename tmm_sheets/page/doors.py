@@ -144,11 +144,11 @@ async def _asked(request: Request) -> tuple[dict[str, str], Any, dict[str, Path]
 
 def _place(name: str, of_group: bool) -> str:
     """Where a file goes: of a group into the folder of its student; the client's name is made of letters and figures."""
-    parts = [re.sub(r"[^\w @.+=,()-]+", "-", part)[:80].strip(" .-") for part in name.replace("\\", "/").split("/")]
-    suffix = Path(parts[-1]).suffix.lower()
+    parts = [re.sub(r"[^\w @.+=,()-]+", "-", part)[:80].strip(" -") for part in name.replace("\\", "/").split("/")]
+    parts = [part for part in parts if part.strip(".")]
+    suffix = Path(parts[-1] if parts else "").suffix.lower()
     if not of_group:
         return f"{compared.NAME}{suffix}" if suffix in COMPARED else f"{compared.NAME}.other"
-    inside = [part for part in parts if part]
-    if not inside:
+    if not parts:
         raise HTTPException(400, tell("a file without a name"))
-    return "/".join(("group", *inside[1:2], *(inside[2:] and ["-".join(inside[2:])])) if inside[1:] else ("group", inside[0]))
+    return "/".join(("group", *parts[1:2], *(parts[2:] and ["-".join(parts[2:])])) if parts[1:] else ("group", parts[0]))

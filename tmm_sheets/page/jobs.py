@@ -183,6 +183,9 @@ def group(asked: Mapping[str, str], say: Say) -> Message:
     """
     import json
 
+    from tmm_sheets.compare.group import called_kinds
+    from tmm_sheets.compare.marking import KINDS
+
     opened(asked)
     file, tree = _written(asked), Path("group.json")
     status, lines = _commanded(("compare", file, "--group", "group", "--json", str(tree), "--report", str(MADE / "group.html"),
@@ -190,7 +193,8 @@ def group(asked: Mapping[str, str], say: Say) -> Message:
     if status:
         raise CannotBuild("\n".join(lines))
     made = sorted(p for p in MADE.rglob("*") if p.is_file())
-    return {"group": json.loads(tree.read_text(encoding="utf-8")), "name": "reports.zip", "data": b64encode(_zipped(made)).decode()}
+    return {"group": json.loads(tree.read_text(encoding="utf-8")), "kinds": dict(zip(KINDS, called_kinds(), strict=True)),
+            "name": "reports.zip", "data": b64encode(_zipped(made)).decode()}
 
 
 def _written(asked: Mapping[str, str]) -> str:

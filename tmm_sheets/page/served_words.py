@@ -19,7 +19,6 @@ def served_words() -> dict[str, str]:
         "drop a drawing": tell("Drop a photograph, a DXF drawing or a measured table, or choose one"),
         "drop a project file": tell("Drop a project file, or choose one"),
         "drop a folder": tell("Drop the folder of a group, or choose it"),
-        "faults": tell("Faults"),
         "find a task": tell("Find a task"),
         "group": tell("Group"),
         "handed in": tell("Handed in"),
