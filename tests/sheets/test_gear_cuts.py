@@ -21,16 +21,16 @@ def pair(teeth, module):
 ])
 def test_the_scale_where_both_wheels_would_be_cut(teeth, module, width, height, scale):
     mu, broken = gear.picture(pair(teeth, module), width, height)
-    assert (1e-3 / mu.mu, broken) == (pytest.approx(scale), False)
+    assert (1e-3 / mu.mu, broken) == (pytest.approx(scale), gear.WHOLE)
 
 
 @pytest.mark.parametrize(("teeth", "module", "size", "drawn"), [
-    ([14, 39], "6 mm", (252, 379), (2.0, True)),  # at 1:1 teeth would be 13,5 mm high, the lettering of the mesh upon itself
-    ([14, 39], "6 mm", (216, 459), (1.0, False)),  # no room for it
-    ([17, 51], "4 mm", (252, 459), (2.0, False)),  # teeth of 18 mm
-    ([14, 27], "6 mm", (252, 379), (1.0, False)),  # less than twice the teeth
+    ([14, 60], "6 mm", (352, 379), (2.5, {1, 2})),  # at 1:1 teeth would be 13,5 mm high, the lettering of the mesh upon itself
+    ([14, 39], "6 mm", (252, 379), (2.5, {1, 2})),  # with wheel 1 whole they would be 27 mm
+    ([12, 40], "4 mm", (300, 459), (4.0, {2})),  # with wheel 1 whole 36
+    ([41, 60], "12 mm", (376, 562), (1.0, {1, 2})),  # no room for the feet of the line of action at 2:1: 27 mm are the most
 ])
-def test_low_teeth_break_a_wheel_of_twice_the_teeth(teeth, module, size, drawn):
+def test_low_teeth_break_the_greater_wheel_or_both(teeth, module, size, drawn):
     mu, broken = gear.picture(pair(teeth, module), *size)
     assert (1e-3 / mu.mu, broken) == drawn
 
@@ -42,7 +42,7 @@ def test_the_place_is_made_wide_enough_for_larger_teeth():
         "scheme": "single row", "simple": "after", "driver": "ring", "input_speed": "960 rpm", "ratio": 4, "teeth": {"z4": 14},
         "module": "4 mm", "simple_module": "6 mm", "satellites": 4, "least_teeth": 13}})
     sheet = composed(own, 1)
-    assert 1e-3 / sheet.scales["gear-engagement"].mu == pytest.approx(2.0)
+    assert 1e-3 / sheet.scales["gear-engagement"].mu == pytest.approx(2.5)
     assert (sheet.leaving, sheet.crowded) == ((), ())
 
 

@@ -44,6 +44,15 @@ def reaching(box: Box, z: Any, d: Any, inset: tuple[float, float, float, float],
     return Need((size[0], size[1]), (around[0], around[1]), (max(least[0], short[0]), max(least[1], short[1])))
 
 
+BELOW = 0.3
+"""What a view counts for at most whose main figure is lower than can be read: a way in which it is not is better, whatever else."""
+
+
+def reached(size: float, floor: float) -> float:
+    """Share of its ink that a view counts for with a figure of this size, mm: all from its floor on."""
+    return 1.0 if size >= floor else BELOW * size / floor
+
+
 def leaf(box: Box, need: Need, share: float = 1.0) -> BorderNode:
     """Node of a need that counts for a share of its box."""
     return BorderNode(need, area=share * box.width * box.height)

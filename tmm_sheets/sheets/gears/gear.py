@@ -9,6 +9,7 @@ from typing import Any, cast
 import numpy as np
 
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.readable import TOOTH
 from tmm_sheets.construction.scale import STANDARD, Scale, fit
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, lettered
 from tmm_sheets.drawing.clipping import arcs_inside, segment_inside
@@ -33,18 +34,18 @@ FURTHEST = 40.0
 """So much farther the dimension lines of the teeth stand at most where lines would run through their lettering, mm."""
 SLIVER = 1e-6
 """mm of a line beside its lettering that are nothing but rounding."""
+DIMENSIONED = 40.0
+"""Height within the root circles that the dimensions of the teeth take with the angles under them, mm."""
 DIVISION = 10.0
 """Room beyond the last division of an involute for its number, mm."""
 PITCHES, MOST = 1.25, 1.5
 """Pitches that the view of the meshing zone must show at least, and those it shows at most."""
-BROKEN_BELOW = (25.0, 4.0), (16.0, 2.0)
-"""Height of a tooth on the picture, mm, below which a wheel 2 so many times greater is broken so that the scale can be larger: a
-tooth lower than 16 mm leaves no room for the lettering of the mesh, about 60 signs within three pitches.
-"""
-NEARLY, HALF, LEAST = 0.8, 0.5, 20.0
+NEARLY, HALF = 0.8, 0.5
 """Shares of its scale that a picture gives up at most so that no wheel is cut at its edges: where it cuts one, and where it cuts
-both; height of a tooth that it keeps, mm.
+both.
 """
+MESHED = 1.6
+"""So many pitches to each side of the line of centres the teeth in mesh are drawn."""
 MOSTLY = 0.7
 """Share of the room beyond the centres that the smaller wheel takes at most where it is shown whole."""
 HUB, UNDER, BESIDE = 44.0, 14.0, 14.0
@@ -81,42 +82,71 @@ def picture_room(gear: Any, width: float, height: float) -> float:
     return float(min(tall, (width - 12) / smaller * gear.height))
 
 
-def picture(gear: Any, width: float, height: float) -> tuple[Scale, bool]:
-    """Scale of the engagement picture in a place of this size, mm, and whether the greater wheel is broken for it."""
+Broken = frozenset[int]
+"""Numbers of the wheels that are broken between the mesh and their centre (GOST 2.305)."""
+WHOLE: Broken = frozenset()
+
+
+def picture(gear: Any, width: float, height: float) -> tuple[Scale, Broken]:
+    """Scale of the engagement picture in a place of this size, mm, and the wheels that are broken for it.
+
+    Teeth that would be lower than can be read break the greater wheel, or both: the largest scale with the other one whole, or the
+    least at which they are high enough; where none is, that at which they are highest.
+    """
     whole: Scale = gear.picture_scale(picture_room(gear, width, height))
-    tooth = max(abs(w.ra - w.rf) for w in gear.wheels)
+    tooth = highest_tooth(gear)
     if not gear.internal:
         uncut = standard((2 * max(w.ra for w in gear.wheels), width - 2 * BESIDE),
                          (gear.a_w + sum(w.ra for w in gear.wheels), height - 16.0 - 2 * BESIDE))
         small, spare = min(w.ra for w in gear.wheels), height - 16.0 - whole.mm(gear.a_w)
         cuts_both = whole.mm(small) + 4 > MOSTLY * spare or 2 * whole.mm(small) > width - 2 * BESIDE
-        if whole.mu < uncut.mu <= whole.mu / (HALF if cuts_both else NEARLY) and uncut.mm(tooth) >= LEAST:
-            return uncut, False
-    one, two = gear.wheels
-    if gear.internal or not any(whole.mm(tooth) < low and two.teeth >= greater * one.teeth for low, greater in BROKEN_BELOW):
-        return whole, False
-    for real, drawn in reversed(STANDARD):
-        larger = Scale(whole.symbol, real / drawn * 1e-3, whole.unit)
-        left, right, below, above = (length / larger.mu for length in _broken_extent(gear, larger))
-        if left + right <= width - 6.0 - 2 * BESIDE and below + above <= height - 16.0 - HUB - 2 * UNDER:
-            return (larger, True) if larger.mu < whole.mu else (whole, False)
-    return whole, False
+        if whole.mu < uncut.mu <= whole.mu / (HALF if cuts_both else NEARLY) and uncut.mm(tooth) >= TOOTH:
+            return uncut, WHOLE
+    if gear.internal or whole.mm(tooth) >= TOOTH:
+        return whole, WHOLE
+    larger = [Scale(whole.symbol, real / drawn * 1e-3, whole.unit) for real, drawn in reversed(STANDARD)
+              if real / drawn * 1e-3 < whole.mu]
+    found = [(whole, WHOLE)]
+    for broken in (Broken({max(gear.wheels, key=lambda w: w.ra).number}), Broken({1, 2})):
+        fitting = [(mu, broken) for mu in larger if _fits(gear, mu, broken, width, height)]
+        high = [one for one in fitting if one[0].mm(tooth) >= TOOTH]
+        if high:
+            return high[-1 if len(broken) > 1 else 0]
+        found += fitting[:1]
+    return min(found, key=lambda one: one[0].mu)
 
 
-def _broken_extent(gear: Any, scale: Scale) -> tuple[float, float, float, float]:
-    """What is to be seen about the pole of a pair whose wheel 2 is broken, m: the side of its foot N2, the other, below, above.
+def highest_tooth(gear: Any) -> float:
+    """Height of the higher teeth of a pair, m."""
+    return float(max(abs(w.ra - w.rf) for w in gear.wheels))
 
-    The divisions go on beyond the foot, as far as they do with this scale.
+
+def _fits(gear: Any, scale: Scale, broken: Broken, width: float, height: float) -> bool:
+    left, right, below, above = (length / scale.mu for length in _broken_extent(gear, scale, broken))
+    return left + right <= width - 6.0 - 2 * BESIDE and below + above <= height - 16.0 - len(broken) * HUB - 2 * UNDER
+
+
+def _broken_extent(gear: Any, scale: Scale, broken: Broken) -> tuple[float, float, float, float]:
+    """What is to be seen about the pole of a pair with broken wheels, m: the side of its foot N2, the other, below, above.
+
+    The divisions go on beyond the feet, as far as they do with this scale.
     """
-    one, two = gear.wheels
-    last = complex(gear.engagement["N2"].value) * gear.divisions(two, scale)[-1] / gear.parts(two, scale)
-    return max(abs(last.real), one.ra), one.ra, max(abs(last.imag), one.ra - one.rw), one.rw + one.ra
+    def side(wheel: Any) -> tuple[float, float, float]:
+        """At the side of its foot, at the other, away from the pole."""
+        last = complex(gear.engagement[f"N{wheel.number}"].value) * gear.divisions(wheel, scale)[-1] / gear.parts(wheel, scale)
+        if wheel.number not in broken:
+            return max(abs(last.real), wheel.ra), wheel.ra, wheel.rw + wheel.ra
+        wide, deep = MESHED * gear.p, wheel.rw - wheel.rf + scale.real(DIMENSIONED)
+        return max(abs(last.real), wide), wide, max(abs(last.imag), deep)
+
+    (near_1, far_1, above), (near_2, far_2, below) = map(side, gear.wheels)
+    return max(near_2, far_1), max(near_1, far_2), below, above
 
 
 class _GearPicture:
     """The engagement picture in its place: turns metres of the plans into millimetres of the sheet.
 
-    Of a pair with a far greater wheel 2 that wheel is ``broken`` between the mesh and its centre (GOST 2.305).
+    Wheels with low teeth are ``broken``.
     """
 
     def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
@@ -132,8 +162,11 @@ class _GearPicture:
         self.tooth = {w.number: stage(canvas, gear.tooth(w), 0, self.at) for w in gear.wheels}
         if gear.internal:  # the ring ends a little over its centre
             self.box = Box(*self.box[:3], min(self.box.y1, self.of("O2").imag + EDGE))
-        if self.broken:
-            self.hub, self.box = complex(self.pole.real, self.box.y0 + 0.55 * HUB), self.box._replace(y0=self.box.y0 + HUB)
+        # A wheel whose centre is on the picture all the same is cut at the edges only.
+        self.broken -= {w.number for w in gear.wheels if self.box.inset(EDGE).contains(self.of(f"O{w.number}"))}
+        self.hubs = {number: complex(self.pole.real, self.box.y1 - 0.55 * HUB if number == 1 else self.box.y0 + 0.55 * HUB)
+                     for number in self.broken}
+        self.box = self.box.inset(0, HUB * (2 in self.broken), 0, HUB * (1 in self.broken))
         self.spokes: list[int] = []
         """Numbers of the marks of radial lines, which make way for the dimensions of the teeth."""
         self.window = Window(canvas, self.box.inset(3))  # room for the kinks of break lines
@@ -148,10 +181,10 @@ class _GearPicture:
 
     def pole_of_broken(self) -> complex:
         """Place of the pole of a broken pair: what its divisions need at the side of N2, the rest is left over and under it."""
-        left, right, below, above = (length / self.mu.mu for length in _broken_extent(self.gear, self.mu))
+        left, right, below, above = (length / self.mu.mu for length in _broken_extent(self.gear, self.mu, self.broken))
         if self.gear.engagement["N2"].value.real > 0:
             left, right = right, left
-        spare = self.box.width - left - right, self.box.height - HUB - below - above
+        spare = self.box.width - left - right, self.box.height - HUB * len(self.broken) - below - above
         return complex(self.box.x0 + spare[0] / 2 + left, self.box.y0 + HUB + spare[1] / 2 + below)
 
     def pole_of_pair(self) -> complex:
@@ -185,7 +218,12 @@ class _GearPicture:
 
     def centre(self, wheel: Any) -> complex:
         """Where a wheel's centre is drawn: nearer than it is if the wheel is broken."""
-        return self.hub if self.broken and wheel.number == 2 else self.of(f"O{wheel.number}")
+        return self.hubs.get(wheel.number) or self.of(f"O{wheel.number}")
+
+    def within(self, wheel: Any, depth: float) -> float:
+        """Distance from the centre of a broken wheel of what is so deep, mm, within the break."""
+        edge = self.box.y1 if wheel.number == 1 else self.box.y0
+        return float(abs(edge - self.of(f"O{wheel.number}").imag) + depth)
 
     def away(self, wheel: Any) -> int:
         """+1 when the wheel's far side is up."""
@@ -222,7 +260,8 @@ class _GearPicture:
             at = self.centre(wheel)
             if at != centre:  # what is left of it beyond the break
                 s = self.stage.pen("O1O2", "axis")
-                s.line(complex(at.real, self.box.y0 - 1.0), at - 12j, "centre")
+                up = self.away(wheel)
+                s.line(complex(at.real, (self.box.y1 if up > 0 else self.box.y0) + up * 1.0), at + up * 12j, "centre")
                 s.line(at - 12, at + 12, "centre")
             self.stage.pen(f"O{wheel.number}", "symbol").circle(at, 2.0, "main")
             self.canvas.label(at, f"O_{wheel.number}", away=complex(1, self.away(wheel)), height=5, gap=3)
@@ -258,7 +297,8 @@ class _GearPicture:
         start, end = (pi, pi + self.gear.alpha_w) if h < 0 else (-self.gear.alpha_w, 0.0)
         pen, o1 = s.pen("alpha_w", "dimension"), self.of("O1")
         pen.angle_mark(pole, start, end, radius, "α_w")
-        angle_beside(pen, o1, phase(n1 - o1), -pi / 2, self.mm(self.gear.wheels[0].rb) * 0.45, alpha)
+        near = self.within(self.gear.wheels[0], 2.2 * UNDER) if 1 in self.broken else self.mm(self.gear.wheels[0].rb) * 0.45
+        angle_beside(pen, o1, phase(n1 - o1), -pi / 2, near, alpha)
         self.dimension_of_centres()
 
     def pole_letter(self) -> None:
@@ -384,7 +424,7 @@ class _GearPicture:
         drawn = float(self.gear.engagement[f"phi{i}"].value)
         pen = self.stage.pen(f"phi{i}", "dimension")
         # Of a broken wheel in what is seen of it.
-        radius = self.mm(wheel.rf) * 0.66 if self.centre(wheel) == centre else self.box.y0 + UNDER - centre.imag
+        radius = self.within(wheel, UNDER) if i in self.broken else self.mm(wheel.rf) * 0.66
         angle_beside(pen, centre, first, last, radius, f"φ_{{α{i}}} = {fixed(degrees(drawn), 2)}°")
 
     def dimensions(self, wheel: Any) -> None:
@@ -657,7 +697,7 @@ def _theta(s: PlayerStage, gear: Any, lowest: float, way: int) -> None:
 
 def sliding_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> tuple[tuple[float, float], ...]:
     """Sizes that the graphs can do with, mm."""
-    return (210.0, 200.0), (190.0, 150.0)
+    return (210.0, 215.0), (190.0, 200.0)  # below, the specific sliding is too low to be read
 
 
 def sliding_table_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:

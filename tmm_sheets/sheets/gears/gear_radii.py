@@ -129,9 +129,9 @@ class _Radii:
 
     def begin(self, direction: float) -> float:
         """Where a radius begins: beside the centre, of a broken wheel in what is seen of it."""
-        if self.picture.centre(self.wheel) == self.centre:
+        if self.wheel.number not in self.picture.broken:
             return 2.0
-        return float((self.picture.box.y0 - self.centre.imag) / sin(direction))
+        return float(self.picture.within(self.wheel, 0.0) / abs(sin(direction)))
 
     def seen(self, key: str, text: str, direction: float) -> bool:
         """Whether a radius has its tip in the picture, and its lettering clear of the dimension of the centres too."""

@@ -7,9 +7,11 @@ from functools import cache
 from math import pi
 from typing import TYPE_CHECKING
 
+from tmm_sheets.construction.readable import TOOTH
 from tmm_sheets.sheets.border_solver import BorderNode, Need
 from tmm_sheets.sheets.frame import standard
 from tmm_sheets.sheets.gears import gear, gear_marks, rack, reducer, train
+from tmm_sheets.sheets.view_sizes import reached
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -30,15 +32,16 @@ def _node(view: ViewPlace, least: tuple[float, float], drawn: Callable[[int, int
 
 
 def engagement(project: Project, view: ViewPlace) -> BorderNode:
-    """The smaller wheel is to be seen whole, the other may be cut at both sides."""
+    """The smaller wheel is to be seen whole, the other may be cut at both sides; teeth that are too low fill nothing."""
     pair = project.gear
+    tooth = gear.highest_tooth(pair)
 
     def drawn(width: int, height: int) -> float:
         mu, broken = gear.picture(pair, width, height)
         if broken:
-            return float(width * height) * (1.0 + 1e-3 / mu.mu)  # the scale is what counts
+            return float(width * height) * reached(mu.mm(tooth), TOOTH)
         whole = min(2 * min(w.ra for w in pair.wheels) / mu.mu + BESIDE, width)
-        return (whole + (width - whole) * OTHER) * height
+        return (whole + (width - whole) * OTHER) * height * reached(mu.mm(tooth), TOOTH)
 
     return _node(view, (180.0, 300.0), drawn)
 
