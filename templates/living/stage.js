@@ -27,7 +27,12 @@ function placer(values, shrunk = 1) {
     const ends = mark.along.map(number);
     return straight(turnedBy(mark, ends.length > 1 ? sub(ends[1], ends[0]) : ends[0]));
   };
-  const point = (mark, id) => add(mark.origin, turnedBy(mark, number(id)));
+  const known = new Map(); // many marks hang on one point
+  const point = (mark, id) => {
+    const key = `${mark.group} ${id}`;
+    if (!known.has(key)) known.set(key, add(mark.origin, turnedBy(mark, number(id))));
+    return known.get(key);
+  };
   const place = (mark, id, other, share) => {
     const a = point(mark, id);
     return other ? step(a, share, sub(point(mark, other), a)) : a;
@@ -56,7 +61,13 @@ function makeCard(live) {
   // What is said of the position that it is drawn for on the sheet does not hold in motion.
   const position = say("position {label}", { label: live.position }), from = live.view.toLowerCase().indexOf(position.toLowerCase());
   const name = from < 0 ? live.view : live.view.slice(0, from).replace(/[\s,(]+$/, "");
-  const caption = node("figcaption", {}, name), card = { live, name, svg, marks, paths, caption, hidden: marks.map(() => false), seen: false, figure: node("figure", { class: "card" }, caption, svg) };
+  const frames = [];
+  for (const mark of live.marks) { // marks of one frame are told by its number
+    const key = `${mark.origin} ${mark.mu} ${mark.turn} ${mark.mirror}`;
+    if (!frames.includes(key)) frames.push(key);
+    mark.group = frames.indexOf(key);
+  }
+  const caption = node("figcaption", {}, name), card = { live, name, svg, marks, paths, caption, hidden: marks.map(() => false), drawn: marks.map(() => ""), seen: false, figure: node("figure", { class: "card" }, caption, svg) };
   const seen = new Set();
   card.ends = marks.filter((m) => m.kind !== "text" && m.role !== "text").flatMap((m) => m.at.map(([id]) => [m, id])).filter(([m, id]) => {
     const key = `${id} ${m.origin} ${m.mu}`;
@@ -97,8 +108,6 @@ const round = (many) => Array.from({ length: many }, (_, i) => record.motion.sta
 
 const WIDE = 120, HIGH = 66; // a card's room for what moves, mm
 
-const STEADY = 2.5; // a plan is drawn at most so many times larger than where it is largest
-
 // By how much a view is to be smaller than on the sheet to have room in its card.
 function shrinking(card, all) {
   const [x0, y0, x1, y1] = extentOf(all.flatMap((values) => {
@@ -108,10 +117,8 @@ function shrinking(card, all) {
   return x0 <= x1 ? Math.max((x1 - x0) / WIDE, (y1 - y0) / (card === stage.cards[0] ? 2.2 * HIGH : HIGH)) : 0;
 }
 
-const keepsScale = (card) => card.live.plan === "positions";
-
-// The mechanism keeps its scale; plans that are small for most of the turn are drawn larger there, and their scale factor is told.
-const shrunkNow = (card, values) => (keepsScale(card) ? card.most : Math.max(shrinking(card, [values]), card.most / STEADY) || 1);
+// A polygon or a group of links keeps to the middle of its card, a plan with a pole keeps its pole.
+const isCentred = (card) => card.live.plan !== "positions" && planOf(card.live.plan).pole === undefined;
 
 function extentOf(points) {
   const box = [Infinity, Infinity, -Infinity, -Infinity];
@@ -131,14 +138,41 @@ function takeTurn() {
   for (const card of stage.cards) card.framed = false;
 }
 
-// The scale of a card, the room of everything that moves in it, paths of points.
+// Letters of a plan that would lie on others for much of the turn are left out: signs of one lettering hang on one anchor.
+function chooseLetters(card) {
+  const letterings = new Map();
+  card.marks.forEach((mark, n) => {
+    if (mark.role !== "text" || !mark.at) return;
+    const key = `${mark.group} ${mark.at[0].slice(0, 5)} ${mark.along}`;
+    if (!letterings.has(key)) letterings.set(key, []);
+    letterings.get(key).push(n);
+  });
+  const many = Math.min(stage.turn.length, MOMENTS), moments = Array.from({ length: many }, (_, i) => placer(stage.turn[Math.floor(i * stage.turn.length / many)], card.shrunk));
+  const all = [...letterings.values()].map((signs) => ({ signs, boxes: moments.map((placed) => extentOf(signs.flatMap((n) => {
+    const mark = card.marks[n], g = geometryOf(mark, placed);
+    if (g.text) { const [x, y] = g.text.at; return [[x, y], [x + 0.55 * mark.height * mark.string.length, y + mark.height]]; }
+    return g.line ?? g.polyline ?? g.fill ?? [];
+  }))) }));
+  const apart = (a, b) => a[0] > b[2] || b[0] > a[2] || a[1] > b[3] || b[1] > a[3], kept = [];
+  card.left = new Set();
+  for (const one of all.sort((a, b) => a.signs.length - b.signs.length)) { // short ones are those of points
+    const covered = one.boxes.filter((box, i) => kept.some((other) => !apart(box, other.boxes[i]))).length;
+    if (covered > CROWDED * many) one.signs.forEach((n) => card.left.add(n)); else kept.push(one);
+  }
+  card.elements.forEach((element, n) => element.toggleAttribute("hidden", card.left.has(n)));
+}
+
+const MOMENTS = 24, CROWDED = 0.2;
+
+// The scale of a card, the same for the whole turn; the room of everything that moves in it, paths of points.
 function frameCard(card) {
   card.framed = true;
-  card.most = keepsScale(card) ? shrinking(card, stage.turn) || 1 : Math.max(...stage.turn.map((one) => shrinking(card, [one])));
-  card.centred = !keepsScale(card) && planOf(card.live.plan).pole === undefined;
+  card.centred = isCentred(card);
+  card.shrunk = (card.centred ? Math.max(...stage.turn.map((one) => shrinking(card, [one]))) : shrinking(card, stage.turn)) || 1;
+  chooseLetters(card);
   const seen = [], moving = card.marks.filter((mark) => mark.role !== "construction" && mark.role !== "text");
   for (const values of card.centred ? [] : stage.turn) {
-    const placed = placer(values, shrunkNow(card, values));
+    const placed = placer(values, card.shrunk);
     for (const mark of moving) {
       const g = geometryOf(mark, placed), circle = g.circle ?? g.arc;
       if (!defined(g)) continue;
@@ -149,7 +183,7 @@ function frameCard(card) {
   const [x0, y0, x1, y1] = extentOf(seen);
   if (x0 < x1) card.svg.setAttribute("viewBox", `${x0 - 11} ${-y1 - 9} ${x1 - x0 + 22} ${y1 - y0 + 18}`);
   card.svg.querySelector(".paths").innerHTML = card.paths.map((path) => {
-    const points = stage.fine.map((one) => placer(one, card.most).point(path, path.of)), there = points.filter((z) => Number.isFinite(z[0]));
+    const points = stage.fine.map((one) => placer(one, card.shrunk).point(path, path.of)), there = points.filter((z) => Number.isFinite(z[0]));
     const closed = there.length === points.length && record.motion.period > 6;
     return there.length ? `<path class="mark" ${look(path.style)} d="${polyPath(there, 0, closed)}"/>` : "";
   }).join("");
@@ -158,18 +192,18 @@ function frameCard(card) {
 // Draw the marks of a card; true where some of them have no place.
 function drawCard(card, values) {
   if (!card.framed) frameCard(card);
-  card.shrunk = shrunkNow(card, values);
   const placed = placer(values, card.shrunk);
   let lost = false;
   tellScale(card);
   if (card.centred) centre(card, placed);
   card.marks.forEach((mark, n) => {
+    if (card.left.has(n)) return;
     const g = geometryOf(mark, placed), element = card.elements[n], there = defined(g);
     if (card.hidden[n] === there) { element.setAttribute("visibility", there ? "visible" : "hidden"); card.hidden[n] = !there; }
     if (!there) { lost = true; return; }
-    if (mark.kind !== "text") { element.setAttribute("d", pathOf(g, 0)); return; }
-    element.setAttribute("x", fixed(g.text.at[0]));
-    element.setAttribute("y", fixed(-g.text.at[1]));
+    // A letter is moved, which costs less than setting it anew; what stays is not written again.
+    const drawn = mark.kind === "text" ? `translate(${fixed(g.text.at[0])} ${fixed(-g.text.at[1])})` : pathOf(g, 0);
+    if (card.drawn[n] !== drawn) element.setAttribute(mark.kind === "text" ? "transform" : "d", card.drawn[n] = drawn);
   });
   return lost;
 }
@@ -193,7 +227,8 @@ const VANE = 0.45; // length of a velocity on the mechanism beside that in its p
 // Velocities as arrows on the mechanism: a point B and the end b of its vector in the plan.
 function drawVanes(placed, values) {
   const first = stage.cards[0], over = first.svg.querySelector(".over");
-  for (const old of over.querySelectorAll(".vane, .vanehead")) old.remove();
+  if (stage.vanes || stage.vaned) for (const old of over.querySelectorAll(".vane, .vanehead")) old.remove();
+  stage.vaned = stage.vanes;
   const scaled = stage.cards.find((card) => card.live.plan === "velocities");
   if (!stage.vanes || !scaled) return;
   const mark = first.marks[0], mu = scaled.marks[0].mu[0], result = (id) => { const [p] = record.motion.all.results[id]; return [values[p], values[p + 1]]; };

@@ -265,7 +265,7 @@ window.said = [];
 for (const name of ["error", "unhandledrejection"]) addEventListener(name, (e) => said.push(String(e.message ?? e.reason)));
 (function wait() {
   if (!window.tmm) return setTimeout(wait, 20);
-  let steps = 0;
+  let steps = 0, scales = 0;
   for (const sheet of tmm.record.sheets) {
     tmm.open("draw", sheet.sheet);
     for (let n = 0; n < tmm.film(); n++, steps++) tmm.step(n);
@@ -273,10 +273,15 @@ for (const name of ["error", "unhandledrejection"]) addEventListener(name, (e) =
   }
   if (tmm.record.motion) {
     tmm.open("turn");
-    for (let i = 0; i < 40; i++) tmm.turn(i / 6);
+    const told = new Set();
+    for (let i = 0; i < 40; i++) {
+      tmm.turn(i / 6);
+      for (const card of document.querySelectorAll(".card:has(.mark[d])")) told.add(card.querySelector("figcaption").textContent);
+    }
+    scales = told.size - document.querySelectorAll(".card:has(.mark[d])").length;
   }
   const loaded = performance.getEntriesByType("resource").length;
-  document.body.innerHTML = `<pre id="out">${JSON.stringify({ steps, said, loaded })}</pre>`;
+  document.body.innerHTML = `<pre id="out">${JSON.stringify({ steps, said, loaded, scales })}</pre>`;
 })();
 </script></body>"""
 
@@ -291,3 +296,4 @@ def test_every_film_runs_to_its_end(name, sheets, tmp_path):
     assert found["said"] == []
     assert found["steps"] > 40
     assert found["loaded"] == 0
+    assert found["scales"] == 0, "a plan keeps its scale factor during a turn"
