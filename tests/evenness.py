@@ -14,6 +14,8 @@ import statistics
 import sys
 from collections import defaultdict
 from collections.abc import Iterator
+from itertools import combinations
+from math import inf
 from multiprocessing import Pool
 from typing import NamedTuple
 
@@ -28,7 +30,7 @@ from tmm_sheets.drawing.marks import Drawing, Text
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.composed import Composed
 from tmm_sheets.sheets.floors import CRANK, EMPTY, LETTERED, SHARE, VECTOR, Floor
-from tmm_sheets.sheets.linkage import kinematic_frames
+from tmm_sheets.sheets.linkage import kinematic_frames, kinematics
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.words import tr
 
@@ -90,7 +92,7 @@ def sizes(project: Project, sheet: Composed) -> Iterator[Size]:
     """What the kinematics of a sheet measure beside their floors, by where the plans lie on it."""
     draws = [part.draw for part in sheet.parts]
     told = " ".join(str(remark) for remark in sheet.illegible)
-    vectors = defaultdict[tuple[str, float], float](float)
+    vectors = defaultdict[str, float](float)
     for n, frame in enumerate(sheet.frames):
         if frame.view < 0 or (view := draws[frame.view]) not in OF_PLANS:
             continue
@@ -101,12 +103,18 @@ def sizes(project: Project, sheet: Composed) -> Iterator[Size]:
         if plan is None:
             continue
         k = project.cycle.labels.index(frame.position)
-        z = np.array(list(kinematic_frames.plan_points(plan, k).values())) / frame.mu[0]
+        points = kinematic_frames.plan_points(plan, k)
+        z = np.array(list(points.values())) / frame.mu[0]
         longest = max(abs(complex(seg.head.at(k)) - complex(seg.tail.at(k))) for seg in plan.segments) / frame.mu[0]
-        vectors[view, frame.mu[0]] = max(vectors[view, frame.mu[0]], longest)
-        if any(isinstance(m, Text) and m.by is not None and m.by.frame == n for m in sheet.drawing.marks):
+        # What is enlarged need not be so large among the others.
+        of = "kinematics.velocity_plans" if view == "kinematics.enlarged_velocities" else view
+        vectors[of] = max(vectors[of], longest)
+        lettered = {m.by.step for m in sheet.drawing.marks if isinstance(m, Text) and m.by is not None and m.by.frame == n}
+        at = [complex(frame(complex(plan[name].at(k)))) for name in points if plan[name].path in lettered]
+        near = min((abs(a - b) for a, b in combinations(at, 2) if abs(a - b) > 0.5), default=inf)
+        if near < kinematics.CLEAR_LETTER:
             yield Size(f"{view} {frame.position}", max(np.ptp(z.real), np.ptp(z.imag)), LETTERED, tr(LETTERED.what) in told)
-    yield from (Size(view, size, VECTOR, tr(VECTOR.what) in told) for (view, _), size in vectors.items())
+    yield from (Size(view, size, VECTOR, tr(VECTOR.what) in told) for view, size in vectors.items())
 
 
 OF_PLANS = ("kinematics.position_plans", "kinematics.velocity_plans", "kinematics.acceleration_plan",

@@ -7,9 +7,9 @@ views fill the sheet better. Everything is done in a fixed order and in steps of
 
 from __future__ import annotations
 
-from bisect import bisect_left
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import floor, inf, log10
 
@@ -38,14 +38,22 @@ def rounded_up(mu: float) -> float:
     return _SERIES[bisect_left(_SERIES, mu / power * (1 - 1e-9))] * power
 
 
+def rounded_down(mu: float) -> float:
+    """The scale factor of the series that is not more than one."""
+    power = 10.0 ** floor(log10(mu))
+    return _SERIES[bisect_right(_SERIES, mu / power * (1 + 1e-9)) - 1] * power
+
+
 @dataclass(frozen=True)
 class Need:
     """What a view needs of its place, mm.
 
     ``span`` is what it draws to a scale, in its own unit, ``around`` what comes to it on paper whatever the scale: letters,
     symbols, headings. ``least`` is the size below which it cannot be read, ``most`` that from which on more room is of no use.
-    ``finest`` is the least scale factor that is of use. ``drawn`` tells, for what has no scale, the area it fills of a place of
-    some width and height. ``covered`` is what lies over the place at its top, the turned designation.
+    ``finest`` is the least scale factor that is of use, ``coarsest`` the greatest one at which the view is not below its floor,
+    ``filled`` the part of its place that it fills at least.
+    ``drawn`` tells, for what has no scale or is more than one figure, the area it fills of a place of some width and height,
+    ``scale`` the factor it needs there. ``covered`` is what lies over the place at its top, the turned designation.
     """
 
     span: tuple[float, float] = (0.0, 0.0)
@@ -53,8 +61,23 @@ class Need:
     least: tuple[float, float] = (60.0, 40.0)
     most: tuple[float, float] = (inf, inf)
     finest: float = 0.0
+    coarsest: float = inf
+    filled: float = 0.0
     drawn: Callable[[float, float], float] | None = None
+    scale: Callable[[float, float], float] | None = None
     covered: float = 0.0
+
+    def ending(self, floor: float, largest: tuple[float, float]) -> Need:
+        """The same need with the greatest scale factor of the series up to ``floor``, or that which its ``largest`` place takes."""
+        return replace(self, coarsest=max(rounded_down(floor), self.needed(*largest)))
+
+    def needed(self, width: float, height: float) -> float:
+        """Scale factor with which the view fits a place of this size, not rounded."""
+        w, h = min(width - ROUNDED, self.most[0]), min(height - ROUNDED - self.covered, self.most[1])
+        if self.scale is not None:
+            return self.scale(w, h)
+        free = w - self.around[0], h - self.around[1]
+        return max(self.span[0] / free[0], self.span[1] / free[1]) if min(free) > 1.0 else inf
 
     def ink(self, width: float, height: float) -> float:
         """Area that is drawn upon in a place of this size, mm^2."""
@@ -71,9 +94,14 @@ class Need:
         """How much a place is too small, in its own size."""
         return max(self.least[0] - width, 0.0) / self.least[0] + max(self.least[1] + self.covered - height, 0.0) / self.least[1]
 
+    def below(self, width: float, height: float) -> float:
+        """How far what is drawn in a place is below its floors: the part of them that it lacks."""
+        small = max(1.0 - self.coarsest / self.needed(width, height), 0.0) if self.coarsest < inf else 0.0
+        return small + max(1.0 - self.ink(width, height) / (width * height * self.filled), 0.0) if self.filled else small
 
-TOO_SMALL = 1e8
-"""Price of a place that is too small by its own size, mm^2: more than that of any sheet."""
+
+TOO_SMALL, BELOW = 1e8, 1e7
+"""Price of a place that is too small by its own size, mm^2: more than that of any sheet; and of what is not seen at all in it."""
 
 
 @dataclass
@@ -115,7 +143,8 @@ class BorderNode:
             return found
         if self.need is not None:
             ink = self.need.ink(width, height)  # the square: what is worst counts most
-            found = self.area * (self.area / ink) ** 2 + TOO_SMALL * self.need.short(width, height)
+            found = self.area * (self.area / ink) ** 2
+            found += TOO_SMALL * self.need.short(width, height) + BELOW * self.need.below(width, height)
         else:
             found = 0.0
             for child, size in zip(self.children, self.sizes(width, height), strict=True):

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
-from tmm_sheets.sheets.composition import placed_where
+from tmm_sheets.sheets.composition import arranged, placed_where
+from tmm_sheets.sheets.floors import CRANK, VECTOR, Floor
 from tmm_sheets.sheets.frame import extent, fit_frame
 from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.linkage.linkage_sizes import LINKS
@@ -37,17 +38,52 @@ def crowded(project: Project, sheets: Iterable[int]) -> Iterator[Remark]:
             yield from function(view.kind.read)(project, n, view)
 
 
+def positions(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
+    """The crank is too small beside the other links."""
+    try:
+        scale = kinematic_frames.positions(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options).scale
+    except CannotBuild:
+        return
+    yield from _below(project, n, CRANK, scale.mm(2 * project.mechanism.crank.length),
+                      marked("leave out points far from the crank"))
+
+
+def velocities(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
+    """The velocity plans are too small, and the analysed one is not shown once more, enlarged."""
+    if any(offer.draw == "kinematics.enlarged_velocities" for offer in arranged(project, n).offers):
+        return
+    try:
+        layout = kinematic_frames.velocities(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
+    except CannotBuild:
+        return
+    longest = kinematic_frames.longest(project.study.velocities.plan, [i for i, _ in layout.shown])
+    yield from _below(project, n, VECTOR, layout.scale.mm(longest), marked("number fewer positions"))
+
+
 def accelerations(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
-    """More letters of the acceleration plan than can be read stand together."""
+    """The acceleration plan is too small, or more of its letters than can be read stand together."""
     try:
         scale = kinematic_frames.accelerations(project, SimpleNamespace(scales={}, chosen=set()), view.box).scale
     except CannotBuild:
         return
+    longest = kinematic_frames.longest(project.study.accelerations.plan, [project.force_index])
+    yield from _below(project, n, VECTOR, scale.mm(longest), marked("take another force_position"))
     letters = kinematic_frames.crowd(project.study.accelerations.plan, project.force_index, scale.mu)
     if letters > kinematic_frames.TOGETHER_READ:
         yield Remark(marked("sheet {n}: the acceleration plan cannot be read, {count} of its letters stand within "
                             "{about:.0f} mm of one of them: take another force_position"),
                      {"n": n, "count": letters, "about": kinematic_frames.ABOUT})
+
+
+def _below(project: Project, n: int, floor: Floor, size: float, hint: str) -> Iterator[Remark]:
+    """What no place of a sheet shows at its floor, and what to try."""
+    if size >= floor.least * (1 - 1e-6):
+        return
+    said = Remark(marked("sheet {n}: {what} is {size:.0f} mm large, it is read from {least:.0f} mm on: {hint}"),
+                  {"n": n, "what": Remark(floor.what), "size": size, "least": floor.least, "hint": Remark(hint)})
+    yield said if OF_THEIR_OWN[0] in project.sheets else Remark(
+        marked("{said}, or take a sheet more, sheets = [{names}]"),
+        {"said": said, "names": ", ".join(f'"{name}"' for name in OF_THEIR_OWN)})
 
 
 def lever(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:

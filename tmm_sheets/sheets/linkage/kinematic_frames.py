@@ -200,7 +200,7 @@ def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str,
         raise CannotBuild(tell("the velocity plans have no room for their lettering"),
                           tell("make their place larger in templates/sheets"))
     if wanted is None:
-        need = max(need, longest(project, [i for i, _ in shown]) / LONGEST)
+        need = max(need, longest(project.study.velocities.plan, [i for i, _ in shown]) / LONGEST)
     scale = pick(project, canvas, "velocities", "μ_V", tr("(m/s)/mm"), need)
     per_row = -(-len(shown) // rows)
     return VelocityLayout(shown, spans, -(-len(shown) // per_row), per_row, inside, scale, beyond, every)
@@ -226,12 +226,24 @@ def velocity_spans(project: Project, options: dict[str, Any]) -> tuple[list[Box]
     """Extents of the velocity plans to be drawn and their longest vector, in their unit; ``only`` = "force": the analysed one."""
     beyond = [] if options.get("only") == "force" else [i for i, _ in beyond_drawing(project)]
     shown = [project.force_index] if options.get("only") == "force" else [i for i, _ in project.cycle.drawn if i not in beyond]
-    return [plan_extent(project.study.velocities.plan, i) for i in shown], longest(project, shown)
-
-
-def longest(project: Project, shown: Sequence[int]) -> float:
-    """Longest vector of the velocity plans at some positions, in their unit."""
     plan = project.study.velocities.plan
+    return [plan_extent(plan, i) for i in shown], longest(plan, shown)
+
+
+COLUMN = 12.5
+"""Width of a column, mm, below which the tables lie down: a row for each quantity, a column for each position."""
+
+
+def columns(project: Project) -> int:
+    """About how many columns the tables of segments and of speeds have together: both have one for whatever changes."""
+    vel = project.study.velocities
+    lengths = [np.abs(np.asarray(seg.head.value) - np.asarray(seg.tail.value)) for seg in vel.plan.segments]
+    varying = sum(not np.allclose(length, np.ravel(length)[0]) for length in lengths)
+    return 2 * (varying + sum(bool(np.ndim(vel.omega[link].value)) for link in vel.reference))
+
+
+def longest(plan: Plan, shown: Sequence[int]) -> float:
+    """Longest vector of a plan at some positions, in its unit."""
     return max(abs(complex(seg.head.at(i)) - complex(seg.tail.at(i))) for seg in plan.segments for i in shown)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterator
 from itertools import pairwise
-from math import degrees, pi
+from math import degrees, inf, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,6 +23,7 @@ from tmm_sheets.drawing.tables import needs, size_in, widened
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import decimals_for, fixed, is_zero, number
 from tmm_sheets.sheets.components import flat_crossings, graphs
+from tmm_sheets.sheets.floors import LETTERED, VECTOR
 from tmm_sheets.sheets.frame import SHORTEST, PlanFrame, joined, pick, together
 from tmm_sheets.sheets.linkage import indicator, kinematic_frames, link_marks
 from tmm_sheets.sheets.player import PlayerStage, play, stage
@@ -565,9 +566,16 @@ def _draw_plan(s: PlayerStage, pole: str, symbols_at: bool = False) -> list[str]
     points = kinematic_frames.plan_points(s.plan, s.k)
     play(s, over=4.0)
     tiny = _vectors(s, max(abs(z) for z in points.values()), symbols_at)
-    centre = s.frame(np.mean(list(points.values())))
-    for names in joined({name: s.frame(z) for name, z in points.items()}, tiny):
+    z = np.array(list(points.values()))
+    centre, small = s.frame(np.mean(z)), max(np.ptp(z.real), np.ptp(z.imag)) / s.frame.mu[1] < LETTERED.least
+    lettered: list[complex] = []
+    places = joined({name: s.frame(z) for name, z in points.items()}, tiny)
+    for names in sorted(places, key=lambda names: small and pole not in names):
         q = s.at(names[0])
+        if small and any(abs(q - other) < CLEAR_LETTER for other in lettered):
+            s.dot(names[0])  # of a plan below its floor the letters that stand clear are enough: the larger ones have them all
+            continue
+        lettered.append(q)
         shown = [link_marks.indexed(s.plan[n].symbol or n) for n in names if n != pole]
         s.dot(names[0])
         # A long row of letters leaves the pole's own to itself.
@@ -575,6 +583,10 @@ def _draw_plan(s: PlayerStage, pole: str, symbols_at: bool = False) -> list[str]
         for row in rows:
             s.letters(names[0], ", ".join(row), q - centre if abs(q - centre) > 1 else 0j)
     return list(dict.fromkeys(tiny.values()))
+
+
+CLEAR_LETTER = 9.0
+"""Distance of two points from which on their letters stand clear of each other, mm."""
 
 
 def _vectors(s: PlayerStage, size: float, symbols_at: bool) -> dict[tuple[str, str], str]:
@@ -669,12 +681,17 @@ def enlarged_velocities_sizes(project: Project, canvas: Canvas, options: dict[st
     """
     plan, k = project.study.velocities.plan, project.force_index
     real = kinematic_frames.plan_extent(plan, k)
-    drawn = max(real.width, real.height) / canvas.scales["velocities"].mu if "velocities" in canvas.scales else 0.0
-    if not SHORTEST < drawn < SMALL or f"velocity plan {project.cycle.labels[k]}" not in {mark.of for mark in canvas.marks}:
+    mu = canvas.scales["velocities"].mu if "velocities" in canvas.scales else inf
+    drawn = max(real.width, real.height) / mu
+    shown = [i for i, label in project.cycle.drawn if any(mark.of == f"velocity plan {label}" for mark in canvas.marks)]
+    if k not in shown or drawn < SHORTEST:
+        return []
+    if drawn >= SMALL and kinematic_frames.longest(plan, shown) / mu >= VECTOR.least:
         return []
     around = kinematic_frames.MARGIN, kinematic_frames.HEAD + TITLED
     longest, sizes = max(real.width, real.height), list[tuple[float, float]]()
-    for times_as_large in reversed([t for t in ENLARGED if 2 * SMALL <= t * drawn <= kinematic_frames.LONGEST] or ENLARGED[:1]):
+    own = VECTOR.least / (kinematic_frames.longest(plan, [k]) / mu)
+    for times_as_large in reversed([t for t in ENLARGED if own <= t <= kinematic_frames.LONGEST / drawn] or ENLARGED[:1]):
         size = times_as_large * drawn
         sizes.append((max(size * real.width / longest + around[0], 90.0), size * real.height / longest + around[1]))
     return sizes
@@ -704,8 +721,6 @@ def enlarged_velocities(project: Project, canvas: Canvas, box: Box, options: dic
 
 COLUMNS = 7
 """So many columns the table of lengths has in about half of the place; with more it shares the width with that of speeds."""
-COLUMN = 12.5
-"""Width of a column, mm, below which the tables lie down: a row for each quantity, a column for each position."""
 LOWEST = 3.9
 """Height of a row, mm, below which letters of 2.5 mm touch its lines."""
 
@@ -727,7 +742,7 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
     stacked = bool(options.get("stacked"))
     lengths = _measured_lengths(project, canvas, varying, [link.removeprefix("ω_") for link, _ in turning])
     width = box.width - 30.0
-    lying = COLUMN * (max(len(lengths), len(speeds)) if stacked else len(lengths) + len(speeds)) > width
+    lying = kinematic_frames.COLUMN * (max(len(lengths), len(speeds)) if stacked else len(lengths) + len(speeds)) > width
     # Tables that lie down have the same columns.
     left, right = _table_places(box, len(speeds) if lying and lengths else len(lengths), len(speeds), stacked=stacked)
     if lengths:

@@ -12,6 +12,7 @@ from tmm_sheets.construction.scale import HANDY
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.sheets.arrangement import ViewPlace
 from tmm_sheets.sheets.border_solver import BorderNode, Need, joined, rounded_up
+from tmm_sheets.sheets.floors import CRANK, SHARE, VECTOR
 from tmm_sheets.sheets.frame import extent
 from tmm_sheets.sheets.linkage import false_positions as triads_by_hand
 from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
@@ -40,6 +41,14 @@ ON_LEVER = 5.0
 """The same of Zhukovsky's lever, mm: its forces stand all round."""
 
 
+LARGEST = 400.0, 540.0
+"""Sides of a place, mm, beyond which no view of a linkage gets any: what is below its floor even there is so on every sheet."""
+
+
+EDGES = 0.1
+"""Part of a place that its edges take, kept clear beside what is drawn: they are counted with it, but are no ink."""
+
+
 OF_VALUE = 24.0
 """Room of one force with its value in the line under a force plan, mm, about."""
 
@@ -48,32 +57,38 @@ def positions(project: Project, view: ViewPlace) -> BorderNode:
     """The position plans with all that is drawn about them."""
     around = kinematic_frames.positions_around(project, view.options)
     z, d = kinematic_frames.positions_reach(project)
-    return leaf(view.box, reaching(view.box, z, d, around, (max(110.0, 0.75 * view.box.width), 90.0)), MAIN)
+    need = reaching(view.box, z, d, around, (110.0, 90.0))
+    need = need.ending(2 * project.mechanism.crank.length / CRANK.least, LARGEST)
+    return leaf(view.box, replace(need, filled=SHARE + EDGES), MAIN)
 
 
 def velocities(project: Project, view: ViewPlace) -> BorderNode:
     """All velocity plans, of equal scale."""
     spans, longest = kinematic_frames.velocity_spans(project, view.options)
-    finest = longest / kinematic_frames.LONGEST
+    finest, coarsest = longest / kinematic_frames.LONGEST, longest / VECTOR.least
     around = kinematic_frames.MARGIN, kinematic_frames.HEAD
     title = 22.0
     if len(spans) == 1:
         need = Need((spans[0].width, spans[0].height), (around[0], around[1] + title), (80.0, 80.0), finest=finest)
-        return leaf(view.box, need)
+        return leaf(view.box, need.ending(coarsest, LARGEST))
 
     @cache
     def in_place(width: int, height: int) -> float:
-        mu = kinematic_frames.most_room(spans, Box(0.0, 0.0, width, height - title))[0]
+        return kinematic_frames.most_room(spans, Box(0.0, 0.0, width, height - title))[0]
+
+    def scale(width: float, height: float) -> float:
+        return in_place(round(width), round(height))
+
+    def drawn(width: float, height: float) -> float:
+        mu = scale(width, height)
         if not 0 < mu < inf:
             return 1.0
         mu = rounded_up(max(mu, finest))
         return sum((s.width / mu + around[0]) * (s.height / mu + around[1]) for s in spans) + title * width
 
-    def drawn(width: float, height: float) -> float:
-        return in_place(round(width), round(height))
-
     # All velocities are measured on them, and all that follows from these.
-    return leaf(view.box, Need(least=(0.7 * view.box.width, 0.7 * view.box.height), drawn=drawn), 3)
+    need = Need(least=(120.0, 60.0), drawn=drawn, scale=scale)
+    return leaf(view.box, need.ending(coarsest, LARGEST), 3)
 
 
 def accelerations(project: Project, view: ViewPlace) -> BorderNode:
@@ -84,7 +99,9 @@ def accelerations(project: Project, view: ViewPlace) -> BorderNode:
     title = letter(kinematic_frames.title_of_accelerations(project, project.force_index), 5.0).width
     need = Need((real.width, real.height), around, (max(88.0, title + 1.0), 80.0))
     points = sum(step.rule.gives == "point" for step in project.study.accelerations.plan.steps.values())
-    return leaf(view.box, _readable(need, max(real.width, real.height), points, OF_POINT), 0.8)
+    need = _readable(need, max(real.width, real.height), points, OF_POINT)
+    longest = kinematic_frames.longest(project.study.accelerations.plan, [project.force_index])
+    return leaf(view.box, need.ending(longest / VECTOR.least, LARGEST) if longest > 0 else need, 0.8)
 
 
 def false_positions(project: Project, view: ViewPlace) -> BorderNode | None:
@@ -192,7 +209,8 @@ def velocity_tables(project: Project, view: ViewPlace) -> BorderNode:
     """A row for each drawn position."""
     over = 2 if view.options.get("stacked") else 1
     count = over * (len(project.cycle.drawn) + 2)
-    return rows(project, view, count, 10.0 * over, (4.6, 7.5), (0.8 * view.box.width, inf))
+    wide = 30.0 + kinematic_frames.COLUMN * kinematic_frames.columns(project) / over
+    return rows(project, view, count, 10.0 * over, (4.6, 7.5), (max(min(wide, 320.0), 0.8 * view.box.width), inf))
 
 
 def results(project: Project, view: ViewPlace) -> BorderNode:
