@@ -32,7 +32,7 @@ def test_the_small_plan_of_the_visor_is_enlarged(visor):
     assert 2 * kinematics.SMALL <= size / larger <= kinematic_frames.LONGEST
 
 
-@pytest.mark.parametrize(("mu", "drawn", "places"), [(0.015, True, True), (0.005, True, False), (0.015, False, False)],
+@pytest.mark.parametrize(("mu", "drawn", "places"), [(0.015, True, True), (0.002, True, False), (0.015, False, False)],
                          ids=["small", "large", "not drawn"])
 def test_only_a_small_plan_that_is_drawn_asks_for_a_place(visor, mu, drawn, places):
     label = visor.cycle.labels[visor.force_index]

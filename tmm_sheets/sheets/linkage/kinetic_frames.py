@@ -155,7 +155,8 @@ def acting(shown: Iterable[Shown], force_size: float) -> list[Shown]:
 
 def scheme_points(project: Project, g: StructuralGroup, drawn: Iterable[link_marks.Shape]) -> tuple[list[str], list[str]]:
     """Hinges and blocks of a group's links, and their centres of mass that are none of these."""
-    hinges = list(dict.fromkeys(n for shape in drawn for n in (*shape.bar, shape.block or "") if n))
+    own = link_marks.centres(project.mechanism)
+    hinges = list(dict.fromkeys(n for shape in drawn for n in (*shape.bar, shape.block or "") if n and n not in own))
     centres = (project.mechanism.links[link].centre for link in g.links)
     return hinges, [str(c) for c in centres if c and c not in hinges]
 
@@ -192,7 +193,9 @@ def scheme(project: Project, g: StructuralGroup, k: int, share: float = 1.0) -> 
     hinges, centres = scheme_points(project, g, [shape for shape in link_marks.shapes(pos) if shape.link in g.links])
     points = [complex(pos.points[name].at(k)) for name in (*hinges, *dict.fromkeys(centres))]
     about = complex(pos.place(g.kind.about(g)).at(k))
-    return loaded([*points, *(force.at for force in shown)], shown, about, armed=with_arms(project, g, shown), share=share)
+    free = [(complex(end[k]), 0j) for link, ends in link_marks.free_ends(pos).items() if link in g.links for end in ends
+            if end is not None]
+    return loaded([*points, *(force.at for force in shown)], shown, about, free, with_arms(project, g, shown), share)
 
 
 def places_of_groups(box: Box, count: int, columns: int, gap: float) -> list[Box]:

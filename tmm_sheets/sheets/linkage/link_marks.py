@@ -56,8 +56,8 @@ def shapes(pos: Positions) -> list[Shape]:
 
 def _shape(pos: Positions, o: Outline) -> Shape:
     if o.bar:
-        bar = _bar(pos.mechanism, o.link, o.bar, o.aim)
-        return replace(bar, arms=(*o.arms, *bar.arms))
+        shape = _bar(pos.mechanism, o.link, o.bar, o.aim)
+        return replace(shape, bar=(*shape.bar, *_far_centre(pos, shape)), arms=(*o.arms, *shape.arms))
     return Shape(o.link, block=o.block, along=o.along, slot=o.slot, carried=_carried(pos, o.link) if o.slotted else None)
 
 
@@ -74,6 +74,23 @@ def _bar(m: Mechanism, link: str, base: tuple[str, ...], aim: str | None = None)
             over += [point] * along
             arms += [(str(guide.through), point)] * (not along)
     return Shape(link, bar, over=tuple(over), arms=tuple(arms))
+
+
+def centres(m: Mechanism) -> set[str]:
+    """Centres of mass that nothing hangs on."""
+    used = {name for g in m.groups for name in g.outer} | {guide.through for guide in m.guides.values()}
+    return {link.centre for link in m.links.values() if link.centre} - used - {m.crank.pivot}
+
+
+def _far_centre(pos: Positions, shape: Shape) -> tuple[str, ...]:
+    """The centre of mass of a link that lies beyond all its other points: a link reaches to the farthest of them."""
+    m, base = pos.mechanism, np.asarray(pos.points[shape.bar[0]].value)
+    name = m.links[shape.link].centre
+    if name not in centres(m) or name in shape.bar:
+        return ()
+    others = [float(np.nanmax(np.abs(np.asarray(pos.points[p].value) - base))) for p in (*shape.bar, *shape.over)]
+    others += [float(np.nanmax(np.abs(np.asarray(pos.points[p].value) - base))) for arm in shape.arms for p in arm]
+    return (name,) if np.nanmin(np.abs(np.asarray(pos.points[name].value) - base)) > max(others) else ()
 
 
 def drawn_points(pos: Positions) -> dict[str, Step]:
@@ -219,13 +236,13 @@ def _ends(fixed: list[float], sliding: list[Any], centre: float | None) -> tuple
 def draw(s: PlayerStage, pos: Positions, style: str, only: Collection[str] | None = None) -> None:
     """Links of the mechanism at a position: with all symbols in style main, as bare lines otherwise.
 
-    The whole mechanism is drawn with slotted links in their full lengths, single links end at their slider blocks.
+    A link looks the same whatever is drawn: a slotted one has its full length also alone.
     """
-    ends = free_ends(pos) if only is None else {}
+    ends = free_ends(pos)
     drawn = [shape for shape in shapes(pos) if only is None or shape.link in only]
     # A dict, not a set: the order of the marks must be the same in every run.
     at = {name: s.at(pos.points[name]) for shape in drawn for name in (*shape.bar, shape.block or "") if name}
-    free = [name for shape in drawn for name in traced(pos.mechanism, shape.link)]
+    free = [*centres(pos.mechanism), *(name for shape in drawn for name in traced(pos.mechanism, shape.link))]
     gaps = [name for name in at if name not in free] if style == "main" else [name for name in at if name in pos.mechanism.fixed]
     for shape in drawn:
         if shape.bar:
@@ -293,7 +310,7 @@ def _draw_pairs(s: PlayerStage, pos: Positions, at: Mapping[str, complex], *, wh
     """
     m = pos.mechanism
     free = [name for link in m.links for name in traced(m, link)]
-    for name, z in at.items():
+    for name, z in ((name, z) for name, z in at.items() if name not in centres(m)):
         pen = s.pen(pos.points[name], "symbol")
         if name in m.fixed:
             if whole or name == m.crank.pivot or any(name in g.outer for g in m.groups):

@@ -57,7 +57,7 @@ def positions(project: Project, view: ViewPlace) -> BorderNode:
     """The position plans with all that is drawn about them."""
     around = kinematic_frames.positions_around(project, view.options)
     z, d = kinematic_frames.positions_reach(project)
-    need = reaching(view.box, z, d, around, (110.0, 90.0))
+    need = reaching(view.box, z, d, around, (max(110.0, 0.75 * view.box.width), 90.0))
     need = need.ending(2 * project.mechanism.crank.length / CRANK.least, LARGEST)
     return leaf(view.box, replace(need, filled=SHARE + EDGES), MAIN)
 
