@@ -156,7 +156,7 @@ def acting(shown: Iterable[Shown], force_size: float) -> list[Shown]:
 def scheme_points(project: Project, g: StructuralGroup, drawn: Iterable[link_marks.Shape]) -> tuple[list[str], list[str]]:
     """Hinges and blocks of a group's links, and their centres of mass that are none of these."""
     own = link_marks.centres(project.mechanism)
-    hinges = list(dict.fromkeys(n for shape in drawn for n in (*shape.bar, shape.block or "") if n and n not in own))
+    hinges = list(dict.fromkeys(n for shape in drawn for n in (*(n for n in shape.bar if n not in own), shape.block or "") if n))
     centres = (project.mechanism.links[link].centre for link in g.links)
     return hinges, [str(c) for c in centres if c and c not in hinges]
 

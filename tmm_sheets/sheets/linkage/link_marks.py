@@ -79,7 +79,7 @@ def _bar(m: Mechanism, link: str, base: tuple[str, ...], aim: str | None = None)
 def centres(m: Mechanism) -> set[str]:
     """Centres of mass that nothing hangs on."""
     used = {name for g in m.groups for name in g.outer} | {guide.through for guide in m.guides.values()}
-    return {link.centre for link in m.links.values() if link.centre} - used - {m.crank.pivot}
+    return {p.name for p in m.points} & {link.centre for link in m.links.values()} - used
 
 
 def _far_centre(pos: Positions, shape: Shape) -> tuple[str, ...]:
