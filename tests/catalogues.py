@@ -21,6 +21,7 @@ from babel.messages.extract import extract_from_file
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
 
+from tmm_sheets.task import keys
 from tmm_sheets.words import DOMAIN, LANGUAGES, name_of
 
 ROOT = Path(__file__).parents[1]
@@ -46,6 +47,12 @@ def of_program() -> Iterator[tuple[str, str | tuple[str, ...], str | None]]:
             yield path.relative_to(ROOT).as_posix(), text, context
 
 
+def of_keys() -> Iterator[tuple[str, str, None]]:
+    """What the keys of a project file mean, and what its own types take."""
+    for text in keys.texts():
+        yield "tmm_sheets/task/schema.py", text, None
+
+
 def of_commands() -> Iterator[tuple[str, str, None]]:
     """Help of the commands and their options."""
     from tmm_sheets.cli import commands
@@ -63,10 +70,10 @@ def of_projects() -> Iterator[tuple[str, str, None]]:
         tree = tomllib.loads(re.sub(r'"[^"\n]*"|\$\w+', lambda found: "0" if found[0][0] == "$" else found[0], text))
         if isinstance(title := tree.get("title"), str):  # of a family's table
             yield path.relative_to(ROOT).as_posix(), title, None
-        for table, keys in READ.items():
+        for table, read in READ.items():
             found = tree.get(table, {})
             for row in found if isinstance(found, list) else [found]:
-                for said in (row.get(key) for key in keys):
+                for said in (row.get(key) for key in read):
                     if isinstance(said, str) and said and "$" not in said:
                         yield path.relative_to(ROOT).as_posix(), said, None
 
@@ -101,7 +108,7 @@ def of_languages() -> Iterator[tuple[str, str, None]]:
 def collected() -> Catalog:
     """Every text there is, without translations."""
     found = Catalog(domain=DOMAIN, project="tmm-sheets", version="", charset="utf-8", creation_date=NEVER, revision_date=NEVER)
-    every = (*of_program(), *of_commands(), *of_title_blocks(), *of_projects(), *of_templates(), *of_languages())
+    every = (*of_program(), *of_commands(), *of_keys(), *of_title_blocks(), *of_projects(), *of_templates(), *of_languages())
     for file, text, context in every:
         found.add(text, locations=[(file, None)], context=context)
     return found

@@ -34,17 +34,31 @@ class Key(NamedTuple):
 
 def tables() -> dict[str, list[dict[str, Any]]]:
     """Keys of every table by the table's name, "flywheel.motor" for one in another, "" for what stands in none."""
-    found: dict[str, list[dict[str, Any]]] = {}
+    return {name: [key._asdict() for key in keys_of(model)] for name, model in models()}
 
-    def look(name: str, model: type[schema.Table]) -> None:
-        found[name] = [key._asdict() for key in keys_of(model)]
-        for key, field in model.model_fields.items():
-            inner = messages.table_of(field.annotation)
-            if inner is not None:
-                look(f"{name}.{key}".lstrip("."), inner)
 
-    look("", variant.Variant)
-    return found
+def models(name: str = "", model: type[schema.Table] = variant.Variant) -> Iterator[tuple[str, type[schema.Table]]]:
+    """A table by its name, and those in it."""
+    yield name, model
+    for key, field in model.model_fields.items():
+        if (inner := messages.table_of(field.annotation)) is not None:
+            yield from models(f"{name}.{key}".lstrip("."), inner)
+
+
+def texts() -> Iterator[str]:
+    """What is told of keys and stands in strings and docstrings alone, for the catalogues."""
+    for _, model in models():
+        yield from meanings(model).values()
+        for hint in get_type_hints(model, include_extras=True).values():
+            yield from (heading(v.func) for v in validators(hint) if not made_with(v))
+
+
+def validators(hint: Any) -> Iterator[Any]:
+    """Validators of a type and of those that it is made of."""
+    args = get_args(hint)
+    yield from args[1:] if get_origin(hint) is Annotated else ()
+    for inner in args[:1] if get_origin(hint) is Annotated else args:
+        yield from validators(inner)
 
 
 def keys_of(model: type[schema.Table]) -> Iterator[Key]:
@@ -96,8 +110,9 @@ def value(hint: Any) -> str:
     if origin is tuple:
         return tell(marked("list of {values}") if args[-1] is ... else marked("two {values}")).format(values=plural(value(args[0])))
     plain = {bool: marked("`true` or `false`"), str: marked("text"), int: marked("whole number"), float: marked("number"),
-             NoneType: ""}
-    return tell(plain.get(hint, marked("table")))
+             Any: marked("value"), NoneType: ""}
+    table = marked("table")
+    return tell(plain.get(hint, table))
 
 
 def plural(text: str) -> str:
@@ -171,11 +186,9 @@ def units_of(hint: Any) -> tuple[str, ...]:
 
 
 def quantities(hint: Any) -> list[units.Quantity]:
-    """Quantities that a type reads: of a list those of its members."""
-    origin, args = get_origin(hint), get_args(hint)
-    if origin is Annotated:
-        return [given["quantity"] for v in args[1:] if "quantity" in (given := made_with(v))]
-    return [q for a in args for q in quantities(a)][:1] if origin is tuple else []
+    """The quantity that a type reads, of a list that of its members; one at most."""
+    found = [given["quantity"] for v in validators(hint) if "quantity" in (given := made_with(v))]
+    return found[:1]
 
 
 def spaced(name: str) -> str:
