@@ -75,7 +75,7 @@ def test_a_cipher_of_ones_own(client):
 
 
 def test_a_scheme_is_small(client):
-    _, told = asked(client, "scheme", project="loom")
+    _, told = asked(client, "scheme", project="lugansk/shaper")
     assert 0 < told["svg"].count("<path") < 120
 
 

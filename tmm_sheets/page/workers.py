@@ -26,10 +26,10 @@ from tmm_sheets.words import tell
 
 LARGEST_ANSWER = 400_000_000
 """Bytes of the largest message from a process."""
-NICE = {"long": 5, "behind": 15}
+NICE = {"long": 5, "behind": 10}
 """By how much work in a lane gives way to other work."""
-WAITING = 4.0
-"""How many times its seconds of processor a piece of work may take by the clock: others work too."""
+WAITING = 20.0
+"""How many times its seconds of processor a piece of work may take by the clock: others work too, and it gives way to them."""
 
 Message = dict[str, Any]
 Say = Callable[..., None]
