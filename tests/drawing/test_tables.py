@@ -3,7 +3,7 @@
 import pytest
 
 from tmm_sheets.drawing.lettering import letter, size_for
-from tmm_sheets.drawing.tables import GAP, LEAST, size_in, widened
+from tmm_sheets.drawing.tables import GAP, LEAST, needs, parted, size_in, widened
 
 WIDE, NARROW = "Balancing moment by the lever, N·m", "12"
 
@@ -61,3 +61,14 @@ def test_lettering_keeps_farther_off_the_lines_where_there_is_room(spare, gap):
     found = widened([total / 2, total / 2], [[WIDE, NARROW]], 3.5)
     assert sum(found) == pytest.approx(total)
     assert found[0] >= need + gap - 1e-9
+
+
+def test_a_table_is_parted_before_columns_are_left_out():
+    rows = [["Position", *map(str, range(20))], ["y, mm", *["1234,5"] * 20]]
+    width = sum(needs(rows, 2.5, LEAST)) / 2 + 10
+    assert parted(rows, 2 * width, 60.0) == [rows]
+    one, two = parted(rows, width, 60.0)
+    assert one[0] + two[0][1:] == rows[0]
+    assert two[1][0] == "y, mm"
+    (thin,) = parted(rows, width, 10.0)  # no room for two parts
+    assert thin[0] == ["Position", *map(str, range(0, 20, 3)), "19"]

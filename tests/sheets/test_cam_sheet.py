@@ -320,3 +320,18 @@ def test_nothing_is_drawn_over_what_follows_from_the_radius_of_curvature():
     said = [text_box(mark) for mark in canvas.marks if isinstance(mark, Text)]
     foot = max(z.imag.max() for z in said if z.imag.max() < min(mark.a.imag for mark in canvas.marks if isinstance(mark, Line)) + 9)
     assert min(flat(mark, 1.0).imag.min() for mark in canvas.marks if isinstance(mark, Line)) > foot
+
+
+@pytest.mark.parametrize("parts", few([4, 6, 8, 10, 12], 12))
+@pytest.mark.parametrize("data", [cam_data, rocker_data, flat_data])
+def test_no_text_of_the_table_leaves_its_cell(monkeypatch, data, parts):
+    made = []
+    monkeypatch.setattr(Canvas, "table", lambda self, corner, widths, rows, *rest: made.append((widths, rows)))
+    found = project(data, parts=parts)
+    drawn("cam.table", found)
+    for widths, rows in made:
+        assert sum(widths) <= places(found)["cam.table"].width + 1e-9
+        for cells in rows:
+            assert all(letter(cell, 2.5).width <= w - 1.0 + 1e-9 for cell, w in zip(cells, widths, strict=True))
+    labels = [cell for _, rows in made for cell in rows[0][1:]]
+    assert labels[-1] == found.cam.motion.law.labels[-1]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import product
+from math import ceil
 
 from tmm_sheets.drawing.lettering import SIZES, letter
 
@@ -21,6 +22,26 @@ def size_in(row: float) -> float:
 def needs(rows: Sequence[Sequence[str]], height: float, gap: float = GAP) -> list[float]:
     """Widths that the columns need, mm, with letters of a height."""
     return [max(letter(cell, height).width for cell in column) + gap for column in zip(*rows, strict=True)]
+
+
+def parted(rows: Sequence[Sequence[str]], width: float, height: float) -> list[list[list[str]]]:
+    """Parts of a table for a place of this size, mm, one under another; each begins with the column of names.
+
+    There are as few as give every text room in letters of 2.5 mm. Where these have no room under one another there is one part,
+    with every second column, or every third; the last one is always there.
+    """
+    columns, lowest = len(rows[0]) - 1, INDICES * 2.5 * len(rows)
+    for n in range(1, max(int(height / lowest + 1e-9), 1) + 1):
+        each = ceil(columns / n)
+        parts = [[[row[0], *row[1 + k : 1 + k + each]] for row in rows] for k in range(0, columns, each)]
+        if all(sum(needs(part, 2.5, LEAST)) <= width for part in parts):
+            return parts
+    for n in range(2, columns):
+        kept = [0, *range(1, columns, n), columns]
+        part = [[row[k] for k in kept] for row in rows]
+        if sum(needs(part, 2.5, LEAST)) <= width:
+            return [part]
+    return [[list(row) for row in rows]]
 
 
 def widened(widths: Sequence[float], rows: Sequence[Sequence[str]], height: float) -> list[float]:

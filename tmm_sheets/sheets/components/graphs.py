@@ -13,7 +13,7 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, PlacedFrame
-from tmm_sheets.drawing.tables import INDICES, LEAST, needs, size_in, widened
+from tmm_sheets.drawing.tables import parted, size_in, widened
 from tmm_sheets.drawing.title_block import TURNED
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
@@ -154,12 +154,10 @@ def row(name: str, values: Any) -> list[str]:
 def table(canvas: Canvas, box: Box, title: str, rows: list[list[str]]) -> None:
     """Table with the quantities in the first column, under its title, as large as its place lets it be.
 
-    Where the numbers of all positions have no room in one row, there are two, one under the other, each with its numbers.
+    Where the numbers of all positions have no room in one row, there are more, one under the other, each with its numbers.
     """
     left = canvas.title(box.inset(0, 0, 0, 2), title)
-    half = len(rows[0]) // 2 + 1
-    in_two = sum(needs(rows, 2.5, LEAST)) > box.width and left.height / (2 * len(rows)) >= INDICES * 2.5
-    parts = [[line[:half] for line in rows], [[line[0], *line[half:]] for line in rows]] if in_two else [rows]
+    parts = parted(rows, box.width, left.height)
     first = max(letter(row[0], 3.5).width for row in rows) + 3.0
     high = min(left.height / sum(map(len, parts)), 11.0)
     top = left.y1
