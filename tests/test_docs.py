@@ -172,6 +172,7 @@ NOT_RUN = {
     "--group": "needs works; tests/compare/test_group.py has some", "--list": "needs a list of one's own",
     "new my": "asks, and my.toml is there; tests/task/test_new_file.py answers", "watch": "goes on until Ctrl-C",
     "serve": "goes on until Ctrl-C; tests/page asks it",
+    "department": "needs the family; tests/task/families/test_folder.py has it",
     "optimise": "tests/optimising tries each against a grid",
     "roster": "needs a table; tests/output/test_roster.py has one",
     "--measured": "needs a table filled in; tests/test_quoted.py fills one in", "--dxf": "needs a drawing; tests/compare has some",

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,16 +32,25 @@ class Entry:
 
 def shipped() -> tuple[str, ...]:
     """Names of the shipped projects: the families' variants, and paths below variants/ without suffix."""
+    return (*_files(), *families.names())
+
+
+def _files() -> list[str]:
     folder = resources.variants()
     paths = (p.relative_to(folder) for p in folder.rglob(f"*{SUFFIX}"))
-    files = sorted(p.with_suffix("").as_posix() for p in paths if p.parts[0] not in families.known())
-    return (*files, *families.names())
+    return sorted(p.with_suffix("").as_posix() for p in paths if p.parts[0] not in families.known())
 
 
 def entries() -> tuple[Entry, ...]:
     """Every shipped project with its title, variant and sheets; only the heading of each file is looked at."""
-    return tuple(Entry(name, table["title"], table.get("variant", ""), tuple(table["sheets"]))
-                 for name, table in ((name, _heading(name)) for name in shipped()))
+    return tuple(_entries())
+
+
+def _entries() -> Iterator[Entry]:
+    for name in shipped():
+        with suppress(BadInput):  # of a family that somebody has not finished
+            table = _heading(name)
+            yield Entry(name, table["title"], table.get("variant", ""), tuple(table.get("sheets", ())))
 
 
 def found(word: str) -> tuple[Entry, ...]:
@@ -64,14 +75,14 @@ def read(project: str, corrected: bool = False) -> Variant:
     if family is not None and not project.endswith(SUFFIX):
         found = family.read(project, corrected)
         return found.shipped_as(found.project.name)
-    if project in shipped():
+    if project in _files():
         return variant.read(_path(project)).shipped_as(project)
     return variant.read(located(project))
 
 
 def is_shipped(project: str) -> bool:
     """Whether a project is meant by a shipped name, not by a path."""
-    return (families.of(project) is not None and not project.endswith(SUFFIX)) or project in shipped()
+    return (families.of(project) is not None and not project.endswith(SUFFIX)) or project in _files()
 
 
 def located(project: str) -> Path:

@@ -6,14 +6,14 @@ from tests.project_files import EVEN, SLIDER, write
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput
-from tmm_sheets.task import title_entries
+from tmm_sheets.task import title_entries, user_folder
 from tmm_sheets.task.title_entries import Entry, Names, given
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv(title_entries.FOLDER, str(tmp_path / "of user"))
+    monkeypatch.setenv(user_folder.FOLDER, str(tmp_path / "of user"))
     (tmp_path / "of user").mkdir()
     return tmp_path
 

@@ -8,7 +8,6 @@ stands for nobody and goes last, and so it is where a file was copied from them.
 
 from __future__ import annotations
 
-import os
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -18,7 +17,7 @@ from typing import TYPE_CHECKING
 from pydantic import ValidationError
 
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.task import toml_file
+from tmm_sheets.task import toml_file, user_folder
 from tmm_sheets.task.messages import said
 from tmm_sheets.task.schema import Table, TitleBlockTable
 from tmm_sheets.task.toml_lines import scan
@@ -31,8 +30,6 @@ FIELDS = ("student", "group", "supervisor", "checker", "institution", "designati
 """Keys of ``[title_block]`` that settings may have."""
 FILE = "tmm-sheets.toml"
 """Name of a settings file."""
-FOLDER = "TMM_SHEETS_CONFIG"
-"""Environment variable that names the user's folder of configuration; empty for none."""
 LARGEST = 1_000_000
 """Bytes of the largest settings file that is read."""
 NOBODY, BLANK = "Кафедра ТММ", "___"
@@ -104,13 +101,8 @@ def beside_of(variant: Variant) -> Path:
 
 def user_file() -> Path | None:
     """Where the settings of the user are, if there are any; None where the user has no folder for them."""
-    told = os.environ.get(FOLDER)
-    if told is not None:
-        return Path(told) / FILE if told else None
-    from platformdirs import user_config_dir
-
-    folder = Path(user_config_dir("tmm-sheets", appauthor=False))
-    return folder / FILE if folder.is_absolute() else None  # nobody's home
+    folder = user_folder.folder()
+    return folder / FILE if folder is not None else None
 
 
 def given(options: Mapping[str, str]) -> Names:

@@ -14,12 +14,12 @@ from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
 from math import acos, cos, degrees, radians, sin
-from string import Template
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import resources, spelling
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.task import headings
+from tmm_sheets.task.filling import filled
 from tmm_sheets.task.misprint import Misprint
 from tmm_sheets.words import marked, tell, tell_n
 
@@ -225,15 +225,7 @@ def _scheme(name: str) -> str:
 
 
 def _filled(scheme: str, values: Mapping[str, Value]) -> str:
-    """A scheme with its numbers; behind each line what the numbers on it come from."""
-    lines = []
-    for line in _scheme(scheme).splitlines():
-        keys = Template(line).get_identifiers()
-        filled, _, comment = Template(line).substitute({key: values[key].text for key in keys}).partition("#")
-        filled = filled.rstrip()
-        sources = [part for part in (comment.strip(), *dict.fromkeys(values[key].source for key in keys)) if part]
-        lines.append(f"{filled}{'  ' if filled and sources else ''}{'# ' if sources else ''}{'; '.join(sources)}")
-    return "\n".join(lines) + "\n"
+    return filled(_scheme(scheme), values)
 
 
 def _derived(**numbers: tuple[float, str]) -> dict[str, Value]:

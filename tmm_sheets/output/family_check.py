@@ -1,0 +1,62 @@
+"""A family of tasks tried out: every cipher of every machine is read and assembled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.project import Project
+from tmm_sheets.task.family_folder import FolderFamily
+from tmm_sheets.words import tell
+
+
+@dataclass(frozen=True)
+class Tried:
+    """What came of a cipher: why it cannot be built, empty where it can, and what is doubtful in it."""
+
+    project: str
+    problem: str
+    warnings: tuple[str, ...] = ()
+
+
+def tried(folder: Path, quick: bool = False, say: Callable[[str], None] = lambda what: None) -> Iterator[Tried]:
+    """Try a family; with ``quick`` the project files are read only.
+
+    Raises
+    ------
+    BadInput
+        when the family itself cannot be read.
+    """
+    family = FolderFamily(folder)
+    for machine in family.rules.machine:
+        for cipher in family.ciphers():
+            name = f"{family.name}/{machine}@{cipher}"
+            say(name)
+            try:
+                variant = family.read(name)
+                if not quick:
+                    Project(variant).check()
+            except (BadInput, CannotBuild) as e:
+                yield Tried(name, str(e))
+            else:
+                yield Tried(name, "", variant.warnings)
+
+
+def table(found: list[Tried]) -> str:
+    """A line for each machine, then one for each reason with the first cipher that has it."""
+    lines = []
+    for machine in dict.fromkeys(t.project.partition("@")[0] for t in found):
+        own = [t for t in found if t.project.partition("@")[0] == machine]
+        good = sum(not t.problem for t in own)
+        doubtful = sum(bool(t.warnings) for t in own)
+        lines.append(tell("{machine}: {n} ciphers, {good} can be built, {doubtful} with doubtful numbers").format(
+            machine=machine, n=len(own), good=good, doubtful=doubtful))
+        reasons: dict[str, list[Tried]] = {}
+        for t in own:
+            if t.problem:
+                reasons.setdefault(t.problem.partition("\n")[0].replace(t.project, machine), []).append(t)
+        lines += [tell("  {n} ciphers, such as {project}: {reason}").format(n=len(some), project=some[0].project, reason=reason)
+                  for reason, some in reasons.items()]
+    return "\n".join(lines)
