@@ -166,7 +166,7 @@ function changePanel() {
   };
   const button = (id, key, act) => node("button", { type: "button", class: "chip", id, onclick: act }, say(key));
   const fixed2 = wanted.filter((g) => Array.isArray(g.value));
-  const found = [node("p", { class: "bad", id: "lost", role: "alert", hidden: true }), node("p", { class: "hint" }, say("drag the crank pin or a slider")),
+  const found = [node("h2", {}, say("in motion")), node("p", { class: "bad", id: "lost", role: "alert", hidden: true }), node("p", { class: "hint" }, say("drag the crank pin or a slider")),
     node("div", { class: "chips" }, button("undo", "undo", undo), button("redo", "redo", redo), button("reset", "reset", reset), button("save", "save as project file", save)),
     node("p", { class: "hint", id: "stale", hidden: true }, say("by the flywheel")),
     ...group("lengths", ["m"]), ...group("angles", ["rad"]), ...group("speeds", ["rad/s", "m/s"]), ...group("loads"), ...group("masses", ["kg", "kg*m2"]),

@@ -7,6 +7,7 @@ function makeGrip() {
   grip.mark = card?.marks.find((mark) => mark.role === "link");
   if (!grip.mark) return;
   grip.element = svgNode("circle", { class: "grip", r: 6, tabindex: 0, role: "slider", "aria-label": say("crank pin: drag it round"), "aria-valuemin": 0, "aria-valuemax": 360 });
+  card.svg.setAttribute("role", "group"); // an image holds nothing that is taken hold of
   card.svg.querySelector(".over").append(grip.element);
   grip.element.addEventListener("pointerdown", (event) => { spin(false); grip.element.setPointerCapture(event.pointerId); event.preventDefault(); });
   grip.element.addEventListener("pointermove", (event) => {
