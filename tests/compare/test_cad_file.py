@@ -258,6 +258,11 @@ def test_russian_in_a_file_that_declares_another_code_page(path, encoding):
     assert [e.layer for e in space.entities] == ["0", "Рамка"]
 
 
+def test_the_sign_of_a_diameter_is_no_russian_letter():
+    assert cad_file.words("Ø142", "cp1252") == "Ø142"
+    assert cad_file.words("ÏÎÐØÅÍÜ", "cp1252") == "ПОРШЕНЬ"
+
+
 def test_letters_that_the_code_page_lacks(path):
     """AutoCAD writes them as codes; in a text of several lines, too."""
     doc = ezdxf.new("R2000")

@@ -199,7 +199,8 @@ def words(text: str, encoding: str) -> str:
         return data.decode("utf-8")
     except UnicodeDecodeError:
         pass
-    letters = [c for c in text if c.isalpha() or "\udc80" <= c <= "\udcff"]
+    # The sign of a diameter is a letter to Unicode, and Ш in the Russian code page.
+    letters = [c for c in text if (c.isalpha() and c not in "Øø") or "\udc80" <= c <= "\udcff"]
     if sum(c > "\x7f" for c in letters) > len(letters) / 2:
         return data.decode("cp1251", "replace")
     return text.encode("utf-8", "replace").decode("utf-8")
