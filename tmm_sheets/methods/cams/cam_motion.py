@@ -20,6 +20,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.readable import CURVE, MAIN, POLE
 from tmm_sheets.construction.scale import Scale, fit, handy
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.methods.cams.cam_displacement import KINDS, SOURCE, Displacement, ExactMotion, names, row
@@ -36,12 +37,12 @@ BESIDE = GAP + 3.0 + 14.0
 """Width that axes need beyond the phases, the pole distance and the circle, mm."""
 BARE = 8.0
 """Width that axes need beyond the phases and the pole distance where there is no circle, mm."""
-LEAST_POLE = 7.0
-"""Pole distance below which rays become too steep to draw well, mm."""
-SEEN = 40.0
-"""Height of S' and S that poles no nearer than this may cost, mm: short phases have higher graphs from nearer poles."""
-FAR = 10.5
-"""Pole distance that has room for two arrowheads within its dimension, mm."""
+NEAREST = 7.0
+"""Pole distance below which rays become too steep to draw at all, mm."""
+SHARES = (0.15, 0.2, 0.25, 0.3)
+"""Shares of the height that the greatest ordinate of S'' takes: the least with which poles and curves are as large as they have to
+be, for what the poles are far they take from the heights.
+"""
 FILLED = 0.6
 """Share of the height below which three diagrams to one scale factor would be too low: then each has its own."""
 
@@ -128,23 +129,25 @@ class MotionScales:
 def motion_scales(law: PositionFunction, width: float, height: float, equal: bool = False) -> MotionScales:
     """Handy scale factors with which the three diagrams, one under another, fill ``width`` x ``height`` mm.
 
-    The phases take at most 0.68 of the width; the auxiliary circle of the law, where it has one, and the pole share the
-    rest on their left. S'' takes at most 0.3 of the height; of the pairs of scale factors of S' and S the one that uses most
-    of the rest is taken. With ``equal`` all three diagrams have one scale factor: both pole distances are 1/mu_phi (manual
-    000, 7 ex. 3), unless its auxiliary circle would leave much of the height bare.
+    The phases take at most 0.68 of the width, 0.75 where the law has no auxiliary circle; this and the pole share the rest on
+    their left. S'' takes at most 0.3 of the height, or up to 0.6 where poles are too near otherwise; of the pairs of scale factors
+    of S' and S the one that uses most of the rest is taken. With ``equal`` all three diagrams have one scale factor: both pole
+    distances are 1/mu_phi (manual 000, 7 ex. 3), unless its auxiliary circle would leave much of the height bare, or S is too low.
     """
     shares = np.linspace(0, 1, 65)
     spans = float(np.abs(law.rise.ds(shares)).max() + np.abs(law.fall.ds(shares)).max()), law.stroke
     if equal:
         found = _equal_scales(law, spans, width, height)
-        if (2 * max(law.rise.amplitude, law.fall.amplitude) + sum(spans)) / found.s.mu >= FILLED * height:
+        filled = (2 * max(law.rise.amplitude, law.fall.amplitude) + sum(spans)) / found.s.mu
+        if filled >= FILLED * height and law.stroke / found.s.mu >= CURVE:
             return found
-    return _own_scales(law, spans, width, height, FAR if equal else LEAST_POLE)
+    every = [_own_scales(law, spans, width, height, share) for share in SHARES]
+    return max(every, key=lambda of: of[1])[0]  # of several alike the first
 
 
 def _finest(law: PositionFunction, width: float) -> float:
     """Finest scale of the angle axis, degrees per mm: the phases leave room for what stands on their left."""
-    return handy(degrees(law.fall.end) / (0.68 * width))
+    return handy(degrees(law.fall.end) / ((0.68 if has_circle(law) else 0.75) * width))
 
 
 def _left_of_axis(law: PositionFunction) -> tuple[float, float]:
@@ -167,32 +170,38 @@ def _equal_scales(law: PositionFunction, spans: tuple[float, float], width: floa
     return MotionScales(phi, *(Scale(f"μ_{law.symbol}{primes}", mu, tr("m/mm")) for primes in ("''", "'", "")))
 
 
-def _own_scales(law: PositionFunction, spans: tuple[float, float], width: float, height: float, pole: float) -> MotionScales:
-    """A scale factor for each diagram; ``spans``: what S' and S need, in their units, ``pole``: pole distance asked for, mm."""
+def _own_scales(law: PositionFunction, spans: tuple[float, float], width: float, height: float,
+                share: float) -> tuple[MotionScales, int]:
+    """A scale factor for each diagram, and how well poles and curves can be read: 2 as they should be, 1 just so, 0 not.
+
+    ``spans`` are what S' and S need, in their units; the greatest ordinate of S'' takes at most a ``share`` of the height.
+    """
     finest = _finest(law, width)
     amplitude = max(law.rise.amplitude, law.fall.amplitude)
     beside, circle = _left_of_axis(law)
     unit, of = (tr("m/mm"), tr("m/mm")) if law.symbol == "S" else (tr("rad/mm"), tr("1/mm"))
     phi = Scale("μ_φ", radians(finest), tr("rad/mm"))
     left = width - phi.mm(law.fall.end) - beside
-    dds = fit(f"μ_{law.symbol}''", of, amplitude, min((left - LEAST_POLE - 5.0) / 2, 0.15 * height) if circle else 0.15 * height)
+    dds = fit(f"μ_{law.symbol}''", of, amplitude, min((left - POLE - 5.0) / 2, share * height) if circle else share * height)
     room = height - 2 * dds.mm(amplitude)
     found = [(a, b) for a in _coarser(spans[0] / (0.55 * height)) for b in _coarser(spans[1] / (0.42 * height))
              if spans[0] / a + spans[1] / b <= room]
     poles = [(a / (dds.mu * phi.mu), b / (a * phi.mu)) for a, b in found]
     # Rays from a very near pole are hard to draw, though short phases need near ones; the pole of S'' stands beside the circle.
-    nearest = min(LEAST_POLE, 0.12 * phi.mm(min(law.rise.angle, law.fall.angle)))
+    nearest = min(NEAREST, 0.12 * phi.mm(min(law.rise.angle, law.fall.angle)))
     fits = [p for p, (h1, h2) in zip(found, poles, strict=True) if h1 <= left - circle * dds.mm(amplitude) and h2 <= left - 6.0]
     good = [p for p, h in zip(found, poles, strict=True) if p in fits and min(h) >= nearest]
-    far = [p for p, h in zip(found, poles, strict=True)
-           if p in fits and min(h) >= pole and min(spans[0] / p[0], spans[1] / p[1]) >= SEEN]
+    far, near = ([p for p, h in zip(found, poles, strict=True)
+                  if p in fits and min(h) >= pole and spans[0] / p[0] >= CURVE and spans[1] / p[1] >= high]
+                 for pole, high in ((POLE, MAIN), (NEAREST, CURVE)))
 
     def filling(pair: tuple[float, float]) -> tuple[int, float]:
         high, low = spans[0] / pair[0], spans[1] / pair[1]
         return round(high + low), -abs(high - low)
 
-    ds, s = max(far or good or fits or found, key=filling)
-    return MotionScales(phi, dds, Scale(f"μ_{law.symbol}'", ds, of), Scale(f"μ_{law.symbol}", s, unit))
+    ds, s = max(far or near or good or fits or found, key=filling)
+    scales = MotionScales(phi, dds, Scale(f"μ_{law.symbol}'", ds, of), Scale(f"μ_{law.symbol}", s, unit))
+    return scales, 2 if far else int(bool(near))
 
 
 def has_circle(law: PositionFunction) -> bool:

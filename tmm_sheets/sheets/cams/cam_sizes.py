@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.construction.readable import CURVE
 from tmm_sheets.construction.scale import STANDARD, fitting
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.sheets.border_solver import Need
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from tmm_sheets.sheets.border_solver import BorderNode
 
 
-NUMBERED = 30.0
+NUMBERED = CURVE
 """Height of a curve on which all positions are numbered, mm."""
 
 
