@@ -54,4 +54,4 @@ def test_the_zone_of_a_tappet_is_as_high_as_its_numbers_need():
     """Seventeen numbers stood on a curve of 20 mm while the profile, at 1:1 in any case, left its place empty."""
     follower, boxes = places("transport/diesel@26-Т-804")
     box = boxes["cam_zone.of_tappet"]
-    assert cam_zone.stroke_in(follower, True, box.width, box.height) == pytest.approx(25.0)
+    assert cam_zone.stroke_in(follower, True, box.width, box.height) == pytest.approx(100 / 3)
