@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import tmm_sheets
+from tests.few import few
 from tests.test_docs import parsed
 from tmm_sheets.__main__ import run
 from tmm_sheets.optimising import optimum, picture, search, wishes
@@ -26,7 +27,7 @@ def p():
     return tmm_sheets.open("lugansk/shaper")
 
 
-@pytest.mark.parametrize(("command", "said"), EXAMPLES)
+@pytest.mark.parametrize(("command", "said"), few(EXAMPLES, EXAMPLES[0]))
 def test_examples_are_no_worse_than_a_grid(p, command, said, tmp_path):
     with parsed(shlex.split(command)[1:]) as context:
         asked = context.params

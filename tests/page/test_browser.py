@@ -4,6 +4,7 @@ import signal
 import subprocess
 import sys
 from contextlib import contextmanager
+from functools import partial
 
 import pytest
 
@@ -18,7 +19,8 @@ pytest.importorskip("starlette")
 def served(*words):
     """The address of a server that ends with Ctrl-C."""
     command = [sys.executable, "-m", "tmm_sheets", "serve", *words, "--no-browser", "--lang", "en"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as server:
+    hears = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # also where the tests are a shell's background job
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, preexec_fn=hears) as server:
         try:
             yield server.stdout.readline().strip()
         finally:
