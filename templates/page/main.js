@@ -19,6 +19,7 @@ function openTab(name) {
   for (const one of TABS) $(one).hidden = one !== name && !(one === "file" && ["sheets", "turn"].includes(name));
   document.body.dataset.tab = name;
   for (const one of $("tabs").children) one.setAttribute("aria-selected", String(one.dataset.tab === name));
+  $("tabs").querySelector("[aria-selected=true]")?.scrollIntoView({ inline: "nearest", block: "nearest" });
   if (name === "turn") showLiving();
   if (name === "choose") showChoice(opened); else leaveChoice();
 }
