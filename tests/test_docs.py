@@ -44,6 +44,24 @@ def test_papers_travel_in_the_sdist():
     assert {"README.md", "README.ru.md", "docs"} <= set(build["targets"]["sdist"]["include"])
 
 
+def test_the_wheel_has_what_is_read_and_no_more():
+    """Catalogues are read compiled, pictures by readers of the README; the package is typed."""
+    wheel = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["hatch"]["build"]["targets"]["wheel"]
+    assert wheel["exclude"] == ["*.po", "/templates/pictures"]
+    assert wheel["sources"] == {"templates": "tmm_sheets/_templates", "variants": "tmm_sheets/_variants"}
+    assert (ROOT / "tmm_sheets/py.typed").is_file()
+    for compiled in (p.with_suffix(".mo") for p in (ROOT / "templates/locale").rglob("*.po") if p.parts[-3] != "en"):
+        assert compiled.is_file(), compiled
+
+
+def test_the_docker_file_says_that_nobody_built_it():
+    text = (ROOT / "Dockerfile").read_text(encoding="utf-8")
+    assert "Built by nobody here" in text
+    extras = re.search(r'"/src\[(.*)\]"', text)[1].split(",")
+    known = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    assert {*extras} <= {*known}
+
+
 # --- links ----------------------------------------------------------------------------------------------------------
 
 
