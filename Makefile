@@ -59,6 +59,9 @@ figures: $(VENV)/.tested  ## the figures of docs/accuracy.md that take a minute 
 picture: sheets  ## the picture of sheet 1 in the READMEs (needs pdftoppm)
 	pdftoppm -r 40 -png -gray -singlefile $(OUT)/sheet1.pdf templates/pictures/sheet1
 
+film: $(VENV)/.tested  ## the film of the living sheet in the READMEs
+	$(BIN)/python -m tests.film
+
 clean:  ## remove what was made, keep the virtual environment
 	rm -rf out dist build .mypy_cache .ruff_cache .pytest_cache .hypothesis
 

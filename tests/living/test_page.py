@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tests.few import few, seldom
+from tests.film import film
 from tests.living import javascript
 from tmm_sheets import catalogue, results
 from tmm_sheets.errors import BadInput
@@ -41,6 +42,13 @@ def record_of(text):
 def program_of(text):
     """Both programs of a page, as they stand in it."""
     return re.search("const PROGRAM = .*?;\n(?=//)", text, re.S)[0]
+
+
+def test_the_film_of_the_readme_is_the_one_that_is_made():
+    made_now = film()
+    assert template("pictures/film.svg").read_text(encoding="utf-8") == made_now
+    assert made_now.count("<animate") > 4
+    assert len(made_now) < 1_000_000
 
 
 def test_one_file_without_network():
