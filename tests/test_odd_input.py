@@ -55,3 +55,17 @@ def test_odd_value_anywhere(odd):
 def test_anything_may_be_missing():
     for path in places(DATA):
         assert all(p.message for p in answer(changed(path, delitem)))
+
+
+def test_a_number_of_thousands_of_digits():
+    with pytest.raises(BadInput, match="^big.toml:2: the number has too many digits$"):
+        variant.parse("[project]\nschema = " + "9" * 5000, "big.toml")
+
+
+def test_of_thousands_of_mistakes_the_first_are_told():
+    with pytest.raises(BadInput) as e:
+        variant.parse("[[group]]\nkind = 1\n" * 1000, "many.toml")
+    told = [p.message for p in e.value.problems]
+    assert len(told) == variant.MOST + 1
+    assert told[-1].startswith("and ")
+    assert told[-1].endswith(" more mistakes")

@@ -29,6 +29,7 @@ def test_ciphers_and_files(tmp_path):
     (tmp_path / "own.toml").write_text("", encoding="utf-8")
     (one,) = read(tmp_path, "student;шифр\nЮ/Я;01-Т-27", "transport/diesel")
     assert (one.project, one.folder) == ("transport/diesel@01-Т-27", "Ю-Я")
+    assert read(tmp_path, "student;задание;вариант\nЮ/Я;diesel;01-Т-27") == [one]
     with pytest.raises(BadInput, match=r"group.csv:2: task: .*own.toml:1"):
         read(tmp_path, "student;task\nA;own.toml")
 

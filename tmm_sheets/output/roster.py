@@ -149,6 +149,8 @@ def _enrolled(row: Mapping[str, str], beside: Path, task: str) -> Enrolled:
 def _project(told: Mapping[str, str], beside: Path, common: str) -> str:
     """The project that a row means."""
     task, variant, cipher = told["task"] or common, told["variant"], told["cipher"]
+    if not cipher and task and re.fullmatch(r"(?=.*\d)\d*-.*", variant) and not catalogue.is_shipped(variant):
+        variant, cipher = "", variant  # 01-Т-27: what a machine is chosen by, whatever the column is called
     if cipher:
         machine, sign, rest = cipher.rpartition("@")
         machine = machine if sign else task.partition("@")[0]

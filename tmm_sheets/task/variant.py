@@ -7,6 +7,7 @@ turn) is judged where the geometry is.
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -49,6 +50,11 @@ from tmm_sheets.task.schema import (
 from tmm_sheets.task.toml_lines import KeyPath, TomlLines, scan
 from tmm_sheets.task.values import Coordinate, Name, PositiveNumber
 from tmm_sheets.words import either, marked, tell
+
+DIGITS = 4301
+"""Digits of the shortest whole number that Python does not read."""
+MOST = 50
+"""Mistakes of a file that are told one by one."""
 
 
 class Variant(Table):
@@ -249,11 +255,14 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
     BadInput
         naming file, line and key of everything that is wrong.
     """
-    readable, bare = quoted(text)
     try:
+        readable, bare = quoted(text)
         data = tomllib.loads(readable)
     except tomllib.TOMLDecodeError as e:
         raise BadInput([*(_of_bare(one, file) for one in bare.values()), toml_file.syntax(str(e), readable, file)]) from None
+    except ValueError:  # Python reads no whole number of more than 4300 digits
+        line = next(n for n, row in enumerate(text.split("\n"), 1) if re.search(rf"[0-9_]{{{DIGITS}}}", row))
+        raise BadInput(Problem(tell("the number has too many digits"), file, line)) from None
     except RecursionError:
         raise BadInput(Problem(tell("lists or tables are nested too deeply"), file)) from None
     lines = scan(readable)
@@ -273,7 +282,10 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
         others = [p for p in problems if p.line not in bare]
         problems = [*others, *(_of_bare(one, file, readable, lines) for one in bare.values())]
     if problems or variant is None:
-        raise BadInput(sorted(dict.fromkeys(problems), key=lambda p: (p.line or 0, p.field)))
+        told = sorted(dict.fromkeys(problems), key=lambda p: (p.line or 0, p.field))
+        more = len(told) - MOST
+        rest = [Problem(tell("and {n} more mistakes").format(n=more), file)] if more > 0 else []
+        raise BadInput([*told[:MOST], *rest])
     variant._file = variant._called = file
     variant._lines = lines
     variant._data = data
