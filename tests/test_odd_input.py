@@ -58,7 +58,7 @@ def test_anything_may_be_missing():
 
 
 def test_a_number_of_thousands_of_digits():
-    with pytest.raises(BadInput, match="^big.toml:2: the number has too many digits$"):
+    with pytest.raises(BadInput, match=r"^big\.toml:2: the number has too many digits$"):
         variant.parse("[project]\nschema = " + "9" * 5000, "big.toml")
 
 
