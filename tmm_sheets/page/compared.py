@@ -32,7 +32,7 @@ def compare(asked: Mapping[str, str], say: Say) -> Message:
         when such a file is not compared.
     """
     project = jobs.opened(asked)
-    path = next(Path().glob(f"{NAME}.*"))
+    path = next(Path().glob(f"{NAME}.*"), Path())
 
     def told(what: str) -> None:
         say(say=what)

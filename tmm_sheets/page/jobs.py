@@ -55,7 +55,7 @@ def sheet_number(asked: Mapping[str, str], project: Project) -> int:
     from tmm_sheets.output.building import chosen
 
     n = asked.get("sheet", "")
-    return chosen(project.variant, (int(n),) if n.isdecimal() and len(n) < 6 else ())[0]
+    return chosen(project.variant, (int(n) if n.isdecimal() and len(n) < 6 else -1,) if n else ())[0]
 
 
 def shipped(asked: Mapping[str, str]) -> Variant:
