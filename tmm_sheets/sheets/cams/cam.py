@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import wraps
 from itertools import pairwise
 from math import degrees, pi, radians
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_closure import Spring
     from tmm_sheets.methods.cams.cam_motion import FollowerMotion
     from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam
+    from tmm_sheets.project import Project
 
 HEADS = 66.0
 """Height the diagrams leave to headings, axes and dimensions, mm."""
@@ -43,7 +44,7 @@ def for_cams(view: View) -> View:
     """
 
     @wraps(view)
-    def drawn(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    def drawn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
         traits = project.cam.traits
         if traits.issuperset(options.get("when", ())) and traits.isdisjoint(options.get("unless", ())):
             view(project, canvas, box, options)
@@ -99,7 +100,7 @@ def in_degrees(symbol: str) -> str:
 
 
 @for_cams
-def motion(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """S'', S' and S one under another over a common axis of the cam angle, with both graphical integrations."""
     cam: Cam = project.cam
     law = cam.law
@@ -339,9 +340,9 @@ def ordinates_apart(cam: Cam, width: float) -> float:
 
 
 @for_cams
-def pressure(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def pressure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Pressure angle over rise and fall, measured at the finished profile, with the permitted value; after them it rests."""
-    cam: RollerCam = project.cam
+    cam = cast("RollerCam", project.cam)
     dense, inv, letter_of = cam.dense, cam.inversion, options.get("angle", ANGLE)
     found = dense.angles.value
     low, high = min(float(found.min()), -cam.alpha), max(float(found.max()), cam.alpha)
@@ -408,7 +409,7 @@ def _exceeded(d: OverAngle, canvas: Canvas, cam: RollerCam, letter_of: str) -> N
 
 
 @for_cams
-def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """S, S', S'' and the pressure angle in the numbered positions; without upper dwell 8 and 8' are one."""
     cam: Cam = project.cam
     second = _second_derivative(cam)
@@ -462,7 +463,7 @@ def _check_values(cam: Cam, second: Mapping[str, Any], letter_of: str) -> Iterat
 
 
 @for_cams
-def spring(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def spring(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Force of the closing spring against the force of inertia over the cam angle, with the least ratio of both."""
     cam: Cam = project.cam
     spring, law = cam.spring, cam.law

@@ -6,7 +6,7 @@ from cmath import phase, rect
 from functools import lru_cache
 from itertools import pairwise
 from math import degrees, pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
     from tmm_sheets.methods.cams.cam_inversion import Inversion
     from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam
+    from tmm_sheets.project import Project
 
 EDGE, FOOT = 3.0, 4.0
 """Room left free at both sides of the place and at its foot, mm."""
@@ -36,7 +37,7 @@ ROLLER = 8.0, 34.0, 8.0, 24.0
 
 
 @for_cams
-def profile(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def profile(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Centre profile by inversion with all follower lines and arcs, roller circles, working profile, follower."""
     cam: Cam = project.cam
     picture, first = _pictured(cam, box), len(canvas.marks)
@@ -280,13 +281,13 @@ def _given(cam: Any, letter_of: str = ANGLE) -> list[list[str]]:
     return rows
 
 
-def radii_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def radii_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the table of radii can do with, mm."""
     rows = len(_radii(project.cam))
     return [(width, 11.0 + row * rows) for width, row in ((112.0, 8.0), (96.0, 7.0), (84.0, 6.4), (76.0, 5.6), (70.0, 4.6))]
 
 
-def radii(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def radii(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Radii of the centre profile and of the profile at the numbered positions."""
     cam: Cam = project.cam
     rows = _radii(cam)
@@ -501,9 +502,9 @@ def _phase_angles(s: PlayerStage, picture: _ProfilePicture) -> None:
 
 
 @for_cams
-def roller(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def roller(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Smallest radius of curvature by three points of the centre profile; the radius of the roller by both rules."""
-    cam: RollerCam = project.cam
+    cam = cast("RollerCam", project.cam)
     plan = cam.inversion.plan
     d, centre = complex(plan["D_ρ"].value), complex(plan["M"].value)
     chords = [complex(plan[f"{n}_ρ"].value) for n in "EDG"]

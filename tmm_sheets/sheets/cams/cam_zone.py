@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import pi, tan
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from tmm_sheets.words import tr
 if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_profile import FlatCam, RockerCam, TappetCam
     from tmm_sheets.methods.cams.cam_zone import Zone
+    from tmm_sheets.project import Project
 
 
 NORMAL = 6.0
@@ -74,9 +75,9 @@ def stroke_in(cam: TappetCam, rays: bool, width: float, height: float) -> float:
 
 
 @for_cams
-def of_tappet(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def of_tappet(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """S(S') with the tangents under the permitted pressure angle, the allowed zone and the main dimensions."""
-    cam: TappetCam = project.cam
+    cam = cast("TappetCam", project.cam)
     z = cam.zone
     slope = tan(z.alpha)
     curve, axis, apex = z.curve.value, complex(z.apex.value), complex(z.plan["V"].value if "V" in z.plan else z.apex.value)
@@ -193,9 +194,9 @@ DEEP = 0.9
 
 
 @for_cams
-def of_rocker(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def of_rocker(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Positions of the rocker with the segments AB psi', rays under the permitted pressure angle, allowed zone, r0 and l0."""
-    cam: RockerCam = project.cam
+    cam = cast("RockerCam", project.cam)
     z = cam.zone
     pivot, apex = complex(z.plan["A"].value), complex(z.apex.value)
     curve = z.curve.value
@@ -316,9 +317,9 @@ def _rocker_lines(cam: RockerCam, scale: Scale | None = None) -> list[str]:
 
 
 @for_cams
-def sum_graph(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def sum_graph(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Graph of S + S'' over the cam angle with its lowest ordinate; radius r0 and sizes of the plate."""
-    cam: FlatCam = project.cam
+    cam = cast("FlatCam", project.cam)
     law, plate = cam.law, cam.plate
     steps = plate.course
     phi, s, total = (step.value for step in steps)
@@ -367,9 +368,9 @@ def sum_graph(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -
 
 
 @for_cams
-def plate(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def plate(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The flat follower with the sizes of its plate, to scale."""
-    cam: FlatCam = project.cam
+    cam = cast("FlatCam", project.cam)
     p = cam.plate
     room = box.inset(12, 26, 12, 34)
     scale = standard((p.l1 + p.l2, room.width), (0.3 * (p.l1 + p.l2), room.height - 24))

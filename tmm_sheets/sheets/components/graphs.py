@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import floor, log10
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 from tmm_sheets.words import tell, tr
 
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
 Options = dict[str, Any]
 OVER = 8.0
 """How far an axis runs beyond its graph, mm."""
@@ -28,7 +31,7 @@ _LEFT, _RIGHT = 24.0, 12.0
 """Room beside an angle axis for the sign of the ordinate and for the arrow, mm."""
 
 
-def angle_axis(project: Any, box: Box) -> tuple[Scale, float]:
+def angle_axis(project: Project, box: Box) -> tuple[Scale, float]:
     """Scale factor of the angle of the crank over its cycle, and where the axis begins, mm.
 
     One rule for all graphs, so that positions stand under each other; half millimetres between them, so that the division is handy.

@@ -56,7 +56,7 @@ Stacked = tuple[Callable[..., None], float, float]
 """A graph of a column: what draws it, the height of its ordinates and what it needs under them, mm."""
 
 
-def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def column(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Forces, moments and works one under another."""
     parts = _of_column(project.flywheel)
     stacked(project, canvas, box, options, "flywheel.column", [(_view(draw), height, below) for draw, height, below in parts])
@@ -100,7 +100,7 @@ def _of_energy(fw: Wittenbauer) -> float:
 
 def _view(draw: Callable[..., None]) -> Callable[..., None]:
     """One graph of the column as a view of its own."""
-    def begun(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+    def begun(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
         canvas.of = f"flywheel.{draw.__name__}"
         canvas.begin(box, "", canvas.of)
         draw(project, canvas, box, options)
@@ -116,7 +116,7 @@ def of_moments(fw: Flywheel) -> tuple[Stacked, Stacked]:
     return (moments, float(np.ptp(fw.scales.moment.mm(moment))) + 6.0, 4.0), (works, float(np.ptp(work)), 4.0)
 
 
-def stacked(project: Any, canvas: Canvas, box: Box, options: Options, name: str, views: Sequence[Stacked]) -> None:
+def stacked(project: Project, canvas: Canvas, box: Box, options: Options, name: str, views: Sequence[Stacked]) -> None:
     """Graphs one under another, each as high as it is, the room left over between them."""
     over = graphs.OVER + graphs.HEAD
     spare = (box.height - sum(height + below + over for _, height, below in views)) / (len(views) - 1)
@@ -130,7 +130,7 @@ def stacked(project: Any, canvas: Canvas, box: Box, options: Options, name: str,
         top = low - spare
 
 
-def force_graph(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def force_graph(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Technological forces over the crank angle; where one begins or ends the moment graph is cut off."""
     fw = with_tangents(project)  # the first view of its sheets: what is said of another method comes before what lacks room
     s, r = fw.scales, fw.reduced
@@ -187,7 +187,7 @@ def _acting(fw: Flywheel, name: str) -> list[Any]:
     return [np.concatenate(parts) for parts in runs]
 
 
-def moments(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def moments(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Reduced moments with the pole, the ordinates in the middles of the intervals, their rays and the constant moment."""
     fw: Flywheel = project.flywheel
     s, r, plan = fw.scales, fw.reduced, fw.work_plan
@@ -287,7 +287,7 @@ def _rays(s: PlayerStage, fw: Flywheel, intervals: list[str]) -> None:
         plain.set(s.pen(names[0], "text"), s.at(names[0]), ", ".join(names))
 
 
-def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def works(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Work of the varying moment by chords parallel to the rays, and the straight line that balances the cycle."""
     fw: Flywheel = project.flywheel
     s = fw.scales
@@ -333,7 +333,7 @@ def works(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         canvas.note(box, "; ".join((" ".join(note[:2]), *note[2:])))
 
 
-def total_work(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def total_work(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Sum of the works, which is the change of kinetic energy, at the scale of the energy-mass diagram."""
     fw = with_tangents(project)
     s = fw.scales
@@ -359,7 +359,7 @@ def _enlarged(ratio: float) -> str:
     return said.format(times=times(max(ratio, 1 / ratio)))
 
 
-def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def inertia(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Reduced moment of inertia, turned clockwise: its J axis runs as that of the energy-mass diagram, phi downwards."""
     fw: Flywheel = project.flywheel
     s = fw.scales
@@ -389,7 +389,7 @@ def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
     canvas.text(g(1j * reach) - 2 + 2j, tr("J^red, kg·m^2"), 3.5, "right")
 
 
-def energy_mass(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Energy-mass curve by projection from the graphs of dE and J, its two tangents and the segment ab."""
     fw = with_tangents(project)
     s, plan = fw.scales, fw.energy_mass_plan
@@ -494,7 +494,7 @@ def _beneath(canvas: Canvas, gap: Box, said: str) -> Box:
     return Box(gap.x0, gap.y0, gap.x1, gap.y1 - len(lines) * 1.6 * height - 1.0)
 
 
-def wheel(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def wheel(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Sketch of the wheel to a standard scale: front view and section through the axis, with dimensions in mm.
 
     Words in its place when no flywheel is needed, or of a given one nothing but its moment of inertia is known.
@@ -597,7 +597,7 @@ def disagreement(fw: Flywheel) -> list[str]:
             tr("|J_f| is less than the error of the construction {error} kg·m^2").format(error=error)]
 
 
-def inertia_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def inertia_table(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Table of the terms of the reduced moment of inertia at the positions."""
     fw: Flywheel = project.flywheel
     rows = [[tr("Position"), *fw.labels]]
@@ -610,7 +610,7 @@ def inertia_table(project: Any, canvas: Canvas, box: Box, options: Options) -> N
     graphs.table(canvas, box, tr("Reduced moment of inertia"), rows)
 
 
-def work_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def work_table(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Table of moment, works and change of energy at the positions."""
     fw: Flywheel = project.flywheel
     varying, constant = indices(fw)
@@ -625,7 +625,7 @@ def work_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None
         index=constant, moment=constant_moment(fw)), rows)
 
 
-def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def results(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Formulas with their numbers: tangents, segment, moment of inertia drawn and in the limit, sizes, mass.
 
     With a given flywheel the coefficient of non-uniformity in place of the moment of inertia.
@@ -767,7 +767,7 @@ def disc_for_rim(w: RimWheel) -> list[str]:
 # --- parts shared by the views --------------------------------------------------------------------------
 
 
-def by_method(project: Any, method: str, hint: str) -> Any:
+def by_method(project: Project, method: str, hint: str) -> Any:
     """The project's flywheel, which a view must find by its own method."""
     fw = project.flywheel
     if fw.method != method:
@@ -776,7 +776,7 @@ def by_method(project: Any, method: str, hint: str) -> Any:
     return fw
 
 
-def with_tangents(project: Any) -> Wittenbauer:
+def with_tangents(project: Project) -> Wittenbauer:
     """The flywheel by the energy-mass diagram; CannotBuild for one by another method."""
     hint = tell("take an arrangement with the views of mertsalov among the project's sheets: sixbar_2, or press_1")
     return cast("Wittenbauer", by_method(project, "wittenbauer", hint))

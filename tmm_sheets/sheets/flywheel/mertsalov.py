@@ -29,6 +29,7 @@ from tmm_sheets.words import marked, tell, tr
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.flywheel.mertsalov import Mertsalov
+    from tmm_sheets.project import Project
 
 Options = dict[str, Any]
 ENERGIES = ("ΔE", "E_{II}", "E_I")
@@ -43,7 +44,7 @@ LEGEND = 6.0
 """Room of the legend, mm."""
 
 
-def procedure(project: Any) -> Mertsalov:
+def procedure(project: Project) -> Mertsalov:
     """The flywheel by the crank's energy; CannotBuild for one by another method."""
     hint = tell("take the arrangement flywheel among the project's sheets")
     return cast("Mertsalov", flywheel.by_method(project, "mertsalov", hint))
@@ -54,7 +55,7 @@ def _signs(options: Options) -> tuple[str, str, str, str]:
     return change, second, first, tr(options.get("inertia", INERTIA))
 
 
-def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def column(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """All graphs one under another: moments, works, energies, inertia; each as high as it is, the room left over between them."""
     fw = procedure(project)
     s = fw.scales
@@ -64,7 +65,7 @@ def column(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
         (inertia, float(s.inertia.mm(fw.inertia(fw.samples)).max()) + (LEGEND if len(_terms(fw)[0]) > NAMED else 0.0), 8.0)])
 
 
-def inertia(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def inertia(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Reduced moment of inertia of the second group with its terms, read as its energy too; the tangent at the chosen position."""
     fw = procedure(project)
     s = fw.scales
@@ -128,7 +129,7 @@ def _tangent(fw: Mertsalov, of: PlayerStage, box: Box, head: float) -> None:
         of.canvas.angle_mark(vertex, start, end, 16.0, f"ψ = {fixed(degrees(psi), 2)}°")
 
 
-def energies(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def energies(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Change of kinetic energy, the second group's energy laid off below it, the first group's curve with the segment ab.
 
     The same curve measured from the axis through the middle of ab is the angular velocity of the crank.
@@ -181,7 +182,7 @@ def _omega_scale(fw: Mertsalov) -> Scale:
     return Scale(mu.symbol, float(f"{mu.mu:.4g}"), mu.unit)
 
 
-def position_table(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def position_table(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """What was found at every position: moment, work, energies, inertia, angular velocity and acceleration of the crank."""
     fw = procedure(project)
     varying, _ = flywheel.indices(fw)
@@ -204,7 +205,7 @@ def position_table(project: Any, canvas: Canvas, box: Box, options: Options) -> 
     canvas.table(complex(box.x0, left.y1), widths, rows, high, height, header=2)
 
 
-def results(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def results(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Formulas with their numbers: segment, moment of inertia, scale factor and check of omega, acceleration, motor, sizes."""
     fw = procedure(project)
     k = project.force_index
@@ -310,7 +311,7 @@ def _size(fw: Mertsalov) -> list[str]:
     return [*(line.format(**numbers) for line in said), *flywheel.disc_for_rim(w)]
 
 
-def comparison(project: Any, canvas: Canvas, box: Box, options: Options) -> None:
+def comparison(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Mertsalov's flywheel beside Wittenbauer's, drawn and exact, each with the exact running of the machine that has it."""
     fw = procedure(project)
     rows = [[tr("Flywheel"), tr("J_I, kg·m^2"), tr("ω_{max}, rad/s"), tr("ω_{min}, rad/s"), "δ"]]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cmath import phase, rect
 from math import degrees, pi, radians
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from tmm_sheets.sheets.gears import gear_radii
 from tmm_sheets.sheets.gears.gear_marks import CIRCLES, Window, gap, hatch_between, ruled_table
 from tmm_sheets.sheets.player import PlayerStage, placed, play, stage
 from tmm_sheets.words import tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
 
 EDGE = 24.0
 """Least distance of a wheel's centre from the edge of the picture, mm."""
@@ -56,7 +59,7 @@ DEEPEST = 10.0
 """Specific sliding down to which the curves are followed on their way to minus infinity."""
 
 
-def engagement(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def engagement(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Engagement picture to a standard scale with the line of centres vertical."""
     picture = _GearPicture(project.gear, canvas, box)
     picture.circles()
@@ -499,7 +502,7 @@ def angle_beside(canvas: Canvas, vertex: complex, start: float, end: float, radi
     canvas.angle(first, vertex, lo, hi, radius, markup)
 
 
-def mesh(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def mesh(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The teeth at the pole once more, enlarged: circles, clearances, distance of the pitch circles, fillets."""
     _Detail(project.gear, canvas, box).draw()
 
@@ -581,7 +584,7 @@ class _Detail:
             gap(c, a, b, text, complex(side, 0), 4, 1e3 * self.at.scale.mu)
 
 
-def sliding(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def sliding(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Speeds of the contact point along both profiles and the specific sliding, on one line of action N1N2.
 
     N1 stands on the side where it is in the engagement picture.
@@ -695,12 +698,12 @@ def _theta(s: PlayerStage, gear: Any, lowest: float, way: int) -> None:
         s.canvas.label(complex(s.frame(points[0].real + 0.6j * points[0].imag)), f"θ_{i}", away=way * onward, height=5, gap=3)
 
 
-def sliding_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> tuple[tuple[float, float], ...]:
+def sliding_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[tuple[float, float], ...]:
     """Sizes that the graphs can do with, mm."""
     return (210.0, 215.0), (190.0, 200.0)  # below, the specific sliding is too low to be read
 
 
-def sliding_table_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def sliding_table_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Sizes that the table can do with, mm; none without the graphs whose ordinates it holds."""
     if "gear-sliding" not in canvas.scales:
         return []
@@ -708,7 +711,7 @@ def sliding_table_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -
     return [(wide + 10.0, 52.0), (wide, 46.0)]
 
 
-def sliding_table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def sliding_table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Ordinates of the speeds and specific sliding at the divisions of N1N2."""
     plan = project.gear.sliding
     rows = [["", *plan.labels]]
@@ -725,7 +728,7 @@ def _cell(value: float, decimals: int) -> str:
     return fixed(value, decimals) if np.isfinite(value) else "−∞"
 
 
-def parameters(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def parameters(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Table of the pair's parameters after GOST 2.403: name, sign, wheel 1, wheel 2; common values span both."""
     gear = project.gear
 
@@ -764,7 +767,7 @@ def parameters(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) 
     ruled_table(canvas, Box(box.x0, box.y0, box.x1, inner.y1), rows, (18.0, 30.0, 30.0), 12.0)
 
 
-def results(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Contact ratio from the drawn overlap angles and by the formula, greatest sliding, what was chosen."""
     gear = project.gear
     plan, pole = gear.engagement, int(np.argmin(np.abs(gear.sliding["K"].value)))

@@ -14,6 +14,7 @@ from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.project import Project
 
 OF_PAIR = ("inv_alpha", "inv_alpha_w", "alpha_w", "x_sum", "y", "dy", "a", "a_w", "p", "pb", "N1N2", "g_alpha", "eps_alpha")
 OF_WHEEL = ("r", "rb", "rw", "ra", "rf", "s")
@@ -22,12 +23,12 @@ WAYS = ((8.0, 200.0), (7.0, 170.0), (6.0, 150.0), (6.0, 120.0), (6.0, 100.0))
 HEIGHT = 3.5
 
 
-def of_pair_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def of_pair_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the equations can do with, mm: those of the wheels as well, then those of the pair alone."""
     return [_size(lines, step, width) for lines in _both(project.gear.geometry) for step, width in WAYS]
 
 
-def of_pair(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def of_pair(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Angle of engagement, distances, pitches and contact ratio; radii and thicknesses of the wheels in numbers."""
     canvas.of = project.gear.geometry.name
     left = canvas.title(box, tr("The gear pair in numbers"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 from math import pi
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
@@ -14,46 +14,49 @@ from tmm_sheets.sheets.gears.planet_motion import sizes_of, written
 from tmm_sheets.sheets.gears.reducer import ends_of_rays, link_name
 from tmm_sheets.words import tr
 
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
 MEASURED = 5.0
 """Segment below which no ratio is to be measured, mm."""
 
 
-def of_reducer_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def of_reducer_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the measured ratios of a reducer can do with, mm."""
     return sizes_of(tr("Ratios by the plan of speeds"), list(_measured(project.reducer, canvas, "reducer")))
 
 
-def of_reducer(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def of_reducer(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Ratios of the driving link to the others, from the segments of the plan and from the speeds."""
     written(canvas, box, tr("Ratios by the plan of speeds"), list(_measured(project.reducer, canvas, "reducer")))
 
 
-def of_train_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def of_train_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the measured ratios of a train can do with, mm."""
     return sizes_of(tr("Ratios by the plan of speeds"), list(_measured(project.train, canvas, "train")))
 
 
-def of_train(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def of_train(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The same of a train."""
     written(canvas, box, tr("Ratios by the plan of speeds"), list(_measured(project.train, canvas, "train")))
 
 
-def mobility_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def mobility_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the degree of freedom of a reducer can do with, mm."""
     return sizes_of(tr("Mobility and speeds of the links"), list(_mobility(project.reducer)))
 
 
-def mobility(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def mobility(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Degree of freedom of a reducer by Chebyshev's formula, one satellite counted; angular velocities of its links."""
     written(canvas, box, tr("Mobility and speeds of the links"), list(_mobility(project.reducer)))
 
 
-def pairs_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def pairs_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the ratios of pairs with standing axes can do with, mm; none where there are no such pairs."""
     return sizes_of(tr("Ratios of the pairs"), list(_pairs(project.train)))
 
 
-def pairs(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def pairs(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Ratio of every pair whose axes stand still, by its speeds and by its teeth; of a train of such pairs that of the whole."""
     written(canvas, box, tr("Ratios of the pairs"), list(_pairs(project.train)))
 

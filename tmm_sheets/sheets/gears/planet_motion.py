@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations
 from math import gcd, pi, sin
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter, size_for
@@ -16,19 +16,22 @@ from tmm_sheets.sheets.gears.gear_marks import LARGE, ROW
 from tmm_sheets.sheets.gears.reducer import letters_in
 from tmm_sheets.words import tr
 
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
 SIZES = ((5.0, 5.0, 12.0), (5.0, 3.5, 10.0), (5.0, 3.5, 7.0), (3.5, 3.5, 7.0))
 """Heights of the letters of a title and of the lines under it, and distances of these, that are tried, mm."""
 PLACES = ((220.0, LARGE), (180.0, ROW), (150.0, 9.0), (120.0, 7.0))
 """Widths and heights of rows of the table that are tried, mm."""
 
 
-def inverted_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def inverted_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the table of the inverted motion can do with, mm; none without a carrier."""
     count = len(list(_inverted(project)))
     return [(width, 11.0 + row * (count + 1)) for width, row in PLACES] if count else []
 
 
-def inverted(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def inverted(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Speeds of the wheels of every carrier as they are, and as one sees them who turns with it (Willis)."""
     rows = [[tr("Link"), tr("n, rpm"), f"n − n_H, {tr('rpm')}", f"ω, {tr('rad/s')}"]]
     found = list(_inverted(project))
@@ -40,7 +43,7 @@ def inverted(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     canvas.table(complex(box.x0, left.y1), widened([0.25 * box.width] * 4, rows, height), rows, row, height)
 
 
-def _inverted(project: Any) -> Iterator[tuple[str, str, float, float]]:
+def _inverted(project: Project) -> Iterator[tuple[str, str, float, float]]:
     """Carrier, wheel, its speed and that of the carrier, rpm."""
     if project.variant.train is not None:
         train, plan = project.train, project.train.kinematics
@@ -54,22 +57,22 @@ def _inverted(project: Any) -> Iterator[tuple[str, str, float, float]]:
             yield stage.carrier, wheel.number, float(wheel.n.value), float(stage.n_H.value)
 
 
-def checks_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def checks_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the conditions of a train's planets can do with, mm; none without a carrier."""
     return sizes_of(tr("Conditions of the planets"), list(_checks(project.train)))
 
 
-def checks(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def checks(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Common axis, assembly and neighbourhood of the planets of every carrier, in letters and in numbers."""
     written(canvas, box, tr("Conditions of the planets"), list(_checks(project.train)))
 
 
-def ratios_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def ratios_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the ratios between the central wheels of a train can do with, mm; none where there are no two on a carrier."""
     return sizes_of(tr("Ratios of the inverted motion"), list(_ratios(project.train)))
 
 
-def ratios(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def ratios(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Ratios of central wheels with their carrier held, from the speeds and from the teeth."""
     written(canvas, box, tr("Ratios of the inverted motion"), list(_ratios(project.train)))
 

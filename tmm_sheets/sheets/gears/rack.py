@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cmath import rect
 from math import pi
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from tmm_sheets.sheets.frame import PlanFrame, ratio, standard
 from tmm_sheets.sheets.gears.gear_marks import Window, distance, gap
 from tmm_sheets.sheets.player import PlayerStage, stage
 from tmm_sheets.words import tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
 
 MARGIN = 16.0
 """Room for the names of the circles beside the window, mm."""
@@ -50,7 +53,7 @@ def extent(gear: Any) -> tuple[float, float]:
     return max((rack.shift + wheel.addendum) * gear.m, wheel.ra - rack.r), rack.r - wheel.rf + BELOW * gear.m
 
 
-def generating(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def generating(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The rack in its middle position and along one flank of the pinion, whose envelope it is; the other by symmetry."""
     canvas.of = "gear-rack"
     picture = _RackPicture(project.gear, canvas, box)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from cmath import rect
 from collections.abc import Mapping, Sequence
 from math import ceil, pi, sin
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from tmm_sheets.sheets.gears.gear_marks import LARGE, LETTERS, ROW, ruled_table
 from tmm_sheets.sheets.gears.reducer_equations import unsigned
 from tmm_sheets.sheets.player import PlayerStage, placed, play
 from tmm_sheets.words import tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
 
 COLUMN = 19.0
 """Distance of two columns of wheels of the axial view, mm."""
@@ -54,7 +57,7 @@ def letters_in(row: float, widths: Sequence[float] = (), rows: Sequence[Sequence
     return (LARGE, LETTERS) if row >= LARGE and wide <= sum(widths) else (min(row, ROW), 3.5)
 
 
-def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def scheme(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Axial view, picture of velocities and front view side by side on one main axis, to one scale."""
     canvas.of = "reducer-velocities"
     views = SchemeOfReducer(project.reducer)
@@ -460,7 +463,7 @@ def link_name(name: str) -> str:
     return f"H_{name[1:]}" if name.startswith("H") and len(name) > 1 else name.replace("-", "–")
 
 
-def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def speeds(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Plan of the speeds of rotation: rays through the pole parallel to the lines of the picture of velocities."""
     plan_of_speeds(project.reducer, canvas, box, "reducer")
 
@@ -514,12 +517,12 @@ def ends_of_rays(plan: Plan) -> list[Step]:
     return [step for step in plan if step.name not in ("P", "0") and step.rule.gives == "point"]
 
 
-def points_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def points_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the table of points can do with, mm."""
     return sizes_of_points(project.reducer, canvas)
 
 
-def points(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def points(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Points of the picture of velocities: distance from the main axis, segment measured on the picture, velocity."""
     table_of_points(project.reducer, canvas, box)
 
@@ -556,12 +559,12 @@ def moving_points(of: Any) -> list[Step]:
     return [end for end in plan if end.name.islower() and end.rule.gives == "point" and end.name.upper() in plan]
 
 
-def links_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def links_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the table of speeds of rotation can do with, mm."""
     return sizes_of_links(project.reducer, canvas, "reducer")
 
 
-def links(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def links(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Links on the plan of the speeds of rotation: segment measured on it, speed."""
     table_of_links(project.reducer, canvas, box, "reducer")
 
@@ -593,7 +596,7 @@ def _rows_of_links(of: Any, canvas: Canvas, part: str) -> list[list[str]]:
     return rows
 
 
-def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def choice(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Table of the chosen tooth set and the runners-up."""
     reducer = project.reducer
     names = reducer.teeth_names
@@ -615,7 +618,7 @@ def choice(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     canvas.table(complex(box.x0, inner.y1), widened(widths, rows, height), rows, row, height)
 
 
-def conditions(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def conditions(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Split of the ratio, conditions, efficiency, speeds."""
     r = project.reducer
     chosen, held = ({step.name: step.value for step in plan} for plan in (r.sets[0], r.conditions))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter, size_for
@@ -11,17 +11,20 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.words import tr
 
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
 SIZES = ((5.0, 12.0), (3.5, 10.0), (3.5, 7.0))
 """Heights of the letters and distances of the lines that are tried, mm."""
 
 
-def of_stage_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def of_stage_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the equations can do with, mm."""
     lines = list(_lines(project.reducer))
     return [(max(letter(line, height).width for line in lines) + 6.0, 14.0 + step * len(lines)) for height, step in SIZES]
 
 
-def of_stage(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def of_stage(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Ratio, conditions and speeds of a planetary stage, and the ratio of the whole reducer."""
     lines = list(_lines(project.reducer))
     left = canvas.title(box, tr("The reducer in numbers"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from cmath import rect
 from itertools import product
 from math import cos, pi, sin
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import fitted, letter, size_for
@@ -26,11 +26,14 @@ from tmm_sheets.sheets.gears.reducer import (
 )
 from tmm_sheets.words import tr
 
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
 SLEEVE = 6.0
 """Length of the sleeve of a wheel about the main axis, mm."""
 
 
-def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def scheme(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Axial view, picture of velocities and end view side by side on one main axis, to one scale."""
     canvas.of = "train-velocities"
     views = SchemeOfTrain(project.train)
@@ -38,12 +41,12 @@ def scheme(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> N
     views.draw()
 
 
-def speeds(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def speeds(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Plan of the speeds of rotation: rays through the pole parallel to the lines of the picture of velocities."""
     plan_of_speeds(project.train, canvas, box, "train")
 
 
-def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Tooth numbers and speeds of all wheels and carriers, and what was given."""
     train = project.train
     plan = train.kinematics
@@ -59,22 +62,22 @@ def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
         canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 5.5 - 6 * k), 0.0, said)
 
 
-def points(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def points(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Points of the picture of velocities: distance from the main axis, segment measured on the picture, velocity."""
     table_of_points(project.train, canvas, box)
 
 
-def links_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def links_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the table of speeds of rotation can do with, mm."""
     return sizes_of_links(project.train, canvas, "train")
 
 
-def links(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def links(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Links on the plan of the speeds of rotation: segment measured on it, speed."""
     table_of_links(project.train, canvas, box, "train")
 
 
-def sizes(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def sizes(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Pitch diameters and distances of axes in letters and in numbers."""
     lines = dimensions(project)
     left = canvas.title(box, tr("Dimensions of the train, mm"))
@@ -82,7 +85,7 @@ def sizes(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> No
     canvas.lines(complex(box.x0, left.y1 - 0.8 * step), lines, step, size_for(lines, box.width, 5.0 if step >= 9.0 else 3.5))
 
 
-def dimensions(project: Any) -> list[str]:
+def dimensions(project: Project) -> list[str]:
     """Distance of the axes of every stage, half the sum or the difference of its diameters, and diameters of the wheels."""
     train = project.train
     plan = train.kinematics
@@ -105,14 +108,14 @@ def dimensions(project: Any) -> list[str]:
     return lines
 
 
-def mobility_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def mobility_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the degree of freedom and the ratios can do with, mm."""
     lines = mobility_lines(project.train)
     return [(max(letter(line, height).width for line in lines) + 6.0, 14.0 + step * len(lines))
             for height, step in ((5.0, 12.0), (3.5, 10.0), (3.5, 7.0))]
 
 
-def mobility(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def mobility(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Degree of freedom by Chebyshev's formula, ratios to the driving link, angular velocities."""
     lines = mobility_lines(project.train)
     left = canvas.title(box, tr("Mobility and speeds of the links"))
@@ -138,7 +141,7 @@ def mobility_lines(train: Any) -> list[str]:
     return lines + [f"ω_{{{name}}} = π·n_{{{name}}}/30 = {number(value * pi / 30, 5)} {tr('rad/s')}" for name, value in n.items()]
 
 
-def willis(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def willis(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The equation of Willis of every mesh, in letters and in numbers; multiplied out, for a planet may rest on its carrier."""
     train = project.train
     lines = [line for m in train.meshes for line in _equation(train, m)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
@@ -12,6 +12,9 @@ from tmm_sheets.numbers import number
 from tmm_sheets.sheets.gears.planet_motion import PLACES
 from tmm_sheets.sheets.gears.reducer import letters_in
 from tmm_sheets.words import tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
 
 ADDENDUM, CLEARANCE = 1.0, 0.25
 """Coefficients of the basic rack (GOST 13755) where the task says nothing of it."""
@@ -27,13 +30,13 @@ class _Wheel(NamedTuple):
     rack: tuple[float, float]
 
 
-def table_sizes(project: Any, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+def table_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the table can do with, mm; none for a train that needs shifts."""
     count = len(_wheels(project))
     return [(width, 11.0 + row * (count + 1)) for width, row in PLACES] if count else []
 
 
-def table(project: Any, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Every wheel with its tooth number and its pitch, tip and root diameters, mm, as they are without shifts (GOST 16532)."""
     found = _wheels(project)
     rows = [[tr("Wheel"), "z", *(tr("{symbol}, mm").format(symbol=symbol) for symbol in ("d", "d_a", "d_f"))], *map(_row, found)]
@@ -49,7 +52,7 @@ def _row(wheel: _Wheel) -> list[str]:
     return [wheel.name, str(wheel.teeth), *(number(1e3 * wheel.module * teeth, 5) for teeth in (d, d + tip, d + root))]
 
 
-def _wheels(project: Any) -> list[_Wheel]:
+def _wheels(project: Project) -> list[_Wheel]:
     found = _of_train(project.train) if project.variant.train is not None else _of_reducer(project.reducer)
     return sorted({wheel.name: wheel for wheel in found}.values(), key=lambda wheel: (int(wheel.name.rstrip("′")), wheel.name))
 
