@@ -20,7 +20,7 @@ TYPED = re.compile(r"""
     | \b(?:ГОСТ|GOST)\s*[\d.]+ | \b[\w]+://\S+          # names with numbers in them
     | (?<![\w.])--?[a-z]\S*(?:[ ]\S*\d\S*)?             # an option
     | (?:наприклад|например)\b.*                        # what may be typed
-    | \b[\w.]+\s=\s[\d.]+ (?=[,\s]|$)                         # a key with its value
+    | \b[\w.]+\s=\s[\d.]+ (?=[,\s`]|$)                        # a key with its value
 """, re.VERBOSE)  # fmt: skip
 
 

@@ -231,8 +231,8 @@ def test_what_two_links_give_in_all_plans_is_said_once(composed):
     """One angle of coupler and rocker: the remark to the positions names the other plans, each with its own error."""
     told = " ".join(g.text for g in lettering_of(composed, "В положениях 5–7 засечку"))
     assert told.count("13°") == sum(g.text.count("13°") for g in composed.groups if g.kind == "lettering") == 1
-    for where in ("на плане ускорений точка c (62,5 мм)", "на плане скоростей точка c (2,6 мм)",
-                  "на плане сил группы 2–3 вершина 1 (никак)"):  # fmt: skip
+    for where in ("на плане ускорений точка c (18,8 мм)", "на плане скоростей точка c (2,2 мм)",
+                  "на плане сил группы 2–3 вершина 1 (72,9 мм)"):  # fmt: skip
         assert told.count(f"так же {where}") == 1
 
 

@@ -249,11 +249,11 @@ def _auxiliary_circle(s: PlayerStage, m: FollowerMotion) -> None:
     pen = s.pen("M", "axis")
     pen.line(centre - reach, centre + reach, "centre")
     pen.line(centre - 1j * reach, centre + 1j * reach, "centre")
-    angle = 1.15
+    angle = 1.38  # beside the upright radius: the letters have the rest of the way to the next one
     for name, radius in radii.items():
         tip = centre + rect(radius, pi - angle)
         s.pen(name, "dimension").arrow(centre, tip, "thin", 2.5)
-        canvas.label(centre + rect(0.6 * radius, pi - angle), name, 1j * rect(1, pi - angle), 3.5, 0.6, leader=False)
+        canvas.label(centre + rect(0.75 * radius, pi - angle), name, 1j * rect(1, pi - angle), 3.5, 0.6, leader=False)
 
 
 def _integration(upper: PlayerStage, lower: PlayerStage, m: FollowerMotion, symbol: str, ends: list[Step],

@@ -707,7 +707,9 @@ def enlarged_velocities(project: Project, canvas: Canvas, box: Box, options: dic
     real = kinematic_frames.plan_extent(plan, k)
     inside = box.inset(kinematic_frames.MARGIN / 2, kinematic_frames.HEAD / 2, kinematic_frames.MARGIN / 2,
                        TITLED + kinematic_frames.HEAD / 2)
-    need = max(real.width / inside.width, real.height / inside.height)
+    # A plan whose vectors all have one direction asks for no room across it, up to rounding.
+    nothing = 1e-9 * max(real.width, real.height)
+    need = max(asks / has for asks, has in ((real.width, inside.width), (real.height, inside.height)) if asks > nothing)
     larger = max(t for t in ENLARGED if t * need <= plain.mu * (1 + 1e-6))
     scale = Scale(plain.symbol, float(f"{plain.mu / larger:.6g}"), plain.unit)
     said = tr("{scale} (enlarged {times})").format(scale=scale, times=times(larger))
