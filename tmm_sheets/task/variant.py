@@ -261,7 +261,7 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
     except tomllib.TOMLDecodeError as e:
         raise BadInput([*(_of_bare(one, file) for one in bare.values()), toml_file.syntax(str(e), readable, file)]) from None
     except ValueError:  # Python reads no whole number of more than 4300 digits
-        line = next(n for n, row in enumerate(text.split("\n"), 1) if re.search(rf"[0-9_]{{{DIGITS}}}", row))
+        line = next((n for n, row in enumerate(text.split("\n"), 1) if re.search(rf"[0-9_]{{{DIGITS}}}", row)), None)
         raise BadInput(Problem(tell("the number has too many digits"), file, line)) from None
     except RecursionError:
         raise BadInput(Problem(tell("lists or tables are nested too deeply"), file)) from None

@@ -278,8 +278,10 @@ class Reduced:
         if (replay := self._replays.get((what, side))) is None:
             at = Reduction(self, TRIED, phi)
             step = pick(at)
-            if np.ndim(phi) and not at.velocities.positions.chosen:
-                self._replays[what, side] = Replay([step], [at.angles, at.turned, at.over, *at.chosen])
+            found = Replay([step], [at.angles, at.turned, at.over, *at.chosen])
+            # Without any load the moment hangs on no angle: it is nothing in the shape of those it was recorded for.
+            if np.ndim(phi) and len(found) and not at.velocities.positions.chosen:
+                self._replays[what, side] = found
             return step.value
         chosen = (row.value for f in self.forces for row in f.chosen(phi, side)) if what == MOMENT else ()
         begin = perf_counter()
