@@ -280,7 +280,7 @@ def test_default_folder_and_formats(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert run(["build", "lugansk/shaper", "--sheet", "3", "--sheet", "4"]) == 0
     names = ["sheet3.dxf", "sheet3.pdf", "sheet4.dxf", "sheet4.pdf"]
-    there = sorted([RECORD, *names, "OFL.txt", "TMMSheetsB.ttf", "tmm_sheets_b.lff"])
+    there = sorted([RECORD, *names, "OFL.txt", "TMMSheetsB.ttf"])
     assert listing(tmp_path) == ["out", "out/lugansk-shaper", *(f"out/lugansk-shaper/{name}" for name in there)]
     assert sorted(capsys.readouterr().out.split()) == [f"out/lugansk-shaper/{name}" for name in names]
     assert (tmp_path / "out/lugansk-shaper/sheet3.pdf").read_bytes()[:5] == b"%PDF-"

@@ -279,8 +279,8 @@ def check(project: str, corrected: bool, scheme: Path | None) -> None:
 @option("--dpi", type=click.FloatRange(10, 1200), default=150, show_default=True, help="Dots per inch of PNG.")
 @option("--plotter", "machine", metavar="NAME", callback=_plotter,
               help="Plotter for HPGL: a shipped one or a file.  [default: a1]")
-@option("--text", type=click.Choice(["live", "strokes"]), default="live", show_default=True,
-              help="Lettering and dashes of DXF: to be worked with, or drawn exactly.")
+@option("--text", type=click.Choice(["live", "librecad", "strokes"]), default="live", show_default=True,
+              help="Lettering and dashes of DXF: to be worked with, the same with our font for LibreCAD, or drawn exactly.")
 @option("--one-file", is_flag=True, help="Put all sheets into one PDF, sheets.pdf.")
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
               help="Folder of the sheets, of several projects the folder with one for each.  [default: out/<project>]")

@@ -1,5 +1,6 @@
 """Sheets as CAD programs work with them, read by ezdxf; how long lettering is says the TrueType font itself (fontTools)."""
 
+import re
 from collections import Counter
 from functools import cache
 from io import StringIO
@@ -79,7 +80,8 @@ def test_all_lettering_can_be_found(sheet):
     drawing, doc = sheet
     found = Counter(e.dxf.text for e in everywhere(doc) if e.dxftype() == "TEXT" and not e.dxf.invisible)
     found += Counter(a.dxf.text for insert in doc.modelspace().query("INSERT") for a in insert.attribs if a.dxf.text)
-    assert found == Counter(word for m in drawing.marks if isinstance(m, Text) and (word := m.text.strip()))
+    words = (word.strip() for m in drawing.marks if isinstance(m, Text) for word in m.text.split("→"))
+    assert found == Counter(filter(None, words))
 
 
 def test_lettering_is_as_long_as_in_the_font(sheet):
@@ -87,7 +89,7 @@ def test_lettering_is_as_long_as_in_the_font(sheet):
     font = TTFont(template("fonts/TMMSheetsB.ttf"))
     widths, names = font["hmtx"], font.getBestCmap()
     em = font["head"].unitsPerEm
-    style = doc.styles.get("tmm_sheets_b")
+    style = doc.styles.get("lc_opengost-br")
     assert style.dxf.font == "TMMSheetsB.ttf"
     assert style.get_extended_font_data() == (font["name"].getDebugName(1), True, False)
     fitted = [e for e in everywhere(doc) if e.dxftype() == "TEXT" and len(e.dxf.text) > 1 and not e.dxf.invisible]
@@ -103,7 +105,7 @@ def test_lettering_is_as_long_as_in_the_font(sheet):
         assert degrees(np.angle(z(last) - z(first))) % 360 == pytest.approx(e.dxf.rotation % 360, abs=0.01)
     forms = {k for form in drawing.forms for f in form.fields for k in range(f.first, f.end)}
     starts = np.array([m.at for k, m in enumerate(drawing.marks) if isinstance(m, Text) and k not in forms and m.text[0] != " "
-                       and m.text.strip()])
+                       and "→" not in m.text and m.text.strip()])
     placed = np.array([z(e.dxf.insert) for e in everywhere(doc) if e.dxftype() == "TEXT" and not e.dxf.invisible])
     assert np.abs(starts[:, None] - placed[None, :]).min(axis=1).max() < 1e-3
 
@@ -307,14 +309,22 @@ def test_layers_are_told_in_words_and_no_rule_of_a_table_is_an_axis(sheet):
         assert lines[int(off.argmin())].dxf.layer.startswith("TABLE")
 
 
-def test_signs_that_programs_take_for_codes():
+def test_signs_that_programs_take_for_codes_and_letters_their_fonts_lack():
     marks = (Text(10 + 10j, "100 %%d ^A", 5.0), Text(10 + 30j, "a → b", 5.0), Text(10 + 50j, "→", 5.0, pi / 2))
-    doc = opened(dxf.render(Drawing(841, 594, "", marks)))
+    own, doc = (opened(dxf.render(Drawing(841, 594, "", marks), text)) for text in ("librecad", "live"))
+    assert [t.dxf.text for t in own.modelspace().query("TEXT")][1:] == ["a → b", "→"]
+    assert {t.dxf.style for t in own.modelspace().query("TEXT")} == {"tmm_sheets_b"} <= {s.dxf.name for s in own.styles}
     assert not doc.audit().has_issues
     texts = list(doc.modelspace().query("TEXT"))
     assert texts[0].plain_text().replace("%%%", "%").startswith("100 %")
     assert "^ A" in texts[0].dxf.text
-    assert [t.dxf.text for t in texts[1:]] == ["a → b", "→"]
+    assert [t.dxf.text for t in texts[1:]] == ["a", "b"]
+    font = template("fonts/lc_opengost-br.lff").read_text("utf-8")
+    known = {chr(int(code, 16)) for code in re.findall(r"^\[(\w+)\]", font, re.M)}
+    assert known.issuperset("".join(t.dxf.text for t in texts).replace(" ", ""))
+    arrows = list(doc.modelspace().query("LWPOLYLINE"))
+    assert len(arrows) == 2 * len(glyph("→").strokes)
+    assert bbox.extents(arrows).has_data
 
 
 def test_a_form_without_anything_filled_in():

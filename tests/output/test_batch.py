@@ -36,7 +36,7 @@ def contents(folder):
     return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
-FONTS = {"TMMSheetsB.ttf", "tmm_sheets_b.lff", "OFL.txt"}
+FONTS = {"TMMSheetsB.ttf", "OFL.txt"}
 """What lies beside live drawings, written once."""
 
 
@@ -154,6 +154,9 @@ def test_lettering_is_live_with_its_fonts_unless_asked_for_strokes(mine):
     assert {p.name for p in out.iterdir()} == {".tmm-sheets.json", "sheet1.dxf", "sheet1.svg"} | FONTS
     assert b"\nTEXT\n5\n" in (out / "sheet1.dxf").read_bytes()
     assert times(out)["sheet1.svg"] == svg
+    assert build("--text", "librecad") == 0
+    assert b"\ntmm_sheets_b\n" in (out / "sheet1.dxf").read_bytes()
+    assert (out / "tmm_sheets_b.lff").is_file()
     (out / "TMMSheetsB.ttf").write_bytes(b"another")
     assert build("--force") == 0
     assert (out / "TMMSheetsB.ttf").read_bytes() == b"another"

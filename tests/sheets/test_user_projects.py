@@ -84,7 +84,7 @@ def test_other_positions_can_be_the_analysed_one(project):
 def test_command_line(tmp_path):
     assert run(["build", str(FILES[0]), "-o", str(tmp_path)]) == 0
     sheets = sorted(p.name for p in tmp_path.iterdir() if not p.name.startswith("."))
-    fonts = ["OFL.txt", "TMMSheetsB.ttf", "tmm_sheets_b.lff"]
+    fonts = ["OFL.txt", "TMMSheetsB.ttf"]
     assert sheets == sorted([*fonts, "sheet1.dxf", "sheet1.pdf", "sheet2.dxf", "sheet2.pdf"])
 
 

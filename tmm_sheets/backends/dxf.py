@@ -2,7 +2,7 @@
 
 Live by default: lettering is TEXT fitted to its length, the title block has attributes, dimensions are dimensions, a line is whole
 and its line type draws the dashes, a view is a group. With ``text="strokes"`` lettering and dashes go out as separate strokes: the
-same picture in every program, with or without fonts.
+same picture in every program, with or without fonts. With ``text="librecad"`` the text style is that of our own font for LibreCAD.
 
 Header, tables, objects and the layout are as ezdxf writes them (``dxf_frame.py``); the entities are written here and spliced in.
 """
@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Literal
 
 from tmm_sheets.backends.dxf_entities import entity, extents, letter_strokes, short
-from tmm_sheets.backends.dxf_frame import FONT_FILE, STYLE, DxfFrame, SheetParts
+from tmm_sheets.backends.dxf_frame import COMMON, FONT_FILE, OWN, DxfFrame, SheetParts
 from tmm_sheets.backends.dxf_frame import weight as weight
 from tmm_sheets.backends.dxf_frame_file import frame
 from tmm_sheets.backends.dxf_live import LiveSheet, clean
@@ -30,7 +30,7 @@ from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.files import put
 from tmm_sheets.resources import template
 
-Lettering = Literal["live", "strokes"]
+Lettering = Literal["live", "librecad", "strokes"]
 
 
 def write(drawing: Drawing, path: Path, text: Lettering = "live") -> None:
@@ -56,19 +56,19 @@ def render(drawing: Drawing, text: Lettering = "live") -> bytes:
     """
     around = frame(drawing.width, drawing.height)
     handles = count(around.first_handle)
-    parts = LiveSheet(drawing, around, handles).parts if text == "live" else _stroked(drawing.marks, around, handles)
+    style = OWN if text == "librecad" else COMMON
+    parts = _stroked(drawing.marks, around, handles) if text == "strokes" else LiveSheet(drawing, around, style, handles).parts
     if any("nan" in tags or "inf" in tags for tags in (*parts.entities, *parts.blocks)):
         for mark in drawing.marks:
             check(mark)
     parts.views += (_named_view(view, around, handles) for view in drawing.views)
-    return around.filled(parts, drawing.title, drawing.author, extents(drawing.marks), handles).encode("utf-8")
+    return around.filled(parts, drawing.title, drawing.author, style, extents(drawing.marks), handles).encode("utf-8")
 
 
 def companions(text: Lettering = "live") -> dict[str, bytes]:
-    """Files that lie beside live drawings, by name: the font as TrueType and as LibreCAD's, and its licence."""
-    if text != "live":
-        return {}
-    return {name: template(f"fonts/{name}").read_bytes() for name in (FONT_FILE, f"{STYLE}.lff", "OFL.txt")}
+    """Files that lie beside live drawings, by name: the font, for LibreCAD in its own form too, and its licence."""
+    names = {"live": (FONT_FILE, "OFL.txt"), "librecad": (FONT_FILE, f"{OWN}.lff", "OFL.txt"), "strokes": ()}
+    return {name: template(f"fonts/{name}").read_bytes() for name in names[text]}
 
 
 def _stroked(marks: Iterable[Mark], around: DxfFrame, handles: Iterator[int]) -> SheetParts:

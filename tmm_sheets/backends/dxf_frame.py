@@ -15,16 +15,17 @@ from typing import NamedTuple
 from tmm_sheets.drawing.layers import LayerStyle, layers, roles
 from tmm_sheets.drawing.styles import line_type
 
-STYLE = "tmm_sheets_b"
-"""Name of the text style: LibreCAD takes it for that of a font, ``tmm_sheets_b.lff``; everybody else looks at the font file."""
+COMMON, OWN = "lc_opengost-br", "tmm_sheets_b"
+"""Names of the text style. LibreCAD takes it for that of a font, where others look at the font file: the first it brings along,
+upright and without some of our letters; the second is ours, and it shows empty signs where that is not in its folder of fonts."""
 FONT_FILE = "TMMSheetsB.ttf"
 DIMENSION_STYLE = "TMM"
 LETTERS = 3.5
 """Height of dimension figures, mm."""
 
-TITLE, AUTHOR, HANDSEED, EXTENTS, LAYERS, VIEWS, RECORDS, BLOCKS, BODY, GROUPED, GROUPS = (f"{{{word}}}" for word in (
-    "title", "author", "first free handle", "extents", "layers", "views", "block records", "blocks", "entities", "group names",
-    "groups"))  # fmt: skip
+TITLE, AUTHOR, STYLE, HANDSEED, EXTENTS, LAYERS, VIEWS, RECORDS, BLOCKS, BODY, GROUPED, GROUPS = (f"{{{word}}}" for word in (
+    "title", "author", "text style", "first free handle", "extents", "layers", "views", "block records", "blocks", "entities",
+    "group names", "groups"))  # fmt: skip
 """What stands in a frame for what differs from sheet to sheet."""
 
 
@@ -56,16 +57,17 @@ class DxfFrame(NamedTuple):
     groups: str
     first_handle: int
 
-    def filled(self, parts: SheetParts, title: str, author: str, extents: tuple[float, float, float, float],
+    def filled(self, parts: SheetParts, title: str, author: str, style: str, extents: tuple[float, float, float, float],
                handles: Iterator[int]) -> str:
-        """The file; ``extents`` are least and greatest x and y."""
+        """The file; ``style`` is the name of its text style, ``extents`` are least and greatest x and y."""
         x0, y0, x1, y1 = extents
         box = (f"  9\n$EXTMIN\n 10\n{x0:.4f}\n 20\n{y0:.4f}\n 30\n0.0\n"
                f"  9\n$EXTMAX\n 10\n{x1:.4f}\n 20\n{y1:.4f}\n 30\n0.0\n")
         always = {role.upper() for role in roles()}
         used = [self._layer(on, f"{next(handles):X}") for on in layers().values() if on.name in parts.layers or on.name in always]
-        told = {TITLE: " ".join(title.splitlines()), AUTHOR: " ".join(author.splitlines()), HANDSEED: f"{next(handles):X}",
-                EXTENTS: box, LAYERS: _joined(used), VIEWS: _joined(parts.views), RECORDS: _joined(parts.records),
+        told = {TITLE: " ".join(title.splitlines()), AUTHOR: " ".join(author.splitlines()), STYLE: style,
+                HANDSEED: f"{next(handles):X}", EXTENTS: box, LAYERS: _joined(used), VIEWS: _joined(parts.views),
+                RECORDS: _joined(parts.records),
                 BLOCKS: _joined(parts.blocks), BODY: _joined(parts.entities), GROUPED: _joined(parts.grouped),
                 GROUPS: _joined(parts.groups)}  # fmt: skip
         pieces = re.split(f"({'|'.join(map(re.escape, told))})", self.text)

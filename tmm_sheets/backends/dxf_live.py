@@ -5,17 +5,22 @@ from __future__ import annotations
 import re
 from cmath import phase
 from collections.abc import Iterator
+from functools import cache
+from itertools import islice
 from math import cos, degrees, pi, sin
 
-from tmm_sheets.backends.dxf_entities import entity, flat, head, place, short
-from tmm_sheets.backends.dxf_frame import DIMENSION_STYLE, LETTERS, STYLE, DxfFrame, SheetParts, weight
+from tmm_sheets.backends.dxf_entities import entity, flat, head, letter_strokes, place, short
+from tmm_sheets.backends.dxf_frame import COMMON, DIMENSION_STYLE, LETTERS, DxfFrame, SheetParts, weight
 from tmm_sheets.drawing.dashes import interrupted
 from tmm_sheets.drawing.layers import layer
 from tmm_sheets.drawing.lettering import BAR, PEN, advance, glyph, lacking, letter
 from tmm_sheets.drawing.marks import Dimension, Drawing, Form, FormField, Mark, Text
 from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.resources import template
 
 TEXT_LAYER = "TEXT"
+WHOLE = re.compile(r"\S(?:.*\S)?")
+"""Pattern of a text without spaces at its ends."""
 HIDDEN = "60\n1\n"
 """Tags of what is not shown."""
 OWN_BLOCK = 32
@@ -25,10 +30,10 @@ FACTOR = 144
 
 
 class LiveSheet:
-    """Entities, blocks and groups of a drawing; handles are taken from ``handles``."""
+    """Entities, blocks and groups of a drawing with lettering of a text style; handles are taken from ``handles``."""
 
-    def __init__(self, drawing: Drawing, frame: DxfFrame, handles: Iterator[int]) -> None:
-        self.marks, self.frame, self.handles = drawing.marks, frame, handles
+    def __init__(self, drawing: Drawing, frame: DxfFrame, style: str, handles: Iterator[int]) -> None:
+        self.marks, self.frame, self.style, self.handles = drawing.marks, frame, style, handles
         self.parts = SheetParts()
         self.found: dict[int, list[int]] = {}  # handles in model space by the first mark they stand for
         self.places: dict[int, int] = {}  # of the entities with these handles
@@ -67,16 +72,26 @@ class LiveSheet:
             on = layer(mark)
             self.parts.layers.add(on.name)
             if isinstance(mark, Text):
-                if word := mark.text.strip():
-                    start = mark.at + _direction(mark.angle) * advance(mark.text[: mark.text.index(word)], mark.height)
-                    handle = next(self.handles)
-                    made.append((handle, _text(handle, owner, on.name, mark._replace(at=start, text=word))))
+                made += self._text(mark, owner, on.name)
             else:
                 for piece in interrupted(mark):
                     assert not isinstance(piece, Text)
                     handle = next(self.handles)
                     made.append((handle, entity(piece, handle, owner, on.name, dashed=bool(line_type(mark.style).pattern))))
         return made
+
+    def _text(self, mark: Text, owner: str, on: str, more: str = "") -> Iterator[tuple[int, str]]:
+        """A run of letters as TEXT; those that the font of the style has not are drawn."""
+        for part in (lacking_in_common() if self.style == COMMON else WHOLE).finditer(mark.text):
+            at = mark.at + _direction(mark.angle) * advance(mark.text[: part.start()], mark.height)
+            run = mark._replace(at=at, text=part[0])
+            handle = next(self.handles)
+            if part.lastgroup != "drawn":
+                yield handle, _text(handle, owner, on, run, self.style, more)
+            else:
+                taken = [handle, *islice(self.handles, len(glyph(run.text).strokes) - 1)]
+                drawn = letter_strokes([run], owner, on, iter(taken)).split("0\nLWPOLYLINE\n")[1:]
+                yield from zip(taken, (f"0\nLWPOLYLINE\n{stroke}" for stroke in drawn), strict=True)
 
     def _block(self, name: str, flags: int) -> str:
         """Begin a block; returns the handle of its record."""
@@ -125,10 +140,8 @@ class LiveSheet:
         self._add(form.first, [(insert, text)])
         for f in form.fields:
             if value := self._value(f):
-                handle = next(self.handles)
                 left = f.at - _direction(f.angle) * _length(value, f.height) / 2
-                run = Text(left, value, f.height, f.angle)
-                self._add(form.first, [(handle, _text(handle, owner, TEXT_LAYER, run, HIDDEN))])
+                self._add(form.first, list(self._text(Text(left, value, f.height, f.angle), owner, TEXT_LAYER, HIDDEN)))
 
     def _value(self, f: FormField) -> str:
         """What stands in a field."""
@@ -137,7 +150,7 @@ class LiveSheet:
     def _attribute(self, kind: str, f: FormField, owner: str) -> str:
         tag, value = f.name.upper(), self._value(f)
         prompt = f"3\n{f.name.replace('_', ' ')}\n" if kind == "ATTDEF" else ""
-        return (f"0\n{kind}\n5\n{next(self.handles):X}\n{head('AcDbText', owner, TEXT_LAYER)}{_centred(f, value)}"
+        return (f"0\n{kind}\n5\n{next(self.handles):X}\n{head('AcDbText', owner, TEXT_LAYER)}{_centred(f, value, self.style)}"
                 f"100\nAcDb{'AttributeDefinition' if prompt else 'Attribute'}\n280\n0\n{prompt}2\n{tag}\n70\n0\n74\n0\n280\n1\n")
 
     def _group(self, name: str, handles: list[int]) -> None:
@@ -153,6 +166,14 @@ class LiveSheet:
             self.parts.entities[n] = self.parts.entities[n].replace(own, told, 1)
         # Not selectable: a click takes one line, not the view; by its name the group takes all of it.
         self.parts.groups.append(f"0\nGROUP\n5\n{group}\n330\n{self.frame.groups}\n100\nAcDbGroup\n300\n{name}\n70\n0\n71\n0\n{members}")
+
+
+@cache
+def lacking_in_common() -> re.Pattern[str]:
+    """Pattern of the runs of a text between spaces at its ends, each letter that the common font has not as one "drawn"."""
+    text = template(f"fonts/{COMMON}.lff").read_text(encoding="utf-8")
+    known = "".join(re.escape(chr(int(code, 16))) for code in re.findall(r"^\[#?([0-9a-fA-F]+)\]", text, re.M)) + BAR
+    return re.compile(rf"(?P<drawn>[^\s{known}])|[{known}](?:[\s{known}]*[{known}])?")
 
 
 def clean(name: str) -> str:
@@ -208,7 +229,7 @@ def _look(mark_height: float) -> str:
     return "" if pen == weight(line_type("text").width) else f"370\n{pen}\n"
 
 
-def _text(handle: int, owner: str, on: str, mark: Text, more: str = "") -> str:
+def _text(handle: int, owner: str, on: str, mark: Text, style: str, more: str = "") -> str:
     """A run as TEXT from its left end; two letters and more are fitted to their length, whatever the font."""
     if missing := lacking(mark.text):
         raise ValueError(f"the drawing font has no character '{missing[0]}' (U+{ord(missing[0]):04X})")
@@ -216,7 +237,7 @@ def _text(handle: int, owner: str, on: str, mark: Text, more: str = "") -> str:
     fit = f"72\n5\n{flat(11, end)}" if len(mark.text) > 1 else ""
     angle = f"50\n{short(degrees(mark.angle) % 360)}\n" if mark.angle else ""
     return (f"0\nTEXT\n5\n{handle:X}\n{head('AcDbText', owner, on, more + _look(mark.height))}{flat(10, mark.at)}"
-            f"40\n{mark.height:g}\n1\n{_escaped(mark.text)}\n{angle}7\n{STYLE}\n{fit}100\nAcDbText\n")
+            f"40\n{mark.height:g}\n1\n{_escaped(mark.text)}\n{angle}7\n{style}\n{fit}100\nAcDbText\n")
 
 
 def _length(text: str, height: float) -> float:
@@ -227,8 +248,8 @@ def _length(text: str, height: float) -> float:
     return height * (first.right - first.left - PEN) + advance(text[1:], height)
 
 
-def _centred(f: FormField, value: str) -> str:
+def _centred(f: FormField, value: str, style: str) -> str:
     """Tags of lettering about the middle of its baseline; its left end is told too, as a matter of form."""
     left = f.at - _direction(f.angle) * _length(value, f.height) / 2
     angle = f"50\n{short(degrees(f.angle) % 360)}\n" if f.angle else ""
-    return f"{place(10, left)}40\n{f.height:g}\n1\n{_escaped(value)}\n{angle}7\n{STYLE}\n72\n1\n{place(11, f.at)}"
+    return f"{place(10, left)}40\n{f.height:g}\n1\n{_escaped(value)}\n{angle}7\n{style}\n72\n1\n{place(11, f.at)}"
