@@ -8,6 +8,7 @@ import pytest
 
 from tests.few import few
 from tests.project_files import from_file, toml
+from tmm_sheets import catalogue
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import variant
 
@@ -60,6 +61,31 @@ def test_anything_may_be_missing():
 def test_a_number_of_thousands_of_digits():
     with pytest.raises(BadInput, match=r"^big\.toml:2: the number has too many digits$"):
         variant.parse("[project]\nschema = " + "9" * 5000, "big.toml")
+
+
+@pytest.mark.parametrize("text", [
+    "a" + ".a" * 400_000 + " = 1", "[" + "a . 'b' . " * 60_000 + "c]", "x = {" + "a." * 300_000 + "a = 1}",
+    "x = [" + "[" * 300 + "]" * 300 + "]" + "\n" * 1000, "y" * 1_000_001,
+])  # fmt: skip
+def test_what_would_take_the_square_of_its_length(text):
+    (problem,) = answer(text)
+    assert "nested too deeply" in str(problem) or "are no project file" in str(problem)
+
+
+@pytest.mark.parametrize(("key", "much", "field"), [
+    ("positions = 24", "positions = 100000", "cycle.positions"), ("positions = 24", "positions = 700\nturns = 3", "cycle"),
+    ("positions = 24", "positions = 24\nturns = 1000", "cycle.turns"), ('pin = "A"', f'pin = "{"A" * 61}"', "crank.pin"),
+    ('["sixbar_1", "sixbar_2"]', str(["sixbar_1"] * 31), "project.sheets"),
+])  # fmt: skip
+def test_more_than_any_drawing_has(key, much, field):
+    (problem,) = [p for p in answer(catalogue.read("sixbar/1:1").text.replace(key, much)) if p.field == field]
+    assert "expected" in problem.message
+
+
+def test_a_long_value_is_not_told_whole():
+    text = catalogue.read("sixbar/1:1").text
+    for old, new in (('"0.09 m"', f'"{"x" * 100_000}"'), ("[crank]", f"[{'y' * 100_000}]"), ("[crank]", f"[crank]\nz = {'z' * 100_000}")):
+        assert len(str(answer(text.replace(old, new))[0])) < 1500
 
 
 def test_of_thousands_of_mistakes_the_first_are_told():

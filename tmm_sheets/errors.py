@@ -24,6 +24,10 @@ _OF_SYSTEM = (
 """What systems usually say, for the catalogues."""
 
 
+LONGEST = 500
+"""Characters of a message, a key or a hint of a :class:`Problem`."""
+
+
 def reason_of(e: OSError) -> str:
     """Why the system refused, in the reader's words where there are any."""
     return tell((e.strerror or str(e)).lower())
@@ -42,10 +46,19 @@ class Problem:
     field: str = ""
     hint: str = ""
 
+    def __post_init__(self) -> None:
+        for name in ("message", "field", "hint"):
+            object.__setattr__(self, name, _shortened(getattr(self, name)))
+
     def __str__(self) -> str:
         place = self.file + (f":{self.line}" if self.line is not None else "")
         text = ": ".join(part for part in (place, self.field, self.message) if part)
         return f"{text}\n    {self.hint}" if self.hint else text
+
+
+def _shortened(text: str) -> str:
+    """A text without the middle of what is too long to be read: a value that a program wrote is not told whole."""
+    return f"{text[:LONGEST // 2]} … {text[-LONGEST // 4:]}" if len(text) > LONGEST else text
 
 
 class CannotBuild(Exception):

@@ -29,7 +29,7 @@ from tmm_sheets.resources import template
 from tmm_sheets.task import keys
 from tmm_sheets.words import LANGUAGES, tell
 
-AT_ONCE, FRONT, _, BEHIND = (Limits(30, lane=lane) for lane in get_args(Lane))
+AT_ONCE, FRONT, _, BEHIND = (Limits(10 if lane == "at once" else 30, lane=lane) for lane in get_args(Lane))
 LONG = Limits(240, 4_000_000_000, "long")
 JOBS: Mapping[str, tuple[Job, Limits]] = {
     "project": (jobs.project, AT_ONCE), "check": (jobs.check, AT_ONCE), "sheet": (jobs.sheet, FRONT),
@@ -137,6 +137,11 @@ async def _asked(request: Request) -> tuple[dict[str, str], Any, dict[str, Path]
                 else:
                     asked[key] = value
         return asked, folder, files
+    except HTTPException as e:
+        folder.cleanup()
+        if e.status_code != 400:
+            raise
+        raise HTTPException(400, tell("a form is expected, with at most {n} files").format(n=MOST_FILES)) from None
     except BaseException:
         folder.cleanup()
         raise
@@ -150,5 +155,5 @@ def _place(name: str, of_group: bool) -> str:
     if not of_group:
         return f"{compared.NAME}{suffix}" if suffix in COMPARED else f"{compared.NAME}.other"
     if not parts:
-        raise HTTPException(400, tell("a file without a name"))
+        raise HTTPException(422, tell("a file without a name"))
     return "/".join(("group", *parts[1:2], *(parts[2:] and ["-".join(parts[2:])])) if parts[1:] else ("group", parts[0]))

@@ -12,8 +12,10 @@ from typing import NamedTuple
 
 _PAIR = re.compile(r"""(\s*[\w."'-]+\s*=\s*)(["']?[^"'\[\]{}#=]*?["']?)(\s*(?:#.*)?)""")
 _NUMBER = re.compile(r"([+-]?)(\d+(?:[ \u00a0]\d{3})*[.,]?\d*|[.,]\d+)")
-MOST = 50
+MOST = 20
 """Lines that are put right; more are no slips."""
+LONGEST = 50_000
+"""Characters of a text that is put right: it is read anew for each of them, and a person writes no longer one."""
 
 
 class BareValue(NamedTuple):
@@ -45,7 +47,7 @@ class BareValue(NamedTuple):
 def quoted(text: str) -> tuple[str, dict[int, BareValue]]:
     """The text with such values in quotes, and these by their lines; it may still be no TOML for other reasons."""
     found: dict[int, BareValue] = {}
-    while len(found) < MOST:
+    while len(found) < MOST and len(text) < LONGEST:
         try:
             tomllib.loads(text)
         except tomllib.TOMLDecodeError as e:

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from tmm_sheets.task import cam_table, units
 from tmm_sheets.task.values import (
+    MOST_PARTS,
     AcuteAngle,
     Angle,
     CamDiagram,
@@ -33,6 +34,7 @@ from tmm_sheets.task.values import (
     Name,
     Newtons,
     Number,
+    Parts,
     PhaseAngle,
     PositiveNumber,
     Pressure,
@@ -44,6 +46,8 @@ from tmm_sheets.task.values import (
     Start,
     Teeth,
     Torque,
+    TurnParts,
+    Turns,
     WheelName,
     diagram,
     from_to,
@@ -83,7 +87,7 @@ class HeadingTable(Table):
     variant: str = ""
     """the variant of the task, as it stands in `show` and in the results"""
     sheets: tuple[SheetName, ...] | None = Field(
-        default=None, min_length=1, description=marked('the sheets in order, for example ["gear", "cam"]')
+        default=None, min_length=1, max_length=30, description=marked('the sheets in order, 30 at most, for example ["gear", "cam"]')
     )
 
 
@@ -285,11 +289,11 @@ class CycleTable(Table):
     """the point whose strokes count"""
     working_sense: Literal["+x", "-x", "+y", "-y"] | None = None
     """the way of the output on the working stroke"""
-    positions: Annotated[int, whole(4)] | None = None
+    positions: TurnParts | None = None
     """parts of one turn, with a crank angle as `start`"""
-    working: Count | None = None
+    working: Parts | None = None
     """parts of the working stroke, with `start = "dead"`"""
-    idle: Count | None = None
+    idle: Parts | None = None
     """parts of the idle stroke"""
     division: Literal["nominal", "exact"] = "exact"
     """`exact`: positions are counted from the constructed dead positions; `nominal`: the strokes take the crank angles of K, beside
@@ -301,7 +305,7 @@ class CycleTable(Table):
     """label of the position of the force analysis, drawn thick; left out: position 0, or the first that is in no change point"""
     zero: Name = "0"
     """label of position 0, no other's; the number of positions of a turn stands for the last of all `turns`"""
-    turns: Count = 1
+    turns: Turns = 1
     """turns of the crank in a cycle: after so many everything repeats"""
     extra: dict[Name, Angle] = {}
     """further positions by label and angle turned from position 0: `{ "1′" = "22.5 deg" }`"""
@@ -344,6 +348,9 @@ class CycleTable(Table):
             raise ValueError(tell("expected 4 positions or more: positions, or working and idle together"))
         if self.positions is not None and (self.working or self.idle):
             raise ValueError(tell("expected either positions or working and idle, not both"))
+        if (whole := count * self.turns + len(self.extra)) > 2 * MOST_PARTS:
+            raise ValueError(tell("expected {most} positions of a cycle at most, in all turns and extra together, not {count}").format(
+                most=2 * MOST_PARTS, count=whole))
         return self
 
 

@@ -14,6 +14,9 @@ from dataclasses import dataclass, field
 KeyPath = tuple[str | int, ...]
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+DEEPEST = 16
+"""So many keys and places in lists lead to a value at most."""
+_LONG_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){%d}""" % DEEPEST)
 _BARE_VALUE = re.compile(r"[^,\]}\n#]+")
 _STRINGS = (
     re.compile(r'"""(?:\\.|[^\\])*?"{3,5}', re.DOTALL),
@@ -43,8 +46,26 @@ class TomlLines:
         return self.comments.get(self.ends.get(path, 0), "")
 
 
+def check_keys(text: str) -> None:
+    """Refuse keys of more parts than a project file has, before a reader takes the square of their number for them.
+
+    Raises
+    ------
+    RecursionError
+        when there is one.
+    """
+    if _LONG_KEY.search(text):
+        raise RecursionError
+
+
 def scan(text: str) -> TomlLines:
-    """Scan a valid TOML text."""
+    """Scan a valid TOML text.
+
+    Raises
+    ------
+    RecursionError
+        when its tables and lists are nested more deeply than those of a project file.
+    """
     return _Scanner(text.replace("\r\n", "\n")).run()
 
 
@@ -84,6 +105,8 @@ class _Scanner:
                 return
 
     def keep(self, path: KeyPath, line: int) -> None:
+        if len(path) > DEEPEST:
+            raise RecursionError
         for length in range(1, len(path) + 1):
             self.found.lines.setdefault(path[:length], line)
 

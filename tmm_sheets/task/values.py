@@ -64,17 +64,26 @@ MOST = 100_000
 """Greatest count: teeth, positions."""
 
 
-def whole(least: int, most: int = MOST) -> BeforeValidator:
-    """Takes whole numbers from ``least`` to ``most``."""
+MOST_PARTS = 720
+"""Most parts of a turn."""
+
+
+def whole(least: int, most: int = MOST, fewer: str = marked("expected a whole number of {most} or less")) -> BeforeValidator:
+    """Takes whole numbers from ``least`` to ``most``; ``fewer`` says of more what was expected and why."""
 
     def check(value: Any) -> int:
         if isinstance(value, bool) or not isinstance(value, int) or value < least:
             raise ValueError(tell("expected a whole number, {least} or more").format(least=least))
         if value > most:
-            raise ValueError(tell("expected a whole number of {most} or less").format(most=most))
+            raise ValueError(tell(fewer).format(most=most))
         return value
 
     return BeforeValidator(check)
+
+
+def parts(least: int) -> BeforeValidator:
+    """Takes parts of a turn."""
+    return whole(least, MOST_PARTS, marked("expected {most} parts or fewer: half a degree of a turn, no protractor reads less"))
 
 
 def _even_parts(parts: int) -> int:
@@ -141,16 +150,25 @@ Fraction = Annotated[float, si(units.NUMBER), _FRACTION]
 InnerFraction = Annotated[float, si(units.NUMBER), _INNER_FRACTION]
 Teeth = Annotated[int, whole(4)]
 Count = Annotated[int, whole(1)]
+Parts = Annotated[int, parts(1)]
+TurnParts = Annotated[int, parts(4)]
+Turns = Annotated[int, whole(1, 12)]
 EvenParts = Annotated[int, AfterValidator(_even_parts), whole(4)]
 Side = Literal[1, -1]
 CamLaw = Literal["constant", "cosine", "sine", "trapezoid", "linearly decreasing", "table", "displacements"]
 Sense = Literal["clockwise", "counter-clockwise"]
 
 
+LONGEST_NAME = 60
+"""Characters of the longest name."""
+
+
 def _name(value: Any) -> str:
     """Name in quotes."""
     if not isinstance(value, str) or not value.strip():
         raise ValueError(tell('expected a name in quotes, for example "B"'))
+    if len(value) > LONGEST_NAME:
+        raise ValueError(tell("expected a name of {most} characters at most").format(most=LONGEST_NAME))
     return value
 
 

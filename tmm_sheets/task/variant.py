@@ -17,7 +17,7 @@ from pydantic import Field, PrivateAttr, ValidationError
 
 from tmm_sheets import quoting, words
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
-from tmm_sheets.task import synthesis_refs, toml_file, units
+from tmm_sheets.task import synthesis_refs, toml_file, toml_lines, units
 from tmm_sheets.task.bare_values import BareValue, quoted
 from tmm_sheets.task.cam_keys import check_cam
 from tmm_sheets.task.letters import check_letters, freed
@@ -47,7 +47,7 @@ from tmm_sheets.task.schema import (
     TitleBlockTable,
     TrainTable,
 )
-from tmm_sheets.task.toml_lines import KeyPath, TomlLines, scan
+from tmm_sheets.task.toml_lines import KeyPath, TomlLines
 from tmm_sheets.task.values import Coordinate, Name, PositiveNumber
 from tmm_sheets.words import either, marked, tell
 
@@ -222,8 +222,8 @@ class Variant(Table):
 
 
 _SECTIONS = ("flywheel", "gear", "reducer", "train", "cam")
-LARGEST = 20_000_000
-"""Bytes of the largest project file that is read."""
+LARGEST = 1_000_000
+"""Bytes, and characters, of the largest project file that is read: the shipped ones have 8,000 at most."""
 ROOM_OF_GROUPS = 4
 """So many Assur groups have no room on one sheet beside the kinematics: their forces get a sheet of their own."""
 
@@ -255,9 +255,13 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
     BadInput
         naming file, line and key of everything that is wrong.
     """
+    if len(text) > LARGEST:
+        raise BadInput(Problem(tell("{n} characters are no project file: expected {most} at most").format(n=len(text), most=LARGEST), file))
     try:
+        toml_lines.check_keys(text)
         readable, bare = quoted(text)
         data = tomllib.loads(readable)
+        lines = toml_lines.scan(readable)
     except tomllib.TOMLDecodeError as e:
         raise BadInput([*(_of_bare(one, file) for one in bare.values()), toml_file.syntax(str(e), readable, file)]) from None
     except ValueError:  # Python reads no whole number of more than 4300 digits
@@ -265,7 +269,6 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
         raise BadInput(Problem(tell("the number has too many digits"), file, line)) from None
     except RecursionError:
         raise BadInput(Problem(tell("lists or tables are nested too deeply"), file)) from None
-    lines = scan(readable)
     data, found = _with_synthesis(_with_cycle(freed(data)), file)
     problems = [toml_file.problem(file, lines, *one) for one in found]
     variant = None
