@@ -255,7 +255,8 @@ def test_a_hostile_drawing_ends_in_a_message(client, name, data):
 
 
 @pytest.mark.parametrize("text", [
-    "a = " + "[" * 100_000, "\n".join(f"a.b{i} = 1" for i in range(100_000)), "a" + ".a" * 400_000 + " = 1", "schema = 1\n" + "x = {" * 5000, '"' * 100_000, "\x00", "",
+    "a = " + "[" * 100_000, "\n".join(f"a.b{i} = 1" for i in range(100_000)), "a" + ".a" * 400_000 + " = 1",
+    "schema = 1\n" + "x = {" * 5000, '"' * 100_000, "\x00", "",
 ])  # fmt: skip
 def test_a_hostile_file_has_mistakes(client, text):
     _, told = asked(client, "check", text=text)

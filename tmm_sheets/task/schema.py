@@ -87,7 +87,8 @@ class HeadingTable(Table):
     variant: str = ""
     """the variant of the task, as it stands in `show` and in the results"""
     sheets: tuple[SheetName, ...] | None = Field(
-        default=None, min_length=1, max_length=30, description=marked('the sheets in order, 30 at most, for example ["gear", "cam"]')
+        default=None, min_length=1, max_length=30,
+        description=marked('the sheets in order, 30 at most, for example ["gear", "cam"]'),
     )
 
 
@@ -349,8 +350,8 @@ class CycleTable(Table):
         if self.positions is not None and (self.working or self.idle):
             raise ValueError(tell("expected either positions or working and idle, not both"))
         if (whole := count * self.turns + len(self.extra)) > 2 * MOST_PARTS:
-            raise ValueError(tell("expected {most} positions of a cycle at most, in all turns and extra together, not {count}").format(
-                most=2 * MOST_PARTS, count=whole))
+            said = tell("expected {most} positions of a cycle at most, in all turns and extra together, not {count}")
+            raise ValueError(said.format(most=2 * MOST_PARTS, count=whole))
         return self
 
 

@@ -256,7 +256,8 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
         naming file, line and key of everything that is wrong.
     """
     if len(text) > LARGEST:
-        raise BadInput(Problem(tell("{n} characters are no project file: expected {most} at most").format(n=len(text), most=LARGEST), file))
+        raise BadInput(Problem(tell("{n} characters are no project file: expected {most} at most").format(
+            n=len(text), most=LARGEST), file))
     try:
         toml_lines.check_keys(text)
         readable, bare = quoted(text)
