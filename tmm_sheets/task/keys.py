@@ -136,7 +136,8 @@ def restricted(base: Any, validators: tuple[Any, ...]) -> str:
         elif "quantity" in given and not any(isinstance(o, AfterValidator) for o in validators):
             said.append(tell(given["quantity"].name))
         elif "least" in given:
-            wording = marked("whole number, {least} or more") if given["most"] == MOST else marked("whole number from {least} to {most}")
+            few, many = marked("whole number from {least} to {most}"), marked("whole number, {least} or more")
+            wording = many if given["most"] == MOST else few
             said.append(tell(wording).format(least=given["least"], most=given["most"]))
     said = list(dict.fromkeys(said))
     return ", ".join(reversed(said[:1] if len(said) == 2 and said[1] == tell("name in quotes") else said))
