@@ -72,8 +72,8 @@ Counts = dict[str, dict[str, dict[str, int]]]
 def watch() -> Callable[[], dict[str, int]]:
     """Wrap what is to be counted; gives what tells the counts."""
     from tmm_sheets.construction.step import Step
-    from tmm_sheets.drawing.axis_numbers import _Sheet
-    from tmm_sheets.drawing.labels import Grid
+    from tmm_sheets.drawing.cells import Cells
+    from tmm_sheets.drawing.ink_index import InkIndex
     from tmm_sheets.sheets import composing
 
     steps: list[Step] = []
@@ -97,10 +97,10 @@ def watch() -> Callable[[], dict[str, int]]:
 
     after(Step, "__init__", lambda step, *_, **__: steps.append(step))
     after(composing, "composed", count("composed"))
-    after(Grid, "__init__", count("grids"))
-    after(Grid, "under", count("places", lambda _, __, sides: sides.shape[1]))
-    after(Grid, "covered", count("places", lambda _, x0, y0, *__: len(x0) * len(y0)))
-    after(_Sheet, "clear", count("places", lambda _, places, __: len(places)))
+    after(Cells, "__init__", count("grids"))
+    after(Cells, "under", count("places", lambda _, sides: sides.shape[1]))
+    after(Cells, "lattice", count("places", lambda _, x0, y0, *__: len(x0) * len(y0)))
+    after(InkIndex, "struck", count("places", lambda _, boxes, __: len(boxes)))
     return lambda: {"made": len(steps), "evaluated": sum(step.evaluated for step in steps), **found}
 
 

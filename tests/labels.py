@@ -28,6 +28,7 @@ from tmm_sheets.drawing.canvas import Label
 from tmm_sheets.drawing.dashes import strokes
 from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.drawing.yielding import STAYS
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
@@ -75,8 +76,8 @@ def judged(project, n):
             composed = sheet.composed(project, n)
     finally:
         placing._draw = original
-    ink = ink_index.Ink([m for n, m in enumerate(composed.drawing.marks[: composed.parts[-1].first]) if n not in windows])
-    corners = [placing.text_box(m) for m in composed.drawing.marks[: composed.parts[-1].first] if isinstance(m, Text)]
+    ink = ink_index.InkIndex([m for n, m in enumerate(composed.drawing.marks[: composed.parts[-1].first]) if n not in windows])
+    corners = [text_box(m) for m in composed.drawing.marks[: composed.parts[-1].first] if isinstance(m, Text)]
     written = np.array([(z.real.min(), z.imag.min(), z.real.max(), z.imag.max()) for z in corners]).reshape(-1, 4)
     widths = [line_type(m.style).width if hasattr(m, "style") else 0.0 for m in ink.marks]
     faults = []
@@ -98,7 +99,7 @@ def judged(project, n):
 def crossings(drawing):
     """Lines that cross the ink of level letters: what is lettered, the style of the line, and where."""
     marks = list(strokes(drawing.marks))
-    ink = ink_index.Ink(marks)
+    ink = ink_index.InkIndex(marks)
     found = []
     for text in marks:
         drawn = lettering.strokes(text.text, text.height) if isinstance(text, Text) and abs(np.sin(2 * text.angle)) < 0.01 else []

@@ -17,9 +17,9 @@ from tmm_sheets.backends import dxf
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.dashes import interrupted
-from tmm_sheets.drawing.labels import place
 from tmm_sheets.drawing.lettering import glyph
 from tmm_sheets.drawing.marks import Arc, Drawing, Form, FormField, Line, Polyline, Text, View
+from tmm_sheets.drawing.placing import place
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.drawing.title_block import draw_frame
 from tmm_sheets.project import Project

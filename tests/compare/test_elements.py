@@ -10,8 +10,8 @@ from tmm_sheets.compare.elements import dashed, elements, said, sampled, views
 from tmm_sheets.compare.known_sheet import known_sheet
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
 from tmm_sheets.drawing.dashes import strokes
-from tmm_sheets.drawing.labels import place
 from tmm_sheets.drawing.marks import Drawing, Fill, Text
+from tmm_sheets.drawing.placing import place
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.composed import Composed
 from tmm_sheets.sheets.composing import _views

@@ -5,9 +5,9 @@ import pytest
 
 from tmm_sheets.drawing import axis_numbers
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.ink_index import Ink, enters
-from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.ink_index import InkIndex, enters
 from tmm_sheets.drawing.marks import Text
+from tmm_sheets.drawing.text_boxes import text_box
 
 PITCH = 12.0
 
@@ -31,7 +31,7 @@ def texts(canvas):
 
 
 def struck(canvas):
-    ink, found = Ink(canvas.marks), []
+    ink, found = InkIndex(canvas.marks), []
     for name, mark in texts(canvas).items():
         z = text_box(mark)
         if enters(ink.a, ink.b - ink.a, z.real.min(), mark.at.imag, z.real.max(), z.imag.max()).any():
@@ -42,7 +42,7 @@ def struck(canvas):
 def test_what_stands_clear_stays():
     canvas = graph((-20j, 90 - 20j))
     before = list(canvas.marks)
-    axis_numbers.clear(canvas)
+    axis_numbers.clear(canvas, InkIndex(canvas.marks))
     assert canvas.marks == before
 
 
@@ -56,20 +56,20 @@ def test_what_stands_clear_stays():
 def test_numbers_make_way_for_lines(lines):
     canvas = graph(*lines)
     assert struck(canvas)
-    axis_numbers.clear(canvas)
+    axis_numbers.clear(canvas, InkIndex(canvas.marks))
     assert not struck(canvas)
 
 
 def test_numbers_of_one_axis_stay_on_one_level():
     canvas = graph((-3j, 90 - 3j))
-    axis_numbers.clear(canvas)
+    axis_numbers.clear(canvas, InkIndex(canvas.marks))
     levels = {m.at.imag for name, m in texts(canvas).items() if name != "0"}
     assert len(levels) == 1
 
 
 def test_a_number_stays_nearest_to_its_own_position():
     canvas = graph(*[(PITCH * k + 30j, PITCH * k - 30j) for k in range(7)])
-    axis_numbers.clear(canvas)
+    axis_numbers.clear(canvas, InkIndex(canvas.marks))
     for name, mark in texts(canvas).items():
         z = text_box(mark)
         middle = (z.real.min() + z.real.max()) / 2
@@ -79,7 +79,7 @@ def test_a_number_stays_nearest_to_its_own_position():
 def test_numbers_keep_clear_of_other_lettering():
     canvas = graph((-3j, 90 - 3j))
     canvas.text(30 + 1.5j, "H = 40", 3.5)
-    axis_numbers.clear(canvas)
+    axis_numbers.clear(canvas, InkIndex(canvas.marks))
     boxes = [text_box(m) for m in canvas.marks if isinstance(m, Text)]
     for i, a in enumerate(boxes):
         for b in boxes[:i]:

@@ -2,16 +2,16 @@
 
 import pytest
 
-from tmm_sheets.drawing import notes
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Text
+from tmm_sheets.drawing.placing import place
 
 FIELD = Box(0.0, 0.0, 400.0, 300.0)
 
 
 def placed(canvas):
     first = len(canvas.marks)
-    crowded = notes.place(canvas, FIELD)
+    crowded = place(canvas, FIELD)
     return crowded, next(mark.at for mark in canvas.marks[first:] if isinstance(mark, Text))
 
 

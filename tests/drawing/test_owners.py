@@ -8,6 +8,8 @@ from tmm_sheets import catalogue
 from tmm_sheets.drawing import ink_index, labels, owners
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.marks import Box, Line, Provenance, Text
+from tmm_sheets.drawing.placing import place
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.project import Project
 
 A, B = Provenance("vector", "plan/a", "1", 0), Provenance("vector", "plan/b", "1", 0)
@@ -17,14 +19,12 @@ LINES = [Line(0j, 60 + 0j, "vector", by=A), Line(10j, 60 + 10j, "vector", by=B)]
 
 def expecting(count, area, marks):
     """A grid of some marks to which so many labels are to come."""
-    grid = labels.Grid(area, marks)
-    grid.expect(count)
-    return grid
+    return labels.Grid(ink_index.InkIndex(marks, area), count)
 
 
 def reads(box, marks=LINES, anchor=30 + 0j, by=A):
     label = Label(anchor, "x", 3.5, by=by)
-    return owners.Round(ink_index.Ink(marks), label, 60.0).reads(Box(*box))
+    return owners.Round(ink_index.InkIndex(marks), label, 60.0).reads(Box(*box))
 
 
 @pytest.mark.parametrize(("box", "said"), [
@@ -51,14 +51,14 @@ def test_a_symbol_about_the_anchor_is_its_own():
     canvas.circle(0j, 1.5, "main")
     canvas.line(3j - 30, 3j + 30)
     label = Label(0j, "A", 5.0, gap=2.5)
-    here = owners.Round(ink_index.Ink(canvas.marks), label, 60.0)
+    here = owners.Round(ink_index.InkIndex(canvas.marks), label, 60.0)
     assert here.reads(Box(2.2, -3, 6, 2)) == ""
     assert here.reads(Box(-2, 4, 2, 8)) == "crossed"
 
 
 def test_the_leader_of_another_label_from_the_same_point_is_foreign():
     """A second letter beside the leader of the first is read as its letter, not the point's."""
-    ink, label = ink_index.Ink([Line(0j, 40 + 0j, "main")]), Label(0j, "D", 5.0)
+    ink, label = ink_index.InkIndex([Line(0j, 40 + 0j, "main")]), Label(0j, "D", 5.0)
     beside = Box(-9.0, -9.0, -5.5, -5.0)
     assert owners.Round(ink, label, 60.0).reads(beside) == ""
     ink.lead([0j], [-10 - 10j])
@@ -73,21 +73,21 @@ def test_vectors_on_one_line_are_named_together():
 
 def test_no_lines_at_all_and_a_leader_that_is_added():
     assert reads((28, 1, 32, 4), []) == ""
-    ink = ink_index.Ink(LINES)
+    ink = ink_index.InkIndex(LINES)
     ink.lead([30 + 5j], [30 + 1.2j])
     here = owners.Round(ink, Label(40 + 0j, "x", 3.5, by=A), 60.0)
     assert here.reads(Box(31, 1.3, 35, 4.3)) == "nearer"
 
 
 def test_a_leader_runs_along_no_line_and_crosses_no_strong_one():
-    here = owners.Round(ink_index.Ink(LINES), Label(30 + 0j, "x", 3.5, by=A), 60.0)
+    here = owners.Round(ink_index.InkIndex(LINES), Label(30 + 0j, "x", 3.5, by=A), 60.0)
     assert here.met(30 + 0j, 34 - 8j) == 0
     assert here.met(30 + 0j, 40 + 0.5j) == 1
     assert here.met(30 + 0j, 32 + 12j) == 1
 
 
 def test_a_leader_crosses_no_other_leader():
-    ink = ink_index.Ink(LINES)
+    ink = ink_index.InkIndex(LINES)
     ink.lead([28 - 3j, 28 + 3j], [36 - 3j, 26 + 3j])
     here = owners.Round(ink, Label(30 + 0j, "x", 3.5, by=A), 60.0)
     assert here.met(30 + 0j, 34 - 8j) == owners.LED
@@ -104,7 +104,7 @@ def hemmed(texts):
         canvas.text(at, text, 2.5)
     canvas.label(150 + 100j, "s", 1, 3.5)
     first = len(canvas.marks)
-    assert labels.place(canvas, Box(0, 0, 300, 200)) == []
+    assert place(canvas, Box(0, 0, 300, 200)) == []
     return canvas.marks[first:]
 
 
@@ -135,7 +135,7 @@ def test_the_letter_of_an_arm_moves_along_it_and_that_of_a_point_does_not(by, mo
     canvas = Canvas()
     with canvas.traced("construction", "plan/h", "1", 0):
         canvas.line(100 + 100j, 180 + 100j)
-    ink, label = ink_index.Ink(canvas.marks), Label(140 + 100j, "h", 2.5, by=Provenance(by, "plan/h", "1", 0))
+    ink, label = ink_index.InkIndex(canvas.marks), Label(140 + 100j, "h", 2.5, by=Provenance(by, "plan/h", "1", 0))
     assert bool(owners.Round(ink, label, 60.0).along()) is moves
 
 
@@ -145,13 +145,13 @@ def test_a_label_takes_another_place_that_leaves_room_for_the_other(room):
     canvas.label(100 + 100j, "1", 1j, 3.5)
     canvas.label(104 + 100j, "1000", 1j, 3.5)
     marks = [] if room else [Line(complex(60, y), complex(150, y), "main") for y in range(60, 160, 2)]
-    grid, ink = expecting(2, Box(0, 0, 300, 200), marks), ink_index.Ink(marks)
+    grid = expecting(2, Box(0, 0, 300, 200), marks)
     found = [(canvas.labels[0], Box(119, 120, 121, 123.5), True), (canvas.labels[1], Box(78, 120, 87, 123.5), True)]
     for k, (label, box, _) in enumerate(found):
-        grid.put(ink, k, label, box)
+        grid.put(k, label, box)
     before = list(found)
     assert grid.ill(0) == 1
-    assert labels._made_room(grid, ink, canvas.labels, found, 0, 1) is room
+    assert labels._made_room(grid, canvas.labels, found, 0, 1) is room
     assert (found == before) is not room
     assert grid.ill(0) == (0 if room else 1)
 
@@ -163,8 +163,8 @@ def test_letters_of_two_things_are_not_read_as_one_word():
     canvas.label(100 + 100j, "7", 0.2, 3.5, 0.5)
     canvas.label(100 + 100j, "8", -1, 3.5, 0.5)
     first = len(canvas.marks)
-    assert labels.place(canvas, Box(0, 0, 300, 200)) == []
-    boxes = [labels.text_box(mark) for mark in canvas.marks[first:]]
+    assert place(canvas, Box(0, 0, 300, 200)) == []
+    boxes = [text_box(mark) for mark in canvas.marks[first:]]
     for z, other in ((boxes[0], boxes[1]), (boxes[1], boxes[0])):
         level = z.imag.min() < other.imag.max() and other.imag.min() < z.imag.max()
         assert not level or abs(z.real.mean() - other.real.mean()) > 3.5
@@ -177,7 +177,7 @@ def test_a_label_with_a_shelf_stands_on_it_and_is_led_from_the_edge_of_what_it_n
     canvas.marks += lines
     canvas.label(150 + 100j, "I", 1 + 1j, 5.0, 5.0, shelf=3.0)
     first = len(canvas.marks)
-    assert labels.place(canvas, Box(0, 0, 300, 200)) == []
+    assert place(canvas, Box(0, 0, 300, 200)) == []
     text, leader, shelf = canvas.marks[first:]
     assert abs(leader.a - (150 + 100j)) == pytest.approx(3.0)
     assert leader.b in (shelf.a, shelf.b)
@@ -194,7 +194,7 @@ def test_the_letter_moves_along_its_vector_before_it_gets_a_leader():
     with canvas.traced("text", "plan/a", "1", 0):
         canvas.label(140 + 100j, "a", 1j)
     first = len(canvas.marks)
-    assert labels.place(canvas, Box(0, 0, 300, 200)) == []
+    assert place(canvas, Box(0, 0, 300, 200)) == []
     (text,) = canvas.marks[first:]
     assert isinstance(text, Text)
     assert abs(text.at.imag - 100) < 8
@@ -216,17 +216,17 @@ def test_leaders_that_cross_change_places():
     for x in (100, 104):
         canvas.label(complex(x, 100), "12", 1j, 3.5)
     left, right = Box(80, 120, 86, 123.5), Box(118, 120, 124, 123.5)
-    grid, ink = expecting(2, Box(0, 0, 300, 200), []), ink_index.Ink([])
+    grid = expecting(2, Box(0, 0, 300, 200), [])
     found = [(canvas.labels[0], right, True), (canvas.labels[1], left, True)]
     for k, (label, box, _) in enumerate(found):
-        grid.put(ink, k, label, box)
+        grid.put(k, label, box)
     assert grid.ill(0) == grid.ill(1) == 1
     assert grid.met(0) == [1]
-    assert labels._exchanged(grid, ink, found, 0, 1)
+    assert labels._exchanged(grid, found, 0, 1)
     assert (found[0][1].centre, found[1][1].centre) == (left.centre, right.centre)
     assert grid.ill(0) == grid.ill(1) == 0
     # Once they stand well they are left alone.
-    assert not labels._exchanged(grid, ink, found, 0, 1)
+    assert not labels._exchanged(grid, found, 0, 1)
     assert found[0][1].centre == left.centre
 
 
@@ -235,12 +235,12 @@ def test_labels_change_places_only_where_both_have_room():
     canvas.label(100 + 100j, "1", 1j, 3.5)
     canvas.label(104 + 100j, "1000", 1j, 3.5)
     canvas.line(123 + 110j, 123 + 130j, "main")  # beside the short one: the long one has no room there
-    grid, ink = expecting(2, Box(0, 0, 300, 200), canvas.marks), ink_index.Ink(canvas.marks)
+    grid = expecting(2, Box(0, 0, 300, 200), canvas.marks)
     found = [(canvas.labels[0], Box(119, 120, 121, 123.5), True), (canvas.labels[1], Box(78, 120, 87, 123.5), True)]
     for k, (label, box, _) in enumerate(found):
-        grid.put(ink, k, label, box)
+        grid.put(k, label, box)
     before = list(found)
-    assert not labels._exchanged(grid, ink, found, 0, 1)
+    assert not labels._exchanged(grid, found, 0, 1)
     assert found == before
 
 
@@ -249,9 +249,9 @@ def test_a_label_keeps_to_the_place_of_its_view():
     canvas = Canvas()
     canvas.begin(Box(0, 0, 110, 200))
     canvas.label(106 + 100j, "abc", 1, 3.5)
-    assert labels.place(canvas, Box(0, 0, 300, 200)) == []
+    assert place(canvas, Box(0, 0, 300, 200)) == []
     (text,) = (mark for mark in canvas.marks if isinstance(mark, Text))
-    assert labels.text_box(text).real.max() <= 110
+    assert text_box(text).real.max() <= 110
 
 
 def test_a_window_parts_no_label_from_what_it_names():
@@ -271,8 +271,8 @@ def test_a_window_parts_no_label_from_what_it_names():
     (2.0, 80 + 66j, 1),  # through the letters
 ])  # fmt: skip
 def test_the_shelf_of_a_name_is_part_of_it(shelf, end, ill):
-    grid, ink = expecting(2, Box(0.0, 0.0, 100.0, 100.0), []), ink_index.Ink([])
-    grid.put(ink, 0, Label(65 + 80j, "II", 5.0, shelf=shelf), Box(60.0, 60.0, 70.0, 65.0))
-    grid.put(ink, 1, Label(50 + 58j, "3, 4", 2.5), Box(end.real, end.imag, end.real + 5, end.imag + 2.5))
+    grid = expecting(2, Box(0.0, 0.0, 100.0, 100.0), [])
+    grid.put(0, Label(65 + 80j, "II", 5.0, shelf=shelf), Box(60.0, 60.0, 70.0, 65.0))
+    grid.put(1, Label(50 + 58j, "3, 4", 2.5), Box(end.real, end.imag, end.real + 5, end.imag + 2.5))
     assert min(grid.ill(1), 1) == ill
     assert (0 in grid.met(1)) is bool(ill)

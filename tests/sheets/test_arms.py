@@ -81,7 +81,7 @@ def test_an_arm_among_those_of_a_sum_is_known_by_its_name():
     """All arms about a point come from one sum: the letter of one is no letter of the next."""
     first, second = (Line(0j, z, "thin", by=Provenance("construction", "moments/ΣM", "2", 0, name))
                      for z, name in ((20 + 0j, "hG2"), (20j, "hG3")))
-    ink = ink_index.Ink([first, second])
+    ink = ink_index.InkIndex([first, second])
     assert ink.of_step(Provenance("text", "moments/ΣM", "2", 0, "hG2")) == [0]
     assert ink.of_step(Provenance("text", "moments/ΣM", "2", 0, "hG4")) == [0, 1]  # no line of this name
     assert ink.of_step(Provenance("text", "moments/ΣM", "2", 0)) == [0, 1]

@@ -6,8 +6,8 @@ import pytest
 
 from tests.few import few
 from tests.project_files import project
-from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Text
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.sheets.cams import cam_scale
 from tmm_sheets.sheets.sheet import composed
 

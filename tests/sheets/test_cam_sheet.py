@@ -11,9 +11,10 @@ from tests.few import few
 from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.evenness import dense
-from tmm_sheets.drawing.labels import place, text_box
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Box, Line, Polyline, Text, flat
+from tmm_sheets.drawing.placing import place
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.methods.cams.cam_profile import DIAGRAMS, cam
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.cams.cam import HEADS

@@ -15,10 +15,10 @@ from tmm_sheets.__main__ import run
 from tmm_sheets.construction import condition, rules
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import value_of
-from tmm_sheets.drawing import notes
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Box, Fill, Text, flat
+from tmm_sheets.drawing.placing import place
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import composition, sheet
 from tmm_sheets.sheets.components import flat_crossings
@@ -288,13 +288,13 @@ def test_notes_go_beside_a_full_view_and_are_told_when_nothing_is_free():
     for y in range(10, 41):
         canvas.line(complex(10, y), complex(60, y))
     canvas.note(view, "нельзя провести точнее 2,3 мм")
-    assert notes.place(canvas, Box(0, 0, 200, 60)) == []
+    assert place(canvas, Box(0, 0, 200, 60)) == []
     letters = [m for m in canvas.marks if isinstance(m, Text)]
     assert letters
     assert all(m.at.real > 60 or m.at.imag > 40 or m.at.imag < 10 for m in letters)
     count = len(canvas.marks)
     canvas.note(view, "нельзя провести точнее 2,3 мм")
-    (crowded,) = notes.place(canvas, Box(10, 10, 60, 40))
+    (crowded,) = place(canvas, Box(10, 10, 60, 40))
     assert crowded.text == "нельзя провести точнее 2,3 мм"
     assert len(canvas.marks) == count
     assert not canvas.notes

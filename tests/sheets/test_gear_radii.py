@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tmm_sheets import catalogue
-from tmm_sheets.drawing.ink_index import Ink, enters
-from tmm_sheets.drawing.labels import text_box
+from tmm_sheets.drawing.ink_index import InkIndex, enters
 from tmm_sheets.drawing.marks import Text
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 
@@ -21,7 +21,7 @@ def test_names_of_circles_stand_clear_of_all_lines(name):
     sheet = composed(Project(catalogue.read(name)), 3)
     picture = next(n for n, part in enumerate(sheet.parts) if part.draw == "gear.engagement" and part.headed)
     marks, box = sheet.drawing.marks, sheet.parts[picture].box
-    ink = Ink(marks)
+    ink = InkIndex(marks)
     found = set()
     for group in sheet.groups:
         runs = [m for m in marks[group.first:group.end] if isinstance(m, Text)]

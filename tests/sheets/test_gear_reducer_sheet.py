@@ -10,8 +10,9 @@ import pytest
 
 from tests.methods.gears import reducer_cases as cases
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.labels import place, text_box
 from tmm_sheets.drawing.marks import Arc, Box, Line, Polyline, Text, flat
+from tmm_sheets.drawing.placing import place
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.methods.gears.gear_pair import gear_pair, settled
 from tmm_sheets.methods.gears.reducer import reducer
 from tmm_sheets.resources import template

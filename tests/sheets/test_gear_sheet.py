@@ -11,8 +11,9 @@ import pytest
 
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.labels import place, text_box
 from tmm_sheets.drawing.marks import Box, Polyline, Text, flat
+from tmm_sheets.drawing.placing import place
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.methods.gears.gear_pair import gear_pair
 from tmm_sheets.numbers import fixed
 from tmm_sheets.project import Project

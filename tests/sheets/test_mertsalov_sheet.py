@@ -14,8 +14,8 @@ from tests.methods.flywheel.press_truth import OMEGA, inertia
 from tests.methods.linkage.shaper_truth import Shaper
 from tmm_sheets import catalogue
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.chosen import flywheel
 from tmm_sheets.project import Project

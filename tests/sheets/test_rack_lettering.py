@@ -6,8 +6,8 @@ from tests import project_files as files
 from tests.few import seldom
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.clipping import polyline_inside
-from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Text, flat
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.words import on_paper
 

@@ -9,8 +9,8 @@ from tests.few import seldom
 from tmm_sheets import kept
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Box, Line, Text
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.linkage import kinematics
 from tmm_sheets.sheets.sheet import composed

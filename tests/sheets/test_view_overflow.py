@@ -11,10 +11,9 @@ from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
-from tmm_sheets.drawing import notes
 from tmm_sheets.drawing.canvas import Canvas, Label
-from tmm_sheets.drawing.labels import place
 from tmm_sheets.drawing.marks import Text, flat
+from tmm_sheets.drawing.placing import place
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import composing as sheets
 from tmm_sheets.sheets.arrangement import arrangement
@@ -182,6 +181,6 @@ def test_a_note_that_has_no_room_in_its_view_stands_on_free_paper_and_is_no_faul
         canvas.line(complex(202.0, y), complex(228.0, y))
     canvas.note(box, "point e cannot be found better than to 2.6 mm")
     canvas.begin(INSIDE, "", "labels")
-    assert not notes.place(canvas, INSIDE)
+    assert not place(canvas, INSIDE)
     assert any(isinstance(mark, Text) and not box.contains(mark.at) for mark in canvas.marks)
     assert leaving(canvas, INSIDE, TITLE_BLOCK) == []

@@ -26,9 +26,9 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.drawing import dashes
 from tmm_sheets.drawing.canvas import MarkGroup
-from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Provenance, Role, Text, View
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.sheets.composed import Composed
 
 Kind = Literal["line", "arc", "circle", "curve", "text", "hatch", "fill"]

@@ -15,12 +15,10 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.drawing.canvas import SMALLEST, AxisNumber, Canvas
-from tmm_sheets.drawing.ink_index import STRONG, Ink, distance, enters
-from tmm_sheets.drawing.labels import bounds_of, text_boxes
+from tmm_sheets.drawing.ink_index import WORSE, InkIndex, distance, enters
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box, Fill, Text
+from tmm_sheets.drawing.marks import Box, Text
 from tmm_sheets.drawing.owners import AT
-from tmm_sheets.drawing.styles import line_type
 
 TOUCH, CLEAR = 0.1, 0.4
 """Distance from the edge of a line below which a number is struck, and which it is given when it is set again, mm."""
@@ -35,8 +33,6 @@ ASIDE, ACROSS, ALIKE, SMALL, STRAY = 0.35, 2.5, 3.0, 4.0, 12.0
 letters, nearer to a neighbour's point than to one's own, all in millimetres of distance from the axis."""
 RIGHT_AT, FOREIGN = 0.5, 0.9
 """Distance of a number from the line it names, and the least one of any other line, mm."""
-HEAVY = 10
-"""A strong line through a number, where nothing is clear, is as bad as so many thin ones."""
 
 Level = tuple[float, float]
 """Distance from the axis, negative under it, and height of the letters, mm."""
@@ -51,78 +47,42 @@ class _Place(NamedTuple):
     box: Box
 
 
-class _Sheet:
-    """What is drawn: lines with half their widths, lettering as rectangles (x0, y0, x1, y1; shape (n, 4)) by its marks."""
+class _Numbers:
+    """Numbers among what is drawn on a sheet."""
 
-    def __init__(self, canvas: Canvas) -> None:
-        self.canvas = canvas
-        self.ink = Ink(canvas.marks)
-        self.half = np.array([0.0 if isinstance(m, Fill | Text) else line_type(m.style).width / 2 for m in canvas.marks])
-        self.weight = np.where([getattr(m, "style", "") in STRONG for m in canvas.marks], HEAVY, 1)
-        self.written = np.full((len(canvas.marks), 4), np.nan)
-        texts = [n for n, mark in enumerate(canvas.marks) if isinstance(mark, Text)]
-        self.written[texts] = bounds_of(text_boxes([mark for mark in canvas.marks if isinstance(mark, Text)]))
-
-    def struck(self, box: Box, apart: float) -> int:
-        """How many lines come nearer than ``apart`` to a rectangle; strong ones count more."""
-        near = self.ink.near(box, 2.0)
-        away = apart + self.half[self.ink.of[near]]
-        a, b = self.ink.a[near], self.ink.b[near]
-        met = near[enters(a, b - a, box.x0 - away, box.y0 - away, box.x1 + away, box.y1 + away)]
-        return int(self.weight[np.unique(self.ink.of[met])].sum())
+    def __init__(self, canvas: Canvas, ink: InkIndex) -> None:
+        self.canvas, self.ink = canvas, ink
 
     def clear(self, places: Sequence[_Place], apart: float) -> list[_Place]:
         """Those of some places that no line comes nearer to than ``apart``."""
-        if not places:
-            return []
-        x0, y0, x1, y1 = np.array([place.box for place in places]).T
-        near = self.ink.near(Box(x0.min(), y0.min(), x1.max(), y1.max()), 2.0)
-        away = apart + self.half[self.ink.of[near]]
-        a, b = self.ink.a[near], self.ink.b[near]
-        met = enters(a, b - a, x0[:, None] - away, y0[:, None] - away, x1[:, None] + away, y1[:, None] + away)
-        return [places[k] for k in np.flatnonzero(~np.asarray(met.any(axis=1))).tolist()]
-
-    def plainly(self, box: Box, at: complex) -> bool:
-        """Whether no line but those through a point comes near a rectangle beside it, nor runs through it, nor other lettering."""
-        near = self.ink.near(box, 3.0)
-        a, b, half = self.ink.a[near], self.ink.b[near], self.half[self.ink.of[near]]
-        away = half + np.where(distance(a, b, at) <= AT, TOUCH, FOREIGN)
-        x0, y0, x1, y1 = self.written.T
-        free = not ((x0 < box.x1 + ROWS) & (x1 > box.x0 - ROWS) & (y0 < box.y1 + ROWS) & (y1 > box.y0 - ROWS)).any()
-        return free and not enters(a, b - a, box.x0 - away, box.y0 - away, box.x1 + away, box.y1 + away).any()
+        struck = self.ink.struck(np.array([place.box for place in places]), apart)
+        return [places[k] for k in np.flatnonzero(struck == 0).tolist()]
 
     def crowded(self, number: AxisNumber, box: Box) -> bool:
         """Whether other lettering stands too near to a rectangle."""
-        x0, y0, x1, y1 = self.written.T
-        beside = (x0 < box.x1 + WORD) & (x1 > box.x0 - WORD) & (y0 < box.y1 + ROWS) & (y1 > box.y0 - ROWS)
-        beside[number.mark] = False
-        return bool(beside.any())
+        return any(self.ink.texts[row] != number.mark for row in self.ink.lettering(box, WORD, ROWS).tolist())
 
-    def wrong(self, number: AxisNumber, place: _Place) -> int:
-        """How much is wrong with a place that is not clear."""
-        return self.struck(place.box, TOUCH) + HEAVY * self.crowded(number, place.box)
+    def wrong(self, number: AxisNumber, box: Box) -> int:
+        """How much is wrong with a place."""
+        return int(self.ink.struck(np.array([box]), TOUCH)[0]) + WORSE * self.crowded(number, box)
 
     def ill(self, number: AxisNumber) -> bool:
         """Whether a number had better stand elsewhere."""
         mark = self.canvas.marks[number.mark]
-        box = _figures(number, mark.at, mark.height) if isinstance(mark, Text) else None
-        return box is not None and (bool(self.struck(box, TOUCH)) or self.crowded(number, box))
+        return isinstance(mark, Text) and bool(self.wrong(number, _figures(number, mark.at, mark.height)))
 
     def move(self, number: AxisNumber, place: _Place | None) -> None:
         """Set a number in a place, or where it was."""
         mark = self.canvas.marks[number.mark]
         if isinstance(mark, Text):
             if place is not None:
-                mark = mark._replace(at=number.foot + place.corner, height=place.level[1])
-                self.canvas.marks[number.mark] = mark
-            self.written[number.mark] = bounds_of(text_boxes([mark]))[0]
+                mark = self.canvas.marks[number.mark] = mark._replace(at=number.foot + place.corner, height=place.level[1])
+            self.ink.write(number.mark, mark)
 
 
-def clear(canvas: Canvas) -> None:
-    """Set those numbers again that lines run through, the numbers of each axis together."""
-    if not canvas.numbers:
-        return
-    sheet = _Sheet(canvas)
+def clear(canvas: Canvas, ink: InkIndex) -> None:
+    """Set those numbers again that lines run through, the numbers of each axis together; ``ink`` is all of the canvas."""
+    sheet = _Numbers(canvas, ink)
     rows: dict[tuple[int, float], list[AxisNumber]] = defaultdict(list)
     for number in canvas.numbers:
         if sheet.ill(number):
@@ -132,10 +92,10 @@ def clear(canvas: Canvas) -> None:
     canvas.numbers.clear()
 
 
-def _set_row(sheet: _Sheet, row: Sequence[AxisNumber]) -> None:
+def _set_row(sheet: _Numbers, row: Sequence[AxisNumber]) -> None:
     """Set the struck numbers of one axis again: the more of them a level suits the better it is."""
     for number in row:
-        sheet.written[number.mark] = np.nan
+        sheet.ink.write(number.mark, None)
     free = {number: _free(sheet, number) for number in row}
     suits: dict[Level, int] = defaultdict(int)
     for places in free.values():
@@ -148,7 +108,7 @@ def _set_row(sheet: _Sheet, row: Sequence[AxisNumber]) -> None:
             continue
         cost = {place: place.cost - ALIKE * (suits[place.level] / len(row) + (place.level == before)) for place in free[number]}
         apart = (place for place in sorted(cost, key=lambda place: cost[place]) if not sheet.crowded(number, place.box))
-        place = next(apart, None) or min(_places(number, OFF), key=lambda place: (sheet.wrong(number, place), place.cost))
+        place = next(apart, None) or min(_places(number, OFF), key=lambda place: (sheet.wrong(number, place.box), place.cost))
         sheet.move(number, place)
         before = place.level
 
@@ -157,7 +117,7 @@ class Plain:
     """What is drawn about the points of an upright axis with lines to both sides: each has its number right at its lines."""
 
     def __init__(self, canvas: Canvas) -> None:
-        self._sheet = _Sheet(canvas)
+        self._ink = InkIndex(canvas.marks)
         self._set: list[Box] = []
 
     def set(self, pen: Canvas, at: complex, text: str) -> bool:
@@ -168,18 +128,26 @@ class Plain:
                 for y in (RIGHT_AT, -height - RIGHT_AT):
                     p = at + complex(x, y)
                     box = Box(p.real, p.imag, p.real + wide, p.imag + height)
-                    if self._sheet.plainly(box, at) and all(_apart(box, other) for other in self._set):
+                    if self._clear(box, at) and all(_apart(box, other) for other in self._set):
                         pen.text(p, text, height)
                         self._set.append(box)
                         return True
         return False
+
+    def _clear(self, box: Box, at: complex) -> bool:
+        """Whether no line but those through a point comes near a rectangle beside it, nor runs through it, nor other lettering."""
+        near = self._ink.near(box, 3.0)
+        a, b = self._ink.a[near], self._ink.b[near]
+        away = self._ink.half[near] + np.where(distance(a, b, at) <= AT, TOUCH, FOREIGN)
+        return not len(self._ink.lettering(box, ROWS, ROWS)) and not enters(
+            a, b - a, box.x0 - away, box.y0 - away, box.x1 + away, box.y1 + away).any()
 
 
 def _apart(box: Box, other: Box) -> bool:
     return other.x0 > box.x1 + WORD or other.x1 < box.x0 - WORD or other.y0 > box.y1 + ROWS or other.y1 < box.y0 - ROWS
 
 
-def _free(sheet: _Sheet, number: AxisNumber) -> list[_Place]:
+def _free(sheet: _Numbers, number: AxisNumber) -> list[_Place]:
     """Places of a number that no line comes near, or where there is none those that no line enters."""
     for off, apart in ((OFF, CLEAR), (CLOSER, TOUCH)):
         found = sheet.clear([*_places(number, off)], apart)

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Drawing, Mark, Points, Text, flat
+from tmm_sheets.drawing.text_boxes import text_box
 
 FIELD = Box(20.0, 5.0, 836.0, 589.0)
 """Inside of the frame of an A1 sheet, mm."""

@@ -1,39 +1,72 @@
-"""Where the ink of a sheet is: its lines as segments in arrays, asked for what is near a place, enters it or crosses a way."""
+"""Where the ink of a sheet is: asked for what is near a place, what is in a rectangle, what a line crosses, where there is room."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from cmath import rect
+from collections.abc import Collection, Iterable
+from functools import cached_property
 from itertools import chain
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.drawing.marks import Box, Line, Mark, Polyline, Provenance, Text, flat
+from tmm_sheets.drawing.cells import Cells
+from tmm_sheets.drawing.marks import Box, Fill, Line, Mark, Points, Polyline, Provenance, Text, flat
+from tmm_sheets.drawing.styles import line_types
+from tmm_sheets.drawing.text_boxes import bounds_of, text_boxes
 
 ROUNDING = 1e-6
 """mm by which what is looked at may lie farther off."""
 STRONG = frozenset({"main", "curve", "vector", "axis", "hidden"})
-"""Line types that a leader or a number had better not meet."""
+"""Line types that a leader or lettering had better not meet."""
+CELL = 0.5
+"""Size of the cells in which room for lettering is looked for, mm."""
+WIDEST = 2.0
+"""A line that is farther off than this comes no nearer to a rectangle than is asked, mm."""
+WORSE = 10
+"""A side of lettering in a rectangle, or a strong line near it, is as bad as so many thin lines."""
+NOWHERE = Box(0.0, 0.0, 0.0, 0.0)
+LEADER = -1
+"""Number of the mark that a leader of a label has."""
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
+Numbers = npt.NDArray[np.intp]
 
 
-class Ink:
-    """Lines of a sheet as segments ``a`` .. ``b``, shape (n,), each with the number of its mark; lettering is none of them.
+class InkIndex:
+    """What is drawn: lines as segments ``a`` .. ``b``, shape (n,), lettering as upright rectangles ``written``, shape (t, 4).
 
-    Leaders have the number ``drawn``.
+    Each segment has the number of its mark (``of``), is ``strong`` or not, and has ``half`` the width of its line, mm.
+    The rectangles are x0, y0, x1, y1, of the marks numbered ``texts``; not numbers where lettering is taken off. ``area`` is where
+    room is looked for; ``windows`` are the numbers of circles through which what is inside is read.
     """
 
-    def __init__(self, marks: Iterable[Mark]) -> None:
-        self.marks = list(marks)
-        self.drawn = len(self.marks)
+    def __init__(self, marks: Iterable[Mark] = (), area: Box = NOWHERE, windows: Collection[int] = ()) -> None:
+        self.area, self._windows = area, windows
+        self.marks = list[Mark]()
+        self.a, self.b, self.of = np.empty(0, complex), np.empty(0, complex), np.empty(0, int)
+        self.strong, self._heavy, self._parts = np.empty((3, 0), bool)
+        self.half, self.sides = np.empty(0), np.empty((4, 0))
+        self.written, self._corners, self.texts = np.empty((0, 4)), np.empty((0, 4), complex), list[int]()
+        self._filled, self._steps = np.empty((0, 4)), dict[tuple[str | int, ...], list[int]]()
         self.lead(np.empty(0), np.empty(0))
-        starts, ends, strokes = list[Any](), list[Any](), list[tuple[int, int, bool]]()
-        for number, mark in enumerate(self.marks):
-            if isinstance(mark, Text) or (isinstance(mark, Line) and mark.style == "text"):
+        self.add(marks)
+
+    def add(self, marks: Iterable[Mark]) -> None:
+        """Something more is drawn."""
+        first, starts, ends, lines = len(self.marks), list[Any](), list[Any](), list[tuple[int, bool, bool, bool, float]]()
+        texts, filled = dict[int, Text](), list[tuple[float, float, float, float]]()
+        self.marks.extend(marks)
+        for number, mark in enumerate(self.marks[first:], first):
+            if mark.by is not None and mark.by.step and mark.by.role != "text":
+                for key in (mark.by[1:4], mark.by[1:]):
+                    self._steps.setdefault(key, []).append(number)
+            if isinstance(mark, Text):
+                texts[number] = mark
                 continue
+            width = line_types()[mark.style].width
             if isinstance(mark, Line):  # most are: quicker without an array for each
                 starts.append((mark.a,))
                 ends.append((mark.b,))
@@ -41,47 +74,129 @@ class Ink:
                 points = flat(mark, 1.0)
                 if isinstance(mark, Polyline):
                     points = _thinned(points)
+                elif isinstance(mark, Fill):
+                    x, y, width = points.real.tolist(), points.imag.tolist(), 0.0
+                    filled.append((min(x), min(y), max(x), max(y)))
                 starts.append(points[:-1])
                 ends.append(points[1:])
-            strokes.append((number, len(starts[-1]), mark.style in STRONG))
-        self.a, self.b = (np.fromiter(chain.from_iterable(of), complex) for of in (starts, ends))
-        of, count, strong = (np.array(column) for column in zip(*strokes, strict=True)) if strokes else np.empty((3, 0), int)
-        self.of, self.strong = np.repeat(of, count), np.repeat(strong.astype(bool), count)
-        self._steps: dict[tuple[str | int, ...], list[int]] = {}
-        for number, mark in enumerate(self.marks):
-            if mark.by is not None and mark.by.step and mark.by.role != "text":
-                for key in (mark.by[1:4], mark.by[1:]):
-                    self._steps.setdefault(key, []).append(number)
-        self.sides = sides(self.a, self.b)
+            bar, strong = mark.style == "text", mark.style in STRONG
+            heavy, parts = strong or bar or isinstance(mark, Fill), not bar and number not in self._windows
+            lines.append((number, strong, heavy, parts, width / 2))
+        if lines:
+            a, b = (np.fromiter(chain.from_iterable(of), complex) for of in (starts, ends))
+            self.a, self.b, self.sides = np.append(self.a, a), np.append(self.b, b), np.hstack((self.sides, sides(a, b)))
+            self.of, self.strong, self._heavy, self._parts, self.half = (
+                np.append(before, np.repeat(column, [*map(len, starts)])) for before, column in zip(
+                    (self.of, self.strong, self._heavy, self._parts, self.half), zip(*lines, strict=True), strict=True))
+        if texts:
+            corners = text_boxes([*texts.values()])
+            self.texts += texts
+            self._corners, self.written = np.vstack((self._corners, corners)), np.vstack((self.written, bounds_of(corners)))
+        if filled:
+            self._filled = np.vstack((self._filled, filled))
+        for known in ("heavy", "light", "_outlines"):
+            vars(self).pop(known, None)
+
+    def write(self, number: int, text: Text | None) -> None:
+        """Lettering of a mark stands elsewhere now, or is taken off."""
+        row = self.texts.index(number)
+        self._corners[row] = np.nan if text is None else text_boxes([text])[0]
+        self.written[row] = np.nan if text is None else bounds_of(self._corners[[row]])[0]
 
     def lead(self, a: Any, b: Any) -> None:
-        """The leaders there are now, from ``a`` to ``b``."""
+        """The leaders there are now, from ``a`` to ``b``, shape (n,)."""
         self._leaders = np.asarray(a, complex), np.asarray(b, complex)
-
-    def round(self, p: complex, reach: float) -> tuple[Any, Any, Any, Any]:
-        """Segments that may be within ``reach`` of a point: ``a``, ``b``, number of the mark, strength; those of leaders last."""
-        here = self.near(Box(p.real, p.imag, p.real, p.imag), reach)
-        a, b = self._leaders
-        if not len(a):
-            return self.a[here], self.b[here], self.of[here], self.strong[here]
-        near = distance(a, b, p) <= reach
-        n = int(near.sum())
-        return (np.concatenate((self.a[here], a[near])), np.concatenate((self.b[here], b[near])),
-                np.concatenate((self.of[here], np.full(n, self.drawn))), np.concatenate((self.strong[here], np.zeros(n, bool))))
 
     def of_step(self, by: Provenance) -> list[int]:
         """Numbers of the marks of the same step, position and frame; one arm among those of a sum has a name of its own."""
         return (by.name and self._steps.get(by[1:])) or self._steps.get(by[1:4], [])
 
-    def near(self, box: Box, reach: float) -> npt.NDArray[np.intp]:
-        """Numbers of the segments that may be within ``reach`` of a rectangle."""
+    def near(self, box: Box, reach: float) -> Numbers:
+        """Numbers of the segments that may be within ``reach`` of a rectangle, mm."""
         return within(self.sides, box, reach)
+
+    def about(self, p: complex, reach: float) -> tuple[Points, Points, Numbers, Flags]:
+        """What may part a label from what it names within ``reach`` of a point: ``a``, ``b``, number of the mark, strength.
+
+        Bars over letters do not, nor windows; leaders come last.
+        """
+        here = self.near(Box(p.real, p.imag, p.real, p.imag), reach)
+        here = here[self._parts[here]]
+        a, b = self._leaders
+        near = distance(a, b, p) <= reach
+        n = int(near.sum())
+        return (np.append(self.a[here], a[near]), np.append(self.b[here], b[near]),
+                np.append(self.of[here], np.full(n, LEADER)), np.append(self.strong[here], np.zeros(n, bool)))
+
+    def met(self, box: Box, origin: complex = 0j, direction: float = 0.0) -> int:
+        """How many lines are in a rectangle of axes that are turned by an angle about a point, rad; lettering counts more."""
+        along, p = rect(1, direction), box.centre
+        middle = origin + p * along
+        start, end, around, counts = self._outlines
+        near = within(around, Box(*[middle.real, middle.imag] * 2), abs(complex(box.x0, box.y0) - p) + ROUNDING)
+        a, b = ((z[near] - origin) / along for z in (start, end))
+        return int(counts[near[enters(a, b - a, *box)]].sum())
+
+    def crossed(self, a: complex, b: complex) -> bool:
+        """Whether a line would cross a strong one, or run over lettering."""
+        start, end, _, counts = self._outlines
+        strong = np.append(self.strong, counts[len(self.strong):] > 1)
+        return bool(crossing(start[strong], end[strong], a, b).any())
+
+    def struck(self, boxes: Floats, apart: float) -> npt.NDArray[np.int_]:
+        """How many lines come nearer than ``apart``, mm, to each of some rectangles, shape (m, 4); a strong one counts more."""
+        x0, y0, x1, y1 = boxes.T[:, :, None]
+        near = self.near(Box(x0.min(), y0.min(), x1.max(), y1.max()), WIDEST)
+        if not len(near):
+            return np.zeros(len(boxes), int)
+        a, b, away = self.a[near], self.b[near], apart + self.half[near]
+        met = enters(a, b - a, x0 - away, y0 - away, x1 + away, y1 + away)
+        first = np.flatnonzero(np.diff(self.of[near], prepend=-1))
+        return np.asarray(np.logical_or.reduceat(met, first, axis=1) @ np.where(self.strong[near[first]], WORSE, 1))
+
+    def lettering(self, box: Box, beside: float, above: float) -> Numbers:
+        """Rows of the lettering nearer to a rectangle than ``beside`` on its level, and ``above`` over or under it, mm."""
+        return within(self.written.T, box.inset(-beside, -above, -beside, -above), 0.0)
+
+    @cached_property
+    def _outlines(self) -> tuple[Points, Points, Floats, npt.NDArray[np.int_]]:
+        """Lines and sides of lettering: ``a``, ``b``, their edges, what they count."""
+        a, b = np.append(self.a, np.roll(self._corners, 1, axis=1)), np.append(self.b, self._corners)
+        return a, b, sides(a, b), np.repeat((1, WORSE), (len(self.a), self._corners.size))
+
+    @cached_property
+    def heavy(self) -> Cells:
+        """Cells that lettering must not touch: main lines, curves, axes, fills, other lettering, and the neighbours of these.
+
+        Main lines are up to a millimetre wide: their neighbours count as inked too.
+        """
+        cells = self._cells(self._heavy)
+        cells.cover(np.vstack((self.written, self._filled)))
+        cells.widen()
+        return cells
+
+    @cached_property
+    def light(self) -> Cells:
+        """Cells of thin lines, which it had better avoid."""
+        return self._cells(~self._heavy)
+
+    def _cells(self, which: Flags) -> Cells:
+        cells = Cells(self.area, CELL)
+        cells.ink(sampled(self.a[which], self.b[which], CELL / 2))
+        return cells
+
+
+def sampled(a: Any, b: Any, step: float) -> Points:
+    """Points along segments from ``a`` to ``b``, shape (n,), their ends among them, no farther apart than ``step`` mm."""
+    count = (np.abs(b - a) / step).astype(int) + 2
+    share = (np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count - 1, count)
+    return np.asarray(np.repeat(a, count) + share * np.repeat(b - a, count))
 
 
 def sides(a: Any, b: Any) -> Floats:
     """Left, lower, right and upper edges of segments, (4, n)."""
-    x, y = np.stack((a.real, b.real)), np.stack((a.imag, b.imag))
-    return np.array([x.min(axis=0), y.min(axis=0), x.max(axis=0), y.max(axis=0)])
+    low, high = ((of(a.real, b.real), of(a.imag, b.imag)) for of in (np.minimum, np.maximum))
+    return np.array([*low, *high])
 
 
 def within(edges: Floats, box: Box, reach: float) -> npt.NDArray[np.intp]:

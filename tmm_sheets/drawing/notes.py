@@ -9,7 +9,7 @@ import numpy as np
 from tmm_sheets.drawing.canvas import Canvas, PlacedNote
 from tmm_sheets.drawing.crowded import Crowded
 from tmm_sheets.drawing.evenness import dense
-from tmm_sheets.drawing.labels import Grid
+from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 
@@ -33,26 +33,21 @@ TITLE, BESIDE_TITLE = 17.0, 40.0
 """Height of a title with its scale factor, mm, and what it costs to stand beside it: that would be read as part of it."""
 
 
-def place(canvas: Canvas, area: Box) -> list[Crowded]:
-    """Set every note of the canvas inside ``area``; returns those that found no free place, which are left out."""
-    return set_notes(canvas, Grid(area, canvas.marks))
-
-
-def set_notes(canvas: Canvas, grid: Grid) -> list[Crowded]:
-    """The same on a grid of all that is drawn."""
-    crowded, area = [], grid.area
+def set_notes(canvas: Canvas, ink: InkIndex) -> list[Crowded]:
+    """Set every note of a canvas on its ``ink``, to which they come; returns those that found no free place, which are left out."""
+    crowded, area = [], ink.area
     for note in canvas.notes:
-        ink = _ink(canvas, note)
+        own = _ink(canvas, note)
         pictures = _pictures(canvas, note)
         # Best between no picture of the view and its caption, if that is not far from the view.
         for apart, region, height in product((pictures, []), (note.box, area), HEIGHTS):
-            found = [choice for n in LINES if (choice := _choice(grid, region, ink, note, height, n, apart)) is not None
+            found = [choice for n in LINES if (choice := _choice(ink, region, own, note, height, n, apart)) is not None
                      and (choice[0] < FAR or apart is not pictures)]
             if found:
                 _, corner, lines = min(found, key=lambda choice: choice[0])
                 first = len(canvas.marks)
                 _set(canvas, note, corner, lines, height)
-                grid.add(canvas.marks[first:])
+                ink.add(canvas.marks[first:])
                 break
         else:
             crowded.append(Crowded(note.said, note.box.centre))
@@ -101,11 +96,11 @@ def _ink(canvas: Canvas, note: PlacedNote) -> Box:
     return Box.around(drawn) if len(drawn) else note.box
 
 
-def _choice(grid: Grid, region: Box, ink: Box, note: PlacedNote, height: float, count: int,
+def _choice(ink: InkIndex, region: Box, own: Box, note: PlacedNote, height: float, count: int,
             apart: list[Box]) -> tuple[float, complex, list[str]] | None:
     """The best free place in ``region``, ``apart`` from some boxes, for a note of so many lines: cost, corner, lines.
 
-    Best is near the lower edge of the ``ink`` of its view: a view may leave most of its place to others.
+    Best is near the lower edge of the ``own`` ink of its view: a view may leave most of its place to others.
     """
     lines = wrapped(note.said, height, count)
     laid = [letter(line, height) for line in lines]
@@ -116,15 +111,16 @@ def _choice(grid: Grid, region: Box, ink: Box, note: PlacedNote, height: float, 
     below = np.arange(region.y0 + CLEAR, region.y1 - h - CLEAR, STEP)
     if not left.size or not below.size:
         return None
-    covered = grid.covered(left - APART, below - CLEAR, left + w + APART, below + h + CLEAR)
+    heavy, light = (cells.lattice(left - APART, below - CLEAR, w + 2 * APART, h + 2 * CLEAR) for cells in (ink.heavy, ink.light))
+    covered = heavy + light > 0
     for b in apart:
-        covered |= ((below < b.y1) & (below + h > b.y0))[:, None] & ((left < b.x1) & (left + w > b.x0))
-    j, i = np.nonzero(~covered)
+        covered |= ((left < b.x1) & (left + w > b.x0))[:, None] & ((below < b.y1) & (below + h > b.y0))
+    i, j = np.nonzero(~covered)
     if not len(j):
         return None
     x, y = left[i], below[j]
-    outside = np.maximum.reduce([ink.x0 - (x + w), ink.y0 - (y + h), x - ink.x1, y - ink.y1, np.zeros(x.size)])
-    cost = OUTSIDE * outside + np.abs(y - ink.y0) + 0.2 * np.abs(x + w / 2 - ink.centre.real)
+    outside = np.maximum.reduce([own.x0 - (x + w), own.y0 - (y + h), x - own.x1, y - own.y1, np.zeros(x.size)])
+    cost = OUTSIDE * outside + np.abs(y - own.y0) + 0.2 * np.abs(x + w / 2 - own.centre.real)
     cost += BESIDE_TITLE * (y + h > box.y1 - TITLE)
     cost += height * LINES.index(count)
     best = int(np.argmin(cost))

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.drawing.canvas import Label
-from tmm_sheets.drawing.ink_index import ROUNDING, Flags, Floats, Ink, crossing, distance, enters, sides, within
+from tmm_sheets.drawing.ink_index import LEADER, ROUNDING, Flags, Floats, InkIndex, crossing, distance, enters, sides, within
 from tmm_sheets.drawing.marks import Box, Line, flat
 
 AT = 0.3
@@ -34,12 +34,12 @@ LONG = 12.0
 class Round:
     """Segments about a label's anchor, and which of them are its own."""
 
-    def __init__(self, ink: Ink, label: Label, reach: float) -> None:
+    def __init__(self, ink: InkIndex, label: Label, reach: float) -> None:
         p = label.anchor
         self.anchor = p
-        self.a, self.b, self.of, self.strong = ink.round(p, reach)
+        self.a, self.b, self.of, self.strong = ink.about(p, reach)
         self.sides = sides(self.a, self.b)
-        self.leaders = self.of >= ink.drawn
+        self.leaders = self.of == LEADER
         self.own = _own(ink, self, label)
         self._vector = _vector(ink, self, label)
         if self._vector is not None:  # what lies on it is named together with it
@@ -87,7 +87,7 @@ class Round:
         return [a + share * (b - a) for share in SHARES if abs(a + share * (b - a) - self.anchor) > SYMBOL]
 
 
-def _vector(ink: Ink, here: Round, label: Label) -> tuple[complex, complex] | None:
+def _vector(ink: InkIndex, here: Round, label: Label) -> tuple[complex, complex] | None:
     """Ends of the vector, or of the construction line or line of a detail named by its own letter, beside which a label stands."""
     if label.by is None or not label.by.step:
         return None
@@ -101,7 +101,7 @@ def _vector(ink: Ink, here: Round, label: Label) -> tuple[complex, complex] | No
     return None
 
 
-def _own(ink: Ink, here: Round, label: Label) -> Flags:
+def _own(ink: InkIndex, here: Round, label: Label) -> Flags:
     """Which segments a label may stand for: those of the step it names, and what meets or lies about its anchor.
 
     The letter of a vector or a curve stands beside it: there lines that only pass by the anchor are foreign.
@@ -114,10 +114,10 @@ def _own(ink: Ink, here: Round, label: Label) -> Flags:
         return found
     about = np.maximum(np.abs(here.a - label.anchor), np.abs(here.b - label.anchor)) <= label.gap + SYMBOL
     # The leader of another label names nothing by itself, even if it comes from the same point.
-    return np.asarray((found | about | (distance(here.a, here.b, label.anchor) <= AT)) & (here.of < ink.drawn))
+    return np.asarray((found | about | (distance(here.a, here.b, label.anchor) <= AT)) & (here.of != LEADER))
 
 
-def _at_end(ink: Ink, here: Round, lines: Flags, anchor: complex) -> bool:
+def _at_end(ink: InkIndex, here: Round, lines: Flags, anchor: complex) -> bool:
     """Whether the anchor is where one of these lines ends, or on none of them."""
     on = lines & (distance(here.a, here.b, anchor) <= 2 * AT)
     ends = [flat(ink.marks[number])[[0, -1]] for number in np.unique(here.of[on])]

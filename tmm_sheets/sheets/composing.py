@@ -8,12 +8,11 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from tmm_sheets.box import Box
-from tmm_sheets.drawing import axis_numbers, yielding
 from tmm_sheets.drawing.canvas import Canvas, Part
-from tmm_sheets.drawing.crowded import Crowded, Shortened
-from tmm_sheets.drawing.labels import Grid, set_labels
+from tmm_sheets.drawing.crowded import Shortened
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Drawing, View
+from tmm_sheets.drawing.placing import place
 from tmm_sheets.drawing.title_block import draw_frame
 from tmm_sheets.sheets import composition, legibility, view_overflow
 from tmm_sheets.sheets.arrangement import arrangement
@@ -64,16 +63,7 @@ def viewed(project: Project, n: int) -> tuple[Arrangement, Canvas, dict[str, str
 def composed(project: Project, n: int) -> Composed:
     """Draw sheet ``n`` and tell its scale factors and the labels that found no free place."""
     plan, canvas, fields = viewed(project, n)
-    axis_numbers.clear(canvas)
-    canvas.begin(INSIDE, "", "labels")
-    crowded: list[Crowded] = [Shortened(text, TITLE_BLOCK.centre, left) for text, left in canvas.shortened.items()]
-    grid = Grid(INSIDE, canvas.marks)
-    crowded += set_labels(canvas, grid)
-    if canvas.notes:
-        from tmm_sheets.drawing import notes
-
-        crowded += notes.set_notes(canvas, grid)
-    yielding.interrupt(canvas)
+    crowded = [*(Shortened(text, TITLE_BLOCK.centre, left) for text, left in canvas.shortened.items()), *place(canvas, INSIDE)]
     title = f"{fields['project']}. {fields['title']}"
     drawing = Drawing(
         WIDTH, HEIGHT, title, tuple(canvas.marks), project.variant.title_block.student or "tmm_sheets",

@@ -13,8 +13,8 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import polyline_inside
-from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Arc, Line, Mark, Points, Text, flat
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.sheets.composed import Leaving
 from tmm_sheets.words import marked
 

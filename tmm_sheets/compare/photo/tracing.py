@@ -44,9 +44,9 @@ from tmm_sheets.compare.photo.profiles import SCALE, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
 from tmm_sheets.compare.photo.stations import LEAST, expected_ink, measurable, stations
 from tmm_sheets.compare.photo.traces import ExtraInk, InkTrace, Status
-from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.marks import Points, Text
 from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.drawing.text_boxes import text_box
 
 OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is not judged
 NEARLY, WASHED_OUT = 0.3, 12

@@ -9,9 +9,10 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.step import Step
-from tmm_sheets.drawing.free_space import Drawn, spread
+from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Points
+from tmm_sheets.drawing.text_boxes import spread
 from tmm_sheets.sheets.player import PlayerStage
 
 HEIGHT, BETWEEN, CLEAR = 2.5, 0.8, 0.4
@@ -46,7 +47,7 @@ def numbered(s: PlayerStage, step: Step, first: int, along: Sequence[float], lab
     marks = at_marks(along, labels)
     for k, t, _ in marks:
         s.position(k).line(step, path(t, -MARK), path(t, MARK), "thin", "point")
-    ink = Drawn(s.canvas, first)
+    ink = InkIndex(s.canvas.marks[first:])
     least, boxes, beside = np.inf, list[Box](), side
     for off, at in product(map(float, np.arange(MARK + 1.0, furthest, 2.0)), (side, -side)):
         other = 0.5 * (at != side)
@@ -63,7 +64,7 @@ def numbered(s: PlayerStage, step: Step, first: int, along: Sequence[float], lab
         pen.put(laid, complex(box.x0, box.y0 + laid.descent), 0.0, text)
 
 
-def _row(ink: Drawn, closed: Box, marks: Sequence[tuple[int, float, str]], path: Path, way: float,
+def _row(ink: InkIndex, closed: Box, marks: Sequence[tuple[int, float, str]], path: Path, way: float,
          off: float, most: float) -> tuple[float, list[Box]] | None:
     """A row at a side of the path: what it costs in lines crossed, places of the numbers; None if it costs ``most`` or more.
 
@@ -88,7 +89,7 @@ def _row(ink: Drawn, closed: Box, marks: Sequence[tuple[int, float, str]], path:
 
         def met(box: Box) -> int:
             over = min(box.x1, closed.x1) > max(box.x0, closed.x0) and min(box.y1, closed.y1) > max(box.y0, closed.y0)
-            return ink.count(box, 0j, 0.0) + 10 * over
+            return ink.met(box) + 10 * over
 
         begin, tried = max(wanted, before + least), list[tuple[int, float]]()
         for t in begin + np.arange(0.0, 8.0, 1.0):

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas, lettered
-from tmm_sheets.drawing.free_space import Drawn
+from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 
 CLEAR = 0.4
@@ -24,10 +24,10 @@ def around(text: str) -> Box:
     return Box(-laid.width / 2, -laid.descent, laid.width / 2, laid.ascent).inset(-CLEAR)
 
 
-def crossed(ink: Drawn, a: complex, b: complex, offset: float, text: str, share: float = 0.5) -> int:
+def crossed(ink: InkIndex, a: complex, b: complex, offset: float, text: str, share: float = 0.5) -> int:
     """How many lines would run through the lettering of a dimension."""
     at, along = lettered(a, b, offset, text, share=share)
-    return ink.count(around(text), at, phase(along))
+    return ink.met(around(text), at, phase(along))
 
 
 def dimension(canvas: Canvas, first: int, a: complex, b: complex, offsets: Iterable[float], text: str,
@@ -38,11 +38,11 @@ def dimension(canvas: Canvas, first: int, a: complex, b: complex, offsets: Itera
     """
     if not abs(b - a) > 0:
         return
-    ink, u = Drawn(canvas, first), (b - a) / abs(b - a)
+    ink, u = InkIndex(canvas.marks[first:]), (b - a) / abs(b - a)
     long = Box(2.0, -ALONG, abs(b - a) - 2.0, ALONG)
 
     def ill(place: tuple[float, float]) -> int:
-        return 10 * crossed(ink, a, b, place[0], text, place[1]) + ink.count(long, a + place[0] * 1j * u, phase(u))
+        return 10 * crossed(ink, a, b, place[0], text, place[1]) + ink.met(long, a + place[0] * 1j * u, phase(u))
 
     offset, share = min(((offset, share) for offset in offsets for share in SHARES), key=ill)
     canvas.dimension(a, b, offset, text, share=share, factor=factor)

@@ -13,7 +13,7 @@ from tmm_sheets.construction.readable import TOOTH
 from tmm_sheets.construction.scale import STANDARD, Scale, fit
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, lettered
 from tmm_sheets.drawing.clipping import arcs_inside, segment_inside
-from tmm_sheets.drawing.free_space import Drawn
+from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box, Dimension, Line
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
@@ -307,7 +307,7 @@ class _GearPicture:
     def pole_letter(self) -> None:
         """Letter of the pole beyond the root circle of wheel 1 where nothing is drawn, its leader clear of flanks."""
         foot = self.pole - self.of("O1")
-        inwards, ink = -foot / abs(foot), Drawn(self.canvas, self.first)
+        inwards, ink = -foot / abs(foot), InkIndex(self.canvas.marks[self.first:])
         laid, root = letter("P_w", 5.0), self.mm(self.gear.wheels[0].rf)
         half = complex(laid.width, 5.0 + laid.descent) / 2
 
@@ -319,7 +319,7 @@ class _GearPicture:
             at = end + way * (0.5 + min(half.real / max(abs(way.real), 1e-9), half.imag / max(abs(way.imag), 1e-9)))
             box = Box(at.real - half.real, at.imag - half.imag, at.real + half.real, at.imag + half.imag).inset(-0.5)
             start = self.pole + 2.0 * way
-            return end, at, not (ink.meets(box) or ink.strong(start, end) or ink.over(start, end))
+            return end, at, not (ink.met(box) or ink.crossed(start, end))
 
         turns = sorted(np.arange(-60.0, 61.0, 4.0), key=abs)
         places = (tried(turn, beyond) for beyond in np.arange(1.5, 26.0, 0.5) for turn in turns)
@@ -454,7 +454,7 @@ class _GearPicture:
 
         Within a ring the tangents of its involute lie over the root circle of the pinion.
         """
-        ink = Drawn(self.canvas, self.first, but=self.spokes)
+        ink = InkIndex(m for n, m in enumerate(self.canvas.marks) if n >= self.first and n not in self.spokes)
         return min((offset + further for further in np.arange(0.0, FURTHEST, 0.5)), key=lambda by: crossed(ink, a, b, by, text))
 
     def interrupt(self, at: complex, along: complex, text: str) -> None:

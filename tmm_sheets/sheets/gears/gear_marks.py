@@ -11,10 +11,10 @@ import numpy as np
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas, in_role
 from tmm_sheets.drawing.clipping import arcs_inside, chords, polyline_inside, segment_inside
-from tmm_sheets.drawing.free_space import spread
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box, Dimension, Role
 from tmm_sheets.drawing.tables import LEAST, needs
+from tmm_sheets.drawing.text_boxes import spread
 from tmm_sheets.sheets.player import PlayerStage
 
 CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "centre"), ("rb", "r_{b%d}", "thin"),

@@ -11,10 +11,9 @@ import numpy as np
 
 from tmm_sheets.drawing.canvas import KEPT_OFF
 from tmm_sheets.drawing.clipping import arcs_inside
-from tmm_sheets.drawing.free_space import Drawn
-from tmm_sheets.drawing.ink_index import enters
+from tmm_sheets.drawing.ink_index import InkIndex, enters
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box, Dimension
+from tmm_sheets.drawing.marks import Arc, Box, Dimension
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets.gears.gear_marks import CIRCLES
 
@@ -57,14 +56,15 @@ class _Radii:
         self.texts = {key: f"{symbol % wheel.number} = {fixed(getattr(wheel, key) * 1e3, 2)}" for key, symbol, _ in CIRCLES}
         self.outer = min(self.tips.values()) - INSIDE
         self.far: float = picture.away(wheel) * pi / 2
-        self.drawn = Drawn(self.canvas, picture.first, self.centre)
+        self.drawn = InkIndex(m for m in self.canvas.marks[picture.first:]
+                              if not (isinstance(m, Arc) and abs(m.centre - self.centre) < 1e-6))
 
     def draw(self) -> None:
         found = self.directions()
         for key, (direction, begin) in found.items():
             self.radius(key, direction, begin)
         for n, (key, _, _) in enumerate(CIRCLES):
-            if key not in found and not self.on_shelf(key, Drawn(self.canvas, self.picture.first)):
+            if key not in found and not self.on_shelf(key, InkIndex(self.canvas.marks[self.picture.first:])):
                 self.on_arc(key, self.far + FAN * (n - len(CIRCLES) // 2), right=n % 2 == 1)
 
     def radius(self, key: str, direction: float, begin: float) -> None:
@@ -145,15 +145,15 @@ class _Radii:
     def clear(self, key: str, direction: float) -> bool:
         """Whether nothing but this wheel's circles is met by a radius that begins with its name."""
         ends = sorted((self.outer, self.tips[key]))
-        return self.legible(key, direction) and not self.drawn.meets(Box(ends[0], -CLEAR, ends[1], CLEAR), self.centre, direction)
+        return self.legible(key, direction) and not self.drawn.met(Box(ends[0], -CLEAR, ends[1], CLEAR), self.centre, direction)
 
     def legible(self, key: str, direction: float) -> bool:
         """Whether nothing is drawn where the name of a radius would stand."""
         width, up = letter(self.texts[key], HEIGHT).width, 1 if cos(direction) >= -1e-9 else -1
         low, high = sorted((-up * CLEAR, up * (OVER + HEIGHT + CLEAR)))
-        return not self.drawn.meets(Box(self.outer - width - INSIDE, low, self.outer + CLEAR, high), self.centre, direction)
+        return not self.drawn.met(Box(self.outer - width - INSIDE, low, self.outer + CLEAR, high), self.centre, direction)
 
-    def on_shelf(self, key: str, drawn: Drawn) -> bool:
+    def on_shelf(self, key: str, drawn: InkIndex) -> bool:
         """Radius of a circle without room for its name: an arrow from outside all circles or inside them, the name on a shelf."""
         at_arc, text = self.tips[key], self.texts[key]
         laid, place = letter(text, HEIGHT), self.picture.box.inset(3)
@@ -167,9 +167,9 @@ class _Radii:
             side = sense if u.real >= 0 else -sense
             x0, x1 = sorted((end.real, end.real + side * (laid.width + 1.0)))
             box = Box(x0 - SHELF, end.imag, x1 + SHELF, end.imag + SHELF + laid.descent + HEIGHT)
-            if not (place.contains(complex(x0, box.y0)) and place.contains(complex(x1, box.y1))) or drawn.meets(box.inset(-CLEAR)):
+            if not (place.contains(complex(x0, box.y0)) and place.contains(complex(x1, box.y1))) or drawn.met(box.inset(-CLEAR)):
                 continue
-            if drawn.strong(tip + CLEAR * u, end) or drawn.over(tip, end):
+            if drawn.crossed(tip + CLEAR * u, end):
                 continue
             if enters(tip, end - tip, x0, end.imag + SHELF, x1, box.y1):  # over its own name
                 continue

@@ -10,7 +10,7 @@ import numpy as np
 
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas
-from tmm_sheets.drawing.free_space import Drawn
+from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
@@ -229,7 +229,7 @@ class _RackPicture:
     def tip_radius(self, c: Canvas, tip: complex, touch: complex) -> None:
         """Radius of the rack's tip, its name on a shelf in the body of the wheel: between the teeth are the rack's flanks."""
         text, u = f"ρ_f = {fixed(self.rack.tip_radius * 1e3, 2)}", (touch - tip) / abs(touch - tip)
-        laid, drawn = letter(text, 3.5), Drawn(c, self.first)
+        laid, drawn = letter(text, 3.5), InkIndex(c.marks[self.first:])
         c.dot(tip, 0.5, "thin")
         c.arrow_head(touch, u, HEAD)
         for further in np.arange(4.0, 60.0, 1.0):
@@ -237,7 +237,7 @@ class _RackPicture:
             box = Box(end.real, end.imag + CLEAR, end.real + laid.width + 1.0, end.imag + SHELF + laid.descent + 3.5 + CLEAR)
             if box.y0 < self.window.box.y0 + CLEAR or box.x1 > self.window.box.x1 - CLEAR:
                 break
-            if not drawn.meets(box):
+            if not drawn.met(box):
                 c.line(tip, end, "thin")
                 c.line(end, end + laid.width + 1.0, "thin")
                 c.put(laid, end + complex(0.5, SHELF + laid.descent), 0.0, text)
@@ -247,16 +247,16 @@ class _RackPicture:
 
     def shift(self, c: Canvas, low: float, high: float, text: str) -> None:
         """Distance of the rack's reference line from its pitch line, named beside a tail of its arrows where nothing else is."""
-        laid, drawn, w = letter(text, 3.5), Drawn(c, self.first), self.window.box
+        laid, drawn, w = letter(text, 3.5), InkIndex(c.marks[self.first:]), self.window.box
         for x in np.arange(w.x1 - 8.0, self.pole.real + 8.0, -1.0):
             arrows = Box(x - 1.0, high + CLEAR, x + 1.0, high + TAIL), Box(x - 1.0, low - TAIL, x + 1.0, low - CLEAR)
-            if any(map(drawn.meets, arrows)):
+            if any(map(drawn.met, arrows)):
                 continue
             for side, y in ((-1, high + 3.0), (1, high + 3.0), (-1, low - 6.5), (1, low - 6.5)):
                 left = x + 1.5 if side > 0 else x - 1.5 - laid.width
                 if not w.contains(complex(left, y)) or not w.contains(complex(left + laid.width, y)):
                     continue
-                if not drawn.meets(Box(left, y - laid.descent, left + laid.width, y + 3.5).inset(-CLEAR)):
+                if not drawn.met(Box(left, y - laid.descent, left + laid.width, y + 3.5).inset(-CLEAR)):
                     distance(c, complex(x, low), complex(x, high))
                     c.put(laid, complex(left, y), 0.0, text)
                     return

@@ -13,10 +13,10 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.free_space import spread
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import GAP, LEAST, needs, widened
+from tmm_sheets.drawing.text_boxes import spread
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.frame import ratio, standard
 from tmm_sheets.sheets.gears.gear_marks import LARGE, LETTERS, ROW, ruled_table

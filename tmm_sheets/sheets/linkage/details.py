@@ -14,9 +14,9 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import chord
-from tmm_sheets.drawing.labels import text_box
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import PlacedFrame, Text
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.sheets.frame import together
 from tmm_sheets.sheets.linkage import link_marks
 from tmm_sheets.sheets.player import PlayerStage

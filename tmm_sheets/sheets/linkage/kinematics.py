@@ -15,7 +15,7 @@ from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Align, Canvas
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.evenness import dense
-from tmm_sheets.drawing.labels import HEAVY
+from tmm_sheets.drawing.ink_index import STRONG
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box, Text
 from tmm_sheets.drawing.notes import TOGETHER
@@ -381,7 +381,7 @@ def _free_share(canvas: Canvas, centre: complex, arcs: list[_Arc], own: _Arc, te
     """Where along its arc the number of an angle stands over least and within its view; where it is ``wanted`` if that will do."""
     place = canvas.parts[-1].box
     marks = canvas.marks[canvas.parts[-1].first:]
-    thick = [mark for mark in marks if not isinstance(mark, Text) and mark.style in HEAVY]
+    thick = [mark for mark in marks if not isinstance(mark, Text) and mark.style in STRONG]
     drawn = [centre + radius * np.exp(1j * np.arange(lo, hi, 1 / radius)) for lo, hi, radius in arcs]
     anchors = [label.anchor for label in canvas.labels] * 4
     ink = np.concatenate([dense(marks, 1.0), *[dense(thick, 1.0)] * 4, *drawn * (8 if wanted is None else 2),

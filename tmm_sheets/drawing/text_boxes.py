@@ -1,0 +1,63 @@
+"""Rectangles that lettering takes on the sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.drawing.lettering import advance, letter
+from tmm_sheets.drawing.marks import Points, Text
+
+
+def text_box(mark: Text) -> Points:
+    """Corners, shape (4,), of the rectangle round a run of text (slanted letters reach a little to the right of their advance)."""
+    corners = _corners(mark.text, mark.height)
+    return np.asarray(mark.at + (complex(np.cos(mark.angle), np.sin(mark.angle)) * corners if mark.angle else corners))
+
+
+def text_boxes(marks: Sequence[Text]) -> npt.NDArray[np.complex128]:
+    """The same of many, shape (n, 4)."""
+    if not marks:
+        return np.empty((0, 4), complex)
+    found = np.array([mark.at for mark in marks])[:, None] + np.array([_corners(mark.text, mark.height) for mark in marks])
+    for k in (k for k, mark in enumerate(marks) if mark.angle):
+        found[k] = text_box(marks[k])
+    return np.asarray(found)
+
+
+def bounds_of(corners: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
+    """Upright rectangles round corners of each row: x0, y0, x1, y1, shape (n, 4)."""
+    x, y = corners.real, corners.imag
+    return np.array([x.min(axis=1), y.min(axis=1), x.max(axis=1), y.max(axis=1)]).T
+
+
+def size(markup: str, height: float) -> tuple[float, float]:
+    """Width and height of laid out lettering with its indices, mm."""
+    laid = letter(markup, height)
+    return laid.width + 0.15 * height, laid.ascent + laid.descent
+
+
+def spread(heights: list[float], least: float) -> list[float]:
+    """Sorted heights moved apart to the least distance, mm, as little as needed and about the same middle."""
+    out = list(heights)
+    for _ in range(200):
+        moved = False
+        for i in range(len(out) - 1):
+            short = least - (out[i + 1] - out[i])
+            if short > 1e-3:
+                out[i] -= short / 2
+                out[i + 1] += short / 2
+                moved = True
+        if not moved:
+            break
+    return out
+
+
+@lru_cache(maxsize=10_000)
+def _corners(text: str, h: float) -> Points:
+    """The same of lettering that lies along the x axis from the origin on."""
+    w, drop = advance(text, h), -0.3 * h if any(c in "рудцщфgjpqyβγζημξρφχψς,;()" for c in text) else 0.0
+    return np.array([complex(0, drop), complex(w, drop), complex(w + 0.15 * h, h), complex(0, h)])
