@@ -57,10 +57,10 @@ def of_commands() -> Iterator[tuple[str, str, None]]:
     """Help of the commands and their options."""
     from tmm_sheets.cli import commands
 
-    for command in (commands, *commands.commands.values()):
+    for command in (commands, *commands.every().values()):
         for spoken in (command, *(p for p in command.params if isinstance(p, click.Option))):
             if spoken.help:
-                yield "tmm_sheets/cli.py", cleandoc(spoken.help), None
+                yield f"tmm_sheets/cli/{command.name if command is not commands else '__init__'}.py", cleandoc(spoken.help), None
 
 
 def of_projects() -> Iterator[tuple[str, str, None]]:

@@ -104,7 +104,7 @@ EVERYWHERE = "--lang"
 
 def options(command: str) -> str:
     """Every option of a command but that of all, as ``--help`` has it."""
-    found = cli.commands.commands[command]
+    found = cli.commands.every()[command]
     rows = [helped for p in found.params if isinstance(p, click.Option) and EVERYWHERE not in p.opts
             if (helped := p.get_help_record(click.Context(found))) is not None]  # fmt: skip
     return table(("option", "does"), *((f"`{names}`", says.replace("|", "\\|")) for names, says in rows))

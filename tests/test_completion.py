@@ -10,7 +10,8 @@ import pytest
 
 from tmm_sheets import catalogue, protocols
 from tmm_sheets.__main__ import run
-from tmm_sheets.cli import PARTS, commands
+from tmm_sheets.cli import commands
+from tmm_sheets.cli.options import PARTS
 from tmm_sheets.project import PARTS as ALL_PARTS
 from tmm_sheets.project import Project
 from tmm_sheets.record.results_map import leaves

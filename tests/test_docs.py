@@ -246,20 +246,20 @@ def test_quick_commands_work(paper, tmp_path, monkeypatch, capsys):
             assert __main__.run(arguments) == __main__.DONE, (arguments, capsys.readouterr().err)
 
 
-@pytest.mark.parametrize("name", cli.commands.commands)
+@pytest.mark.parametrize("name", cli.NAMES)
 def test_every_option_is_told_and_none_that_is_not(name):
     (section,) = re.findall(rf"^## {name}\n(.*?)(?=^## |\Z)", TEXTS["docs/commands.md"], re.MULTILINE | re.DOTALL)
     rows = set(re.findall(r"--[a-z]+(?:-[a-z]+)*", "\n".join(re.findall(r"^\| `([^`]*--[^`]*)`", section, re.MULTILINE))))
-    assert rows == {o for p in cli.commands.commands[name].params for o in p.opts if o.startswith("--")} - {docs.EVERYWHERE}
+    assert rows == {o for p in cli.commands.every()[name].params for o in p.opts if o.startswith("--")} - {docs.EVERYWHERE}
 
 
 def test_the_option_of_all_commands_is_told_once():
-    assert all(docs.EVERYWHERE in p.opts for command in cli.commands.commands.values() for p in command.params[-1:])
+    assert all(docs.EVERYWHERE in p.opts for command in cli.commands.every().values() for p in command.params[-1:])
     assert len(re.findall(rf"^## .*\n(?:(?!^## ).*\n)*?.*`{docs.EVERYWHERE}", TEXTS["docs/commands.md"], re.MULTILINE)) == 1
 
 
 def test_no_option_is_named_that_no_command_has():
-    known = {o for command in cli.commands.commands.values() for p in command.params for o in p.opts} | {"--help"}
+    known = {o for command in cli.commands.every().values() for p in command.params for o in p.opts} | {"--help"}
     text = re.sub(r"^.*(?:python -m|pip install).*$", "", EVERYWHERE, flags=re.MULTILINE)
     assert set(re.findall(r"(?<![\w-])--[a-z]+(?:-[a-z]+)*", text)) <= known
 

@@ -22,7 +22,7 @@ from tmm_sheets.output.building import Order
 from tmm_sheets.task import variant
 
 ROOT = Path(__file__).parents[1]
-COMMANDS = ((), *((name,) for name in cli.commands.commands))
+COMMANDS = ((), *((name,) for name in cli.NAMES))
 CYRILLIC = re.compile("[\u0400-\u04ff]")
 BOTH = [*((language, catalogues.DOMAIN) for language in words.LANGUAGES), ("ru", catalogues.CLICK), ("uk", catalogues.CLICK)]
 either = pytest.mark.parametrize(("language", "domain"), BOTH)

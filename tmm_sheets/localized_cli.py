@@ -129,6 +129,8 @@ class Group(Command, click.Group):
     command_class = Command
 
 
+command = partial(click.command, cls=Command)
+"""Decorator: a command."""
 option = partial(click.option, cls=Option)
 """Decorator of commands: an option with help in the reader's language."""
 argument = partial(click.argument, cls=LocalizedArgument)

@@ -13,13 +13,12 @@ from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
 from tmm_sheets.words import LANGUAGES
 
-ROOMS = ("task", "methods", "sheets", "drawing", "record", "living", "page")
+ROOMS = ("cli", "task", "methods", "sheets", "drawing", "record", "living", "page")
 EXTRAS = ("compare.measured", "compare.cad", "compare.photo", "compare.group", "note")
 """Rooms some of whose modules need packages that may be missing."""
 
 
 def _load() -> None:
-    import_module("tmm_sheets.cli")
     for room in (*ROOMS, *EXTRAS):
         package = import_module(f"tmm_sheets.{room}")
         for module in walk_packages(getattr(package, "__path__", ()), f"{package.__name__}."):

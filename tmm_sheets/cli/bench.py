@@ -1,0 +1,72 @@
+"""``bench``: error and time of the methods."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from tmm_sheets.localized_cli import command, option
+from tmm_sheets.words import tell
+
+
+@command("bench")
+@option("--json", "target", metavar="FILE", help="Also write the table as JSON, to standard output for -.")
+@option("--plot", "folder", type=click.Path(path_type=Path), metavar="DIR", help="Also draw log-log diagrams, SVG.")
+@option("--quick", is_flag=True, help="A few small runs only: tries the benchmark out.")
+@option("--summary", is_flag=True, help="The first and the last run of each method only, in Markdown.")
+@option("--peers", is_flag=True, help="Instead: the same linkages by other programs, those of the extra [peers].")
+@option("--cost", metavar="PROJECT", help="Instead: what one sheet or one number of PROJECT costs against the whole.")
+@option("--whole", metavar="PROJECT", help="Instead: all sheets of PROJECT against plain calls of the libraries.")
+def run(target: str | None, folder: Path | None, quick: bool, summary: bool, peers: bool, cost: str | None,
+          whole: str | None) -> None:
+    """Measure every method: error against a truth of 30 digits or more, and time."""
+    if cost is not None or whole is not None:
+        if any((target, folder, quick, summary, peers, cost and whole)):
+            raise click.UsageError(tell("--cost and --whole go alone"))
+        click.echo(_prices(cost, whole))
+        return
+    from tmm_sheets import files
+    from tmm_sheets.lab.bench import records
+    from tmm_sheets.lab.bench import run as benchmark
+    from tmm_sheets.progress import Progress
+
+    if folder is not None:
+        files.check_folder(folder)
+    with Progress() as progress:
+        measure = benchmark.compare if peers else benchmark.run
+        found = measure(quick, lambda what: progress.say(f"{what} ..."))
+    if peers:
+        from tmm_sheets.lab.bench import peers as by_others
+
+        text = (by_others.summary if summary else by_others.table)(found)
+    else:
+        text = (records.summary if summary else records.table)(found)
+    click.echo(text, err=target == "-")
+    made: dict[Path, bytes] = {}
+    if target == "-":
+        click.echo(records.as_json(found))
+    elif target is not None:
+        made[Path(target)] = (records.as_json(found) + "\n").encode()
+    if folder is not None:
+        from tmm_sheets.lab.bench import plots
+
+        made |= {folder / name: data for name, data in plots.diagrams(found).items()}
+    files.write_all(made)
+
+
+def _prices(cost: str | None, whole: str | None) -> str:
+    """What parts of a project cost against the whole, or the whole against plain calls of the libraries."""
+    from tmm_sheets.progress import Progress
+
+    with Progress() as progress:
+        def say(what: str) -> None:
+            progress.say(f"{what} ...")
+
+        if cost is not None:
+            from tmm_sheets.lab.bench import costs
+
+            return costs.table(cost, say)
+        from tmm_sheets.lab.bench import whole as sheets
+
+        return sheets.table(sheets.measure(str(whole), say))

@@ -1,0 +1,200 @@
+"""``build``: the sheets."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from tmm_sheets import kept, words
+from tmm_sheets.cli import opening
+from tmm_sheets.cli.batches import come_of, say_stopped
+from tmm_sheets.cli.options import CORRECTED, JOBS, NO_CACHE, REMAKE, SHEETS, formats_of, plotter, titled
+from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
+from tmm_sheets.localized_cli import argument, command, option
+from tmm_sheets.words import tell
+
+if TYPE_CHECKING:
+    from tmm_sheets.drawing.plotters import Plotter
+    from tmm_sheets.output.building import Order
+    from tmm_sheets.project import Project
+
+
+@command("build")
+@argument("projects", metavar="PROJECT...", nargs=-1)
+@option("--all", "families", multiple=True, metavar="FAMILY",
+              help="All shipped projects of a family, such as sixbar, or of all.")
+@option("--list", "lists", multiple=True, metavar="FILE",
+              help="Projects named in a file, one a line; - for standard input.")
+@CORRECTED
+@titled
+@SHEETS
+@formats_of("dxf,pdf")
+@option("--dpi", type=click.FloatRange(10, 1200), default=150, show_default=True, help="Dots per inch of PNG.")
+@option("--plotter", "machine", metavar="NAME", callback=plotter,
+              help="Plotter for HPGL: a shipped one or a file.  [default: a1]")
+@option("--text", type=click.Choice(["live", "librecad", "strokes"]), default="live", show_default=True,
+              help="Lettering and dashes of DXF: to be worked with, the same with our font for LibreCAD, or drawn exactly.")
+@option("--one-file", is_flag=True, help="Put all sheets into one PDF, sheets.pdf.")
+@option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
+              help="Folder of the sheets, of several projects the folder with one for each.  [default: out/<project>]")
+@option("--zip", "archive", is_flag=True, help="Put each project into a zip file instead of a folder.")
+@REMAKE
+@JOBS
+@option("--dask", "scheduler", metavar="ADDRESS", help="Build several projects on a dask cluster.")
+@NO_CACHE
+@option("--with-note", is_flag=True, help="Also the explanatory note, note.pdf; the numbers of the sheets run on after its pages.")
+@option("--views", is_flag=True, help="Also each view as a picture of its own, in the folder views: those of the formats that are "
+              "svg, png or pdf.")
+@option("--open", "show_files", is_flag=True, help="Open what was made: one file, or its folder.")
+@option("--explain", is_flag=True, help="Also tell what was built and evaluated, and how long it took.")  # fmt: skip
+def run(
+    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[str, ...], corrected: bool, sheets: tuple[int, ...],
+    formats: tuple[str, ...], dpi: float, machine: Plotter | None, text: str, one_file: bool, output: Path | None,
+    archive: bool, force: bool, jobs: int | None, scheduler: str | None, with_note: bool, views: bool,
+    show_files: bool, explain: bool,
+) -> None:
+    """Draw the sheets of one PROJECT or of several; what has not changed since the last time is not made again."""
+    if not projects and not families and not lists:
+        raise click.UsageError(tell("Missing argument 'PROJECT'; or give --all FAMILY, or --list FILE."))
+    if one_file and "pdf" not in formats:
+        raise click.UsageError(tell("--one-file is for PDF: add pdf to --format"))
+    from tmm_sheets import files
+    from tmm_sheets.output.building import Order
+
+    settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": machine}, "dxf": {"text": text},
+                                           "pdf": {"date": files.source_date()}}  # fmt: skip
+    order = Order(sheets, formats, settings, corrected, force, archive, one_file, words.asked(), words.reader(), kept.used(),
+                  opening.names())
+    if len(projects) == 1 and not families and not lists:
+        if jobs is not None or scheduler is not None:
+            raise click.UsageError(tell("--jobs and --dask are for several projects"))
+        if with_note and archive:
+            raise click.UsageError(tell("--with-note writes into a folder: leave --zip out"))
+        if views and archive:
+            raise click.UsageError(tell("--views writes into a folder: leave --zip out"))
+        build_one(projects[0], order, output, explain, with_note, views, show_files)
+        return
+    if views or show_files:
+        raise click.UsageError(tell("--views and --open are for one project"))
+    if with_note:
+        raise click.UsageError(tell("--with-note is for one project"))
+    if explain:
+        raise click.UsageError(tell("--explain is for one project"))
+    _build_many(projects, families, lists, order, output or Path("out"), jobs, scheduler)
+
+
+def _build_many(
+    projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[str, ...], order: Order, parent: Path,
+    jobs: int | None, scheduler: str | None,
+) -> None:
+    from time import monotonic
+
+    from tmm_sheets import files
+    from tmm_sheets.output import batch
+
+    names = batch.chosen(projects, families, [_listed(file) for file in lists])
+    if not names:
+        raise BadInput(tell("no projects to build"), hint=tell("the list is empty"))
+    files.check_folder(parent)
+    start = monotonic()
+    running = (batch.run(names, order, parent, jobs or batch.processors()) if scheduler is None
+               else batch.run_on_dask(names, order, parent, scheduler))  # fmt: skip
+    done, stopped = come_of(running, len(names))
+    for outcome in sorted(done, key=lambda o: o.project):
+        for warning in outcome.warnings:
+            click.echo(f"{outcome.project}: {warning}", err=True)
+    click.echo(batch.summary(done, parent, monotonic() - start))
+    failures = [outcome for outcome in done if outcome.problem]
+    if stopped is not None:
+        if failures:
+            click.echo(batch.table(failures, len(names)), err=True)
+        say_stopped(len(names) - len(done), len(names))
+        raise stopped
+    if failures:
+        raise CannotBuild(batch.table(failures, len(names)))
+
+
+def _listed(file: str) -> list[str]:
+    """Lines of a list of projects, of standard input for -."""
+    import sys
+
+    from tmm_sheets import encodings, files
+
+    hint = tell("a list names a project in each line, in UTF-8")
+    try:
+        data = sys.stdin.buffer.read() if file == "-" else files.content(Path(file))
+        return encodings.cleaned(encodings.decoded(data).text).splitlines()
+    except OSError as e:
+        raise BadInput(Problem(tell("cannot be read: {why}").format(why=reason_of(e)), file, hint=hint)) from None
+    except encodings.NotText as e:
+        raise BadInput(Problem(str(e), file, e.line, hint=hint)) from None
+
+
+def build_one(project: str, order: Order, output: Path | None, explain: bool = False, with_note: bool = False,
+               views: bool = False, show_files: bool = False) -> None:
+    """Build the sheets of one project and what goes with them, and tell the files and what is to be said of them."""
+    from contextlib import nullcontext
+
+    from tmm_sheets.explain import Stopwatch
+    from tmm_sheets.output.building import build as build_project
+    from tmm_sheets.progress import Progress
+
+    watch = Stopwatch()
+    with watch.phase(tell("read")):
+        variant = opening.read_variant(project, order.corrected)
+    folder = opening.folder_of(variant, output)
+    outlet = order.outlet(folder)
+    if explain:
+        from tmm_sheets.askers import listening
+    with Progress() as progress, listening() if explain else nullcontext() as askers:
+        if with_note:
+            from tmm_sheets.note import note as writing
+
+            words.set_paper(words.of_project(variant.project.language))
+            with watch.phase(tell("pages of the note")):
+                variant = writing.run_on(variant, lambda what: progress.say(f"{what} ..."))
+        built = build_project(variant, order, outlet, watch, lambda what: progress.say(f"{what} ..."))
+        paths, warnings = built.paths, built.warnings
+        if with_note:
+
+            with watch.phase(tell("note")):
+                written = writing.write(built.opened, ("pdf",), lambda what: progress.say(f"{what} ..."))
+                noted, kept = opening.put(folder, written.files, order.force)
+            paths += noted
+            warnings += (*kept, *(tell("left out: {problem}").format(problem=problem) for problem in written.problems))
+        if views:
+            pictured, kept = opening.put(folder / "views", _pictures(built.opened, order), order.force)
+            paths += pictured
+            warnings += tuple(kept)
+    for path in paths:
+        click.echo(path)
+    if show_files and paths:
+        shown = paths[0] if len(paths) == 1 else paths[0].parent
+        if click.launch(str(shown)):
+            warnings += (tell("{path} cannot be opened here: open it yourself").format(path=shown),)
+    for warning in warnings:
+        click.echo(f"{variant.called}: {warning}", err=True)
+    unchanged = len(built.paths) - len(built.sizes)
+    if unchanged:
+        told = tell("{n} of {m} files unchanged (--force makes them again)").format(n=unchanged, m=len(built.paths))
+        click.echo(f"{variant.called}: {told}", err=True)
+    if askers is not None:
+        from tmm_sheets import explain as report
+
+        click.echo(report.text(built.opened, built.drawings, watch, askers))
+    if built.refused is not None:
+        raise built.refused
+
+
+def _pictures(opened: Project, order: Order) -> dict[str, bytes]:
+    """Pictures of the views of the sheets that were asked for and can be drawn."""
+    from tmm_sheets.output import view_pictures
+    from tmm_sheets.output.building import chosen
+    from tmm_sheets.sheets import sheet
+
+    formats = [form for form in order.formats if form in view_pictures.FORMATS] or ["svg"]
+    drawn = sheet.attempt(opened, chosen(opened.variant, order.sheets)).drawn
+    dpi = order.settings["png"]["dpi"]
+    return {name: data for n, composed in drawn.items() for name, data in view_pictures.of_sheet(n, composed, formats, dpi)}
