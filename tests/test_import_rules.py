@@ -179,7 +179,7 @@ def test_imports(module):
     ("sheets.cams.cam", "from tmm_sheets.methods.cams import cam_profile"),
     ("compare.photo.image", "import ezdxf"),
     ("drawing.canvas", "import shapely"),
-    ("cli", "import numpy as np"),
+    ("cli.build", "import numpy as np"),
 ])  # fmt: skip
 def test_a_planted_import_is_caught(module, planted):
     """The same source with one line more breaks the rules of its room, and by that line alone."""

@@ -170,7 +170,7 @@ def test_a_package_that_is_missing(arguments, module, extra, desk, quoted, monke
 
 def test_options_that_are_told_exist():
     """Every --option in a text of the program is one of a command; those of other programs are told apart by their names."""
-    options = {name for command in (commands, *commands.commands.values()) for p in command.params for name in p.opts} | {"--help"}
+    options = {name for command in (commands, *commands.every().values()) for p in command.params for name in p.opts} | {"--help"}
     found = {text: set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", str(text))) for _, text, _ in catalogues.of_program()}
     assert any(found.values())
     assert {text: names - options for text, names in found.items() if names - options} == {}

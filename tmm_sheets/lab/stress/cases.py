@@ -37,7 +37,7 @@ BOUNDS = {
     "closure on guides": (2e-15, "of the reach and the way to the guide's point"),
     "assembly side": (2e-15, "of the reach"),
     "NaN exactly where it cannot assemble": (2e-15, "of the reach: what the pin's rounding may decide"),
-    "one function = its steps": (1e-13, "of the reach, of the fastest point, of the greatest acceleration"),
+    "one function = its steps": (2e-14, "of the reach, of the fastest point, of the greatest acceleration, times the condition"),
     "velocity closure": (1e-14, "of the fastest point, times how far beyond the points that tell the turning"),
     "acceleration closure": (1e-14, "of the greatest acceleration, the same"),
     "derivative of position = velocity": (1e-9, "of the fastest point; differences of order 8, condition under 100"),

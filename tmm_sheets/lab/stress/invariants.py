@@ -252,14 +252,17 @@ def geometry(s: State) -> Iterator[Residual]:
 
 
 def alike(s: State) -> Iterator[Residual]:
-    """What one function makes of the plans against what their steps make of them."""
+    """What one function makes of the plans against what their steps make of them.
+
+    They round differently, and a bad condition makes more of that in velocities and accelerations.
+    """
     if not isinstance(s, OneFunction):
         return
     name = "one function = its steps"
     for steps, found, scale in ((s.positions.points, s.z, s.reach), (s.velocities.points, s.v, s.fastest),
                                 (s.accelerations.points, s.a, s.sharpest)):
         for own, value in zip(s.by_steps(steps.values()), found.values(), strict=True):
-            yield name, np.where(np.isnan(own) == np.isnan(value), np.abs(value - own) / scale, 1.0)
+            yield name, np.where(np.isnan(own) == np.isnan(value), np.abs(value - own) / (scale * s.condition), 1.0)
 
 
 def rigidity(s: State) -> Iterator[Residual]:
