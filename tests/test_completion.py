@@ -10,7 +10,7 @@ import pytest
 
 from tmm_sheets import catalogue, protocols
 from tmm_sheets.__main__ import run
-from tmm_sheets.cli import NAMES, commands
+from tmm_sheets.cli import NAMES
 from tmm_sheets.cli.options import PARTS
 from tmm_sheets.project import PARTS as ALL_PARTS
 from tmm_sheets.project import Project
