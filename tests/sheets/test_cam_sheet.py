@@ -151,7 +151,7 @@ def test_protocol_has_the_scale_factors_of_the_sheet():
     data = PROJECTS["manual 000"]
     canvas = whole(data)
     assert {name: scale.mu for name, scale in canvas.scales.items()} == {"cam-motion": 1.0, "cam-zone": 2e-4, "cam-profile": 1e-4}
-    assert {s.mu for s in (data.cam.motion.scales.dds, data.cam.motion.scales.ds, data.cam.motion.scales.s)} == {1.5e-3, 4e-4, 1e-4}
+    assert {s.mu for s in (data.cam.motion.scales.dds, data.cam.motion.scales.ds, data.cam.motion.scales.s)} == {1e-3, 2.5e-4, 6e-5}
     assert "μ" in texts(drawn("cam.motion", data))
 
 
@@ -201,7 +201,7 @@ def test_motion_shows_rays_chords_and_numbers():
     assert {"P_1", "P_2"} <= set(asked)
     curves = [m.points for m in canvas.marks if isinstance(m, Polyline) and m.style == "curve"]
     assert [np.ptp(c.real) for c in curves] == pytest.approx([205.0] * 3)
-    assert np.ptp(curves[2].imag) == pytest.approx(0.01 / 1e-4)
+    assert np.ptp(curves[2].imag) == pytest.approx(0.01 / 6e-5)
 
 
 def test_allowed_zone_lies_between_the_tangents():

@@ -21,10 +21,10 @@ from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.readable import CURVE, MAIN, POLE
-from tmm_sheets.construction.scale import Scale, fit, handy
+from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.methods.cams.cam_displacement import KINDS, SOURCE, Displacement, ExactMotion, names, row
-from tmm_sheets.methods.cams.cam_laws import Law, PositionFunction
+from tmm_sheets.methods.cams.cam_laws import Law, Phase, PositionFunction
 from tmm_sheets.methods.integration import SMOOTH, integrate, ordinates
 from tmm_sheets.words import marked, tr
 
@@ -33,18 +33,16 @@ Complex = npt.NDArray[np.complex128]
 
 GAP = 6.0
 """Clear distance between the pole of S'' and the auxiliary circle, mm."""
-BESIDE = GAP + 3.0 + 14.0
-"""Width that axes need beyond the phases, the pole distance and the circle, mm."""
-BARE = 8.0
-"""Width that axes need beyond the phases and the pole distance where there is no circle, mm."""
+BESIDE, BARE = GAP + 3.0 + 13.0, 6.0 + 13.0
+"""Width that axes need beyond the phases and the pole distance, mm: with the circle (its diameter not counted), and without."""
 NEAREST = 7.0
-"""Pole distance below which rays become too steep to draw at all, mm."""
-SHARES = (0.15, 0.2, 0.25, 0.3)
-"""Shares of the height that the greatest ordinate of S'' takes: the least with which poles and curves are as large as they have to
-be, for what the poles are far they take from the heights.
-"""
+"""Pole distance that the floors leave where the phases are short, mm: below it rays become too steep to draw at all."""
 FILLED = 0.6
 """Share of the height below which three diagrams to one scale factor would be too low: then each has its own."""
+OVERFULL = 1e9
+"""What scale factors count less for with which the diagrams are twice as large as their place: more than for all else."""
+FLOORS = 1e6
+"""What scale factors count for with which all poles and curves can be read: more than what they fill."""
 
 AMPLITUDE = Rule("amplitude by proportion", lambda a, phase, other: a * (phase / other) ** 2, ("length", "angle", "angle"),
                  "length", marked("From the proportion a_1/a_2 = φ_f²/φ_r² find the second amplitude {name} = {value}."))
@@ -129,79 +127,58 @@ class MotionScales:
 def motion_scales(law: PositionFunction, width: float, height: float, equal: bool = False) -> MotionScales:
     """Handy scale factors with which the three diagrams, one under another, fill ``width`` x ``height`` mm.
 
-    The phases take at most 0.68 of the width, 0.75 where the law has no auxiliary circle; this and the pole share the rest on
-    their left. S'' takes at most 0.3 of the height, or up to 0.6 where poles are too near otherwise; of the pairs of scale factors
-    of S' and S the one that uses most of the rest is taken. With ``equal`` all three diagrams have one scale factor: both pole
-    distances are 1/mu_phi (manual 000, 7 ex. 3), unless its auxiliary circle would leave much of the height bare, or S is too low.
+    Of all that fit those with which poles and curves are as large as they have to be (:mod:`tmm_sheets.construction.readable`), or
+    least below; of these those with which all three curves are high, and long. The pole of S'' and the auxiliary circle of the law
+    share what the phases leave at their left. With ``equal`` all three diagrams have one scale factor: both pole distances are
+    1/mu_phi (manual 000, 7 ex. 3), unless its auxiliary circle would leave much of the height bare, or a curve is too low.
     """
-    shares = np.linspace(0, 1, 65)
-    spans = float(np.abs(law.rise.ds(shares)).max() + np.abs(law.fall.ds(shares)).max()), law.stroke
+    x = np.linspace(0, 1, 65)
+    spans = [float(np.ptp(np.concatenate(([0.0], f(law.rise, x), f(law.fall, x))))) for f in (Phase.dds, Phase.ds, Phase.s)]
+    place = _Place(law, spans, width, height)
+    finest = handy(degrees(law.fall.end) / (width - (BESIDE if has_circle(law) else BARE) - POLE))
+    across = [radians(degree) for degree in _coarser(finest)]
     if equal:
-        found = _equal_scales(law, spans, width, height)
-        filled = (2 * max(law.rise.amplitude, law.fall.amplitude) + sum(spans)) / found.s.mu
-        if filled >= FILLED * height and law.stroke / found.s.mu >= CURVE:
+        found, highs = place.best(across, *[_coarser(sum(spans) / height)] * 3, one=True)
+        if sum(highs) >= FILLED * height and highs[2] >= CURVE:
             return found
-    every = [_own_scales(law, spans, width, height, share) for share in SHARES]
-    return max(every, key=lambda of: of[1])[0]  # of several alike the first
+    return place.best(across, *(_coarser(span / ((1.0 - LEFT) * height)) for span in spans))[0]
 
 
-def _finest(law: PositionFunction, width: float) -> float:
-    """Finest scale of the angle axis, degrees per mm: the phases leave room for what stands on their left."""
-    return handy(degrees(law.fall.end) / ((0.68 if has_circle(law) else 0.75) * width))
+LEFT = 0.3
+"""Share of the height that no diagram takes from the other two."""
 
 
-def _left_of_axis(law: PositionFunction) -> tuple[float, float]:
-    """What stands there: the room between axis and pole, mm, and the diameters of the auxiliary circle in amplitudes of S''."""
-    return (BESIDE, 2.0) if has_circle(law) else (BARE, 0.0)
+@dataclass(frozen=True)
+class _Place:
+    """A place on paper, mm, for the diagrams of a law with these extents of S'', S' and S, SI."""
 
+    law: PositionFunction
+    spans: list[float]
+    width: float
+    height: float
 
-def _equal_scales(law: PositionFunction, spans: tuple[float, float], width: float, height: float) -> MotionScales:
-    """One scale factor for all three diagrams."""
-    amplitude = max(law.rise.amplitude, law.fall.amplitude)
-    beside, circle = _left_of_axis(law)
-    tall = 2 * amplitude + sum(spans)
-    pairs = [(Scale("μ_φ", radians(deg), tr("rad/mm")), mu) for mu in _coarser(tall / height)
-             for deg in _coarser(_finest(law, width))]
+    def best(self, across: list[float], *of: list[float], one: bool = False) -> tuple[MotionScales, list[float]]:
+        """The best of some scale factors of the cam angle (rad/mm) and the diagrams (SI/mm), and how high these come out, mm.
 
-    def free(phi: Scale, mu: float) -> float:
-        return width - float(phi.mm(law.fall.end)) - beside - circle * amplitude / mu - 1 / phi.mu
-
-    phi, mu = min([p for p in pairs if free(*p) >= 0] or pairs[-1:], key=lambda p: p[0].mu ** 1.5 * p[1])
-    return MotionScales(phi, *(Scale(f"μ_{law.symbol}{primes}", mu, tr("m/mm")) for primes in ("''", "'", "")))
-
-
-def _own_scales(law: PositionFunction, spans: tuple[float, float], width: float, height: float,
-                share: float) -> tuple[MotionScales, int]:
-    """A scale factor for each diagram, and how well poles and curves can be read: 2 as they should be, 1 just so, 0 not.
-
-    ``spans`` are what S' and S need, in their units; the greatest ordinate of S'' takes at most a ``share`` of the height.
-    """
-    finest = _finest(law, width)
-    amplitude = max(law.rise.amplitude, law.fall.amplitude)
-    beside, circle = _left_of_axis(law)
-    unit, of = (tr("m/mm"), tr("m/mm")) if law.symbol == "S" else (tr("rad/mm"), tr("1/mm"))
-    phi = Scale("μ_φ", radians(finest), tr("rad/mm"))
-    left = width - phi.mm(law.fall.end) - beside
-    dds = fit(f"μ_{law.symbol}''", of, amplitude, min((left - POLE - 5.0) / 2, share * height) if circle else share * height)
-    room = height - 2 * dds.mm(amplitude)
-    found = [(a, b) for a in _coarser(spans[0] / (0.55 * height)) for b in _coarser(spans[1] / (0.42 * height))
-             if spans[0] / a + spans[1] / b <= room]
-    poles = [(a / (dds.mu * phi.mu), b / (a * phi.mu)) for a, b in found]
-    # Rays from a very near pole are hard to draw, though short phases need near ones; the pole of S'' stands beside the circle.
-    nearest = min(NEAREST, 0.12 * phi.mm(min(law.rise.angle, law.fall.angle)))
-    fits = [p for p, (h1, h2) in zip(found, poles, strict=True) if h1 <= left - circle * dds.mm(amplitude) and h2 <= left - 6.0]
-    good = [p for p, h in zip(found, poles, strict=True) if p in fits and min(h) >= nearest]
-    far, near = ([p for p, h in zip(found, poles, strict=True)
-                  if p in fits and min(h) >= pole and spans[0] / p[0] >= CURVE and spans[1] / p[1] >= high]
-                 for pole, high in ((POLE, MAIN), (NEAREST, CURVE)))
-
-    def filling(pair: tuple[float, float]) -> tuple[int, float]:
-        high, low = spans[0] / pair[0], spans[1] / pair[1]
-        return round(high + low), -abs(high - low)
-
-    ds, s = max(far or near or good or fits or found, key=filling)
-    scales = MotionScales(phi, dds, Scale(f"μ_{law.symbol}'", ds, of), Scale(f"μ_{law.symbol}", s, unit))
-    return scales, 2 if far else int(bool(near))
+        With ``one`` only those count that are the same for all three diagrams.
+        """
+        phi, dds, ds, s = np.meshgrid(across, *of, indexing="ij")
+        high = [span / mu for span, mu in zip(self.spans, (dds, ds, s), strict=True)]
+        h1, h2, long = ds / (dds * phi), s / (ds * phi), self.law.fall.end / phi
+        circle = 2 * max((p.amplitude for p in (self.law.rise, self.law.fall) if p.law.division), default=0.0)
+        taken = np.maximum(h1 + circle / dds, h2) + (BESIDE if circle else BARE) + long
+        over = np.maximum(taken / self.width - 1, 0) + np.maximum(sum(high) / self.height - 1, 0)
+        least = (h1 / POLE, h2 / POLE, high[0] / CURVE, high[1] / CURVE, high[2] / MAIN)
+        read = np.minimum(np.minimum.reduce(least), 1.0)
+        merit = FLOORS * np.round(read, 3) - OVERFULL * np.round(over, 9) + np.cbrt(high[0] * high[1] * high[2]) * np.sqrt(long)
+        if one:
+            merit = np.where((dds == ds) & (ds == s), merit, -np.inf)
+        at = np.unravel_index(np.argmax(merit), merit.shape)
+        unit, symbol = (tr("m/mm"), tr("m/mm")) if self.law.symbol == "S" else (tr("rad/mm"), tr("1/mm")), self.law.symbol
+        scales = MotionScales(Scale("μ_φ", float(phi[at]), tr("rad/mm")), *(
+            Scale(f"μ_{symbol}{primes}", float(mu[at]), unit[bool(primes)])
+            for primes, mu in (("''", dds), ("'", ds), ("", s))))
+        return scales, [float(each[at]) for each in high]
 
 
 def has_circle(law: PositionFunction) -> bool:

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 Reals = npt.NDArray[np.float64]
 
-DIAGRAMS = {"tappet": (325.0, 500.0), "rocker": (325.0, 288.0), "flat": (325.0, 500.0)}
+DIAGRAMS = {"tappet": (327.0, 500.0), "rocker": (327.0, 288.0), "flat": (327.0, 500.0)}
 """Room on paper for the three diagrams when nobody asks for another one, mm: that of the sheet as shipped."""
 
 SHARE_OF_R0 = (0.3, 0.4)

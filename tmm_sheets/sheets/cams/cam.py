@@ -114,14 +114,11 @@ def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     ups = [max(float(c.imag.max()), 0.0) for c in curves]
     downs = [max(float(-c.imag.min()), 0.0) for c in curves]
     end = float(m.scales.phi.mm(law.fall.end))
-    left = max(m.scales.h1, m.scales.h2) + 8.0
+    left = max(m.scales.h1, m.scales.h2) + 6.0
     if m.circle:
         centre = complex(m.plan["M"].value)
         left = max(left, max(abs(complex(s.value) - centre) for s in m.circle.values()) + 3.0 - centre.real)
-    said = _relations(m)
-    spare, wide = max(box.width - left - end - 14.0, 0.0), max(letter(line, 3.5).width for line in said)
-    at_right = spare >= wide + 8.0  # what is left over is in one piece for what follows from the diagrams
-    x0 = box.x0 + left + (0.0 if at_right else spare / 2)
+    x0 = box.x0 + left + max(box.width - left - end - 13.0, 0.0) / 2
     foot = 22.0  # numbers and dimensions of the phases under the lowest diagram
     gap = (area.height - foot - sum(ups) - sum(downs)) / 3
     origins, y = [], area.y1
@@ -132,18 +129,15 @@ def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     stages = [placed(canvas, m.plan, o, 1.0) for o in origins]
     course = placed(canvas, m.between_plan, origins[0], 1.0)
     _phase_borders(canvas, m, origins, ups)
-    heads = (
-        f"{m.scales.dds}",
-        tr("{scale},  H_1 = {distance} mm").format(scale=m.scales.ds, distance=number(m.scales.h1)),
-        tr("{scale},  H_2 = {distance} mm").format(scale=m.scales.s, distance=number(m.scales.h2)),
-    )
     texts = (tr("{symbol}, m"),) * 3 if law.symbol == "S" else ("{symbol}", "{symbol}", tr("{symbol}, rad"))
     symbols = [text.format(symbol=name) for text, name in zip(texts, m.names, strict=True)]
     steps = (m.dds, m.ds, m.s)
     smooth = (m.between, m.plan[m.names[1]], m.plan[m.names[2]])
-    every = zip(stages, ups, downs, curves, steps, symbols, heads, smooth, strict=True)
+    every = zip(stages, ups, downs, curves, steps, symbols, _heads(m), smooth, strict=True)
     for s, up, down, points, ordinates, symbol, head, step in every:
-        _diagram(s, ordinates[0], up, down, end, symbol, head)
+        _diagram(s, ordinates[0], up, down, end, symbol)
+        # Over the first diagram there is no pole distance: its left side is free, too, and wider beside short phases.
+        _head(canvas, s.frame(0j) + 1j * (up + 6.0), head, box, both=step is m.between)
         _ordinates(s, m, ordinates)
         (course if step is m.between else s).curve(step, s.frame(0j) + points)
     if m.circle:
@@ -151,15 +145,6 @@ def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     _integration(stages[0], stages[1], m, m.names[1], m.ds, "P_1", "H_1", downs[0])
     _integration(stages[1], stages[2], m, m.names[2], m.s, "P_2", "H_2", downs[1])
     _phase_angles(canvas, m, origins[2] - 7j)
-    levels = [o.imag + up for o, up in zip(origins, ups, strict=True)]
-    at = x0 + end + 20.0 if at_right else box.x0 + 2.0
-    if not at_right and at + wide + 2.0 > x0:
-        said = said[0].split("  ") + said[1:]
-    # Each beside the head of the diagram that it belongs to; all beside the third where pole or circle take the room.
-    counts = (2, 1, 1) if at_right else (0, 3, 1) if at + wide + 6.0 <= x0 - m.scales.h2 else (0, 0, len(said))
-    for top, count in zip(levels, counts, strict=True):
-        canvas.lines(complex(at, top), said[:count], 8.0)
-        said = said[count:]
 
 
 def _phase_borders(canvas: Canvas, m: FollowerMotion, origins: list[complex], ups: list[float]) -> None:
@@ -186,26 +171,32 @@ def _phase_angles(canvas: Canvas, m: FollowerMotion, base: complex) -> None:
             canvas.dimension(a, b, -8.0, full, factor=degrees(m.scales.phi.mu), apart=None if inside else ((a + b) / 2 - 8j, -1j))
 
 
-def _relations(m: FollowerMotion) -> list[str]:
-    """Scale factor of the angle, and how the other scale factors and the heights of S'' follow from one another."""
+def _heads(m: FollowerMotion) -> tuple[str, str, str]:
+    """Over each diagram its scale factor, how it follows from the others, and what the amplitudes follow from."""
     law = m.law
-    second, first, zero = (f"μ_{name}" for name in m.names)
     equal = f"{law.fall.letters}^2/{law.rise.letters}^2 = " if law.rise.law.peak == law.fall.law.peak else ""
-    return [
-        tr("{scale}  ({degrees} deg/mm)").format(scale=m.scales.phi, degrees=number(degrees(m.scales.phi.mu))),
-        f"a_1/a_2 = {equal}{number(abs(m.plan['a_1'].value))}/{number(abs(m.plan['a_2'].value))}",
-        f"{first} = {second}·μ_φ·H_1",
-        f"{zero} = {first}·μ_φ·H_2",
-    ]
+    first, second = (tr("{symbol} = {before}·μ_φ·H_{number} = {factor} {unit},  H_{number} = {distance} mm").format(
+        symbol=scale.symbol, before=before.symbol, number=k, factor=number(scale.mu), unit=scale.unit, distance=number(distance))
+        for k, scale, before, distance in ((1, m.scales.ds, m.scales.dds, m.scales.h1), (2, m.scales.s, m.scales.ds, m.scales.h2)))
+    angle = tr("{scale}  ({degrees} deg/mm)").format(scale=m.scales.phi, degrees=number(degrees(m.scales.phi.mu)))
+    return (f"{m.scales.dds},  {angle},  "
+            f"a_1/a_2 = {equal}{number(abs(m.plan['a_1'].value))}/{number(abs(m.plan['a_2'].value))}", first, second)
 
 
-def _diagram(s: PlayerStage, step: Step, up: float, down: float, end: float, symbol: str, head: str) -> None:
-    """Axes of one diagram with the letter of its quantity and its scale factor."""
+def _diagram(s: PlayerStage, step: Step, up: float, down: float, end: float, symbol: str) -> None:
+    """Axes of one diagram with the letter of its quantity."""
     canvas, o = s.canvas, s.frame(0j)
     axes(s, step, end + 13.0, (-down, up + 10.0), 3.0 if down else 0.0)
     canvas.text(o + complex(2.5, up + 6.0), symbol, 3.5)
-    canvas.text(o + complex(22.0, up + 6.0), head, 3.5)
-    canvas.label(o + end + 12.0, tr("{symbol}, rad").format(symbol="φ"), 1j, 3.5, 1.5, leader=False)
+    canvas.label(o + end + 8.0, tr("{symbol}, rad").format(symbol="φ"), 1j, 3.5, 1.5, leader=False)
+
+
+def _head(canvas: Canvas, at: complex, text: str, box: Box, *, both: bool) -> None:
+    """Scale factors over a diagram, beside the letter at its axis: at the right, or where that is free at its wider side."""
+    right, left = box.x1 - at.real - 22.0, at.real - box.x0 - 4.0
+    beside = both and right < min(left, letter(text, 3.5).width)
+    laid = fitted(text, left if beside else right, 3.5)
+    canvas.put(laid, at + (-4.0 - laid.width if beside else 22.0), 0.0, text)
 
 
 def _ordinates(s: PlayerStage, m: FollowerMotion, steps: list[Step]) -> None:
