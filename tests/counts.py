@@ -47,6 +47,7 @@ AFTER = {
     "plot": "plot {project} --sheet 1 --tile a4 -o {out}/plot",
     "compare --template": "compare {project} --template -o {out}/measured",
 }
+COMMANDS = COLD | BUILD | AFTER
 START = ("--help", "list", "solve press --part positions", "build press --sheet 3 -o {out}")
 """Commands whose modules are counted, the last twice: the second time its drawings are kept."""
 LIBRARIES = ("click", "ezdxf", "fonttools", "numpy", "platformdirs", "pydantic", "reportlab", "shapely")
@@ -147,18 +148,18 @@ def load() -> None:
     gc.freeze()
 
 
-def of_projects(projects: Iterable[str]) -> Counts:
-    """Counts of all commands on projects, from this process, whose classes are wrapped from now on."""
+def of_projects(asked: Mapping[str, Iterable[str]]) -> Counts:
+    """Counts of the commands asked for on projects, from this process, whose classes are wrapped from now on."""
     load()
     counts, found = watch(), Counts()
-    for project in projects:
+    for project, wanted in asked.items():
         other, n = PROJECTS[project]
         found[project] = {}
         with TemporaryDirectory() as out:
             names = {"project": project, "other": other, "n": n, "out": out, "result": "positions.points.B"}
             for some, keeps in ((COLD, ""), (BUILD | AFTER, f"{out}/kept")):
-                for name, command in some.items():
-                    found[project][name] = forked([word.format(**names) for word in command.split()], keeps, counts)
+                for name in (name for name in some if name in wanted):
+                    found[project][name] = forked([word.format(**names) for word in some[name].split()], keeps, counts)
     return found
 
 
@@ -180,9 +181,9 @@ def modules() -> dict[str, dict[str, int]]:
     return found
 
 
-def counted(*projects: str) -> Counts:
-    """Counts of all commands on projects, in forks of a process of their own."""
-    program = [sys.executable, "-m", "tests.counts", "--only", *projects]
+def counted(asked: Mapping[str, Iterable[str]]) -> Counts:
+    """Counts of the commands asked for on projects, in forks of a process of their own."""
+    program = [sys.executable, "-m", "tests.counts", "--only", json.dumps({project: [*some] for project, some in asked.items()})]
     done = subprocess.run(program, cwd=TABLE.parents[1], capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(done.stderr)
@@ -224,11 +225,11 @@ def written(found: Counts) -> str:
 
 
 def main(words: list[str]) -> None:
-    """Write the table and tell what has changed; with ``--only PROJECT ...`` count for the process that asks."""
+    """Write the table and tell what has changed; with ``--only COMMANDS`` count for the process that asks."""
     if words:
-        print(json.dumps(of_projects(words[1:])))
+        print(json.dumps(of_projects(json.loads(words[1]))))
         return
-    found = {**counted(*PROJECTS), "modules": modules()}
+    found = {**counted(dict.fromkeys(PROJECTS, COMMANDS)), "modules": modules()}
     print(*differences(tomllib.loads(TABLE.read_text("utf-8")) if TABLE.exists() else {}, found), sep="\n")
     TABLE.write_text(written(found), "utf-8")
 

@@ -22,10 +22,18 @@ from tmm_sheets.compare.placing import Placing
 from tmm_sheets.project import Project
 
 SHAPER = Project(read("lugansk/shaper"))
-WHOLE = known_sheet(SHAPER, 1)
 NAMES = ("План ускорений (положение 2)", "План сил звена 5")
-KNOWN = replace(WHOLE, elements=[e for e in WHOLE.elements if e.view.name in NAMES and e.kind != "text"])
-VIEWS = {e.view.name: e.view for e in KNOWN.elements}
+SEEN = {"status": "measured", "ends": (0.0, 0.0)}
+
+
+def setup_module():
+    """Composed when the first of these tests runs: every worker imports this file."""
+    global KNOWN, VIEWS, VECTOR, WAY
+    whole = known_sheet(SHAPER, 1)
+    KNOWN = replace(whole, elements=[e for e in whole.elements if e.view.name in NAMES and e.kind != "text"])
+    VIEWS = {e.view.name: e.view for e in KNOWN.elements}
+    VECTOR = next(e for e in KNOWN.elements if e.kind == "line" and e.role == "vector" and e.length > 20)
+    WAY = (VECTOR.points[1] - VECTOR.points[0]) / VECTOR.length
 
 
 def photographed(elements):
@@ -183,11 +191,6 @@ def test_a_line_that_would_run_off_the_paper_is_not_called_missing(by, told):
     judged = built_photo._judged(f, first, SimpleNamespace(uncertainty=0.15), 0.25)
     assert (judged.verdict, judged.what) == ("red", told)
     assert PAPER.contains(judged.at)  # or its number would stand off the overlay
-
-
-VECTOR = next(e for e in KNOWN.elements if e.kind == "line" and e.role == "vector" and e.length > 20)
-WAY = (VECTOR.points[1] - VECTOR.points[0]) / VECTOR.length
-SEEN = {"status": "measured", "ends": (0.0, 0.0)}
 
 
 @pytest.mark.parametrize(("by", "here", "there", "told"), [

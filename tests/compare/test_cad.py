@@ -29,8 +29,33 @@ from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 
 SHAPER = Project(read("lugansk/shaper"))
-SHEET = composed(SHAPER, 2)
-EXACT = elements(SHEET)
+
+
+def setup_module():
+    """Composed when the first of these tests runs: every worker imports this file."""
+    global SHEET, EXACT, ALL_GREEN, LINE, CIRCLE, CURVE, TEXT, ARROW, GREENISH, AMBER, GONE, TURNED, SPOILED
+    SHEET = composed(SHAPER, 2)
+    EXACT = elements(SHEET)
+    ALL_GREEN = (len(EXACT), 0, 0, 0, 0)
+    LINE = one(lambda e: e.kind == "line" and e.length > 60 and e.style == "thin"
+               and abs(e.points[0].real - e.points[1].real) < 1e-6)
+    CIRCLE = one(lambda e: e.kind == "circle" and e.radius > 10)
+    CURVE = one(lambda e: e.kind == "curve" and len(e.points) > 50)
+    TEXT = one(lambda e: e.kind == "text" and e.text == "H = 142")
+    GREENISH, AMBER, GONE, TURNED = (
+        [e for e in EXACT if e.view.n and e.kind == "line" and 60 < e.length < 150 and e.role == "construction" and e is not LINE
+         and e.points[0].imag == e.points[1].imag and alone(e)][k] for k in range(4))  # fmt: skip
+    ARROW = one(lambda e: e.kind == "line" and len(e.fills) == 1 and e.length > 30)
+    SPOILED = {
+        LINE: {"points": LINE.points + 1.5},
+        GREENISH: {"points": GREENISH.points + 0.2j},
+        AMBER: {"points": AMBER.points + 0.4j},
+        TURNED: {"points": TURNED.points[0] + (TURNED.points - TURNED.points[0]) * TURN},
+        CIRCLE: {"centre": CIRCLE.centre + 2j, "radius": CIRCLE.radius - 1},
+        CURVE: {"points": bulged(CURVE)},
+        TEXT: {"text": "H = 124"},
+        ARROW: {"points": ARROW.points[::-1], "fills": (ARROW.points.sum() - ARROW.fills[0],)},
+    }
 
 
 def compare(data, tmp_path, sheet=2, views=None, project=SHAPER):
@@ -73,9 +98,6 @@ def changed(number, **fields):
 def one(test):
     """The first element of a view (not the frame) that passes."""
     return next(e for e in EXACT if e.view.n and test(e))
-
-
-ALL_GREEN = (len(EXACT), 0, 0, 0, 0)
 
 
 @pytest.mark.parametrize(("n", "asked", "text"), [
@@ -136,10 +158,8 @@ def test_a_mirrored_drawing_at_half_size_is_turned_over_and_said(tmp_path):
     assert summary(report) == ALL_GREEN
 
 
-LINE = one(lambda e: e.kind == "line" and e.length > 60 and e.style == "thin" and abs(e.points[0].real - e.points[1].real) < 1e-6)
-CIRCLE = one(lambda e: e.kind == "circle" and e.radius > 10)
-CURVE = one(lambda e: e.kind == "curve" and len(e.points) > 50)
-TEXT = one(lambda e: e.kind == "text" and e.text == "H = 142")
+STRAY = np.array([500 + 430j, 540 + 445j])
+TURN = np.exp(1j * np.radians(2))
 
 
 def alone(e):
@@ -148,30 +168,10 @@ def alone(e):
                or max(o.points.real.min(), e.points.real.min()) > min(o.points.real.max(), e.points.real.max()) for o in EXACT)
 
 
-GREENISH, AMBER, GONE, TURNED = (
-    [e for e in EXACT if e.view.n and e.kind == "line" and 60 < e.length < 150 and e.role == "construction" and e is not LINE
-     and e.points[0].imag == e.points[1].imag and alone(e)][k] for k in range(4))  # fmt: skip
-ARROW = one(lambda e: e.kind == "line" and len(e.fills) == 1 and e.length > 30)
-STRAY = np.array([500 + 430j, 540 + 445j])
-TURN = np.exp(1j * np.radians(2))
-
-
 def bulged(curve):
     n = len(curve.points)
     across = 1j * np.gradient(curve.points)
     return curve.points + 1.2 * np.exp(-((np.arange(n) - n // 2) / (0.04 * n)) ** 2) * across / np.abs(across)
-
-
-SPOILED = {
-    LINE: {"points": LINE.points + 1.5},
-    GREENISH: {"points": GREENISH.points + 0.2j},
-    AMBER: {"points": AMBER.points + 0.4j},
-    TURNED: {"points": TURNED.points[0] + (TURNED.points - TURNED.points[0]) * TURN},
-    CIRCLE: {"centre": CIRCLE.centre + 2j, "radius": CIRCLE.radius - 1},
-    CURVE: {"points": bulged(CURVE)},
-    TEXT: {"text": "H = 124"},
-    ARROW: {"points": ARROW.points[::-1], "fills": (ARROW.points.sum() - ARROW.fills[0],)},
-}
 
 
 @pytest.fixture(scope="module")

@@ -16,11 +16,16 @@ from tmm_sheets.compare.placing import Placing
 from tmm_sheets.project import Project
 
 PRESS = Project(read("press"))
-KNOWN = known_sheet(PRESS, 2)
-VIEWS = {e.view.name: e.view for e in KNOWN.elements}
-POLYGON, SCHEME = VIEWS["План сил группы 2–3"], VIEWS["Группа Ассура 2–3 (2-й вид)"]
-PLANS, ERRORS = errors_of(PRESS, KNOWN)
-ARROWS = {view: acting(KNOWN, PLANS, view) for view in VIEWS.values()}
+
+
+def setup_module():
+    """Composed when the first of these tests runs: every worker imports this file."""
+    global KNOWN, VIEWS, POLYGON, SCHEME, PLANS, ERRORS, ARROWS
+    KNOWN = known_sheet(PRESS, 2)
+    VIEWS = {e.view.name: e.view for e in KNOWN.elements}
+    POLYGON, SCHEME = VIEWS["План сил группы 2–3"], VIEWS["Группа Ассура 2–3 (2-й вид)"]
+    PLANS, ERRORS = errors_of(PRESS, KNOWN)
+    ARROWS = {view: acting(KNOWN, PLANS, view) for view in VIEWS.values()}
 
 
 def test_which_arrows_there_are():

@@ -17,7 +17,21 @@ from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 
 PROJECT = Project(read("lugansk/cam_flat"))
-EXACT = elements(composed(PROJECT, 1))
+
+
+def setup_module():
+    """Composed when the first of these tests runs: every worker imports this file."""
+    global EXACT, MAIN, THIN, CENTRE, SPOILED
+    EXACT = elements(composed(PROJECT, 1))
+    MAIN, THIN, CENTRE = some("main", "line", 15)[:2], some("thin", "line", 20)[:2], some("centre", "line", 70)[:2]
+    SPOILED = {  # style they are drawn in, and what is said of it
+        MAIN[0]: ("thin", "drawn thin, 0.25 mm, where main lines are 0.7 mm"),
+        MAIN[1]: ("thin", "drawn thin, 0.25 mm, where main lines are 0.7 mm"),
+        THIN[0]: ("main", "drawn thick, 0.7 mm, where 0.23 to 0.35 mm would be thin"),
+        THIN[1]: ("hidden", "drawn dashed instead of continuous"),
+        CENTRE[0]: ("thin", "drawn continuous instead of dash-dot"),
+        CENTRE[1]: ("twodot", "drawn dash-two-dots instead of dash-dot"),
+    }
 
 
 def compared(found, tmp_path, looks=True, **way):
@@ -30,9 +44,6 @@ def some(style, kind, length):
     """Elements under no others: what lies there can have been drawn for nothing else."""
     return [e for e in EXACT if e.view.n and e.style == style and e.kind == kind and e.length > length and not e.fills
             and covered(e.points, e.number, EXACT) < 0.2]
-
-
-MAIN, THIN, CENTRE = some("main", "line", 15)[:2], some("thin", "line", 20)[:2], some("centre", "line", 70)[:2]
 
 
 @pytest.mark.trial
@@ -48,16 +59,6 @@ def test_dashes_drawn_one_by_one(tmp_path):
     found = compared([e for e in EXACT if e not in patterned] + parts, tmp_path)
     assert found.outcome.looks == ()
     assert {f.verdict for f in found.outcome.findings} == {"green"}
-
-
-SPOILED = {  # style they are drawn in, and what is said of it
-    MAIN[0]: ("thin", "drawn thin, 0.25 mm, where main lines are 0.7 mm"),
-    MAIN[1]: ("thin", "drawn thin, 0.25 mm, where main lines are 0.7 mm"),
-    THIN[0]: ("main", "drawn thick, 0.7 mm, where 0.23 to 0.35 mm would be thin"),
-    THIN[1]: ("hidden", "drawn dashed instead of continuous"),
-    CENTRE[0]: ("thin", "drawn continuous instead of dash-dot"),
-    CENTRE[1]: ("twodot", "drawn dash-two-dots instead of dash-dot"),
-}
 
 
 def test_what_is_wrong_is_told_in_a_row_for_each_view_and_kind(tmp_path):

@@ -16,10 +16,15 @@ from tmm_sheets.drawing.ink import letters
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 
-SHEET = composed(Project(read("lugansk/shaper")), 4)
-EXACT = list(elements(SHEET))
 SORTS = ("line", "arrow", "arc", "circle", "dot", "curve")
 WAYS = ("shifted", "left out", "twice")
+
+
+def setup_module():
+    """Composed when the first of these tests runs: every worker imports this file."""
+    global SHEET, EXACT
+    SHEET = composed(Project(read("lugansk/shaper")), 4)
+    EXACT = list(elements(SHEET))
 
 
 @pytest.mark.parametrize("wrong", [

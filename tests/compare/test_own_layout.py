@@ -28,16 +28,21 @@ from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 
 SHAPER = Project(read("lugansk/shaper"))
-KNOWN = known_sheet(SHAPER, 1)
-composed(SHAPER, 1, steps=True)  # its plans, too
 PRESS = Project(read("press"))
-VIEWS = {e.view.name: e.view for e in KNOWN.elements}
-ACCELERATIONS, POSITIONS = VIEWS["План ускорений (положение 2)"], VIEWS["Планы положений механизма"]
-FORCES = [VIEWS[f"План сил звена {n}"] for n in (1, 3)]
-PLACES = {ACCELERATIONS: Placing(0.5 + 0j, -40 + 300j), FORCES[0]: Placing(0.4 + 0j, 0j), FORCES[1]: Placing(0.4 + 0j, -700j),
-          POSITIONS: Placing(1 + 0j, 300 - 50j),
-          VIEWS["План скоростей, положение 3"]: Placing(2 + 0j, 400 + 100j),
-          VIEWS["План скоростей, положение 7"]: Placing(1j, 1500 + 100j)}
+
+
+def setup_module():
+    """Composed when the first of these tests runs: every worker imports this file."""
+    global KNOWN, VIEWS, ACCELERATIONS, FORCES, PLACES
+    KNOWN = known_sheet(SHAPER, 1)
+    composed(SHAPER, 1, steps=True)  # its plans, too
+    VIEWS = {e.view.name: e.view for e in KNOWN.elements}
+    ACCELERATIONS, positions = VIEWS["План ускорений (положение 2)"], VIEWS["Планы положений механизма"]
+    FORCES = [VIEWS[f"План сил звена {n}"] for n in (1, 3)]
+    PLACES = {ACCELERATIONS: Placing(0.5 + 0j, -40 + 300j), FORCES[0]: Placing(0.4 + 0j, 0j), FORCES[1]: Placing(0.4 + 0j, -700j),
+              positions: Placing(1 + 0j, 300 - 50j),
+              VIEWS["План скоростей, положение 3"]: Placing(2 + 0j, 400 + 100j),
+              VIEWS["План скоростей, положение 7"]: Placing(1j, 1500 + 100j)}
 
 
 @pytest.fixture(scope="module")
@@ -217,10 +222,11 @@ def test_a_plan_that_no_paper_holds_is_none(far):
     assert drawn.moved(lambda step: step.value + 1 if step is last else step.value)
 
 
-@pytest.mark.parametrize(("project", "known", "words", "at"), [
-    (SHAPER, KNOWN, "crank", None), (PRESS, known_sheet(PRESS, 1), "intersection", 3)], ids=["crank", "intersection"])
-def test_positions_built_otherwise_are_named(project, known, words, at):
+@pytest.mark.parametrize(("project", "words", "at"), [
+    (SHAPER, "crank", None), (PRESS, "intersection", 3)], ids=["crank", "intersection"])
+def test_positions_built_otherwise_are_named(project, words, at):
     """Links end at the circles of their hinges; one position that is wrong is little of all, and is told with its number."""
+    known = known_sheet(project, 1)
     plans, errors = errors_of(project, known)
     (view,) = (v for v in dict.fromkeys(e.view for e in known.elements) if drawn_positions(known, plans, v))
     drawn = drawn_positions(known, plans, view)
