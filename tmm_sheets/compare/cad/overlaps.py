@@ -171,9 +171,9 @@ def runs(rest: KnownLines, gap: float, most: int = 3000) -> list[OverlapRun]:
     groups: dict[int, list[int]] = {}
     for k in range(len(n)):
         groups.setdefault(root(k), []).append(k)
-    found = []
+    found, lengths = [], np.abs(b - a).tolist()
     for members in groups.values():
-        longest = max(members, key=lambda k: abs(b[k] - a[k]))
+        longest = max(members, key=lambda k: lengths[k])
         ends = np.concatenate((a[members], b[members]))
         t = ((ends - a[longest]) * np.conj(u[longest])).real
         found.append(OverlapRun(complex(ends[t.argmin()]), complex(ends[t.argmax()]), tuple(int(n[k]) for k in members)))

@@ -371,7 +371,11 @@ def _clear_of(curve: Points, level: complex, side: int, wide: float) -> float:
     inside = side * (level.imag - curve.imag)
     along, reach = curve.real - level.real, wide / 2 + 1.0
     middles = np.arange(along[-1] - reach, reach, -2.0)
-    return float(max(middles, key=lambda x: min(inside[np.abs(along - x) <= reach].min(), NAMED), default=along[-1] / 2))
+
+    def clear(x: float) -> float:  # a function with its types: mypy takes seconds to find those of a lambda here
+        return min(float(inside[np.abs(along - x) <= reach].min()), NAMED)
+
+    return float(max(middles, key=clear, default=along[-1] / 2))
 
 
 def _exceeded(d: OverAngle, canvas: Canvas, cam: RollerCam, letter_of: str) -> None:

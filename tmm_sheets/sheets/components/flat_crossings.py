@@ -79,7 +79,8 @@ def find(project: Project, plan: Plan, drawn: Iterable[int], scales: dict[str, A
         mm = np.broadcast_to(errors.in_mm(plan[name]), steep.shape)
         bad = tuple(i for i in places if steep[i] > FLAT and not mm[i] <= COARSE)
         if bad:
-            worst = max(bad, key=lambda i: (_analysed(project, i), np.nan_to_num(mm[i], nan=np.inf)))
+            sizes = np.nan_to_num(mm, nan=np.inf).tolist()
+            worst = max(bad, key=lambda i: (_analysed(project, i), sizes[i]))
             size = kinematic_frames.plan_extent(plan, worst)
             hopeless = not scales[plan.name].real(mm[worst]) < 0.5 * max(size.width, size.height)
             # Lines that meet steeper, but are longer, may gain nothing.
