@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from copy import copy
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -53,6 +55,13 @@ class Project:
     def sheets(self) -> tuple[str, ...]:
         """Names of the sheets' arrangements, in order."""
         return self.variant.sheets
+
+    def on_sheets(self, names: Sequence[str]) -> Project:
+        """The same project on sheets of these arrangements: what it has found stays found."""
+        other, v = copy(self), self.variant
+        other.variant = v.model_copy(update={"project": v.project.model_copy(update={"sheets": list(names)})})
+        other.shown = set()
+        return other
 
     @property
     def parts(self) -> tuple[str, ...]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
@@ -40,59 +42,90 @@ def crowded(project: Project, sheets: Iterable[int]) -> Iterator[Remark]:
 
 def positions(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
     """The crank is too small beside the other links."""
-    try:
-        scale = kinematic_frames.positions(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options).scale
-    except CannotBuild:
-        return
-    yield from _below(project, n, CRANK, scale.mm(2 * project.mechanism.crank.length),
-                      marked("leave out points far from the crank"))
+    def circle(project: Project, view: ViewPlace) -> float:
+        frame = kinematic_frames.positions(project, _book(), view.box, view.options)
+        return float(frame.scale.mm(2 * project.mechanism.crank.length))
+
+    yield from _below(project, n, view, CRANK, circle, marked("leave out points far from the crank"))
 
 
 def velocities(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
-    """The velocity plans are too small, and the analysed one is not shown once more, enlarged."""
-    if any(offer.draw == "kinematics.enlarged_velocities" for offer in arranged(project, n).offers):
-        return
-    try:
-        layout = kinematic_frames.velocities(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
-    except CannotBuild:
-        return
-    longest = kinematic_frames.longest(project.study.velocities.plan, [i for i, _ in layout.shown])
-    yield from _below(project, n, VECTOR, layout.scale.mm(longest), marked("number fewer positions"))
+    """The velocity plans are too small: the analysed one may be shown once more, enlarged, the others are not."""
+    def longest(project: Project, view: ViewPlace) -> float:
+        layout = kinematic_frames.velocities(project, _book(), view.box, view.options)
+        return float(layout.scale.mm(kinematic_frames.longest(project.study.velocities.plan, [i for i, _ in layout.shown])))
+
+    yield from _below(project, n, view, VECTOR, longest, marked("number fewer positions"))
 
 
 def accelerations(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
     """The acceleration plan is too small, or more of its letters than can be read stand together."""
+    plan, k = project.study.accelerations.plan, project.force_index
+
+    def longest(project: Project, view: ViewPlace) -> float:
+        return float(kinematic_frames.accelerations(project, _book(), view.box).scale.mm(kinematic_frames.longest(plan, [k])))
+
+    yield from _below(project, n, view, VECTOR, longest, marked("take another force_position"))
     try:
-        scale = kinematic_frames.accelerations(project, SimpleNamespace(scales={}, chosen=set()), view.box).scale
+        letters = kinematic_frames.crowd(plan, k, kinematic_frames.accelerations(project, _book(), view.box).scale.mu)
     except CannotBuild:
         return
-    longest = kinematic_frames.longest(project.study.accelerations.plan, [project.force_index])
-    yield from _below(project, n, VECTOR, scale.mm(longest), marked("take another force_position"))
-    letters = kinematic_frames.crowd(project.study.accelerations.plan, project.force_index, scale.mu)
     if letters > kinematic_frames.TOGETHER_READ:
         yield Remark(marked("sheet {n}: the acceleration plan cannot be read, {count} of its letters stand within "
                             "{about:.0f} mm of one of them: take another force_position"),
                      {"n": n, "count": letters, "about": kinematic_frames.ABOUT})
 
 
-def _below(project: Project, n: int, floor: Floor, size: float, hint: str) -> Iterator[Remark]:
+Size = Callable[["Project", "ViewPlace"], float]
+"""What is measured of a view in its place on a sheet of the project, mm; raises CannotBuild where it cannot be drawn there."""
+
+
+def _book() -> Any:
+    """A book of scale factors for one question: nothing is drawn."""
+    return SimpleNamespace(scales={}, chosen=set())
+
+
+def _below(project: Project, n: int, view: ViewPlace, floor: Floor, size: Size, hint: str) -> Iterator[Remark]:
     """What no place of a sheet shows at its floor, and what to try."""
-    if size >= floor.least * (1 - 1e-6):
+    try:
+        here = size(project, view)
+    except CannotBuild:  # the sheet itself tells why
+        return
+    if here >= floor.least * (1 - 1e-6):
         return
     said = Remark(marked("sheet {n}: {what} is {size:.0f} mm large, it is read from {least:.0f} mm on: {hint}"),
-                  {"n": n, "what": Remark(floor.what), "size": size, "least": floor.least, "hint": Remark(hint)})
-    yield said if OF_THEIR_OWN[0] in project.sheets else Remark(
-        marked("{said}, or take a sheet more, sheets = [{names}]"),
-        {"said": said, "names": ", ".join(f'"{name}"' for name in OF_THEIR_OWN)})
+                  {"n": n, "what": Remark(floor.what), "size": here, "least": floor.least, "hint": Remark(hint)})
+    apart = _apart(project, n, view, size, floor.least)
+    yield said if apart is None else Remark(marked("{said}, or take a sheet more, sheets = [{names}]"),
+                                            {"said": said, "names": apart})
+
+
+def _apart(project: Project, n: int, view: ViewPlace, size: Size, least: float) -> str | None:
+    """Sheets of a project, as they stand in its file, with kinematics and forces on two in the place of sheet ``n``.
+
+    None where that does not make the view as large as ``least``, mm, or would lose what else stands on the sheet.
+    """
+    shown = {view.needs for view in arranged(project, n).views if view.needs}
+    if not shown <= {"positions", "forces"} or set(OF_THEIR_OWN) & set(project.sheets):
+        return None
+    names = [*project.sheets[:n - 1], *OF_THEIR_OWN, *project.sheets[n:]]
+    other = project.on_sheets(names)
+    try:
+        sizes = [size(other, found) for at in (n, n + 1) for found in arranged(other, at).views
+                 if found.draw == view.draw and found.options.get("group") == view.options.get("group")]
+    except CannotBuild:
+        return None
+    return ", ".join(f'"{name}"' for name in names) if max(sizes, default=0.0) >= least * (1 - 1e-6) else None
 
 
 def lever(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
     """The lever is too small for its forces."""
     k = project.force_index
     shown = kinetic_frames.on_lever(project, k)
+    around = kinetic_frames.lever_scheme(project, k, shown)
     points = extent([complex(step.at(k)) for step in project.study.lever.points.values()])
-    yield from _crowded(project, n, Remark(marked("the lever")), max(points.width, points.height), len(shown), "lever",
-                        kinetic_frames.lever_scheme(project, k, shown), view.box.inset(*kinetic_frames.LEVER))
+    yield from _crowded(project, n, view, Remark(marked("the lever")), max(points.width, points.height), len(shown), "lever",
+                        lambda view: (around, view.box.inset(*kinetic_frames.LEVER)))
 
 
 def group(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
@@ -100,25 +133,37 @@ def group(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
     if "places" not in view.options:
         return  # of no force, or in the box as it is written
     k, g = project.force_index, tuple(reversed(project.mechanism.groups))[int(view.options["group"]) - 1]
-    place = view.options["places"][0].inset(*kinetic_frames.SCHEME)
-    yield from _crowded(project, n, Remark(marked("group {name}"), {"name": g.name}), *kinetic_frames.crowd(project, g, k),
-                        f"scheme-{'-'.join(g.links)}",
-                        kinetic_frames.scheme(project, g, k, kinetic_frames.share_of_arrows(project, g, k, place)), place)
+
+    def placed(view: ViewPlace) -> tuple[Around, Box]:
+        place = view.options.get("places", [view.box])[0].inset(*kinetic_frames.SCHEME)
+        return kinetic_frames.scheme(project, g, k, kinetic_frames.share_of_arrows(project, g, k, place)), place
+
+    yield from _crowded(project, n, view, Remark(marked("group {name}"), {"name": g.name}), *kinetic_frames.crowd(project, g, k),
+                        f"scheme-{'-'.join(g.links)}", placed)
 
 
-def _crowded(project: Project, n: int, what: Remark, size: float, count: int, plan: str,
-             around: tuple[Any, Any], place: Box) -> Iterator[Remark]:
-    """What ``around`` shows in a place has so many forces on a figure of such a size, m, that they cannot be told apart.
+Around = tuple[list[complex], list[complex]]
+"""Points of a figure, in its unit, and what reaches from each on paper, mm."""
+
+
+def _crowded(project: Project, n: int, view: ViewPlace, what: Remark, size: float, count: int, plan: str,
+             placed: Callable[[ViewPlace], tuple[Around, Box]]) -> Iterator[Remark]:
+    """A figure of such a size, in its unit, with so many forces that in its place they cannot be told apart.
 
     What is small beside its own forces and their arms, blocks in a slot or a lever in a dead position, is so at any scale factor.
     """
-    whole = extent([around[0]])
+    whole = extent([np.asarray(placed(view)[0][0])])
     if size <= LINKS * max(whole.width, whole.height):
         return
-    large = fit_frame(project, SimpleNamespace(scales={}, chosen=set()), plan, "", "", *around, place).scale.mm(size)
-    if large < APART * count:
+
+    def large(project: Project, view: ViewPlace) -> float:
+        around, place = placed(view)
+        return float(fit_frame(project, _book(), plan, "", "", *around, place).scale.mm(size))
+
+    here = large(project, view)
+    if here < APART * count:
         said = Remark(marked("sheet {n}: {what} is {size:.0f} mm large and cannot be read (forces on it: {count})"),
-                      {"n": n, "what": what, "size": large, "count": count})
-        yield said if OF_THEIR_OWN[1] in project.sheets else Remark(
-            marked("{said}: take a sheet more, sheets = [{names}]"),
-            {"said": said, "names": ", ".join(f'"{name}"' for name in OF_THEIR_OWN)})
+                      {"n": n, "what": what, "size": here, "count": count})
+        apart = _apart(project, n, view, large, APART * count)
+        yield said if apart is None else Remark(marked("{said}: take a sheet more, sheets = [{names}]"),
+                                                {"said": said, "names": apart})

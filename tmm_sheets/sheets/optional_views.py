@@ -144,16 +144,18 @@ def _free(table: Counts, sizes: Sequence[tuple[float, float]]) -> Iterator[tuple
 def _place(taken: Cells, sizes: Sequence[tuple[float, float]], inside: Box, left: float | None = None) -> Box | None:
     """The first of the sizes for which there is room beside the cells ``taken``, where it is farthest from all else.
 
-    With the edge ``left``, mm, where there is room for that size with it.
+    With the edge ``left``, mm, where there is room for any of them with it.
     """
-    for (width, height), apart, free in _free(_summed(taken), sizes):
-        if left is not None and len(aligned := free[free[:, 0] == round((left - apart - inside.x0) / CELL)]):
-            j = int(np.median(aligned[:, 1]))
-            return Box(left, inside.y0 + j * CELL + apart, left + width, inside.y0 + j * CELL + apart + height)
-        # In the middle of the room there is, if it is one; else at its beginning.
-        i, j = free[np.argmin(np.abs(free - np.median(free, axis=0)).sum(axis=1))]
-        corner = complex(inside.x0 + i * CELL + apart, inside.y0 + j * CELL + apart)
-        return Box(corner.real, corner.imag, corner.real + width, corner.imag + height)
+    table = _summed(taken)
+    for edge in (None,) if left is None else (left, None):
+        for (width, height), apart, free in _free(table, sizes):
+            if edge is not None:
+                free = free[free[:, 0] == round((edge - apart - inside.x0) / CELL)]
+            if len(free):
+                # In the middle of the room there is, if it is one; else at its beginning.
+                i, j = free[np.argmin(np.abs(free - np.median(free, axis=0)).sum(axis=1))]
+                x, y = edge if edge is not None else inside.x0 + i * CELL + apart, inside.y0 + j * CELL + apart
+                return Box(x, y, x + width, y + height)
     return None
 
 

@@ -81,6 +81,7 @@ ROOMS = {module: room for room, modules in {
                "kinematic_frames kinematics kinetics lever_detail linkage_sizes load_diagram moments path_marks synthesis",
     "gears": "gear gear_equations gear_sizes plan_checks planet_motion rack reducer reducer_equations train wheel_sizes",
     "tables": "given_data position_tables",
+    "components": "upright_tables",
 }.items() for module in modules.split()}
 """Where the modules of the functions below are, but those beside this one."""
 
@@ -123,7 +124,7 @@ VIEWS = {view.draw: view for view in (
     ViewKind("details.corner", "forces", sizes="details.corner_sizes", near="details.corner_near",
              name=marked("Mark of an enlarged detail")),
     ViewKind("diagrams.balancing", "forces", sizes="diagrams.balancing_sizes"),
-    ViewKind("diagrams.balancing_table", "forces", sizes="diagrams.balancing_table_sizes"),
+    ViewKind("diagrams.balancing_table", "forces", sizes="diagrams.balancing_table_sizes", left="upright_tables.left_edge"),
     ViewKind("friction.mechanism", "forces", place="friction_sizes.mechanism"),
     ViewKind("friction.pairs", "forces", place="friction_sizes.pairs"),
     ViewKind("friction.positions", "forces", place="friction_sizes.positions"),
@@ -161,7 +162,7 @@ VIEWS = {view.draw: view for view in (
     ViewKind("flywheel.total_work", "flywheel", name=marked("Graph of the change of kinetic energy"),
              after="flywheel.with_tangents"),
     ViewKind("flywheel.wheel", "flywheel"),
-    ViewKind("flywheel.work_table", "flywheel"),
+    ViewKind("flywheel.work_table", "flywheel", sizes="flywheel.work_table_sizes", left="upright_tables.left_edge"),
     ViewKind("flywheel.works", "flywheel", name=marked("Graphs of work")),
     ViewKind("mertsalov.column", "flywheel", name=marked("Graphs of Mertsalov's method"), after="mertsalov.procedure"),
     ViewKind("mertsalov.comparison", "flywheel", after="mertsalov.procedure"),

@@ -23,10 +23,10 @@ from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
 from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box, Text
-from tmm_sheets.drawing.notes import wrapped
+from tmm_sheets.drawing.notes import TOGETHER, wrapped
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import decimals_for, enough, fixed, is_zero, number
-from tmm_sheets.sheets.components import graphs
+from tmm_sheets.sheets.components import graphs, upright_tables
 from tmm_sheets.sheets.frame import ratio, standard, together
 from tmm_sheets.sheets.player import PlayerStage, play, stage
 from tmm_sheets.words import tell, tr, tr_in
@@ -610,19 +610,41 @@ def inertia_table(project: Project, canvas: Canvas, box: Box, options: Options) 
     graphs.table(canvas, box, tr("Reduced moment of inertia"), rows)
 
 
+def work_table_sizes(project: Project, canvas: Canvas, options: Options) -> list[tuple[float, float]]:
+    """Places that the table of works can do with, mm: upright no wider than the option ``widest``, or lying."""
+    title, quantities = _works(project.flywheel)
+    return [*upright_tables.sizes(title, _upright(project.flywheel, quantities), options["widest"]), *LYING]
+
+
 def work_table(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
-    """Table of moment, works and change of energy at the positions."""
-    fw: Flywheel = project.flywheel
+    """Table of moment, works and change of energy at the positions: a row for each of them in a place that is higher than wide."""
+    title, quantities = _works(project.flywheel)
+    if box.height > box.width:
+        upright_tables.draw(canvas, box, title, _upright(project.flywheel, quantities), header=2)
+    else:
+        graphs.table(canvas, box, title, [[tr("Position"), *project.flywheel.labels], *quantities])
+
+
+LYING = (207.0, 56.0), (170.0, 48.0)
+"""Sizes of the table of works with a row for each quantity, mm."""
+
+
+def _works(fw: Flywheel) -> tuple[str, list[list[str]]]:
+    """Title of the table of works, and of each quantity its name with the unit and the numbers at the positions."""
     varying, constant = indices(fw)
-    rows = [
-        [tr("Position"), *fw.labels],
+    title = tr("Works of the cycle, M_{index}^{{red}} = {moment} N·m").format(index=constant, moment=constant_moment(fw))
+    return title.replace(" = ", f"{TOGETHER}={TOGETHER}"), [
         graphs.row(tr("M_{index}^{{red}}, N·m").format(index=varying), fw.M_reduced),
         graphs.row(tr("A_{index}, J").format(index=varying), fw.work),
         graphs.row(tr("A_{index}, J").format(index=constant), fw.total_plan["A_K"].value),
         graphs.row(tr("ΔE, J"), fw.delta_E),
     ]
-    graphs.table(canvas, box, tr("Works of the cycle, M_{index}^{{red}} = {moment} N·m").format(
-        index=constant, moment=constant_moment(fw)), rows)
+
+
+def _upright(fw: Flywheel, quantities: list[list[str]]) -> list[list[str]]:
+    """The same numbers in columns, the units under the names."""
+    columns = [[tr("No."), "", *fw.labels], *([*name.rsplit(", ", 1), *numbers] for name, *numbers in quantities)]
+    return [list(row) for row in zip(*columns, strict=True)]
 
 
 def results(project: Project, canvas: Canvas, box: Box, options: Options) -> None:

@@ -16,7 +16,7 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import LEAST, needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import NOISE, enough
-from tmm_sheets.sheets.components import graphs
+from tmm_sheets.sheets.components import graphs, upright_tables
 from tmm_sheets.sheets.frame import PlanFrame, pick
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
 from tmm_sheets.sheets.linkage.link_marks import indexed, shapes
@@ -189,21 +189,24 @@ def balancing_table_sizes(project: Project, canvas: Canvas, options: graphs.Opti
     if project.driver is not None:
         return []
     rows = (len(project.cycle.labels) + 1) // 2 + 1
-    return [(width, 11.0 + row * rows) for width, row in ((170.0, 7.5), (150.0, 6.0), (130.0, 5.0))]
+    upright = upright_tables.sizes(tr(BALANCING), _balancing(project), options["widest"]) if "widest" in options else []
+    return [*upright, *((width, 11.0 + row * rows) for width, row in ((170.0, 7.5), (150.0, 6.0), (130.0, 5.0)))]
 
 
 def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
-    """The balancing moment at the positions by kinetostatics and by Zhukovsky's lever, in columns side by side."""
+    """The balancing moment at the positions by kinetostatics and by Zhukovsky's lever, in columns side by side.
+
+    In one below the other in a place that is higher than wide.
+    """
     if project.driver is not None:
         raise CannotBuild(*map(tell, _NO_MOMENT))
-    labels, study = project.cycle.labels, project.study
-    by_statics, by_lever = (_row(study.balance[name], study.turned) for name in ("M", "M_р"))
-    left = canvas.title(box, tr("Balancing moment, N·m"))
-    half = (len(labels) + 1) // 2
-    cells = [[label, *graphs.column([a, b, np.max(np.abs(by_statics))])[:2]]
-             for label, a, b in zip(labels, by_statics, by_lever, strict=True)]
+    heads, *cells = _balancing(project)
+    if box.height > box.width:
+        upright_tables.draw(canvas, box, tr(BALANCING), [heads, *cells])
+        return
+    left = canvas.title(box, tr(BALANCING))
+    half = (len(cells) + 1) // 2
     cells += [["", "", ""]] * (2 * half - len(cells))
-    heads = [tr("No."), tr("Force analysis"), tr("Lever")]
     rows = [heads + heads, *(cells[i] + cells[half + i] for i in range(half))]
     row = min(left.height / len(rows), 7.5)
     width = box.width / 2 - 10.0
@@ -212,6 +215,17 @@ def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.
     canvas.table(complex(box.x0, left.y1), widened(widths * 2, rows, height), rows, row, height)
 
 
+def _balancing(project: Project) -> list[list[str]]:
+    """Heads and cells of the table of the balancing moment: a row for each position."""
+    study = project.study
+    by_statics, by_lever = (_row(study.balance[name], study.turned) for name in ("M", "M_р"))
+    largest = np.max(np.abs(by_statics))
+    return [[tr("No."), tr("Force analysis"), tr("Lever")],
+            *([label, *graphs.column([a, b, largest])[:2]]
+              for label, a, b in zip(project.cycle.labels, by_statics, by_lever, strict=True))]
+
+
+BALANCING = marked("Balancing moment, N·m")
 _NO_MOMENT = (marked("the diagram of the balancing moment needs a crank driven by a moment"),
               marked('write kind = "moment" in [balancing]'))
 

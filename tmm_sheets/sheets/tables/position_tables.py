@@ -7,21 +7,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import needs, size_in, widened
 from tmm_sheets.numbers import is_zero
-from tmm_sheets.sheets.components import graphs
+from tmm_sheets.sheets.components import graphs, upright_tables
 from tmm_sheets.sheets.linkage.link_marks import indexed
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
-ROWS = (7.0, 6.4, 5.6, 4.6)
-"""Heights of the rows that are tried, mm."""
-HEAD = 8.0
-"""Height of the title over a table, mm."""
 MOST = 14
 """Most columns that can be read at a glance."""
 
@@ -78,15 +72,8 @@ def _cells(project: Project, columns: Columns, digits: int) -> list[list[str]]:
 def _sizes(project: Project, title: str, columns: Columns) -> list[tuple[float, float]]:
     if not 0 < len(columns) <= MOST or not all(np.isfinite(values).all() for _, values in columns):
         return []
-    rows = _cells(project, columns, 4)
-    return [(max(sum(needs(rows, size_in(row))) + extra * len(columns), letter(title, 3.5).width + 4.0), HEAD + row * len(rows))
-            for row, extra in zip(ROWS, (2.0, 0.0, 0.0, 0.0), strict=True)]
+    return upright_tables.sizes(title, _cells(project, columns, 4))
 
 
 def _table(project: Project, canvas: Canvas, box: Box, title: str, columns: Columns) -> None:
-    rows = _cells(project, columns, 4)
-    row = min((box.height - HEAD) / len(rows), ROWS[0])
-    canvas.text(complex(box.centre.real, box.y1 - 5.5), title, 3.5, "centre")
-    first = needs([[line[0]] for line in rows], 3.5)[0]
-    widths = [first, *[(box.width - first) / len(columns)] * len(columns)]
-    canvas.table(complex(box.x0, box.y1 - HEAD), widened(widths, rows, size_in(row)), rows, row, size_in(row))
+    upright_tables.draw(canvas, box, title, _cells(project, columns, 4))
