@@ -21,9 +21,17 @@ def on_sheets(*names):
 
 
 def test_four_groups_beside_the_kinematics_are_told_to_be_too_small():
-    _, said = map(str, legibility.crowded(on_sheets("kinematics_forces_wide"), [1]))
-    assert "29" in said
-    assert 'sheets = ["kinematics", "forces"]' in said
+    *_, vectors, lever = map(str, legibility.crowded(on_sheets("kinematics_forces_wide", "flywheel"), [1]))
+    assert "60 mm" in vectors
+    assert "29" in lever
+    for said in (vectors, lever):
+        assert 'sheets = ["kinematics", "forces", "flywheel"]' in said
+
+
+def test_a_sheet_more_is_advised_only_where_it_helps():
+    (said,) = map(str, legibility.crowded(Project(read("lugansk/engine")), [1]))
+    assert "the longest vector is 34 mm" in said
+    assert "sheets =" not in said
 
 
 def test_four_groups_call_for_a_sheet_of_their_own_and_can_be_read_there():
