@@ -35,7 +35,7 @@ CLICK = "messages"
 """Domain of click's own words: gettext's default one, which click asks. English needs none."""
 READ = {
     "project": ("title", "variant"), "title_block": ("institution", "group", "letter"), "link": ("title",),
-    "misprint": ("reason", "certainty"), "row": ("misprint",),
+    "misprint": ("reason",), "remark": ("say",),
 }  # fmt: skip
 """Keys of shipped files that a person reads, by table."""
 
@@ -65,17 +65,18 @@ def of_commands() -> Iterator[tuple[str, str, None]]:
 
 def of_projects() -> Iterator[tuple[str, str, None]]:
     """What shipped projects say on their sheets and of themselves, in the language of their files; not what schemes fill in."""
-    for path in (*sorted((ROOT / "variants").rglob("*.toml")), *sorted((ROOT / "templates" / "schemes").glob("*.toml"))):
+    for path in sorted((ROOT / "variants").rglob("*.toml")):
         text = re.sub(r"(?m)^\$\w+\s*$", "", path.read_text("utf-8"))  # rows that are filled in whole, and numbers
         tree = tomllib.loads(re.sub(r'"[^"\n]*"|\$\w+', lambda found: "0" if found[0][0] == "$" else found[0], text))
-        if isinstance(title := tree.get("title"), str):  # of a family's table
-            yield path.relative_to(ROOT).as_posix(), title, None
-        for table, read in READ.items():
-            found = tree.get(table, {})
-            for row in found if isinstance(found, list) else [found]:
-                for said in (row.get(key) for key in read):
-                    if isinstance(said, str) and said and "$" not in said:
-                        yield path.relative_to(ROOT).as_posix(), said, None
+        for part in (tree, *tree.get("machine", {}).values()):
+            if part is not tree:
+                yield path.relative_to(ROOT).as_posix(), part["title"], None
+            for table, read in READ.items():
+                found = part.get(table, {})
+                for row in found if isinstance(found, list) else [found]:
+                    for said in (row.get(key) for key in read):
+                        if isinstance(said, str) and said and "$" not in said:
+                            yield path.relative_to(ROOT).as_posix(), said, None
 
 
 def of_templates() -> Iterator[tuple[str, str, None]]:

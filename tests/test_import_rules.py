@@ -33,6 +33,7 @@ RULES = {
     "task.letters": ("drawing.lettering task", ""),
     "task.families": ("task", ""),
     "task.family_folder": ("task", ""),
+    "task.cipher_form": ("task", ""),
     "task.title_entries": ("task", ""),
     "task.new_file": ("catalogue task", ""),
     "task.keys": ("task", ""),
@@ -87,7 +88,7 @@ LIBRARIES = {
     "reportlab": "backends.pdf lab.bench.plain compare.story_pdf",
     "matplotlib": "backends.png lab.bench.plots optimising.picture",
     "pydantic": "task.values task.schema task.messages task.variant task.title_entries task.keys "
-                "task.family_folder",
+                "task.family_folder task.cipher_form",
     "pydantic_core": "task.messages task.keys", "cv2": "compare.photo", "pypdfium2": "compare.photo",
     "shapely": "drawing sheets methods lab.bench compare",
     "typst": "note.typst_writer", "docx": "note.docx_writer",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import in_a_row, listed, of_reader
 from tmm_sheets.task import title_entries
-from tmm_sheets.words import of_file, tell
+from tmm_sheets.words import of_file, tell, tell_n
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Mechanism
@@ -68,6 +68,28 @@ def swing(project: Project) -> Iterator[str]:
             return
         yield tell("the crank can swing to {angle:.2f} deg; 1 deg beyond it group {group} does not assemble: {why}").format(
             angle=angle, group=group, why=why)
+
+
+DEAD = 1e-3
+"""Share of the greatest speed below which a point stands still."""
+
+
+def signs(project: Project) -> Iterator[str]:
+    """Where a force drives, or resists, otherwise than the task says in ``driving``."""
+    import numpy as np
+
+    for given, force in zip(project.variant.force, project.applied, strict=False):
+        if given.driving is None:
+            continue
+        v = np.asarray(project.study.velocities.points[given.point].value)
+        drives = (np.asarray(force.vector(project.cycle.turned)) * np.conj(v)).real > 0
+        moves = np.abs(v) > DEAD * np.abs(v).max()
+        others = [(tell("{k} (driving)") if d else tell("{k} (resisting)")).format(k=label)
+                  for label, d, m in zip(project.cycle.labels, drives, moves, strict=True) if m and d != (label in given.driving)]
+        if others:
+            yield tell_n("force {name} has the sign of the velocity; the task has the other one at position {positions}",
+                         "force {name} has the sign of the velocity; the task has the other one at positions {positions}",
+                         len(others)).format(name=given.name, positions=", ".join(others))
 
 
 def _inputs(variant: Variant) -> Iterator[tuple[str, str, str]]:

@@ -14,9 +14,10 @@ from tmm_sheets.words import tell
 
 @dataclass(frozen=True)
 class Tried:
-    """What came of a cipher: why it cannot be built, empty where it can, and what is doubtful in it."""
+    """What came of a machine and a cipher: why it cannot be built, empty where it can, and what is doubtful in it."""
 
     project: str
+    machine: str
     problem: str
     warnings: tuple[str, ...] = ()
 
@@ -31,24 +32,23 @@ def tried(folder: Path, quick: bool = False, say: Callable[[str], None] = lambda
     """
     family = FolderFamily(folder)
     for machine in family.rules.machine:
-        for cipher in family.ciphers():
-            name = f"{family.name}/{machine}@{cipher}"
+        for name in family.every(machine):
             say(name)
             try:
                 variant = family.read(name)
                 if not quick:
                     Project(variant).check()
             except (BadInput, CannotBuild) as e:
-                yield Tried(name, str(e))
+                yield Tried(name, f"{family.name}/{machine}", str(e))
             else:
-                yield Tried(name, "", variant.warnings)
+                yield Tried(name, f"{family.name}/{machine}", "", variant.warnings)
 
 
 def table(found: list[Tried]) -> str:
     """A line for each machine, then one for each reason with the first cipher that has it."""
     lines = []
-    for machine in dict.fromkeys(t.project.partition("@")[0] for t in found):
-        own = [t for t in found if t.project.partition("@")[0] == machine]
+    for machine in dict.fromkeys(t.machine for t in found):
+        own = [t for t in found if t.machine == machine]
         good = sum(not t.problem for t in own)
         doubtful = sum(bool(t.warnings) for t in own)
         lines.append(tell("{machine}: {n} ciphers, {good} can be built, {doubtful} with doubtful numbers").format(

@@ -6,7 +6,6 @@ cipher chooses in its tables and with what follows from that. docs/families.md s
 
 from __future__ import annotations
 
-import itertools
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
@@ -22,8 +21,9 @@ from pydantic import Field, ValidationError
 from tmm_sheets import spelling
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.task import family_tables, formulas, headings, toml_file
+from tmm_sheets.task.cipher_form import Cipher, CipherForm, CipherTable, of_signs
 from tmm_sheets.task.family_tables import Choice, Row
-from tmm_sheets.task.filling import filled
+from tmm_sheets.task.filling import SOURCE, filled
 from tmm_sheets.task.messages import said
 from tmm_sheets.task.misprint import Misprint
 from tmm_sheets.task.schema import Table
@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 FILE = "family.toml"
 LARGEST = 1_000_000
 """Bytes of the largest such file, and of a scheme."""
-MOST = 1000
-"""Most ciphers of a machine that are tried."""
 
 
 class DerivedTable(Table):
@@ -46,7 +44,9 @@ class DerivedTable(Table):
     is_: str = Field(alias="is", description=marked('a formula, for example is = "b - a"'))
     unit: str = ""
     digits: int = 6
-    """significant digits"""
+    """significant digits; 0: as many as the number has"""
+    source: str | None = None
+    """where it comes from, with `$b` and `$b_source`; the formula unless told"""
 
 
 class MisprintTable(Table):
@@ -56,6 +56,22 @@ class MisprintTable(Table):
     column: str = Field(description=marked("the column or the row of the table"))
     suggested: str | int | float = Field(description=marked("the number that is suggested instead"))
     reason: str = Field(description=marked("why"))
+    certainty: str = ""
+    """how sure it is, for the source"""
+
+
+class MisprintNotes(Table):
+    """``[misprints]``: what stands behind the source of such a number, with ``$printed``, ``$suggested`` and ``$certainty``."""
+
+    printed: str = ""
+    corrected: str = "; printed $printed, suspected misprint"
+
+
+class RemarkTable(Table):
+    """``[[machine.NAME.remark]]``: what is told of a project where a comparison of its numbers holds."""
+
+    when: str = Field(description=marked('a comparison, for example when = "l_AD + l_BD < l_AB"'))
+    say: str = Field(description=marked("what is told"))
 
 
 class MachineTable(Table):
@@ -67,24 +83,37 @@ class MachineTable(Table):
     tables: tuple[str, ...] = Field(default=(), description=marked('tables of variants, for example ["pump.csv"]'))
     example: str = ""
     """the cipher that `list` shows"""
+    parts: dict[str, str] = Field(default={})
+    """parts of the ciphers that have this machine; others are told"""
     derived: dict[str, DerivedTable] = Field(default={})
     misprint: tuple[MisprintTable, ...] = ()
+    remark: tuple[RemarkTable, ...] = ()
 
 
 class FamilyTable(Table):
     """A whole ``family.toml``."""
 
-    cipher: str = Field(description=marked('how a cipher is written, for example "ab": small Latin letters are its digits'))
+    cipher: str | CipherTable = Field(
+        description=marked('how a cipher is written, for example "ab": small Latin letters are its digits'))
     example: str = Field(description=marked('a cipher, for example "27"'))
+    separator: str = "@"
+    """what stands before the cipher in the names of projects"""
+    every: bool = False
+    """whether `list` shows all ciphers, not one of each machine"""
     source: str = ""
+    """where numbers come from, with `$file`, `$table`, `$key`, `$symbol`, `$digit`, `$column` and `$machine`; a text without these
+    stands before file, quantity, digit and column"""
+    misprints: MisprintNotes = MisprintNotes()
     machine: dict[str, MachineTable] = Field(min_length=1, description=marked("a table [machine.NAME] for each machine"))
 
 
 @dataclass(frozen=True)
 class Doubt(Misprint):
-    """A misprint with the column where it stands."""
+    """A misprint with its quantity, the column where it stands, how sure it is."""
 
+    key: str
     column: str
+    certainty: str
 
     def warning(self) -> str:
         """One line about it."""
@@ -94,7 +123,7 @@ class Doubt(Misprint):
             tell("{symbol}, {column}: {printed} {unit} is probably a misprint of {suggested} {unit} ({reason}); the printed value "
                  "is used, --corrected takes the other one"))
         return text.format(symbol=self.symbol, column=self.column, printed=self.printed, unit=self.unit, suggested=self.suggested,
-                           reason=self.reason)
+                           reason=tell(self.reason))
 
 
 class FolderFamily:
@@ -128,11 +157,34 @@ class FolderFamily:
 
     def names(self) -> tuple[str, ...]:
         """Every machine with a cipher."""
-        return tuple(f"{self.name}/{name}@{machine.example or self.rules.example}" for name, machine in self.rules.machine.items())
+        return tuple(name for machine in self.rules.machine for name in (
+            self.every(machine) if self.rules.every else [self._named(machine, self._example(machine))]))
+
+    def every(self, machine: str) -> Iterator[str]:
+        """Names of a machine with all ciphers, evenly spread where there are too many."""
+        return (self._named(machine, cipher) for cipher in self.form.every(self._example(machine)))
+
+    def _named(self, machine: str, cipher: str) -> str:
+        return f"{self.name}/{machine}{self.rules.separator}{cipher}"
+
+    def _example(self, machine: str) -> str:
+        return self.rules.machine[machine].example or self.rules.example
 
     def heading(self, name: str) -> dict[str, Any]:
-        """Table ``[project]`` of one of these."""
-        return tomllib.loads(headings.first(re.split(r"^\[project\]$", self.text(name)[0], maxsplit=1, flags=re.MULTILINE)[1]))
+        """Table ``[project]`` of one of these.
+
+        Raises
+        ------
+        BadInput
+            when there is no such machine or cipher, or something is wrong in the folder.
+        """
+        called, cipher = self._parts(name)
+        scheme = self.folder / self.rules.machine[called].scheme[0]
+        try:
+            return headings.of(scheme.read_text(encoding="utf-8"),
+                               {key: own.text for key, own in self._about(called, cipher).items()})
+        except (OSError, KeyError, IndexError):  # it needs more of the tables, or is somewhere else
+            return headings.of(self.text(name)[0])
 
     def read(self, name: str, corrected: bool = False) -> Variant:
         """Project of a machine and a cipher.
@@ -144,99 +196,111 @@ class FolderFamily:
         """
         from tmm_sheets.task import variant
 
-        text, doubts = self.text(name, corrected)
-        return variant.parse(text, name, tuple(doubt.warning() for doubt in doubts), doubts)
-
-    # --- cipher -----------------------------------------------------------------------------------------------------------
+        text, doubts, remarks = self.text(name, corrected)
+        return variant.parse(text, name, (*remarks, *(doubt.warning() for doubt in doubts)), doubts)
 
     @cached_property
-    def letters(self) -> str:
-        """Letters of the digits that choose: those that the cipher has once."""
-        small = re.findall("[a-z]", self.rules.cipher)
-        return "".join(letter for letter in small if small.count(letter) == 1)
+    def form(self) -> CipherForm:
+        """How the ciphers are written."""
+        cipher = self.rules.cipher
+        return CipherForm(of_signs(cipher) if isinstance(cipher, str) else cipher)
 
-    def digits(self, cipher: str) -> dict[str, str]:
-        """Digits of a cipher by their letters.
+    def _parts(self, name: str) -> tuple[str, Cipher]:
+        """The machine and the cipher of a name."""
+        called, at, text = name.partition("/")[2].partition(self.rules.separator)
+        if called not in self.rules.machine:
+            near = spelling.near(called, self.rules.machine)
+            raise BadInput(tell('{family} has no machine "{machine}"').format(family=self.name, machine=called),
+                           hint=tell("did you mean {near}?").format(near=f"{self.name}/{near[0]}") if near else
+                           tell("known are {known}").format(known=", ".join(self.rules.machine)))
+        if not at:
+            raise BadInput(tell("{machine} needs a cipher").format(machine=name), hint=tell("write for example {name}").format(
+                name=self._named(called, self._example(called))))
+        cipher = self.form.read(text)
+        if cipher is None:
+            known = ", ".join(self.form.every(self.rules.example)) if self.rules.every else ""
+            raise BadInput(tell('not a cipher: "{text}"').format(text=text), hint=(
+                tell("known are {known}").format(known=known) if known else
+                tell("write for example {name}").format(name=self._example(called))))
+        return called, cipher
 
-        Raises
-        ------
-        BadInput
-            when it is written otherwise.
-        """
-        pattern = "".join((f"(?P<{sign}>[0-9])" if sign in self.letters else "[0-9]") if "a" <= sign <= "z" else re.escape(sign)
-                          for sign in self.rules.cipher)
-        match = re.fullmatch(pattern, cipher.strip())
-        if match is None:
-            raise BadInput(tell('not a cipher: "{text}"').format(text=cipher), hint=tell(
-                "it is written {cipher}, small letters are digits: {example}").format(cipher=self.rules.cipher,
-                                                                                     example=self.rules.example))
-        return match.groupdict()
-
-    def ciphers(self) -> Iterator[str]:
-        """Ciphers of all digits, evenly spread where there are more than :data:`MOST`."""
-        count = 10 ** len(self.letters)
-        every = itertools.product("0123456789", repeat=len(self.letters))
-        for figures in itertools.islice(every, 0, None, max(1, count // MOST)):
-            own = dict(zip(self.letters, figures, strict=True))
-            yield "".join(own.get(sign, "0") if "a" <= sign <= "z" else sign for sign in self.rules.cipher)
+    def _about(self, called: str, cipher: Cipher) -> dict[str, Choice]:
+        about = {"name": self._named(called, cipher.text), "cipher": cipher.text, "machine": called,
+                 "title": self.rules.machine[called].title or called, "digits": "".join(cipher.digits.values())}
+        return {key: Choice(text) for key, text in about.items()}
 
     # --- project files ----------------------------------------------------------------------------------------------------
 
-    def text(self, name: str, corrected: bool = False) -> tuple[str, tuple[Doubt, ...]]:
-        """The project file of a machine and a cipher, and the misprints in it.
+    def text(self, name: str, corrected: bool = False) -> tuple[str, tuple[Doubt, ...], tuple[str, ...]]:
+        """The project file of a machine and a cipher, the misprints in it, and what else is told of it.
 
         Raises
         ------
         BadInput
             when there is no such machine or cipher, or something is wrong in the folder.
         """
-        called, at, cipher = name.partition("/")[2].partition("@")
-        machine = self.rules.machine.get(called)
-        if machine is None:
-            near = spelling.near(called, self.rules.machine)
-            raise BadInput(tell('{family} has no machine "{machine}"').format(family=self.name, machine=called),
-                           hint=tell("did you mean {near}?").format(near=f"{self.name}/{near[0]}") if near else
-                           tell("known are {known}").format(known=", ".join(self.rules.machine)))
-        if not at:
-            raise BadInput(tell("{machine} needs a cipher").format(machine=name),
-                           hint=tell("write for example {name}").format(name=f"{name}@{machine.example or self.rules.example}"))
-        digits = self.digits(cipher)
-        rows = {row.key: row for table in machine.tables for row in self._table(table)}
-        doubts = tuple(self._doubts(machine, rows, digits, corrected))
-        instead = {doubt.symbol: str(doubt.suggested) for doubt in doubts if corrected}
-        values = {key: row.chosen(digits, instead.get(key, "")) for key, row in rows.items()}
-        if self.rules.source:
-            values = {key: Choice(own.text, f"{self.rules.source}, {own.source}") for key, own in values.items()}
-        about = {"name": f"{self.name}/{called}@{cipher}", "cipher": cipher, "title": machine.title or called,
-                 "digits": "".join(digits.values())}
-        values |= {key: Choice(text) for key, text in about.items()}
+        called, cipher = self._parts(name)
+        machine = self.rules.machine[called]
+        rows = {row.key: row for table in machine.tables for row in family_tables.read(self.folder / table, self.form.letters)}
+        doubts = tuple(self._doubts(machine, rows, cipher, corrected))
+        doubtful = {doubt.key: doubt for doubt in doubts}
+        values = {key: self._choice(called, row, cipher, doubtful.get(key)) for key, row in rows.items()}
+        values |= self._about(called, cipher)
         values |= self._derived(called, machine, values)
-        return "".join(self._filled(scheme, values) for scheme in machine.scheme), doubts
+        remarks = tuple(self._remarks(called, machine, cipher, values))
+        values |= {f"{key}{SOURCE}": Choice(own.source) for key, own in values.items()}
+        schemes = (Template(scheme).safe_substitute({key: own.text for key, own in values.items()}) for scheme in machine.scheme)
+        return "".join(self._filled(scheme, values) for scheme in schemes), doubts, remarks
 
-    def _table(self, name: str) -> list[Row]:
-        return family_tables.read(self.folder / name, self.letters)
+    def _choice(self, called: str, row: Row, cipher: Cipher, doubt: Doubt | None) -> Choice:
+        column, own = row.cell(cipher.digits)
+        prefix = f"{self.rules.source}, " if self.rules.source else ""
+        form = self.rules.source if "$" in prefix else f"{prefix}$file: $key, $digit = $column"
+        source = row.source(form, column, machine=called)
+        if doubt is not None:
+            note = self.rules.misprints.corrected if doubt.corrected else self.rules.misprints.printed
+            source += Template(note).safe_substitute(printed=doubt.printed, suggested=doubt.suggested, certainty=doubt.certainty)
+        return Choice(row.written(str(doubt.suggested) if doubt is not None and doubt.corrected else own), source)
 
-    def _doubts(self, machine: MachineTable, rows: Mapping[str, Row], digits: Mapping[str, str],
-                corrected: bool) -> Iterator[Doubt]:
+    def _doubts(self, machine: MachineTable, rows: Mapping[str, Row], cipher: Cipher, corrected: bool) -> Iterator[Doubt]:
         for m in machine.misprint:
             if m.key not in rows:
                 raise BadInput(Problem(tell("no table has it"), str(self.folder / FILE), None, f"misprint: {m.key}"))
-            column, own = rows[m.key].cell(digits)
+            row = rows[m.key]
+            column, own = row.cell(cipher.digits)
             if column == m.column:
-                yield Doubt(m.key, rows[m.key].unit, _decimal(own), _decimal(str(m.suggested)), m.reason, corrected, column)
+                yield Doubt(row.symbol, row.unit, _decimal(own), _decimal(str(m.suggested)), m.reason, corrected, m.key, column,
+                            m.certainty)
+
+    def _remarks(self, called: str, machine: MachineTable, cipher: Cipher, values: Mapping[str, Choice]) -> Iterator[str]:
+        for part, own in machine.parts.items():
+            if (given := cipher.parts.get(part, own)) != own:
+                yield tell("{machine} is for ciphers with {own}, not with {given}").format(
+                    machine=f"{self.name}/{called}", own=own, given=given)
+        numbers = _numbers(values)
+        for remark in machine.remark:
+            if self._value(remark.when, numbers, f"machine.{called}.remark"):
+                yield tell(remark.say)
 
     def _derived(self, called: str, machine: MachineTable, values: Mapping[str, Choice]) -> dict[str, Choice]:
         """What follows from the tables, each from what stands before it; a number goes into a formula in its own unit."""
-        numbers = {key: number for key, own in values.items() if (number := _number(own.text)) is not None}
-        found = {}
+        numbers = _numbers(values)
+        found: dict[str, Choice] = {}
         for key, rule in machine.derived.items():
-            try:
-                numbers[key] = formulas.value(rule.is_, numbers)
-            except ValueError as e:
-                said = tell("{formula} cannot be computed: {why}").format(formula=rule.is_, why=e)
-                raise BadInput(Problem(said, str(self.folder / FILE), None, f"machine.{called}.derived.{key}")) from None
-            found[key] = Choice(f"{numbers[key]:.{rule.digits}g} {rule.unit}".rstrip(), f"{key} = {rule.is_}")
+            number = numbers[key] = self._value(rule.is_, numbers, f"machine.{called}.derived.{key}")
+            names = {f"{name}{end}": text for name, own in (*values.items(), *found.items())
+                     for end, text in (("", own.text), (SOURCE, own.source))} if rule.source else {}
+            source = f"{key} = {rule.is_}" if rule.source is None else Template(rule.source).safe_substitute(names)
+            written = f"{number:.{rule.digits}g}" if rule.digits else repr(number)
+            found[key] = Choice(f"{written} {rule.unit}".rstrip(), source)
         return found
+
+    def _value(self, formula: str, numbers: Mapping[str, float], field: str) -> float:
+        try:
+            return formulas.value(formula, numbers)
+        except ValueError as e:
+            why = tell("{formula} cannot be computed: {why}").format(formula=formula, why=e)
+            raise BadInput(Problem(why, str(self.folder / FILE), None, field)) from None
 
     def _filled(self, scheme: str, values: Mapping[str, Choice]) -> str:
         path = self.folder / scheme
@@ -257,6 +321,10 @@ class FolderFamily:
             known = tell("did you mean {near}?").format(near=near[0]) if near else tell("known are {known}").format(
                 known=", ".join(values))
             raise BadInput(Problem(tell("nothing is called ${name}").format(name=key), str(path), line, hint=known)) from None
+
+
+def _numbers(values: Mapping[str, Choice]) -> dict[str, float]:
+    return {key: number for key, own in values.items() if (number := _number(own.text)) is not None}
 
 
 def _number(text: str) -> float | None:

@@ -1,9 +1,9 @@
 """Tables of a family's variants, CSV or TOML, as a manual prints them, and what a cipher chooses in them.
 
 A table with a column ``key`` has a row for each quantity, and a column for each figure of a digit of the cipher (``0`` .. ``9``, or
-``0..4``); which digit stands in the column ``digit``. Any other table has a row for each variant: its first column is called after
-the digits that choose the row, the others after the quantities; a row that begins with ``unit`` has their units. A TOML table has
-``digit``, ``[unit]`` and ``[values]``, lists by the figure of the digit.
+``0..4``); which digit stands in the column ``digit``; ``symbol``, ``table`` and ``note`` are for the source. Any other table has a
+row for each variant: its first column is called after the digits that choose the row, the others after the quantities; a row that
+begins with ``unit`` has their units. A TOML table has ``digit``, ``[unit]`` and ``[values]``, lists by the figure of the digit.
 """
 
 from __future__ import annotations
@@ -12,13 +12,17 @@ import csv
 import io
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
+from string import Template
 
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.task import toml_file
 from tmm_sheets.words import tell
 
+ABOUT = ("table", "symbol")
+"""Columns of what a quantity is called in the manual."""
 LARGEST = 10_000_000
 """Bytes of the largest table that is read."""
 
@@ -33,7 +37,10 @@ class Choice:
 
 @dataclass(frozen=True)
 class Row:
-    """A quantity with its value for each figure of the digits that choose it; ``line`` of the file is that of the quantity."""
+    """A quantity with its value for each figure of the digits that choose it; ``line`` of the file is that of the quantity.
+
+    Without a digit the first value is everybody's. ``about`` has the table's other columns, ``note`` follows the source.
+    """
 
     key: str
     unit: str
@@ -41,6 +48,13 @@ class Row:
     cells: Mapping[str, str]
     file: str
     line: int
+    about: Mapping[str, str] = field(default_factory=dict)
+    note: str = ""
+
+    @property
+    def symbol(self) -> str:
+        """Its name in the manual."""
+        return self.about.get("symbol") or self.key
 
     def cell(self, digits: Mapping[str, str]) -> tuple[str, str]:
         """The column that a cipher chooses, and what stands there.
@@ -51,18 +65,24 @@ class Row:
             when there is none, or nothing stands there.
         """
         figure = "".join(digits[letter] for letter in self.digit)
-        column = next((head for head in self.cells if _holds(head, figure)), None)
+        column = next((head for head in self.cells if not self.digit or _holds(head, figure)), None)
         if column is None or not self.cells[column]:
             raise BadInput(Problem(tell("nothing for {digit} = {figure}").format(digit=self.digit, figure=figure), self.file,
                                    self.line, self.key))
         return column, self.cells[column]
 
-    def chosen(self, digits: Mapping[str, str], instead: str = "") -> Choice:
-        """The value that a cipher chooses, or what is to stand ``instead``."""
-        column, own = self.cell(digits)
-        by = f", {self.digit} = {column}" if self.digit else ""
-        said = f"; printed {own}, suspected misprint" if instead else ""
-        return Choice(f"{instead or own} {self.unit}".rstrip(), f"{Path(self.file).name}: {self.key}{by}{said}")
+    def source(self, form: str, column: str, **more: str) -> str:
+        """Where a value comes from: ``form`` filled in, then the note; of a value that no digit chooses, the note alone."""
+        if not self.digit:
+            return self.note
+        said = Template(form).safe_substitute({
+            **more, **self.about, "file": Path(self.file).name, "key": self.key, "symbol": self.symbol, "digit": self.digit,
+            "column": column})  # fmt: skip
+        return f"{said}{'' if self.note[:1] in ',;:' else ' '}{self.note}"
+
+    def written(self, value: str) -> str:
+        """A value with its unit."""
+        return f"{value} {self.unit}".rstrip()
 
 
 def _holds(head: str, figure: str) -> bool:
@@ -81,6 +101,11 @@ def read(path: Path, digits: str) -> list[Row]:
     BadInput
         with what is wrong in it.
     """
+    return list(_read(path, digits, path.stat().st_mtime_ns if path.is_file() else 0))
+
+
+@lru_cache(64)
+def _read(path: Path, digits: str, changed: int) -> tuple[Row, ...]:
     try:
         text, _ = toml_file.text_of(path, LARGEST)
     except FileNotFoundError:
@@ -90,11 +115,11 @@ def read(path: Path, digits: str) -> list[Row]:
         if unknown := [letter for letter in row.digit if letter not in digits]:
             raise BadInput(Problem(tell("the cipher has no digit {digit}").format(digit=unknown[0]), row.file, row.line, row.key,
                                    tell("its digits are {digits}").format(digits=", ".join(digits) or "–")))
-    return rows
+    return tuple(rows)
 
 
 def _of_csv(text: str, file: str) -> Iterator[Row]:
-    head_line = next((line for line in text.splitlines() if line.strip(" \t;,")), "")
+    head_line = next((line for line in text.splitlines() if line.strip(" \t;,") and not line.startswith("#")), "")
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(";\t,", key=head_line.count))
     rows = [(reader.line_num, [cell.strip() for cell in cells]) for cells in reader
             if any(map(str.strip, cells)) and not cells[0].startswith("#")]
@@ -102,11 +127,11 @@ def _of_csv(text: str, file: str) -> Iterator[Row]:
         raise BadInput(Problem(tell("the table is empty"), file))
     (first, head), *rows = rows
     if "key" in head:
-        columns = [k for k, name in enumerate(head) if name and name not in ("key", "unit", "digit", "note")]
+        columns = [k for k, name in enumerate(head) if name and name not in ("key", "unit", "digit", "note", *ABOUT)]
         for line, cells in rows:
             found = dict(zip(head, [*cells, *[""] * len(head)], strict=False))
-            yield Row(found["key"], found.get("unit", ""), found.get("digit", ""),
-                      {head[k]: found[head[k]] for k in columns}, file, line)
+            yield Row(found["key"], found.get("unit", ""), found.get("digit", ""), {head[k]: found[head[k]] for k in columns},
+                      file, line, {name: found[name] for name in ABOUT if name in found}, found.get("note", ""))
         return
     units = next((cells for _, cells in rows if cells[0] == "unit"), [])
     variants = [(line, cells) for line, cells in rows if cells[0] != "unit"]

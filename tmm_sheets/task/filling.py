@@ -6,6 +6,9 @@ from collections.abc import Mapping
 from string import Template
 from typing import Protocol
 
+SOURCE = "_source"
+"""What the name of a quantity's source ends with."""
+
 
 class Filled(Protocol):
     """A value as it is written, and where it comes from; empty where nothing is to be said of that."""
@@ -20,7 +23,7 @@ class Filled(Protocol):
 
 
 def filled(scheme: str, values: Mapping[str, Filled]) -> str:
-    """A scheme with its values; behind each line what the numbers on it come from.
+    """A scheme with its values; behind each line what the numbers on it come from, unless the line says it, as in ``$l_source``.
 
     Raises
     ------
@@ -32,8 +35,11 @@ def filled(scheme: str, values: Mapping[str, Filled]) -> str:
     lines = []
     for line in scheme.splitlines():
         keys = Template(line).get_identifiers()
-        written, _, comment = Template(line).substitute({key: values[key].text for key in keys}).partition("#")
-        written = written.rstrip()
-        sources = [part for part in (comment.strip(), *dict.fromkeys(values[key].source for key in keys)) if part]
-        lines.append(f"{written}{'  ' if written and sources else ''}{'# ' if sources else ''}{'; '.join(sources)}")
+        line = Template(line).substitute({key: values[key].text for key in keys})
+        told = any(key.endswith(SOURCE) for key in keys)
+        sources = [part for part in dict.fromkeys(values[key].source for key in keys) if part and not told]
+        if sources:
+            written, _, comment = line.partition("#")
+            line = f"{written.rstrip()}  # {'; '.join(filter(None, (comment.strip(), *sources)))}".lstrip()
+        lines.append(line)
     return "\n".join(lines) + "\n"

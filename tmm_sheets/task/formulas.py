@@ -1,4 +1,4 @@
-"""Small formulas in files of tables: ``(b - a) / 2``, ``l * sin(theta)``; numbers and names, nothing that runs."""
+"""Small formulas in files of tables: ``(b - a) / 2``, ``l * sin(theta)``, ``a > b``; numbers and names, nothing that runs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ KNOWN: dict[str, Callable[[float], float]] = {**_OF_DEGREES, "sqrt": math.sqrt, 
 
 
 def value(text: str, numbers: Mapping[str, float]) -> float:
-    """The number that a formula gives.
+    """The number that a formula gives; of a comparison, 1 where it holds.
 
     Raises
     ------
@@ -42,4 +42,7 @@ def _value(node: ast.expr, numbers: Mapping[str, float]) -> float:
         return _TWO[type(node.op)](_value(node.left, numbers), _value(node.right, numbers))
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in KNOWN and len(node.args) == 1:
         return KNOWN[node.func.id](_value(node.args[0], numbers))
+    if isinstance(node, ast.Compare) and [type(sign) for sign in node.ops] in ([ast.Lt], [ast.Gt]):
+        left, right = _value(node.left, numbers), _value(node.comparators[0], numbers)
+        return float(left < right if isinstance(node.ops[0], ast.Lt) else left > right)
     raise ValueError(ast.unparse(node))

@@ -400,6 +400,8 @@ class ForceTable(Table):
     """a diagram for each stroke in turn, `[]` for none"""
     first: Angle = 0.0
     """with `tables`: the first is for the stroke that begins nearest to this crank angle, turned from position 0"""
+    driving: tuple[Name, ...] | None = None
+    """positions where the task says that it drives, elsewhere it resists: `check` tells where the velocity says otherwise"""
     bore: Length | None = None
     """diameter of a piston: the diagrams are then pressures"""
     ambient: Pressure = 0.0

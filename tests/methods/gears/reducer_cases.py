@@ -1,10 +1,11 @@
 """Reducers of manual 003: its tables 2.2, 2.4, 2.6 and 2.8 column by column."""
 
-import tomllib
+import re
 from math import pi
 from types import SimpleNamespace
 
 from tmm_sheets.resources import variants
+from tmm_sheets.task import family_tables
 
 MACHINES = ("diesel", "press", "compressor", "crusher")
 SCHEMES = {
@@ -31,14 +32,12 @@ def data(scheme="single row", simple="after", stages=1, pinion=("z4", 12), **ove
 
 def rows(machine):
     """Values of the machine's rows by key, ten columns each; the diesel's reducer drives the cam shaft."""
-    folder = variants() / "transport"
-
     def of(name):
-        found = tomllib.loads((folder / f"{name}.toml").read_text(encoding="utf-8"))["row"]
-        return {row["key"]: row["values"] for row in found}
+        found = family_tables.read(variants() / f"transport/{name}.csv", "абвгдеж")
+        return {row.key: [float(cell) if re.fullmatch(r"[\d.]+", cell) else cell for cell in row.cells.values()] for row in found}
 
     table = of(machine)
-    table["n_out"] = of("cam")["n"] if machine == "diesel" else table["n" if machine == "compressor" else "n_k"]
+    table["n_out"] = of("cam")["n_cam"] if machine == "diesel" else table["n" if machine == "compressor" else "n_k"]
     return table
 
 

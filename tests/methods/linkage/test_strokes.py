@@ -14,6 +14,7 @@ import pytest
 from tests.few import few
 from tests.methods.linkage.mechanisms import mechanism
 from tests.project_files import CRANK, MOMENT, merged, project
+from tmm_sheets import catalogue
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import RPR, RRR
 from tmm_sheets.mechanism.model import LinkPoint, StructuralGroup
@@ -23,7 +24,6 @@ from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.strokes import Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.project import Project
 from tmm_sheets.task.assembly import _by_run
-from tmm_sheets.task.families import transport
 
 TURN = np.linspace(0, 2 * pi, 360, endpoint=False)
 
@@ -169,7 +169,7 @@ def ciphers(count):
     while count:
         code = f"{draw.randrange(100):02}-ЭПС-{draw.randrange(1000):03}"
         try:
-            yield code, Project(transport.read(f"transport/press@{code}"))
+            yield code, Project(catalogue.read(f"transport/press@{code}"))
         except CannotBuild:
             continue
         count -= 1
@@ -192,7 +192,7 @@ def test_the_load_of_30_presses_never_drives_the_slider():
 @pytest.mark.parametrize("code", ["05-ЭПС-731", "07-ЭПС-718", "00-ЭПС-409"])
 def test_a_toggle_beyond_its_straight_line(code):
     """The stroke ends where the toggle first is straight (D, B, C in line), not where the slider stands on its local top."""
-    p = Project(transport.read(f"transport/press@{code}"))
+    p = Project(catalogue.read(f"transport/press@{code}"))
     s = p.cycle.strokes
     at = position_plan(p.mechanism, p.cycle.world(np.array([s.begin, s.end]))).points
     d, b, c = p.mechanism.fixed["D"], at["B"].value, at["C"].value

@@ -119,8 +119,9 @@ def test_ciphers_with_more_than_digits(folder):
     path = folder / "family.toml"
     path.write_text(path.read_text("utf-8").replace('cipher = "ab"', 'cipher = "yy-Т-ab"'), encoding="utf-8")
     family = family_folder.FolderFamily(folder)
-    assert (family.letters, family.digits("25-Т-27")) == ("ab", {"a": "2", "b": "7"})
-    assert next(family.ciphers()) == "00-Т-00"
+    both = [family.form.read(text) for text in ("25-Т-27", "25-T-27")]  # Cyrillic, Latin
+    assert [(c.text, c.digits) for c in both] == [("25-Т-27", {"a": "2", "b": "7"})] * 2
+    assert next(family.every("pump")) == "department/pump@00-Т-00"
     with pytest.raises(BadInput, match="needs a cipher"):
         family.text("department/pump")
 
@@ -129,20 +130,21 @@ def test_a_table_in_toml(tmp_path):
     path = tmp_path / "t.toml"
     path.write_text('digit = "a"\n[unit]\nl = "mm"\n[values]\nl = [80, "85", 90.5]\nz = [17, 18, 19]\n', encoding="utf-8")
     length, teeth = family_tables.read(path, "a")
-    assert (length.chosen({"a": "2"}).text, teeth.chosen({"a": "0"}).text) == ("90.5 mm", "17")
+    assert (length.cell({"a": "2"}), length.written("90.5"), teeth.cell({"a": "0"})) == (("2", "90.5"), "90.5 mm", ("0", "17"))
     with pytest.raises(BadInput, match="nothing for a = 3"):
-        length.chosen({"a": "3"})
+        length.cell({"a": "3"})
 
 
 @pytest.mark.parametrize(("text", "value"), [
     ("(b - a) / 2", 1), ("-a^2 + 10", 6), ("sqrt(b) * sin(30)", 1), ("acos(0.5)", 60), ("round(7.4) * pi", 21.991148575),
+    ("a < b", 1), ("a > b / 2", 0),
 ])
 def test_formulas(text, value):
     assert formulas.value(text, {"a": 2, "b": 4}) == pytest.approx(value)
 
 
 @pytest.mark.parametrize("text", ["c + 1", "a / 0", "open('x')", "a.b", "a if b else 1", "'x'", "a b", "sqrt(0-1)", "True",
-                                  "__import__('os')"])
+                                  "a == b", "a < b < 9", "__import__('os')"])
 def test_what_is_no_formula(text):
     with pytest.raises(ValueError, match=r"."):
         formulas.value(text, {"a": 2, "b": 4})
@@ -152,3 +154,22 @@ def test_the_doc_shows_the_example():
     doc = (EXAMPLE.parents[1] / "families.md").read_text("utf-8")
     shown = re.search(r"key;unit;digit.*\n.*\n.*", doc)[0]
     assert shown.splitlines() == (EXAMPLE / "table.csv").read_text("utf-8").splitlines()[1:4]
+
+
+def test_what_a_family_tells(folder):
+    """A remark where a comparison holds, a part of the cipher that belongs to another machine, a value without a digit."""
+    family = (folder / "family.toml").read_text("utf-8").replace('cipher = "ab"', (
+        'cipher = { form = "(?P<group>[^-]+)-(?P<number>[0-9]+)", digits = [["number", 2]], letters = "ab", '
+        'written = "$group-$number", padding = "1", spelling = { M = "М" } }')).replace('"КП-25"', '"КП, $file, $symbol: $column"')
+    family = family.replace("[machine.pump.derived]", 'parts = { group = "М" }\nremark = [{ when = "l_OA > 70", say = "long" }]\n'
+                            "[machine.pump.derived]")
+    (folder / "family.toml").write_text(family, encoding="utf-8")
+    table = (folder / "table.csv").read_text("utf-8").replace("key;", "note;key;").replace("\nl_OA", "\n(measured);l_OA")
+    (folder / "table.csv").write_text("\n".join(
+        line if line.startswith(("note", "#", "(")) else f";{line}" for line in table.splitlines()), encoding="utf-8")
+    task = catalogue.read("department/pump@m-27")
+    assert (task.called, task.warnings) == ("department/pump@М-27", ())
+    assert task.source("crank", "length") == "КП, table.csv, l_OA: 2 (measured)"
+    assert catalogue.read("department/pump@K-3").crank.length == catalogue.read("department/pump@K-31").crank.length
+    assert catalogue.read("department/pump@К-37").warnings == ("department/pump is for ciphers with М, not with К", "long")
+    assert sum(1 for _ in families.of("department/pump@M-1").every("pump")) == 100

@@ -1,0 +1,104 @@
+"""Families of tasks: folders that write the project file of any variant from a manual's tables, see :mod:`~.family_folder`.
+
+A family answers for all project names ``FOLDER/...``. Those of the program are folders of ``variants/``; others are in the working
+folder, in ``families`` of the user's folder of configuration, in a folder that TMM_SHEETS_PATH names, or where a package says by an
+entry point of the group ``tmm_sheets.families``; they are looked for in this order.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from contextlib import suppress
+from functools import cache, lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tmm_sheets import resources
+from tmm_sheets.errors import BadInput
+from tmm_sheets.task import user_folder
+
+if TYPE_CHECKING:
+    from tmm_sheets.task.family_folder import FolderFamily
+
+
+@cache
+def known() -> tuple[str, ...]:
+    """Names of the program's families, sorted."""
+    return tuple(sorted(file.parent.name for file in resources.variants().glob(f"*/{FILE}")))
+
+
+def of(project: str) -> FolderFamily | None:
+    """The family that a project name belongs to."""
+    family, sign, _ = project.partition("/")
+    if not sign or not re.fullmatch(r"[\w-]+", family):
+        return None
+    if family in known():
+        return _read(resources.variants() / family)
+    if (resources.variants() / family).is_dir():
+        return None
+    folder = _folder(family)
+    return _read(folder) if folder is not None else None
+
+
+def names() -> Iterator[str]:
+    """Names of all families' projects; none of a folder that cannot be read."""
+    for folder in (*(resources.variants() / name for name in known()), *folders().values()):
+        with suppress(BadInput):
+            yield from _read(folder).names()
+
+
+FILE, PATH, GROUP = "family.toml", "TMM_SHEETS_PATH", "tmm_sheets.families"
+"""File of a folder that is a family, environment variable and entry points that tell where there are some."""
+
+
+def folders() -> dict[str, Path]:
+    """Folders that are families, by their names."""
+    found: dict[str, Path] = {}
+    for place in _places():
+        for file in sorted(place.glob(f"*/{FILE}")) if place.is_dir() else ():
+            found.setdefault(file.parent.resolve().name, file.parent)
+    for name, folder in _installed():
+        found.setdefault(name, folder)
+    return {name: folder for name, folder in found.items() if name not in known()}
+
+
+def _folder(name: str) -> Path | None:
+    """The folder of a family."""
+    for place in _places():
+        if (place / name / FILE).is_file():
+            return place / name
+    return dict(_installed()).get(name)
+
+
+def _places() -> Iterator[Path]:
+    """Folders that may have families in them."""
+    yield Path()
+    user = user_folder.folder()
+    if user is not None:
+        yield user / "families"
+    yield from (Path(place) for place in os.environ.get(PATH, "").split(os.pathsep) if place)
+
+
+@cache
+def _installed() -> tuple[tuple[str, Path], ...]:
+    """Families of other packages: an entry point is a path, or a package whose folder it is."""
+    from importlib.metadata import entry_points
+
+    told = ((entry.name, entry.load()) for entry in entry_points(group=GROUP))
+    found = ((name, Path(there.__path__[0]) if hasattr(there, "__path__") else Path(there)) for name, there in told)
+    return tuple((name, folder) for name, folder in found if (folder / FILE).is_file())
+
+
+def _read(folder: Path) -> FolderFamily:
+    file = folder / FILE
+    return _kept(folder, file.stat().st_mtime_ns if file.is_file() else 0)
+
+
+@lru_cache(32)
+def _kept(folder: Path, changed: int) -> FolderFamily:
+    """The family of a folder, as it was written last."""
+    from tmm_sheets.task.family_folder import FolderFamily
+
+    return FolderFamily(folder)
