@@ -16,11 +16,12 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.quantities import Directions, Points, Reals, Signs, Vectors
 
 _SPLIT = 134217729.0  # 2**27 + 1, Dekker's splitting constant for doubles
 
 
-def two_product(a: Any, b: Any) -> tuple[Any, Any]:
+def two_product(a: Reals, b: Reals) -> tuple[Any, Any]:
     """Product of two doubles as an unevaluated sum, exactly (Dekker 1971; no fused multiply-add in numpy)."""
     p = a * b
     ca, cb = _SPLIT * a, _SPLIT * b
@@ -30,24 +31,24 @@ def two_product(a: Any, b: Any) -> tuple[Any, Any]:
 
 
 @primitive("difference of products", "real", plain=lambda a, b, c, d: a * b - c * d)
-def difference_of_products(a: Any, b: Any, c: Any, d: Any) -> Any:
+def difference_of_products(a: Reals, b: Reals, c: Reals, d: Reals) -> Reals:
     """``a*b - c*d`` to about two units in the last place, whatever cancels."""
     p, e = two_product(a, b)
     q, f = two_product(c, d)
     return (p - q) + (e - f)
 
 
-def _plain_cross(u: Any, v: Any) -> Any:
+def _plain_cross(u: Vectors, v: Vectors) -> Reals:
     """Cross product where it only decides or corrects, or nothing cancels."""
     return np.real(u) * np.imag(v) - np.imag(u) * np.real(v)
 
 
-def _plain_dot(u: Any, v: Any) -> Any:
+def _plain_dot(u: Vectors, v: Vectors) -> Reals:
     return np.real(u) * np.real(v) + np.imag(u) * np.imag(v)
 
 
 @primitive("cross", "real", plain=_plain_cross)
-def cross(u: Any, v: Any) -> Any:
+def cross(u: Vectors, v: Vectors) -> Reals:
     """Cross product of two plane vectors: Re u Im v - Im u Re v.
 
     >>> float(cross(2 + 0j, 1 + 3j))
@@ -57,13 +58,13 @@ def cross(u: Any, v: Any) -> Any:
 
 
 @primitive("dot", "real", plain=_plain_dot)
-def dot(u: Any, v: Any) -> Any:
+def dot(u: Vectors, v: Vectors) -> Reals:
     """Scalar product of two plane vectors."""
     return difference_of_products(np.real(u), np.real(v), -np.imag(u), np.imag(v))
 
 
 @primitive("polar", formula=True)
-def polar(centre: Any, radius: Any, angle: Any) -> Any:
+def polar(centre: Points, radius: Reals, angle: Reals) -> Points:
     """Point at ``radius`` from ``centre`` under ``angle`` (rad, counter-clockwise from the x axis).
 
     >>> complex(polar(1 + 0j, 2.0, 0.0))
@@ -73,13 +74,13 @@ def polar(centre: Any, radius: Any, angle: Any) -> Any:
 
 
 @primitive("ray", formula=True)
-def ray(p: Any, q: Any) -> Any:
+def ray(p: Points, q: Points) -> Directions:
     """Unit direction from ``p`` to ``q``; NaN when they coincide."""
     e = q - p
     return e / np.abs(e)
 
 
-def along(p: Any, u: Any, distance: Any) -> Any:
+def along(p: Points, u: Directions, distance: Reals) -> Points:
     """Point at ``distance`` from ``p`` in the unit direction ``u``."""
     return p + distance * u
 
@@ -93,17 +94,17 @@ def unit(angle: float) -> complex:
     return complex(np.cos(angle), np.sin(angle))
 
 
-def turned(u: Any) -> Any:
-    """Direction turned by +90 degrees."""
+def turned(u: Vectors) -> Vectors:
+    """Vector turned by +90 degrees."""
     return 1j * u
 
 
-def _plain_lines(p: Any, u: Any, q: Any, v: Any, det: Any = None, way: Any = None) -> Any:
+def _plain_lines(p: Points, u: Directions, q: Points, v: Directions, det: Reals = None, way: Reals = None) -> Points:
     return p + _plain_cross(q - p, v) / _plain_cross(u, v) * u
 
 
 @primitive("lines meet", plain=_plain_lines, guard=lambda p, u, q, v, det=None, way=None: _plain_cross(u, v) ** 2)
-def line_line(p: Any, u: Any, q: Any, v: Any, det: Any = None, way: Any = None) -> Any:
+def line_line(p: Points, u: Directions, q: Points, v: Directions, det: Reals = None, way: Reals = None) -> Points:
     """Intersection of the line through ``p`` along ``u`` with the line through ``q`` along ``v``; NaN when parallel.
 
     Laid off from the nearer of the two points. ``det``, the cross product of the directions, may be known better than they
@@ -131,32 +132,35 @@ def line_line(p: Any, u: Any, q: Any, v: Any, det: Any = None, way: Any = None) 
     return found if way is None else np.where(np.isnan(way), found, start + way * along)
 
 
-def difference(q: Any, p: Any) -> tuple[Any, Any]:
+def difference(q: Points, p: Points) -> tuple[Vectors, Vectors]:
     """``q - p`` and what rounding takes from it, exactly: points far from the crossing keep their digits."""
     w = q - p
     back = w - q
     return w, (q - (w - back)) - (p + back)
 
 
-def _gaps(c1: Any, r1: Any, c2: Any, r2: Any) -> tuple[Any, Any, Any]:
+def _gaps(c1: Points, r1: Reals, c2: Points, r2: Reals) -> tuple[Vectors, Reals, Reals]:
     """Centre to centre, the square of that distance, and the square of four times the area of the triangle."""
     e = c2 - c1
     square = _plain_dot(e, e)
     return e, square, ((r1 + r2) ** 2 - square) * (square - (r1 - r2) ** 2)
 
 
-def _plain_arcs(c1: Any, r1: Any, c2: Any, r2: Any, side: Any, height: Any = None, distance: Any = None, line: Any = None) -> Any:
+def _plain_arcs(c1: Points, r1: Reals, c2: Points, r2: Reals, side: Signs, height: Reals = None, distance: Reals = None,
+                line: Directions = None) -> Points:
     e, square, area = _gaps(c1, r1, c2, r2)
     share = 0.5 / square
     return c1 + (0.5 + (r1 - r2) * (r1 + r2) * share + 1j * (side * np.sqrt(area) * share)) * e
 
 
-def _between_arcs(c1: Any, r1: Any, c2: Any, r2: Any, side: Any, height: Any = None, distance: Any = None, line: Any = None) -> Any:
+def _between_arcs(c1: Points, r1: Reals, c2: Points, r2: Reals, side: Signs, height: Reals = None, distance: Reals = None,
+                  line: Directions = None) -> Reals:
     return _gaps(c1, r1, c2, r2)[2] / (4 * (r1 * r2) ** 2)
 
 
 @primitive("arc cuts arc", plain=_plain_arcs, guard=_between_arcs)
-def arc_arc(c1: Any, r1: Any, c2: Any, r2: Any, side: Any, height: Any = None, distance: Any = None, line: Any = None) -> Any:
+def arc_arc(c1: Points, r1: Reals, c2: Points, r2: Reals, side: Signs, height: Reals = None, distance: Reals = None,
+            line: Directions = None) -> Points:
     """Intersection of two circles; ``side`` +1 is left of the line from ``c1`` to ``c2``, -1 right.
 
     The height over the line of centres comes from the sorted, factored Heron form: about ten times fewer digits are
@@ -180,32 +184,32 @@ def arc_arc(c1: Any, r1: Any, c2: Any, r2: Any, side: Any, height: Any = None, d
     return c1 + (foot + 1j * side * height) * u
 
 
-def half_chord(d: Any, r1: Any, r2: Any) -> Any:
+def half_chord(d: Reals, r1: Reals, r2: Reals) -> Reals:
     """Half of the chord that two circles have together, their centres ``d`` apart."""
     a, b, c = _sorted_three(r1, r2, d)
     four_area_squared = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c))
     return np.sqrt(four_area_squared) / (2 * d)
 
 
-def _sorted_three(x: Any, y: Any, z: Any) -> tuple[Any, Any, Any]:
+def _sorted_three(x: Reals, y: Reals, z: Reals) -> tuple[Reals, Reals, Reals]:
     stacked = np.sort(np.stack(np.broadcast_arrays(x, y, z)), axis=0)
     return stacked[2], stacked[1], stacked[0]
 
 
-def _chord(centre: Any, radius: Any, p: Any, u: Any) -> tuple[Any, Any]:
+def _chord(centre: Points, radius: Reals, p: Points, u: Directions) -> tuple[Reals, Reals]:
     """Distance of the line from the centre, and the square of half of the chord."""
     height = _plain_cross(u, p - centre)
     return height, (radius - height) * (radius + height)
 
 
-def _plain_arc_line(centre: Any, radius: Any, p: Any, u: Any, side: Any, half: Any = None) -> Any:
+def _plain_arc_line(centre: Points, radius: Reals, p: Points, u: Directions, side: Signs, half: Reals = None) -> Points:
     height, square = _chord(centre, radius, p, u)
     return centre + (side * np.sqrt(square) + 1j * height) * u
 
 
 @primitive("arc cuts line", plain=_plain_arc_line,
            guard=lambda centre, radius, p, u, side, half=None: _chord(centre, radius, p, u)[1] / radius**2)
-def arc_line(centre: Any, radius: Any, p: Any, u: Any, side: Any, half: Any = None) -> Any:
+def arc_line(centre: Points, radius: Reals, p: Points, u: Directions, side: Signs, half: Reals = None) -> Points:
     """Intersection of a circle with the line through ``p`` along ``u``; ``side`` +1 is the one further along ``u``.
 
     ``half``, half of the chord, is given where it is known better than from the points.
@@ -225,25 +229,25 @@ def arc_line(centre: Any, radius: Any, p: Any, u: Any, side: Any, half: Any = No
     return np.where(near, p + along * u, centre + (side * half + 1j * height) * u)[()]
 
 
-def _tangent(p: Any, centre: Any, radius: Any) -> tuple[Any, Any, Any]:
+def _tangent(p: Points, centre: Points, radius: Reals) -> tuple[Vectors, Reals, Reals]:
     """Centre to point, the square of that distance, and that of the tangent's length."""
     e = p - centre
     square = _plain_dot(e, e)
     return e, square, square - radius**2
 
 
-def _plain_tangent(p: Any, centre: Any, radius: Any, side: Any) -> Any:
+def _plain_tangent(p: Points, centre: Points, radius: Reals, side: Signs) -> Points:
     e, square, tangent = _tangent(p, centre, radius)
     return centre + (radius / square) * (radius - 1j * (side * np.sqrt(tangent))) * e
 
 
-def _to_tangent(p: Any, centre: Any, radius: Any, *others: Any) -> Any:
+def _to_tangent(p: Points, centre: Points, radius: Reals, *others: Any) -> Reals:
     _, square, tangent = _tangent(p, centre, radius)
     return tangent / square
 
 
 @primitive("tangent", plain=_plain_tangent, guard=_to_tangent)
-def tangent_point(p: Any, centre: Any, radius: Any, side: Any) -> Any:
+def tangent_point(p: Points, centre: Points, radius: Reals, side: Signs) -> Points:
     """Point where the tangent from ``p`` touches a circle; ``side`` +1 is left of the line from ``p`` to the centre."""
     e = p - centre
     d = np.abs(e)
@@ -252,13 +256,15 @@ def tangent_point(p: Any, centre: Any, radius: Any, side: Any) -> Any:
     return centre + radius * (cos - 1j * side * sin) * e / d
 
 
-def _plain_tangent_direction(p: Any, centre: Any, radius: Any, side: Any, length: Any = None, distance: Any = None) -> Any:
+def _plain_tangent_direction(p: Points, centre: Points, radius: Reals, side: Signs, length: Reals = None,
+                             distance: Reals = None) -> Directions:
     e, square, tangent = _tangent(p, centre, radius)
     return (np.sqrt(tangent) + 1j * (side * radius)) * e / square
 
 
 @primitive("tangent direction", plain=_plain_tangent_direction, guard=_to_tangent)
-def tangent_direction(p: Any, centre: Any, radius: Any, side: Any, length: Any = None, distance: Any = None) -> Any:
+def tangent_direction(p: Points, centre: Points, radius: Reals, side: Signs, length: Reals = None,
+                      distance: Reals = None) -> Directions:
     """Direction from :func:`tangent_point` to ``p``, also where they fall together.
 
     ``length`` of the tangent and ``distance`` of ``p`` from the centre are given where they are known better than from the points.
@@ -271,7 +277,7 @@ def tangent_direction(p: Any, centre: Any, radius: Any, side: Any, length: Any =
 
 
 @primitive("foot", formula=True)
-def foot(p: Any, q: Any, u: Any) -> Any:
+def foot(p: Points, q: Points, u: Directions) -> Points:
     """Foot of the perpendicular from ``p`` on the line through ``q`` along the unit direction ``u``.
 
     >>> complex(foot(4 + 5j, 1 + 0j, 1 + 0j))
@@ -280,7 +286,7 @@ def foot(p: Any, q: Any, u: Any) -> Any:
     return q + dot(u, p - q) * u
 
 
-def arm(about: Any, at: Any, force: Any) -> Any:
+def arm(about: Points, at: Points, force: Vectors) -> Reals:
     """Arm of a force about a point, signed: positive when the force turns counter-clockwise about it.
 
     >>> float(arm(0j, 2 + 0j, 10j)), float(arm(0j, 2 + 0j, -10j))
@@ -289,7 +295,7 @@ def arm(about: Any, at: Any, force: Any) -> Any:
     return cross(at - about, force) / np.abs(force)
 
 
-def moment(about: Any, at: Any, force: Any) -> Any:
+def moment(about: Points, at: Points, force: Vectors) -> Reals:
     """Moment about a point of a force applied at ``at``; counter-clockwise positive."""
     return cross(at - about, force)
 
@@ -299,7 +305,7 @@ BY_PIECES = "by pieces"
 
 
 @primitive(BY_PIECES, "real")
-def by_pieces(x: Any, *pieces: Any) -> Any:
+def by_pieces(x: Reals, *pieces: Reals) -> Reals:
     """The first of some values whose border ``x`` has not reached: value, border, value, border ... value."""
     borders, values = pieces[1::2], pieces[::2]
     return np.select([np.asarray(x) < b for b in borders], values[:-1], values[-1])

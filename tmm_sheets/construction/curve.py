@@ -7,10 +7,12 @@ curve as an argument, so an error of a point goes on through it.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
+
+from tmm_sheets.construction.quantities import Reals
 
 Floats = npt.NDArray[np.float64]
 Law = Literal["cubic", "straight"]
@@ -39,7 +41,7 @@ class Curve:
         if np.ndim(self.y) != 1:
             raise ValueError("one curve at a time")  # replays of many curves at once are told to go one by one
 
-    def __call__(self, x: Any) -> Any:
+    def __call__(self, x: Reals) -> Reals:
         """Ordinates at ``x``, of any shape within the abscissae."""
         x = np.asarray(x, dtype=float)
         k = np.clip(np.searchsorted(self.x, x, side="right") - 1, 0, len(self.x) - 2)

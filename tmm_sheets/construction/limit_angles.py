@@ -19,6 +19,8 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.quantities import Reals, Signs
+
 DIGITS = 60
 SAME = Decimal(10) ** (10 - DIGITS)
 """Relative difference that is rounding of these digits: lengths of a change point are equal."""
@@ -102,7 +104,7 @@ class Cosine:
     b: Decimal
     start: Decimal
 
-    def __call__(self, phi: Any) -> Any:
+    def __call__(self, phi: Reals) -> Any:
         """Values at crank angles, rad."""
         form, start = _prepared(self)
         return form(_from(phi, start))
@@ -113,7 +115,7 @@ class Cosine:
         with localcontext(prec=DIGITS):
             return abs(self.a - self.b) < SAME * self.b
 
-    def root(self, phi: Any) -> Pair:
+    def root(self, phi: Reals) -> Pair:
         """Smooth square root at crank angles, rad, and its derivative over them; with a sign, and so over two turns, if it touches.
 
         Next to a change point, where the crank angle is nothing but its rounding away from it, the root is zero.
@@ -128,7 +130,7 @@ class Cosine:
         found = np.sqrt(self(phi))
         return found, self.slope(phi) / (2 * found)
 
-    def slope(self, phi: Any) -> Any:
+    def slope(self, phi: Reals) -> Reals:
         """Derivative over the crank angle, rad."""
         s, e = _from(phi, _prepared(self)[1])
         return -float(self.b) * sine((s, e))
@@ -156,11 +158,11 @@ class Gaps:
         with localcontext(prec=DIGITS):
             return tuple(float(c.start + PI) for c in self.touching)
 
-    def root(self, phi: Any) -> Any:
+    def root(self, phi: Reals) -> Any:
         """Root of the product, smooth through the change points."""
         return self.p.root(phi)[0] * self.q.root(phi)[0]
 
-    def quotient(self, phi: Any) -> Pair:
+    def quotient(self, phi: Reals) -> Pair:
         """Derivative of ``q`` over the root of the product, and the derivative of that: finite where both vanish."""
         (p, dp), (q, dq) = self.p.root(phi), self.q.root(phi)
         if len(self.touching) == 2:
@@ -170,7 +172,7 @@ class Gaps:
             return 2 * dq / p, -q / (2 * p) - 2 * dq * dp / p**2
         return -2 * dp / q, p / (2 * q) + 2 * dp * dq / q**2
 
-    def branch(self, phi: Any, side: Any, at: float, cut: float, sense: float, follow: bool) -> Any:
+    def branch(self, phi: Reals, side: Signs, at: float, cut: float, sense: float, follow: bool) -> Reals:
         """+1 or -1, by which the smooth root is multiplied so that it is the group's own at crank angles, rad.
 
         A group that follows is on ``side`` at the crank angle ``at``, or just behind it, and goes on smoothly from there both ways
@@ -187,17 +189,17 @@ class Gaps:
         return np.where(root == 0, smooth, side * np.sign(root))[()]
 
 
-def _turns(phi: Any, cut: float, sense: float) -> Any:
+def _turns(phi: Reals, cut: float, sense: float) -> Reals:
     """Whole turns from ``cut`` to crank angles, in the sense of rotation."""
     return np.floor((sense * (np.asarray(phi) - cut) + at_rest(phi)) / (2 * np.pi))
 
 
-def at_rest(phi: Any) -> Any:
+def at_rest(phi: Reals) -> Reals:
     """Angle from a change point that is nothing but the rounding of the crank angle, rad."""
     return 1e-14 + 4 * np.spacing(np.abs(np.asarray(phi, dtype=float)))
 
 
-def _from(phi: Any, start: tuple[float, float]) -> Pair:
+def _from(phi: Reals, start: tuple[float, float]) -> Pair:
     """Crank angles from a start in two doubles."""
     s, e = two_sum(np.asarray(phi, dtype=float), -start[0])
     return s, e - start[1]

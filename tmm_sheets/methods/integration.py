@@ -18,6 +18,7 @@ import numpy.typing as npt
 from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.quantities import Directions, Points, Reals
 from tmm_sheets.construction.rules import LINE_LINE, RAY
 from tmm_sheets.construction.step import Helper, Rule, Step, value_of
 from tmm_sheets.words import marked, tr
@@ -26,16 +27,16 @@ Floats = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
 
-def _mid_ordinate(x0: Any, x1: Any, y: Any) -> Any:
+def _mid_ordinate(x0: Reals, x1: Reals, y: Reals) -> Any:
     return (x0 + x1) / 2 + 1j * y
 
 
-def _chord(start: Any, direction: Any, x: Any) -> Any:
+def _chord(start: Any, direction: Directions, x: Reals) -> Any:
     # The abscissa is the given one, not the sum of the steps before: borders of intervals do not drift.
     return x + 1j * (np.imag(start) + (x - np.real(start)) * np.imag(direction) / np.real(direction))
 
 
-def _between(p: Any, q: Any, ordinate: Any) -> Any:
+def _between(p: Points, q: Points, ordinate: Reals) -> Any:
     return (np.real(p) + np.real(q)) / 2 + 1j * np.imag(ordinate)
 
 
@@ -51,19 +52,19 @@ def smooth_curve(*of: Any) -> Curve:
 
 
 @primitive("ordinate of a curve", "real")
-def ordinate_of(curve: Any, x: Any) -> Any:
+def ordinate_of(curve: Any, x: Reals) -> Reals:
     """Ordinate of a curve at an abscissa."""
     return curve(x)[()]
 
 
 @primitive("weighted sum", "real")
-def weighted(row: Any, weights: Any) -> Any:
+def weighted(row: Reals, weights: Reals) -> Reals:
     """Sum of a row's numbers, each times its weight: the integral over the nodes of a quadrature."""
     return float(row @ weights)
 
 
 @primitive("running integral", "real")
-def running(row: Any, halves: Any, weights: Any, ends: Any) -> Any:
+def running(row: Reals, halves: Reals, weights: Reals, ends: Reals) -> Reals:
     """Integral from the first border to those with the numbers ``ends``.
 
     ``row`` is the integrand at the nodes of all panels one after another, ``halves`` are half the widths of the panels, ``weights``
@@ -211,7 +212,7 @@ def ordinates(steps: Sequence[Step]) -> Floats:
     return np.array([float(np.imag(s.value)) for s in steps])
 
 
-def smooth(edges: Floats, values: Floats, left: Floats, right: Floats, x: Any) -> Any:
+def smooth(edges: Floats, values: Floats, left: Floats, right: Floats, x: Reals) -> Reals:
     """Ordinates at ``x`` of the smooth curve with these ordinates and slopes, see :class:`Curve`."""
     return Curve(edges, values, left, right)(x)
 
@@ -286,7 +287,7 @@ class Quadrature:
         """Integral over all intervals."""
         return float(self.sums[-1])
 
-    def __call__(self, x: Any) -> Floats:
+    def __call__(self, x: Reals) -> Floats:
         """Integral from the first border to ``x`` (any shape within the borders)."""
         x = np.asarray(x, dtype=float)
         k = np.clip(np.searchsorted(self.borders, x, side="right") - 1, 0, len(self.borders) - 2)

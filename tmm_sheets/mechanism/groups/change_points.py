@@ -16,6 +16,7 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.limit_angles import Gaps
+from tmm_sheets.construction.quantities import Directions, Points, Reals, Signs
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.groups.dead_centres import gaps_of_arcs, gaps_of_line, meets
 from tmm_sheets.mechanism.groups.hints import Turning
@@ -27,7 +28,7 @@ def _rule(name: str, compute: Any, unit: str = "1", *, beyond_paper: bool = True
                 unit=unit)
 
 
-def _side(gaps: Gaps, phi: Any, branch: Any, alone: bool) -> Any:
+def _side(gaps: Gaps, phi: Reals, branch: Reals, alone: bool) -> Reals:
     root = gaps.p.root(phi)[0] if alone else gaps.root(phi)
     return branch * np.where(root < 0, -1.0, 1.0)[()]
 
@@ -36,27 +37,27 @@ def _side(gaps: Gaps, phi: Any, branch: Any, alone: bool) -> Any:
 
 
 @primitive("branch of two arcs", "real")
-def branch_of_arcs(phi: Any, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float, l3: float, side: Any, at: float,
-                   cut: float, sense: float, follow: float) -> Any:
+def branch_of_arcs(phi: Reals, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float, l3: float, side: Signs,
+                   at: float, cut: float, sense: float, follow: float) -> Reals:
     """+1 or -1 by which the smooth root of the gaps is multiplied; on ``side`` at the angle ``at``, all round if follow is 0."""
     return gaps_of_arcs(l1, ahead, pivot, fixed, l2, l3).branch(phi, side, at, cut, sense, bool(follow))
 
 
 @primitive("side of a branch of two arcs", "real")
-def side_of_arcs(phi: Any, branch: Any, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float, l3: float) -> Any:
+def side_of_arcs(phi: Reals, branch: Reals, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float, l3: float) -> Reals:
     """On which side of the line of centres the arcs cross, +1 left."""
     gaps = gaps_of_arcs(l1, ahead, pivot, fixed, l2, l3)
     return _side(gaps, phi, branch, meets((l1, ahead, pivot, fixed), gaps, l2, l3))
 
 
 @primitive("signed distance from the crank's point", "real")
-def signed_distance(phi: Any, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float, l3: float) -> Any:
+def signed_distance(phi: Reals, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float, l3: float) -> Reals:
     """Distance of a fixed hinge that the crank's point passes through, with another sign behind it."""
     return gaps_of_arcs(l1, ahead, pivot, fixed, l2, l3).q.root(phi)[0]
 
 
 @primitive("line from the crank's point")
-def line_of_centres(phi: Any, l1: float, ahead: float, pivot: complex, fixed: complex, sign: float) -> Any:
+def line_of_centres(phi: Reals, l1: float, ahead: float, pivot: complex, fixed: complex, sign: float) -> Directions:
     """Direction from a point on the crank to such a hinge, or from there (sign -1); it goes on smoothly through it."""
     return sign * 1j * np.exp(0.5j * (np.asarray(phi) + ahead + np.angle(fixed - pivot)))
 
@@ -68,18 +69,20 @@ def _squares(l1: float, pivot: complex, fixed: complex, l2: float, l3: float) ->
 
 
 @primitive("turning of a rod on two arcs", "real")
-def turning_of_arcs(phi: Any, branch: Any, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float, l3: float) -> Any:
+def turning_of_arcs(phi: Reals, branch: Reals, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float,
+                    l3: float) -> Reals:
     """Angle that the first link turns by an angle of the crank, at crank angles, rad."""
     return _of_arcs(phi, branch, l1, ahead, pivot, fixed, l2, l3)[0]
 
 
 @primitive("second turning of a rod on two arcs", "real")
-def second_of_arcs(phi: Any, branch: Any, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float, l3: float) -> Any:
+def second_of_arcs(phi: Reals, branch: Reals, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float,
+                   l3: float) -> Reals:
     """Derivative of :func:`turning_of_arcs` over the crank angle, 1/rad."""
     return _of_arcs(phi, branch, l1, ahead, pivot, fixed, l2, l3)[1]
 
 
-def _of_arcs(phi: Any, branch: Any, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float,
+def _of_arcs(phi: Reals, branch: Reals, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float,
              l3: float) -> tuple[Any, Any]:
     """The line of centres turns by 1/2 + (l1^2 - l0^2) / 2d^2, and the rod against it by -(d^2)' / 2s (1 + (l3^2 - l2^2) / d^2).
 
@@ -100,29 +103,29 @@ def _of_arcs(phi: Any, branch: Any, l1: float, ahead: float, pivot: complex, fix
 
 
 @primitive("branch of arc and line", "real")
-def branch_of_line(phi: Any, l1: float, ahead: float, length: float, pivot: complex, through: complex, guide: float, side: Any,
+def branch_of_line(phi: Reals, l1: float, ahead: float, length: float, pivot: complex, through: complex, guide: float, side: Signs,
                    at: float, cut: float, sense: float, follow: float) -> Any:
     """The same as of two arcs, for a rod on a guide."""
     return gaps_of_line(l1, ahead, length, pivot, through, guide).branch(phi, side, at, cut, sense, bool(follow))
 
 
 @primitive("side of a branch of arc and line", "real")
-def side_of_line(phi: Any, branch: Any, l1: float, ahead: float, length: float, pivot: complex, through: complex,
-                 guide: float) -> Any:
+def side_of_line(phi: Reals, branch: Reals, l1: float, ahead: float, length: float, pivot: complex, through: complex,
+                 guide: float) -> Reals:
     """Which of both crossings of arc and line it is, +1 further along the guide."""
     return _side(gaps_of_line(l1, ahead, length, pivot, through, guide), phi, branch, alone=False)
 
 
 @primitive("turning of a rod on a guide", "real")
-def turning_of_line(phi: Any, branch: Any, l1: float, ahead: float, length: float, pivot: complex, through: complex,
-                    guide: float) -> Any:
+def turning_of_line(phi: Reals, branch: Reals, l1: float, ahead: float, length: float, pivot: complex, through: complex,
+                    guide: float) -> Reals:
     """Angle that the rod turns by an angle of the crank, at crank angles, rad: -e' over the half-chord, e the pin's distance."""
     return branch * gaps_of_line(l1, ahead, length, pivot, through, guide).quotient(phi)[0]
 
 
 @primitive("second turning of a rod on a guide", "real")
-def second_of_line(phi: Any, branch: Any, l1: float, ahead: float, length: float, pivot: complex, through: complex,
-                   guide: float) -> Any:
+def second_of_line(phi: Reals, branch: Reals, l1: float, ahead: float, length: float, pivot: complex, through: complex,
+                   guide: float) -> Reals:
     """Derivative of :func:`turning_of_line` over the crank angle, 1/rad."""
     return branch * gaps_of_line(l1, ahead, length, pivot, through, guide).quotient(phi)[1]
 
@@ -166,14 +169,14 @@ def passing(m: Mechanism, g: StructuralGroup, phi: Any, rules: tuple[Rule, ...],
 
 
 @primitive("half-chord beside a change point of two arcs", "real")
-def half_beside_arcs(root: Any, p: Any, r1: Any, q: Any, r2: Any) -> Any:
+def half_beside_arcs(root: Reals, p: Points, r1: Reals, q: Points, r2: Reals) -> Reals:
     """Half-chord of two arcs from the root of their gaps, from the points where it is NaN; not known if it is infinite."""
     d = np.abs(q - p)
     return np.where(np.isnan(root), ar.half_chord(d, r1, r2), np.where(np.isinf(root), np.nan, np.abs(root) / (2 * d)))
 
 
 @primitive("half-chord beside a change point of arc and line", "real")
-def half_beside_line(root: Any, centre: Any, radius: Any, p: Any, u: Any) -> Any:
+def half_beside_line(root: Reals, centre: Points, radius: Reals, p: Points, u: Directions) -> Reals:
     """Half-chord of arc and line by the same."""
     height = ar.cross(u, p - centre)
     return np.where(np.isnan(root), np.sqrt((radius - height) * (radius + height)), np.where(np.isinf(root), np.nan, np.abs(root)))

@@ -20,6 +20,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, Gaps, angle_of, direction
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.quantities import Points, Reals
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
 from tmm_sheets.words import marked
@@ -108,7 +109,7 @@ def gaps_of_arcs(l1: float, ahead: float, pivot: complex, fixed: complex, l2: fl
 
 
 @primitive("half-chord of two arcs", "real")
-def half_of_arcs(phi: Any, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float, l3: float) -> Any:
+def half_of_arcs(phi: Reals, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float, l3: float) -> Reals:
     """sqrt(((l2 + l3)^2 - d^2) (d^2 - (l2 - l3)^2)) / 2d at crank angles, d as in :func:`pin_distance`."""
     span = (l1, ahead, pivot, fixed)
     gaps = gaps_of_arcs(*span, l2, l3)
@@ -125,19 +126,19 @@ def meets(span: Span, gaps: Gaps, l2: float, l3: float) -> bool:
 
 
 @primitive("distance from the crank's point", "real")
-def pin_distance(phi: Any, l1: float, ahead: float, pivot: complex, fixed: complex) -> Any:
+def pin_distance(phi: Reals, l1: float, ahead: float, pivot: complex, fixed: complex) -> Reals:
     """Distance d of a fixed hinge from a point on the crank, ``l1`` from its pivot and ``ahead`` of it."""
     return np.sqrt(-gap_of_arcs((l1, ahead, pivot, fixed), 0.0)(phi))
 
 
 @primitive("tangent from the crank's point", "real")
-def tangent_length(phi: Any, l1: float, ahead: float, pivot: complex, fixed: complex, radius: float) -> Any:
+def tangent_length(phi: Reals, l1: float, ahead: float, pivot: complex, fixed: complex, radius: float) -> Reals:
     """sqrt(d^2 - radius^2): length of the tangent from a point on the crank to a circle about a fixed hinge."""
     return np.sqrt(-gap_of_arcs((l1, ahead, pivot, fixed), radius)(phi))
 
 
 @primitive("half-chord of arc and line", "real")
-def half_of_line(phi: Any, l1: float, ahead: float, length: float, pivot: complex, through: complex, guide: float) -> Any:
+def half_of_line(phi: Reals, l1: float, ahead: float, length: float, pivot: complex, through: complex, guide: float) -> Reals:
     """sqrt((length - e) (length + e)), e the distance of a point on the crank from a guide."""
     gaps = gaps_of_line(l1, ahead, length, pivot, through, guide)
     return np.abs(gaps.root(phi)) if gaps.touching else np.sqrt(gaps.p(phi) * gaps.q(phi))
@@ -198,7 +199,7 @@ PIN_ANGLE = Rule("angle of a dead position", lambda centre, pin: np.arctan2((pin
                  exact=True)
 
 
-def _in_line(centre: Any, end: Any, fold: Any, crank: Any) -> Any:
+def _in_line(centre: Points, end: Any, fold: Any, crank: Any) -> Any:
     v = fold * (end - centre) / np.abs(end - centre) * crank
     return np.arctan2(v.imag, v.real)
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction.quantities import Directions, Reals
 from tmm_sheets.mechanism.groups.contexts import PositionPlan
 from tmm_sheets.words import tell
 
@@ -62,7 +63,7 @@ def _rounded(length: float, to: Callable[[float], int]) -> str:
     return tell("{length:.6g} mm").format(length=to(length * 1000 / unit) * unit)
 
 
-def span(pos: PositionPlan[Any, Any], p: str, q: str) -> Any:
+def span(pos: PositionPlan[Any, Any], p: str, q: str) -> Reals:
     """Distance of two points of the position plan, m, shape (n,)."""
     return np.abs(pos.value(pos.points[q]) - pos.value(pos.points[p]))
 
@@ -72,12 +73,12 @@ def rounding(length: float, *points: Any) -> Any:
     return 4e-15 * (length + sum(np.abs(p) for p in points))
 
 
-def unrounded(margin: Any, rounding: Any) -> Any:
+def unrounded(margin: Reals, rounding: Reals) -> Reals:
     """A margin that is nothing where it is nothing but rounding, m: rods that just reach do reach."""
     return np.where(np.abs(margin) <= rounding, 0.0, margin)
 
 
-def extremes(lengths: Any) -> tuple[float, float]:
+def extremes(lengths: Reals) -> tuple[float, float]:
     """Least and greatest of ``lengths`` over the turn, m: a number, or shape (n,) that ends with the sweep.
 
     Between the angles of the sweep their squares, which are smooth, are taken as parabolas.
@@ -91,6 +92,6 @@ def extremes(lengths: Any) -> tuple[float, float]:
     return float(np.sqrt(max(np.nanmin(vertex), 0.0))), float(np.sqrt(np.nanmax(vertex)))
 
 
-def sine(u: Any, v: Any) -> Any:
+def sine(u: Directions, v: Directions) -> Reals:
     """Magnitude of the sine of the angle between two unit directions, shape (n,)."""
     return np.abs(ar.cross(u, v))

@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.quantities import Directions, Points, Reals
 
 CIRCLE, LINE, SLOT = 0.0, 1.0, 2.0
 """What a leg does: its corner on a circle, on a line; a line of the triangle through a point."""
@@ -42,13 +43,13 @@ SCAN = 1440
 """Directions of the triangle in which ways of assembly are looked for."""
 
 
-def _spread(k: Any, u: Any, legs: Legs) -> tuple[Any, Any, Legs]:
+def _spread(k: Any, u: Directions, legs: Legs) -> tuple[Any, Any, Legs]:
     """Place, direction and legs of one shape (n,); what a leg does stays one number."""
     k, u, *many = (np.atleast_1d(x) for x in np.broadcast_arrays(k, u, *legs))
     return k, u, tuple(float(np.ravel(legs[i])[0]) if i % 5 == 0 else x for i, x in enumerate(many))
 
 
-def conditions(k: Any, u: Any, legs: Legs) -> tuple[Any, Any, Any]:
+def conditions(k: Any, u: Directions, legs: Legs) -> tuple[Any, Any, Any]:
     """By how much each leg misses, m; its normal, along which it holds the triangle; the normal's point on the triangle."""
     missed, normals, points = [], [], []
     for does, p, d, size, corner in zip(*(legs[i::5] for i in range(5)), strict=True):
@@ -72,19 +73,19 @@ def conditions(k: Any, u: Any, legs: Legs) -> tuple[Any, Any, Any]:
     return np.array(missed), np.array(normals), np.array(points)
 
 
-def moments(k: Any, normals: Any, points: Any) -> Any:
+def moments(k: Any, normals: Any, points: Points) -> Reals:
     """Moment of each normal about the first corner, m: with the normals the rows of the conditions' Jacobian."""
     return (np.conj(points - k) * normals).imag
 
 
-def determinant(k: Any, normals: Any, points: Any) -> Any:
+def determinant(k: Any, normals: Any, points: Points) -> Reals:
     """Of the three normals as forces, m: zero where they meet in one point, or are parallel."""
     m = moments(k, normals, points)
     x, y = normals.real, normals.imag
     return (m[0] * (x[1] * y[2] - x[2] * y[1]) - m[1] * (x[0] * y[2] - x[2] * y[0]) + m[2] * (x[0] * y[1] - x[1] * y[0]))
 
 
-def _correction(k: Any, u: Any, legs: Legs) -> tuple[Any, Any]:
+def _correction(k: Any, u: Directions, legs: Legs) -> tuple[Any, Any]:
     """Newton's correction of the first corner, m, and of the direction, rad."""
     f, normals, points = conditions(k, u, legs)
     x, y, m = normals.real, normals.imag, moments(k, normals, points)
@@ -103,7 +104,7 @@ def extent(legs: Legs) -> Any:
     return reach + sizes + max(np.max(np.abs(p), initial=0.0) for p in legs[1::5])
 
 
-def solved(k: Any, u: Any, legs: Legs) -> tuple[Complex, Complex]:
+def solved(k: Any, u: Directions, legs: Legs) -> tuple[Complex, Complex]:
     """First corner, m, and direction of the triangle on its legs, next to where it is supposed; NaN where it has no place there."""
     k, u, many = _spread(k, u / np.abs(u), legs)
     size, start, turned = extent(many), k, u
@@ -121,7 +122,7 @@ def solved(k: Any, u: Any, legs: Legs) -> tuple[Complex, Complex]:
 
 
 @primitive("corner of a triangle on three legs")
-def corner_on_legs(k: Any, u: Any, *legs: Any) -> Any:
+def corner_on_legs(k: Any, u: Directions, *legs: Any) -> Points:
     """The third leg's corner, m, of the triangle on three legs: where its locus crosses the circle or the guide of that leg.
 
     ``k``, ``u`` are the place of the first corner, m, and the direction of the triangle it is looked for next to.
@@ -131,7 +132,7 @@ def corner_on_legs(k: Any, u: Any, *legs: Any) -> Any:
 
 
 @primitive("direction of a triangle on three legs")
-def direction_on_legs(k: Any, u: Any, *legs: Any) -> Any:
+def direction_on_legs(k: Any, u: Directions, *legs: Any) -> Directions:
     """Direction from the first corner to the second of the triangle on three legs."""
     return _as_given(solved(k, u, legs)[1], k)
 
@@ -141,7 +142,7 @@ def _as_given(found: Any, like: Any) -> Any:
 
 
 @primitive("value on a followed course")
-def on_course(phi: Any, angles: Any, values: Any) -> Any:
+def on_course(phi: Reals, angles: Reals, values: Any) -> Reals:
     """Value at a crank angle between the angles of one turn, rad, at which it is known; NaN where it is not, nor next to it."""
     x = angles[0] + np.mod(np.asarray(phi) - angles[0], 2 * np.pi)
     i = np.clip(np.searchsorted(angles, x, side="right") - 1, 0, len(angles) - 2)
@@ -152,13 +153,13 @@ def on_course(phi: Any, angles: Any, values: Any) -> Any:
 
 
 @primitive("false position")
-def false_place(k: Any, u: Any, amount: Any, *legs: Any) -> Any:
+def false_place(k: Any, u: Directions, amount: Any, *legs: Any) -> Points:
     """First corner, m, of the triangle on the first two legs alone, moved so far, m, from where it stands."""
     return _as_given(_moved(k, u, amount, legs)[0], k)
 
 
 @primitive("side of a false position", "real")
-def false_side(k: Any, u: Any, amount: Any, *legs: Any) -> Any:
+def false_side(k: Any, u: Directions, amount: Any, *legs: Any) -> Reals:
     """On which side the second corner then lies: of the line to the second leg's pivot, or further along its guide; +1 or -1."""
     k, u = _moved(k, u, amount, legs)
     does, p, d, size, corner = legs[5:10]
@@ -169,7 +170,7 @@ def false_side(k: Any, u: Any, amount: Any, *legs: Any) -> Any:
     return np.where((np.conj(p - k) * u * np.exp(1j * size)).real >= 0, 1.0, -1.0)
 
 
-def locus_sine(k: Any, u: Any, *legs: Any) -> Any:
+def locus_sine(k: Any, u: Directions, *legs: Any) -> Reals:
     """Sine of the angle at which the locus of the third corner crosses the circle or the guide of its leg."""
     k, u = solved(k, u, legs)
     _, normals, _ = conditions(k, u, legs)
@@ -203,7 +204,7 @@ def _freely(k: Any, u: Any, legs: Legs, way: Any, corner: Any) -> tuple[Any, Any
     return k + scale * dk, u * np.exp(1j * scale * turn)
 
 
-def _back(k: Any, u: Any, legs: Legs) -> tuple[Any, Any]:
+def _back(k: Any, u: Directions, legs: Legs) -> tuple[Any, Any]:
     """Onto the first two legs again by the shortest way."""
     f, normals, points = conditions(k, u, legs)
     size = np.max(np.abs(np.array(legs[4::5], dtype=complex)))
@@ -218,7 +219,7 @@ def _back(k: Any, u: Any, legs: Legs) -> tuple[Any, Any]:
 # --- ways of assembly -------------------------------------------------------------------------------------------------
 
 
-def places(u: Any, i: int, j: int, legs: Legs) -> list[Any]:
+def places(u: Directions, i: int, j: int, legs: Legs) -> list[Any]:
     """First corners, m, of triangles of directions ``u`` whose legs ``i`` and ``j`` hold: two for each, or one."""
     loci = []
     for n in (i, j):
@@ -317,7 +318,7 @@ def course(before: Callable[[Floats], Legs], at: float, near: float) -> Course:
     return Course(angles, k, u, normals, back, found, taken)
 
 
-def _one(x: Any) -> Any:
+def _one(x: Reals) -> Any:
     return np.ravel(x)[0]
 
 

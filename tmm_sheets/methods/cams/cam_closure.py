@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.quantities import Points, Reals
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.methods.cams.cam_displacement import ExactMotion, in_phase
 from tmm_sheets.methods.cams.cam_inversion import Inversion
@@ -22,7 +23,7 @@ from tmm_sheets.methods.cams.cam_laws import Phase
 from tmm_sheets.methods.cams.cam_zone import TURNED, found_share
 from tmm_sheets.words import marked, tr
 
-Reals = npt.NDArray[np.float64]
+Floats = npt.NDArray[np.float64]
 
 SOURCE = marked("003, sheet 2")
 
@@ -30,12 +31,12 @@ SOURCE = marked("003, sheet 2")
 # --- spring -----------------------------------------------------------------------------------------------------------
 
 
-def _inertia(dds: Any, mass: Any, speed: Any, length: Any) -> Any:
+def _inertia(dds: Any, mass: Reals, speed: Reals, length: Reals) -> Reals:
     """Force of inertia away from the cam, N; negative where it presses together."""
     return -dds * (mass * speed**2 * length)
 
 
-def _force(s: Any, preload: Any, rate: Any, length: Any) -> Any:
+def _force(s: Any, preload: Any, rate: Any, length: Reals) -> Reals:
     """Force of the spring at a displacement, N."""
     return preload + rate * length * s
 
@@ -171,7 +172,7 @@ def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: fl
     plan.add("c", RATE, most, first, plan["s"])
     unit, biggest = float(moved.value) * speed**2 * length, float(largest.value)
 
-    def ratio(x: Reals, p: Phase) -> Reals:
+    def ratio(x: Floats, p: Phase) -> Floats:
         force = factor * biggest * (preload + (1 - preload) * p.s(x) / law.stroke)
         inertia = -unit * p.dds(x)
         return np.asarray(np.divide(force, inertia, out=np.full_like(force, np.inf), where=inertia > 1e-12 * biggest))
@@ -204,7 +205,7 @@ DISTANCE = Rule("distance of the rollers", lambda s0, stroke: 2 * s0 + stroke, (
                 marked("Distance between the rollers {name} = 2·S_0 + S_max = {value}."), source=SOURCE)
 
 
-def _spread(pivot: Any, apex: Any, swing: Any) -> Any:
+def _spread(pivot: Points, apex: Any, swing: Any) -> Any:
     turned = (apex - pivot) / -pivot
     return 2 * np.abs(np.arctan2(turned.imag, turned.real)) + swing
 

@@ -18,6 +18,7 @@ from tmm_sheets.construction.arithmetic import by_pieces
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.quantities import Reals
 from tmm_sheets.construction.step import Kind, Rule, Step
 from tmm_sheets.methods.cams.cam_laws import (
     Law,
@@ -31,7 +32,7 @@ from tmm_sheets.methods.cams.cam_laws import (
 )
 from tmm_sheets.words import marked, tr
 
-Reals = npt.NDArray[np.float64]
+Floats = npt.NDArray[np.float64]
 
 SOURCE = "000, 7.1"
 INSIDE = 1e-12
@@ -147,7 +148,7 @@ def names(symbol: str) -> tuple[str, str, str]:
     return symbol, f"{symbol}'", f"{symbol}''"
 
 
-def in_phase(plan: Plan, law: PositionFunction, at: Phases, phase: Phase, x: Any, tag: str,
+def in_phase(plan: Plan, law: PositionFunction, at: Phases, phase: Phase, x: Reals, tag: str,
              orders: Iterable[int] = (0, 1, 2)) -> list[Step]:
     """Record displacement and derivatives of a phase at the share ``x``, named with the index ``tag``."""
     _, angle, first, travel = at.of[phase.symbol]
@@ -175,7 +176,7 @@ class Displacement:
     dds: Step
 
 
-def displacement(plan: Plan, law: PositionFunction, at: Phases, phi: Any) -> Displacement:
+def displacement(plan: Plan, law: PositionFunction, at: Phases, phi: Reals) -> Displacement:
     """Record displacement and derivatives at cam angles, rad: in a jump of the second derivative that of the later phase."""
     told = turn = plan.add("φ", ANGLES, phi, symbol="φ")
     angles = np.asarray(phi.value)
@@ -247,12 +248,12 @@ class ExactMotion:
         phi = Given(self.law.positions + side * INSIDE, "cam.parts", choice=choice, unit="rad")
         return displacement(Plan(name, title, "m", self.law.labels), self.law, self.phases, phi)
 
-    def at(self, name: str, title: str, phi: Any, choice: str) -> Displacement:
+    def at(self, name: str, title: str, phi: Reals, choice: str) -> Displacement:
         """Displacement and derivatives at any cam angles, rad."""
         plan = Plan(name, title, "m", tuple(map(str, range(len(phi)))))
         return displacement(plan, self.law, self.phases, Given(phi, "cam.parts", choice=choice, over="curve", unit="rad"))
 
-    def display(self, parts: int = 64) -> Reals:
+    def display(self, parts: int = 64) -> Floats:
         """Cam angles from the rise to the end of the fall for smooth curves, rad: jumps are met from both sides."""
         found = []
         for p in self.law.phases[:-1] if self.law.lower_dwell.angle else self.law.phases:

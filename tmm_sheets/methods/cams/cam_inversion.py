@@ -18,12 +18,13 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.quantities import Points, Reals, Signs
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.methods.cams.cam_displacement import Displacement
 from tmm_sheets.methods.cams.cam_zone import ALONG_ROCKER, TURNED, Zone
 from tmm_sheets.words import marked, tr
 
-Reals = npt.NDArray[np.float64]
+Floats = npt.NDArray[np.float64]
 
 LAY_OFF_FROM = Rule(
     "lay off an angle from a line", lambda o, b, r, angle, sense: o + r * ar.ray(o, b) * np.exp(1j * sense * angle),
@@ -50,7 +51,7 @@ FROM_AXIS = Rule("point from the axis of the cam", lambda p, o: p - o, ("point",
 
 
 @primitive("tangent to the circle e")
-def _touching(p: Any, centre: Any, e: Any, side: Any) -> Any:
+def _touching(p: Points, centre: Points, e: Any, side: Signs) -> Points:
     return ar.tangent_point(p, centre, np.abs(e), side)
 
 
@@ -85,7 +86,7 @@ class Inversion:
     angles: Step
 
     @property
-    def phi(self) -> Reals:
+    def phi(self) -> Floats:
         """Cam angles, rad."""
         return np.asarray(self.at.phi.value)
 
@@ -170,12 +171,12 @@ def curvature(w: Any, dw: Any, ddw: Any, right: float) -> Any:
     return right * (np.conjugate(first) * second).imag / np.abs(first) ** 3
 
 
-def tappet_curvature(s: Any, ds: Any, dds: Any, s0: Any, e: Any, right: Any, distance: Any) -> Any:
+def tappet_curvature(s: Any, ds: Any, dds: Any, s0: Any, e: Any, right: Any, distance: Reals) -> Reals:
     """Curvature of the centre profile of a translating follower, 1/m; ``distance`` of the second disc's roller, 0 for the first."""
     return curvature(1j * (s0 + s) - right * e - 1j * distance, 1j * ds, 1j * dds, right)
 
 
-def rocker_curvature(psi: Any, dpsi: Any, ddpsi: Any, pivot: Any, apex: Any, turn: Any, right: Any, spread: Any) -> Any:
+def rocker_curvature(psi: Any, dpsi: Any, ddpsi: Any, pivot: Points, apex: Any, turn: Any, right: Any, spread: Any) -> Reals:
     """Curvature of the centre profile of a rocker, 1/m; ``spread`` turns the arm of the second disc back, rad, 0 for the first."""
     arm = -pivot * np.exp(-1j * turn * spread) * np.exp(1j * turn * psi)
     first = 1j * turn * dpsi * arm

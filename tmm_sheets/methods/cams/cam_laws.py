@@ -19,36 +19,37 @@ import numpy.typing as npt
 from tmm_sheets.construction.arithmetic import by_pieces
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
+from tmm_sheets.construction.quantities import Points, Reals
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.words import marked, tell, tr
 
-Reals = npt.NDArray[np.float64]
+Floats = npt.NDArray[np.float64]
 Function = Callable[..., Any]
 
 
 @primitive("within a turn", "real")
-def within_turn(phi: Any) -> Any:
+def within_turn(phi: Reals) -> Reals:
     """Cam angle within a turn, 0 .. 2 pi, both included."""
     phi = np.asarray(phi, dtype=float)
     return np.where((phi >= 0) & (phi <= 2 * pi), phi, phi % (2 * pi))
 
 
-def share(phi: Any, start: Any, angle: Any) -> Any:
+def share(phi: Reals, start: Any, angle: Reals) -> Reals:
     """Share of a phase that is over at a cam angle, 0 .. 1."""
     return np.minimum(np.maximum((phi - start) / angle, 0.0), 1.0)
 
 
-def displaced(first: Any, travel: Any, s: Any) -> Any:
+def displaced(first: Points, travel: Reals, s: Any) -> Reals:
     """Displacement in a phase, ``s`` that of the law for unit stroke, m."""
     return first + travel * s
 
 
-def first_derivative(travel: Any, angle: Any, ds: Any) -> Any:
+def first_derivative(travel: Reals, angle: Reals, ds: Any) -> Reals:
     """First derivative of the displacement by the cam angle, m."""
     return travel / angle * ds
 
 
-def second_derivative(travel: Any, angle: Any, dds: Any) -> Any:
+def second_derivative(travel: Reals, angle: Reals, dds: Any) -> Reals:
     """Second derivative of the displacement by the cam angle, m."""
     return travel / angle**2 * dds
 
@@ -73,19 +74,19 @@ class Law:
     even: bool = True
     nodes: tuple[Given, ...] = ()
 
-    def s(self, x: Any) -> Any:
+    def s(self, x: Reals) -> Reals:
         """Displacement."""
         return self._at(0, x)
 
-    def ds(self, x: Any) -> Any:
+    def ds(self, x: Reals) -> Reals:
         """First derivative."""
         return self._at(1, x)
 
-    def dds(self, x: Any) -> Any:
+    def dds(self, x: Reals) -> Reals:
         """Second derivative."""
         return self._at(2, x)
 
-    def _at(self, order: int, x: Any) -> Any:
+    def _at(self, order: int, x: Reals) -> Reals:
         return self.forms[order](x, *(given.value for given in self.nodes))
 
     @property
@@ -163,7 +164,7 @@ class _Pieces:
             scale = float(self.at(self.s, 1.0))
             self.dds, self.ds, self.s = self.dds / scale, self.ds / scale, self.s / scale
 
-    def _integrals(self, dds: Reals) -> tuple[Reals, Reals, Reals]:
+    def _integrals(self, dds: Floats) -> tuple[Floats, Floats, Floats]:
         ds, s = _integral(dds), _integral(_integral(dds))
         rise = np.concatenate(([0.0], np.cumsum(_value(ds, self.widths))))
         ds[:, 0] = rise[:-1]
@@ -171,12 +172,12 @@ class _Pieces:
         s[:, 0] = np.concatenate(([0.0], np.cumsum(_value(s, self.widths))))[:-1]
         return dds, ds, s
 
-    def at(self, coefficients: Reals, x: Any) -> Any:
+    def at(self, coefficients: Floats, x: Reals) -> Reals:
         """Value of a diagram or of an integral; in a jump that of the later piece counts."""
         return _piecewise(self.starts, coefficients, x)
 
 
-def _piecewise(starts: Reals, coefficients: Reals, x: Any) -> Any:
+def _piecewise(starts: Floats, coefficients: Floats, x: Reals) -> Reals:
     """Value of polynomials that each begin at a start; at a border that of the later one."""
     x = np.asarray(x, dtype=float)
     k = np.clip(np.searchsorted(starts, x, side="right") - 1, 0, len(starts) - 1)
@@ -187,7 +188,7 @@ def _piecewise(starts: Reals, coefficients: Reals, x: Any) -> Any:
     return result
 
 
-def _slopes(x: Reals, y: Reals) -> Reals:
+def _slopes(x: Floats, y: Floats) -> Floats:
     """Slopes of the monotone cubics in the points of one smooth piece."""
     h, d = np.diff(x), np.diff(y) / np.diff(x)
     if len(d) == 1:
@@ -204,7 +205,7 @@ def _slopes(x: Reals, y: Reals) -> Reals:
     return slopes
 
 
-def _cubics(x: Reals, y: Reals, slopes: Reals) -> Reals:
+def _cubics(x: Floats, y: Floats, slopes: Floats) -> Floats:
     """Coefficients by rising power of ``x - start``, shape (n - 1, 4)."""
     h, d = np.diff(x), np.diff(y) / np.diff(x)
     c2 = (3 * d - 2 * slopes[:-1] - slopes[1:]) / h
@@ -212,11 +213,11 @@ def _cubics(x: Reals, y: Reals, slopes: Reals) -> Reals:
     return np.column_stack((y[:-1], slopes[:-1], c2, c3))
 
 
-def _integral(c: Reals) -> Reals:
+def _integral(c: Floats) -> Floats:
     return np.concatenate((np.zeros((len(c), 1)), c / np.arange(1, c.shape[1] + 1)), axis=1)
 
 
-def _value(c: Reals, t: Reals) -> Reals:
+def _value(c: Floats, t: Floats) -> Floats:
     return np.asarray((c * t[:, None] ** np.arange(c.shape[1])).sum(axis=1))
 
 
@@ -226,7 +227,7 @@ def _pieces(x: tuple[float, ...], y: tuple[float, ...]) -> _Pieces:
 
 
 @primitive("law of a diagram", "real")
-def diagram(x: Any, shares: Any, accelerations: Any, order: float) -> Any:
+def diagram(x: Reals, shares: Reals, accelerations: Any, order: float) -> Reals:
     """The law whose acceleration is a given diagram (see :func:`table_law`), ``order`` 0, or its first or second derivative."""
     p = _pieces(tuple(shares), tuple(accelerations))
     return p.at((p.s, p.ds, p.dds)[int(order)], x)
@@ -282,7 +283,7 @@ class _Spline:
         ds = s[:, 1:] * np.arange(1, 4)
         self.forms = s, ds, ds[:, 1:] * np.arange(1, 3)
 
-    def at(self, order: int, x: Any) -> Any:
+    def at(self, order: int, x: Reals) -> Reals:
         """Displacement or a derivative at shares of the phase."""
         return _piecewise(self.starts, self.forms[order], x)
 
@@ -293,7 +294,7 @@ def _spline(x: tuple[float, ...], y: tuple[float, ...]) -> _Spline:
 
 
 @primitive("spline of ordinates", "real")
-def through_ordinates(x: Any, shares: Any, displacements: Any, order: float) -> Any:
+def through_ordinates(x: Reals, shares: Reals, displacements: Any, order: float) -> Reals:
     """The law through given ordinates (see :func:`ordinates_law`), ``order`` 0, or its first or second derivative."""
     return _spline(tuple(shares), tuple(displacements)).at(int(order), x)
 
@@ -318,7 +319,7 @@ def ordinates_law(x: Sequence[float], y: Sequence[float], key: str = "cam.displa
                peak=float(np.abs(spline.at(2, np.append(spline.starts, 1.0))).max()), even=False, nodes=nodes)
 
 
-def _ordinate(order: int, x: Any, shares: Any, displacements: Any) -> Any:
+def _ordinate(order: int, x: Reals, shares: Reals, displacements: Any) -> Reals:
     return through_ordinates(x, shares, displacements, float(order))
 
 
@@ -376,19 +377,19 @@ class Phase:
         """Largest second derivative of the phase, m."""
         return abs(self.travel) * self.law.peak / self.angle**2
 
-    def s(self, x: Any) -> Any:
+    def s(self, x: Reals) -> Reals:
         """Displacement, m."""
         return displaced(self.first, self.travel, self.law.s(x))
 
-    def ds(self, x: Any) -> Any:
+    def ds(self, x: Reals) -> Reals:
         """First derivative by the cam angle, m."""
         return first_derivative(self.travel, self.angle, self.law.ds(x))
 
-    def dds(self, x: Any) -> Any:
+    def dds(self, x: Reals) -> Reals:
         """Second derivative by the cam angle, m."""
         return second_derivative(self.travel, self.angle, self.law.dds(x))
 
-    def phi(self, x: Any) -> Any:
+    def phi(self, x: Reals) -> Reals:
         """Cam angle, rad."""
         return self.start + self.angle * x
 
@@ -437,19 +438,19 @@ class PositionFunction:
         """Stroke of the follower, m."""
         return self.rise.travel
 
-    def s(self, phi: Any) -> Any:
+    def s(self, phi: Reals) -> Reals:
         """Displacement, m."""
         return self._at(phi, Phase.s)
 
-    def ds(self, phi: Any) -> Any:
+    def ds(self, phi: Reals) -> Reals:
         """First derivative, m."""
         return self._at(phi, Phase.ds)
 
-    def dds(self, phi: Any) -> Any:
+    def dds(self, phi: Reals) -> Reals:
         """Second derivative, m."""
         return self._at(phi, Phase.dds)
 
-    def _at(self, phi: Any, function: Callable[[Phase, Any], Any]) -> Any:
+    def _at(self, phi: Reals, function: Callable[[Phase, Any], Any]) -> Reals:
         turn = within_turn(phi)
         values = [function(p, share(turn, p.start, p.angle)) for p in self.phases]
         return by_pieces(turn, *[v for p, value in zip(self.phases, values, strict=True) for v in (value, p.end)][:-1])
@@ -461,20 +462,20 @@ class PositionFunction:
         return (*map(str, range(n + 1)), f"{n}'", *map(str, range(n + 1, 2 * n + 1)))
 
     @cached_property
-    def shares(self) -> Reals:
+    def shares(self) -> Floats:
         """Shares of a phase at its numbered positions."""
         return np.arange(self.parts + 1) / self.parts
 
     @cached_property
-    def positions(self) -> Reals:
+    def positions(self) -> Floats:
         """Cam angles of the numbered positions, rad, shape (2 parts + 2,)."""
         return np.concatenate((self.rise.phi(self.shares), self.fall.phi(self.shares)))
 
-    def at_positions(self, function: Callable[[Phase, Any], Any]) -> Reals:
+    def at_positions(self, function: Callable[[Phase, Any], Any]) -> Floats:
         """A function of the phases, such as ``Phase.dds``, at the numbered positions, shape (2 parts + 2,)."""
         return np.concatenate((function(self.rise, self.shares), function(self.fall, self.shares)))
 
-    def divided(self, parts: int) -> Reals:
+    def divided(self, parts: int) -> Floats:
         """Cam angles of a whole turn, each phase in equal parts, 0 and 2 pi included, rad.
 
         The numbered positions are among them when ``parts`` is a multiple of theirs.

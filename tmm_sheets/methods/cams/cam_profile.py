@@ -21,6 +21,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given, GivenNumber
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.quantities import Points, Reals
 from tmm_sheets.construction.step import Helper, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams import cam_inversion, cam_zone
@@ -42,7 +43,7 @@ from tmm_sheets.words import marked, tell, tr
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import CamTable
 
-Reals = npt.NDArray[np.float64]
+Floats = npt.NDArray[np.float64]
 
 DIAGRAMS = {"tappet": (327.0, 500.0), "rocker": (327.0, 288.0), "flat": (327.0, 500.0)}
 """Room on paper for the three diagrams when nobody asks for another one, mm: that of the sheet as shipped."""
@@ -76,7 +77,7 @@ def _peak(f: Callable[[float], Any], lo: float, hi: float) -> float:
     return (lo + hi) / 2
 
 
-def _circle_centre(p: Any, q: Any, r: Any) -> Any:
+def _circle_centre(p: Points, q: Points, r: Any) -> Points:
     """Centre of the circle through three points: the perpendicular bisectors of two chords meet there."""
     return ar.line_line((p + q) / 2, 1j * ar.ray(p, q), (q + r) / 2, 1j * ar.ray(q, r))
 
@@ -129,7 +130,7 @@ class Sharpest:
         """Radius of curvature, m."""
         return float(self.radius.value)
 
-    def threes(self) -> Iterator[Reals]:
+    def threes(self) -> Iterator[Floats]:
         """Cam angles of three points of that place, rad, the wide ones first.
 
         The middle one is the sharpest where there is room up to a jump; then also where there is none, for where curvature has no
@@ -156,7 +157,7 @@ class RollerRule:
 
 
 @primitive("rounded down to half a millimetre", "real")
-def rounded_down(radius: Any) -> Any:
+def rounded_down(radius: Reals) -> Reals:
     """Radius of a roller, m, rounded down to 0.5 mm; a smaller one to one significant digit."""
     if radius >= 0.5e-3:
         return floor(radius * 2000 * (1 + 1e-12)) / 2000
@@ -260,15 +261,15 @@ class Cam:
         return self._bare(self._divided)
 
     @property
-    def _divided(self) -> Reals:
+    def _divided(self) -> Floats:
         parts = self.law.parts
         return self.law.divided(parts * -(-DENSE // parts))
 
-    def at(self, phi: Reals) -> Inversion:
+    def at(self, phi: Floats) -> Inversion:
         """The same inversion at any cam angles, rad."""
         return self._bare(phi, choice=tr(ASKED))
 
-    def _bare(self, phi: Reals, name: str = "between",
+    def _bare(self, phi: Floats, name: str = "between",
               choice: str = marked("the phases are divided into equal parts")) -> Inversion:
         at = self.exact.at(f"cam-law-{name}", tr("Law of motion between the positions"), phi, choice)
         plan = Plan(f"cam-profile-{name}", tr("Cam profile between the positions"), "m", at.plan.labels)
@@ -301,7 +302,7 @@ class Cam:
 
     # --- results
 
-    def results(self, phi: Reals | None = None) -> dict[str, Any]:
+    def results(self, phi: Floats | None = None) -> dict[str, Any]:
         """Results in SI (m, rad) at the given cam angles, or over a whole turn, the numbered positions among them."""
         inv = self.dense if phi is None else self.at(np.asarray(phi, dtype=float))
         found: dict[str, Any] = {"phi": inv.at.phi, "s": inv.at.s, "ds": inv.at.ds, "dds": inv.at.dds, **self._dimensions()}
@@ -418,7 +419,7 @@ class RollerCam(Cam):
         best: tuple[float, Phase, float, float, float] = (float("inf"), self.law.rise, 0.0, 0.0, 0.0)
         for p in self.law.phases:
 
-            def bend(x: Any, p: Phase = p) -> Any:
+            def bend(x: Reals, p: Phase = p) -> Any:
                 return curvature(p.s(x), p.ds(x), p.dds(x), *known)
 
             for a, b in pairwise((0.0, *p.law.jumps, 1.0)):
@@ -447,12 +448,12 @@ class RollerCam(Cam):
         return self._bare(self.three, "curvature-between", tr("three points of the sharpest place of the pitch curve"))
 
     @cached_property
-    def three(self) -> Reals:
+    def three(self) -> Floats:
         """Cam angles of three points of the sharpest place, rad: as far apart as the circle through them tells its radius.
 
         Curvature may rise and fall steeply there: between fall and rise of a cam without dwells 5.6 degrees gave 34 mm for 28 mm.
         """
-        errors: list[tuple[float, Reals]] = []
+        errors: list[tuple[float, Floats]] = []
         for three in self.sharpest.threes():
             e, d, g = self._bare(three).centres.value
             error = abs(abs(_circle_centre(e, d, g) - d) / self.sharpest.rho - 1.0)
@@ -565,7 +566,7 @@ class RollerCam(Cam):
         """The same inversion in many positions of a whole turn, for smooth curves and for results."""
         return self._contact(self._course)
 
-    def at(self, phi: Reals) -> Inversion:
+    def at(self, phi: Floats) -> Inversion:
         """The same inversion at any cam angles, rad."""
         return self._contact(self._bare(phi, choice=tr(ASKED)))
 

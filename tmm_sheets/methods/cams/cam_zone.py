@@ -23,6 +23,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.quantities import Directions, Points, Reals, Signs
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams.cam_displacement import (
@@ -40,7 +41,7 @@ from tmm_sheets.methods.cams.cam_laws import Phase, PositionFunction
 from tmm_sheets.numbers import fixed
 from tmm_sheets.words import marked, tell, tr
 
-Reals = npt.NDArray[np.float64]
+Floats = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 Limit = Literal["rise", "both"]
 Centre = Literal["vertex", "least"]
@@ -49,22 +50,22 @@ Centre = Literal["vertex", "least"]
 # --- arithmetic of the cones ---------------------------------------------------------------------------------------------
 
 
-def _up(psi: Any, turn: Any) -> Any:
+def _up(psi: Any, turn: Any) -> Directions:
     """Direction of the velocity of B of a rocker in the rise; it lies horizontal at ``psi`` 0."""
     return 1j * np.exp(1j * turn * psi)
 
 
-def _swung(pivot: Any, psi: Any, turn: Any) -> Any:
+def _swung(pivot: Points, psi: Any, turn: Any) -> Points:
     """Position of B of a rocker, m."""
     return pivot * (1 - np.exp(1j * turn * psi))
 
 
-def _tip(b: Any, up: Any, right: Any, arm: Any, ds: Any) -> Any:
+def _tip(b: Any, up: Any, right: Any, arm: Any, ds: Any) -> Points:
     """Tip D of the cone of B, m."""
     return b - 1j * up * right * arm * ds
 
 
-def _ray_direction(up: Any, alpha: Any, side: Any) -> Any:
+def _ray_direction(up: Any, alpha: Reals, side: Signs) -> Directions:
     """Direction of a border of the cone."""
     return -up * (np.cos(alpha) - 1j * side * np.sin(alpha))
 
@@ -105,18 +106,18 @@ class Cones:
     pivot: complex | None = None
     turn: float = 0.0
 
-    def ups(self, p: Phase, x: Any) -> Any:
+    def ups(self, p: Phase, x: Reals) -> Directions:
         """Direction of the velocity of B in the rise, at shares ``x`` of a phase."""
         s = np.asarray(p.s(x))
         return _up(s, self.turn) if self.pivot is not None else 1j * np.ones(s.shape)
 
-    def starts(self, p: Phase, x: Any) -> Any:
+    def starts(self, p: Phase, x: Reals) -> Points:
         """Positions of B, m."""
         if self.pivot is None:
             return 1j * np.asarray(p.s(x))
         return _swung(self.pivot, np.asarray(p.s(x)), self.turn)
 
-    def tips(self, p: Phase, x: Any) -> Any:
+    def tips(self, p: Phase, x: Reals) -> Points:
         """Tips D of the cones, m."""
         arm = 1.0 if self.pivot is None else abs(self.pivot)
         return _tip(self.starts(p, x), self.ups(p, x), self.right, arm, np.asarray(p.ds(x)))
@@ -136,7 +137,7 @@ class Cones:
         for p in self.phases:
             outwards = complex(sin(self.alpha), side * self.right * cos(self.alpha))
 
-            def beyond(x: Reals, p: Phase = p, outwards: complex = outwards) -> Reals:
+            def beyond(x: Floats, p: Phase = p, outwards: complex = outwards) -> Floats:
                 return np.asarray(((o - self.tips(p, x)) * np.conjugate(self.ups(p, x) * outwards)).real)
 
             lo, hi, at = 0.0, 1.0, 0.0
@@ -255,7 +256,7 @@ def _root(f: Callable[[float], float], lo: float, hi: float) -> float:
 
 
 @primitive("lower point")
-def _lower(p: Any, q: Any) -> Any:
+def _lower(p: Any, q: Any) -> Points:
     return np.where(np.imag(p) <= np.imag(q), p, q)[()]
 
 
@@ -305,7 +306,7 @@ NEEDED = Rule("radius with a reserve", lambda total, stroke: np.maximum(1.1 * -t
 
 
 @primitive("rounded up to a millimetre", "real")
-def rounded_up(radius: Any) -> Any:
+def rounded_up(radius: Reals) -> Reals:
     """Radius, m, rounded up to a millimetre, a very small one to a tenth."""
     unit = 1e-3 if radius > 5e-3 else 1e-4
     return ceil(radius / unit * (1 - 1e-12)) * unit
@@ -666,7 +667,7 @@ def steepest(z: Zone) -> Plan:
     law, apex = z.exact.law, complex(z.apex.value)
     for k, phase in enumerate((law.rise, law.fall), 1):
 
-        def angle(x: Any, p: Phase = phase) -> Any:
+        def angle(x: Reals, p: Phase = phase) -> Any:
             return np.abs(np.angle((z.cones.tips(p, x) - apex) / z.cones.ups(p, x)))
 
         lo, hi = 0.0, 1.0

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import asin, atan
-from typing import Any
 
 import numpy as np
 
 from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.quantities import Reals
 
 
-def start(rho: Any, rb: Any, rf: Any) -> Any:
+def start(rho: Reals, rb: Reals, rf: Reals) -> Reals:
     """Unrolled length at which a fillet of radius ``rho`` leaves the involute; below 0: it touches the radial piece."""
     return np.sqrt(np.maximum((rf + rho - rb) * (rf + rho + rb), 0.0)) - rho
 
@@ -51,7 +51,7 @@ def radius(rho: float, rb: float, rf: float, half: float, half_pitch: float, t_l
     return _largest(fits, rho) if rf > 0 or fits(rho) else float("nan")
 
 
-def ring_start(rho: Any, rb: Any, rf: Any) -> Any:
+def ring_start(rho: Reals, rb: Reals, rf: Reals) -> Reals:
     """Unrolled length at which a fillet of a ring's tooth space leaves the involute towards the root circle."""
     return np.sqrt(np.maximum((rf - rho - rb) * (rf - rho + rb), 0.0)) + rho
 

@@ -17,6 +17,7 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.quantities import Directions, Points, Reals, Signs
 from tmm_sheets.construction.rules import (
     ALONG,
     ARC_ARC,
@@ -47,23 +48,23 @@ def hand(pair: PairGeometry) -> int:
 
 
 @primitive("angle at a point", "real")
-def _angle(p: Any, o: Any, q: Any) -> Any:
+def _angle(p: Points, o: Points, q: Points) -> Any:
     return np.abs(np.angle((p - o) * np.conj(q - o)))
 
 
-def turn_of(o: Any, foot: Any, travel: Any) -> Any:
+def turn_of(o: Points, foot: Points, travel: Reals) -> Directions:
     """Rotation about ``o`` (unit factor) when the contact moves by ``travel`` along the tangent at ``foot``."""
     arm = foot - o
     return np.exp(1j * ar.cross(arm, travel) / (np.real(arm) ** 2 + np.imag(arm) ** 2))
 
 
 @primitive("profile in contact")
-def _rolled(p: Any, o: Any, foot: Any, contact: Any) -> Any:
+def _rolled(p: Points, o: Points, foot: Points, contact: Any) -> Any:
     return o + (p - o) * turn_of(o, foot, contact - p)
 
 
 @primitive("point of the profile")
-def unrolled(o: Any, foot: Any, pole: Any, length: Any) -> Any:
+def unrolled(o: Points, foot: Points, pole: Points, length: Reals) -> Points:
     """Point of the profile through ``pole`` where the unrolled tangent of the base circle has this length."""
     string = pole - foot
     whole = np.abs(string)
@@ -72,27 +73,27 @@ def unrolled(o: Any, foot: Any, pole: Any, length: Any) -> Any:
 
 
 @primitive("profile cuts a circle")
-def _profile_on_circle(o: Any, foot: Any, pole: Any, radius: Any) -> Any:
+def _profile_on_circle(o: Points, foot: Points, pole: Points, radius: Reals) -> Any:
     base = np.abs(foot - o)
     return unrolled(o, foot, pole, np.sqrt((radius - base) * (radius + base)))
 
 
-def _divide(p: Any, q: Any, k: Any, parts: Any) -> Any:
+def _divide(p: Points, q: Points, k: Any, parts: Any) -> Any:
     return p + (q - p) * (k / parts)
 
 
 @primitive("lay off an arc")
-def _lay_arc(o: Any, foot: Any, pole: Any, k: Any, parts: Any) -> Any:
+def _lay_arc(o: Points, foot: Points, pole: Points, k: Any, parts: Any) -> Any:
     return o + (foot - o) * turn_of(o, foot, (pole - foot) * (1 - k / parts))
 
 
 @primitive("end of the unrolled tangent")
-def _end_of_tangent(o: Any, foot: Any, pole: Any, at: Any, length: Any) -> Any:
+def _end_of_tangent(o: Points, foot: Points, pole: Points, at: Points, length: Reals) -> Any:
     # The tangent at the pole's foot turned together with the radius: a right angle to the radius, on the tooth's side.
     return at + ar.ray(foot, pole) * ar.ray(o, at) * np.conj(ar.ray(o, foot)) * length
 
 
-def _speed(foot: Any, pole: Any, at: Any, ordinate: Any) -> Any:
+def _speed(foot: Points, pole: Points, at: Points, ordinate: Reals) -> Any:
     string = pole - foot
     # the same products above and below the line: the ordinate at the pole comes out exactly
     # (and no negative zero over the foot, which would turn the sliding's infinity over)
@@ -103,17 +104,17 @@ def _sliding(own: Any, other: Any) -> Any:
     return np.divide(own - other, own)  # of two zeros too: no number then
 
 
-def _middle(p: Any, q: Any) -> Any:
+def _middle(p: Points, q: Points) -> Any:
     return (p + q) / 2
 
 
 @primitive("fillet on a radial piece")
-def _radial_fillet(o: Any, start: Any, rho: Any, root: Any, side: Any) -> Any:
+def _radial_fillet(o: Points, start: Any, rho: Reals, root: Reals, side: Signs) -> Any:
     return o + ar.ray(o, start) * (np.sqrt(root * (root + 2 * rho)) + 1j * side * rho)
 
 
 @primitive("fillet on the involute")
-def on_normal(o: Any, foot: Any, pole: Any, touch: Any, length: Any, rho: Any) -> Any:
+def on_normal(o: Points, foot: Points, pole: Points, touch: Points, length: Reals, rho: Reals) -> Points:
     """Point at ``rho`` from the profile's point ``touch`` (unrolled ``length``) along its normal, out of the tooth."""
     string = pole - foot
     return touch + string / np.abs(string) * turn_of(o, foot, string * (1 - length / np.abs(string))) * rho
@@ -349,7 +350,7 @@ def sliding_plan(pair: PairGeometry, engagement: Plan, parts: tuple[int, int] = 
     return _sliding_steps(plan, pair, engagement, one / first, two / second)
 
 
-def sliding_between(pair: PairGeometry, engagement: Plan, share: Any) -> Plan:
+def sliding_between(pair: PairGeometry, engagement: Plan, share: Reals) -> Plan:
     """The same for any points of the line: ``share`` -1 at N1, 0 at the pole, 1 at the :func:`last_point` (for smooth curves)."""
     share = np.asarray(share, dtype=float)
     plan = Plan("gear-sliding-between", tr("Specific sliding between the divisions"), "m", tuple(f"{v:g}" for v in share))

@@ -22,6 +22,7 @@ from typing import Any, Literal
 import numpy as np
 
 from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.quantities import Reals
 
 Driver = Literal["sun", "ring", "carrier"]
 
@@ -52,12 +53,12 @@ SCHEMES: Mapping[str, Scheme] = {
 }
 
 
-def inner_ratio(signs: tuple[int, int], z: Sequence[Any]) -> Any:
+def inner_ratio(signs: tuple[int, int], z: Sequence[Any]) -> Reals:
     """Ratio of wheel 1 to wheel 4 with the carrier stopped; tooth numbers z1 .. z4, numbers or arrays."""
     return signs[0] * signs[1] * (z[1] * z[3]) / (z[0] * z[2])
 
 
-def stage_ratio(inner: Any, driver: str) -> Any:
+def stage_ratio(inner: Reals, driver: str) -> Reals:
     """Input speed over output speed: sun 1 to carrier, ring 4 to carrier (the other one fixed), or carrier to wheel 1."""
     if driver == "carrier":
         with np.errstate(divide="ignore"):
@@ -65,22 +66,22 @@ def stage_ratio(inner: Any, driver: str) -> Any:
     return 1 - inner if driver == "sun" else 1 - 1 / inner
 
 
-def efficiency_from_sun(inner: Any, both: Any) -> Any:
+def efficiency_from_sun(inner: Reals, both: Reals) -> Reals:
     """Efficiency of a stage driven by its sun; ``both`` is that of its two pairs with the carrier stopped."""
     return (1 + both * np.abs(inner)) / (1 + np.abs(inner))
 
 
-def efficiency_from_ring(inner: Any, both: Any) -> Any:
+def efficiency_from_ring(inner: Reals, both: Reals) -> Reals:
     """The same when the ring drives."""
     return (1 + both * (1 / np.abs(inner))) / (1 + 1 / np.abs(inner))
 
 
-def efficiency_from_carrier_below(inner: Any, both: Any) -> Any:
+def efficiency_from_carrier_below(inner: Reals, both: Reals) -> Any:
     """The same when the carrier drives, for an inner ratio below 1."""
     return (1 - inner) / (1 - inner * both)
 
 
-def efficiency_from_carrier_above(inner: Any, both: Any) -> Any:
+def efficiency_from_carrier_above(inner: Reals, both: Reals) -> Reals:
     """The same for an inner ratio above 1."""
     return both * (inner - 1) / (inner - both)
 
@@ -92,12 +93,12 @@ def efficiency_formula(inner: float, driver: str) -> Callable[[Any, Any], Any]:
     return efficiency_from_sun if driver == "sun" else efficiency_from_ring
 
 
-def assembles(signs: tuple[int, int], z: Sequence[Any], satellites: int) -> Any:
+def assembles(signs: tuple[int, int], z: Sequence[Any], satellites: int) -> Reals:
     """True where ``satellites`` identical blocks can be put in at equal angles."""
     return (z[0] * z[2] - signs[0] * signs[1] * z[1] * z[3]) % (satellites * np.gcd(z[1], z[2])) == 0
 
 
-def neighbours_clear(signs: tuple[int, int], z: Sequence[Any], satellites: int, addendum: float) -> Any:
+def neighbours_clear(signs: tuple[int, int], z: Sequence[Any], satellites: int, addendum: float) -> Reals:
     """True where the tip circles of neighbouring satellites stay clear of each other."""
     return (z[0] + signs[0] * z[1]) * sin(pi / satellites) > np.maximum(z[1], z[2]) + 2 * addendum
 

@@ -23,11 +23,12 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.quantities import Directions, Points, Reals
 from tmm_sheets.construction.rules import ALONG, GIVEN, GIVEN_LENGTH, OFFSET
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.words import marked, tr
 
-Points = npt.NDArray[np.complex128]
+Complex = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -92,12 +93,12 @@ class Rack:
         """Half of the wheel's tooth at the base circle as an angle."""
         return (pi / 2 + 2 * self.shift * tan(self.alpha)) / self.teeth + tan(self.alpha) - self.alpha
 
-    def roll_of_flank(self, tangent: Any) -> Any:
+    def roll_of_flank(self, tangent: Any) -> Reals:
         """Angle of rolling at which the involute is touched where its radius of curvature is ``tangent``."""
         along = (self.r + self.shift * self.module) * tan(self.alpha) - tangent / cos(self.alpha)
         return (along - self.half_width) / self.r
 
-    def roll_of_tip(self, normal: Any) -> Any:
+    def roll_of_tip(self, normal: Any) -> Reals:
         """Angle of rolling at which the tip radius cuts with its point under ``normal`` below the reference line."""
         below = -self.tip_centre.imag - self.shift * self.module
         return (below / np.tan(normal) - self.tip_centre.real) / self.r
@@ -107,19 +108,19 @@ class Rack:
         first = self.roll_of_flank(sqrt((tip - self.rb) * (tip + self.rb)))
         return float(first), float(max(self.roll_of_tip(self.alpha), self.roll_of_tip(pi / 2)))
 
-    def tooth(self, top: float, chords: int = 8) -> Points:
+    def tooth(self, top: float, chords: int = 8) -> Complex:
         """One tooth from ``top`` over the reference line down and up again, its tip radii cut into ``chords``."""
         end = self.tip_centre
         turn = np.linspace(-self.alpha, -pi / 2, chords + 1)
         half = np.concatenate([[complex(self.half_width + top * tan(self.alpha), top)], end + self.tip_radius * np.exp(1j * turn)])
         return np.concatenate([half, -np.conj(half[::-1])])
 
-    def outline(self, first: int, last: int, top: float) -> Points:
+    def outline(self, first: int, last: int, top: float) -> Complex:
         """Teeth ``first`` .. ``last`` one beside the other, right to left, with the bottoms of their spaces at ``top``."""
         pitch = pi * self.module
         return np.concatenate([self.tooth(top) + k * pitch for k in range(last, first - 1, -1)])
 
-    def placed(self, points: Any, roll: Any) -> Any:
+    def placed(self, points: Points, roll: Reals) -> Any:
         """Points of the rack on the wheel when it has rolled through ``roll``."""
         return (np.asarray(points) + self.r * roll + 1j * (self.r + self.shift * self.module)) * np.exp(1j * np.asarray(roll))
 
@@ -162,12 +163,12 @@ def _bisect(f: Any, low: float, high: float) -> float:
     return high
 
 
-def _turned_down(u: Any, angle: Any) -> Any:
+def _turned_down(u: Directions, angle: Reals) -> Any:
     return u * np.exp(-1j * angle)
 
 
 @primitive("point within limits")
-def _within(point: Any, start: Any, u: Any, least: Any) -> Any:
+def _within(point: Any, start: Any, u: Directions, least: Any) -> Any:
     return np.where(ar.dot(point - start, u) >= least * (1 + 1e-12), point, np.nan)
 
 
@@ -257,7 +258,7 @@ def _positions(name: str, rack: Rack, rolls: Any) -> Plan:
     return plan
 
 
-def _place(plan: Plan, alpha: Any) -> None:
+def _place(plan: Plan, alpha: Reals) -> None:
     """Points and directions of the rack in its positions."""
     centre = plan.add("O", GIVEN, 0j)
     contact = plan.add("W", ROLL, centre, plan["r"], plan["φ"])
@@ -294,7 +295,7 @@ def _even_normals(rack: Rack, low: float, chord: float) -> npt.NDArray[np.float6
     return np.interp(np.linspace(0.0, along[-1], n + 1), along, trial)
 
 
-def flank(rack: Rack, tip: float, involute: int = 32, chord: float = 0.04) -> Points:
+def flank(rack: Rack, tip: float, involute: int = 32, chord: float = 0.04) -> Complex:
     """Flank of the tooth on the right from the root circle to the tip circle (radius ``tip``), relative to its axis.
 
     Its involute has ``involute`` points, the chords of its fillet are equal and at most ``chord`` modules long. The axis of

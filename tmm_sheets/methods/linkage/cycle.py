@@ -9,6 +9,7 @@ import numpy as np
 
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.quantities import Reals
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.linkage.strokes import Floats, Run
 from tmm_sheets.words import tell
@@ -31,7 +32,7 @@ class Strokes:
     origin: complex
     runs: tuple[Run, ...]
 
-    def working(self, turned: Any, side: int = 0) -> Any:
+    def working(self, turned: Reals, side: int = 0) -> Any:
         """True on the working stroke, at angles ``turned`` from position 0, rad, of any shape.
 
         In a dead position ``side`` says which of the strokes that meet there counts: -1 the one before, +1 the one after, 0 none.
@@ -114,7 +115,7 @@ class Cycle:
                 found.append((i, ", ".join(sorted(same, key=int) if all(map(str.isdecimal, same)) else same)))
         return tuple(found)
 
-    def world(self, turned: Any) -> Any:
+    def world(self, turned: Reals) -> Any:
         """World angles of the crank for angles turned from position 0, rad, of any shape."""
         return self.start + self.sense * np.asarray(turned)
 

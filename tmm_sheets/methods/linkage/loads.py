@@ -21,6 +21,7 @@ from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.quantities import Directions, Points, Reals, Signs
 from tmm_sheets.construction.step import Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
@@ -55,7 +56,7 @@ WAY = Rule("fraction of a straight way",
 
 
 @primitive("fraction of a swing", "real")
-def _swung(u: Any, sense: float, low: float, swing: float) -> Any:
+def _swung(u: Directions, sense: float, low: float, swing: float) -> Any:
     """How far a direction has turned from one end of its swing, ``low`` (rad, in the sense of the working stroke), to the other."""
     spare = np.pi - swing / 2
     return np.clip((np.mod(sense * np.angle(u) - low + spare, TURN) - spare) / swing, 0.0, 1.0)
@@ -82,7 +83,7 @@ class OutputMotion:
     way: int = 1
     path: Path | None = None
 
-    def number(self, turned: Any, side: int = 0) -> Any:
+    def number(self, turned: Reals, side: int = 0) -> Any:
         """Index of the run at each angle ``turned``, rad, of any shape; -1 where there is none.
 
         Where two runs meet ``side`` says which of them counts: -1 the one before, +1 the one after, 0 none.
@@ -124,7 +125,7 @@ class OutputMotion:
                     runs.append(replace(r, begin=a, end=b))
         return replace(self, runs=tuple(runs))
 
-    def fraction(self, turned: Any) -> Any:
+    def fraction(self, turned: Reals) -> Any:
         """The way at angles ``turned``, rad, of any shape, as a fraction of the whole, 0..1.
 
         The end of an endless link's turn is the beginning of the next.
@@ -196,7 +197,7 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
     def speed(turned: Floats) -> Any:
         return sense * omega(cycle.world(turned))
 
-    def angle(turned: Any) -> Any:
+    def angle(turned: Reals) -> Any:
         return sense * np.angle(direction(cycle.world(turned)))
 
     runs = runs_of(speed)
@@ -212,7 +213,7 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
         low, swing = float(ways.min()), float(np.ptp(ways))
         spare = np.pi - swing / 2
 
-        def travelled(t: Any) -> Any:
+        def travelled(t: Reals) -> Any:
             return np.clip((np.mod(angle(t) - low + spare, TURN) - spare) / swing, 0.0, 1.0)
 
         ends = (_found(low, link, "beginning", "rad"), _found(swing, link, "length", "rad"))
@@ -221,7 +222,7 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
     way = 1 if turns >= 0 else -1
     swept = way * (swept - swept[0]) / TURN
 
-    def round_and_round(t: Any) -> Any:
+    def round_and_round(t: Reals) -> Any:
         nth, into = np.divmod(np.asarray(t, dtype=float), TURN)
         part = way * (angle(into) - angle(np.zeros(1))[0]) / TURN
         return part + np.round(np.interp(into, turned, swept) - part) + nth * abs(turns)
@@ -300,7 +301,7 @@ class Applied:
             return plan.add(name, MOMENT, values)
         return plan.add(name, FORCE, values, self.toward if self.along is None else self.along)
 
-    def chosen(self, turned: Any, side: int = 0) -> tuple[Given, ...]:
+    def chosen(self, turned: Reals, side: int = 0) -> tuple[Given, ...]:
         """What no plan tells of a load at the angles ``turned``, rad: rows.
 
         Which way its diagrams are passed, the signs of the strokes that each of them acts on, and the travelled fractions where
@@ -319,7 +320,7 @@ class Applied:
             rows.append(Given(x, f"way of link {self.link}", choice="turns counted on"))
         return tuple(rows)
 
-    def _magnitudes(self, plan: Plan, pos: Positions, turned: Any, side: int, mark: str, chosen: Sequence[Given]) -> Step:
+    def _magnitudes(self, plan: Plan, pos: Positions, turned: Reals, side: int, mark: str, chosen: Sequence[Given]) -> Step:
         """Signed values, N or N m."""
         law, name = self.law, f"|{self.name}|{mark}"
         if not isinstance(law, StrokeLaw):
@@ -346,11 +347,11 @@ class Applied:
         step = pos.directions[path.name] if path.turning else pos.points[path.name]
         return plan.auxiliary(f"s {path.name} {self.name}", path.rule, step, *path.numbers)
 
-    def vector(self, turned: Any, side: int = 0) -> Any:
+    def vector(self, turned: Reals, side: int = 0) -> Any:
         """Force vectors, N, complex, in the shape of the angles ``turned``, rad."""
         return self.law(turned, side) * self.toward
 
-    def magnitude(self, turned: Any, side: int = 0) -> Any:
+    def magnitude(self, turned: Reals, side: int = 0) -> Any:
         """Absolute values, N or N m, in the shape of the angles ``turned``, rad."""
         return np.abs(self.law(turned, side))
 
@@ -387,7 +388,7 @@ class Applied:
         """True where one diagram of it has ordinates of both signs."""
         return any(min(d.table[1]) < 0 < max(d.table[1]) for d in self.diagrams)
 
-    def shown(self, turned: Any, side: int = 0) -> Any:
+    def shown(self, turned: Reals, side: int = 0) -> Any:
         """Values as a graph shows them, N or N m: without their sign, unless one diagram has both signs.
 
         Then as the diagram has them: a resistance is positive, whichever way what it resists moves. Moments of a fixed direction
@@ -438,19 +439,19 @@ def curve_of(table: Table, smooth: bool = False, period: float | None = None) ->
     """Ordinates of the curve through the points of a diagram, see :func:`diagram` and :func:`read`."""
     curve = _curve(*table, smooth, period)
 
-    def ordinates(t: Any, side: int = 0) -> Any:
+    def ordinates(t: Reals, side: int = 0) -> Any:
         return read(curve, t, side, period)
 
     return ordinates
 
 
 @primitive("load diagram", "other")
-def diagram(x: Any, y: Any, smooth: Any, turns: Any) -> Curve:
+def diagram(x: Reals, y: Reals, smooth: Any, turns: Reals) -> Curve:
     """Curve through the points of a diagram: chords, or smooth (1); one over the angle repeats itself after ``turns``, else 0."""
     return _curve(x, y, bool(smooth), 2 * np.pi * turns or None)
 
 
-def _curve(x: Any, y: Any, smooth: bool, period: float | None) -> Curve:
+def _curve(x: Reals, y: Reals, smooth: bool, period: float | None) -> Curve:
     """The curve with its end where it begins again; arguments given twice are jumps.
 
     Straight lines, or a cubic in every interval: the slope in a point is the weighted harmonic mean of its neighbours', and zero
@@ -467,7 +468,7 @@ def _curve(x: Any, y: Any, smooth: bool, period: float | None) -> Curve:
     return Curve(x, y, *_slopes(x, y, period is not None and y[0] == y[-1]))
 
 
-def read(curve: Curve, t: Any, side: int = 0, period: float | None = None) -> Any:
+def read(curve: Curve, t: Reals, side: int = 0, period: float | None = None) -> Reals:
     """Ordinates of a diagram, constant beyond its ends or periodic; ``side`` -1 tells the value before a jump, else behind it."""
     x, y, t = curve.x, curve.y, np.asarray(t, dtype=float)
     h = np.diff(x)
@@ -489,13 +490,13 @@ def read(curve: Curve, t: Any, side: int = 0, period: float | None = None) -> An
 
 
 @primitive("ordinate of a diagram", "real")
-def ordinate(curve: Any, at: Any, ahead: Any) -> Any:
+def ordinate(curve: Any, at: Points, ahead: Reals) -> Reals:
     """Ordinates of a diagram at fractions of the way, passed forwards (+1) or backwards (-1): at a jump that tells the side."""
     return np.where(np.asarray(ahead) < 0, read(curve, at, -1), read(curve, at, 1))
 
 
 @primitive("ordinate of a periodic diagram", "real")
-def periodic_ordinate(curve: Any, at: Any, turns: Any, side: Any) -> Any:
+def periodic_ordinate(curve: Any, at: Points, turns: Reals, side: Signs) -> Reals:
     """Ordinates of a diagram that repeats itself after some turns, at angles turned; at a jump before it (-1) or behind it."""
     return read(curve, at, int(side), 2 * np.pi * turns or None)
 
@@ -507,7 +508,7 @@ AT_ANGLE = Rule("ordinate of a load diagram over the angle", periodic_ordinate, 
                 "{name} = {value}.", exact=True)
 
 
-def _slopes(x: Any, y: Any, closed: bool) -> tuple[Any, Any]:
+def _slopes(x: Reals, y: Reals, closed: bool) -> tuple[Any, Any]:
     """Slopes at the beginning and at the end of every interval of a smooth diagram; ``closed``: it goes on as it began."""
     if closed:
         period = x[-1] - x[0]
@@ -581,7 +582,7 @@ class StrokeLaw:
             same[i - 1, i] = self.motion.follows(i) and tables[i] is tables[i - 1] and signs[i] == signs[i - 1]
         return same
 
-    def run(self, turned: Any, side: int = 0) -> Any:
+    def run(self, turned: Reals, side: int = 0) -> Any:
         """Number of the run that acts at each angle, -1 for none."""
         motion, t = self.motion, np.asarray(turned, dtype=float)
         i = motion.number(t, 1 if self.always and not side else side)
@@ -590,15 +591,15 @@ class StrokeLaw:
             i = np.where((i < 0) & (before >= 0) & (after >= 0) & self.same[before, after], after, i)
         return i
 
-    def __call__(self, turned: Any, side: int = 0) -> Any:
+    def __call__(self, turned: Reals, side: int = 0) -> Any:
         """Signed values at angles turned."""
         return self._values(turned, side, self.signs)
 
-    def ordinates(self, turned: Any, side: int = 0) -> Any:
+    def ordinates(self, turned: Reals, side: int = 0) -> Reals:
         """Ordinates of the diagrams at angles turned, 0 where none acts."""
         return self._values(turned, side, (1.0,) * len(self.signs))
 
-    def _values(self, turned: Any, side: int, signs: Sequence[float]) -> Any:
+    def _values(self, turned: Reals, side: int, signs: Sequence[float]) -> Any:
         t, motion = np.asarray(turned, dtype=float), self.motion
         i = self.run(t, side)
         x = motion.fraction(t) if self.over_way else np.zeros(t.shape)
@@ -609,7 +610,7 @@ class StrokeLaw:
                 value = np.where(i == n, signs[n] * curve(self._at(x, ahead), ahead), value)
         return value
 
-    def _at(self, x: Any, ahead: int) -> Any:
+    def _at(self, x: Reals, ahead: int) -> Any:
         """Fractions of the way as the diagrams take them: the end of a turn is not the beginning of the next."""
         return np.where(x < NEAR, 1.0, x) if self.motion.endless and ahead < 0 else x
 
@@ -619,7 +620,7 @@ class StrokeLaw:
         tables = [table for table in self.tables if table is not None]
         return tuple(table for n, table in enumerate(tables) if not any(before is table for before in tables[:n]))
 
-    def strokes(self, turned: Any, side: int = 0) -> tuple[Any, list[Any]]:
+    def strokes(self, turned: Reals, side: int = 0) -> tuple[Any, list[Any]]:
         """Which way the diagrams are passed at each angle, +1 or -1, and for each of the :attr:`different` the sign it has there.
 
         A sign of 0: that diagram does not act there.
@@ -661,7 +662,7 @@ def stroke_law(motion: OutputMotion, tables: Sequence[Table | None], signs: Sequ
 
 def steady_law(value: float) -> tuple[Callable[[Any, int], Any], tuple[float, ...]]:
     """Law of what is the same all the time, N or N m: it asks nothing of the motion and has no jumps."""
-    def law(turned: Any, side: int = 0) -> Any:
+    def law(turned: Reals, side: int = 0) -> Any:
         return np.full(np.shape(turned), value)
 
     return law, ()

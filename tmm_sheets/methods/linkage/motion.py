@@ -11,6 +11,7 @@ import numpy as np
 
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.quantities import Directions, Reals
 from tmm_sheets.construction.rules import take
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.errors import CannotBuild
@@ -29,7 +30,7 @@ WAY = Rule("way along a path", lambda p, start, u: ((p - start) * np.conj(u)).re
            marked("Way from {1}: {name} = {value} m."), unit="m")
 
 
-def _projection(v: Any, u: Any) -> Any:
+def _projection(v: Directions, u: Directions) -> Any:
     return (v * np.conj(u)).real
 
 
@@ -94,7 +95,7 @@ class Motion:
         return self.plan.once(f"θ_{link}", INCLINATION, u, along, symbol=f"θ_{{{link}}}")
 
     @cached_property
-    def turned(self) -> Any:
+    def turned(self) -> Reals:
         """Angles of the curves' points, rad: position 0 and its return are the ends."""
         return np.linspace(0.0, self.study.cycle.period, SAMPLES * len(self.study.labels) + 1)
 
@@ -146,7 +147,7 @@ def _along(plan: Plan, study: Study, name: str, u: Given) -> Three:
             plan.add(f"a_{name}", ACCELERATION, a, u, symbol=f"a_{{{name}}}"))
 
 
-def _turning(plan: Plan, study: Study, name: str, turns: Any) -> Three:
+def _turning(plan: Plan, study: Study, name: str, turns: Reals) -> Three:
     u, omega, epsilon = study.positions.directions[name], study.velocities.omega[name], study.accelerations.epsilon[name]
     start = plan.add(plan.named(f"{name}₀"), FIRST, u, 0)
     whole = Given(turns, f"turns of link {name}", choice="whole turns, counted on from position 0")
@@ -155,7 +156,7 @@ def _turning(plan: Plan, study: Study, name: str, turns: Any) -> Three:
             plan.add(f"ε_{name}", EPSILON, epsilon, symbol=f"ε_{{{name}}}"))
 
 
-def _path(name: str, way: Any) -> complex:
+def _path(name: str, way: Reals) -> complex:
     """Unit vector of a straight path, in the sense in which the motion begins."""
     far = complex(way[np.argmax(np.abs(way))])
     size = abs(far)
@@ -167,7 +168,7 @@ def _path(name: str, way: Any) -> complex:
     return u * _begins((way * np.conj(u)).real)
 
 
-def _begins(way: Any) -> float:
+def _begins(way: Reals) -> float:
     """Sign of the first movement away from position 0."""
     moved = way[np.abs(way) > 1e-6 * np.max(np.abs(way))]
     return float(np.sign(moved[0])) if len(moved) else 1.0

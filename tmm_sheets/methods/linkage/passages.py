@@ -22,6 +22,7 @@ import numpy.typing as npt
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.limit_angles import at_rest
+from tmm_sheets.construction.quantities import Points, Reals
 from tmm_sheets.construction.step import Rule
 from tmm_sheets.mechanism.groups.limits import SWEEP
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
@@ -46,10 +47,10 @@ CLOSE = 1e-3
 """Share of a gap's greatest value below which its least value may be a change point."""
 
 
-def _sides(phi: Any, angles: tuple[float, ...], side: float, at: float, cut: float, sense: float) -> Any:
+def _sides(phi: Reals, angles: tuple[float, ...], side: float, at: float, cut: float, sense: float) -> Any:
     """Side of a group that goes on smoothly through its change points at some crank angles, rad."""
 
-    def passed(x: Any) -> Any:
+    def passed(x: Reals) -> Any:
         """How many change points lie between the cut and an angle, in the sense of rotation."""
         turned = np.mod(sense * (np.asarray(x, dtype=float) - cut) + at_rest(x), 2 * pi)
         return sum(np.where(turned > np.mod(sense * (a - cut), 2 * pi), 1, 0) for a in angles)
@@ -58,7 +59,7 @@ def _sides(phi: Any, angles: tuple[float, ...], side: float, at: float, cut: flo
 
 
 @primitive("side through change points", "real")
-def side_through(phi: Any, side: float, at: float, cut: float, sense: float, *angles: float) -> Any:
+def side_through(phi: Reals, side: float, at: float, cut: float, sense: float, *angles: float) -> Reals:
     """+1 or -1, the side of a group that is on ``side`` at the crank angle ``at`` and changes it in each of its change points."""
     return _sides(phi, angles, side, at, cut, sense)[()]
 
@@ -71,7 +72,7 @@ NODES: Floats = np.cos((2 * np.arange(COUNT) + 1) * pi / (2 * COUNT))
 WEIGHTS: Floats = np.where(np.arange(COUNT) % 2, -1.0, 1.0) * np.sin((2 * np.arange(COUNT) + 1) * pi / (2 * COUNT))
 
 
-def between(at: Any, x: Floats, values: Any) -> Any:
+def between(at: Points, x: Floats, values: Any) -> Any:
     """Polynomial through values at Chebyshev's points ``x``, shape (COUNT,), by the barycentric formula."""
     share = WEIGHTS / (np.asarray(at)[..., None] - x)
     return (share * values).sum(axis=-1) / share.sum(axis=-1)
@@ -84,7 +85,7 @@ class Beside:
     x: Floats
     values: dict[str, Any]
 
-    def at(self, name: str, x: Any) -> Any:
+    def at(self, name: str, x: Reals) -> Any:
         """A value at angles from the change point, rad."""
         return between(x, self.x, self.values[name])
 
@@ -156,7 +157,7 @@ class Passages:
         smooth = (replace(x, follow=True) if x.kind.gaps(self.m, x) else x for x in self.m.groups)
         until = alone(replace(self.m, groups=tuple(smooth)), g)
 
-        def gap(i: int, phi: Any) -> tuple[Any, Any]:
+        def gap(i: int, phi: Reals) -> tuple[Any, Any]:
             """One of both gaps and what is rounding beside it, shape (n,)."""
             with np.errstate(all="ignore"):  # beyond a guide that lies along another one points are anywhere
                 both = g.kind.gaps_at(self.plan(until, phi, until.groups[-1]), g)
@@ -181,7 +182,7 @@ class Passages:
                 found.append(angle)
         return tuple(found)
 
-    def within(self, phi: Any) -> npt.NDArray[np.bool_]:
+    def within(self, phi: Reals) -> npt.NDArray[np.bool_]:
         """True at the crank angles, rad, shape (n,), at which some group is in a change point."""
         phi, angles = np.asarray(phi, dtype=float), np.array(self.every())
         return np.asarray((np.abs(np.angle(np.exp(1j * (phi[:, None] - angles)))) < TOGETHER).any(axis=1))
@@ -202,14 +203,14 @@ class Passages:
                 links += [other for pair in g.kind.pairs(self.m, g) for other in pair.links if other not in g.links]
         return False
 
-    def followed(self, g: StructuralGroup, phi: Any) -> Any:
+    def followed(self, g: StructuralGroup, phi: Reals) -> Any:
         """Side of a group at crank angles, rad, shape (n,), if it goes on smoothly through its change points."""
         gaps, cut = g.kind.gaps(self.m, g), g.at if g.cut is None else g.cut
         if gaps is None:
             return _sides(phi, self.angles(g), g.side, g.at, cut, self.m.crank.sense)
         return gaps.branch(phi, g.side, g.at, cut, self.m.crank.sense, follow=True) * np.sign(gaps.root(phi))
 
-    def places(self, angle: float, phi: Any, groups: tuple[StructuralGroup, ...], reach: float) -> list[PassagePlace]:
+    def places(self, angle: float, phi: Reals, groups: tuple[StructuralGroup, ...], reach: float) -> list[PassagePlace]:
         """Positions within ``reach``, rad, of a change point at an ``angle`` that ``groups`` pass, by the ways they are on."""
         phi = np.atleast_1d(np.asarray(phi, dtype=float))
         x = np.angle(np.exp(1j * (phi - angle)))
@@ -225,7 +226,7 @@ class Passages:
         names = [g.name for g in groups]
         return [PassagePlace(angle, np.array(which), x[which], tuple(zip(names, way, strict=True))) for way, which in ways.items()]
 
-    def row(self, g: StructuralGroup, phi: Any, what: str, told: Callable[[Mechanism, Any], Any], *, zero: bool = False) -> Given:
+    def row(self, g: StructuralGroup, phi: Reals, what: str, told: Callable[[Mechanism, Any], Any], *, zero: bool = False) -> Given:
         """What is ``told`` of a mechanism at angles, at those of ``phi``, rad, next to change points of a group; NaN elsewhere.
 
         The mechanism that is asked about ends with the group, turns at 1 rad/s, and has the sides of its groups at each angle.
