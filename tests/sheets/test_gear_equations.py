@@ -40,4 +40,4 @@ def test_both_sides_are_equal(name):
 def test_an_angle_is_told_by_its_cosine_where_the_distance_is_given():
     geometry = Project(variant.read(RING)).gear.geometry
     said = next(line for line in equations(geometry, OF_PAIR, True) if "arccos" in line)
-    assert said == "cos α_{w} = a·cos α/a_{w}; α_{w} = arccos(64·cos 20°/65) = 22°18′"
+    assert said == "cos α_{w} = a·cos α/a_{w}; α_{w} = arccos(64,00·cos 20°/65,00) = 22°18′"

@@ -72,8 +72,9 @@ def test_every_wheel_of_a_train_has_its_diameter_once(name):
     lines = train.dimensions(project)
     said = [line.split(" = ")[0] for line in lines if line.startswith("d_")]
     meshed = {w for mesh in project.train.meshes for w in (mesh.central, mesh.planet)}
-    assert {sign[3:-1] for sign in said} == meshed
-    assert len(lines) == len(set(lines))
+    # On a carrier with meshes of other sums of teeth a wheel rolls on another circle in each of them: d_{w2–3} is no d_2.
+    assert {sign[3:-1].removeprefix("w").split("–")[0] for sign in said} == meshed
+    assert len(said) == len(set(said))
     for line in lines:
         if "m·z" in line and line.startswith("d_"):
             module, teeth = (float(v.replace(",", ".")) for v in line.split(" = ")[2].split("·"))

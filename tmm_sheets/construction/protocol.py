@@ -129,16 +129,20 @@ _OPERAND = re.compile(r"(?<=[·/×+−])( ?)(\{\d\})|(\{\d\})(?=²)")
 
 
 def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "mm",
-             sizes: SortSizes | None = None) -> str:
-    """One step as a sentence; ``sizes`` are those of each sort in its plan."""
+             sizes: SortSizes | None = None, digits: Callable[[Step], str] = lambda step: "") -> str:
+    """One step as a sentence; ``sizes`` are those of each sort in its plan.
+
+    ``digits`` gives a step's number as it is written elsewhere on the sheet, or nothing.
+    """
     if sizes is None:
         sizes = SortSizes([step])
     # What is taken from another plan has other positions there. A protractor knows no minutes: they are said in formulas, not
     # where an angle is laid off.
     args, drawn = () if step.rule.compute is take else step.args, step.rule.gives in ("point", "direction")
-    shown = [_show(a, kind, k, to_mm, unit, sizes, drawn) for a, kind in zip(args, step.rule.takes, strict=False)]
-    value = _exact_angle(step, k)
-    if value and args:
+    shown = [(digits(a) if isinstance(a, Step) else "") or _show(a, kind, k, to_mm, unit, sizes, drawn)
+             for a, kind in zip(args, step.rule.takes, strict=False)]
+    value = digits(step) or _exact_angle(step, k)
+    if value and args and not digits(step):
         value = _with_seconds(step, k, shown)
     if not value and step.rule.gives in _MEASURED:
         of_sort = 100.0 if step.rule.unit == "%" else sizes.at(step, k)

@@ -36,8 +36,9 @@ OPEN = 100.0
 """What is open to one side of a view and wider than this is no part of its picture, mm."""
 CLOSE = (100.0, 200.0)
 """Distances of a view from the spot that it belongs to, mm: as near as is wanted, and as is allowed."""
-LARGE = (160.0, 120.0), (150.0, 112.0)
-"""An empty rectangle of these sides, upright or lying, is a gap, mm; the second where cells that its edges cut hide one."""
+LARGE = (160.0, 120.0), (150.0, 112.0), (216.0, 76.0)
+"""An empty rectangle of these sides, upright or lying, is a gap, mm: the second where cells that its edges cut hide one, the third
+a long one."""
 FAR = 10**6
 """More cells than a sheet has."""
 APART = (12.0, 9.0, 6.0)

@@ -20,6 +20,7 @@ from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets.components.clear_dimensions import around, crossed
 from tmm_sheets.sheets.frame import PlanFrame, proportion, ratio, standard
 from tmm_sheets.sheets.gears import gear_radii
+from tmm_sheets.sheets.gears.gear_equations import digits_of
 from tmm_sheets.sheets.gears.gear_marks import CIRCLES, Window, gap, hatch_between, ruled_table
 from tmm_sheets.sheets.player import PlayerStage, placed, play, stage
 from tmm_sheets.words import tr
@@ -737,6 +738,7 @@ def parameters(project: Project, canvas: Canvas, box: Box, options: dict[str, An
         return one, two
 
     one, two = gear.wheels
+    written = digits_of(gear.geometry)
     rows: list[tuple[str, ...]] = [
         (tr("Parameter"), tr("Symbol"), tr("Wheel 1"), tr("Wheel 2")),
         (tr("Number of teeth"), "z", str(one.teeth), str(two.teeth)),
@@ -744,11 +746,11 @@ def parameters(project: Project, canvas: Canvas, box: Box, options: dict[str, An
         (tr("Profile angle of the basic rack"), "α", degrees_and_minutes(gear.alpha)),
         (tr("Addendum coefficient"), "h_a^{*}", *dict.fromkeys(number(w.addendum) for w in gear.wheels)),
         (tr("Bottom clearance coefficient"), "c^{*}", number(gear.clearance)),
-        (tr("Profile shift coefficient"), "x", number(one.shift), number(two.shift)),
+        (tr("Profile shift coefficient"), "x", *(written(gear.geometry[f"x{i}"]) for i in (1, 2))),
         (tr("Working pressure angle"), "α_w", degrees_and_minutes(gear.alpha_w)),
         (tr("Centre distance, mm"), "a_w", fixed(gear.a_w * 1e3, 2)),
-        (tr("Centre distance modification coefficient"), "y", fixed(gear.y, 4)),
-        (tr("Addendum shortening coefficient"), "Δy", fixed(gear.dy, 4)),
+        (tr("Centre distance modification coefficient"), "y", written(gear.geometry["y"])),
+        (tr("Addendum shortening coefficient"), "Δy", written(gear.geometry["dy"])),
         (tr("Reference radius, mm"), "r", *both("r")),
         (tr("Base radius, mm"), "r_b", *both("rb")),
         (tr("Pitch radius, mm"), "r_w", *both("rw")),

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.construction.protocol import letter_of, sentence, sizes_of
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken, letter
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.numbers import fixed
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.construction.step import Step
     from tmm_sheets.project import Project
 
 OF_PAIR = ("inv_alpha", "inv_alpha_w", "alpha_w", "x_sum", "y", "dy", "a", "a_w", "p", "pb", "N1N2", "g_alpha", "eps_alpha")
@@ -21,6 +23,8 @@ OF_WHEEL = ("r", "rb", "rw", "ra", "rf", "s")
 WAYS = ((8.0, 200.0), (7.0, 170.0), (6.0, 150.0), (6.0, 120.0), (6.0, 100.0))
 """Distances of the lines and widths at which equations are broken that are tried, mm."""
 HEIGHT = 3.5
+DECIMALS = 4, 7
+"""So many decimals shifts and what follows from them have at least, and fewer than so many."""
 
 
 def of_pair_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
@@ -51,11 +55,36 @@ def _size(lines: list[str], step: float, width: float) -> tuple[float, float]:
     return max(letter(part, HEIGHT).width for part in parts) + 6.0, 12.0 + step * len(parts)
 
 
+def digits_of(plan: Plan) -> Callable[[Step], str]:
+    """How the numbers of a pair's geometry are written on its sheet, in tables and in equations; of other steps nothing.
+
+    Lengths in mm have two decimals, but the module has those that it is given with; shifts and y as many as give Δy by what is
+    written.
+    """
+    last = plan["dy"]
+
+    def adds_up(decimals: int) -> bool:
+        found = last.rule.compute(*(round(float(arg.value), decimals) for arg in last.args))
+        return bool(abs(found - round(float(last.value), decimals)) < 0.1 * 10.0**-decimals)
+
+    decimals = next(filter(adds_up, range(*DECIMALS)), DECIMALS[0])
+
+    def written(step: Step) -> str:
+        name = step.name.rstrip("12")
+        if name in ("x", "y", "dy"):
+            return fixed(step.value, decimals).rstrip("0").rstrip(".,")
+        if step.rule.unit == "mm" and name != "m":
+            return fixed(step.value, 2)
+        return fixed(step.value, {"eps_alpha": 3}.get(name, 5)) if name in ("eps_alpha", "inv_alpha", "inv_alpha_w") else ""
+
+    return written
+
+
 def equations(plan: Plan, names: Any, letters: bool) -> Iterator[str]:
     """Those steps of a plan that a formula gives: sign, formula in ``letters``, in numbers, value."""
-    sizes = sizes_of(plan)
+    sizes, digits = sizes_of(plan), digits_of(plan)
     for step in (plan[name] for name in names if name in plan):
-        said, _, counted = sentence(step, 0, float, sizes=sizes).removesuffix(".").rpartition(": ")
+        said, _, counted = sentence(step, 0, float, sizes=sizes, digits=digits).removesuffix(".").rpartition(": ")
         sign, (_, *numbers) = letter_of(step), (counted or said).split(" = ")
         of, _, formula = said.partition(" = ")
         if len(numbers) < 2:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 BESIDE = 44.0
 """Room beside the smaller wheel: dimension of the centre distance and what is kept from it, mm."""
 
-OTHER = 0.4
+OTHER = 0.2
 """What width counts that only shows more of the greater wheel."""
 
 

@@ -98,13 +98,17 @@ def dimensions(project: Project) -> list[str]:
             shown.add(mesh.carrier)
             lines.append(f"a_{{{c}–{p}}} = m·(z_{{{c}}} {sign} z_{{{p}}})/2 = {number(m)}·({z[c]} {sign} {z[p]})/2 = "
                          f"{number(1e3 * train.distance(mesh))}")
-        # Where wheels of another sum of teeth run at the same distance the circles are not those of the module.
+        # Where wheels of another sum of teeth run at the same distance they roll on other circles than those of the module.
         rolled = float(diameter.value)
-        true = abs(rolled - m * z[c]) < 1e-9 * rolled
-        of_module = {name: f"m·z_{{{name}}} = {number(m)}·{z[name]} = " if true else "" for name in z}
-        # A wheel in several meshes has one diameter unless its circles in them differ.
-        both = (f"d_{{{name}}} = {of_module[name]}{number(rolled * z[name] / z[c])}" for name in (c, p))
-        lines += [line for line in both if line not in lines]
+        for name in (c, p):
+            if abs(rolled - m * z[c]) < 1e-9 * rolled:
+                line = f"d_{{{name}}} = m·z_{{{name}}} = {number(m)}·{z[name]} = {number(m * z[name])}"
+            else:
+                other = p if name == c else c
+                twice = number(2e3 * train.distance(mesh))
+                line = (f"d_{{w{name}–{other}}} = 2a·z_{{{name}}}/(z_{{{c}}} {sign} z_{{{p}}}) = "
+                        f"{twice}·{z[name]}/({z[c]} {sign} {z[p]}) = {number(rolled * z[name] / z[c])}")
+            lines += [line] if line not in lines else []
     return lines
 
 
@@ -276,10 +280,11 @@ class SchemeOfTrain(SchemeViews):
     def central(self, m: Any, x: float) -> None:
         """The wheel about the main axis with a sleeve or on its shaft, or held in the frame."""
         r, stands, free = self.train.radius(m.central, m), self.train.stands(m.central), not self.on_shaft(m.central)
+        name = "" if m.central in self.columns else m.central  # in several meshes, as ring and as sun, it is named once
         if m.sign < 0:
-            self.ring(m.central, r, x, stands)
+            self.ring(name, r, x, stands)
             return
-        self.wheel(Edge(m.central, 2 * r), x, 0.0, label=-1, free=free)
+        self.wheel(Edge(name, 2 * r), x, 0.0, label=-1, free=free)
         if stands:
             for side in (-1, 1):
                 a, b = (complex(x + end * self.face / 2, self.axis + side * HUB) for end in (-1, 1))
