@@ -9,6 +9,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.errors import CannotBuild, together
+from tmm_sheets.task.variant import LINKAGE as LINKAGE
+from tmm_sheets.task.variant import PARTS as PARTS
 from tmm_sheets.task.variant import Variant
 from tmm_sheets.words import marked, tell
 
@@ -33,11 +35,6 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.study import Study
     from tmm_sheets.methods.linkage.synthesis import Synthesis
 
-
-LINKAGE = ("positions", "velocities", "accelerations", "forces")
-"""Parts of the results that the linkage has."""
-PARTS = (*LINKAGE, "flywheel", "gear", "reducer", "train", "cam")
-"""All parts of the results."""
 
 PLANNED = ("synthesis", "cycle", "driver", "applied", "study", "motion", "reduced", "flywheel", "reducer", "gear", "train", "cam")
 """Parts of a project that construct something, each with its ``plans``."""
@@ -66,11 +63,7 @@ class Project:
     @property
     def parts(self) -> tuple[str, ...]:
         """What the project has results and views of, by the tables of its file; forces where something loads its links."""
-        v = self.variant
-        parts: tuple[str, ...] = ()
-        if v.crank is not None:
-            parts += LINKAGE if v.loaded else LINKAGE[:3]
-        return parts + tuple(name for name in PARTS[len(LINKAGE):] if getattr(v, name) is not None)
+        return self.variant.parts
 
     @property
     def balancing(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
@@ -20,6 +21,11 @@ if TYPE_CHECKING:
     from tmm_sheets.sheets.composed import Composed
 
 
+WAYS = 8
+"""Sets of questions that are remembered of a sheet: mechanisms with and without loads, parts made in another order."""
+
+Questions = tuple[tuple[str | int, ...], ...]
+"""What a project file was asked: ``Variant.asked``."""
 T = TypeVar("T")
 
 
@@ -92,19 +98,26 @@ def compose(project: Project, n: int) -> Drawing:
 def composed(project: Project, n: int, steps: bool = False) -> Composed:
     """Sheet ``n`` (from 1) of a project, its scale factors and the labels that found no free place.
 
-    The same sheet of the same inputs is composed once and kept (:mod:`tmm_sheets.kept`). Its steps are not: whoever reads those of
-    the project asks for ``steps``, and the views ask the project for what they show, whether or not they are drawn.
+    A sheet is composed once and kept (:mod:`tmm_sheets.kept`) for whatever file gives the same answers to all that was asked when
+    it was made: another length leaves the sheets of the gears as they are. Its steps are not kept: whoever reads those of the
+    project asks for ``steps``, and the views ask the project for what they show, whether or not they are drawn.
     """
-    name = _name(project, n) if kept.folder() is not None else ""
-    if name and (data := kept.read(name)) is not None and (found := sheet_storage.loaded(data)) is not None:
-        if steps:
-            ask_again(project, n, found)
-        return found
+    about = _about(project, n) if kept.folder() is not None and project.variant.content else ""
+    known = _asked_before(about) if about else []
+    for questions in known:
+        data = kept.read(_name(about, project, questions))
+        if data is not None and (found := sheet_storage.loaded(data)) is not None:
+            if steps:
+                ask_again(project, n, found)
+            return found
     from tmm_sheets.sheets import composing
 
     made = composing.composed(project, n)
-    if name:
-        kept.write(name, sheet_storage.stored(made))
+    if about:
+        questions = project.variant.asked
+        kept.write(_name(about, project, questions), sheet_storage.stored(made))
+        if questions not in known:
+            kept.write(about, json.dumps([questions, *known][:WAYS]).encode())
     return made
 
 
@@ -116,7 +129,20 @@ def ask_again(project: Project, n: int, found: Composed) -> None:
         composing.ask_again(project, n, found.parts)
 
 
-def _name(project: Project, n: int) -> str:
-    """What a sheet is made of, as a name; empty for a project that no text tells."""
-    content = project.variant.content
-    return content and fingerprint("sheet", sheet_storage.FORM, maker(), words.paper(), words.reader(), content, str(n))
+def _about(project: Project, n: int) -> str:
+    """What the questions that lead to a sheet are kept under."""
+    arrangement = project.sheets[n - 1]
+    return fingerprint("sheet", sheet_storage.FORM, maker(), words.paper(), words.reader(), arrangement, str(n))
+
+
+def _asked_before(about: str) -> list[Questions]:
+    """The sets of questions that led to such a sheet before, the latest first."""
+    try:
+        return [tuple(tuple(question) for question in questions) for questions in json.loads(kept.read(about) or b"[]")]
+    except (ValueError, TypeError):
+        return []
+
+
+def _name(about: str, project: Project, questions: Questions) -> str:
+    """What a sheet is kept under: the questions that led to it and the answers of the project file."""
+    return fingerprint(about, *(part for asked in questions for part in (repr(asked), project.variant.answer(asked))))

@@ -51,10 +51,17 @@ from tmm_sheets.task.toml_lines import KeyPath, TomlLines
 from tmm_sheets.task.values import Coordinate, Name, PositiveNumber
 from tmm_sheets.words import either, marked, tell
 
+LINKAGE = ("positions", "velocities", "accelerations", "forces")
+"""Parts of the results that the linkage has."""
+PARTS = (*LINKAGE, "flywheel", "gear", "reducer", "train", "cam")
+"""All parts of the results."""
 DIGITS = 4301
 """Digits of the shortest whole number that Python does not read."""
 MOST = 50
 """Mistakes of a file that are told one by one."""
+
+Question = tuple[str | int, ...]
+"""What somebody asks a file for: the name of a table or of what follows from several, or "source" and the path of a number."""
 
 
 class Variant(Table):
@@ -98,7 +105,38 @@ class Variant(Table):
     _warnings: tuple[str, ...] = PrivateAttr(default=())
     _misprints: tuple[Misprint, ...] = PrivateAttr(default=())
     _called: str = PrivateAttr(default="")
+    _asked: set[Question] = PrivateAttr(default_factory=set)
+    _asks: bool = PrivateAttr(default=True)
     _shipped: bool = PrivateAttr(default=False)
+
+    def __getattribute__(self, name: str) -> Any:
+        if name in _TOLD or name in _FOLLOW:
+            if self._asks:
+                self._asked.add((name,))
+            if name in _FOLLOW:
+                return self._followed(name)
+        return super().__getattribute__(name)
+
+    def _followed(self, name: str) -> Any:
+        """What follows from several tables: who asks for it has not asked for these."""
+        before, self._asks = self._asks, False
+        try:
+            return super().__getattribute__(name)
+        finally:
+            self._asks = before
+
+    @property
+    def asked(self) -> tuple[Question, ...]:
+        """What has been asked so far: names of tables, of what follows from them, sources with the paths of their numbers.
+
+        Whatever was made of it comes out the same for another file that gives the same :meth:`answer` to each.
+        """
+        return tuple(sorted(self._asked, key=repr))
+
+    def answer(self, question: Question) -> str:
+        """What is said to a question, as a text."""
+        name, *path = question
+        return self._lines.comment(tuple(path)) if path else repr(self._followed(str(name)))
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy, with other values for some keys."""
@@ -203,6 +241,14 @@ class Variant(Table):
         return "engine_2" if self.cycle is not None and self.cycle.turns > 1 else "flywheel"
 
     @property
+    def parts(self) -> tuple[str, ...]:
+        """What the project has results and views of, by the tables of its file; forces where something loads its links."""
+        parts: tuple[str, ...] = ()
+        if self.crank is not None:
+            parts += LINKAGE if self.loaded else LINKAGE[:3]
+        return parts + tuple(name for name in PARTS[len(LINKAGE):] if getattr(self, name) is not None)
+
+    @property
     def loaded(self) -> bool:
         """True when something loads the links: masses, moments of inertia, technological forces or moments."""
         return bool(self.force or self.moment or any(link.mass or link.inertia for link in self.link))
@@ -214,13 +260,18 @@ class Variant(Table):
 
     def source(self, *path: str | int) -> str:
         """Source of a number: the comment behind it, e.g. ``source("crank", "length")``; empty when there is none."""
+        if self._asks:
+            self._asked.add(("source", *path))
         return self._lines.comment(path)
 
     def problem(self, message: str, *path: str | int, hint: str = "") -> Problem:
         """A problem placed at a key of this file, e.g. ``problem("too short", "crank", "length")``."""
+        _ = self.text  # its lines
         return toml_file.problem(self._file, self._lines, path, message, hint)
 
 
+_TOLD = frozenset({*Variant.model_fields, "text", "data"})
+_FOLLOW = frozenset({"sheets", "parts", "loaded"})
 _SECTIONS = ("flywheel", "gear", "reducer", "train", "cam")
 LARGEST = 1_000_000
 """Bytes, and characters, of the largest project file that is read: the shipped ones have 8,000 at most."""
