@@ -3,7 +3,7 @@
 const edits = { done: [], undone: [] };
 const SHOWN = { m: ["mm", 1 / 1000], rad: ["°", Math.PI / 180] };
 
-const told = (value, unit, as = SHOWN[unit] ?? [unit, 1]) => { const [u, by] = as; return `${digits(value / by)} ${UNITS()[u] ?? u}`; };
+const told = (value, unit, as = SHOWN[unit] ?? [unit, 1]) => { const [u, by] = as; return `${digits(value / by)} ${UNITS()[u] ?? u}`.replace(" °", "°"); };
 
 // What may wait until the page is idle.
 const soon = (act) => (window.requestIdleCallback ?? setTimeout)(act);

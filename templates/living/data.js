@@ -51,7 +51,9 @@ function digits(x) {
   return String(Number(x.toPrecision(5))).replace(".", decimal()).replace("-", "−");
 }
 
-const UNITS = () => (record.lang === "en" ? {} : record.words.units ?? {});
+const calledView = (view) => record.words.views[view] ?? view;
+
+const UNITS = () => record.words.units ?? {};
 
 function shown(value, unit) {
   const u = unit ? ` ${UNITS()[unit] ?? unit}` : "";

@@ -171,7 +171,7 @@ function stepTo(n, quick = false) {
 function viewList() {
   const names = [...new Set(stopsOf(leaf.sheet).map((stop) => stop.frame.view))];
   return node("div", {}, node("h3", {}, say("views of this sheet")), node("div", { class: "chips" }, ...names.map((name) => node("button", {
-    type: "button", class: "chip", onclick: () => { takeFilm(name); $("what").value = name; fitBox(boundsOf(leaf.sheet.marks.filter((m) => m.view === name))); play(); } }, name))));
+    type: "button", class: "chip", onclick: () => { takeFilm(name); $("what").value = name; fitBox(boundsOf(leaf.sheet.marks.filter((m) => m.view === name))); play(); } }, calledView(name)))));
 }
 
 function playerBar() {
@@ -187,5 +187,5 @@ function playerBar() {
 
 function listFilms() {
   const names = [...new Set(stopsOf(leaf.sheet).map((stop) => stop.frame.view))];
-  $("what")?.replaceChildren(node("option", { value: "" }, say("the whole sheet")), ...names.map((name) => node("option", { value: name }, name)));
+  $("what")?.replaceChildren(node("option", { value: "" }, say("the whole sheet")), ...names.map((name) => node("option", { value: name }, calledView(name))));
 }

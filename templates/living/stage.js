@@ -138,14 +138,13 @@ function takeTurn() {
   for (const card of stage.cards) card.framed = false;
 }
 
-// Letters of a plan that would lie on others for much of the turn are left out: signs of one lettering hang on one anchor.
+// Letters of a plan that would lie on others for much of the turn are left out, each with all of its signs.
 function chooseLetters(card) {
   const letterings = new Map();
   card.marks.forEach((mark, n) => {
     if (mark.role !== "text" || !mark.at) return;
-    const key = `${mark.group} ${mark.at[0].slice(0, 5)} ${mark.along}`;
-    if (!letterings.has(key)) letterings.set(key, []);
-    letterings.get(key).push(n);
+    if (!letterings.has(mark.lettering)) letterings.set(mark.lettering, []);
+    letterings.get(mark.lettering).push(n);
   });
   const many = Math.min(stage.turn.length, MOMENTS), moments = Array.from({ length: many }, (_, i) => placer(stage.turn[Math.floor(i * stage.turn.length / many)], card.shrunk));
   const all = [...letterings.values()].map((signs) => ({ signs, boxes: moments.map((placed) => extentOf(signs.flatMap((n) => {
@@ -243,6 +242,23 @@ function drawVanes(placed, values) {
   }
 }
 
+const LEAST = 23, SHAPE = 19 / 23; // width of a card at least, rem, and the height of its drawing beside that
+
+// Cards as large as all of them have room on the screen with; where they have none they are scrolled.
+function fitCards() {
+  const place = $("stage"), rem = parseFloat(getComputedStyle(document.documentElement).fontSize), gap = 0.8 * rem, above = 2 * rem;
+  const width = place.clientWidth - gap, most = Math.max(Math.floor(width / (LEAST * rem + gap)), 1);
+  for (let columns = 1; columns <= most; columns++) {
+    const wide = width / columns - gap, rows = Math.ceil((stage.cards.length + 1) / columns);
+    if (rows * (wide * SHAPE + above + gap) + gap > place.clientHeight) continue;
+    place.style.setProperty("--columns", `repeat(${columns}, 1fr)`);
+    place.style.setProperty("--high", `${wide * SHAPE}px`);
+    return;
+  }
+  place.style.removeProperty("--columns");
+  place.style.removeProperty("--high");
+}
+
 function openStage() {
   if (!stage.cards.length) {
     stage.cards = liveViews().map(makeCard);
@@ -253,6 +269,8 @@ function openStage() {
       drawStage();
     }, { root: $("stage") });
     for (const card of stage.cards) watch.observe(card.figure);
+    new ResizeObserver(fitCards).observe($("stage"));
+    addEventListener("beforeprint", () => { if (!$("stage").hidden) for (const card of stage.cards) drawCard(card, parts(machine.phi)); });
     makeGrip();
   }
   takeTurn();

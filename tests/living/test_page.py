@@ -294,6 +294,22 @@ for (const name of ["error", "unhandledrejection"]) addEventListener(name, (e) =
 </script></body>"""
 
 
+def test_signs_of_a_lettering_stay_together():
+    """Letter, index, sign above and bar of a vector's name hang on one place, however far from its first sign each is drawn."""
+    for sheet in record_of(made("lugansk/shaper"))["sheets"]:
+        marks = {mark["id"]: mark for mark in sheet["marks"]}
+        for view in sheet["live"]:
+            signs = {}
+            for mark in view["marks"]:
+                if "lettering" in mark:
+                    assert mark["lettering"] == marks[mark["id"]].get("lettering", mark["id"])
+                    signs.setdefault(mark["lettering"], set()).add(str(mark["at"][0][:5]))
+            assert all(len(places) == 1 for places in signs.values())
+            if view["plan"] == "accelerations":
+                assert sum(mark.get("string") == "τ" for mark in view["marks"]) == 1
+                assert len(signs) < sum("lettering" in mark for mark in view["marks"]) / 2
+
+
 @javascript.browser
 @pytest.mark.parametrize(("name", "sheets"), [("lugansk/shaper", (1,)), *(seldom(name, ()) for name in NAMES)])
 def test_every_film_runs_to_its_end(name, sheets, tmp_path):

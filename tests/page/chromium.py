@@ -1,5 +1,6 @@
 """A chromium without a window that is driven over a pipe: pages opened, expressions evaluated, until something is true."""
 
+import fcntl
 import json
 import os
 import subprocess
@@ -68,8 +69,9 @@ def browser(folder):
     back, write = os.pipe()
 
     def pipes():
-        os.dup2(read, 3)
-        os.dup2(write, 4)
+        ends = [fcntl.fcntl(end, fcntl.F_DUPFD, 10) for end in (read, write)]  # which may be 3 and 4 themselves
+        for place, end in enumerate(ends, 3):
+            os.dup2(end, place)
 
     command = [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe", f"--user-data-dir={folder}",
                "about:blank"]

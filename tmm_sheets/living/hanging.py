@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from cmath import exp, phase
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -19,8 +18,6 @@ BESIDE = 2.5
 """Gap of a bar at a hinge, at most, mm."""
 BAR, NEAR, FAR = 2.6, 5.0, 9.0
 """Bar over a letter, at most; a letter farther off than FAR, at the end of a leader, comes as near as NEAR, mm."""
-BESIDE_SIGN, OVER_SIGN = 3.5, 6.5
-"""Signs of one lettering stand so near, a bar so near to the letter under it, at most, mm."""
 ALIKE = 1e-5
 """Sine of the angle between an edge and a direction that are parallel: coordinates are told to a micrometre."""
 
@@ -59,15 +56,6 @@ Place = tuple[str, complex, list[str], list[Any] | None]
 """What a lettering hangs on, its place beside that, mm, along which line, and between which points."""
 
 
-@dataclass
-class _Lettering:
-    """Signs that belong together: where the first stands and where the last ends, mm, and what they hang on."""
-
-    first: complex
-    end: complex
-    place: Place | None
-
-
 class _Frame:
     """Marks of a plan in one frame at one position."""
 
@@ -82,7 +70,7 @@ class _Frame:
         self.named = {self.steps[key]["name"]: key for key in self.points}
         self.anchors: dict[str, str] = {}
         self.lines: dict[str, list[list[str]]] = {}
-        self.letters: dict[str, list[_Lettering]] = {}
+        self.letters: dict[int, tuple[complex, Place | None]] = {}
 
     def value(self, key: str) -> complex | None:
         """A step's value at the position; None where it is no point or not defined."""
@@ -160,21 +148,17 @@ class _Frame:
 
     def _letter(self, mark: dict[str, Any], key: str, kind: str, points: list[complex]) -> dict[str, Any] | None:
         """A sign of a lettering: it stands where the first sign does, which keeps its place beside its vector, link or point."""
-        z, shape = points[0], mark["geometry"].get(kind)
-        near = BESIDE_SIGN if kind == "text" else OVER_SIGN
-        found = min(self.letters.setdefault(key, []), key=lambda one: min(abs(z - one.first), abs(z - one.end)), default=None)
-        if found is None or min(abs(z - found.first), abs(z - found.end)) > near:
-            found = _Lettering(z, z, self._place_of_letter(key, z))
-            self.letters[key].append(found)
-        if kind == "text":
-            found.end = z + 0.6 * shape["height"] * len(shape["string"])
-        first, place = found.first, found.place
+        lettering = mark.get("lettering", mark["id"])
+        if lettering not in self.letters:
+            self.letters[lettering] = points[0], self._place_of_letter(key, points[0])
+        first, place = self.letters[lettering]
         if place is None:
             return None
         anchor, local, along, other = place
         at = [[anchor, *_mm(local), *(other or ["", 0.0]), *_mm(z - first)] for z in points]
+        shape = mark["geometry"][kind]
         text = {"height": shape["height"], "string": shape["string"]} if kind == "text" else {}
-        return {"kind": kind, "at": at, "along": along, **text}
+        return {"kind": kind, "at": at, "along": along, "lettering": lettering, **text}
 
     def _place_of_letter(self, key: str, z: complex) -> Place | None:
         """What a letter hangs on, its place beside that, mm, along which line, and between which points."""

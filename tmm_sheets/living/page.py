@@ -20,6 +20,7 @@ from tmm_sheets.living.page_words import page_words
 from tmm_sheets.living.sliders import slider
 from tmm_sheets.note import phrases
 from tmm_sheets.record import recording
+from tmm_sheets.record.sheets import called
 from tmm_sheets.resources import template
 from tmm_sheets.task.toml_lines import scan
 from tmm_sheets.words import tell
@@ -58,7 +59,7 @@ def page(project: Project, numbers: Iterable[int] = (), plan: str = "") -> tuple
     variant = project.variant
     record |= {
         "styles": {name: {"width": s.width, "pattern": [abs(x) for x in s.pattern]} for name, s in line_types().items()},
-        "opens": plan, "words": page_words() | {"units": _units(record)}, "file": variant.text,
+        "opens": plan, "words": page_words() | {"units": _units(record), "views": _views(record)}, "file": variant.text,
         "filename": re.sub(r"[^\w.+-]+", "-", variant.stem).strip("-") + ".toml",
     }  # fmt: skip
     return _written(record, made), problem
@@ -87,8 +88,16 @@ def _check_plan(record: Mapping[str, Any], plan: str) -> None:
 def _units(record: Mapping[str, Any]) -> dict[str, str]:
     """Units as they are written in the language of the sheets."""
     steps = record["steps"].values()
-    names = {step["unit"] for step in steps} | {a.get("unit", "") for step in steps for a in step["args"]}
+    givens = record.get("motion", {}).get("givens", [])
+    names = {step["unit"] for step in steps} | {a.get("unit", "") for step in steps for a in step["args"]} | {"mm"}
+    names |= {name for given in givens for name in (given["unit"], given.get("shown", [""])[0])}
     return {name: phrases.unit(name, words.paper()) for name in sorted(names) if name}
+
+
+def _views(record: Mapping[str, Any]) -> dict[str, str]:
+    """What views without a title are called, by the names that arrangements have for them."""
+    drawn = sorted({frame["view"] for sheet in record["sheets"] for frame in sheet["frames"]})
+    return {view: name for view in drawn if (name := called(view))}
 
 
 def _written(record: Mapping[str, Any], made: Motion | None) -> str:

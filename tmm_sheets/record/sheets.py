@@ -8,6 +8,7 @@ from collections.abc import Container
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Polyline, Text
+from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.canvas import Part
@@ -28,11 +29,14 @@ def sheet(number: int, composed: Composed, known: Container[str]) -> dict[str, A
     frames = [{"id": i, "view": names[f.view] if 0 <= f.view < len(names) else "", "plan": f.plan, "position": f.position,
                "origin": _point(f.origin), "mu": list(f.mu), "turn": f.turn, "mirror": f.mirror}
               for i, f in enumerate(composed.frames)]  # fmt: skip
+    several = [g for g in composed.groups if g.kind == "lettering" and g.end - g.first > 1]
+    letterings = {i: g.first for g in several for i in range(g.first, g.end)}
     marks = []
     for i, mark in enumerate(composed.drawing.marks):
         view = bisect_right(starts, i) - 1
         block = 0 <= view < len(parts) and parts[view].draw == "title block"
-        marks.append(_mark(i, mark, names[view] if view >= 0 else "", block, known))
+        told = _mark(i, mark, names[view] if view >= 0 else "", block, known)
+        marks.append(told | {"lettering": letterings[i]} if i in letterings else told)
     drawing = composed.drawing
     return {"sheet": number, "title": drawing.title, "size": [drawing.width, drawing.height], "frames": frames, "marks": marks}
 
@@ -40,6 +44,13 @@ def sheet(number: int, composed: Composed, known: Container[str]) -> dict[str, A
 def _name(part: Part) -> str:
     """Name of a view: what stands over it, without lettering markup, or how the arrangement calls it."""
     return re.sub(r"[_^]\{?|[{}]", "", part.title) or part.draw
+
+
+def called(view: str) -> str:
+    """What a view without a title is called in the language of the sheets; empty for one that has a title."""
+    from tmm_sheets.sheets.views import VIEWS
+
+    return tr(VIEWS[view].name) if view in VIEWS and VIEWS[view].name else ""
 
 
 def _mark(number: int, mark: Mark, view: str, block: bool, known: Container[str]) -> dict[str, Any]:
