@@ -55,6 +55,10 @@ class Box(NamedTuple):
         t = left if top is None else top
         return Box(self.x0 + left, self.y0 + b, self.x1 - r, self.y1 - t)
 
+    def moved(self, by: complex) -> Box:
+        """The rectangle moved."""
+        return Box(self.x0 + by.real, self.y0 + by.imag, self.x1 + by.real, self.y1 + by.imag)
+
     def contains(self, p: complex, slack: float = 0.0) -> bool:
         """True when the point lies inside or at most ``slack`` outside."""
         return self.x0 - slack <= p.real <= self.x1 + slack and self.y0 - slack <= p.imag <= self.y1 + slack

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tmm_sheets.task.toml_lines import KeyPath
     from tmm_sheets.task.variant import Variant
 
-_QUIET = ("schema", "project", "title_block", "note")
+_QUIET = ("schema", "project", "title_block", "paper", "note")
 WIDEST = 40
 """Longest entry that its column makes room for; what is longer (a diagram) pushes its own line only."""
 
@@ -29,6 +29,8 @@ def text(variant: Variant, names: Names) -> str:
     heading = variant.project
     lines = [f"{variant.called}: {', '.join(of_file(text, tell) for text in (heading.title, heading.variant) if text)}",
              tell("sheets: {sheets}").format(sheets=", ".join(f"{i} {name}" for i, name in enumerate(variant.sheets, 1)))]
+    if not (paper := names.paper(variant)).usual:
+        lines.append(tell("paper: {format}, {orientation}").format(format=paper.format, orientation=paper.orientation))
     lines += ["", tell("Title block"), *_table(_entered(variant, names)),
               "  " + _precedence(variant)]
     lines += ["", tell("Inputs"), *_table(list(_inputs(variant)))]

@@ -9,7 +9,8 @@ from tmm_sheets.__main__ import run
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter, plain
 from tmm_sheets.drawing.marks import Line, Polyline, Text
-from tmm_sheets.drawing.title_block import FIELDS, FRAME, PAPER, TURNED, block, draw_frame
+from tmm_sheets.drawing.paper import A1
+from tmm_sheets.drawing.title_block import FIELDS, block, draw_frame
 from tmm_sheets.resources import template
 
 FORMS = json.loads(template("title_blocks.json").read_text(encoding="utf-8"))
@@ -55,11 +56,11 @@ def test_frame_leaves_20_and_5_5_5():
     assert outline.style == "thin"
     assert outline.closed
     assert outline.points == pytest.approx(np.array([0, 841, 841 + 594j, 594j]), abs=0.15)
-    assert all(PAPER.contains(p, -0.1) for p in outline.points)  # all of the thin line lies on the paper
+    assert all(A1.outline.contains(p, -0.1) for p in outline.points)  # all of the thin line lies on the paper
     assert frame.style == "main"
     assert (frame.points[0], frame.points[2]) == (20 + 5j, (841 - 5) + (594 - 5) * 1j)
     assert (block("1").x1, block("1").y0, block("1").width, block("1").height) == (836, 5, 185, 55)
-    assert (TURNED.x0, TURNED.y1, TURNED.width, TURNED.height) == (20, 589, 70, 14)
+    assert (A1.designation.x0, A1.designation.y1, A1.designation.width, A1.designation.height) == (20, 589, 70, 14)
 
 
 def test_thick_and_thin_lines_of_form_1():
@@ -79,7 +80,7 @@ def test_lettering_stays_within_the_cells(form, number):
                   institution="Луганский национальный университет имени Владимира Даля, кафедра ТММ")  # fmt: skip
     place = block(form)
     cells = [(place.x0 + a, place.y0 + b, place.x0 + c, place.y0 + d) for *_, a, b, c, d in FORMS[form]["cells"]]
-    inside = [m for m in marks if isinstance(m, Text) and m.angle == 0 and m.at.imag > FRAME.y0]
+    inside = [m for m in marks if isinstance(m, Text) and m.angle == 0 and m.at.imag > A1.frame.y0]
     assert len(inside) > 5
     for m in inside:
         laid = letter(plain(m.text), m.height)
@@ -115,8 +116,8 @@ def test_designation_is_repeated_upside_down():
     assert (upright.height, upright.angle) == (7.0, 0.0)
     assert turned.angle == pi
     laid = letter(plain(turned.text), turned.height)
-    assert TURNED.contains(turned.at, -0.5)
-    assert TURNED.contains(turned.at - complex(laid.width, turned.height), -0.5)
+    assert A1.designation.contains(turned.at, -0.5)
+    assert A1.designation.contains(turned.at - complex(laid.width, turned.height), -0.5)
 
 
 def test_single_sheet_has_no_number():
@@ -130,7 +131,7 @@ def test_unknown_form_and_field_are_named():
     with pytest.raises(ValueError, match=r"unknown: colour; known are .*designation"):
         drawn(colour="red")
     assert set(FILLED) <= FIELDS
-    assert (PAPER.width, PAPER.height) == (841, 594)
+    assert (A1.width, A1.height) == (841, 594)
 
 
 LONG = {"title": "Синтез зубчатого зацепления и планетарного редуктора поперечно-строгального станка " * 3,

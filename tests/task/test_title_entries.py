@@ -56,6 +56,9 @@ def test_without_names_the_project_stays_itself(folder):
 @pytest.mark.parametrize(("text", "said"), [
     ("student = 'A'", "tmm-sheets.toml:1: student: stands outside its table"),
     ("[title_block]\nstudent = 3", "tmm-sheets.toml:2: title_block.student: expected a text in quotes"),
+    ("format = 'A2'", "tmm-sheets.toml:1: format: stands outside its table"),
+    ("[paper]\nformat = 'A9'", "tmm-sheets.toml:2: paper.format: expected"),
+    ("[paper]\nsize = 'A2'", "tmm-sheets.toml:2: paper.size: unknown key"),
     ("[title_block]\n\nform = '2a'", "tmm-sheets.toml:3: title_block.form: only project files have it"),
     ("[title_block]\nstudnt = 'A'", 'did you mean "student"'),
     ("[title_block\n", "tmm-sheets.toml:1: not valid TOML"),

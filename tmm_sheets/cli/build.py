@@ -10,7 +10,7 @@ import click
 from tmm_sheets import kept, words
 from tmm_sheets.cli import opening
 from tmm_sheets.cli.batches import come_of, say_stopped
-from tmm_sheets.cli.options import CORRECTED, JOBS, NO_CACHE, REMAKE, SHEETS, formats_of, plotter, titled
+from tmm_sheets.cli.options import CORRECTED, JOBS, NO_CACHE, REMAKE, SHEETS, formats_of, on_paper, plotter, titled
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
 from tmm_sheets.localized_cli import argument, command, option
 from tmm_sheets.words import tell
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
               help="Projects named in a file, one a line; - for standard input.")
 @CORRECTED
 @titled
+@on_paper
 @SHEETS
 @formats_of("dxf,pdf")
 @option("--dpi", type=click.FloatRange(10, 1200), default=150, show_default=True, help="Dots per inch of PNG.")

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 FORMATS = ("dxf", "pdf", "svg", "png", "hpgl")
 """Formats of drawings."""
 
+PAPERS = ("A0", "A1", "A2", "A3", "A1x3", "A1x4", "A2x3", "A2x4", "A2x5", "A3x3", "A3x4", "A3x5", "A3x6", "A3x7")
+"""Formats of paper."""
+
 PARTS = ("positions", "velocities", "accelerations", "forces", "flywheel", "gear", "reducer", "train", "cam")
 """Parts of the results."""
 
@@ -80,6 +83,15 @@ def titled(command: Callable[..., Any]) -> Callable[..., Any]:
     ):
         command = option(f"--{name}", metavar="TEXT", expose_value=False, callback=_enter, help=said)(command)
     return command
+
+
+def on_paper(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Decorator: options for the paper."""
+    portrait = option("--portrait", "orientation", flag_value="portrait", expose_value=False, callback=_enter,
+                      help="Upright pages.")
+    return option("--paper", "format", metavar="FORMAT", type=click.Choice(PAPERS), expose_value=False, callback=_enter,
+                  help="Format of the pages, such as A2, A3, A2x3: views keep their size, on as many pages as they take."
+                  )(portrait(command))
 
 
 def formats_of(default: str) -> Callable[..., Any]:

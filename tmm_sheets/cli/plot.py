@@ -10,7 +10,7 @@ import click
 
 from tmm_sheets.box import Box
 from tmm_sheets.cli import opening
-from tmm_sheets.cli.options import CORRECTED, NO_CACHE, SHEETS, TITLE, plotter, titled
+from tmm_sheets.cli.options import CORRECTED, NO_CACHE, SHEETS, TITLE, on_paper, plotter, titled
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.localized_cli import argument, command, option
 from tmm_sheets.words import tell
@@ -38,6 +38,7 @@ def _window(context: click.Context, parameter: click.Parameter, value: str | Non
 @argument("project", metavar="PROJECT|FILE")
 @CORRECTED
 @titled
+@on_paper
 @SHEETS
 @option("--plotter", "machine", metavar="NAME", callback=plotter,
               help="Make plot files (HPGL) for a shipped plotter or that of a file; without it PDF.")
@@ -111,11 +112,15 @@ def _plots(opened: Project, sheets: tuple[int, ...], look: PlotLook, folder: Pat
     """Plots of the sheets asked for by their files, and what is to be said of those that cannot be drawn."""
     from tmm_sheets.output import plot as plotting
     from tmm_sheets.output.building import chosen
-    from tmm_sheets.sheets import sheet
+    from tmm_sheets.sheets import pages, sheet
 
     attempt = sheet.every(opened, lambda what: progress.say(f"{what} ..."), chosen(opened.variant, sheets))
     problem = attempt.problem()
-    jobs = [plotting.job(composed.drawing, f"sheet{n}", look) for n, composed in attempt.drawn.items()]
+    jobs: list[Job] = []
+    for n, composed in attempt.drawn.items():
+        drawings, _ = pages.on_paper(opened, n, composed)
+        jobs += (plotting.job(drawing, f"sheet{n}-{k}" if len(drawings) > 1 else f"sheet{n}", look)
+                 for k, drawing in enumerate(drawings, 1))
     return {folder / job.name: job for job in jobs}, problem
 
 

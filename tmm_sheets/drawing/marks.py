@@ -186,6 +186,17 @@ class Drawing:
     forms: tuple[Form, ...] = field(default=(), repr=False)
 
 
+def moved(mark: Mark, by: complex) -> Mark:
+    """A mark moved over the paper."""
+    if isinstance(mark, Line):
+        return mark._replace(a=mark.a + by, b=mark.b + by)
+    if isinstance(mark, Arc):
+        return mark._replace(centre=mark.centre + by)
+    if isinstance(mark, Text):
+        return mark._replace(at=mark.at + by)
+    return mark._replace(points=mark.points + by)
+
+
 def flat(mark: Mark, step: float = 0.5) -> Points:
     """A mark's line as points: ends of lines, vertices of polylines, arcs cut into chords of at most ``step`` mm."""
     if isinstance(mark, Line):

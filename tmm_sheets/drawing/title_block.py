@@ -1,4 +1,4 @@
-"""Frame (GOST 2.301), title block forms 1 and 2a and the turned designation (GOST 2.104) of an A1 sheet, landscape.
+"""Frame (GOST 2.301), title block forms 1 and 2a and the turned designation (GOST 2.104) of a sheet.
 
 The forms are data: ``templates/title_blocks.json``.
 """
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.drawing.lettering import Lettering, letter, plain
 from tmm_sheets.drawing.marks import Box, Form, FormField
+from tmm_sheets.drawing.paper import A1, Paper
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.resources import template
 from tmm_sheets.words import tr_in
@@ -21,10 +22,8 @@ from tmm_sheets.words import tr_in
 if TYPE_CHECKING:
     from tmm_sheets.drawing.canvas import Canvas
 
-PAPER = Box(0, 0, 841, 594)
-FRAME = Box(20, 5, 836, 589)
-TURNED = Box(20, 575, 90, 589)
-"""Field 26: the designation turned by 180 degrees, in the corner opposite the title block."""
+TURNS = {0.0: 1 + 0j, pi / 2: 1j, pi: -1 + 0j}
+"""Directions of lettering by its angle, exact."""
 CAPTION = 2.5
 DOTS, MOST = "...", 4
 PITCH = 1.7  # between lines of type B lettering, in letter heights
@@ -51,7 +50,7 @@ def _forms() -> dict[str, Any]:
     return forms
 
 
-def block(form: str) -> Box:
+def block(form: str, paper: Paper = A1) -> Box:
     """Place of a title block on the sheet.
 
     Raises
@@ -63,10 +62,11 @@ def block(form: str) -> Box:
         known = ", ".join(f for f in _forms() if f != "about")
         raise ValueError(f"title block form '{form}' is not in templates/title_blocks.json (it has {known})")
     w, h = _forms()[form]["size"]
-    return Box(FRAME.x1 - w, FRAME.y0, FRAME.x1, FRAME.y0 + h)
+    return Box(paper.frame.x1 - w, paper.frame.y0, paper.frame.x1, paper.frame.y0 + h)
 
 
-def draw_frame(canvas: Canvas, fields: Mapping[str, str], form: str, sheet_number: int, sheet_count: int) -> tuple[Box, ...]:
+def draw_frame(canvas: Canvas, fields: Mapping[str, str], form: str, sheet_number: int, sheet_count: int,
+               paper: Paper = A1) -> tuple[Box, ...]:
     """Draw the sheet's outline, frame, title block and turned designation.
 
     Parameters
@@ -90,22 +90,23 @@ def draw_frame(canvas: Canvas, fields: Mapping[str, str], form: str, sheet_numbe
     """
     if unknown := sorted(set(fields) - FIELDS):
         raise ValueError(f"title block fields unknown: {', '.join(unknown)}; known are {', '.join(sorted(FIELDS))}")
-    place = block(form)
+    place, turned, frame = block(form, paper), paper.designation, paper.frame
     canvas.of = "title block"
-    _rectangle(canvas, PAPER.inset(line_type("thin").width / 2), "thin")  # inside the paper, or half of it is cut off
-    _rectangle(canvas, FRAME, "main")
+    _rectangle(canvas, paper.outline.inset(line_type("thin").width / 2), "thin")  # inside the paper, or half of it is cut off
+    _rectangle(canvas, frame, "main")
     first = len(canvas.marks)
     _rules(canvas, place, _forms()[form])
     found = _fill(canvas, place, _forms()[form]["cells"], fields, _values(fields, sheet_number, sheet_count))
     canvas.forms.append(Form("title_block", first, len(canvas.marks), tuple(found)))
     first = len(canvas.marks)
-    _rectangle(canvas, TURNED, "main")
-    found = _lines(canvas, TURNED, {"designation": fields.get("designation", "")}, (7.0, 5.0, 3.5), turned=True)
+    _rectangle(canvas, turned, "main")
+    found = _lines(canvas, turned, {"designation": fields.get("designation", "")}, (7.0, 5.0, 3.5), paper.turn)
     canvas.forms.append(Form("designation", first, len(canvas.marks), tuple(found)))
-    for x, text in ((FRAME.x1 - 110, tr_in("title block", "Copied by")), (FRAME.x1 - 40, tr_in("title block", "Format A1"))):
-        canvas.text(complex(x, FRAME.y0 - 3.7), text, CAPTION)
+    said = tr_in("title block", "Format A{number}").format(number=paper.name[1:].replace("x", "×"))
+    for x, text in ((frame.x1 - 110, tr_in("title block", "Copied by")), (frame.x1 - 40, said)):
+        canvas.text(complex(x, frame.y0 - 3.7), text, CAPTION)
     canvas.of = ""
-    return place, TURNED
+    return place, turned
 
 
 def _rules(canvas: Canvas, place: Box, form: Mapping[str, Any]) -> None:
@@ -256,25 +257,25 @@ def _cut(line: str, size: float, width: float, whole: bool) -> str:
     return line + end
 
 
-def _lines(canvas: Canvas, cell: Box, parts: Mapping[str, str], sizes: tuple[float, ...], turned: bool = False,
+def _lines(canvas: Canvas, cell: Box, parts: Mapping[str, str], sizes: tuple[float, ...], angle: float = 0.0,
            side: float = SIDE) -> list[FormField]:
     """Lettering in the middle of a cell.
 
     ``parts`` are texts by name, each begins a line. Returns the lines; a part without text has an empty one below the others.
     """
-    room = cell.height - (2 * ENDS if cell.height > 5 else 0.5)
-    size, wrapped = _fitted(parts, sizes, cell.width - 2 * side, room)
+    along, across = (cell.height, cell.width) if angle == pi / 2 else (cell.width, cell.height)
+    size, wrapped = _fitted(parts, sizes, along - 2 * side, across - (2 * ENDS if across > 5 else 0.5))
     canvas.shortened |= {parts[name]: " ".join(lines) for name, lines in wrapped.items()
                          if " ".join(lines) != " ".join(parts[name].split())}
-    sign, angle = (-1, pi) if turned else (1, 0.0)
+    up = 1j * TURNS[angle]
     found = []
     count = sum(map(len, wrapped.values()))
     y = size * (PITCH * (max(count, 1) - 1) - 1) / 2
     for name, lines in sorted(wrapped.items(), key=lambda item: not item[1]):
         for n, line in enumerate(lines or [""], 1):
-            at, first = cell.centre + sign * 1j * max(y, ENDS - cell.height / 2), len(canvas.marks)
+            at, first = cell.centre + up * max(y, ENDS - across / 2), len(canvas.marks)
             if line:
-                at = cell.centre + sign * 1j * y
+                at = cell.centre + up * y
                 canvas.text(at, plain(line), size, "centre", angle)
             found.append(FormField(name if n == 1 else f"{name}_{n}", first, len(canvas.marks), at, size, angle))
             y -= PITCH * size

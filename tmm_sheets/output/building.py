@@ -45,11 +45,12 @@ ONE_FILE = "sheets.pdf"
 
 
 class Target(NamedTuple):
-    """A file to be made: its format, the sheets in it, its name."""
+    """A file to be made: its format, the sheets in it, its name; ``page`` is the one of a sheet that is on several, from 1."""
 
     form: str
     sheets: tuple[int, ...]
     name: str
+    page: int = 0
 
 
 @dataclass(frozen=True)
@@ -74,14 +75,17 @@ class Order:
     kept: bool = True
     names: Names = field(default_factory=Names)
 
-    def targets(self, numbers: Sequence[int]) -> list[Target]:
-        """The files of these sheets, format by format."""
+    def targets(self, pages: Mapping[int, int]) -> list[Target]:
+        """The files of sheets on so many pages, format by format."""
         found = []
         for form in self.formats:
+            end = SUFFIXES.get(form, form)
             if form == "pdf" and self.one_file:
-                found.append(Target(form, tuple(numbers), ONE_FILE))
-            else:
-                found += (Target(form, (n,), f"sheet{n}.{SUFFIXES.get(form, form)}") for n in numbers)
+                found.append(Target(form, tuple(pages), ONE_FILE))
+                continue
+            for n, count in pages.items():
+                found += (Target(form, (n,), f"sheet{n}-{k}.{end}", k) for k in range(1, count + 1)) if count > 1 else \
+                    (Target(form, (n,), f"sheet{n}.{end}"),)
         return found
 
     def outlet(self, place: Path) -> Outlet:
@@ -132,10 +136,13 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     opened = Project(variant)
     numbers = chosen(variant, order.sheets)
     outlet.check()
-    wanted = order.targets(numbers)
+    # On other paper than A1 only the views tell on how many pages a sheet is.
+    known = None if variant.paper.usual else _drawn(opened, numbers, _watching(watch, say), others=False)
+    paged = _paged(opened, known[0]) if known else {}
+    wanted = order.targets({n: len(paged[n][0]) if n in paged else 1 for n in numbers})
     outlet.sweep(target.name for target in wanted)
     work = _work(variant, order, outlet, numbers, wanted, watch)
-    drawn, problem = _drawn(opened, work.sheets, _watching(watch, say), others=len(work.sheets) < len(numbers))
+    drawn, problem = known or _drawn(opened, work.sheets, _watching(watch, say), others=len(work.sheets) < len(numbers))
     whole_passed = work.whole and problem is None
     if whole_passed:
         _refuse_idle_scales(variant, drawn)
@@ -144,7 +151,8 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     if problem is not None:
         problem = _with_stale(problem, [target.name for target in work.wanted if target not in done], outlet)
     drawings = {n: composed.drawing for n, composed in drawn.items()}
-    made, beside = _rendered(drawings, [target for target in work.due if target in done], order, outlet, watch, say)
+    leaves = {n: paged[n][0] if n in paged else [drawing] for n, drawing in drawings.items()}
+    made, beside = _rendered(leaves, [target for target in work.due if target in done], order, outlet, watch, say)
     done, kept = _settled(done, work, made, outlet)
     if made or whole_passed:
         # A file without one of its sheets is not current.
@@ -153,7 +161,8 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
             keep(outlet, work.record, made, made_from, work.inputs if whole_passed else None, beside)
     paths = tuple(outlet.path(target.name) for target in done)
     sizes = {outlet.path(name): len(data) for name, data in made.items()}
-    return Built(paths, sizes, drawings, opened, problem, (*kept, *_warnings(drawn)))
+    larger = [tell("sheet {n}: {what}").format(n=n, what=what) for n, (_, told) in paged.items() for what in told]
+    return Built(paths, sizes, drawings, opened, problem, (*kept, *larger, *_warnings(drawn)))
 
 
 @dataclass(frozen=True)
@@ -213,7 +222,7 @@ def _settled(done: list[Target], work: _Work, made: dict[str, bytes], outlet: Ou
     return settled, kept
 
 
-def _rendered(drawings: Mapping[int, Drawing], due: Sequence[Target], order: Order, outlet: Outlet, watch: Stopwatch,
+def _rendered(drawings: Mapping[int, Sequence[Drawing]], due: Sequence[Target], order: Order, outlet: Outlet, watch: Stopwatch,
               say: Callable[[str], None]) -> tuple[dict[str, bytes], dict[str, bytes]]:
     """Contents of the files due, one format after another, and those of files that have to lie beside them and do not yet."""
     made: dict[str, bytes] = {}
@@ -227,8 +236,9 @@ def _rendered(drawings: Mapping[int, Drawing], due: Sequence[Target], order: Ord
             which = tell("all sheets") if together else tell("sheet {n}").format(n=target.sheets[0])
             say(tell("{which} as {form}").format(which=which, form=form))
             with watch.phase(tell("{form} of {which}").format(form=form, which=which)):
-                sheets = [drawings[n] for n in target.sheets if n in drawings]
-                made[target.name] = writer.render_all(sheets, **settings) if together else writer.render(sheets[0], **settings)
+                sheets = [drawing for n in target.sheets if n in drawings for drawing in drawings[n]]
+                made[target.name] = writer.render_all(sheets, **settings) if together else \
+                    writer.render(sheets[max(target.page - 1, 0)], **settings)
         if hasattr(writer, "companions"):
             beside |= {name: data for name, data in writer.companions(**settings).items() if outlet.read(name) is None}
     return made, beside
@@ -271,6 +281,13 @@ def _drawn(opened: Project, asked: list[int], around: Callable[[int], AbstractCo
     if problem is not None and not found.drawn and not others:
         raise problem
     return found.drawn, problem
+
+
+def _paged(opened: Project, drawn: Mapping[int, Composed]) -> dict[int, tuple[list[Drawing], list[str]]]:
+    """Sheets on the paper that the project asks for, with what is to be said of it."""
+    from tmm_sheets.sheets import pages
+
+    return {n: pages.on_paper(opened, n, composed) for n, composed in drawn.items()}
 
 
 def _with_stale(problem: CannotBuild, names: list[str], outlet: Outlet) -> CannotBuild:

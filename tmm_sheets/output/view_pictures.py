@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from tmm_sheets import files, spelling
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.ink import letters
-from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Mark, Polyline, Text, flat
+from tmm_sheets.drawing.marks import Arc, Drawing, Line, Mark, Polyline, Text, flat, moved
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.output.building import BACKENDS, SUFFIXES, folder_name
 from tmm_sheets.words import tell
@@ -163,19 +163,8 @@ def _cut(whole: Drawing, marks: Sequence[Mark]) -> Drawing | None:
     if not points:
         return None
     box = Box.around(np.concatenate(points), MARGIN)
-    moved = tuple(_moved(m, -complex(box.x0, box.y0)) for m in marks)
-    return replace(whole, width=box.width, height=box.height, marks=moved, views=(), dimensions=(), forms=())
-
-
-def _moved(m: Mark, by: complex) -> Mark:
-    if isinstance(m, Line):
-        return m._replace(a=m.a + by, b=m.b + by)
-    if isinstance(m, Arc):
-        return m._replace(centre=m.centre + by)
-    if isinstance(m, Text):
-        return m._replace(at=m.at + by)
-    assert isinstance(m, Polyline | Fill)
-    return m._replace(points=m.points + by)
+    shown = tuple(moved(m, -complex(box.x0, box.y0)) for m in marks)
+    return replace(whole, width=box.width, height=box.height, marks=shown, views=(), dimensions=(), forms=())
 
 
 def _named(title: str) -> str:

@@ -7,13 +7,13 @@ from collections.abc import Iterable
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas, Part
 from tmm_sheets.drawing.crowded import Shortened
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Drawing, View
+from tmm_sheets.drawing.paper import A1
 from tmm_sheets.drawing.placing import place
-from tmm_sheets.drawing.title_block import draw_frame
+from tmm_sheets.drawing.title_block import block, draw_frame
 from tmm_sheets.sheets import composition, legibility, view_overflow
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.components import titles
@@ -27,12 +27,9 @@ if TYPE_CHECKING:
     from tmm_sheets.remarks import Remark
     from tmm_sheets.sheets.arrangement import Arrangement
 
-WIDTH, HEIGHT = 841.0, 594.0
-"""A1 landscape, mm."""
-INSIDE = Box(20.0, 5.0, WIDTH - 5.0, HEIGHT - 5.0)
-"""Inside of the frame: 20 mm at the left for filing, 5 mm elsewhere (GOST 2.301)."""
-TITLE_BLOCK = Box(INSIDE.x1 - 185.0, INSIDE.y0, INSIDE.x1, INSIDE.y0 + 55.0)
-"""Place of the title block (GOST 2.104, form 1)."""
+WIDTH, HEIGHT = A1.width, A1.height
+INSIDE = A1.frame
+TITLE_BLOCK = block("1")
 
 FRAME = "title block"
 """The view that every sheet has, before its arrangement's."""
@@ -106,23 +103,28 @@ def _dead(project: Project, plan: Arrangement) -> tuple[Remark, ...]:
 
 def _framed(project: Project, n: int, canvas: Canvas) -> dict[str, str]:
     """Draw frame and title block of sheet ``n``; gives what is filled in."""
-    block = project.variant.title_block
+    written, fields = project.variant.title_block, entries(project, n)
     canvas.of = FRAME
-    canvas.begin(Box(0.0, 0.0, WIDTH, HEIGHT), "", FRAME)
-    fields = {
-        "designation": f"{of_file(block.designation)} {_code(project, n)}".strip(),
+    canvas.begin(A1.outline, "", FRAME)
+    with canvas.as_role("frame"):
+        draw_frame(canvas, fields, written.form, written.first_sheet + n - 1, len(project.variant.sheets))
+    return fields
+
+
+def entries(project: Project, n: int) -> dict[str, str]:
+    """What the title block of sheet ``n`` is filled in with, by the names of its fields."""
+    written = project.variant.title_block
+    return {
+        "designation": f"{of_file(written.designation)} {_code(project, n)}".strip(),
         "title": tr(arrangement(project.sheets[n - 1]).fitted(project.parts).title),
         "project": of_file(project.variant.project.title),
-        "letter": of_file(block.letter),
-        "developed": block.student,
-        "checked": block.checker,
-        "supervisor": block.supervisor,
-        "institution": of_file(block.institution),
-        "group": of_file(block.group),
+        "letter": of_file(written.letter),
+        "developed": written.student,
+        "checked": written.checker,
+        "supervisor": written.supervisor,
+        "institution": of_file(written.institution),
+        "group": of_file(written.group),
     }
-    with canvas.as_role("frame"):
-        draw_frame(canvas, fields, block.form, block.first_sheet + n - 1, len(project.variant.sheets))
-    return fields
 
 
 def shortened(project: Project) -> list[str]:
@@ -158,7 +160,7 @@ def _views(canvas: Canvas) -> tuple[View, ...]:
         if part.title and found and found[-1][0].draw == part.draw and not found[-1][0].title:
             own = found.pop()[2] + own
         if own:
-            found.append((part, _said(part), own))
+            found.append((part, said(part), own))
     count = Counter[str]()
     out = []
     for part, name, own in found:
@@ -167,9 +169,11 @@ def _views(canvas: Canvas) -> tuple[View, ...]:
     return tuple(out)
 
 
-def _said(part: Part) -> str:
-    """Name of a view: the letters of its title."""
-    return "".join(run.text for run in letter(part.title, 5.0).runs) if part.title else tr(_name_of(part.draw))
+def said(part: Part | None) -> str:
+    """Name of a view: the letters of its title; without a view that of the frame."""
+    if part is not None and part.title:
+        return "".join(run.text for run in letter(part.title, 5.0).runs)
+    return tr(_name_of(part.draw if part is not None else FRAME))
 
 
 def _name_of(draw: str) -> str:

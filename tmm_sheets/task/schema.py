@@ -115,6 +115,20 @@ class TitleBlockTable(Table):
     """running number of the first sheet"""
 
 
+class PaperTable(Table):
+    """``[paper]``: the paper that `build` and `plot` write for: views keep their size, on as many pages as they take."""
+
+    format: Literal["A0", "A1", "A2", "A3", "A1x3", "A1x4", "A2x3", "A2x4", "A2x5", "A3x3", "A3x4", "A3x5", "A3x6", "A3x7"] = "A1"
+    """format of GOST 2.301; `A1`, landscape, is what sheets are composed for"""
+    orientation: Literal["landscape", "portrait"] = "landscape"
+    """which way it lies; a view that has room only the other way is on a page of that way"""
+
+    @property
+    def usual(self) -> bool:
+        """Whether it is what sheets are composed for."""
+        return self == PaperTable()
+
+
 class NoteTable(Table):
     """``[note]``: what the explanatory note is like; the project may go without."""
 

@@ -1,9 +1,9 @@
 """Whose sheets these are: what stands in the title blocks by an option, the project file, or the settings of a folder or a user.
 
-A settings file, ``tmm-sheets.toml``, has the table ``[title_block]`` of a project file. One lies beside the project (beside a
-shipped one: in the working folder), one in the user's folder of configuration. Of several texts for a field that goes which is
-nearest to the sheet: the option, the project file, the settings beside it, those of the user. What shipped projects say there
-stands for nobody and goes last, and so it is where a file was copied from them.
+A settings file, ``tmm-sheets.toml``, has the tables ``[title_block]`` and ``[paper]`` of a project file. One lies beside it
+(beside a shipped one: in the working folder), one in the user's folder of configuration. Of several texts for a field that goes
+which is nearest to the sheet: the option, the project file, the settings beside it, those of the user. What shipped projects say
+there stands for nobody and goes last, and so it is where a file was copied from them.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pydantic import ValidationError
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.task import toml_file, user_folder
 from tmm_sheets.task.messages import said
-from tmm_sheets.task.schema import Table, TitleBlockTable
+from tmm_sheets.task.schema import PaperTable, Table, TitleBlockTable
 from tmm_sheets.task.toml_lines import scan
 from tmm_sheets.words import tell
 
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 FIELDS = ("student", "group", "supervisor", "checker", "institution", "designation", "letter")
 """Keys of ``[title_block]`` that settings may have."""
+PAPER = ("format", "orientation")
+"""Keys of ``[paper]``."""
 FILE = "tmm-sheets.toml"
 """Name of a settings file."""
 LARGEST = 1_000_000
@@ -40,11 +42,12 @@ class SettingsTable(Table):
     """A whole settings file."""
 
     title_block: TitleBlockTable = TitleBlockTable()
+    paper: PaperTable = PaperTable()
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A text of the title block, and where it was told."""
+    """A text of the title block, or of the paper, and where it was told."""
 
     text: str
     where: str = ""
@@ -75,11 +78,27 @@ class Names:
             found[name] = next(entry for entry in ways if entry is not None)
         return found
 
+    def paper(self, variant: Variant) -> PaperTable:
+        """The paper of a project: what options say, then the project file, then the settings.
+
+        Raises
+        ------
+        BadInput
+            when the settings beside the project cannot be read.
+        """
+        written, beside = variant.paper, of_file(beside_of(variant))
+        told = {name: self.options.get(name) or ((entry := beside.get(name) or self.user.get(name)) and entry.text)
+                for name in PAPER if name in self.options or name not in written.model_fields_set}
+        return written.model_copy(update={name: text for name, text in told.items() if text})
+
     def filled(self, variant: Variant) -> Variant:
-        """The project with its title blocks filled in; itself where nothing is to be put there."""
+        """The project with its title blocks filled in and its paper chosen; itself where nothing is to be changed."""
         block = variant.title_block
         other = {name: entry.text for name, entry in self.entries(variant).items() if entry.text != getattr(block, name)}
-        return variant.model_copy(update={"title_block": block.model_copy(update=other)}) if other else variant
+        update: dict[str, Table] = {"title_block": block.model_copy(update=other)} if other else {}
+        if (paper := self.paper(variant)) != variant.paper:
+            update["paper"] = paper
+        return variant.model_copy(update=update) if update else variant
 
 
 def is_blank(text: str) -> bool:
@@ -136,21 +155,24 @@ def of_file(path: Path) -> dict[str, Entry]:
         raise BadInput(toml_file.syntax(str(e), text, file)) from None
     lines = scan(text)
     try:
-        block = SettingsTable.model_validate(data).title_block
+        settings = SettingsTable.model_validate(data)
     except ValidationError as e:
         raise BadInput(_problem(toml_file.problem(file, lines, *said(error, SettingsTable))) for error in e.errors()) from None
+    block = settings.title_block
     wrong = [name for name in sorted(block.model_fields_set) if name not in FIELDS]
     if wrong:
         hint = tell("settings have {known}").format(known=", ".join(FIELDS))
         raise BadInput(toml_file.problem(file, lines, ("title_block", name), tell("only project files have it"), hint)
                        for name in wrong)
-    return {name: Entry(text, f"{file}:{lines.line(('title_block', name))}") for name in FIELDS
-            if (text := " ".join(getattr(block, name).split()))}
+    found = {("title_block", name): " ".join(getattr(block, name).split()) for name in FIELDS}
+    found |= {("paper", name): getattr(settings.paper, name) for name in settings.paper.model_fields_set}
+    return {path[1]: Entry(text, f"{file}:{lines.line(path)}") for path, text in found.items() if text}
 
 
 def _problem(problem: Problem) -> Problem:
     """The same, with what to do about a name that stands above its table."""
-    if problem.field not in FIELDS:
+    if problem.field not in (*FIELDS, *PAPER):
         return problem
+    above = tell("[title_block] in a line above it") if problem.field in FIELDS else tell("[paper] in a line above it")
     return Problem(tell("stands outside its table"), problem.file, problem.line, problem.field,
-                   tell("write {what}").format(what=tell("[title_block] in a line above it")))
+                   tell("write {what}").format(what=above))

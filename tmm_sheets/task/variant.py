@@ -40,6 +40,7 @@ from tmm_sheets.task.schema import (
     LinkTable,
     MomentTable,
     NoteTable,
+    PaperTable,
     PointTable,
     ReducerTable,
     SynthesisTable,
@@ -70,6 +71,7 @@ class Variant(Table):
     schema_: Literal[1] = Field(alias="schema", description=marked("version of the file format: schema = 1"))
     project: HeadingTable = Field(description=marked("table [project] with name, title and sheets"))
     title_block: TitleBlockTable = TitleBlockTable()
+    paper: PaperTable = PaperTable()
     note: NoteTable = NoteTable()
     synthesis: SynthesisTable | None = None
     crank: CrankTable | None = None

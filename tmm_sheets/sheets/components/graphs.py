@@ -13,8 +13,8 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, PlacedFrame
+from tmm_sheets.drawing.paper import A1
 from tmm_sheets.drawing.tables import parted, size_in, widened
-from tmm_sheets.drawing.title_block import TURNED
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 from tmm_sheets.words import tell, tr
@@ -84,7 +84,8 @@ def heading(canvas: Canvas, box: Box, options: Options, title: str, factor: str,
     A long one begins at the left of the axis, under the turned designation. ``under`` is said of the graph's ordinates right
     beneath.
     """
-    left = box.x0 if box.y1 < TURNED.y0 else max(box.x0, min(TURNED.x1 + 4.0, options["axis"]))
+    turned = A1.designation
+    left = box.x0 if box.y1 < turned.y0 else max(box.x0, min(turned.x1 + 4.0, options["axis"]))
     for size, x0 in ((5.0, options["axis"]), (5.0, left), (3.5, left), (2.5, left)):
         name, scale = letter(title, size), letter(factor, size)
         if x0 + name.width + scale.width + 8 <= box.x1:

@@ -1,0 +1,247 @@
+"""A sheet on other paper than A1: its views as large as they are, on as many pages as they take.
+
+Every view keeps its scale factors and its lettering, and so the floors of readability and all that is measured on it. What touches
+stays together; where that is more than a page, lines that lead from one view to another end at the views' own places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise, product
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from tmm_sheets.box import Box
+from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.evenness import dense
+from tmm_sheets.drawing.marks import Dimension, Drawing, Line, Mark, Text, View, flat, moved
+from tmm_sheets.drawing.paper import MAIN, Paper, paper
+from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.title_block import block, draw_frame
+from tmm_sheets.sheets.composing import FRAME, entries, said
+from tmm_sheets.words import tell
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+    from tmm_sheets.sheets.composed import Composed
+
+APART = 8.0
+"""Distance of what stands on a page from each other, and from the title block, mm."""
+EDGE = 4.0
+"""The same from the frame."""
+SPREADS = (1.6, 1.45, 1.3, 1.2, 1.1, 1.05, 1.0)
+"""How many times as far from the upper left corner things may stand as they have to."""
+CELL, ROW = 1.0, 10_000
+"""Side of the cells by which is told what touches, mm, and more of them than are in a row."""
+FOLLOWING = "2a"
+"""Form of the title block on all pages but the first."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Marks that stand together, with the numbers they have on the sheet, and the rectangle round them."""
+
+    title: str
+    marks: tuple[tuple[int, Mark], ...]
+    place: Box
+
+    @cached_property
+    def ink(self) -> Box:
+        """Rectangle round the marks, mm of the sheet."""
+        outlines = [text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0) for _, mark in self.marks]
+        return Box.around(np.concatenate(outlines))
+
+    @cached_property
+    def cells(self) -> frozenset[int]:
+        """Cells of the sheet in which it has ink, by numbers."""
+        z = dense((mark for _, mark in self.marks), CELL / 2) / CELL
+        x, y = np.round(z.real).astype(int), np.round(z.imag).astype(int)
+        return frozenset(np.unique(x + ROW * y).tolist())
+
+    def with_other(self, other: Piece) -> Piece:
+        """Both in one, under the title of what has more of it."""
+        marks = dict(self.marks) | dict(other.marks)
+        return replace(max(self, other, key=lambda one: len(one.marks)), marks=tuple(sorted(marks.items(), key=lambda own: own[0])))
+
+    def parted(self) -> Piece:
+        """The same without what its lines do beyond its place."""
+        kept = ((k, mark if not isinstance(mark, Line) else _cut(mark, self.place)) for k, mark in self.marks)
+        return replace(self, marks=tuple((k, mark) for k, mark in kept if mark is not None))
+
+
+class Page(NamedTuple):
+    """Pieces on a paper, each with the way it is moved."""
+
+    paper: Paper
+    placed: list[tuple[Piece, complex]]
+
+
+def on_paper(project: Project, n: int, composed: Composed) -> tuple[list[Drawing], list[str]]:
+    """The pages of sheet ``n`` (from 1) on the paper that a project asks for, and what is to be said of those on larger paper."""
+    table = project.variant.paper
+    if table.usual:
+        return [composed.drawing], []
+    wanted = paper(table.format, table.orientation == "portrait")
+    pages = _pages(list(_pieces(composed)), wanted, project.variant.title_block.form)
+    remark = tell('view "{title}" is on {larger}: {paper} has no room for its {width:.0f} x {height:.0f} mm')
+    told = [remark.format(title=piece.title, larger=page.paper.name, paper=wanted.name, width=piece.ink.width,
+                          height=piece.ink.height) for page in pages if page.paper.name != wanted.name for piece, _ in page.placed]
+    return [_drawn(project, n, composed.drawing, page, k, len(pages)) for k, page in enumerate(pages, 1)], told
+
+
+# --- what stands together -------------------------------------------------------------------------------------------------
+
+
+def _pieces(composed: Composed) -> Iterator[Piece]:
+    """The views of a sheet without its frame, each with its labels."""
+    marks, parts = composed.drawing.marks, composed.parts
+    labels = parts[-1].first
+    for a, b in pairwise(k for k, part in enumerate(parts) if not part.title):
+        own = set(range(parts[a].first, parts[b].first))
+        for group in composed.groups:
+            if a <= group.part < b and group.first >= labels:
+                own |= set(range(group.first, group.end))
+        if own and parts[a].draw != FRAME:
+            titled = next((part for part in parts[a + 1 : b] if part.title), parts[a])
+            yield Piece(said(titled), tuple((k, marks[k]) for k in sorted(own)), parts[a].box)
+
+
+def _cut(line: Line, place: Box) -> Line | None:
+    """What of a line lies inside a place."""
+    d, low, high = line.b - line.a, 0.0, 1.0
+    for start, along, least, most in ((line.a.real, d.real, place.x0, place.x1), (line.a.imag, d.imag, place.y0, place.y1)):
+        if along:
+            first, last = sorted(((least - start) / along, (most - start) / along))
+            low, high = max(low, first), min(high, last)
+        elif not least <= start <= most:
+            return None
+    if low >= high:
+        return None
+    gaps = tuple((max((a - low) / (high - low), 0.0), min((b - low) / (high - low), 1.0)) for a, b in line.gaps
+                 if a < high and b > low)
+    return line._replace(a=line.a + low * d, b=line.a + high * d, gaps=gaps)
+
+
+def _together(pieces: Iterable[Piece], one: Callable[[Piece, Piece], bool]) -> list[Piece]:
+    """Pieces that are ``one`` in twos made one, as long as there are any."""
+    found = list[Piece]()
+    for piece in pieces:
+        while other := next((other for other in found if one(piece, other)), None):
+            found.remove(other)
+            piece = piece.with_other(other)
+        found.append(piece)
+    return found
+
+
+def _near(a: Box, b: Box, apart: float = 0.0) -> bool:
+    """Whether two rectangles are less than so far from each other."""
+    return min(a.x1, b.x1) - max(a.x0, b.x0) > -apart + 1e-6 and min(a.y1, b.y1) - max(a.y0, b.y0) > -apart + 1e-6
+
+
+def _around(a: Box, b: Box) -> Box:
+    return Box(min(a.x0, b.x0), min(a.y0, b.y0), max(a.x1, b.x1), max(a.y1, b.y1))
+
+
+# --- pages ----------------------------------------------------------------------------------------------------------------
+
+
+def _pages(pieces: Sequence[Piece], asked: Paper, first: str) -> list[Page]:
+    """Pages by a simple rule: the largest piece first, each on the first page that has room for it, there high and then left."""
+    def has_room(unit: Piece, form: str = first) -> bool:
+        return _paper_for(unit, asked, form).name == asked.name
+
+    def touch(a: Piece, b: Piece) -> bool:
+        return not a.cells.isdisjoint(b.cells)
+
+    def within(a: Piece, b: Piece) -> bool:
+        return touch(a, b) and _around(a.ink, b.ink) in (a.ink, b.ink)
+
+    units = list[Piece]()
+    for unit in _together(pieces, touch):
+        own = dict(unit.marks).keys()
+        inside = [piece for piece in pieces if dict(piece.marks).keys() <= own]
+        units += [unit] if has_room(unit, FOLLOWING) else _together((piece.parted() for piece in inside), within)
+    # What stands in the gaps of something stays there, if that makes it no larger than a page.
+    units = _together(units, lambda a, b: _near(a.ink, b.ink) and _put(a.with_other(b), Page(asked, []), first))
+    pages = list[Page]()
+    for unit in sorted(units, key=lambda unit: (not has_room(unit), -unit.ink.width * unit.ink.height)):
+        usual = ((page, first if k == 0 else FOLLOWING) for k, page in enumerate(pages) if page.paper.name == asked.name)
+        if not any(_put(unit, page, form) for page, form in usual):
+            form = FOLLOWING if pages else first
+            pages.append(Page(_paper_for(unit, asked, form), []))
+            _put(unit, pages[-1], form)
+    return [_spread(page, first if k == 0 else FOLLOWING) for k, page in enumerate(pages)]
+
+
+def _spread(page: Page, form: str) -> Page:
+    """The page with what stands on it farther apart, and in the middle of it, as far as there is room."""
+    inside, closed = page.paper.frame.inset(EDGE), [block(form, page.paper), page.paper.designation]
+    for wide, high in sorted(product(SPREADS, SPREADS), key=lambda way: -way[0] * way[1]):
+        places = [piece.ink.moved(complex(wide * (piece.ink.x0 + by.real - inside.x0) + inside.x0 - piece.ink.x0,
+                                          inside.y1 - high * (inside.y1 - piece.ink.y1 - by.imag) - piece.ink.y1))
+                  for piece, by in page.placed]
+        right, low = max(box.x1 for box in places), min(box.y0 for box in places)
+        for share_x, share_y in product((0.5, 0.0), (0.5, 0.0)):
+            by = complex(share_x * (inside.x1 - right), -share_y * (low - inside.y0))
+            there = [box.moved(by) for box in places]
+            if right <= inside.x1 and low >= inside.y0 and not any(_near(a, b, APART) for a in there for b in closed):
+                return Page(page.paper, [(piece, complex(box.x0 - piece.ink.x0, box.y1 - piece.ink.y1))
+                                         for (piece, _), box in zip(page.placed, there, strict=True)])
+    return page
+
+
+def _paper_for(piece: Piece, asked: Paper, form: str) -> Paper:
+    """The paper asked for if a piece has room on it, whichever way; else the smallest that has."""
+    larger = [paper(name, asked.width < asked.height) for name, (short, _) in reversed(MAIN.items()) if short > min(asked[1:])]
+    ways = [way for one in (asked, *larger) for way in (one, one.other_way)]
+    return next((way for way in ways if _put(piece, Page(way, []), form)), ways[-2])
+
+
+def _put(piece: Piece, page: Page, form: str) -> bool:
+    """Put a piece on a page where it has room; whether it has."""
+    inside, ink = page.paper.frame.inset(EDGE), piece.ink
+    closed = [block(form, page.paper), page.paper.designation, *(other.ink.moved(by) for other, by in page.placed)]
+    tops = sorted({inside.y1, *(box.y0 - APART for box in closed)}, reverse=True)
+    lefts = sorted({inside.x0, *(box.x1 + APART for box in closed)})
+    for top, left in product(tops, lefts):
+        by = complex(left - ink.x0, top - ink.y1)
+        there = ink.moved(by)
+        if there.x1 <= inside.x1 and there.y0 >= inside.y0 and not any(_near(there, box, APART) for box in closed):
+            page.placed.append((piece, by))
+            return True
+    return False
+
+
+def _drawn(project: Project, n: int, sheet: Drawing, page: Page, number: int, count: int) -> Drawing:
+    """A page with its frame and title block; dimensions, views and forms are told as on the sheet."""
+    canvas = Canvas()
+    form = project.variant.title_block.form if number == 1 else FOLLOWING
+    with canvas.as_role("frame"):
+        draw_frame(canvas, entries(project, n), form, number, count, page.paper)
+    marks = list(canvas.marks)
+    views = [View(said(None), page.paper.outline, ((0, len(marks)),))]
+    dimensions = list[Dimension]()
+    for piece, by in page.placed:
+        at = {k: len(marks) + i for i, (k, _) in enumerate(piece.marks)}
+        marks += (moved(mark, by) for _, mark in piece.marks)
+        for view in sheet.views:
+            spans = tuple(span for span in (_span(at, *span) for span in view.spans) if span is not None)
+            if spans:
+                views.append(View(view.name, view.box.moved(by), spans))
+        for d in sheet.dimensions:
+            whole, label = _span(at, d.first, d.end), _span(at, *d.label)
+            if whole is not None and whole[1] - whole[0] == d.end - d.first:
+                a, b, line, middle, vertex = (z + by for z in (d.a, d.b, d.line, d.middle, d.vertex))
+                dimensions.append(d._replace(first=whole[0], end=whole[1], a=a, b=b, line=line, middle=middle, vertex=vertex,
+                                             label=label or (0, 0)))
+    return replace(sheet, width=page.paper.width, height=page.paper.height, marks=tuple(marks), views=tuple(views),
+                   dimensions=tuple(dimensions), forms=tuple(canvas.forms))
+
+
+def _span(at: Mapping[int, int], first: int, end: int) -> tuple[int, int] | None:
+    """Where marks of the sheet are on a page, those that are there; None for none."""
+    there = [at[k] for k in range(first, end) if k in at]
+    return (there[0], there[-1] + 1) if there else None
