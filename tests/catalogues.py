@@ -11,6 +11,7 @@ import sys
 import tomllib
 from collections.abc import Iterator
 from datetime import UTC, datetime
+from functools import cache
 from inspect import cleandoc
 from io import BytesIO
 from pathlib import Path
@@ -40,11 +41,11 @@ READ = {
 """Keys of shipped files that a person reads, by table."""
 
 
-def of_program() -> Iterator[tuple[str, str | tuple[str, ...], str | None]]:
+@cache
+def of_program() -> tuple[tuple[str, str | tuple[str, ...], str | None], ...]:
     """Texts of the source: file, text (or the forms of a plural), context."""
-    for path in sorted((ROOT / "tmm_sheets").rglob("*.py")):
-        for _, text, _, context in extract_from_file("python", path, KEYWORDS):
-            yield path.relative_to(ROOT).as_posix(), text, context
+    return tuple((path.relative_to(ROOT).as_posix(), text, context) for path in sorted((ROOT / "tmm_sheets").rglob("*.py"))
+                 for _, text, _, context in extract_from_file("python", path, KEYWORDS))
 
 
 def of_keys() -> Iterator[tuple[str, str, None]]:

@@ -9,12 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from tests import catalogues
 from tests.few import seldom
 from tests.project_files import EVEN, SLIDER, write
 from tmm_sheets import catalogue, quoting
 from tmm_sheets.__main__ import run
-from tmm_sheets.cli import commands
 
 
 @pytest.fixture
@@ -30,8 +28,13 @@ def desk(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def quoted(monkeypatch, capsys):
+def quoted(capsys):
     """Runs a command; the commands that its output quotes. None stands there that was not put together by ``quoting``."""
+    with pytest.MonkeyPatch.context() as patch:  # a plain one: what is noted changes no sheet, kept ones serve
+        yield noting(patch, capsys)
+
+
+def noting(patch, capsys):
     made = []
     for name in ("command", "install"):
         before = getattr(quoting, name)
@@ -40,7 +43,7 @@ def quoted(monkeypatch, capsys):
             made.append(before(*arguments))
             return made[-1]
 
-        monkeypatch.setattr(quoting, name, noted)
+        patch.setattr(quoting, name, noted)
 
     def start(*arguments, status=2):
         made.clear()
@@ -166,14 +169,6 @@ def test_a_package_that_is_missing(arguments, module, extra, desk, quoted, monke
     monkeypatch.setitem(sys.modules, module, None)
     found, _ = quoted(*arguments, status=1 if module == "typst" else 2)
     assert found == [quoting.install(extra)]
-
-
-def test_options_that_are_told_exist():
-    """Every --option in a text of the program is one of a command; those of other programs are told apart by their names."""
-    options = {name for command in (commands, *commands.every().values()) for p in command.params for name in p.opts} | {"--help"}
-    found = {text: set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", str(text))) for _, text, _ in catalogues.of_program()}
-    assert any(found.values())
-    assert {text: names - options for text, names in found.items() if names - options} == {}
 
 
 def test_words_of_a_shell():

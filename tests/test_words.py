@@ -75,6 +75,15 @@ def test_no_text_hides_from_the_catalogues():
                 assert not isinstance(said, ast.Constant) or said.value in known, (path, said.lineno, said.value)
 
 
+def test_options_that_are_told_exist():
+    """Every --option in a text of the program is one of a command; those of other programs are told apart by their names."""
+    every = (cli.commands, *cli.commands.every().values())
+    options = {name for command in every for p in command.params for name in p.opts} | {"--help"}
+    found = {text: set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", str(text))) for _, text, _ in catalogues.of_program()}
+    assert any(found.values())
+    assert {text: names - options for text, names in found.items() if names - options} == {}
+
+
 @pytest.mark.parametrize("language", ["ru", "uk"])
 def test_no_word_of_click_is_missing(language):
     there = catalogues.read(language, catalogues.CLICK)
