@@ -186,7 +186,7 @@ def test_other_lengths_give_what_solve_gives(name, sets, tmp_path):
 
     What hangs on a flywheel that the page does not compute is undefined there, not near.
     """
-    text = made(name)
+    text = made(name, (1,))
     record, rng = record_of(text), np.random.default_rng(2)
     others = [other_numbers(record, rng, 0.05) for _ in range(sets)]
     cases = [[x, given if n == 0 else None] for given in others for n, x in enumerate(rng.uniform(-np.pi, np.pi, ANGLES).tolist())]
@@ -223,7 +223,7 @@ const result = ({ motion, name }) => {
 @javascript.needed
 def test_a_slider_ends_where_the_mechanism_does(tmp_path):
     """The rod of a feeder: as long and as short as it goes round with; masses from zero, lengths above it, by the schema."""
-    text = made(FEEDER)
+    text = made(FEEDER, (1,))
     record = record_of(text)
     run = f"let record;\n{program_of(text)};\n{LIMITS}"
     found = javascript.run(run, {**record, "name": "group[0].lengths[0]"}, tmp_path)

@@ -193,7 +193,7 @@ def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str,
         shown = [at for n, at in enumerate(drawn) if n % every == 0 or at[0] == k]
         spans = [plan_extent(project.study.velocities.plan, i) for i, _ in shown]
         readable = max(max(s.width, s.height) for s in spans) / SMALLEST
-        need, rows = most_room(spans, inside)
+        need, rows = RowChoice(spans).most_room(inside.width, inside.height)
         if need <= readable or (wanted is not None and need < inf):
             break
     if not need < inf:
@@ -217,9 +217,25 @@ def beyond_drawing(project: Project) -> list[tuple[int, float]]:
     return [(i, size / usual) for i, size in sizes.items() if size > BEYOND * usual]
 
 
-def most_room(spans: list[Box], inside: Box) -> tuple[float, int]:
-    """Rows with which the plans come out largest, and the scale factor they need; infinite where lettering takes all the room."""
-    return min((_need(spans, rows, inside), rows) for rows in range(1, len(spans) + 1))
+class RowChoice:
+    """In how many rows plans of some extents may stand; what does not depend on the place is summed once."""
+
+    def __init__(self, spans: Sequence[Box]) -> None:
+        self._ways = dict[int, tuple[int, dict[int, float], float, int]]()
+        """By plans in a row: the rows asked for, the greatest width of rows by their plans, all heights, the rows there are."""
+        for rows in range(1, len(spans) + 1):
+            per_row = -(-len(spans) // rows)
+            if per_row not in self._ways:
+                parted = [spans[i:i + per_row] for i in range(0, len(spans), per_row)]
+                wide = dict[int, float]()
+                for row in parted:
+                    wide[len(row)] = max(wide.get(len(row), 0.0), sum(s.width for s in row))
+                self._ways[per_row] = rows, wide, sum(max(s.height for s in row) for row in parted), len(parted)
+
+    def most_room(self, width: float, height: float) -> tuple[float, int]:
+        """Rows with which the plans come out largest, and the scale factor they need; infinite where lettering takes the place."""
+        return min((max(_ratio(high, height - HEAD * count), *(_ratio(real, width - MARGIN * n) for n, real in wide.items())), rows)
+                   for rows, wide, high, count in self._ways.values())
 
 
 def velocity_spans(project: Project, options: dict[str, Any]) -> tuple[list[Box], float]:
@@ -245,14 +261,6 @@ def columns(project: Project) -> int:
 def longest(plan: Plan, shown: Sequence[int]) -> float:
     """Longest vector of a plan at some positions, in its unit."""
     return max(abs(complex(seg.head.at(i)) - complex(seg.tail.at(i))) for seg in plan.segments for i in shown)
-
-
-def _need(spans: list[Box], rows: int, inside: Box) -> float:
-    """Least scale factor with which plans fit in so many rows, lettering included; infinite where that alone takes the place."""
-    per_row = -(-len(spans) // rows)
-    parted = [spans[i:i + per_row] for i in range(0, len(spans), per_row)]
-    wide = max(_ratio(sum(s.width for s in row), inside.width - MARGIN * len(row)) for row in parted)
-    return max(wide, _ratio(sum(max(s.height for s in row) for row in parted), inside.height - HEAD * len(parted)))
 
 
 def _ratio(real: float, room: float) -> float:

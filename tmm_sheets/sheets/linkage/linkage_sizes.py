@@ -72,9 +72,11 @@ def velocities(project: Project, view: ViewPlace) -> BorderNode:
         need = Need((spans[0].width, spans[0].height), (around[0], around[1] + title), (80.0, 80.0), finest=finest)
         return leaf(view.box, need.ending(coarsest, LARGEST))
 
+    choice = kinematic_frames.RowChoice(spans)
+
     @cache
     def in_place(width: int, height: int) -> float:
-        return kinematic_frames.most_room(spans, Box(0.0, 0.0, width, height - title))[0]
+        return choice.most_room(width, height - title)[0]
 
     def scale(width: float, height: float) -> float:
         return in_place(round(width), round(height))
