@@ -5,8 +5,17 @@ const SHOWN = { m: ["mm", 1 / 1000], rad: ["°", Math.PI / 180] };
 
 const told = (value, unit, as = SHOWN[unit] ?? [unit, 1]) => { const [u, by] = as; return `${digits(value / by)} ${UNITS()[u] ?? u}`.replace(" °", "°"); };
 
-// What may wait until the page is idle.
-const soon = (act) => (window.requestIdleCallback ?? setTimeout)(act);
+// Work that may wait, one after another, a piece at a time while the page is idle; `act` is given what it finds.
+let leisure = Promise.resolve();
+
+function atLeisure(work, act) {
+  const some = (done) => (window.requestIdleCallback ?? setTimeout)((idle) => {
+    let piece;
+    do piece = work.next(); while (!piece.done && idle?.timeRemaining?.() > 4);
+    if (piece.done) { act(piece.value); done(); } else some(done);
+  });
+  leisure = leisure.then(() => new Promise(some));
+}
 
 const isLoad = (g) => /^(force|moment)\[/.test(g.name), isTable = (g) => /\.tables?(\[\d+\])?$/.test(g.name);
 
@@ -16,18 +25,23 @@ function sizeOfAll() {
 
 const LOOKS = 24, HALVES = 6, TIMES = 3;
 
-// Whether all points have a place at some angles of the turn.
-function assembles(given) {
+// Whether all points have a place at some angles of the turn, an angle a piece.
+function* assembles(given) {
   const now = { given, start: record.motion.start, courses: coursesOf(given), loads: [] }, { all } = record.motion;
   assembles.places ??= Object.entries(all.results).filter(([id]) => id.startsWith("positions/")).map(([, [place]]) => place);
-  return round(LOOKS).every((phi) => { const values = run(all, phi, now); return assembles.places.every((place) => !Number.isNaN(values[place])); });
+  for (const phi of round(LOOKS)) {
+    const values = run(all, phi, now);
+    if (assembles.places.some((place) => Number.isNaN(values[place]))) return false;
+    yield;
+  }
+  return true;
 }
 
 // From a slider's own number to an end of it: as far as the mechanism goes round, to a part of the way.
-function reachOf(own, far, put) {
-  if (assembles(put(far))) return far;
+function* reachOf(own, far, put) {
+  if (yield* assembles(put(far))) return far;
   let near = own, beyond = far;
-  for (let i = 0; i < HALVES; i++) { const middle = (near + beyond) / 2; if (assembles(put(middle))) near = middle; else beyond = middle; }
+  for (let i = 0; i < HALVES; i++) { const middle = (near + beyond) / 2; if (yield* assembles(put(middle))) near = middle; else beyond = middle; }
   return near;
 }
 
@@ -37,7 +51,7 @@ function limitsOf(g, i) {
   const wide = g.unit === "rad" ? Math.PI / 2 : i !== null || own === 0 ? sizeOfAll() / 2 : Math.abs(own) * (TIMES - 1);
   const low = Math.max(own - wide, g.low ?? (moves ? -Infinity : 0)), high = Math.min(own + wide, g.high ?? Infinity);
   const put = (x) => ({ ...machine.made, [g.name]: i === null ? x : g.value.map((v, k) => (k === i ? x : v)) });
-  const ends = () => (moves && assembles(machine.made) ? [reachOf(own, low, put), reachOf(own, high, put)] : [low, high]);
+  const ends = function* () { return moves && (yield* assembles(machine.made)) ? [yield* reachOf(own, low, put), yield* reachOf(own, high, put)] : [low, high]; };
   g.limits ??= [];
   return (g.limits[i ?? 0] ??= { low, high, ends });
 }
@@ -57,9 +71,7 @@ function slidersOf(g) {
     const out = node("output"), input = node("input", { type: "range", "aria-label": `${g.name}${i === null ? "" : ` ${"xy"[i]}`}` });
     const range = ([low, high]) => { Object.assign(input, { min: low, max: high, step: (high - low) / 400 }); input.value = now(); };
     range([limits.low, limits.high]);
-    if (limits.ends) {
-      soon(() => { if (limits.ends) { [limits.low, limits.high] = limits.ends(); delete limits.ends; } range([limits.low, limits.high]); });
-    }
+    if (limits.ends) atLeisure(limits.ends(), ([low, high]) => { Object.assign(limits, { low, high, ends: null }); range([low, high]); });
     const row = node("label", { class: "slide", title: g.name }, node("span", { html: name }), out, input);
     const refresh = () => { out.textContent = isTable(g) ? `×${digits(now())}` : told(now(), g.unit, g.shown); row.classList.toggle("changed", now() !== own); input.value = now(); };
     const put = (x) => setGiven(g.name, i === null ? x : machine.given[g.name].map((v, k) => (k === i ? x : v)));
