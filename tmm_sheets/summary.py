@@ -126,7 +126,7 @@ def _structure(m: Mechanism) -> Iterator[str]:
     yield "\n" + tell("Assur groups, the farthest first")
     kind = tell("kind {n} ({form})")
     grade = tell("class {grade}, order {order}")
-    yield from _table([(g.name, grade.format(grade=g.kind.grade, order=g.kind.order),
+    yield from _table([(g.lettered, grade.format(grade=g.kind.grade, order=g.kind.order),
                         kind.format(n=g.kind.number, form=tell(g.form))) for g in reversed(m.groups)])
     yield "\n" + tell("Formula of structure: {formula}").format(formula=m.structure)
 

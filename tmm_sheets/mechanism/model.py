@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
 
 from tmm_sheets.construction.search_count import SearchCount
@@ -222,6 +224,15 @@ class GroupKind(ABC):
         return None
 
 
+def lettered(links: Iterable[str]) -> str:
+    """Links of a group as the manuals write them, by their numbers: 4–5.
+
+    >>> lettered(["11", "5a", "10"])
+    '5a–10–11'
+    """
+    return "–".join(sorted(links, key=lambda link: (int("0" + "".join(takewhile(str.isdecimal, link))), link)))
+
+
 @dataclass(frozen=True)
 class StructuralGroup:
     """An Assur group (группа Ассура): of class II, order 2, unless it is a kind of its own.
@@ -248,8 +259,13 @@ class StructuralGroup:
 
     @property
     def name(self) -> str:
-        """Link names joined as the manuals write them: 2-3."""
+        """Link names joined in the order of the scheme, in which the record has them: 5–4."""
         return "–".join(self.links)
+
+    @property
+    def lettered(self) -> str:
+        """The same as it is lettered, the lower number first: 4–5."""
+        return lettered(self.links)
 
     @property
     def form(self) -> str:

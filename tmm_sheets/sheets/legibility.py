@@ -138,8 +138,8 @@ def group(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
         place = view.options.get("places", [view.box])[0].inset(*kinetic_frames.SCHEME)
         return kinetic_frames.scheme(project, g, k, kinetic_frames.share_of_arrows(project, g, k, place)), place
 
-    yield from _crowded(project, n, view, Remark(marked("group {name}"), {"name": g.name}), *kinetic_frames.crowd(project, g, k),
-                        f"scheme-{'-'.join(g.links)}", placed)
+    yield from _crowded(project, n, view, Remark(marked("group {name}"), {"name": g.lettered}),
+                        *kinetic_frames.crowd(project, g, k), f"scheme-{'-'.join(g.links)}", placed)
 
 
 Around = tuple[list[complex], list[complex]]

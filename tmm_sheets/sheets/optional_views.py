@@ -49,12 +49,13 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside:
     """Draw those of the offered views that find room ``inside`` the sheet, away from boxes ``closed`` to them.
 
     A view tells its sizes, from what it wants down to what it can do with, and perhaps the left edge that it would like best or
-    what it belongs to: it stands near that or nowhere, and those that do so choose first.
+    what it belongs to: it stands near that, or nowhere unless it says where it ``stands`` else, and those that do so choose first.
     """
     taken = _closed(inside, closed)
     seen, forces = 0, _of_forces(canvas, inside)
     whole, drawn = (_whole(canvas, inside, taken.shape, lettering) for lettering in (True, False))
     for view, wanted in _wanted(project, canvas, offered):
+        box = None
         for k in range(seen, len(canvas.parts)):
             taken |= _of_part(canvas, k, inside, taken.shape)
         seen = len(canvas.parts)
@@ -62,7 +63,7 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside:
             spot, own, others = function(view.kind.near)(project, canvas, view.options)
             pictures = [_ink_box(canvas, k, inside, taken.shape) for k in (own, *others)]
             box = _near(taken, wanted, inside, spot, pictures)
-        else:
+        if box is None and (view.kind.stands or not view.kind.near):
             at = function(view.kind.left)(view.options) if view.kind.left else None
             # Nothing parts a loaded scheme from its force plans but the equations that are read from it, and kinematics stand
             # among the forces only where there is no other room. Beside a plan that is all but one line there is much of it from

@@ -35,7 +35,8 @@ class ViewKind:
     sizes
         ``(project, canvas, options)`` to the sizes of an offered view, mm, the one most wanted first; none for nothing to show.
     near
-        ``(project, canvas, options)`` to the spot that an offered view belongs to: it stands near that or nowhere.
+        ``(project, canvas, options)`` to the spot that an offered view belongs to: it stands near that, or nowhere unless it tells
+        where it ``stands`` else.
     left
         ``(options)`` to the left edge that an offered view would like best, mm.
     stands
@@ -137,7 +138,7 @@ VIEWS = {view.draw: view for view in (
     ViewKind("kinetics.lever", "forces", place="linkage_sizes.lever", picture="forces", read="legibility.lever"),
     ViewKind("kinetics.results", "forces", place="linkage_sizes.results", name=marked("Results of the force analysis")),
     ViewKind("moments.equations", "forces", sizes="moments.equations_sizes", stands="forces"),
-    ViewKind("moments.lever", "forces", sizes="moments.lever_sizes", stands="forces"),
+    ViewKind("moments.lever", "forces", sizes="moments.lever_sizes", near="kinetics.lever_near", stands="forces"),
     ViewKind("position_tables.reactions", "forces", sizes="position_tables.reactions_sizes",
              name=marked("Table of reactions at all positions")),
     # of whatever the sheet has

@@ -46,7 +46,7 @@ def test_slotted_links_keep_their_length(name, link, pivot, length):
     """One length all round the turn, beyond every place of the slider block; a bar from its pivot on is twice l_OS long."""
     p = project(name)
     pos = p.study.positions
-    _, end = link_marks.free_ends(pos)[link]
+    end = link_marks.free_ends(pos)[link][-1].at
     far = np.abs(end - pos.mechanism.fixed[pivot])
     assert np.ptp(far) < 1e-12
     blocks = [np.abs(pos.points[str(g.outer[0])].value - pos.mechanism.fixed[pivot]).max()

@@ -239,7 +239,7 @@ class TriadKind(GroupKind):
     def _false_positions(pos: Positions, g: TriadGroup, near: tuple[Step, Step], held: tuple[Any, ...]) -> None:
         """Without the third leg: some places of the first, of the second by compasses, of the third corner by the triangle."""
         a, b, c = g.legs
-        title = tr("False positions of group {name}").format(name=g.name)
+        title = tr("False positions of group {name}").format(name=g.lettered)
         plan = pos.false[g.name] = Plan(f"false-positions-{g.name}{pos.where}", title, "m", pos.plan.labels)
         size = APART * min(x for x in (c.length, g.sides[0], g.sides[1]) if x > 0)
         two, three = held[9], held[14]

@@ -24,7 +24,7 @@ from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.groups.force_plan import OPPOSITE_COUPLE, ForcePlan, Load, Role, TangentialPart
 from tmm_sheets.mechanism.groups.triad import BY_MOMENTS
-from tmm_sheets.mechanism.model import StructuralGroup
+from tmm_sheets.mechanism.model import StructuralGroup, lettered
 from tmm_sheets.methods.linkage.accelerations import Accelerations
 from tmm_sheets.methods.linkage.positions import Positions
 from tmm_sheets.numbers import Sizes
@@ -197,7 +197,7 @@ class Kinetostatics:
         """New force plan of a link or of a whole group."""
         title = tr("Force polygon of link "
                    "{link}").format(link=links[0]) if len(links) == 1 else tr("Force polygon of group "
-                                                                              "{links}").format(links="–".join(links))
+                                                                              "{links}").format(links=lettered(links))
         fp = ForcePlan(name, links, Plan(f"force-{name}", title, "N", self.positions.plan.labels, search=self.plan.search))
         self.plans[name] = fp
         return fp

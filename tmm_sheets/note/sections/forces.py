@@ -237,7 +237,7 @@ def index_of(symbol: str) -> str:
 def _group(r: Reader, g: Any, nth: int, told: set[str]) -> dict[str, Any]:
     """One Assur group: its figure, moments, force plans, and the arms that no group before it has ``told``."""
     forces = r.project.study.forces
-    found: dict[str, Any] = {"links": g.name, "kind": str(g.kind.number), "nth": str(nth)}
+    found: dict[str, Any] = {"links": g.lettered, "kind": str(g.kind.number), "nth": str(nth)}
     for name in (f"group {g.name}", f"group {'–'.join(g.links)}"):
         figure = r.pictures.figure(name)
         if figure is not None:

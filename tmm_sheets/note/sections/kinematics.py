@@ -227,7 +227,7 @@ def _triads(r: Reader) -> Iterator[dict[str, Any]]:
         first = tuple(step.name for step in g.false_points(plan)[0])
         scale = r.scales.get(plan.name)
         found: dict[str, Any] = {
-            "links": g.name, "base": g.links[0], "first": a.link, "third": c.link, "corner": letters_symbol(c.corner),
+            "links": g.lettered, "base": g.links[0], "first": a.link, "third": c.link, "corner": letters_symbol(c.corner),
             "slider": bool(c.guide), "nth": str(nth),
             "false_steps": r.sentences(plan, _all_but(first)),
             "special": letters_symbol(special.name), "one": special.pair[0].link, "other": special.pair[1].link,

@@ -22,7 +22,7 @@ def scope(r: Reader) -> Scope:
     for i, g in enumerate(reversed(m.groups), 1):
         groups.append(
             {
-                "links": g.name,
+                "links": g.lettered,
                 "kind": str(g.kind.number),
                 "triad": g.kind.grade == 3,
                 "form": tr(g.form) if g.kind.grade == 2 else g.kind.told(g),

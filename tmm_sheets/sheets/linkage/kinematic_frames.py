@@ -121,9 +121,9 @@ def positions_reach(project: Project) -> tuple[Any, Any]:
         body = (link_marks.RAM + 5.0) * complex(pos.guide_directions[guide].at(project.force_index))
         z.append(np.full(2, complex(pos.points[point].at(project.force_index))))
         d.append(np.array([body, -body]))
-    for end in (end for ends in link_marks.free_ends(pos).values() for end in ends if end is not None):
-        z.append(np.ravel(end))
-        d.append(np.full(len(np.ravel(end)), 1j))
+    for end in (np.ravel(end.at) for ends in link_marks.free_ends(pos).values() for end in ends):
+        z.append(end)
+        d.append(np.full(len(end), 1j))
     at_indicator, reach = indicator.reach(project)
     z.append(np.asarray(at_indicator))
     d.append(np.asarray(reach))

@@ -148,7 +148,8 @@ def _position_numbers(project: Project, s: PlayerStage) -> None:
     """Position numbers at the crank pin and the hinges, and as marks on the paths of the sliders."""
     pos, m = project.study.positions, project.mechanism
     sliding = on_fixed_guides(m)
-    for name in dict.fromkeys(_hinges(m, sliding)):
+    numbered = dict.fromkeys(_hinges(m, sliding))
+    for name in numbered:
         z = np.asarray(s.frame(pos.points[name].value))
         _hinge_numbers(project, s, name, s.at(m.crank.pivot) if name == m.crank.pin else z.mean() - 40j)
     on = list(sliding.values())
@@ -158,15 +159,19 @@ def _position_numbers(project: Project, s: PlayerStage) -> None:
         if on.count(guide) > 1:
             _shared_path(project, s, name, n * (1 if name == next(p for p, g in sliding.items() if g == guide) else -1))
         else:
-            own_path(project, s, name, n)
+            z = np.ravel(s.frame(pos.points[name].value))[:, None]
+            others = np.concatenate([np.ravel(s.frame(pos.points[other].value)) for other in numbered])
+            own_path(project, s, name, n, whose=bool(np.nanmin(np.abs(z - others)) < MIXED))
 
 
 def _hinges(m: Mechanism, sliding: Container[str]) -> Iterator[str]:
-    """Points of the hinges that have their position numbers beside them."""
+    """Points of the hinges, and those that are there for their paths, which have their position numbers beside them."""
     yield m.crank.pin
     yield from (p.name for p in m.points if p.link != m.crank.link and any(p.name in g.outer for g in m.groups))
     for g in m.groups:
         yield from (name for name in g.kind.carried(g) if name not in sliding)
+    for link in m.links:
+        yield from link_marks.traced(m, link)
 
 
 def _hinge_numbers(project: Project, s: PlayerStage, name: str, middle: complex) -> None:
@@ -194,8 +199,15 @@ def on_fixed_guides(m: Mechanism) -> dict[str, str]:
     return {point: guide for g in m.groups for point, guide in g.kind.guided(g) if m.guides[guide].link == m.frame}
 
 
-def own_path(project: Project, s: PlayerStage, name: str, n: complex) -> None:
-    """Marks of the only slider on a path: numbers of the working stroke on side ``n`` of it, of the idle one on the other."""
+MIXED = 6.0
+"""Distance of a slider from a numbered hinge, mm, below which its numbers say whose they are."""
+
+
+def own_path(project: Project, s: PlayerStage, name: str, n: complex, *, whose: bool = False) -> None:
+    """Marks of the only slider on a path: numbers of the working stroke on side ``n`` of it, of the idle one on the other.
+
+    They are indices of its letter where others stand close (``whose``).
+    """
     cycle = project.cycle
     z = np.asarray(s.frame(project.study.positions.points[name].value))
     for i, _ in cycle.drawn:
@@ -205,6 +217,7 @@ def own_path(project: Project, s: PlayerStage, name: str, n: complex) -> None:
         for crowd in crowds(there, z):
             at = complex(sum(z[i] for i in crowd)) / len(crowd)
             said = graphs.ranged([cycle.labels[i] for i in crowd])
+            said = f"{name[0]}_{{{name[1:]}{said}}}" if whose else said
             s.position(crowd[0]).letters(name, said, side, 2.5, 0.6, at + 2.0 * side, False)
 
 
@@ -865,6 +878,6 @@ def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
         return
     rows = [[tr("Group"), tr("Class"), tr("Order"), tr("Kind"), tr("Pairs")]]
     for g, found in zip(reversed(m.groups), decompose(m), strict=True):
-        rows.append([g.name, g.kind.roman, str(g.kind.order), found.kind.told(found), ", ".join(found.kind.joints(found))])
+        rows.append([g.lettered, g.kind.roman, str(g.kind.order), found.kind.told(found), ", ".join(found.kind.joints(found))])
     widths = [0.17, 0.15, 0.2, 0.22, 0.26]
     canvas.table(complex(box.x0, inside.y1 - 16.5), widened([w * box.width for w in widths], rows, 3.5), rows, 7.0, 3.5)

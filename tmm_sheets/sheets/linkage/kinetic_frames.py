@@ -193,8 +193,7 @@ def scheme(project: Project, g: StructuralGroup, k: int, share: float = 1.0) -> 
     hinges, centres = scheme_points(project, g, [shape for shape in link_marks.shapes(pos) if shape.link in g.links])
     points = [complex(pos.points[name].at(k)) for name in (*hinges, *dict.fromkeys(centres))]
     about = complex(pos.place(g.kind.about(g)).at(k))
-    free = [(complex(end[k]), 0j) for link, ends in link_marks.free_ends(pos).items() if link in g.links for end in ends
-            if end is not None]
+    free = [(complex(end.at[k]), 0j) for link, ends in link_marks.free_ends(pos).items() if link in g.links for end in ends]
     return loaded([*points, *(force.at for force in shown)], shown, about, free, with_arms(project, g, shown), share)
 
 
@@ -367,6 +366,12 @@ def finest_crank(project: Project) -> float:
 def acting_sides(fp: ForcePlan, k: int, force_size: float) -> list[tuple[str, Step, Step, bool]]:
     """Sides of a force polygon that are forces at all beside ``force_size``, N."""
     return [s for s in fp.sides if not is_zero(complex(s[2].at(k)) - complex(s[1].at(k)), force_size)]
+
+
+def loaded_plans(project: Project, names: Iterable[str]) -> list[ForcePlan]:
+    """The force plans of these names that have a force at the position of the force analysis: one without has no view."""
+    k, forces = project.force_index, project.study.forces
+    return [forces.plans[name] for name in names if acting_sides(forces.plans[name], k, forces.force_size(k))]
 
 
 def terms(sides: Iterable[tuple[str, Step, Step, bool]]) -> list[str]:

@@ -42,6 +42,7 @@ from tmm_sheets.sheets.linkage.kinetic_frames import (
     flat,
     hinge_of,
     lever_scheme,
+    loaded_plans,
     normal_sign,
     on_crank,
     on_lever,
@@ -99,24 +100,25 @@ def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
 
     ``scheme`` is the scheme's share of the place, ``stacked`` puts it above its plans.
     """
-    k, forces = project.force_index, project.study.forces
-    m = project.mechanism
+    k, m = project.force_index, project.mechanism
     nth = int(options.get("group", 1))
     if not 1 <= nth <= len(m.groups):
         raise CannotBuild(tell("the mechanism has no group {nth} to draw, it has {count}").format(nth=nth, count=len(m.groups)),
                           tell("take an arrangement with the view kinetics.groups, or leave kinetics.group out of it"))
     g = tuple(reversed(m.groups))[nth - 1]
     share = float(options.get("scheme", 0.42))
-    names = g.kind.force_plans(g)
+    plans = loaded_plans(project, g.kind.force_plans(g))
     if "places" in options:
         left, *places = options["places"]
     else:
-        left, places = _parted(box, share, [forces.plans[name] for name in names], k, stacked=bool(options.get("stacked")))
+        left, places = _parted(box, share, plans, k, stacked=bool(options.get("stacked"))) if plans else (box, [])
     _scheme(project, canvas, left, g, k)
     for line in jumps(project, g.links):
         canvas.note(left, line)
-    for name, place in zip(names, places, strict=True):
-        _force_plan(project, canvas, place, forces.plans[name], k)
+    if not plans:
+        canvas.note(left, tr("There are no forces in this position"))
+    for fp, place in zip(plans, places, strict=True):
+        _force_plan(project, canvas, place, fp, k)
 
 
 def jumps(project: Project, links: Collection[str]) -> Iterator[str]:
@@ -175,7 +177,7 @@ def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: i
     frame = fit_frame(project, canvas, f"scheme-{'-'.join(g.links)}", "μ_l", tr("m/mm"), *around, box.inset(*SCHEME))
     canvas.of = f"group {g.name}"
     title = tr("Assur group {name} (kind {number})") if g.kind.grade == 2 else tr("Assur group {name} (class III, order 3)")
-    canvas.title(box, title.format(name=g.name, number=g.kind.number), str(frame.scale))
+    canvas.title(box, title.format(name=g.lettered, number=g.kind.number), str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
     if g.kind.ram(g) is None:
         link_marks.draw_guides(s, pos, g.links)
@@ -300,9 +302,6 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     inside = box.inset(*AROUND)
     size = project.study.forces.force_size(k)
     sides = acting_sides(fp, k, size)
-    if not sides:
-        _fitted(canvas, canvas.title(box, fp.plan.title).centre, tr("There are no forces in this position"), 3.5, box.width - 4.0)
-        return
     extra = [seg for seg in fp.plan.segments if not any(seg.symbol == side[0] for side in fp.sides)]
     asked = [side[:3] for side in sides if side[3]] + [(seg.symbol, seg.tail, seg.head) for seg in extra]
     found = [tr("{quantity} = {value} N").format(quantity=sign.replace(BAR, ""),
@@ -427,8 +426,9 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     k, study, c, driver = project.force_index, project.study, project.mechanism.crank, project.driver
     forces, pos = study.forces, study.positions
     share = float(options.get("scheme", 0.5))
-    left, right = options.get("places", (Box(box.x0, box.y0, box.x0 + share * box.width, box.y1),
-                                         Box(box.x0 + share * box.width + 4.0, box.y0, box.x1, box.y1)))
+    plans = loaded_plans(project, [c.link])
+    left, *places = options.get("places", (Box(box.x0, box.y0, box.x0 + share * box.width, box.y1),
+                                           Box(box.x0 + share * box.width + 4.0, box.y0, box.x1, box.y1)) if plans else (box,))
     centre, pins = pos.points[c.pivot], [pos.points[name] for name in link_marks.crank_pins(pos)]
     pivot, ends = complex(centre.at(k)), [complex(pin.at(k)) for pin in pins]
     shown = on_crank(project, k)
@@ -453,7 +453,10 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     for line in jumps(project, [c.link]):
         canvas.note(left, line)
     _crank_couples(project, s, left, s.at(centre), away)
-    _force_plan(project, canvas, right, forces.plans[c.link], k)
+    if not plans:
+        canvas.note(left, tr("There are no forces in this position"))
+    for fp, place in zip(plans, places, strict=True):
+        _force_plan(project, canvas, place, fp, k)
 
 
 def _crank_couples(project: Project, s: PlayerStage, box: Box, at: complex, away: complex) -> None:
@@ -501,6 +504,13 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         s.letters(lv.contact, lv.contact.name, gap=1.2)
     draw_arms(s, 0j, shown, points=[frame(z) for z in points])
     draw_forces(s, shown)
+
+
+def lever_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[complex, int, list[int]]:
+    """Where the equation of the lever belongs: under its middle, mm; its part of the sheet, and no other that it could be of."""
+    part = max(k for k, part in enumerate(canvas.parts) if part.draw == "kinetics.lever")
+    box = canvas.parts[part].box
+    return complex(box.centre.real, box.y0), part, []
 
 
 def _turned_letters(s: PlayerStage, turned: PlayerStage, points: Mapping[str, Step], vectors: list[Segment]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -188,26 +188,45 @@ BEYOND = 0.04
 """How far a slotted link runs on beyond the farthest place of its slider block, in parts of its length."""
 
 
-def free_ends(pos: Positions) -> dict[str, tuple[NDArray[Any] | None, NDArray[Any] | None]]:
-    """Ends of bars along which slider blocks slide, m, at the positions: they keep their lengths all round the turn.
+class FreeEnd(NamedTuple):
+    """An end of a line of a link without a hinge: the arm that runs to it, empty for the bar, and its places, m, at the positions."""
 
-    Before and behind along the direction of the link; None where a hinge is the end. With its centre of mass between the blocks it
-    is a uniform bar (manual 001: l_O3S3 is half of the rocker), unless that is too short for them.
+    arm: tuple[str, ...]
+    at: NDArray[Any]
+
+
+def free_ends(pos: Positions) -> dict[str, list[FreeEnd]]:
+    """Ends of bars and arms along which slider blocks slide: they keep their lengths all round the turn.
+
+    With its centre of mass between the blocks a bar is uniform (manual 001: l_O3S3 is half of the rocker), unless that is too short
+    for them.
     """
-    found: dict[str, tuple[NDArray[Any] | None, NDArray[Any] | None]] = {}
+    found: dict[str, list[FreeEnd]] = {}
     for shape in shapes(pos):
-        names = (*shape.bar, *shape.over)
-        base, u = np.asarray(pos.points[names[0]].value) if shape.bar else 0j, np.asarray(pos.directions[shape.link].value)
-        ways = [(np.asarray(pos.points[name].value) - base) * np.conj(u) for name in names] if len(names) > 1 else []
-        size = max((float(np.nanmax(np.abs(way))) for way in ways), default=0.0)
-        if shape.arms or not size or any(np.nanmax(np.abs(way.imag)) > 1e-6 * size for way in ways):
-            continue
-        sliding = [way.real for way in ways if np.ptp(way.real) > 1e-6 * size]
-        fixed = [float(np.mean(way.real)) for way in ways if np.ptp(way.real) <= 1e-6 * size]
-        first, last = _ends(fixed, sliding, _centre(pos, shape, base, u))
-        if first is not None or last is not None:
-            found[shape.link] = (None if first is None else base + first * u, None if last is None else base + last * u)
+        u = np.asarray(pos.directions[shape.link].value)
+        lines: list[tuple[str, ...]] = [*shape.arms, *([] if shape.arms else [(*shape.bar, *shape.over)])]
+        ends = []
+        for line in lines:
+            base = np.asarray(pos.points[line[0]].value) if shape.bar else np.asarray(0j)
+            centre = None if shape.arms else _centre(pos, shape, base, u)
+            ends += [FreeEnd(line if shape.arms else (), base + end * u) for end in _ends_of(pos, line, base, u, centre)]
+        if ends:
+            found[shape.link] = ends
     return found
+
+
+def _ends_of(pos: Positions, names: tuple[str, ...], base: Any, u: Any, centre: float | None) -> list[complex]:
+    """Places of the free ends of a line through some points, from its base and turned with its link; none if it is not straight."""
+    ways = [(np.asarray(pos.points[name].value) - base) * np.conj(u) for name in names] if len(names) > 1 else []
+    far = max((complex(np.ravel(way)[np.nanargmax(np.abs(way))]) for way in ways), key=abs, default=0j)
+    along = far / abs(far) if far else 1.0
+    along = along if abs(along.imag) > 1e-6 else 1.0  # a bar is read along its link, also backwards
+    ways = [way * np.conj(along) for way in ways]
+    if not far or any(np.nanmax(np.abs(way.imag)) > 1e-6 * abs(far) for way in ways):
+        return []
+    sliding = [way.real for way in ways if np.ptp(way.real) > 1e-6 * abs(far)]
+    fixed = [float(np.mean(way.real)) for way in ways if np.ptp(way.real) <= 1e-6 * abs(far)]
+    return [end * along for end in _ends(fixed, sliding, centre) if end is not None]
 
 
 def _centre(pos: Positions, shape: Shape, base: Any, u: Any) -> float | None:
@@ -246,15 +265,15 @@ def draw(s: PlayerStage, pos: Positions, style: str, only: Collection[str] | Non
     gaps = [name for name in at if name not in free] if style == "main" else [name for name in at if name in pos.mechanism.fixed]
     for shape in drawn:
         if shape.bar:
-            _draw_bar(s, pos, shape, [at[name] for name in gaps], style, ends.get(shape.link, (None, None)))
-        elif shape.along is not None and (style == "main" or shape.slot is None):
+            _draw_bar(s, pos, shape, [at[name] for name in gaps], style, ends.get(shape.link, []))
+        elif shape.along is not None:
             _draw_block(s, pos, shape, style)
     if style == "main":
         _draw_pairs(s, pos, at, whole=only is None)
 
 
 def _draw_bar(s: PlayerStage, pos: Positions, shape: Shape, hinges: list[complex], style: str,
-              ends: tuple[NDArray[Any] | None, NDArray[Any] | None]) -> None:
+              ends: Iterable[FreeEnd]) -> None:
     """A bar interrupted at hinges, in a bare plan from end to end; ``ends`` are free ones beyond its points."""
     if style == "main":
         _corners(s, pos, shape)
@@ -262,8 +281,8 @@ def _draw_bar(s: PlayerStage, pos: Positions, shape: Shape, hinges: list[complex
         pen = s.pen(pos.directions[shape.link], "link", f"{line[0]}–{line[-1]}")
         points = [s.at(pos.points[name]) for name in (line if style == "main" else (line[0], line[-1]))]
         symbols.bar(pen, points, hinges, style)
-        for end in (end for end in ends if end is not None and line not in shape.arms):
-            free = complex(s.frame(complex(end[s.k or 0])))
+        for end in (end for end in ends if (end.arm or line) == line and (end.arm or line not in shape.arms)):
+            free = complex(s.frame(complex(end.at[s.k or 0])))
             nearest = min(points, key=lambda z: abs(z - free))
             gap = symbols.HINGE if any(abs(nearest - hinge) < symbols.HINGE for hinge in hinges) else 0.0
             s.line(pos.directions[shape.link], nearest + gap * (free - nearest) / abs(free - nearest), free, style, "symbol")
@@ -368,7 +387,7 @@ def _base_direction(pos: Positions, name: str) -> complex:
 
 
 def _ram(canvas: Canvas, s: PlayerStage, pos: Positions, shape: Shape, style: str) -> None:
-    """Guided link of a kind 5 group: a body on the guide with the slot in which the block slides."""
+    """Guided link of a kind 5 group: a body on the guide with the slot in which the block slides; in a bare plan their middles."""
     g = next(g for g in pos.mechanism.groups if shape.link in g.links)
     z, pin = s.at(pos.points[str(shape.block)]), s.at(pos.points[g.outer[0]])
     assert shape.slot is not None
@@ -377,6 +396,10 @@ def _ram(canvas: Canvas, s: PlayerStage, pos: Positions, shape: Shape, style: st
         v = -v
     reach = max(((pin - z) * np.conj(v)).real + 9.0, 16.0)
     half, thick, wall, line = RAM, 5.0, symbols.BLOCK[1] / 2, canvas.line
+    if style != "main":
+        line(z - half * u, z + half * u, style)
+        line(z, z + reach * v, style)
+        return
     for side in (1, -1):
         line(z + side * wall * u + thick * v, z + side * wall * u + reach * v, style)
         line(z + side * wall * u + thick * v, z + side * half * u + thick * v, style)

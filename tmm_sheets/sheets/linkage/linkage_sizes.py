@@ -117,7 +117,7 @@ def false_positions(project: Project, view: ViewPlace) -> BorderNode | None:
 
 def group(project: Project, view: ViewPlace) -> BorderNode | None:
     """Loaded scheme and force plans: side by side, or the plans one under another, or the scheme over them: what fills most."""
-    k, forces = project.force_index, project.study.forces
+    k = project.force_index
     nth = int(view.options.get("group", 1))
     if not 1 <= nth <= len(project.mechanism.groups):
         return fixed(view.box)
@@ -125,7 +125,7 @@ def group(project: Project, view: ViewPlace) -> BorderNode | None:
     box, share = view.box, float(view.options.get("scheme", 0.45))
     need = _readable(reaching(box, *kinetic_frames.scheme(project, g, k), kinetic_frames.SCHEME, (92.0, 80.0)),
                      *kinetic_frames.crowd(project, g, k), OF_FORCE)
-    plans = [_force_plan(project, forces.plans[of], k) for of in g.kind.force_plans(g)]
+    plans = [_force_plan(project, fp, k) for fp in kinetic_frames.loaded_plans(project, g.kind.force_plans(g))]
     return _parted(box, share, need, plans)
 
 
@@ -151,6 +151,9 @@ def _readable(need: Need, size: float, forces: int, each: float) -> Need:
 
 
 def _parted(box: Box, share: float, scheme: Need, plans: list[Need]) -> BorderNode:
+    if not plans:
+        return leaf(box, scheme)
+
     def node(axis: int, inner: int) -> BorderNode:
         each = (1.0 - share) / len(plans)
         of_plans = joined(inner, [leaf(box, need, each) for need in plans], [1.0] * len(plans), 4.0)
@@ -180,8 +183,8 @@ def crank(project: Project, view: ViewPlace) -> BorderNode:
     share = float(view.options.get("scheme", 0.5))
     reach = kinetic_frames.crank_scheme(project, k, kinetic_frames.on_crank(project, k))
     scheme = replace(reaching(view.box, *reach, kinetic_frames.CRANK, (76.0, 80.0)), finest=kinetic_frames.finest_crank(project))
-    plan = _force_plan(project, project.study.forces.plans[project.mechanism.crank.link], k)
-    return _parted(view.box, share, scheme, [plan])
+    plans = kinetic_frames.loaded_plans(project, [project.mechanism.crank.link])
+    return _parted(view.box, share, scheme, [_force_plan(project, fp, k) for fp in plans])
 
 
 def lever(project: Project, view: ViewPlace) -> BorderNode:
