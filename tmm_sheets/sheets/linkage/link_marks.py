@@ -189,7 +189,7 @@ BEYOND = 0.04
 
 
 class FreeEnd(NamedTuple):
-    """An end of a line of a link without a hinge: the arm that runs to it, empty for the bar, and its places, m, at the positions."""
+    """An end of a line of a link without a hinge: the arm that runs to it, empty for the bar; its places, m, at the positions."""
 
     arm: tuple[str, ...]
     at: NDArray[Any]
