@@ -62,7 +62,9 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside:
         if view.kind.near:
             spot, own, others = function(view.kind.near)(project, canvas, view.options)
             pictures = [_ink_box(canvas, k, inside, taken.shape) for k in (own, *others)]
-            box = _near(taken, wanted, inside, spot, pictures)
+            # What may stand elsewhere too rather has large letters than the nearest place.
+            tried = [[size] for size in wanted] if view.kind.stands else [wanted]
+            box = next((box for sizes in tried if (box := _near(taken, sizes, inside, spot, pictures)) is not None), None)
         if box is None and (view.kind.stands or not view.kind.near):
             at = function(view.kind.left)(view.options) if view.kind.left else None
             # Nothing parts a loaded scheme from its force plans but the equations that are read from it, and kinematics stand
