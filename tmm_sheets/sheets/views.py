@@ -79,7 +79,7 @@ ROOMS = {module: room for room, modules in {
     "cams": "cam cam_law cam_profile cam_sizes cam_zone",
     "flywheel": "crank_speed enlarged flywheel mertsalov",
     "linkage": "details diagrams false_positions friction friction_sizes given_position hodograph "
-               "kinematic_frames kinematics kinetics lever_detail linkage_sizes load_diagram moments path_marks synthesis",
+               "kinematic_frames kinematics kinetics linkage_sizes load_diagram moments path_marks synthesis",
     "gears": "gear gear_equations gear_sizes plan_checks planet_motion rack reducer reducer_equations train wheel_sizes",
     "tables": "given_data position_tables",
     "components": "upright_tables",
@@ -122,8 +122,6 @@ VIEWS = {view.draw: view for view in (
              name=marked("Table of accelerations at all positions")),
     ViewKind("synthesis.sizes", "positions", place="linkage_sizes.synthesis", sizes="synthesis.sizes_sizes"),
     # its forces
-    ViewKind("details.corner", "forces", sizes="details.corner_sizes", near="details.corner_near",
-             name=marked("Mark of an enlarged detail")),
     ViewKind("diagrams.balancing", "forces", sizes="diagrams.balancing_sizes"),
     ViewKind("diagrams.balancing_table", "forces", sizes="diagrams.balancing_table_sizes", left="upright_tables.left_edge"),
     ViewKind("friction.mechanism", "forces", place="friction_sizes.mechanism"),
@@ -143,7 +141,7 @@ VIEWS = {view.draw: view for view in (
              name=marked("Table of reactions at all positions")),
     # of whatever the sheet has
     ViewKind("hodograph.bearing", sizes="hodograph.bearing_sizes"),
-    ViewKind("lever_detail.crowd", sizes="lever_detail.crowd_sizes", near="lever_detail.crowd_near"),
+    ViewKind("details.dense", sizes="details.dense_sizes", near="details.dense_near", name=marked("Mark of an enlarged detail")),
     ViewKind("planet_motion.checks", sizes="planet_motion.checks_sizes", stands="anywhere"),
     ViewKind("planet_motion.inverted", sizes="planet_motion.inverted_sizes"),
     ViewKind("planet_motion.ratios", sizes="planet_motion.ratios_sizes", stands="anywhere"),

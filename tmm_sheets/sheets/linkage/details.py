@@ -1,9 +1,14 @@
-"""Enlarged details (выносные элементы, GOST 2.305) of the corners of vector polygons that cannot be read at their scale factor."""
+"""Enlarged details (выносные элементы, GOST 2.305) of what stands too densely to be read, wherever on a sheet that is.
+
+Dense are corners of a vector polygon that come out as one on the paper, and letters of a loaded scheme or of the lever of which
+more name what lies within a few millimetres than find room. The detail shows the corners with the vectors too short to be drawn;
+of a scheme its own lines enlarged, with the letters asked for there, which leave the scheme.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -12,11 +17,12 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step
-from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.clipping import chord
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import PlacedFrame, Text
+from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame, Points, Provenance, Text, flat
 from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.numbers import number
 from tmm_sheets.sheets.frame import together
 from tmm_sheets.sheets.linkage import link_marks
 from tmm_sheets.sheets.player import PlayerStage
@@ -24,92 +30,99 @@ from tmm_sheets.sheets.player import PlayerStage
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
+VIEW = "details.dense"
 NEAR = 2.0
 """Corners closer than this, mm, are shown enlarged."""
 MOST = 6
 """So many vectors can be told apart in a detail."""
 ONE = 0.02
 """Corners closer than this are one, mm."""
-TIMES = (5, 10, 20, 40, 50, 100)
+SCHEMES = ("kinetics.lever", "kinetics.group", "kinetics.groups", "kinetics.crank")
+"""Views whose letters may crowd."""
+ROUND, MANY = 12.0, 7
+"""So many labels asked for so near to one of them, mm, are more than can be read beside each other."""
+EDGE = 2.0
+"""Distance of the outermost of their anchors from the edge of the detail, mm of the scheme."""
+TIMES = (2.0, 2.5, 4.0, 5.0, 10.0, 20.0, 40.0, 50.0, 100.0)
 """Enlargements (GOST 2.302)."""
-FILLED = 0.6
-"""Part of the window that the corners take at most."""
-NAMES = ("I", "II", "III", "IV")
+HEAD = 16.0
+"""Height of a detail's title and scale factor, mm."""
+LETTERS = 3.5
+"""Least height of its letters, mm."""
+NAMES = ("I", "II", "III", "IV", "V", "VI")
+ROLES = ("vector", "construction", "point", "link", "symbol")
 
 
-class Corner(NamedTuple):
-    """Corners of a polygon close together: its vectors with their signs, letters by point, where they are on the sheet, mm."""
+@dataclass(frozen=True)
+class Dense:
+    """What is to be enlarged: the part of the sheet it is of, the middle and the reach of it, mm, the scale factor there."""
 
-    plan: Plan
-    frame: PlacedFrame
-    vectors: tuple[tuple[str, str, str], ...]
-    points: dict[str, complex]
-    names: tuple[str, ...]
+    part: int
+    centre: complex
+    reach: float
+    scale: Scale
 
-    @property
-    def centre(self) -> complex:
-        """Middle of the corners, mm of the sheet."""
-        z = np.array([self.points[name] for name in self.names])
-        return complex((z.real.min() + z.real.max()) / 2, (z.imag.min() + z.imag.max()) / 2)
+    filled = 1.0
+    """Part of the radius of the window that it takes at most."""
+    beside = 10.0
+    """Room for letters at either side of the window, mm."""
+    halves = (46.0, 40.0, 35.0, 31.0)
+    """Radii of the window, mm, the most welcome first."""
+    away = -1 + 1j
+    """Direction in which its name stands."""
 
-    @property
-    def reach(self) -> float:
-        """Farthest corner from there, mm."""
-        return max(abs(self.points[name] - self.centre) for name in self.names)
+    def times(self, half: float) -> float:
+        """How many times it can be enlarged in a window of a radius, mm; 0 where that is too small for it."""
+        return max((t for t in TIMES if t * self.reach <= self.filled * half), default=0.0)
 
+    def factor(self, half: float) -> Scale:
+        """Scale factor of the detail in such a window."""
+        return Scale(self.scale.symbol, float(f"{self.scale.mu / self.times(half):.6g}"), self.scale.unit)
 
-def corner_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that an enlarged detail can do with, mm; none where every corner can be read."""
-    found = list(_corners(project, canvas))
-    nth = int(options.get("nth", 1))
-    if nth > len(found):
+    def sizes(self) -> list[tuple[float, float]]:
+        """Places that the detail can do with, mm."""
+        halves = [half for half in self.halves if self.times(half)]
+        # As wide as its scale factor is in letters of the height that the others have, if there is room.
+        wide = [max(2 * (half + self.beside), letter(str(self.factor(half)), 5.0).width + 2.1) for half in halves]
+        return [*((width, 2 * half + HEAD) for width, half in zip(wide[:2], halves, strict=False)),
+                *((2 * (half + self.beside), 2 * half + HEAD) for half in halves)]
+
+    def others(self, project: Project, canvas: Canvas) -> list[int]:
+        """Parts of the sheet that the detail could be taken for one of."""
         return []
-    # As wide as its scale factor is in letters of the height that the others have, if there is room.
-    least = max(letter(str(_factor(canvas, found[nth - 1], half)[1]), 5.0).width + 2.1 for half in (31.0, 26.0))
-    return [(max(62.0, least), 76.0), (max(52.0, least), 66.0), (62.0, 76.0), (52.0, 66.0), (44.0, 58.0), (38.0, 52.0)]
+
+    def draw(self, project: Project, canvas: Canvas, middle: complex, half: float) -> float:
+        """Draw it in a window and take from the view what stands there now; gives the radius of the circle round it, mm."""
+        raise NotImplementedError
 
 
-def corner_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[complex, int, list[int]]:
-    """What the detail shows, mm of the sheet, the part of its plan, and those of the plans it could be taken for a detail of."""
-    it = list(_corners(project, canvas))[int(options.get("nth", 1)) - 1]
-    plans = _polygons(project)
-    first = {(frame.plan, frame.position): frame.view for frame in reversed(canvas.frames)}  # later ones are details
-    return it.centre, it.frame.view, [view for (plan, _), view in first.items() if plan in plans and view != it.frame.view]
+def dense_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the ``nth`` detail of a sheet can do with, mm; none where all is read."""
+    found = _nth(project, canvas, options)
+    return found.sizes() if found is not None else []
 
 
-def corner(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """The ``nth`` corner of all plans enlarged, and its circle on the plan."""
-    nth = int(options.get("nth", 1))
-    it, name = list(_corners(project, canvas))[nth - 1], next_name(canvas)
-    window = Box(box.x0, box.y0, box.x1, box.y1 - 16.0)
-    half = min(window.width, window.height) / 2
-    times, factor = _factor(canvas, it, half)
-    canvas.title(box, f"{name} ({times}:1)", str(factor))
+def dense_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[complex, int, list[int]]:
+    """What the detail shows, mm of the sheet, the part of its view, and those of the views it could be taken for a detail of."""
+    found = _nth(project, canvas, options)
+    assert found is not None
+    return found.centre, found.part, found.others(project, canvas)
+
+
+def dense(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The ``nth`` dense place of a sheet enlarged, and its circle on the view."""
+    found, name = _nth(project, canvas, options), next_name(canvas)
+    assert found is not None
+    window = Box(box.x0, box.y0, box.x1, box.y1 - HEAD)
+    half = min(window.width - 2 * found.beside, window.height) / 2
+    canvas.title(box, f"{name} ({number(found.times(half))}:1)", str(found.factor(half)))
     with canvas.as_role("symbol"):
         canvas.window(window.centre, half)
-        place = placed(canvas, it.frame, it.centre, window.centre, times)
-        _enlarged(PlayerStage(canvas, it.plan, project.force_index, canvas.frames[place], place), it, window.centre, half)
-        radius = _free_radius(canvas, it)
-        # The sign of a vector that lies in the circle stands in the detail: on the plan it would need a leader out of the corner.
-        inside = {sign for sign, *ends in it.vectors if all(abs(it.points[name] - it.centre) < radius for name in ends)}
-        canvas.labels[:] = [label for label in canvas.labels
-                            if label.part != it.frame.view or label.text not in inside or abs(label.anchor - it.centre) > radius]
-        _no_more_zero(canvas, it)
-        mark(canvas, it.frame.view, it.centre, radius, name, 1 + 1j)
-
-
-def placed(canvas: Canvas, frame: PlacedFrame, centre: complex, middle: complex, times: float) -> int:
-    """The plan of a frame once more, enlarged about what lies at ``centre`` on the sheet, which gets to ``middle``, mm."""
-    origin, mu = middle + times * (frame.origin - centre), (frame.mu[0] / times, frame.mu[1] / times)
-    return canvas.placed(frame.plan, frame.position, origin, mu, frame.turn, frame.mirror)
-
-
-def mark(canvas: Canvas, part: int, centre: complex, radius: float, name: str, away: complex) -> None:
-    """Circle of a detail on the picture that it enlarges, and its name."""
-    canvas.begin(canvas.parts[part].box, "", "details.corner")
-    canvas.window(centre, radius)
-    # On a shelf: a slanting I among lines would be one of them (GOST 2.305).
-    canvas.label(centre, name, away, 5.0, radius + 2.0, shelf=radius)
+        radius = found.draw(project, canvas, window.centre, half)
+        canvas.begin(canvas.parts[found.part].box, "", VIEW)
+        canvas.window(found.centre, radius)
+        # On a shelf: a slanting I among lines would be one of them (GOST 2.305).
+        canvas.label(found.centre, name, found.away, 5.0, radius + 2.0, shelf=radius)
 
 
 def next_name(canvas: Canvas) -> str:
@@ -117,81 +130,147 @@ def next_name(canvas: Canvas) -> str:
     return NAMES[sum(part.title.split(" ")[0] in NAMES for part in canvas.parts)]
 
 
+def _nth(project: Project, canvas: Canvas, options: dict[str, Any]) -> Dense | None:
+    """The dense place that the ``nth`` detail is of: those before it are drawn, or found no room."""
+    drawn = sum(part.draw == VIEW and bool(part.title) for part in canvas.parts)
+    circles = [mark.centre for n in canvas.windows if isinstance(mark := canvas.marks[n], Arc)]
+    plans = _polygons(project) if canvas.frames else {}
+    parts = {frame.view for frame in canvas.frames if frame.plan in plans}
+    left = [place for place in (*_crowds(canvas, parts), *_corners(canvas, plans, project.force_index if plans else 0))
+            if not any(abs(place.centre - at) < 1e-6 for at in circles)]
+    n = int(options.get("nth", 1)) - 1 - drawn
+    return left[n] if n < len(left) else None
+
+
+def _placed(canvas: Canvas, frame: PlacedFrame, centre: complex, middle: complex, times: float) -> int:
+    """The plan of a frame once more, enlarged about what lies at ``centre`` on the sheet, which gets to ``middle``, mm."""
+    origin, mu = middle + times * (frame.origin - centre), (frame.mu[0] / times, frame.mu[1] / times)
+    return canvas.placed(frame.plan, frame.position, origin, mu, frame.turn, frame.mirror)
+
+
+# --- corners of a polygon --------------------------------------------------------------------------------------------------
+
+
+Polygon = tuple[Plan, list[tuple[str, Step, Step]]]
+"""A plan with its vectors: sign, tail and head."""
+
+
+class Vector(NamedTuple):
+    """A vector of a polygon: its sign and the names of the points it runs between."""
+
+    sign: str
+    tail: str
+    head: str
+
+
+@dataclass(frozen=True)
+class Corner(Dense):
+    """Corners of a polygon close together: ``names`` of its ``points``, which are there by name, mm of the sheet."""
+
+    plan: Plan
+    frame: PlacedFrame
+    vectors: tuple[Vector, ...]
+    points: dict[str, complex]
+    names: tuple[str, ...]
+
+    halves = (30.0, 25.0, 21.0, 18.0)
+    filled = 0.6
+    beside = 1.0
+    away = 1 + 1j
+
+    @classmethod
+    def of(cls, canvas: Canvas, plan: Plan, frame: PlacedFrame, vectors: tuple[Vector, ...], points: dict[str, complex],
+           names: tuple[str, ...]) -> Corner:
+        """The corners of these names."""
+        z = np.array([points[name] for name in names])
+        centre = complex(z.real.min() + z.real.max(), z.imag.min() + z.imag.max()) / 2
+        reach = float(np.abs(z - centre).max())
+        return cls(frame.view, centre, reach, canvas.scales[plan.name], plan, frame, vectors, points, names)
+
+    def others(self, project: Project, canvas: Canvas) -> list[int]:
+        """The other polygons as they stand on the sheet; what is placed later is a detail."""
+        plans, first = _polygons(project), {(frame.plan, frame.position): frame.view for frame in reversed(canvas.frames)}
+        return [view for (plan, _), view in first.items() if plan in plans and view != self.part]
+
+    def draw(self, project: Project, canvas: Canvas, middle: complex, half: float) -> float:
+        """Vectors and letters of the corners; the polygon keeps none that lies in the circle: it would need a leader out of it."""
+        place = _placed(canvas, self.frame, self.centre, middle, self.times(half))
+        self._enlarged(PlayerStage(canvas, self.plan, project.force_index, canvas.frames[place], place), middle, half)
+        radius = self._free_radius(canvas)
+        inside = {v.sign for v in self.vectors if all(abs(self.points[name] - self.centre) < radius for name in (v.tail, v.head))}
+        canvas.labels[:] = [label for label in canvas.labels if label.part != self.part or label.text not in inside
+                            or abs(label.anchor - self.centre) > radius]
+        _no_more_zero(canvas, self)
+        return radius
+
+    def _enlarged(self, s: PlayerStage, middle: complex, half: float) -> None:
+        """Vectors and letters inside a circle of a radius, mm."""
+        at = {name: s.at(name) for name in self.points}
+        for sign, tail, head in self.vectors:
+            seen = chord(middle, half, at[tail], at[head])
+            if seen is None or abs(seen[1] - seen[0]) < 1.0:
+                continue
+            a, b = seen
+            pen = s.pen(head, "symbol", f"{tail}–{head}")
+            if abs(b - at[head]) < 1e-9 and abs(b - a) > 3.0:
+                pen.arrow(a, b, "vector")
+            else:
+                pen.line(a, b, "vector")
+            pen.label((a + b) / 2, sign, 1j * (b - a), LETTERS, 1.0)
+        for same in together([at[name] for name in self.names], 0.8):
+            first = self.names[same[0]]
+            pen = s.pen(first, "symbol")
+            pen.dot(at[first], 0.6)
+            pen.label(at[first], ", ".join(self._letters(self.names[i]) for i in same), at[first] - middle, LETTERS, 1.0)
+
+    def _letters(self, name: str) -> str:
+        return name if name.isdigit() else link_marks.indexed(self.plan[name].symbol or name)
+
+    def _free_radius(self, canvas: Canvas) -> float:
+        """Radius of the circle round the corners, mm: the least that runs over no lettering, the usual one where all do."""
+        boxes = [np.abs(text_box(m) - self.centre) for m in canvas.marks if isinstance(m, Text) and abs(m.at - self.centre) < 40.0]
+        usual = self.reach + 1.5
+        free = (r for r in usual + 0.5 * np.arange(8) if not any(b.min() < r + 0.2 and b.max() > r - 0.2 for b in boxes))
+        return next(free, usual)
+
+
 def _no_more_zero(canvas: Canvas, it: Corner) -> None:
     """A vector that the detail draws is not told to be about zero beside the plan."""
-    drawn = {sign for sign, tail, head in it.vectors if {tail, head} & set(it.names)}
-    kept = [replace(note, signs=tuple(sign for sign in note.signs if sign not in drawn)) if note.part == it.frame.view else note
+    drawn = {v.sign for v in it.vectors if {v.tail, v.head} & set(it.names)}
+    kept = [replace(note, signs=tuple(sign for sign in note.signs if sign not in drawn)) if note.part == it.part else note
             for note in canvas.notes]
     canvas.notes[:] = [note for note, was in zip(kept, canvas.notes, strict=True) if note.signs or not was.signs]
 
 
-def _factor(canvas: Canvas, it: Corner, half: float) -> tuple[int, Scale]:
-    """How many times corners are enlarged in a window of that half width, mm, and the scale factor that comes of it."""
-    times = max((t for t in TIMES if t * it.reach <= FILLED * half), default=TIMES[0])
-    scale: Scale = canvas.scales[it.plan.name]
-    return times, Scale(scale.symbol, float(f"{scale.mu / times:.6g}"), scale.unit)
-
-
-def _free_radius(canvas: Canvas, it: Corner) -> float:
-    """Radius of the circle round the corners, mm: the least that runs over no lettering, the usual one where all do."""
-    boxes = [np.abs(text_box(m) - it.centre) for m in canvas.marks if isinstance(m, Text) and abs(m.at - it.centre) < 40.0]
-    usual = it.reach + 1.5
-    return next((r for r in usual + 0.5 * np.arange(8) if not any(b.min() < r + 0.2 and b.max() > r - 0.2 for b in boxes)), usual)
-
-
-def _enlarged(s: PlayerStage, it: Corner, middle: complex, half: float) -> None:
-    """Vectors and letters of a corner inside a circle of a radius, mm."""
-    at = {name: s.at(name) for name in it.points}
-    for sign, tail, head in it.vectors:
-        seen = chord(middle, half, at[tail], at[head])
-        if seen is None or abs(seen[1] - seen[0]) < 1.0:
-            continue
-        a, b = seen
-        pen = s.pen(head, "symbol", f"{tail}–{head}")
-        if abs(b - at[head]) < 1e-9 and abs(b - a) > 3.0:
-            pen.arrow(a, b, "vector")
-        else:
-            pen.line(a, b, "vector")
-        pen.label((a + b) / 2, sign, 1j * (b - a), 3.5, 1.0)
-    for same in together([at[name] for name in it.names], 0.8):
-        first = it.names[same[0]]
-        pen = s.pen(first, "symbol")
-        pen.dot(at[first], 0.6)
-        pen.label(at[first], ", ".join(_letters(it.plan, it.names[i]) for i in same), at[first] - middle, 3.5, 1.0)
-
-
-def _letters(plan: Plan, name: str) -> str:
-    return name if name.isdigit() else link_marks.indexed(plan[name].symbol or name)
-
-
-def _corners(project: Project, canvas: Canvas) -> Iterator[Corner]:
-    """Corners that cannot be read, plan by plan as they stand on the sheet; of one plan the one with most points."""
-    k, polygons = project.force_index, _polygons(project)
-    for frame in canvas.frames:
+def _corners(canvas: Canvas, polygons: Mapping[str, Polygon], k: int) -> Iterator[Corner]:
+    """Corners that cannot be read at a position, plan by plan as they stand on the sheet; of one plan the one with most points."""
+    first = {frame.plan: frame for frame in reversed(canvas.frames)}
+    for frame in sorted(first.values(), key=lambda frame: canvas.frames.index(frame)):
         if frame.plan not in polygons:
             continue
-        plan, vectors = polygons.pop(frame.plan)
+        plan, vectors = polygons[frame.plan]
         steps: dict[str, Step] = {step.name: step for _, tail, head in vectors for step in (tail, head)}
         points = {name: complex(frame(complex(step.at(k)))) for name, step in steps.items()}
-        drawn = [(s, a.name, b.name) for s, a, b in vectors if abs(points[a.name] - points[b.name]) > ONE]
+        drawn = tuple(Vector(s, a.name, b.name) for s, a, b in vectors if abs(points[a.name] - points[b.name]) > ONE)
         there = dict.fromkeys(name for _, a, b in drawn for name in (a, b))
         groups = _together({name: points[name] for name in there}, drawn)
         if groups:
-            it = Corner(plan, frame, tuple(drawn), points, max(groups, key=len))
-            through = sum(chord(it.centre, 2 * it.reach, points[a], points[b]) is not None for _, a, b in drawn)
-            if through <= MOST:
+            it = Corner.of(canvas, plan, frame, drawn, points, max(groups, key=len))
+            if sum(chord(it.centre, 2 * it.reach, points[a], points[b]) is not None for _, a, b in drawn) <= MOST:
                 yield it
 
 
-def _polygons(project: Project) -> dict[str, tuple[Plan, list[tuple[str, Step, Step]]]]:
-    """Plans by their names with their vectors: sign, tail and head."""
+def _polygons(project: Project) -> dict[str, Polygon]:
+    """Plans by their names with their vectors."""
     study = project.study
-    polygons = {fp.plan.name: (fp.plan, [(s, a, b) for s, a, b, *_ in fp.sides]) for fp in study.forces.plans.values()}
     acc = study.accelerations.plan
-    return polygons | {acc.name: (acc, [(seg.symbol, seg.tail, seg.head) for seg in acc.segments])}
+    found = {acc.name: (acc, [(seg.symbol, seg.tail, seg.head) for seg in acc.segments])}
+    if "forces" in project.parts:
+        found = {fp.plan.name: (fp.plan, [(s, a, b) for s, a, b, *_ in fp.sides]) for fp in study.forces.plans.values()} | found
+    return found
 
 
-def _together(points: dict[str, complex], drawn: list[tuple[str, str, str]]) -> list[tuple[str, ...]]:
+def _together(points: dict[str, complex], drawn: tuple[Vector, ...]) -> list[tuple[str, ...]]:
     """Points less than ``NEAR`` apart of which some are joined by a vector: what cannot be told apart on the sheet."""
     found = []
     for same in together(list(points.values()), NEAR):
@@ -199,3 +278,93 @@ def _together(points: dict[str, complex], drawn: list[tuple[str, str, str]]) -> 
         if any(tail in names and head in names for _, tail, head in drawn):
             found.append(names)
     return found
+
+
+# --- letters of a scheme ---------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Crowd(Dense):
+    """Labels of a scheme that stand too close together, all of what is in the circle round them."""
+
+    labels: tuple[Label, ...] = ()
+
+    def draw(self, project: Project, canvas: Canvas, middle: complex, half: float) -> float:
+        """What is inside the circle, with the letters that had been asked for there."""
+        times = self.times(half)
+        frames = {n: _placed(canvas, canvas.frames[n], self.centre, middle, times)
+                  for n in sorted({m.by.frame for m in canvas.marks if m.by is not None and m.by.frame >= 0})
+                  if canvas.frames[n].view == self.part}
+
+        def at(z: complex) -> complex:
+            return middle + times * (z - self.centre)
+
+        def of(by: Provenance | None) -> Canvas:
+            return canvas.tracing("symbol") if by is None else \
+                canvas.tracing("symbol", by.step, by.position, frames.get(by.frame, -1), by.name)
+
+        self._enlarged(canvas, at, middle, half, of)
+        canvas.labels[:] = [label for label in canvas.labels if label not in self.labels]
+        for label in self.labels:
+            of(label.by).label(at(label.anchor), label.text, label.away, max(label.height, LETTERS), label.gap, label.leader,
+                               thin=label.thin)
+        return half / times
+
+    def _enlarged(self, canvas: Canvas, at: Callable[[complex], complex], middle: complex, half: float,
+                  of: Callable[[Provenance | None], Canvas]) -> None:
+        """Lines, arrows and dots of the scheme that are seen in the window; heads of forces and dots keep their sizes."""
+        end = canvas.parts[self.part + 1].first if self.part + 1 < len(canvas.parts) else len(canvas.marks)
+        marks, first = canvas.marks[:end], canvas.parts[self.part].first
+        drawn = {n for n, m in enumerate(marks[first:], first) if m.by is not None and m.by.role in ROLES}
+
+        def seen(a: complex, b: complex) -> tuple[complex, complex] | None:
+            part = chord(middle, half, at(a), at(b))
+            return part if part is not None and abs(part[1] - part[0]) >= 1.0 else None
+
+        def whole(z: Points) -> bool:
+            return bool(np.all(np.abs(middle + self.times(half) * (z - self.centre) - middle) < half - 1.0))
+
+        for group in [group for group in canvas.groups if group.first in drawn]:
+            own = range(group.first, group.end)
+            line, fill = marks[group.first], next((m for m in (marks[n] for n in reversed(own)) if isinstance(m, Fill)), None)
+            if group.kind == "dot" and fill is not None:
+                here = complex(fill.points.mean())
+                if abs(at(here) - middle) < half - 1.0:
+                    of(fill.by).dot(at(here), float(np.abs(fill.points - here).max()), fill.style)
+                drawn.difference_update(own)
+            elif group.kind == "arrow" and fill is not None and isinstance(line, Line):
+                if part := seen(line.a, tip := complex(fill.points[0])):
+                    pen = of(line.by)
+                    (pen.arrow if abs(part[1] - at(tip)) < 1e-9 else pen.line)(*part, fill.style)
+                drawn.difference_update(own)
+        for mark in (marks[n] for n in sorted(drawn)):
+            if isinstance(mark, Line):
+                if (part := seen(mark.a, mark.b)) is not None:
+                    of(mark.by).line(*part, mark.style)
+            elif isinstance(mark, Arc):
+                if whole(flat(mark, 1.0)):
+                    of(mark.by).arc(at(mark.centre), self.times(half) * mark.radius, mark.start, mark.end, mark.style)
+            elif isinstance(mark, Fill) and whole(mark.points):
+                of(mark.by).fill([at(complex(z)) for z in mark.points], mark.style)
+
+
+def _crowds(canvas: Canvas, polygons: Collection[int]) -> list[Crowd]:
+    """Of each scheme the thickest crowd of labels it asks for, the thickest of all first; none where they find room.
+
+    ``polygons`` are the parts of the sheet that are none.
+    """
+    found = []
+    for part in sorted({label.part for label in canvas.labels}):
+        asked = [label for label in canvas.labels if label.part == part]
+        if canvas.parts[part].draw not in SCHEMES or part in polygons:
+            continue
+        z = np.array([label.anchor for label in asked])
+        near = np.abs(z[:, None] - z) <= ROUND
+        among = z[near[np.argmax(near.sum(axis=1))]]
+        if len(among) >= MANY:
+            centre = complex(among.real.min() + among.real.max(), among.imag.min() + among.imag.max()) / 2
+            reach = float(np.abs(among - centre).max()) + EDGE
+            scale = list(canvas.scales.values())[canvas.parts[part].scales - 1]
+            labels = tuple(label for label in asked if abs(label.anchor - centre) < reach - EDGE / 2)
+            found.append((len(among), Crowd(part, centre, reach, scale, labels=labels)))
+    return [crowd for _, crowd in sorted(found, key=lambda one: -one[0])]

@@ -1,4 +1,6 @@
-"""The crowd about the pole of the lever goes into an enlarged detail, and nothing is named twice or by nobody."""
+"""A crowd of letters goes into an enlarged detail, and nothing is named twice or by nobody; one rule says what is dense."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -7,16 +9,16 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame
-from tmm_sheets.sheets.linkage import details, lever_detail
+from tmm_sheets.sheets.linkage import details
 
 PLACE = Box(100.0, 100.0, 200.0, 196.0)
 
 
-def lever(*anchors):
+def lever(*anchors, view="kinetics.lever"):
     """A lever with a letter at each of these points, mm, an arrow over all of them and a title."""
     canvas = Canvas()
     canvas.scales["lever"] = Scale("μ_V", 0.01, "(m/s)/mm")
-    canvas.begin(Box(300.0, 100.0, 500.0, 300.0), "", "kinetics.lever")
+    canvas.begin(Box(300.0, 100.0, 500.0, 300.0), "", view)
     canvas.title(Box(300.0, 100.0, 500.0, 300.0), "lever")
     pen = canvas.tracing("vector", "lever/b")
     pen.arrow(400 + 200j, 420 + 200j, "vector")
@@ -35,31 +37,55 @@ def row(count, step=2.0):
 
 
 @pytest.mark.parametrize(("anchors", "crowded"), [
-    ([], 0), ([0.0], 0), (row(8), 0), (row(9), 9), ([0.0] * 9, 9), (row(9, 30.0), 0), ([*row(9), 60.0], 9),
+    ([], 0), ([0.0], 0), (row(6), 0), (row(7), 7), ([0.0] * 9, 9), (row(9, 30.0), 0), ([*row(9), 60.0], 9),
     ([*row(10, 1.0), *(80 + z for z in row(9, 1.0))], 10),  # of two crowds the thicker
 ], ids=["none", "one", "few", "many", "coincident", "apart", "one far off", "two crowds"])  # fmt: skip
 def test_what_is_a_crowd(anchors, crowded):
     canvas = lever(*anchors)
-    found = lever_detail._crowd(canvas)
-    assert (len(found.labels) if found else 0) == crowded
-    sizes = lever_detail.crowd_sizes(None, canvas, {})
-    assert bool(sizes) is bool(crowded)
-    if found:
-        assert all(abs(label.anchor - found.centre) < found.radius for label in found.labels)
+    found = details._crowds(canvas, ())
+    assert [len(crowd.labels) for crowd in found] == [crowded] * bool(crowded)
+    assert bool(details.dense_sizes(None, canvas, {})) is bool(crowded)
+    for crowd in found:
+        assert all(abs(label.anchor - crowd.centre) < crowd.reach for label in crowd.labels)
 
 
-def test_no_lever_no_crowd():
-    assert lever_detail.crowd_sizes(None, Canvas(), {}) == []
+@pytest.mark.parametrize(("view", "found"), [("kinetics.lever", 1), ("kinetics.group", 1), ("kinetics.crank", 1), ("other", 0)])
+def test_schemes_of_forces_have_their_crowds_alike(view, found):
+    assert len(details._crowds(lever(*row(9), view=view), ())) == found
+
+
+def test_a_polygon_has_corners_and_no_crowd():
+    canvas = lever(*row(9))
+    assert not details._crowds(canvas, {label.part for label in canvas.labels})
+
+
+def test_nothing_on_the_sheet_nothing_dense():
+    assert details.dense_sizes(None, Canvas(), {}) == []
+
+
+def test_what_is_drawn_or_found_no_room_is_not_asked_again():
+    canvas = lever(*row(9), *(80j + z for z in row(8)))
+    canvas.labels[-1:] = []
+    part = canvas.labels[0].part
+    below = [label for label in canvas.labels if label.anchor.imag > 260]
+    canvas.parts.append(canvas.parts[part])
+    canvas.labels[:] = [replace(label, part=len(canvas.parts) - 1) if label in below else label for label in canvas.labels]
+    first, second = details._crowds(canvas, ())
+    assert details._nth(None, canvas, {"nth": 1}) == first
+    assert details._nth(None, canvas, {"nth": 2}) == second
+    details.dense(None, canvas, PLACE, {"nth": 1})
+    assert details._nth(None, canvas, {"nth": 2}).centre == second.centre
+    assert details._nth(None, canvas, {"nth": 3}) is None
 
 
 def test_letters_go_into_the_detail_and_its_lines_are_the_levers_enlarged():
     canvas = lever(*row(9), 60.0)
     before, lines = list(canvas.labels), len(canvas.marks)
-    found = lever_detail._crowd(canvas)
-    lever_detail.crowd(None, canvas, PLACE, {})
+    (found,) = details._crowds(canvas, ())
+    details.dense(None, canvas, PLACE, {})
     assert sorted(label.text for label in canvas.labels) == sorted([*(label.text for label in before), "I"])
-    half, middle = 40.0, PLACE.x0 + lever_detail.MARGIN + 40.0 + 1j * (PLACE.y0 + 40.0)
-    times = lever_detail._times(found, half)
+    half, middle = 40.0, PLACE.x0 + found.beside + 40.0 + 1j * (PLACE.y0 + 40.0)
+    times = found.times(half)
     moved = {label.text: label for label in canvas.labels if abs(label.anchor - middle) < half}
     assert moved.keys() == {label.text for label in found.labels}
     for was in found.labels:
@@ -83,8 +109,9 @@ def test_what_a_detail_draws_is_not_about_zero(signs, drawn, left):
     canvas.note(PLACE, "≈ 0: ", signs)
     canvas.begin(PLACE, "another")
     canvas.note(PLACE, "≈ 0: ", ("a",))
-    vectors, points = tuple((sign, "1", "2") for sign in drawn), {"1": 0j, "2": 1 + 0j}
-    corner = details.Corner(None, PlacedFrame(0, "plan", "", 0j, (1.0, 1.0)), vectors, points, ("1", "2"))
+    vectors, points = tuple(details.Vector(sign, "1", "2") for sign in drawn), {"1": 0j, "2": 1 + 0j}
+    frame, scale = PlacedFrame(0, "plan", "", 0j, (1.0, 1.0)), Scale("μ_F", 1.0, "N/mm")
+    corner = details.Corner(0, 0.5 + 0j, 0.5, scale, None, frame, vectors, points, ("1", "2"))
     details._no_more_zero(canvas, corner)
     assert [note.said for note in canvas.notes] == [*([] if left == [] else [f"≈ 0: {', '.join(left or [])}"]), "≈ 0: a"]
 
