@@ -73,6 +73,7 @@ def test_what_is_drawn_or_found_no_room_is_not_asked_again():
     first, second = details._crowds(canvas, ())
     assert details._nth(None, canvas, {"nth": 1}) == first
     assert details._nth(None, canvas, {"nth": 2}) == second
+    canvas.begin(PLACE, "", details.VIEW)
     details.dense(None, canvas, PLACE, {"nth": 1})
     assert details._nth(None, canvas, {"nth": 2}).centre == second.centre
     assert details._nth(None, canvas, {"nth": 3}) is None

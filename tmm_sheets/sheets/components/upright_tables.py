@@ -13,9 +13,9 @@ from tmm_sheets.drawing.tables import needs, size_in, widened
 
 Rows = Sequence[Sequence[str]]
 
-TRIED = (7.0, 3.5, 9.0), (7.0, 3.5, 4.0), (6.4, 3.5, 2.0), (7.0, 2.5, 2.5), (5.6, 2.5, 2.0), (4.6, 2.5, 2.0)
+TRIED = (7.0, 3.5, 4.0), (6.4, 3.5, 2.0), (7.0, 2.5, 2.5), (5.6, 2.5, 2.0), (4.6, 2.5, 2.0)
 """Heights of rows and of their letters, and what a column is wider than its widest text, mm: the largest first."""
-LEADING = 7.0
+LEADING = 8.0
 """Distance of the lines of a title, mm."""
 UNDER = 3.0
 """Distance of the last of them from the table, mm."""
