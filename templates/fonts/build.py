@@ -135,20 +135,25 @@ def write_table(glyphs: dict[str, tuple[int, list[list[complex]]]], path: Path) 
     path.write_text("{\n" + ",\n".join([*lines, f' "glyphs": {{\n{body}\n }}']) + "\n}\n", encoding="utf-8")
 
 
+APART = 80.0
+"""Distance of letters in LibreCAD, in units: of all it moves fewest letters of a sheet by more than half a millimetre."""
+
+
 def write_lff(glyphs: dict[str, tuple[int, list[list[complex]]]], path: Path) -> None:
     """The strokes slanted, as LibreCAD reads them.
 
     LibreCAD has no advances: to it a letter is as wide as its ink reaches, and the next one follows at one distance for all. So
-    each letter is moved in its cell until it ends one pen before the next begins, 0.3 mm in the mean in letters 3.5 mm high.
+    each letter is moved in its cell until it ends that far before the next begins, 0.3 mm in the mean in letters 3.5 mm high.
     """
     lines = ["# Format:            LibreCAD Font 1", "# Version:           1.1", f"# Name:              {path.stem}",
-             "# Encoding:          UTF-8", f"# LetterSpacing:     {D / UNIT:g}", f"# WordSpacing:       {(WORD - GAP) / UNIT:g}",
+             "# Encoding:          UTF-8", f"# LetterSpacing:     {APART / UNIT:g}",
+             f"# WordSpacing:       {(WORD - GAP) / UNIT:g}",
              "# LineSpacingFactor: 1.02", "# Author:            stranger573 <stranger573@mail.ru>; made by build.py",
              "# License:           SIL OPEN FONT LICENSE Version 1.1"]  # fmt: skip
     for char, (advance, strokes) in sorted(glyphs.items()):
         if strokes:
             slanted = [[p + SLANT * p.imag for p in s] for s in strokes]
-            move = advance - D - max(p.real for s in slanted for p in s)
+            move = advance - APART - max(p.real for s in slanted for p in s)
             lines += ["", f"[{ord(char):04x}] {char}"]
             lines += [";".join(f"{(p.real + move) / UNIT:.3f},{p.imag / UNIT:.3f}" for p in s) for s in slanted]
     path.write_text("\n".join([*lines, ""]), encoding="utf-8")

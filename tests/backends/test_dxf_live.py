@@ -332,3 +332,18 @@ def test_a_form_without_anything_filled_in():
     doc = opened(dxf.render(Drawing(841, 594, "", (Line(0j, 50j, "main"),), forms=(form,))))
     (insert,) = doc.modelspace()
     assert [(a.dxf.tag, a.dxf.text) for a in insert.attribs] == [("GROUP", "")]
+
+
+@pytest.mark.parametrize("text", ["live", "librecad"])
+def test_dimensions_that_librecad_letters_elsewhere_are_none_in_drawings_made_for_it(text):
+    """It turns the level letters of an upright dimension along its line, and puts those of an angle on the arc."""
+    canvas = Canvas()
+    canvas.begin(Box(0, 0, 841, 594), "", "view")
+    canvas.dimension(100 + 100j, 160 + 100j, 8.0, "a", apart=(130 + 120j, 1j))
+    canvas.dimension(100 + 200j, 100 + 260j, 8.0, "b", apart=(80 + 230j, -1))
+    canvas.dimension(200 + 200j, 200 + 260j, 8.0, "c")
+    canvas.angle_mark(300 + 300j, 0.0, 1.0, 40.0, "d")
+    place(canvas, Box(20, 5, 836, 589))
+    doc = opened(dxf.render(Drawing(841, 594, "", tuple(canvas.marks), dimensions=tuple(canvas.dimensions)), text))
+    kinds = [d.dimtype for d in doc.modelspace().query("DIMENSION")]
+    assert len(kinds) == {"live": 4, "librecad": 2}[text]

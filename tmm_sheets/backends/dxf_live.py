@@ -25,6 +25,8 @@ HIDDEN = "60\n1\n"
 """Tags of what is not shown."""
 OWN_BLOCK = 32
 """Flag of a dimension whose block is its own."""
+LEVEL = 1e-6
+"""Ends of a dimension no farther from one level, mm, have its lettering level."""
 FACTOR = 144
 """Number of the variable DIMLFAC: what a dimension measures per unit of the drawing."""
 
@@ -38,7 +40,7 @@ class LiveSheet:
         self.found: dict[int, list[int]] = {}  # handles in model space by the first mark they stand for
         self.places: dict[int, int] = {}  # of the entities with these handles
         # Two lines make no angle of more than half a turn, and LibreCAD knows no other dimensions of angles.
-        dimensions = [d for d in drawing.dimensions if d.kind != "angle" or _turned(d) < pi]
+        dimensions = [d for d in drawing.dimensions if (d.kind != "angle" or _turned(d) < pi) and (style == COMMON or _along(d))]
         wholes: dict[int, Form | Dimension] = {d.first: d for d in dimensions}
         wholes.update({form.first: form for form in drawing.forms})
         lettered = {k for d in dimensions for k in range(*d.label)}
@@ -183,6 +185,14 @@ def clean(name: str) -> str:
 
 def _direction(angle: float) -> complex:
     return complex(cos(angle), sin(angle))
+
+
+def _along(d: Dimension) -> bool:
+    """Whether LibreCAD, which draws dimensions anew, leaves the lettering where it is: it turns it along the line, on to the arc.
+
+    In a drawing made for it all others are lines and letters.
+    """
+    return d.label[0] == d.label[1] or (d.kind == "linear" and abs((d.b - d.a).imag) < LEVEL)
 
 
 def _turned(d: Dimension) -> float:
