@@ -6,10 +6,11 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUT := out/$(subst /,-,$(PROJECT))
 PYTEST = $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
+SITE := .venv-site
 SOURCES := $(shell find tmm_sheets templates variants -type f -not -name '*.pyc' 2>/dev/null)
 
 .DEFAULT_GOAL := sheets
-.PHONY: help sheets test trials lint types wheel-test gallery gallery-check note-check gold messages docs figures picture clean distclean
+.PHONY: help sheets test trials lint types wheel-test gallery gallery-check note-check gold messages docs figures picture pictures film site clean distclean
 
 sheets: $(OUT)/sheet1.pdf  ## the sheets of PROJECT (default lugansk/shaper) in out/; this is what plain "make" does
 
@@ -62,11 +63,22 @@ picture: sheets  ## the picture of sheet 1 in the READMEs (needs pdftoppm)
 film: $(VENV)/.tested  ## the film of the living sheet in the READMEs
 	$(BIN)/python -m tests.film
 
+pictures: $(VENV)/.tested  ## the pictures of the gallery and the tutorial in docs/ (needs pdftoppm)
+	$(BIN)/python -m tests.pictures
+
+site: $(VENV)/.installed $(SITE)/.made  ## docs/ as a site in out/site (mkdocs-material, in an environment of its own)
+	NO_MKDOCS_2_WARNING=1 PYTHONPATH=. TMM_SHEETS_PYTHON=$(BIN)/python $(SITE)/bin/mkdocs build --quiet
+
+$(SITE)/.made:
+	$(PYTHON) -m venv $(SITE)
+	$(SITE)/bin/python -m pip install --quiet --disable-pip-version-check "mkdocs-material>=9.5,<10" "mkdocstrings-python>=1.10"
+	@touch $@
+
 clean:  ## remove what was made, keep the virtual environment
 	rm -rf out dist build .mypy_cache .ruff_cache .pytest_cache .hypothesis
 
 distclean: clean  ## remove the virtual environment as well
-	rm -rf $(VENV)
+	rm -rf $(VENV) $(SITE)
 
 help:  ## this list
 	@grep -hE '^[a-z-]+:.*  ## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 14

@@ -37,7 +37,7 @@ from tmm_sheets.task.names import GROUP_KEYS
 from tmm_sheets.words import LANGUAGES, tell, tell_n
 
 ROOT = Path(__file__).parents[1]
-PAPERS = (ROOT / "README.md", ROOT / "README.ru.md", *sorted((ROOT / "docs").glob("*.md")))
+PAPERS = (ROOT / "README.md", ROOT / "README.ru.md", *sorted((ROOT / "docs").glob("**/*.md")))
 PART = re.compile(r"^(<!-- made: (\w+)(?: (\S+))? -->\n).*?^(<!-- end -->)$", re.MULTILINE | re.DOTALL)
 PAIRS = ("RRR", "RRP", "RPR", "PRP", "RPP", "RR, PR, RP")
 

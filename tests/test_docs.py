@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 import pytest
 
-from tests import catalogues, docs, figures
+from tests import catalogues, docs, docs_site, figures, pictures
 from tests.few import few
 from tmm_sheets import __main__, catalogue, cli, resources
 from tmm_sheets.errors import BadInput, CannotBuild
@@ -47,7 +47,9 @@ def test_papers_travel_in_the_sdist():
 def test_the_wheel_has_what_is_read_and_no_more():
     """Catalogues are read compiled, pictures by readers of the README; the package is typed."""
     wheel = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["hatch"]["build"]["targets"]["wheel"]
-    assert wheel["exclude"] == ["*.po", "/templates/pictures"]
+    left_out = {name.removeprefix("/") for name in wheel["exclude"]} - {"*.po"}
+    assert {"templates/pictures", "templates/fonts/build.py"} <= left_out
+    assert all((ROOT / name).exists() for name in left_out)
     assert wheel["sources"] == {"templates": "tmm_sheets/_templates", "variants": "tmm_sheets/_variants"}
     assert (ROOT / "tmm_sheets/py.typed").is_file()
     for compiled in (p.with_suffix(".mo") for p in (ROOT / "templates/locale").rglob("*.po") if p.parts[-3] != "en"):
@@ -183,20 +185,80 @@ def test_modules_of_the_tests_can_be_started():
         assert "__main__" in Path(module.__file__).read_text(encoding="utf-8")
 
 
+# --- pages in three languages ---------------------------------------------------------------------------------------
+
+
+def test_the_tutorial_is_drawn_as_it_stands(tmp_path, monkeypatch):
+    """Piece by piece the file is understood, and the pictures are what its commands draw."""
+    monkeypatch.chdir(tmp_path)
+    steps = pictures.steps(TEXTS["docs/tutorial.md"])
+    assert len(steps) == 4
+    for name, text in steps.items():
+        Path("my.toml").write_text(text, encoding="utf-8")
+        assert __main__.run(["check", "my.toml", "--scheme", f"{name}.svg", "--lang", "ru"]) == __main__.DONE
+        assert Path(f"{name}.svg").read_bytes() == (ROOT / f"docs/pictures/{name}.svg").read_bytes(), "run: make pictures"
+
+
+def test_the_tutorial_is_the_same_in_three_languages():
+    """Blocks to be typed, and the pictures."""
+    said = [FENCED.findall(text) + re.findall(r"^    tmm.*|pictures/\w+\.svg", text, re.MULTILINE)
+            for text in (TEXTS[f"docs/{folder}tutorial.md"] for folder in ("", "ru/", "uk/"))]
+    assert said[0] == said[1] == said[2]
+
+
+@pytest.mark.parametrize("language", ["ru", "uk"])
+def test_messages_are_those_of_the_language(language):
+    """What a page says of a message is about one that the program tells."""
+    told = [message.string for message in catalogues.read(language)]
+    rows = re.findall(r"^\| `(.*?)` \|", TEXTS[f"docs/{language}/messages.md"], re.MULTILINE)
+    assert len(rows) > 15
+    assert [row for row in rows if not any(row in str(s) for s in told)] == []
+
+
+def test_the_gallery_has_every_kind_of_sheet():
+    """Each arrangement with a command that makes it and its picture."""
+    shown = pictures.gallery(TEXTS["docs/gallery.md"])
+    arrangements = {p.stem for p in (ROOT / "templates/sheets").glob("*.toml")}
+    assert arrangements - {*shown} == {"forces"}  # of a mechanism with more groups than the shipped ones have
+    for name, (_, project, _, number) in shown.items():
+        task = catalogue.read(str(ROOT / project) if project.endswith(".toml") else project)
+        assert Project(task).sheets[int(number) - 1] == name
+        assert (ROOT / f"docs/pictures/{name}.png").stat().st_size < 60_000
+
+
+def test_pages_of_the_site():
+    """Every paper has its place; links of the READMEs lead to pages."""
+    pages = set(re.findall(r"[\w/-]+\.md", (ROOT / "mkdocs.yml").read_text("utf-8").split("nav:")[1]))
+    own = {*docs_site.FIRST, "api.md"}
+    assert pages - own == {paper.removeprefix("docs/") for paper in TEXTS if paper.startswith("docs/")}
+    text = "[a](docs/page.md#b) ![c](templates/pictures/d.png) [e](LICENSE) [f](README.md) [g](https://h) `[i](docs/j.md)`"
+    assert docs_site.moved(text, "ru/index.md").startswith(
+        "[a](../page.md#b) ![c](../pictures/d.png) e [f](../index.md) [g](https://h)")
+
+
 NOT_RUN = {
     "bench": "minutes; tests/bench runs parts of it", "stress": "900 cases; tests/test_quoted.py runs some",
-    "build --all": "fifty projects", "--with-note": "builds all twice; tests/note runs it",
-    "--image": "needs a photograph; tests/compare takes some", "note": "tests/note writes some",
-    "--group": "needs works; tests/compare/test_group.py has some", "--list": "needs a list of one's own",
-    "new my": "asks, and my.toml is there; tests/task/test_new_file.py answers", "watch": "goes on until Ctrl-C",
+    "build --all": "fifty projects", "--image": "needs a photograph; tests/compare takes some",
+    "compare lugansk/shaper --group": "needs works; tests/compare/test_group.py has some",
+    "new m": "asks, and my.toml is there; tests/task/test_new_file.py answers", "watch": "goes on until Ctrl-C",
     "serve": "goes on until Ctrl-C; tests/page asks it",
-    "department": "needs the family; tests/task/families/test_folder.py has it",
-    "optimise": "tests/optimising tries each against a grid",
-    "roster": "needs a table; tests/output/test_roster.py has one",
-    "--measured": "needs a table filled in; tests/test_quoted.py fills one in", "--dxf": "needs a drawing; tests/compare has some",
-    "lugansk/shaper press my.toml": "three projects; tests/output/test_batch.py builds more",
+    "--measured": "needs a table filled in; tests/test_quoted.py fills one in",
 }
 """Commands of docs/ that the next test leaves out, by what they have in them, and why."""
+LONG = ("note", "--list", "roster", "optimise", "family check", "tests/projects", "--dxf", "lugansk/shaper press my.toml")
+"""Commands of docs/ that are run in a trial only, by what they have in them."""
+
+
+def papers_folder(every):
+    """What the commands of the papers read; for ``every`` command also a drawing to compare, and the sources' own projects."""
+    Path("my.toml").write_text(catalogue.read("lugansk/shaper").text, encoding="utf-8")
+    Path("ciphers.txt").write_text("press\nlugansk/cam_flat\n", encoding="utf-8")
+    Path("group.csv").write_text("student;group;task\nПетренко О. О.;ТМ-21;lugansk/cam_flat\n", encoding="utf-8")
+    shutil.copytree(ROOT / "docs/examples/department", "department")
+    if every:
+        shutil.copytree(ROOT / "tests/projects", "tests/projects")
+        assert __main__.run(["build", "lugansk/shaper", "--sheet", "1", "--format", "dxf", "-o", "drawn"]) == __main__.DONE
+        shutil.copy("drawn/sheet1.dxf", "mine.dxf")
 
 
 def shape(command):
@@ -212,9 +274,10 @@ def test_other_commands_work(every, tmp_path, monkeypatch, capsys):
     Where not ``every`` command is tried, each has other options than those before it and those of the first own project.
     """
     monkeypatch.chdir(tmp_path)
-    Path("my.toml").write_text(catalogue.read("lugansk/shaper").text, encoding="utf-8")
+    papers_folder(every)
     commands = dict.fromkeys(shlex.join(c) for text in TEXTS.values() for c in typed(text, "tmm-sheets") if c and c[0] not in QUICK)
-    left = [c for c in commands if not any(word in c for word in NOT_RUN) and not re.search("PROJECT|COMMAND", c)]
+    without = NOT_RUN if every else (*NOT_RUN, *LONG)
+    left = [c for c in commands if not any(word in c for word in without) and not re.search("PROJECT|COMMAND", c)]
     assert len(left) > 20
     own = {shape(shlex.join(arguments)) for arguments in first_project()}
     once = list({shape(c): c for c in reversed(left) if shape(c) not in own}.values())[::-1]
@@ -227,7 +290,7 @@ def test_other_commands_work(every, tmp_path, monkeypatch, capsys):
         asked = [*shlex.split(command), *(("--sheet", "4") if long and "--sheet" not in command else ())]
         assert __main__.run(asked) == __main__.DONE, (command, capsys.readouterr().err)
         capsys.readouterr()
-    assert [word for word in NOT_RUN if not any(word in c for c in commands)] == []
+    assert [word for word in (*NOT_RUN, *LONG) if not any(word in c for c in commands)] == []
 
 
 QUICK = ("list", "show", "check", "solve", "protocol")
@@ -345,7 +408,7 @@ PLANTS = {
 }
 """Messages that docs/project-file.md explains, and the change of tests/projects/feeder.toml that brings each."""
 
-ELSEWHERE = {"is a suspected misprint": "sixbar/4:2", "no tooth set": "transport/compressor@09-В-999"}
+ELSEWHERE = {"is probably a misprint of": "sixbar/4:2", "no tooth set": "transport/compressor@09-В-999"}
 """Messages that a shipped project brings."""
 
 
@@ -396,3 +459,8 @@ def known():
 def test_other_explained_messages_are_texts_of_the_program(paper):
     for message in explained(paper):
         assert message in known(), message
+
+
+def test_no_paragraph_of_comparing_is_long():
+    for paragraph in re.split(r"\n\s*\n", FENCED.sub("", TEXTS["docs/comparing.md"])):
+        assert len(paragraph.split()) <= 80 or paragraph.startswith("|"), paragraph[:60]
