@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
+from operator import attrgetter
 from typing import Any, Literal
 
 from tmm_sheets.words import marked
@@ -89,10 +90,10 @@ ROOMS = {module: room for room, modules in {
 
 @cache
 def function(name: str) -> Callable[..., Any]:
-    """The function module.function of a room of :mod:`tmm_sheets.sheets`."""
+    """The function module.function, or a view that is data and its module.view.sizes, of a room of :mod:`tmm_sheets.sheets`."""
     module, _, of_it = name.partition(".")
     room = ROOMS.get(module)
-    found: Callable[..., Any] = getattr(import_module(f"tmm_sheets.sheets{f'.{room}' if room else ''}.{module}"), of_it)
+    found: Callable[..., Any] = attrgetter(of_it)(import_module(f"tmm_sheets.sheets{f'.{room}' if room else ''}.{module}"))
     return found
 
 
@@ -142,10 +143,10 @@ VIEWS = {view.draw: view for view in (
     # of whatever the sheet has
     ViewKind("hodograph.bearing", sizes="hodograph.bearing_sizes"),
     ViewKind("details.dense", sizes="details.dense_sizes", near="details.dense_near", name=marked("Mark of an enlarged detail")),
-    ViewKind("planet_motion.checks", sizes="planet_motion.checks_sizes", stands="anywhere"),
-    ViewKind("planet_motion.inverted", sizes="planet_motion.inverted_sizes"),
-    ViewKind("planet_motion.ratios", sizes="planet_motion.ratios_sizes", stands="anywhere"),
-    ViewKind("wheel_sizes.table", sizes="wheel_sizes.table_sizes", stands="anywhere"),
+    ViewKind("planet_motion.checks", sizes="planet_motion.checks.sizes", stands="anywhere"),
+    ViewKind("planet_motion.inverted", sizes="planet_motion.inverted.sizes"),
+    ViewKind("planet_motion.ratios", sizes="planet_motion.ratios.sizes", stands="anywhere"),
+    ViewKind("wheel_sizes.table", sizes="wheel_sizes.table.sizes", stands="anywhere"),
     # flywheel
     ViewKind("crank_speed.graph", "flywheel", sizes="crank_speed.graph_sizes", left="crank_speed.graph_left",
              after="flywheel.with_tangents"),
@@ -177,20 +178,20 @@ VIEWS = {view.draw: view for view in (
     ViewKind("gear_equations.of_pair", "gear", sizes="gear_equations.of_pair_sizes"),
     ViewKind("rack.generating", "gear", place="gear_sizes.generating"),
     # reducers
-    ViewKind("plan_checks.mobility", "reducer", sizes="plan_checks.mobility_sizes", stands="anywhere"),
-    ViewKind("plan_checks.of_reducer", "reducer", sizes="plan_checks.of_reducer_sizes", stands="anywhere"),
+    ViewKind("plan_checks.mobility", "reducer", sizes="plan_checks.mobility.sizes", stands="anywhere"),
+    ViewKind("plan_checks.of_reducer", "reducer", sizes="plan_checks.of_reducer.sizes", stands="anywhere"),
     ViewKind("reducer.choice", "reducer", place="gear_sizes.choice"),
     ViewKind("reducer.conditions", "reducer", place="gear_sizes.conditions"),
-    ViewKind("reducer.links", "reducer", sizes="reducer.links_sizes"),
-    ViewKind("reducer.points", "reducer", place="gear_sizes.points_of_reducer", sizes="reducer.points_sizes"),
+    ViewKind("reducer.links", "reducer", sizes="reducer.links.sizes"),
+    ViewKind("reducer.points", "reducer", place="gear_sizes.points_of_reducer", sizes="reducer.points.sizes"),
     ViewKind("reducer.scheme", "reducer", place="gear_sizes.scheme_of_reducer", picture="wheels"),
     ViewKind("reducer.speeds", "reducer", place="gear_sizes.speeds"),
-    ViewKind("reducer_equations.of_stage", "reducer", sizes="reducer_equations.of_stage_sizes"),
+    ViewKind("reducer_equations.of_stage", "reducer", sizes="reducer_equations.of_stage.sizes"),
     # gear trains
-    ViewKind("plan_checks.of_train", "train", sizes="plan_checks.of_train_sizes", stands="anywhere"),
-    ViewKind("plan_checks.pairs", "train", sizes="plan_checks.pairs_sizes", stands="anywhere"),
-    ViewKind("train.links", "train", sizes="train.links_sizes"),
-    ViewKind("train.mobility", "train", sizes="train.mobility_sizes"),
+    ViewKind("plan_checks.of_train", "train", sizes="plan_checks.of_train.sizes", stands="anywhere"),
+    ViewKind("plan_checks.pairs", "train", sizes="plan_checks.pairs.sizes", stands="anywhere"),
+    ViewKind("train.links", "train", sizes="train.links.sizes"),
+    ViewKind("train.mobility", "train", sizes="train.mobility.sizes"),
     ViewKind("train.points", "train", place="gear_sizes.points_of_train"),
     ViewKind("train.scheme", "train", place="gear_sizes.scheme_of_train", picture="wheels"),
     ViewKind("train.sizes", "train", place="gear_sizes.dimensions"),

@@ -15,14 +15,13 @@ from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box, Dimension, Role
 from tmm_sheets.drawing.tables import LEAST, needs
 from tmm_sheets.drawing.text_boxes import spread
+from tmm_sheets.sheets.components.listed import LARGE, LETTERS, ROW
 from tmm_sheets.sheets.player import PlayerStage
 
 CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "centre"), ("rb", "r_{b%d}", "thin"),
            ("rf", "r_{f%d}", "thin"))
 """Circles of a wheel: attribute, symbol, line type."""
 
-ROW, LARGE, LETTERS = 12.0, 16.0, 5.0
-"""Greatest height of a row of a table, mm; of one where there is room for letters as large as a title's, and these."""
 KINKS, OVER = 120.0, 3.0
 """Distance of the kinks of a break line, and how far it runs beyond what it cuts, mm."""
 

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 from tmm_sheets.construction.readable import TOOTH
 from tmm_sheets.sheets.border_solver import BorderNode, Need
+from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.frame import standard
-from tmm_sheets.sheets.gears import gear, gear_marks, rack, reducer, train
+from tmm_sheets.sheets.gears import gear, rack, reducer, train
 from tmm_sheets.sheets.view_sizes import reached
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ def speeds(project: Project, view: ViewPlace) -> BorderNode:
 
 def _table(view: ViewPlace, rows: int, head: float = 16.0) -> BorderNode:
     """A table of so many rows under its title, from the least height of a row to the greatest of use."""
-    need = Need(least=(150.0, head + 6.0 * rows), most=(190.0, head + gear_marks.LARGE * rows), drawn=lambda w, h: w * h)
+    need = Need(least=(150.0, head + 6.0 * rows), most=(190.0, head + listed.LARGE * rows), drawn=lambda w, h: w * h)
     return BorderNode(need, area=need.least[0] * need.most[1])
 
 

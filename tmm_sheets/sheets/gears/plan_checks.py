@@ -5,60 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.gears.planet_motion import sizes_of, written
+from tmm_sheets.sheets.components.listed import Lines
 from tmm_sheets.sheets.gears.reducer import ends_of_rays, link_name
-from tmm_sheets.words import tr
-
-if TYPE_CHECKING:
-    from tmm_sheets.project import Project
+from tmm_sheets.words import marked, tr
 
 MEASURED = 5.0
 """Segment below which no ratio is to be measured, mm."""
-
-
-def of_reducer_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the measured ratios of a reducer can do with, mm."""
-    return sizes_of(tr("Ratios by the plan of speeds"), list(_measured(project.reducer, canvas, "reducer")))
-
-
-def of_reducer(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Ratios of the driving link to the others, from the segments of the plan and from the speeds."""
-    written(canvas, box, tr("Ratios by the plan of speeds"), list(_measured(project.reducer, canvas, "reducer")))
-
-
-def of_train_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the measured ratios of a train can do with, mm."""
-    return sizes_of(tr("Ratios by the plan of speeds"), list(_measured(project.train, canvas, "train")))
-
-
-def of_train(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """The same of a train."""
-    written(canvas, box, tr("Ratios by the plan of speeds"), list(_measured(project.train, canvas, "train")))
-
-
-def mobility_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the degree of freedom of a reducer can do with, mm."""
-    return sizes_of(tr("Mobility and speeds of the links"), list(_mobility(project.reducer)))
-
-
-def mobility(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Degree of freedom of a reducer by Chebyshev's formula, one satellite counted; angular velocities of its links."""
-    written(canvas, box, tr("Mobility and speeds of the links"), list(_mobility(project.reducer)))
-
-
-def pairs_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the ratios of pairs with standing axes can do with, mm; none where there are no such pairs."""
-    return sizes_of(tr("Ratios of the pairs"), list(_pairs(project.train)))
-
-
-def pairs(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Ratio of every pair whose axes stand still, by its speeds and by its teeth; of a train of such pairs that of the whole."""
-    written(canvas, box, tr("Ratios of the pairs"), list(_pairs(project.train)))
 
 
 def _measured(of: Any, canvas: Canvas, part: str) -> Iterator[str]:
@@ -112,3 +68,13 @@ def _pairs(train: Any) -> Iterator[str]:
         letters = "·".join(f"i_{{{one}{two}}}" for one, two, *_ in whole)
         driven, driving = ("·".join(str(pair[k]) for pair in whole) for k in (3, 2))
         yield f"i_{{{a}{b}}} = {letters} = {sign}{driven}/({driving}) = {number(ratio)}"
+
+
+of_reducer = Lines(marked("Ratios by the plan of speeds"), lambda project, canvas: _measured(project.reducer, canvas, "reducer"))
+"""Ratios of the driving link of a reducer to the others, from the segments of the plan and from the speeds."""
+of_train = Lines(marked("Ratios by the plan of speeds"), lambda project, canvas: _measured(project.train, canvas, "train"))
+"""The same of a train."""
+mobility = Lines(marked("Mobility and speeds of the links"), lambda project, canvas: _mobility(project.reducer))
+"""Degree of freedom of a reducer by Chebyshev's formula, one satellite counted; angular velocities of its links."""
+pairs = Lines(marked("Ratios of the pairs"), lambda project, canvas: _pairs(project.train))
+"""Ratio of every pair whose axes stand still, by its speeds and by its teeth; of a train of such pairs that of the whole."""

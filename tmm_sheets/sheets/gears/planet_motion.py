@@ -8,39 +8,25 @@ from math import gcd, pi, sin
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import letter, size_for
-from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import widened
 from tmm_sheets.numbers import fixed, is_zero, number
-from tmm_sheets.sheets.gears.gear_marks import LARGE, ROW
-from tmm_sheets.sheets.gears.reducer import letters_in
-from tmm_sheets.words import tr
+from tmm_sheets.sheets.components.listed import Lines, Table
+from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
-SIZES = ((5.0, 5.0, 12.0), (5.0, 3.5, 10.0), (5.0, 3.5, 7.0), (3.5, 3.5, 7.0))
-"""Heights of the letters of a title and of the lines under it, and distances of these, that are tried, mm."""
-PLACES = ((220.0, LARGE), (180.0, ROW), (150.0, 9.0), (120.0, 7.0))
-"""Widths and heights of rows of the table that are tried, mm."""
-
-
-def inverted_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the table of the inverted motion can do with, mm; none without a carrier."""
-    count = len(list(_inverted(project)))
-    return [(width, 11.0 + row * (count + 1)) for width, row in PLACES] if count else []
-
-
-def inverted(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+def _motions(project: Project, canvas: Canvas) -> list[list[str]]:
     """Speeds of the wheels of every carrier as they are, and as one sees them who turns with it (Willis)."""
     rows = [[tr("Link"), tr("n, rpm"), f"n − n_H, {tr('rpm')}", f"ω, {tr('rad/s')}"]]
     found = list(_inverted(project))
     several = len({carrier for carrier, *_ in found}) > 1
     for carrier, name, n, n_carrier in found:
         rows.append([f"{name} ({carrier})" if several else name, number(n), number(n - n_carrier), number(n * pi / 30, 5)])
-    left = canvas.title(box, tr("Inverted motion (carrier held)"))
-    row, height = letters_in(left.height / len(rows))
-    canvas.table(complex(box.x0, left.y1), widened([0.25 * box.width] * 4, rows, height), rows, row, height)
+    return rows
+
+
+inverted = Table(marked("Inverted motion (carrier held)"), _motions, (0.25,) * 4)
+"""Speeds of the wheels relative to their carriers; none without a carrier."""
 
 
 def _inverted(project: Project) -> Iterator[tuple[str, str, float, float]]:
@@ -55,40 +41,6 @@ def _inverted(project: Project) -> Iterator[tuple[str, str, float, float]]:
     for stage in project.reducer.stages:
         for wheel in dict.fromkeys(stage.wheels):
             yield stage.carrier, wheel.number, float(wheel.n.value), float(stage.n_H.value)
-
-
-def checks_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the conditions of a train's planets can do with, mm; none without a carrier."""
-    return sizes_of(tr("Conditions of the planets"), list(_checks(project.train)))
-
-
-def checks(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Common axis, assembly and neighbourhood of the planets of every carrier, in letters and in numbers."""
-    written(canvas, box, tr("Conditions of the planets"), list(_checks(project.train)))
-
-
-def ratios_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the ratios between the central wheels of a train can do with, mm; none where there are no two on a carrier."""
-    return sizes_of(tr("Ratios of the inverted motion"), list(_ratios(project.train)))
-
-
-def ratios(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Ratios of central wheels with their carrier held, from the speeds and from the teeth."""
-    written(canvas, box, tr("Ratios of the inverted motion"), list(_ratios(project.train)))
-
-
-def sizes_of(title: str, lines: list[str]) -> list[tuple[float, float]]:
-    """Places that lines under a title can do with, mm; none for no lines. The title is as large as others are, if it can be."""
-    return [(max(letter(title, head).width, *(letter(line, height).width for line in lines)) + 6.0, 14.0 + step * len(lines))
-            for head, height, step in SIZES] if lines else []
-
-
-def written(canvas: Canvas, box: Box, title: str, lines: list[str]) -> None:
-    """Lines under a title, with the largest letters that have room."""
-    left = canvas.title(box, title)
-    height = size_for(lines, box.width - 3.0, 5.0)
-    step = min((left.y1 - box.y0) / len(lines), 12.0 if height > 3.5 else 10.0)
-    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
 
 
 def _ratios(train: Any) -> Iterator[str]:
@@ -162,3 +114,9 @@ def _assembly(teeth: dict[str, int], q: int, one: Any, other: Any) -> dict[str, 
     if value != int(value):
         said = tr("{number} (not whole: no equal angles)").format(number=said)
     return {"letters": letters, "numbers": said}
+
+
+checks = Lines(marked("Conditions of the planets"), lambda project, canvas: _checks(project.train))
+"""Common axis, assembly and neighbourhood of the planets of every carrier, in letters and in numbers."""
+ratios = Lines(marked("Ratios of the inverted motion"), lambda project, canvas: _ratios(project.train))
+"""Ratios of central wheels with their carrier held, from the speeds and from the teeth."""

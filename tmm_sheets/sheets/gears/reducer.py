@@ -15,14 +15,15 @@ from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import GAP, LEAST, needs, widened
+from tmm_sheets.drawing.tables import widened
 from tmm_sheets.drawing.text_boxes import spread
 from tmm_sheets.numbers import fixed, number
+from tmm_sheets.sheets.components.listed import LARGE, Table, letters_in
 from tmm_sheets.sheets.frame import ratio, standard
-from tmm_sheets.sheets.gears.gear_marks import LARGE, LETTERS, ROW, ruled_table
+from tmm_sheets.sheets.gears.gear_marks import ruled_table
 from tmm_sheets.sheets.gears.reducer_equations import unsigned
 from tmm_sheets.sheets.player import PlayerStage, placed, play
-from tmm_sheets.words import tr
+from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -49,12 +50,6 @@ OFFERED = 90.0
 """Width from which room beside them is of use to other views, mm."""
 NARROWEST, WIDEST = 75.0, 100.0
 """Least width left for the picture of velocities and what its velocities may always take, mm."""
-
-
-def letters_in(row: float, widths: Sequence[float] = (), rows: Sequence[Sequence[str]] = ()) -> tuple[float, float]:
-    """Height of the rows of a table that has room for rows so high, and of the letters in them, mm: the larger if they fit."""
-    wide = sum(needs(rows, LETTERS, LEAST + GAP)) if rows else 0.0
-    return (LARGE, LETTERS) if row >= LARGE and wide <= sum(widths) else (min(row, ROW), 3.5)
 
 
 def scheme(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -517,31 +512,6 @@ def ends_of_rays(plan: Plan) -> list[Step]:
     return [step for step in plan if step.name not in ("P", "0") and step.rule.gives == "point"]
 
 
-def points_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the table of points can do with, mm."""
-    return sizes_of_points(project.reducer, canvas)
-
-
-def points(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Points of the picture of velocities: distance from the main axis, segment measured on the picture, velocity."""
-    table_of_points(project.reducer, canvas, box)
-
-
-def sizes_of_points(of: Any, canvas: Canvas) -> list[tuple[float, float]]:
-    """The same of a reducer or a train."""
-    rows = len(rows_of_points(of, canvas))
-    return [(width, 11.0 + row * rows) for width, row in ((180.0, 8.0), (150.0, 7.0), (120.0, 7.0))]
-
-
-def table_of_points(of: Any, canvas: Canvas, box: Box) -> None:
-    """The same of a reducer or a train."""
-    rows = rows_of_points(of, canvas)
-    left = canvas.title(box, tr("Velocities of the points"))
-    shares = [0.16 * box.width, 0.28 * box.width, 0.28 * box.width, 0.28 * box.width]
-    row, height = letters_in(left.height / len(rows), shares, rows)
-    canvas.table(complex(box.x0, left.y1), widened(shares, rows, height), rows, row, height)
-
-
 def rows_of_points(of: Any, canvas: Canvas) -> list[list[str]]:
     """Heading and a row for each point whose velocity the picture has."""
     mu = canvas.scales[of.velocities.name]
@@ -559,32 +529,7 @@ def moving_points(of: Any) -> list[Step]:
     return [end for end in plan if end.name.islower() and end.rule.gives == "point" and end.name.upper() in plan]
 
 
-def links_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the table of speeds of rotation can do with, mm."""
-    return sizes_of_links(project.reducer, canvas, "reducer")
-
-
-def links(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Links on the plan of the speeds of rotation: segment measured on it, speed."""
-    table_of_links(project.reducer, canvas, box, "reducer")
-
-
-def sizes_of_links(of: Any, canvas: Canvas, part: str) -> list[tuple[float, float]]:
-    """The same of a reducer or a train."""
-    rows = len(_rows_of_links(of, canvas, part))
-    return [(width, 11.0 + row * rows) for width, row in ((220.0, LARGE), (180.0, ROW), (150.0, 9.0), (120.0, 7.0))]
-
-
-def table_of_links(of: Any, canvas: Canvas, box: Box, part: str) -> None:
-    """The same of a reducer or a train."""
-    rows = _rows_of_links(of, canvas, part)
-    left = canvas.title(box, tr("Speeds of rotation by the plan"))
-    row, height = letters_in(left.height / len(rows))
-    widths = widened([0.24 * box.width, 0.4 * box.width, 0.36 * box.width], rows, height)
-    canvas.table(complex(box.x0, left.y1), widths, rows, row, height)
-
-
-def _rows_of_links(of: Any, canvas: Canvas, part: str) -> list[list[str]]:
+def rows_of_links(of: Any, canvas: Canvas, part: str) -> list[list[str]]:
     """Heading and a row for each link on the plan that the sheet has."""
     plan = of.plans[f"{part}-speeds"]
     mu = canvas.scales[plan.name]
@@ -649,3 +594,14 @@ def conditions(project: Project, canvas: Canvas, box: Box, options: dict[str, An
     for k, text in enumerate(r.warnings):
         said = f"{text[0].upper()}{text[1:]}."
         canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 5.5 - 6 * k), 0.0, said)
+
+
+POINTS = (0.16, 0.28, 0.28, 0.28), ((180.0, 8.0), (150.0, 7.0), (120.0, 7.0))
+"""Shares of the columns of a table of points; widths and heights of rows that are tried, mm."""
+LINKS = (0.24, 0.4, 0.36)
+"""Shares of the columns of a table of links."""
+points = Table(marked("Velocities of the points"), lambda project, canvas: rows_of_points(project.reducer, canvas), *POINTS)
+"""Points of the picture of velocities: distance from the main axis, segment measured on the picture, velocity."""
+links = Table(marked("Speeds of rotation by the plan"), lambda project, canvas: rows_of_links(project.reducer, canvas, "reducer"),
+              LINKS)
+"""Links on the plan of the speeds of rotation: segment measured on it, speed."""

@@ -3,34 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import letter, size_for
-from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.words import tr
-
-if TYPE_CHECKING:
-    from tmm_sheets.project import Project
-
-SIZES = ((5.0, 12.0), (3.5, 10.0), (3.5, 7.0))
-"""Heights of the letters and distances of the lines that are tried, mm."""
-
-
-def of_stage_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the equations can do with, mm."""
-    lines = list(_lines(project.reducer))
-    return [(max(letter(line, height).width for line in lines) + 6.0, 14.0 + step * len(lines)) for height, step in SIZES]
-
-
-def of_stage(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Ratio, conditions and speeds of a planetary stage, and the ratio of the whole reducer."""
-    lines = list(_lines(project.reducer))
-    left = canvas.title(box, tr("The reducer in numbers"))
-    height = size_for(lines, box.width - 3.0, 5.0)
-    step = min((left.y1 - box.y0) / len(lines), 12.0 if height > 3.5 else 10.0)
-    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
+from tmm_sheets.sheets.components.listed import Lines
+from tmm_sheets.words import marked, tr
 
 
 def unsigned(ratio: float) -> str:
@@ -104,3 +81,7 @@ def _speeds(stage: Any, ratio: str, inner: str, within: str, u: str) -> Iterator
     subtracted = f"({n['H']})" if float(stage.n_H.value) < 0 else n["H"]
     yield (f"n_{{{two.number}}} = {h} {sign} ({first} − {h})·z_{{{one.number}}}/z_{{{two.number}}} = {n['H']} {sign} "
            f"({n['1']} − {subtracted})·{one.teeth}/{two.teeth} = {n['2']} " + tr("rpm"))
+
+
+of_stage = Lines(marked("The reducer in numbers"), lambda project, canvas: _lines(project.reducer))
+"""Ratio, conditions and speeds of a planetary stage, and the ratio of the whole reducer."""

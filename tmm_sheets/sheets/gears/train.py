@@ -8,23 +8,25 @@ from math import cos, pi, sin
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import fitted, letter, size_for
+from tmm_sheets.drawing.lettering import fitted, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import number
-from tmm_sheets.sheets.gears.gear_marks import LARGE, ruled_table
+from tmm_sheets.sheets.components.listed import LARGE, Lines, Table
+from tmm_sheets.sheets.gears.gear_marks import ruled_table
 from tmm_sheets.sheets.gears.planet_motion import at_equal_angles
 from tmm_sheets.sheets.gears.reducer import (
     COLUMN,
     HUB,
+    LINKS,
+    POINTS,
     STUB,
     Edge,
     SchemeViews,
     plan_of_speeds,
-    sizes_of_links,
-    table_of_links,
-    table_of_points,
+    rows_of_links,
+    rows_of_points,
 )
-from tmm_sheets.words import tr
+from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -62,21 +64,6 @@ def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
         canvas.put(fitted(said, box.width, 3.5), complex(box.x0, end - 5.5 - 6 * k), 0.0, said)
 
 
-def points(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Points of the picture of velocities: distance from the main axis, segment measured on the picture, velocity."""
-    table_of_points(project.train, canvas, box)
-
-
-def links_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the table of speeds of rotation can do with, mm."""
-    return sizes_of_links(project.train, canvas, "train")
-
-
-def links(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Links on the plan of the speeds of rotation: segment measured on it, speed."""
-    table_of_links(project.train, canvas, box, "train")
-
-
 def sizes(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Pitch diameters and distances of axes in letters and in numbers."""
     lines = dimensions(project)
@@ -110,22 +97,6 @@ def dimensions(project: Project) -> list[str]:
                         f"{twice}·{z[name]}/({z[c]} {sign} {z[p]}) = {number(rolled * z[name] / z[c])}")
             lines += [line] if line not in lines else []
     return lines
-
-
-def mobility_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the degree of freedom and the ratios can do with, mm."""
-    lines = mobility_lines(project.train)
-    return [(max(letter(line, height).width for line in lines) + 6.0, 14.0 + step * len(lines))
-            for height, step in ((5.0, 12.0), (3.5, 10.0), (3.5, 7.0))]
-
-
-def mobility(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Degree of freedom by Chebyshev's formula, ratios to the driving link, angular velocities."""
-    lines = mobility_lines(project.train)
-    left = canvas.title(box, tr("Mobility and speeds of the links"))
-    height = size_for(lines, box.width - 3.0, 5.0)
-    step = min((left.y1 - box.y0) / len(lines), 12.0 if height > 3.5 else 10.0)
-    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
 
 
 def mobility_lines(train: Any) -> list[str]:
@@ -340,3 +311,12 @@ class SchemeOfTrain(SchemeViews):
         for k, (centre, radius, name) in enumerate({name: (centre, radius, name) for centre, radius, name in named}.values()):
             way = rect(1, pi / 2 - (0.55 + 0.35 * (k // 2)) if centre == o else -0.4 - 0.5 * (k // 2))
             c.label(centre + radius * way, name, away=way, height=3.5, gap=1.0)
+
+
+points = Table(marked("Velocities of the points"), lambda project, canvas: rows_of_points(project.train, canvas), *POINTS)
+"""Points of the picture of velocities: distance from the main axis, segment measured on the picture, velocity."""
+links = Table(marked("Speeds of rotation by the plan"), lambda project, canvas: rows_of_links(project.train, canvas, "train"),
+              LINKS)
+"""Links on the plan of the speeds of rotation: segment measured on it, speed."""
+mobility = Lines(marked("Mobility and speeds of the links"), lambda project, canvas: mobility_lines(project.train))
+"""Degree of freedom by Chebyshev's formula, ratios to the driving link, angular velocities."""

@@ -6,11 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import widened
 from tmm_sheets.numbers import number
-from tmm_sheets.sheets.gears.planet_motion import PLACES
-from tmm_sheets.sheets.gears.reducer import letters_in
+from tmm_sheets.sheets.components.listed import Table
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -30,20 +27,15 @@ class _Wheel(NamedTuple):
     rack: tuple[float, float]
 
 
-def table_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the table can do with, mm; none for a train that needs shifts."""
-    count = len(_wheels(project))
-    return [(width, 11.0 + row * (count + 1)) for width, row in PLACES] if count else []
+def _title(project: Project) -> str:
+    addendum, clearance = _wheels(project)[0].rack
+    return tr("Wheels without shift, h_a^{{*}} = {addendum}, c^{{*}} = {clearance}").format(
+        addendum=number(addendum), clearance=number(clearance))
 
 
-def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Every wheel with its tooth number and its pitch, tip and root diameters, mm, as they are without shifts (GOST 16532)."""
-    found = _wheels(project)
-    rows = [[tr("Wheel"), "z", *(tr("{symbol}, mm").format(symbol=symbol) for symbol in ("d", "d_a", "d_f"))], *map(_row, found)]
-    left = canvas.title(box, tr("Wheels without shift, h_a^{{*}} = {addendum}, c^{{*}} = {clearance}").format(
-        addendum=number(found[0].rack[0]), clearance=number(found[0].rack[1])))
-    row, height = letters_in(left.height / len(rows))
-    canvas.table(complex(box.x0, left.y1), widened([0.2 * box.width] * 5, rows, height), rows, row, height)
+def _rows(project: Project, canvas: Canvas) -> list[list[str]]:
+    head = [tr("Wheel"), "z", *(tr("{symbol}, mm").format(symbol=symbol) for symbol in ("d", "d_a", "d_f"))]
+    return [head, *map(_row, _wheels(project))]
 
 
 def _row(wheel: _Wheel) -> list[str]:
@@ -73,3 +65,10 @@ def _of_reducer(reducer: Any) -> Iterator[_Wheel]:
             yield _Wheel(wheel.number, int(wheel.teeth), wheel.diameter / wheel.teeth, out, rack)
     for wheel in reducer.simple or ():
         yield _Wheel(wheel.number, int(wheel.teeth), wheel.diameter / wheel.teeth, 1, rack)
+
+
+table = Table(_title, _rows, (0.2,) * 5)
+"""Every wheel with its tooth number and its pitch, tip and root diameters, mm, as they are without shifts (GOST 16532).
+
+None for a train that needs shifts.
+"""
