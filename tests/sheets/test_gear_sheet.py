@@ -199,7 +199,7 @@ def test_a_far_greater_wheel_is_broken_so_that_the_mesh_can_be_read(teeth, shift
 @pytest.mark.parametrize("size", [(393, 565), (213, 428), (150, 428), (120, 300)], ids=["wide", "narrow", "narrower", "small"])
 def test_radii_stand_apart_where_they_are_named_and_end_inside_the_picture(size):
     gear = Project(read("lugansk/shaper")).gear
-    picture = gear_sheet._GearPicture(gear, Canvas(), Box(20, 20, 20 + size[0], 20 + size[1]))
+    picture = gear_sheet.GearPicture(gear, Canvas(), Box(20, 20, 20 + size[0], 20 + size[1]))
     for wheel in gear.wheels:
         found = [(key, a) for key, (a, begin) in gear_radii._Radii(picture, wheel).directions().items() if begin == 2.0]
         apart = [abs(a - b) * 0.7 * picture.mm(wheel.rf) for (_, a), (_, b) in combinations(found, 2)]

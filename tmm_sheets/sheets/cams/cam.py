@@ -11,6 +11,7 @@ from math import degrees, pi, radians
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
@@ -34,7 +35,7 @@ HEADS = 66.0
 """Height the diagrams leave to headings, axes and dimensions, mm."""
 ANGLE = "α"
 """Letter of the pressure angle; an arrangement may name another one as the option ``angle``."""
-View = Callable[[Any, Canvas, Box, dict[str, Any]], None]
+View = Callable[["Project", Canvas, Box, dict[str, Any]], None]
 
 
 def for_cams(view: View) -> View:
@@ -60,7 +61,7 @@ def axes(s: PlayerStage, step: Step | str, x: float, y: tuple[float, float], bef
     pen.arrow(o, o + x, "axis", 3.0)
 
 
-def distinct(labels: tuple[str, ...], x: Any) -> list[int]:
+def distinct(labels: tuple[str, ...], x: Points | NDArray[np.float64]) -> list[int]:
     """Positions to be numbered: where two fall together (no dwell between), the first."""
     return [k for k in range(len(labels)) if k == 0 or abs(x[k] - x[k - 1]) > 1e-9]
 
@@ -307,7 +308,7 @@ class OverAngle:
         axes(s, step, self.length + beyond[0], (self.low, self.high + beyond[1]))
         s.canvas.text(self.o + complex(2.5, self.high + above), text, 3.5)
 
-    def from_axis(self, points: Any) -> Any:
+    def from_axis(self, points: Points) -> Points:
         """A curve that jumps from the axis at its beginning and back to it at its end."""
         return np.concatenate(([self.o], points, [self.o + self.length]))
 

@@ -27,7 +27,7 @@ from tmm_sheets.words import tr
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
     from tmm_sheets.methods.cams.cam_inversion import Inversion
-    from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam
+    from tmm_sheets.methods.cams.cam_profile import Cam, FlatCam, RollerCam
     from tmm_sheets.project import Project
 
 EDGE, FOOT = 3.0, 4.0
@@ -103,7 +103,7 @@ def _figure(cam: Cam) -> tuple[Points, float, list[complex], Points]:
     if cam.kind == "rocker":
         swept.append(complex(inv.plan["A_0"].value) * np.exp(1j * cam.right * np.linspace(0, cam.law.fall.end, 65)))
     if cam.kind == "flat":
-        swept += [np.array(ends) for ends in _plates(cam)]
+        swept += [np.array(ends) for ends in _plates(cast("FlatCam", cam))]
     points = np.concatenate([*every, *swept])
     marks = inv.axis.value
     # The guide of a translating follower stands clear of the roller in position 0.
@@ -207,7 +207,7 @@ class _ProfilePicture:
         return None
 
 
-def _plates(cam: Any) -> list[tuple[complex, complex]]:
+def _plates(cam: FlatCam) -> list[tuple[complex, complex]]:
     """Plates of the inverted positions, m: whole in position 0, in the others from the middle to beyond the contact."""
     inv, beyond = cam.inversion, 0.2 * cam.r0
     found = []
@@ -222,7 +222,7 @@ def _plates(cam: Any) -> list[tuple[complex, complex]]:
     return found
 
 
-def _plate_ends(cam: Any) -> tuple[float, float]:
+def _plate_ends(cam: FlatCam) -> tuple[float, float]:
     """Ends of the plate along the direction 90 degrees left of the follower's line, m."""
     return (cam.plate.l1, -cam.plate.l2) if cam.right > 0 else (cam.plate.l2, -cam.plate.l1)
 
@@ -440,7 +440,7 @@ def _flat(s: PlayerStage, picture: _ProfilePicture) -> None:
     """Flat follower in position 0 and the plates of the inverted positions, whose envelope is the profile."""
     cam, at = picture.cam, picture.at
     inv = cam.inversion
-    for k, (a, b) in enumerate(_plates(cam)):
+    for k, (a, b) in enumerate(_plates(cast("FlatCam", cam))):
         s.position(k).line("⊥ON", complex(at(a)), complex(at(b)), "main" if k == 0 else "construction")
     for k in range(len(inv.plan.labels)):
         s.position(k).dot("F", 0.5, "main")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from tmm_sheets.sheets.frame import standard
 from tmm_sheets.sheets.view_sizes import leaf
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.cams.cam_profile import Cam
+    from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam, TappetCam
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.arrangement import ViewPlace
     from tmm_sheets.sheets.border_solver import BorderNode
@@ -44,7 +44,7 @@ def wide(project: Project, view: ViewPlace) -> BorderNode:
 
 def zone_of_tappet(project: Project, view: ViewPlace) -> BorderNode | None:
     """A curve S(S′) with the numbers of all positions on it, which must be so high that they can be read."""
-    cam: Any = project.cam  # one with a tappet: others have no such view
+    cam = cast("TappetCam", project.cam)  # others have no such view
     rays = bool(view.options.get("rays"))
 
     @cache
@@ -102,7 +102,7 @@ def _profile_area(cam: Cam, table: tuple[float, float]) -> Callable[[int, int], 
 
 def roller(project: Project, view: ViewPlace) -> BorderNode | None:
     """The choice of the roller at a standard scale."""
-    cam: Any = project.cam  # one with a roller: others have no such view
+    cam = cast("RollerCam", project.cam)  # others have no such view
     w, h = cam_profile.roller_extent(cam)
     left, below, right, above = cam_profile.ROLLER
 

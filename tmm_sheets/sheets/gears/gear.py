@@ -26,6 +26,8 @@ from tmm_sheets.sheets.player import PlayerStage, placed, play, stage
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.methods.gears.gear_geometry import GearWheel
+    from tmm_sheets.methods.gears.gear_pair import GearPair
     from tmm_sheets.project import Project
 
 EDGE = 24.0
@@ -62,7 +64,7 @@ DEEPEST = 10.0
 
 def engagement(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Engagement picture to a standard scale with the line of centres vertical."""
-    picture = _GearPicture(project.gear, canvas, box)
+    picture = GearPicture(project.gear, canvas, box)
     picture.circles()
     picture.line_of_action()
     for wheel in picture.gear.wheels:
@@ -76,7 +78,7 @@ def engagement(project: Project, canvas: Canvas, box: Box, options: dict[str, An
     gear_radii.draw(picture)
 
 
-def picture_room(gear: Any, width: float, height: float) -> float:
+def picture_room(gear: GearPair, width: float, height: float) -> float:
     """Room for the height of the engagement picture, mm: two thirds for the centre distance, of a ring nearly all.
 
     And most of the smaller wheel across the width.
@@ -91,7 +93,7 @@ Broken = frozenset[int]
 WHOLE: Broken = frozenset()
 
 
-def picture(gear: Any, width: float, height: float) -> tuple[Scale, Broken]:
+def picture(gear: GearPair, width: float, height: float) -> tuple[Scale, Broken]:
     """Scale of the engagement picture in a place of this size, mm, and the wheels that are broken for it.
 
     Teeth that would be lower than can be read break the greater wheel, or both: the largest scale with the other one whole, or the
@@ -120,22 +122,22 @@ def picture(gear: Any, width: float, height: float) -> tuple[Scale, Broken]:
     return min(found, key=lambda one: one[0].mu)
 
 
-def highest_tooth(gear: Any) -> float:
+def highest_tooth(gear: GearPair) -> float:
     """Height of the higher teeth of a pair, m."""
     return float(max(abs(w.ra - w.rf) for w in gear.wheels))
 
 
-def _fits(gear: Any, scale: Scale, broken: Broken, width: float, height: float) -> bool:
+def _fits(gear: GearPair, scale: Scale, broken: Broken, width: float, height: float) -> bool:
     left, right, below, above = (length / scale.mu for length in _broken_extent(gear, scale, broken))
     return left + right <= width - 6.0 - 2 * BESIDE and below + above <= height - 16.0 - len(broken) * HUB - 2 * UNDER
 
 
-def _broken_extent(gear: Any, scale: Scale, broken: Broken) -> tuple[float, float, float, float]:
+def _broken_extent(gear: GearPair, scale: Scale, broken: Broken) -> tuple[float, float, float, float]:
     """What is to be seen about the pole of a pair with broken wheels, m: the side of its foot N2, the other, below, above.
 
     The divisions go on beyond the feet, as far as they do with this scale.
     """
-    def side(wheel: Any) -> tuple[float, float, float]:
+    def side(wheel: GearWheel) -> tuple[float, float, float]:
         """At the side of its foot, at the other, away from the pole."""
         last = complex(gear.engagement[f"N{wheel.number}"].value) * gear.divisions(wheel, scale)[-1] / gear.parts(wheel, scale)
         if wheel.number not in broken:
@@ -147,13 +149,13 @@ def _broken_extent(gear: Any, scale: Scale, broken: Broken) -> tuple[float, floa
     return max(near_2, far_1), max(near_1, far_2), below, above
 
 
-class _GearPicture:
+class GearPicture:
     """The engagement picture in its place: turns metres of the plans into millimetres of the sheet.
 
     Wheels with low teeth are ``broken``.
     """
 
-    def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
+    def __init__(self, gear: GearPair, canvas: Canvas, box: Box) -> None:
         self.gear, self.canvas, self.first = gear, canvas, len(canvas.marks)
         self.mu, self.broken = picture(gear, box.width, box.height)
         for name in ("engagement", "involute-1", "involute-2", "tooth-1", "tooth-2"):
@@ -220,26 +222,26 @@ class _GearPicture:
         """Point of the engagement plan on the sheet."""
         return self.stage.at(name)
 
-    def centre(self, wheel: Any) -> complex:
+    def centre(self, wheel: GearWheel) -> complex:
         """Where a wheel's centre is drawn: nearer than it is if the wheel is broken."""
         return self.hubs.get(wheel.number) or self.of(f"O{wheel.number}")
 
-    def within(self, wheel: Any, depth: float) -> float:
+    def within(self, wheel: GearWheel, depth: float) -> float:
         """Distance from the centre of a broken wheel of what is so deep, mm, within the break."""
         edge = self.box.y1 if wheel.number == 1 else self.box.y0
         return float(abs(edge - self.of(f"O{wheel.number}").imag) + depth)
 
-    def away(self, wheel: Any) -> int:
+    def away(self, wheel: GearWheel) -> int:
         """+1 when the wheel's far side is up."""
         return 1 if wheel.number == 1 or wheel.ring else -1
 
-    def spoke(self, wheel: Any, step: str, end: complex, style: str) -> None:
+    def spoke(self, wheel: GearWheel, step: str, end: complex, style: str) -> None:
         """Line from a wheel's centre, interrupted where the dimensions of its teeth are written."""
         centre, first = self.of(f"O{wheel.number}"), len(self.canvas.marks)
         self._spoke(wheel, step, centre, end, style)
         self.spokes.extend(range(first, len(self.canvas.marks)))
 
-    def _spoke(self, wheel: Any, step: str, centre: complex, end: complex, style: str) -> None:
+    def _spoke(self, wheel: GearWheel, step: str, centre: complex, end: complex, style: str) -> None:
         u = (end - centre) / abs(end - centre)
         if wheel.ring:  # they are written beyond its root circle
             self.window.line(self.stage, step, centre, end, style)
@@ -249,6 +251,7 @@ class _GearPicture:
         self.window.line(self.stage, step, centre + u * (root - 1), end, style)
 
     def circles(self) -> None:
+        """Circles of the wheels with their centres, and the line of centres."""
         for wheel in self.gear.wheels:
             centre = self.of(f"O{wheel.number}")
             self.window.line(self.stage, "O1O2", centre + 1j * self.away(wheel) * (self.mm(wheel.ra) + 6), centre, "centre")
@@ -271,6 +274,7 @@ class _GearPicture:
             self.canvas.label(at, f"O_{wheel.number}", away=complex(1, self.away(wheel)), height=5, gap=3)
 
     def line_of_action(self) -> None:
+        """Line of action with its points, the tangent through the pole, the working pressure angle, the centre distance."""
         c, s = self.canvas, self.stage
         n1, n2, a, b, pole = (self.of(k) for k in ("N1", "N2", "A", "B", "Pw"))
         u = complex(s.plan["N1N2"].value)
@@ -350,7 +354,7 @@ class _GearPicture:
         self.canvas.dimension(bottom + 12, top + 12, 12 - (x - top.real), text, 5.0,
                               (at - bottom.imag) / (top.imag - bottom.imag), 1e3 * self.gear.a_w / abs(top - bottom))
 
-    def unrolling(self, wheel: Any) -> None:
+    def unrolling(self, wheel: GearWheel) -> None:
         """Divisions of P_wN, equal arcs, tangents and the involute through their ends."""
         c = self.canvas
         c.of = f"gear-involute-{wheel.number}"
@@ -377,7 +381,8 @@ class _GearPicture:
         stage(c, smooth, None, self.at).curve("E", style="construction")
         c.of = "gear.engagement"
 
-    def teeth(self, wheel: Any) -> None:
+    def teeth(self, wheel: GearWheel) -> None:
+        """Three teeth of a wheel with their axes, the working part of a flank hatched."""
         c, s = self.canvas, self.tooth[wheel.number]
         shape = self.gear.shape(wheel)
         s.curve(shape.step, self.at(shape.outline(step=self.mu.mu)), "main")
@@ -399,18 +404,18 @@ class _GearPicture:
         for name, p in zip(names, ends, strict=True):
             c.label(complex(p), f"{name}_{wheel.number}", away=p - centre - axis * abs(p - centre), height=3.5, gap=1.5)
 
-    def rim(self, ring: Any) -> None:
+    def rim(self, ring: GearWheel) -> None:
         """Outer circle of a ring's rim."""
         centre, radius = self.of(f"O{ring.number}"), self.mm(ring.outside)
         pen = self.stage.pen(f"rf{ring.number}", "symbol")
         for start, end in arcs_inside(self.window.box, centre, radius):
             pen.arc(centre, radius, start, end, "main")
 
-    def strip_tooth(self, wheel: Any) -> int:
+    def strip_tooth(self, wheel: GearWheel) -> int:
         """The tooth whose working flank is hatched: the neighbour that stands clear of the mesh."""
         return 1 if wheel.number == 1 else -1
 
-    def overlap(self, wheel: Any) -> None:
+    def overlap(self, wheel: GearWheel) -> None:
         """The wheel's profile in contact at A and at B, and the angle between."""
         i = wheel.number
         centre, flank = self.of(f"O{i}"), self.gear.shape(wheel).flank
@@ -431,7 +436,7 @@ class _GearPicture:
         radius = self.within(wheel, UNDER) if i in self.broken else self.mm(wheel.rf) * 0.66
         angle_beside(pen, centre, first, last, radius, f"φ_{{α{i}}} = {fixed(degrees(drawn), 2)}°")
 
-    def dimensions(self, wheel: Any) -> None:
+    def dimensions(self, wheel: GearWheel) -> None:
         """Chordal thickness on an outer tooth, chordal pitch between the axes of the other two."""
         c, i = self.canvas, wheel.number
         shape, tooth = self.gear.shape(wheel), self.gear.tooth(wheel)
@@ -475,7 +480,7 @@ class _GearPicture:
                 self.spokes.append(len(marks))
                 marks.append(pieces[1])
 
-    def rotation(self, wheel: Any) -> None:
+    def rotation(self, wheel: GearWheel) -> None:
         """Arrow of the angular velocity."""
         first = -1 if self.gear.sense == "clockwise" else 1
         sense = first if wheel.number == 1 or wheel.ring else -first
@@ -508,12 +513,12 @@ def mesh(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) ->
     _Detail(project.gear, canvas, box).draw()
 
 
-def mesh_height(gear: Any) -> float:
+def mesh_height(gear: GearPair) -> float:
     """Height of the meshing zone with the clearances, m."""
     return 2.0 * float(max(abs(w.ra - w.rw) + gear.clearance * gear.m for w in gear.wheels))
 
 
-def mesh_scale(gear: Any, width: float, height: float) -> Scale:
+def mesh_scale(gear: GearPair, width: float, height: float) -> Scale:
     """Scale of the meshing zone in a place of this size, mm."""
     return standard((PITCHES * gear.p, width - MESH[0]), (mesh_height(gear), height - MESH[1]))
 
@@ -521,7 +526,7 @@ def mesh_scale(gear: Any, width: float, height: float) -> Scale:
 class _Detail:
     """Surroundings of the pole to the largest standard scale that shows a pitch and a quarter."""
 
-    def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
+    def __init__(self, gear: GearPair, canvas: Canvas, box: Box) -> None:
         self.gear, self.canvas = gear, canvas
         margin = MESH[0]
         mu = mesh_scale(gear, box.width, box.height)
@@ -553,7 +558,7 @@ class _Detail:
         s.pen("alpha_w", "dimension").angle_mark(self.pole, start, end, 0.4 * reach, "α_w")
         self.gaps(c.tracing("dimension"))
 
-    def teeth(self, wheel: Any) -> None:
+    def teeth(self, wheel: GearWheel) -> None:
         """Teeth in mesh, and the radius of their fillets."""
         c, s = self.canvas, stage(self.canvas, self.gear.tooth(wheel), 0, self.at)
         shape = self.gear.shape(wheel)
@@ -648,7 +653,7 @@ def sliding(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     canvas.label(complex(pole, axis + ordinate), said, away=1 - 0.2j, height=3.5)
 
 
-def _ways(gear: Any, plan: Plan) -> Any:
+def _ways(gear: GearPair, plan: Plan) -> Any:
     """Ways of the contact point along the line of action from the pole, m."""
     return np.real(plan["K"].value * np.conj(gear.engagement["N1N2"].value))
 
@@ -658,12 +663,12 @@ def _turned(way: int) -> tuple[float, bool]:
     return (0.0, False) if way > 0 else (pi, True)
 
 
-def _along(canvas: Canvas, gear: Any, plan: Plan, pole: complex, scale: Scale, way: int) -> PlayerStage:
+def _along(canvas: Canvas, gear: GearPair, plan: Plan, pole: complex, scale: Scale, way: int) -> PlayerStage:
     """A plan with the line of action laid along the abscissa, N1N2 to the right or to the left."""
     return placed(canvas, plan, pole, scale.mu, -phase(way * complex(gear.engagement["N1N2"].value)))
 
 
-def _axis_line(s: PlayerStage, gear: Any, origin: complex, whole: float, pole: float, scale: Scale, way: int) -> None:
+def _axis_line(s: PlayerStage, gear: GearPair, origin: complex, whole: float, pole: float, scale: Scale, way: int) -> None:
     """The line of action as an abscissa with its points, the pole so far from its beginning at the left."""
     canvas = s.canvas
     s.line("K", origin - 6, origin + whole + 8, "axis", "axis")
@@ -685,7 +690,7 @@ def _sliding_scale(worst: float, height: float) -> tuple[Scale, float]:
     return mu, 1 / mu.mu
 
 
-def _theta(s: PlayerStage, gear: Any, lowest: float, way: int) -> None:
+def _theta(s: PlayerStage, gear: GearPair, lowest: float, way: int) -> None:
     """Both curves, cut where they leave the place on their way to minus infinity."""
     x = _ways(gear, s.plan)
     for i, onward in ((1, 1), (2, -1)):  # from where each comes up from below

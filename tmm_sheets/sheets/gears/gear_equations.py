@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.construction.protocol import letter_of, sentence, sizes_of
@@ -80,7 +80,7 @@ def digits_of(plan: Plan) -> Callable[[Step], str]:
     return written
 
 
-def equations(plan: Plan, names: Any, letters: bool) -> Iterator[str]:
+def equations(plan: Plan, names: Iterable[str], letters: bool) -> Iterator[str]:
     """Those steps of a plan that a formula gives: sign, formula in ``letters``, in numbers, value."""
     sizes, digits = sizes_of(plan), digits_of(plan)
     for step in (plan[name] for name in names if name in plan):

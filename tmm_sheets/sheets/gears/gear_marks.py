@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cmath import rect
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,11 +12,14 @@ from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas, in_role
 from tmm_sheets.drawing.clipping import arcs_inside, chords, polyline_inside, segment_inside
 from tmm_sheets.drawing.lettering import fitted, letter
-from tmm_sheets.drawing.marks import Box, Dimension, Role
+from tmm_sheets.drawing.marks import Box, Dimension, Points, Role
 from tmm_sheets.drawing.tables import LEAST, needs
 from tmm_sheets.drawing.text_boxes import spread
 from tmm_sheets.sheets.components.listed import LARGE, LETTERS, ROW
 from tmm_sheets.sheets.player import PlayerStage
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.gears.gear_geometry import GearWheel
 
 CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "centre"), ("rb", "r_{b%d}", "thin"),
            ("rf", "r_{f%d}", "thin"))
@@ -54,7 +57,7 @@ class Window:
         if inside:
             s.line(step, *inside, style, role)
 
-    def curve(self, s: PlayerStage, step: Step | str, points: Any, style: str, role: Role = "curve") -> None:
+    def curve(self, s: PlayerStage, step: Step | str, points: Points, style: str, role: Role = "curve") -> None:
         """Curve of a step through points."""
         for part in polyline_inside(self.box, np.asarray(points)):
             s.pen(step, role).polyline(part, style)
@@ -65,7 +68,7 @@ class Window:
         corners = complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)
         self.canvas.tracing("frame").polyline(corners, "thin", closed=True)
 
-    def breaks(self, s: PlayerStage, wheel: Any) -> None:
+    def breaks(self, s: PlayerStage, wheel: GearWheel) -> None:
         """Break lines where the edge of the picture cuts a wheel (GOST 2.303: thin, with a kink)."""
         centre = s.at(f"O{wheel.number}")
         inner, outer = (abs(complex(s.frame(r)) - complex(s.frame(0))) for r in (wheel.ra, wheel.outside))
@@ -110,7 +113,7 @@ class Window:
 
 
 @in_role("hatch")
-def hatch_between(canvas: Canvas, edge: Any, inner: Any, step: float = 1.3) -> None:
+def hatch_between(canvas: Canvas, edge: Points, inner: Points, step: float = 1.3) -> None:
     """Slanted strokes at even distances between two curves that run side by side."""
     along = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(edge)))))
     slope = abs(inner[0] - edge[0])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from cmath import phase, rect
 from itertools import pairwise, product
 from math import cos, inf, pi, radians, sin
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,10 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Box, Dimension
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets.gears.gear_marks import CIRCLES
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.gears.gear_geometry import GearWheel
+    from tmm_sheets.sheets.gears.gear import GearPicture
 
 APART, CLOSE = 7.0, 5.8
 """Distance of radii from each other where they are named, and the least one between the teeth and the picture's edge, mm."""
@@ -37,7 +41,7 @@ ENGAGED = 1.2
 """So many pitches from the line of centres there are no radii: the teeth in mesh are there."""
 
 
-def draw(picture: Any) -> None:
+def draw(picture: GearPicture) -> None:
     """Radii of both wheels, when all else is on the picture."""
     for wheel in picture.gear.wheels:
         _Radii(picture, wheel).draw()
@@ -49,7 +53,7 @@ class _Radii:
     ``tips`` are where they end, mm from its ``centre``, and ``texts`` their names, both by attribute of the wheel.
     """
 
-    def __init__(self, picture: Any, wheel: Any) -> None:
+    def __init__(self, picture: GearPicture, wheel: GearWheel) -> None:
         self.picture, self.wheel, self.canvas = picture, wheel, picture.canvas
         self.centre: complex = picture.of(f"O{wheel.number}")
         self.tips = {key: float(picture.mm(getattr(wheel, key))) for key, _, _ in CIRCLES}

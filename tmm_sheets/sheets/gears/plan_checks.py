@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 from math import pi
-from typing import Any
+from typing import TYPE_CHECKING
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.numbers import fixed, number
@@ -13,11 +13,15 @@ from tmm_sheets.sheets.components.listed import Lines
 from tmm_sheets.sheets.gears.reducer import ends_of_rays, link_name
 from tmm_sheets.words import marked, tr
 
+if TYPE_CHECKING:
+    from tmm_sheets.methods.gears.reducer import Reducer
+    from tmm_sheets.methods.gears.train import Train
+
 MEASURED = 5.0
 """Segment below which no ratio is to be measured, mm."""
 
 
-def _measured(of: Any, canvas: Canvas, part: str) -> Iterator[str]:
+def _measured(of: Reducer | Train, canvas: Canvas, part: str) -> Iterator[str]:
     """Ratios from the segments that the sheet has, as they are measured, and from the speeds; of segments that can be measured."""
     plan = of.plans[f"{part}-speeds"]
     mu = canvas.scales[plan.name]
@@ -31,7 +35,7 @@ def _measured(of: Any, canvas: Canvas, part: str) -> Iterator[str]:
                f"n_{{{one}}}/n_{{{two}}} = {number(n / speed)}")
 
 
-def _mobility(reducer: Any) -> Iterator[str]:
+def _mobility(reducer: Reducer) -> Iterator[str]:
     """Each stage has two meshes and two moving links besides the one that leads in; a simple pair one of both."""
     meshes = 2 * len(reducer.stages) + bool(reducer.simple)
     yield f"W = 3n − 2p_5 − p_4 = 3·{meshes + 1} − 2·{meshes + 1} − {meshes} = 1"
@@ -45,7 +49,7 @@ def _bracketed(name: str) -> str:
     return f"({name})" if "–" in name else name
 
 
-def _pairs(train: Any) -> Iterator[str]:
+def _pairs(train: Train) -> Iterator[str]:
     teeth, plan = train.data.teeth, train.kinematics
     whole, alone = list[tuple[str, str, int, int, int]](), [m for m in train.meshes if not m.carrier]
     for m in alone:

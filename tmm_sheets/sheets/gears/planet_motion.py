@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations
 from math import gcd, pi, sin
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.numbers import fixed, is_zero, number
@@ -13,6 +13,8 @@ from tmm_sheets.sheets.components.listed import Lines, Table
 from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.methods.gears.train import Train
+    from tmm_sheets.methods.gears.train_steps import Mesh
     from tmm_sheets.project import Project
 
 def _motions(project: Project, canvas: Canvas) -> list[list[str]]:
@@ -43,7 +45,7 @@ def _inverted(project: Project) -> Iterator[tuple[str, str, float, float]]:
             yield stage.carrier, wheel.number, float(wheel.n.value), float(stage.n_H.value)
 
 
-def _ratios(train: Any) -> Iterator[str]:
+def _ratios(train: Train) -> Iterator[str]:
     teeth, plan = train.data.teeth, train.kinematics
     for one, other in ((m, o) for m, o in combinations(train.meshes, 2) if m.carrier and m.carrier == o.carrier):
         (a, b), (c, d) = ((m.central, m.planet) for m in (one, other))
@@ -61,7 +63,7 @@ def _ratios(train: Any) -> Iterator[str]:
         yield f"{ratio} = {sign}{letters} = {sign}{numbers} = {number(by_teeth)}"
 
 
-def _checks(train: Any) -> Iterator[str]:
+def _checks(train: Train) -> Iterator[str]:
     teeth, q = train.data.teeth, train.data.satellites
     for carrier in dict.fromkeys(m.carrier for m in train.meshes if m.carrier):
         meshes = [m for m in train.meshes if m.carrier == carrier]
@@ -86,20 +88,20 @@ def _checks(train: Any) -> Iterator[str]:
         yield f"{sums[largest]}·sin(180°/{q}) = {fixed(between, 2)} {sign} {width}"
 
 
-def at_equal_angles(train: Any, carrier: str) -> int:
+def at_equal_angles(train: Train, carrier: str) -> int:
     """So many planets of a carrier can be put in at equal angles, no more than the task has."""
     one, *others = (m for m in train.meshes if m.carrier == carrier)
     wanted: int = train.data.satellites
     return next(q for q in range(wanted, 0, -1) if all(_parts(train.data.teeth, one, m) % q == 0 for m in others))
 
 
-def _parts(teeth: dict[str, int], one: Any, other: Any) -> int:
+def _parts(teeth: dict[str, int], one: Mesh, other: Mesh) -> int:
     """What the number of planets at equal angles has to divide, of two central wheels of one carrier."""
     (a, b), (c, d), sign = (one.central, one.planet), (other.central, other.planet), -1 if one.sign * other.sign > 0 else 1
     return teeth[a] + sign * teeth[c] if b == d else (teeth[a] * teeth[d] + sign * teeth[b] * teeth[c]) // gcd(teeth[b], teeth[d])
 
 
-def _assembly(teeth: dict[str, int], q: int, one: Any, other: Any) -> dict[str, str]:
+def _assembly(teeth: dict[str, int], q: int, one: Mesh, other: Mesh) -> dict[str, str]:
     """The whole number that lets planets stand at equal angles, of two central wheels of one carrier."""
     join = "−" if one.sign * other.sign > 0 else "+"
     (a, b), (c, d) = ((m.central, m.planet) for m in (one, other))

@@ -20,6 +20,8 @@ from tmm_sheets.sheets.player import PlayerStage, stage
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.methods.gears.gear_geometry import GearWheel
+    from tmm_sheets.methods.gears.gear_pair import GearPair
     from tmm_sheets.project import Project
 
 MARGIN = 16.0
@@ -46,7 +48,7 @@ SEEN = 0.5
 rule of seventeen teeth leaves some hundredths."""
 
 
-def extent(gear: Any) -> tuple[float, float]:
+def extent(gear: GearPair) -> tuple[float, float]:
     """What must be seen of wheel and rack over the pole and under it, m."""
     wheel = gear.pinion
     rack = wheel.rack
@@ -64,7 +66,7 @@ def generating(project: Project, canvas: Canvas, box: Box, options: dict[str, An
     picture.dimensions(canvas.tracing("dimension"))
 
 
-def _turned(canvas: Canvas, plan: Plan, wheel: Any, at: PlanFrame) -> PlayerStage:
+def _turned(canvas: Canvas, plan: Plan, wheel: GearWheel, at: PlanFrame) -> PlayerStage:
     """The engagement with a wheel's centre where the rack's plan has it."""
     centre = complex(plan[f"O{wheel.number}"].value)
     return stage(canvas, plan, 0, PlanFrame(at.scale, at(-centre)))
@@ -73,7 +75,7 @@ def _turned(canvas: Canvas, plan: Plan, wheel: Any, at: PlanFrame) -> PlayerStag
 class _RackPicture:
     """The surroundings of the pole P0 of the generating engagement, cut out of wheel and rack."""
 
-    def __init__(self, gear: Any, canvas: Canvas, box: Box) -> None:
+    def __init__(self, gear: GearPair, canvas: Canvas, box: Box) -> None:
         self.gear, self.canvas, self.first = gear, canvas, len(canvas.marks)
         self.wheel = gear.pinion
         self.rack = self.wheel.rack

@@ -26,6 +26,9 @@ from tmm_sheets.sheets.player import PlayerStage, placed, play
 from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.methods.gears.reducer import Reducer
+    from tmm_sheets.methods.gears.reducer_stages import ReducerWheel, Stage
+    from tmm_sheets.methods.gears.train import Train
     from tmm_sheets.project import Project
 
 COLUMN = 19.0
@@ -76,7 +79,7 @@ class SchemeViews:
     of the axis, turned into its plane (GOST 2.703), so that each edge of a ring meshes with one.
     """
 
-    reducer: Any
+    reducer: Reducer | Train
     canvas: Canvas
     mu: Scale
     box: Box
@@ -133,7 +136,7 @@ class SchemeViews:
         """Name of a shaft's speed at its free end."""
         self.canvas.label(at, text, away=complex(side, 1), height=5, gap=1.5)
 
-    def wheel(self, wheel: Any, x: float, height: float, label: int = 1, free: bool = False) -> None:
+    def wheel(self, wheel: Edge | ReducerWheel, x: float, height: float, label: int = 1, free: bool = False) -> None:
         """A wheel edge on: its disc with the rim at both ends; a ``free`` one turns on its shaft with a hub of its own."""
         c, r = self.canvas, wheel.diameter / 2
         low, high = complex(x, self.y(height - r)), complex(x, self.y(height + r))
@@ -150,7 +153,7 @@ class SchemeViews:
         at = high if label > 0 else low
         c.label(at + self.face / 2, wheel.number, away=complex(1, label), height=5, gap=1.2)
 
-    def satellite(self, wheel: Any, x: float, height: float, label: int = 1) -> None:
+    def satellite(self, wheel: ReducerWheel, x: float, height: float, label: int = 1) -> None:
         """A wheel on a carrier, and the one at the other side of the main axis."""
         self.wheel(wheel, x, height, label, free=True)
         if self.opposite(wheel.number):
@@ -246,7 +249,7 @@ class SchemeViews:
 class SchemeOfReducer(SchemeViews):
     """The three views of a reducer."""
 
-    def __init__(self, reducer: Any) -> None:
+    def __init__(self, reducer: Reducer) -> None:
         self.reducer = reducer
         self.stages, self.pair = reducer.stages, reducer.simple
         self.before = reducer.data.simple == "before"
@@ -317,11 +320,11 @@ class SchemeOfReducer(SchemeViews):
         self.bearing(at + self.stub - 5, other)
         self.arrow(complex(at + self.stub, other), tr("n_{out}"), 1)
 
-    def ring(self, wheel: Any, x: float) -> None:
+    def ring(self, wheel: ReducerWheel, x: float) -> None:
         """A ring that stands still: both its edges are held in the frame."""
         self.held(x, wheel.diameter / 2, wheel.number)
 
-    def bell(self, wheel: Any, x: float, web: float) -> None:
+    def bell(self, wheel: ReducerWheel, x: float, web: float) -> None:
         """A ring that turns: its rims joined by a disc at ``web``."""
         c, r = self.canvas, wheel.diameter / 2
         for side in (1, -1):
@@ -339,7 +342,7 @@ class SchemeOfReducer(SchemeViews):
         c.line(a, b, "main")
         c.hatch(a, b, -towards)
 
-    def stage(self, stage: Any, x: float, first: bool) -> float:
+    def stage(self, stage: Stage, x: float, first: bool) -> float:
         """One planetary stage beginning at ``x``, where the driving shaft ends; gives the end of its output shaft."""
         c = self.canvas
         one, two, three, four = stage.wheels
@@ -382,12 +385,12 @@ class SchemeOfReducer(SchemeViews):
         self.arm(stage, out)
         return out
 
-    def axis_of_satellites(self, stage: Any, x0: float, x1: float) -> None:
+    def axis_of_satellites(self, stage: Stage, x0: float, x1: float) -> None:
         """The axle of the satellites, at both sides of the main axis."""
         for side in (1, -1):
             self.canvas.line(complex(x0, self.y(side * stage.axis)), complex(x1, self.y(side * stage.axis)), "main")
 
-    def block(self, first: Any, x: float, second: Any, end: float, height: float) -> None:
+    def block(self, first: ReducerWheel, x: float, second: ReducerWheel, end: float, height: float) -> None:
         """Two satellites joined by a sleeve."""
         self.satellite(first, x, height)
         self.satellite(second, end, height)
@@ -396,7 +399,7 @@ class SchemeOfReducer(SchemeViews):
                 y = self.y(edge) + side * HUB
                 self.canvas.line(complex(x, y), complex(end, y), "main")
 
-    def arm(self, stage: Any, x: float) -> None:
+    def arm(self, stage: Stage, x: float) -> None:
         """The carrier's arms from the main axis to those of the satellites."""
         self.canvas.line(complex(x, self.y(-stage.axis)), complex(x, self.y(stage.axis)), "main")
         name = f"H_{stage.carrier[1:]}" if len(stage.carrier) > 1 else "H"
@@ -446,7 +449,7 @@ class SchemeOfReducer(SchemeViews):
         c.circle(other, mm(far.diameter / 2), "axis")
         return [(o, near, rect(1, -0.45)), (other, far, rect(1, 0.5 if self.before else -0.5))]
 
-    def numbers(self, wheel: Any) -> str:
+    def numbers(self, wheel: ReducerWheel) -> str:
         """Numbers of a wheel of the first stage and of those in its place in the next ones, which are like it."""
         first = self.stages[0].wheels
         if wheel not in first:
@@ -463,7 +466,7 @@ def speeds(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     plan_of_speeds(project.reducer, canvas, box, "reducer")
 
 
-def plan_of_speeds(reducer: Any, canvas: Canvas, box: Box, part: str) -> None:
+def plan_of_speeds(reducer: Reducer | Train, canvas: Canvas, box: Box, part: str) -> None:
     """The same of the reducer or the train whose scheme is drawn."""
     canvas.of = f"{part}-speeds"
     picture: Scale = canvas.scales[f"{part}-velocities"]
@@ -512,7 +515,7 @@ def ends_of_rays(plan: Plan) -> list[Step]:
     return [step for step in plan if step.name not in ("P", "0") and step.rule.gives == "point"]
 
 
-def rows_of_points(of: Any, canvas: Canvas) -> list[list[str]]:
+def rows_of_points(of: Reducer | Train, canvas: Canvas) -> list[list[str]]:
     """Heading and a row for each point whose velocity the picture has."""
     mu = canvas.scales[of.velocities.name]
     rows = [[tr("Point"), tr("Distance from the axis, mm"), tr("Segment of the picture, mm"), tr("V, m/s")]]
@@ -523,13 +526,13 @@ def rows_of_points(of: Any, canvas: Canvas) -> list[list[str]]:
     return rows
 
 
-def moving_points(of: Any) -> list[Step]:
+def moving_points(of: Reducer | Train) -> list[Step]:
     """Ends of the velocities that the picture has."""
     plan = of.velocities
     return [end for end in plan if end.name.islower() and end.rule.gives == "point" and end.name.upper() in plan]
 
 
-def rows_of_links(of: Any, canvas: Canvas, part: str) -> list[list[str]]:
+def rows_of_links(of: Reducer | Train, canvas: Canvas, part: str) -> list[list[str]]:
     """Heading and a row for each link on the plan that the sheet has."""
     plan = of.plans[f"{part}-speeds"]
     mu = canvas.scales[plan.name]

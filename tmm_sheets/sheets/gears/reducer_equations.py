@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING
 
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.components.listed import Lines
 from tmm_sheets.words import marked, tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.gears.reducer import Reducer
+    from tmm_sheets.methods.gears.reducer_stages import Stage
 
 
 def unsigned(ratio: float) -> str:
@@ -15,7 +19,7 @@ def unsigned(ratio: float) -> str:
     return fixed(ratio, 3) if ratio > 0 else f"|{fixed(ratio, 3)}|"
 
 
-def _lines(r: Any) -> Iterator[str]:
+def _lines(r: Reducer) -> Iterator[str]:
     chosen, held = ({step.name: step.value for step in plan} for plan in (r.sets[0], r.conditions))
     stage = r.stages[0]
     first, second = stage.signs
@@ -66,7 +70,7 @@ def _lines(r: Any) -> Iterator[str]:
     yield from _speeds(stage, ratio, inner, within, fixed(chosen["u_stage"], 3))
 
 
-def _speeds(stage: Any, ratio: str, inner: str, within: str, u: str) -> Iterator[str]:
+def _speeds(stage: Stage, ratio: str, inner: str, within: str, u: str) -> Iterator[str]:
     """Speeds of the links of the stage, positive as the input's, rpm."""
     one, two, _, four = stage.wheels
     carrier = stage.carrier if len(stage.carrier) == 1 else f"H_{stage.carrier[1:]}"

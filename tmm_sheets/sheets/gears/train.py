@@ -29,6 +29,8 @@ from tmm_sheets.sheets.gears.reducer import (
 from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.methods.gears.train import Train
+    from tmm_sheets.methods.gears.train_steps import Mesh
     from tmm_sheets.project import Project
 
 SLEEVE = 6.0
@@ -99,7 +101,7 @@ def dimensions(project: Project) -> list[str]:
     return lines
 
 
-def mobility_lines(train: Any) -> list[str]:
+def mobility_lines(train: Train) -> list[str]:
     """What stands is frame. Passive meshes are none of the formula's: with them it is left out. Planets have no ratio of use."""
     n = {name: float(step.value) for name, step in train.links.items() if not train.stands(name)}
     driving = [train.link(name) for name in train.given if not train.stands(name)]
@@ -126,7 +128,7 @@ def willis(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     canvas.lines(complex(box.x0, left.y1 - step), lines, step, height)
 
 
-def _equation(train: Any, m: Any) -> tuple[str, str]:
+def _equation(train: Train, m: Mesh) -> tuple[str, str]:
     """z_c(n_c - n_H) = -+z_p(n_p - n_H) of a mesh, outer or inner; without a carrier n_H is none."""
     plan = train.kinematics
     c, p, h = m.central, m.planet, m.carrier
@@ -154,7 +156,7 @@ class SchemeOfTrain(SchemeViews):
 
     above = 8.0
 
-    def __init__(self, train: Any) -> None:
+    def __init__(self, train: Train) -> None:
         self.reducer = self.train = train
         ends = [(self.height(name) + side * train.radius(name, m)) for m in train.meshes
                 for name in (m.central, m.planet) for side in (1, -1)]
@@ -179,7 +181,7 @@ class SchemeOfTrain(SchemeViews):
         """Whether more planets than one are on its carrier: another stands at the other side of the main axis."""
         return any(len(self.turns(m)) > 1 for m in self.train.meshes if m.carrier and m.planet == satellite)
 
-    def turns(self, m: Any) -> list[float]:
+    def turns(self, m: Mesh) -> list[float]:
         """Angles of the planets of a mesh from the first, as many as can be put in at equal angles, rad."""
         count = at_equal_angles(self.train, m.carrier) if m.carrier else 1
         return [2 * pi * k / count for k in range(count)]
@@ -237,7 +239,7 @@ class SchemeOfTrain(SchemeViews):
         """True for a wheel that turns with another one or with a carrier."""
         return any(name in shaft for shaft in self.train.data.shafts)
 
-    def planet(self, m: Any, x: float) -> None:
+    def planet(self, m: Mesh, x: float) -> None:
         """The planet of a mesh on its axis."""
         again = m.planet in self.columns
         diameter, up = 2 * self.train.radius(m.planet, m), self.height(m.planet)
@@ -248,7 +250,7 @@ class SchemeOfTrain(SchemeViews):
             self.canvas.line(complex(x - SLEEVE, self.y(up)), complex(x + SLEEVE, self.y(up)), "main")
             self.bearing(x - SLEEVE, self.y(up))
 
-    def central(self, m: Any, x: float) -> None:
+    def central(self, m: Mesh, x: float) -> None:
         """The wheel about the main axis with a sleeve or on its shaft, or held in the frame."""
         r, stands, free = self.train.radius(m.central, m), self.train.stands(m.central), not self.on_shaft(m.central)
         name = "" if m.central in self.columns else m.central  # in several meshes, as ring and as sun, it is named once
@@ -276,7 +278,7 @@ class SchemeOfTrain(SchemeViews):
             c.line(hub - self.face / 2, hub + self.face / 2, "main")
         c.label(complex(x - self.face / 2, self.y(-r)), name, away=-1 - 0.6j, height=5, gap=1.2)
 
-    def arm(self, carrier: str, m: Any, x: float) -> None:
+    def arm(self, carrier: str, m: Mesh, x: float) -> None:
         """The carrier's arm from the main axis to the planets'."""
         self.columns[carrier] = [x]
         c, top = self.canvas, self.y(self.train.distance(m))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.numbers import number
@@ -11,6 +11,8 @@ from tmm_sheets.sheets.components.listed import Table
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.methods.gears.reducer import Reducer
+    from tmm_sheets.methods.gears.train import Train
     from tmm_sheets.project import Project
 
 ADDENDUM, CLEARANCE = 1.0, 0.25
@@ -49,7 +51,7 @@ def _wheels(project: Project) -> list[_Wheel]:
     return sorted({wheel.name: wheel for wheel in found}.values(), key=lambda wheel: (int(wheel.name.rstrip("′")), wheel.name))
 
 
-def _of_train(train: Any) -> Iterator[_Wheel]:
+def _of_train(train: Train) -> Iterator[_Wheel]:
     if train.warnings:
         return
     for m in train.meshes:
@@ -57,7 +59,7 @@ def _of_train(train: Any) -> Iterator[_Wheel]:
             yield _Wheel(name, train.data.teeth[name], train.data.module, out, (ADDENDUM, CLEARANCE))
 
 
-def _of_reducer(reducer: Any) -> Iterator[_Wheel]:
+def _of_reducer(reducer: Reducer) -> Iterator[_Wheel]:
     rack = reducer.data.addendum, reducer.data.clearance
     for stage in reducer.stages:
         signs = stage.signs[0], 1, 1, stage.signs[1]
