@@ -68,7 +68,9 @@ GRAPHS = (
     Graph("cam.spring", "cam-spring-between/", "F, Q", CURVE),
     Graph("diagrams.balancing", "balance/", "M_b", CURVE),
     Graph("friction.power", "friction-power/", "N", CURVE),
-    Graph("diagrams.motion", "motion/", "S, V, a", CURVE),
+    Graph("diagrams.motion", "motion/[Sψ]", "S, V, a", MAIN),
+    Graph("diagrams.motion", "motion/[^Sψ]", "S, V, a", CURVE),
+    Graph("load_diagram.over_turn", "loads/", "F", CURVE),
 )
 
 
@@ -96,10 +98,11 @@ def _graphs(sheet):
             if getattr(mark, "by", None) and mark.by.role == "curve":
                 for graph in (g for g in GRAPHS if re.fullmatch(g.view, part.draw) and re.match(g.steps, mark.by.step)):
                     # the quantities of a motion stand each on an axis of its own
-                    found[graph, mark.by.step if graph.view == "diagrams.motion" else ""].append(flat(mark))
-        for (graph, step), curves in found.items():
+                    quantity = mark.by.step.partition("/")[2][:1]
+                    found[graph, quantity if graph.view == "diagrams.motion" else ""].append(flat(mark))
+        for (graph, quantity), curves in found.items():
             z = np.concatenate(curves)
-            yield part.draw, step.partition("/")[2] or graph.name, float(np.ptp(z.real if graph.turned else z.imag)), graph.floor
+            yield part.draw, quantity or graph.name, float(np.ptp(z.real if graph.turned else z.imag)), graph.floor
 
 
 def _others(project, n, sheet):
@@ -130,11 +133,12 @@ def measured(name):
     for n in range(1, len(project.sheets) + 1):
         try:
             sheet = composed(project, n)
-            told = [str(remark) for remark in sheet.remarks] if hasattr(sheet, "remarks") else []
+            told = [str(remark) for remark in sheet.illegible]
             every = [*_graphs(sheet), *_others(project, n, sheet)]
             shown = {what.removesuffix(" enlarged") for _, what, *_ in every if what.endswith(" enlarged")}
             for view, what, size, floor in (one for one in every if one[1] not in shown):
-                found.append(Size(f"{name} {n}", view, what, float(size), floor, any(what in said for said in told)))
+                found.append(Size(f"{name} {n}", view, what, float(size), floor,
+                                  any(f"the graph of {what}" in said for said in told)))
         except Exception as e:
             found.append(f"{name} {n}: {type(e).__name__}: {e}")
     return found
@@ -159,7 +163,7 @@ def main(args):
     print(f"{'':24}{'number':>7}{'least':>7}{'below':>7}{'told':>6}")
     kinds = defaultdict(list)
     for s in sizes:
-        kinds[s.view, s.name if s.view != "diagrams.motion" else "S, V, a"].append(s)
+        kinds[s.view, s.name].append(s)
     for (view, name), of_kind in sorted(kinds.items()):
         below = [s for s in of_kind if s.below]
         print(f"{view + ' ' + name:34}{len(of_kind):5}{min(s.size for s in of_kind):7.1f}{len(below):5}"

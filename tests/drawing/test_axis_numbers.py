@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from tmm_sheets.drawing import axis_numbers
+from tmm_sheets.drawing import axis_heights, axis_numbers
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink_index import InkIndex, enters
-from tmm_sheets.drawing.marks import Text
+from tmm_sheets.drawing.marks import Box, Text
 from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.sheets.components import graphs
 
 PITCH = 12.0
 
@@ -105,3 +106,19 @@ def test_a_number_of_the_ordinate_axis_stands_right_at_its_lines():
     for y in np.arange(0.0, 12.0, 1.5):
         crowd.line(1j * y - 50, 50 + 1j * y)
     assert not axis_numbers.Plain(crowd).set(crowd, 6j, "5′")
+
+
+def test_numbers_of_one_axis_are_of_one_height():
+    """One between lines that leave it no more room than 2.5 mm letters take: the others of its axis are no higher."""
+    canvas, x = Canvas(), np.array([0.0, 20.0, 40.0, 60.0])
+    graphs.numbers(canvas, graphs.Graph(0j), x, ["0", "1", "2", "3"], np.ones(4))
+    graphs.numbers(canvas, graphs.Graph(-100j), x, ["0", "1", "2", "3"], np.ones(4))
+    for mark in (n.mark for n in canvas.numbers[1:2]):
+        canvas.marks[mark] = canvas.marks[mark]._replace(height=2.5)
+    before = [m for m in canvas.marks if isinstance(m, Text)]
+    axis_heights.even(canvas, canvas.numbers)
+    after = [m for m in canvas.marks if isinstance(m, Text)]
+    assert [m.height for m in after] == [2.5] * 4 + [3.5] * 4
+    for old, new in zip(before, after, strict=True):
+        assert Box.around(text_box(old), 0.01).contains(Box.around(text_box(new)).centre)
+        assert Box.around(text_box(new)).y1 == pytest.approx(Box.around(text_box(old)).y1, abs=0.01)  # as near to the axis

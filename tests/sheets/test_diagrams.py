@@ -7,9 +7,10 @@ import pytest
 
 from tests import project_files
 from tests.few import few
-from tests.project_files import from_file, project
+from tests.project_files import EVEN, SLIDER, from_file, project
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
+from tmm_sheets.construction.scale import handy
 from tmm_sheets.drawing import axis_numbers
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink_index import InkIndex
@@ -17,7 +18,7 @@ from tmm_sheets.drawing.marks import Line, Polyline, Text
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.components import graphs
+from tmm_sheets.sheets.components import cycle_graphs, graphs
 from tmm_sheets.sheets.linkage import diagrams
 from tmm_sheets.sheets.sheet import composed
 
@@ -92,6 +93,30 @@ def test_two_outputs_share_the_graphs():
     assert first.max() == pytest.approx(0.1 + 0.4 - np.sqrt(0.4**2 - 0.1**2))
     assert second.max() == pytest.approx(0.2)
     assert {label.text for label in canvas.labels} >= {"S_{B}", "S_{C}", "V_{B}", "a_{C}"}
+
+
+@pytest.mark.parametrize(("box", "columns"), [
+    (Box(0, 0, 110, 260), 1), (Box(0, 0, 210, 170), 2), (Box(0, 0, 310, 110), 3)], ids=["upright", "square", "level"])  # fmt: skip
+def test_graphs_stand_beside_each_other_where_only_so_they_reach_their_floors(box, columns):
+    p = project(SLIDER, EVEN, {"cycle.diagrams": ["B"]})
+    graphs_of = diagrams.motion_graphs(p, {})
+    places = cycle_graphs.placed(p, graphs_of, box)
+    assert len({place.box.x0 for place in places}) == columns
+    for q, place, mu in places:
+        assert mu == handy(mu)
+        assert q.extent / mu >= q.floor == (60 if q.key == "graph-S" else 40)
+        assert q.span / mu <= place.height - cycle_graphs.ABOVE - cycle_graphs.BELOW + 1e-6
+    need = cycle_graphs.need(p, graphs_of)
+    assert need.below(box.width + 1, box.height + 1) == 0.0
+    assert need.below(box.width, 60.0) > 0.0
+
+
+def test_a_graph_that_is_offered_is_as_high_as_its_floor_asks():
+    p = Project(read("screen"))
+    column = diagrams.balancing_graph(p)
+    ((width, height),) = cycle_graphs.sizes(p, column, [(170.0, 20.0)])
+    ((q, _, mu),) = cycle_graphs.placed(p, [column], Box(0, 0, width, height))
+    assert q.extent / mu >= 40.0
 
 
 def test_option_names_others():

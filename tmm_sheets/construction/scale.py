@@ -70,6 +70,24 @@ def reach(symbol: str, unit: str, span: float, mm: float) -> Scale:
     return Scale(symbol, _largest(span / mm), unit)
 
 
+def finer(mu: float) -> float:
+    """The next smaller number of the series of scale factors.
+
+    >>> finer(0.003), finer(1.0)
+    (0.0025, 0.8)
+    """
+    return _largest(mu * (1 - 1e-6))
+
+
+def coarser(mu: float) -> float:
+    """The next greater number of the series of scale factors.
+
+    >>> coarser(0.0025), coarser(8.0)
+    (0.003, 10.0)
+    """
+    return handy(mu * (1 + 1e-6))
+
+
 def fit_standard(span_mm: float, mm: float) -> tuple[int, int]:
     """Largest GOST 2.302 scale (real, drawn) with which ``span_mm`` millimetres of the object fit in ``mm``.
 

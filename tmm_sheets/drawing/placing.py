@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tmm_sheets.drawing import axis_numbers, labels, yielding
+from tmm_sheets.drawing import axis_heights, axis_numbers, labels, yielding
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.crowded import Crowded
 from tmm_sheets.drawing.ink_index import InkIndex
@@ -12,7 +12,9 @@ from tmm_sheets.drawing.marks import Box
 def place(canvas: Canvas, area: Box) -> list[Crowded]:
     """Set all that a canvas asks for inside ``area``, as a part of its own; returns what found no free place."""
     ink = InkIndex(canvas.marks, area, canvas.windows)
+    numbers = list(canvas.numbers)
     axis_numbers.clear(canvas, ink)
+    axis_heights.even(canvas, numbers)
     canvas.begin(area, "", "labels")
     crowded = labels.set_labels(canvas, ink)
     if canvas.notes:

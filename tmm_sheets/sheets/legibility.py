@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.construction.readable import CURVE
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.composition import arranged, placed_where
-from tmm_sheets.sheets.floors import CRANK, VECTOR, Floor
+from tmm_sheets.sheets.floors import CRANK, VECTOR
 from tmm_sheets.sheets.frame import extent, fit_frame
 from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.linkage.linkage_sizes import LINKS
@@ -20,6 +21,8 @@ from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
     from tmm_sheets.box import Box
+    from tmm_sheets.methods.flywheel.flywheel import Flywheel
+    from tmm_sheets.methods.integration import Floats
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.arrangement import ViewPlace
 
@@ -46,7 +49,7 @@ def positions(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
         frame = kinematic_frames.positions(project, _book(), view.box, view.options)
         return float(frame.scale.mm(2 * project.mechanism.crank.length))
 
-    yield from _below(project, n, view, CRANK, circle, marked("leave out points far from the crank"))
+    yield from below(project, n, view, Remark(CRANK.what), CRANK.least, circle, marked("leave out points far from the crank"))
 
 
 def velocities(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
@@ -55,7 +58,7 @@ def velocities(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
         layout = kinematic_frames.velocities(project, _book(), view.box, view.options)
         return float(layout.scale.mm(kinematic_frames.longest(project.study.velocities.plan, [i for i, _ in layout.shown])))
 
-    yield from _below(project, n, view, VECTOR, longest, marked("number fewer positions"))
+    yield from below(project, n, view, Remark(VECTOR.what), VECTOR.least, longest, marked("number fewer positions"))
 
 
 def accelerations(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
@@ -65,7 +68,7 @@ def accelerations(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]
     def longest(project: Project, view: ViewPlace) -> float:
         return float(kinematic_frames.accelerations(project, _book(), view.box).scale.mm(kinematic_frames.longest(plan, [k])))
 
-    yield from _below(project, n, view, VECTOR, longest, marked("take another force_position"))
+    yield from below(project, n, view, Remark(VECTOR.what), VECTOR.least, longest, marked("take another force_position"))
     try:
         letters = kinematic_frames.crowd(plan, k, kinematic_frames.accelerations(project, _book(), view.box).scale.mu)
     except CannotBuild:
@@ -74,6 +77,19 @@ def accelerations(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]
         yield Remark(marked("sheet {n}: the acceleration plan cannot be read, {count} of its letters stand within "
                             "{about:.0f} mm of one of them: take another force_position"),
                      {"n": n, "count": letters, "about": kinematic_frames.ABOUT})
+
+
+def flywheel(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
+    """Graphs of the flywheel's column are too low beside each other; that of dE is shown once more, enlarged."""
+    fw: Flywheel = project.flywheel
+    shown = {"M": fw.scales.moment.mm(fw.at_samples.moment().value), "A": fw.work_curve(fw.samples),
+             "J": fw.scales.inertia.mm(fw.inertia(fw.samples))}
+    for quantity, ordinates in shown.items():
+        def height(project: Project, view: ViewPlace, ordinates: Floats = ordinates) -> float:
+            return float(np.ptp(ordinates)) or CURVE  # one that is level has none
+
+        yield from below(project, n, view, Remark(marked("the graph of {quantity}"), {"quantity": quantity}), CURVE, height,
+                         marked("take the other method of [flywheel]"))
 
 
 Size = Callable[["Project", "ViewPlace"], float]
@@ -85,17 +101,17 @@ def _book() -> Any:
     return SimpleNamespace(scales={}, chosen=set())
 
 
-def _below(project: Project, n: int, view: ViewPlace, floor: Floor, size: Size, hint: str) -> Iterator[Remark]:
-    """What no place of a sheet shows at its floor, and what to try."""
+def below(project: Project, n: int, view: ViewPlace, what: Remark, least: float, size: Size, hint: str) -> Iterator[Remark]:
+    """``what`` of a view no place of sheet ``n`` shows at its floor ``least``, mm, and what to try."""
     try:
         here = size(project, view)
     except CannotBuild:  # the sheet itself tells why
         return
-    if here >= floor.least * (1 - 1e-6):
+    if here >= least * (1 - 1e-6):
         return
     said = Remark(marked("sheet {n}: {what} is {size:.0f} mm large, it is read from {least:.0f} mm on: {hint}"),
-                  {"n": n, "what": Remark(floor.what), "size": here, "least": floor.least, "hint": Remark(hint)})
-    apart = _apart(project, n, view, size, floor.least)
+                  {"n": n, "what": what, "size": here, "least": least, "hint": Remark(hint)})
+    apart = _apart(project, n, view, size, least)
     yield said if apart is None else Remark(marked("{said}, or take a sheet more, sheets = [{names}]"),
                                             {"said": said, "names": apart})
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -14,7 +14,7 @@ import numpy as np
 from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.given import named
 from tmm_sheets.construction.readable import CURVE, MAIN
-from tmm_sheets.construction.scale import HANDY, Scale, handy, plain, reach
+from tmm_sheets.construction.scale import Scale, coarser, finer, handy, plain, reach
 from tmm_sheets.construction.step import Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.energy_mass import AtAngles
@@ -154,7 +154,7 @@ class Diagrams(Intervals, ABC):
         """Scale factor with which a graph of energies that is ``span`` mm high gets ``MAIN``, so many times that of ``energy``."""
         own = reach("μ_{ΔE}", energy.unit, span * energy.mu, MAIN)
         while not plain(energy.mu / own.mu):
-            own = reach(own.symbol, own.unit, own.mu, 1 + 1e-6)
+            own = replace(own, mu=finer(own.mu))
         return own
 
     def _space(self) -> DiagramSpace:
@@ -185,10 +185,6 @@ def _largest(forces: Mapping[str, Floats]) -> float:
     return largest
 
 
-def _next_handy(mu: float) -> float:
-    return handy(mu * (1 + 1e-6) * HANDY[0])
-
-
 Four = tuple[float, float, float, float]
 
 
@@ -206,7 +202,7 @@ def _scaled(spans: Four, drawn: Four, mu_phi: float, space: DiagramSpace, stack:
         alone = k >= space.stacked
         series.append([handy(max(spans[k], drawn[k] if alone else 0.0) / room)])
         for _ in range(0 if alone else STEPS):
-            series[-1].append(_next_handy(series[-1][-1]))
+            series[-1].append(coarser(series[-1][-1]))
     mu = np.meshgrid(*series, indexing="ij", sparse=True)
     heights, ordinates = ([span / m for span, m in zip(of, mu, strict=True)] for of in (spans, drawn))
     pole = mu[1] / (mu[0] * mu_phi)

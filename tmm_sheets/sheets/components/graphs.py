@@ -5,40 +5,26 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import floor, log10
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from tmm_sheets.construction.scale import Scale
-from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.canvas import SMALLEST, Canvas
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box, PlacedFrame
+from tmm_sheets.drawing.marks import Box, PlacedFrame, Points
 from tmm_sheets.drawing.paper import A1
 from tmm_sheets.drawing.tables import parted, size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 from tmm_sheets.words import tell, tr
 
-if TYPE_CHECKING:
-    from tmm_sheets.project import Project
-
+Floats = NDArray[np.float64]
 Options = dict[str, Any]
 OVER = 8.0
 """How far an axis runs beyond its graph, mm."""
 HEAD = 9.0
 """Room of a heading on one line, mm."""
-_LEFT, _RIGHT = 24.0, 12.0
-"""Room beside an angle axis for the sign of the ordinate and for the arrow, mm."""
-
-
-def angle_axis(project: Project, box: Box) -> tuple[Scale, float]:
-    """Scale factor of the angle of the crank over its cycle, and where the axis begins, mm.
-
-    One rule for all graphs, so that positions stand under each other; half millimetres between them, so that the division is handy.
-    """
-    n, room = len(project.cycle.labels), box.width - _LEFT - _RIGHT
-    length = floor(2 * room / n) / 2 * n
-    return Scale("μ_φ", project.cycle.period / length, tr("rad/mm")), box.x0 + _LEFT + (room - length) / 2
 
 
 @dataclass(frozen=True)
@@ -48,8 +34,8 @@ class Graph:
     origin: complex
     turn: complex = 1
 
-    def __call__(self, p: Any) -> Any:
-        """Point of the sheet of a point of the diagram, mm."""
+    def __call__(self, p: ArrayLike) -> Any:
+        """Points of the sheet of points of the diagram, mm, complex, in their shape."""
         return self.origin + self.turn * np.asarray(p)
 
     def place(self, along: float = 1.0, across: float = 1.0) -> PlacedFrame:
@@ -57,7 +43,7 @@ class Graph:
         return PlacedFrame(-1, "", "", self.origin, (along, across), float(np.angle(self.turn)))
 
 
-def one(values: Any) -> float:
+def one(values: ArrayLike) -> float:
     """The only number of an array."""
     return float(np.asarray(values).reshape(-1)[0])
 
@@ -97,6 +83,18 @@ def heading(canvas: Canvas, box: Box, options: Options, title: str, factor: str,
         canvas.text(complex((x0 + box.x1) / 2, box.y1 - 12.5), under, 3.5, "centre")
 
 
+def begin(canvas: Canvas, box: Box, options: Options, heads: tuple[str, ...], low: float, high: float, below: float,
+          view: str) -> Graph:
+    """A graph of a column with its heading: axes in a place so that the ordinates ``low`` .. ``high``, mm, find room.
+
+    ``heads`` are title, scale factors and what is said under them, ``below`` the room under the lowest ordinate, mm.
+    """
+    heading(canvas, box, options, *heads)
+    g = Graph(complex(options["axis"], box.y0 + below - low))
+    check_room(box, g.origin.imag + high + HEAD, view)
+    return g
+
+
 def axes(canvas: Canvas, g: Graph, length: float, low: float, high: float, ordinate: str) -> None:
     """Angle axis of a length and ordinate axis over a range, mm, with their signs."""
     canvas.arrow(g(0j), g(length + OVER), "axis", 3.0)
@@ -110,20 +108,23 @@ def turned_angle(canvas: Canvas, tip: complex) -> None:
     canvas.label(tip - 5.0, tr("{symbol}, rad").format(symbol="φ_1"), -1j, 3.5, 1.5, leader=False)
 
 
-def numbers(canvas: Canvas, g: Graph, x: Any, labels: Sequence[str], heights: Any) -> None:
-    """Numbers of the positions along the angle axis, on the side where the graph is not.
+def numbers(canvas: Canvas, g: Graph, x: Floats, labels: Sequence[str], heights: Floats) -> None:
+    """Numbers of the positions along the angle axis, on the side where the graph is not: of one height, that their distance allows.
 
+    ``x`` and ``heights`` are abscissae and ordinates of the graph at them, mm, of shape (labels,).
     What else is drawn they make way for, see :mod:`~tmm_sheets.drawing.axis_numbers`.
     """
     gaps = np.concatenate(([np.inf], np.diff(x), [np.inf]))
+    size = 3.5 if np.ptp(x) >= (letter("00", 3.5).width + 2.0) * (len(x) - 1) else SMALLEST
     for abscissa, name, height, pitch in zip(x, labels, heights, np.minimum(gaps[1:], gaps[:-1]), strict=True):
-        at, width = complex(g(abscissa)), letter(name, 3.5).width
+        at, width = complex(g(abscissa)), letter(name, size).width
         canvas.line(at - 0.8j, at + 0.8j, "axis")
-        shift = complex(-1.5 - width, -5.0) if abscissa == 0 else -width / 2 - 5.0j if height > 1e-9 else 1.2 + 1.3j
-        canvas.number(at, at + shift, name, 3.5, float(pitch), first=bool(abscissa == 0))
+        below = -1j * (1.5 + size)
+        shift = -1.5 - width + below if abscissa == 0 else -width / 2 + below if height > 1e-9 else 1.2 + 1.3j
+        canvas.number(at, at + shift, name, size, float(pitch), first=bool(abscissa == 0))
 
 
-def dense(curve: Any) -> Any:
+def dense(curve: Points) -> Points:
     """Points along a curve, no farther apart than a third of a millimetre."""
     way = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(curve)))))
     return np.interp(np.arange(0.0, way[-1], 0.3), way, curve) if way[-1] > 0 else curve
@@ -134,14 +135,14 @@ def ranged(labels: list[str]) -> str:
     return f"{labels[0]}–{labels[-1]}" if len(labels) > 2 else ", ".join(labels)
 
 
-def column(values: Any, digits: int = 4, least: int = 0) -> list[str]:
+def column(values: Sequence[float] | Floats, digits: int = 4, least: int = 0) -> list[str]:
     """Numbers of a column, all with the same decimals: ``digits`` significant ones for the largest, ``least`` decimals at least."""
     largest = float(np.max(np.abs(values)))
     decimals = max(least, digits - 1 - floor(log10(largest))) if largest > 0 else 0
     return [fixed(float(v), decimals) for v in values]
 
 
-def row(name: str, values: Any) -> list[str]:
+def row(name: str, values: Sequence[float] | Floats) -> list[str]:
     """One row of a table, all numbers with the same decimals: four significant digits for the largest, three in a long row.
 
     Small numbers are written enlarged, the power of ten stands in the name before its unit.
@@ -174,7 +175,7 @@ def table(canvas: Canvas, box: Box, title: str, rows: list[list[str]]) -> None:
         top -= high * len(part)
 
 
-def note(canvas: Canvas, room: Box, lines: Sequence[str], ink: Sequence[Any]) -> bool:
+def note(canvas: Canvas, room: Box, lines: Sequence[str], ink: Sequence[Points]) -> bool:
     """Short lines of text in the part of a graph that its curves (points close together) leave free the widest.
 
     Numbers and letters at the curves need some room as well; smaller letters where there is little. False where there is none.

@@ -60,9 +60,7 @@ def graph(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     of = stage(canvas, plan, None, graphs.Graph(g.origin - 1j * y.mm(mean)).place(x.mu, y.mu))
     length = x.mm(fw.reduced.period)
     of.curve("ω1", g(x.mm(fw.samples) + 1j * y.mm(fw.speed_curve(fw.samples) - mean)))
-    pen = of.pen("ω1", "axis")
-    graphs.axes(pen, g, length, low, high, tr("{symbol}, s^{{−1}}").format(symbol="ω_1"))
-    graphs.numbers(pen, g, x.mm(fw.reduced.phi), fw.labels, plan["ω1"].value - mean)
+    flywheel.axes(fw, of, "ω1", g, (low, high), tr("{symbol}, s^{{−1}}").format(symbol="ω_1"), plan["ω1"].value - mean, x)
     canvas.text(g(-2.0) + 1.0j, tr("ω_{1m}"), 3.5, "right")
     digits = max(4, 2 + floor(log10(mean / (highest - lowest))))  # the bounds differ in two digits at least
     for name, level in (("max", high), ("min", low)):

@@ -16,7 +16,7 @@ from tmm_sheets.construction.scale import fit
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.sheets.components import graphs
 from tmm_sheets.sheets.flywheel import flywheel, mertsalov
 from tmm_sheets.sheets.frame import together
@@ -87,9 +87,8 @@ def change(project: Project, canvas: Canvas, box: Box, options: Options) -> None
     for k, p in enumerate(fw.total_plan["points"].value):
         at = narrower * p.real
         of.position(k).line("points", g(at), g(at + 1j * times * p.imag), "thin")
-    pen = of.pen("points", "axis")
-    graphs.axes(pen, g, x.mm(fw.reduced.period), low, high, tr("{quantity}, J").format(quantity=name))
-    graphs.numbers(pen, g, x.mm(fw.reduced.phi), fw.labels, fw.total_plan["points"].value.imag)
+    ordinate = tr("{quantity}, J").format(quantity=name)
+    flywheel.axes(fw, of, "points", g, (low, high), ordinate, fw.total_plan["points"].value.imag, x)
 
 
 def energy_mass_sizes(project: Project, canvas: Canvas, options: Options) -> tuple[tuple[float, float], ...]:
@@ -112,7 +111,7 @@ def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) ->
     left = canvas.title(box, tr("Energy-mass diagram, enlarged"), f"{y}, {x}")
     canvas.of = plan.name
 
-    def stretched(z: Any) -> Any:
+    def stretched(z: Points) -> Points:
         return narrower * np.real(z) + 1j * times * np.imag(z)
 
     low, high = min(0.0, times * float(curve.imag.min())), max(0.0, times * float(curve.imag.max()))

@@ -22,20 +22,23 @@ from tmm_sheets.drawing.axis_numbers import Plain
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
 from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.lettering import letter, size_for
-from tmm_sheets.drawing.marks import Box, Text
+from tmm_sheets.drawing.marks import Box, Points, Text
 from tmm_sheets.drawing.notes import TOGETHER, wrapped
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import decimals_for, enough, fixed, is_zero, number
+from tmm_sheets.sheets.border_solver import GAP
 from tmm_sheets.sheets.components import graphs, upright_tables
 from tmm_sheets.sheets.frame import ratio, standard, together
 from tmm_sheets.sheets.player import PlayerStage, play, stage
 from tmm_sheets.words import tell, tr, tr_in
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.scale import Scale
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.methods.flywheel.wheel import RimWheel
     from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
+    from tmm_sheets.methods.integration import Floats
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.arrangement import Arrangement, ViewPlace
 
@@ -48,6 +51,8 @@ FELT = 0.02
 """Error of the work by ordinates from which on the sheet tells what it does to the flywheel beside it."""
 ENLARGED = 52.0
 """What the enlarged diagram needs for its title, signs, numbers and distance from all else, mm."""
+BESIDE_MASS = 10.0
+"""Distance of what stands beside the graph of J from the end of its axis, mm."""
 _BELOW = 7.0  # room of position numbers beside an axis
 _UNDER = 8.0  # room of the letter b under the energy-mass diagram
 
@@ -69,7 +74,11 @@ def _of_column(fw: Flywheel) -> tuple[Stacked, ...]:
 
 
 def apart(project: Project, plan: Arrangement) -> Arrangement:
-    """The arrangement with the border between the column and the graph of dE under it where both have room to spare alike."""
+    """The arrangement with borders by what is drawn.
+
+    That between the column and the graph of dE under it is where both have room to spare alike, that between the graph of J and
+    what stands at its right where the graph ends.
+    """
     fw, views = project.flywheel, {view.draw: view for view in plan.views}
     upper, lower = views.get("flywheel.column"), views.get("flywheel.total_work")
     if fw.method != "wittenbauer" or upper is None or lower is None:
@@ -80,10 +89,18 @@ def apart(project: Project, plan: Arrangement) -> Arrangement:
     spare = upper.box.y1 - lower.box.y0 - gap - needs - _of_energy(with_tangents(project))
     border = upper.box.y1 - needs - max(spare, 0.0) * (len(parts) - 1) / (len(parts) + 1)
     places = {upper.draw: upper.box._replace(y0=border), lower.draw: lower.box._replace(y1=border - gap)}
+    mass = views.get("flywheel.inertia")
+    highest = float(fw.scales.inertia.mm(fw.inertia(fw.samples)).max())
+    free = max(mass.box.x1 - mass.options["axis"] - highest - graphs.OVER - BESIDE_MASS, 0.0) if mass else 0.0
 
     def placed(view: ViewPlace) -> ViewPlace:
-        energy = {"energy": [*places[lower.draw]]} if "energy" in view.options else {}
-        return replace(view, box=places.get(view.draw, view.box), options={**view.options, **energy})
+        box = places.get(view.draw, view.box)
+        if mass is not None:
+            right, left = abs(box.x1 - mass.box.x1) < GAP, box.x0 > mass.box.x1 - GAP
+            box = box._replace(x0=box.x0 - free * left, x1=box.x1 - free * right)
+        repeated = {"energy": places[lower.draw]} | ({"inertia": mass.box._replace(x1=mass.box.x1 - free)} if mass else {})
+        own = {name: [*at] for name, at in repeated.items() if name in view.options}
+        return replace(view, box=box, options={**view.options, **own})
 
     return replace(plan, views=tuple(map(placed, plan.views)))
 
@@ -158,7 +175,7 @@ def force_graph(project: Project, canvas: Canvas, box: Box, options: Options) ->
                 canvas.label(g(highest), name, 1 + 0.3j, 3.5)
     graphs.check_room(box, g.origin.imag + top, "flywheel.force_graph")
     ordinate = f"{names[0] if len(names) == 1 else letter_of}, {unit}"
-    axes(fw, of, r.force_steps[0], g, min(low, 0.0), top, ordinate, np.ones(len(fw.labels)))
+    axes(fw, of, r.force_steps[0], g, (min(low, 0.0), top), ordinate, np.ones(len(fw.labels)))
     for k, x in enumerate(s.angle.mm(r.phi)):
         if top and k:
             here, name = max(((graphs.one(values), name) for name, values in r.forces_at(r.phi[k]).items()), key=_size)
@@ -171,10 +188,10 @@ def _size(of: tuple[float, str]) -> tuple[float, str]:
     return abs(of[0]), of[1]
 
 
-def _acting(fw: Flywheel, name: str) -> list[Any]:
+def _acting(fw: Flywheel, name: str) -> list[Points]:
     """Curves of one force where it acts, mm: each runs on through the kinks between its stretches."""
     s, r = fw.scales, fw.reduced
-    runs: list[list[Any]] = []
+    runs: list[list[Points]] = []
     on = False
     for a, b in _stretches(fw):
         phi = _inside(fw, a, b)
@@ -197,14 +214,13 @@ def moments(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
     every = len(drawn) == len(fw.intervals)
     factors = tr("{moment}, {angle}, H = {pole} mm") if every else \
         tr("{moment}, {angle}, H = {pole} mm; {shown} of {count} rays are shown")
-    graphs.heading(canvas, box, options, tr("Graphs of the reduced moments of forces"),
-                   factors.format(moment=s.moment, angle=s.angle, pole=number(s.pole), shown=len(drawn), count=len(fw.intervals)))
     line = _moment_curve(fw)
     level = s.moment.mm(fw.M_constant)
     low = min(0.0, level, float(line.imag.min()))
     high = max(0.0, level, float(line.imag.max()))
-    g = graphs.Graph(complex(options["axis"], box.y0 + 4.0 - low))
-    graphs.check_room(box, g.origin.imag + high + graphs.HEAD, "flywheel.moments")
+    said = factors.format(moment=s.moment, angle=s.angle, pole=number(s.pole), shown=len(drawn), count=len(fw.intervals))
+    heads = tr("Graphs of the reduced moments of forces"), said
+    g = graphs.begin(canvas, box, options, heads, low, high, 4.0, "flywheel.moments")
     canvas.of = plan.name
     of, drive = (stage(canvas, p, None, g.place()) for p in (fw.moment_plan, fw.driving_plan))
     of.curve("M", g(_down_to_axis(line)))
@@ -213,7 +229,7 @@ def moments(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
     points = fw.moment_plan["M"].value
     # Where the curve runs along the axis its numbers stand on the side the graph leaves free.
     body = line.imag[int(np.argmax(np.abs(line.imag)))]
-    axes(fw, of, "M", g, low, high, tr("M, N·m"), np.where(np.abs(points.imag) < 1.0, body, points.imag))
+    axes(fw, of, "M", g, (low, high), tr("M, N·m"), np.where(np.abs(points.imag) < 1.0, body, points.imag))
     uprights(of, "M")
     pole = plan["P"].value
     rays = stage(canvas, plan, None, g.place())
@@ -231,22 +247,26 @@ def moments(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
     canvas.label(g(beside), tr("M_{index}^{{red}}").format(index=constant), -1j if level > 0 else 1j, height=5)
 
 
-def _clear_of(line: Any, level: float, length: float) -> complex:
+def _clear_of(line: Points, level: float, length: float) -> complex:
     """Place on the line of the constant moment for its sign: the first of some that the other curve keeps clear of, mm."""
     places = [share * length + 1j * level for share in (0.78, 0.7, 0.86, 0.6, 0.5, 0.4, 0.3, 0.2)]
     ways = [float(np.abs(graphs.dense(line) - z).min()) for z in places]
     return next((z for z, way in zip(places, ways, strict=True) if way > CLEAR), places[int(np.argmax(ways))])
 
 
-def axes(fw: Flywheel, of: PlayerStage, step: Step | str, g: graphs.Graph, low: float, high: float, ordinate: str,
-         side: Any) -> None:
-    """Axes of the graph of a step over the cycle, and the numbers of the positions beneath where ``side`` is positive."""
-    angle, r, pen = fw.scales.angle, fw.reduced, of.pen(step, "axis")
-    graphs.axes(pen, g, angle.mm(r.period), low, high, ordinate)
-    graphs.numbers(pen, g, angle.mm(r.phi), fw.labels, side)
+def axes(fw: Flywheel, of: PlayerStage, step: Step | str, g: graphs.Graph, span: tuple[float, float], ordinate: str, side: Floats,
+         angle: Scale | None = None) -> None:
+    """Axes of the graph of a step over the cycle, and the numbers of the positions beneath where ``side`` is positive.
+
+    ``span`` are its lowest and highest ordinate, mm, ``side`` of shape (positions,); ``angle`` is the scale factor of the angle
+    where it is not that of the construction.
+    """
+    x, r, pen = angle or fw.scales.angle, fw.reduced, of.pen(step, "axis")
+    graphs.axes(pen, g, x.mm(r.period), *span, ordinate)
+    graphs.numbers(pen, g, x.mm(r.phi), fw.labels, side)
 
 
-def _down_to_axis(line: Any) -> Any:
+def _down_to_axis(line: Points) -> Points:
     """A curve of the diagram with both its ends brought down to the abscissa."""
     return np.concatenate(([line[0].real + 0j], line, [line[-1].real + 0j]))
 
@@ -257,7 +277,7 @@ def uprights(s: PlayerStage, step: str) -> None:
         play(s.position(k), [step], "thin")
 
 
-def _moment_curve(fw: Flywheel) -> Any:
+def _moment_curve(fw: Flywheel) -> Points:
     """The varying moment over the crank angle, mm, with both values where it jumps."""
     s, r, values = fw.scales, fw.reduced, fw.at_samples.moment().value
     stretches = []
@@ -292,14 +312,12 @@ def works(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     fw: Flywheel = project.flywheel
     s = fw.scales
     varying, constant = indices(fw)
-    graphs.heading(canvas, box, options, tr("Graphs of work"), f"{s.work}")
-    canvas.of = fw.work_plan.name
     ends = np.array([e.value for e in fw.work_ends])
     end = fw.driving_plan["K"].value
     curve = s.angle.mm(fw.samples) + 1j * fw.work_curve(fw.samples)
     low, high = min(0.0, end.imag, curve.imag.min()), max(0.0, end.imag, curve.imag.max())
-    g = graphs.Graph(complex(options["axis"], box.y0 + 4.0 - low))
-    graphs.check_room(box, g.origin.imag + high, "flywheel.works")
+    g = graphs.begin(canvas, box, options, (tr("Graphs of work"), f"{s.work}"), low, high, 4.0, "flywheel.works")
+    canvas.of = fw.work_plan.name
     of, drive = (stage(canvas, p, None, g.place()) for p in (fw.work_plan, fw.driving_plan))
     of.curve("A(φ)", g(curve))
     drive.line("K", g(0j), g(end), "curve", "curve")
@@ -310,7 +328,7 @@ def works(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
         heights = (0.0, ends[k].imag, x * end.imag / end.real)
         uprights.append(np.linspace(complex(x, min(heights)), complex(x, max(heights)), 50))
         canvas.tracing("construction", fw.total_plan["ΣA"].path, label).line(g(uprights[-1][0]), g(uprights[-1][-1]), "thin")
-    axes(fw, of, "A(φ)", g, low, high, tr("A, J"), np.zeros(len(fw.labels)))
+    axes(fw, of, "A(φ)", g, (low, high), tr("A, J"), np.zeros(len(fw.labels)))
     k = len(curve) // 2
     canvas.label(g(curve[k]), f"A_{varying}", -1 - 1j if curve[k].imag < 0 else -1 + 1j, height=5)
     canvas.label(g(end / 2), f"A_{constant}", -1 + 1j if end.imag > 0 else -1 - 1j, height=5)
@@ -350,7 +368,7 @@ def total_work(project: Project, canvas: Canvas, box: Box, options: Options) -> 
     of = stage(canvas, fw.total_plan, None, g.place())
     of.curve("points", g(s.angle.mm(fw.samples) + 1j * ordinates))
     uprights(of, "points")
-    axes(fw, of, "points", g, low, high, tr("ΔE, J"), fw.total_plan["points"].value.imag)
+    axes(fw, of, "points", g, (low, high), tr("ΔE, J"), fw.total_plan["points"].value.imag)
 
 
 def _enlarged(ratio: float) -> str:
@@ -789,9 +807,9 @@ def disc_for_rim(w: RimWheel) -> list[str]:
 # --- parts shared by the views --------------------------------------------------------------------------
 
 
-def by_method(project: Project, method: str, hint: str) -> Any:
+def by_method(project: Project, method: str, hint: str) -> Flywheel:
     """The project's flywheel, which a view must find by its own method."""
-    fw = project.flywheel
+    fw: Flywheel = project.flywheel
     if fw.method != method:
         raise CannotBuild(tell('this view belongs to flywheel.method = "{wanted}", not "{found}"').format(
             wanted=method, found=fw.method), hint)
@@ -826,7 +844,7 @@ def _stretches(fw: Flywheel) -> list[tuple[float, float]]:
     return list(pairwise(ends))
 
 
-def _inside(fw: Flywheel, a: float, b: float) -> Any:
+def _inside(fw: Flywheel, a: float, b: float) -> Floats:
     """Angles for a curve from ``a`` to ``b``, both included."""
     return np.concatenate(([a], fw.samples[(fw.samples > a) & (fw.samples < b)], [b]))
 

@@ -29,6 +29,7 @@ from tmm_sheets.words import marked, tell, tr
 if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.flywheel.mertsalov import Mertsalov
+    from tmm_sheets.methods.integration import Floats
     from tmm_sheets.project import Project
 
 Options = dict[str, Any]
@@ -71,13 +72,11 @@ def inertia(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
     s = fw.scales
     _, second, _, sign = _signs(options)
     mu_e = Scale(f"μ_{{{flat(second)}}}", float(fw.energy_plan.auxiliaries["μ_T"].value), tr("J/mm"))
-    graphs.heading(canvas, box, options, tr("Graphs of {inertia}(φ_1) and {energy}(φ_1)").format(inertia=sign, energy=second),
-                   f"{s.inertia}, {mu_e}")
-    canvas.of = fw.inertia_plan.name
-    g = graphs.Graph(complex(options["axis"], box.y0 + 8.0))
     x = s.angle.mm(fw.samples)
     curve = s.inertia.mm(fw.inertia(fw.samples))
-    graphs.check_room(box, g.origin.imag + float(curve.max()) + graphs.HEAD, "mertsalov.inertia")
+    heads = tr("Graphs of {inertia}(φ_1) and {energy}(φ_1)").format(inertia=sign, energy=second), f"{s.inertia}, {mu_e}"
+    g = graphs.begin(canvas, box, options, heads, 0.0, float(curve.max()), 8.0, "mertsalov.inertia")
+    canvas.of = fw.inertia_plan.name
     of = stage(canvas, fw.inertia_plan, None, g.place())
     doubled = s.inertia.mu * fw.reduced.omega1**2  # the terms are doubled energies
     terms = stage(canvas, fw.reduced.numbered.plan, None, g.place(s.angle.mu, doubled))
@@ -97,13 +96,13 @@ def inertia(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
         canvas.text(complex((beside + box.x1) / 2, box.y1 - 13.0), legend, size_for([legend], box.x1 - beside, 3.5), "centre")
     flywheel.uprights(of, "points")
     ordinate = tr("{quantity}, kg·m^2").format(quantity=sign)
-    flywheel.axes(fw, of, "points", g, 0.0, float(curve.max()), ordinate, np.ones(len(fw.labels)))
+    flywheel.axes(fw, of, "points", g, (0.0, float(curve.max())), ordinate, np.ones(len(fw.labels)))
     k = int(np.argmax(curve))
     canvas.label(g(x[k] + 1j * curve[k]), sign, 1 + 1j, height=5)
     _tangent(fw, of.position(project.force_index), box, graphs.HEAD + (LEGEND if len(parts) > NAMED else 0.0))
 
 
-def _terms(fw: Mertsalov) -> tuple[list[tuple[str, Step, Any]], list[str]]:
+def _terms(fw: Mertsalov) -> tuple[list[tuple[str, Step, Floats]], list[str]]:
     """Terms of the reduced moment of inertia, each with its step and its ordinates at the samples, mm; names of those too low."""
     steps = fw.reduced.numbered.terms
     found = [(f"{name.removesuffix('²')}^2/ω_1^2", steps[name], fw.scales.inertia.mm(values))
@@ -140,13 +139,11 @@ def energies(project: Project, canvas: Canvas, box: Box, options: Options) -> No
     omega = _omega_scale(fw)
     ratio = s.work.mu / s.energy.mu
     against = "" if abs(ratio - 1) < 1e-9 else f" (μ_A/{number(ratio)})" if ratio > 1 else f" ({number(1 / ratio)}μ_A)"
-    graphs.heading(canvas, box, options, tr("Graphs of {change}(φ_1), {first}(φ_1), ω_1(φ_1)").format(change=change, first=first),
-                   f"{s.energy}{against}, {omega}")
+    title = tr("Graphs of {change}(φ_1), {first}(φ_1), ω_1(φ_1)").format(change=change, first=first)
     x = s.angle.mm(fw.samples)
     total, own = fw.energy_curve(fw.samples), np.imag(fw.first_curve(fw.samples))
     low, high = min(0.0, float(own.min())), max(0.0, float(total.max()), float(own.max()))
-    g = graphs.Graph(complex(options["axis"], box.y0 + 8.0 - low))
-    graphs.check_room(box, g.origin.imag + high + graphs.HEAD, "mertsalov.energies")
+    g = graphs.begin(canvas, box, options, (title, f"{s.energy}{against}, {omega}"), low, high, 8.0, "mertsalov.energies")
     canvas.of = fw.total_plan.name
     sums, of, speed = (stage(canvas, p, None, g.place()) for p in (fw.total_plan, plan, fw.speed_plan))
     sums.curve("points", g(x + 1j * total))
@@ -157,7 +154,7 @@ def energies(project: Project, canvas: Canvas, box: Box, options: Options) -> No
         below, above = (g(complex(p.real, f(0.0, p.imag, top))) for f in (min, max))
         canvas.tracing("construction", plan["T_I"].path, label).line(below, above, "thin")
     ordinate = tr("{quantity}, J").format(quantity=f"{change}, {first}")
-    flywheel.axes(fw, of, "points", g, low, high, ordinate, np.where(upper > 1e-6, 1.0, -1.0))
+    flywheel.axes(fw, of, "points", g, (low, high), ordinate, np.where(upper > 1e-6, 1.0, -1.0))
     for name, end in (("max", "a"), ("min", "b")):
         # The tangent runs on beyond the point where it touches.
         of.line(f"M_{name}", of.at(end), of.at(f"M_{name}") + 10)

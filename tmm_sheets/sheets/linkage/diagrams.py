@@ -2,56 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.scale import Scale
+from tmm_sheets.construction.readable import CURVE, MAIN
 from tmm_sheets.construction.step import Step, value_of
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import LEAST, needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.numbers import NOISE, enough
-from tmm_sheets.sheets.components import graphs, upright_tables
-from tmm_sheets.sheets.frame import PlanFrame, pick
+from tmm_sheets.numbers import NOISE
+from tmm_sheets.sheets.components import cycle_graphs, graphs, upright_tables
+from tmm_sheets.sheets.components.cycle_graphs import Column, Curve, Quantity
+from tmm_sheets.sheets.components.graphs import Floats
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
 from tmm_sheets.sheets.linkage.link_marks import indexed, shapes
+from tmm_sheets.sheets.view_sizes import leaf
 from tmm_sheets.words import marked, tell, tr, tr_in
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.motion import Output
     from tmm_sheets.project import Project
+    from tmm_sheets.remarks import Remark
+    from tmm_sheets.sheets.arrangement import ViewPlace
+    from tmm_sheets.sheets.border_solver import BorderNode
 
+Options = dict[str, Any]
 GRAPH_SIZES = (280.0, 110.0), (240.0, 96.0), (200.0, 84.0), (170.0, 76.0)
 """Sizes of a single graph over the cycle for room that a sheet has left, mm."""
 
 
-@dataclass(frozen=True)
-class DiagramCurve:
-    """A quantity over the cycle: ``symbol`` in sheet markup, its step, its values at the sampled angles and at the positions."""
-
-    symbol: str
-    step: Step
-    turned: Any
-    values: Any
-    at: Any
-
-
-@dataclass(frozen=True)
-class DiagramQuantity:
-    """One graph: ``key`` of its scale factor in [scales], letter of the ordinate, unit, its curves."""
-
-    key: str
-    letter: str
-    unit: str
-    curves: tuple[DiagramCurve, ...]
-
-
-def _columns(project: Project, options: graphs.Options) -> list[tuple[DiagramQuantity, ...]]:
+def motion_graphs(project: Project, options: Options) -> list[Column]:
     """What is drawn, points and links apart. Which: option ``of``, else those of the project; none for a bare crank."""
     named = options.get("of") or project.diagrams
     links = [name for name in named if name in project.mechanism.links]
@@ -59,30 +43,30 @@ def _columns(project: Project, options: graphs.Options) -> list[tuple[DiagramQua
     return [of(project, some) for of, some in ((_of_points, points), (_of_links, links)) if some]
 
 
-def motion(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
-    """Kinematic diagrams of the outputs, one graph under another.
+def motion(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
+    """Kinematic diagrams of the outputs, one graph under another, or beside each other where that is what there is room for.
 
     Points have S, V, a along their straight path, links psi, omega, epsilon; both count from position 0. Those of points are
     positive in the sense in which the motion begins there, those of links counter-clockwise, as in every table.
     """
-    columns = _columns(project, options)
-    if not columns:
-        return
-    width = box.width / len(columns)
-    room = Box(0, 0, width, box.height)
-    angle = graphs.angle_axis(project, room)[0]
-    left = canvas.title(box, tr("Kinematic diagrams"), str(angle))
-    for n, quantities in enumerate(columns):
-        x = box.x0 + n * width
-        height = left.height / len(quantities)
-        for i, q in enumerate(quantities):
-            top = left.y1 - i * height
-            _graph(project, canvas, Box(x, top - height, x + width, top), angle, q)
+    if columns := motion_graphs(project, options):
+        cycle_graphs.draw(project, canvas, box, tr("Kinematic diagrams"), columns)
 
 
-def motion_table(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
+def motion_place(project: Project, view: ViewPlace) -> BorderNode | None:
+    """What they need of their place."""
+    columns = motion_graphs(project, view.options)
+    return leaf(view.box, cycle_graphs.need(project, columns), 0.5) if columns else None
+
+
+def motion_low(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
+    """Those that are too low on sheet ``n``."""
+    return cycle_graphs.low(project, n, view, lambda project, view: motion_graphs(project, view.options))
+
+
+def motion_table(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """The values of the kinematic diagrams at the positions, one row each; with ``links`` those of the bars before them."""
-    every = [(c.symbol, q.unit, c.at) for column in _columns(project, options) for q in column for c in q.curves]
+    every = [(c.symbol, q.unit, c.at) for column in motion_graphs(project, options) for q in column for c in q.curves]
     if not every:
         return
     # The same quantities of one output stand together.
@@ -107,9 +91,9 @@ def _of_outputs(columns: int) -> str:
     return tr("Motion of the output link") if columns == 3 else tr("Motion of the output links")
 
 
-def motion_table_sizes(project: Project, canvas: Canvas, options: graphs.Options) -> list[tuple[float, float]]:
+def motion_table_sizes(project: Project, canvas: Canvas, options: Options) -> list[tuple[float, float]]:
     """Places that the table can do with, mm: rows of 7 mm to 4.6 mm, columns of 26 mm to 16 mm."""
-    if not _columns(project, options):
+    if not motion_graphs(project, options):
         return []
     rows, columns = len(_rows_of(project)) + 1, 3 * len(project.diagrams)
     sizes = ((26.0, 7.0), (22.0, 7.0), (20.0, 5.6), (16.0, 4.6))
@@ -124,7 +108,7 @@ def _rows_of(project: Project) -> tuple[tuple[int, str], ...]:
     return same if len(same) < len(project.cycle.labels) else tuple(enumerate(project.cycle.labels))
 
 
-def _motion_rows(labels: Iterable[tuple[int, str]], every: list[tuple[str, str, Any]], digits: int, *,
+def _motion_rows(labels: Iterable[tuple[int, str]], every: list[tuple[str, str, Floats]], digits: int, *,
                  two: bool) -> list[list[str]]:
     """Rows of the table of motion with so many digits; the units stand in a row of their own if there are ``two`` of headings."""
     heads = [[tr("No."), *(symbol for symbol, _, _ in every)], ["", *(unit for _, unit, _ in every)]] if two else \
@@ -133,7 +117,7 @@ def _motion_rows(labels: Iterable[tuple[int, str]], every: list[tuple[str, str, 
     return [*heads, *([label, *(c[i] for c in columns)] for i, label in labels)]
 
 
-def _of_bars(project: Project, known: Collection[str]) -> list[tuple[str, str, Any]]:
+def _of_bars(project: Project, known: Collection[str]) -> list[tuple[str, str, Floats]]:
     """Angle, angular velocity and acceleration of every bar but the crank at the positions, without those that are ``known``.
 
     A rocker's angle is counted from position 0, a rod's is its inclination to the guide of its other end (manual 001, table I)
@@ -152,39 +136,40 @@ def _of_bars(project: Project, known: Collection[str]) -> list[tuple[str, str, A
     return found
 
 
-def balancing(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
+def balancing(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Balancing moment over the whole cycle by kinetostatics, positive in the sense of rotation; its mean drives the machine."""
     if project.driver is not None:
         raise CannotBuild(*map(tell, _NO_MOMENT))
+    cycle_graphs.draw(project, canvas, box, tr("Graph of the balancing moment"), [balancing_graph(project)])
+
+
+def balancing_low(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
+    """The graph on sheet ``n``, where it is too low; an offered one has a size in which it is not."""
+    return cycle_graphs.low(project, n, view, lambda project, _: [] if project.driver is not None else [balancing_graph(project)])
+
+
+def balancing_graph(project: Project) -> Column:
+    """The graph of the balancing moment, with the constant one."""
     every, step, course = project.course.turned, project.study.balance["M"], project.course.balance["M"]
-    values, at = _row(course, every), _row(step, project.cycle.turned)
-    angle = graphs.angle_axis(project, box)[0]
-    left = canvas.title(box, tr("Graph of the balancing moment"), str(angle))
     # The flywheel's construction has the constant moment already, a little apart from the mean of this curve; without friction.
     rubbing = project.study.forces.friction is not None
     mean = project.flywheel.driving_plan["M"] if project.variant.flywheel is not None and not rubbing else \
         project.study.mean_driving(course, every)
     sign = balancing_sign(project)
-    moment = DiagramQuantity("graph-M", sign, tr("N·m"), (DiagramCurve("", step, every, values, at),))
     # Where the balancing moment is called as the driving one is, the constant one is its mean.
     known = project.variant.flywheel is not None and not project.reduced.resisting
     constant = f"M_{{{tr_in('index of moment and work', 'r')}}}" if known else tr("M_d")
     name = constant if indexed(constant.replace("_", "")) != sign and not rubbing else tr("M_{dm}")
-    _graph(project, canvas, left, angle, moment, level=(name, float(mean.value)))
+    curve = Curve("", step.path, every, _row(course, every), _row(step, project.cycle.turned))
+    return (Quantity("graph-M", sign, tr("N·m"), (curve,), level=(name, float(mean.value))),)
 
 
-def single(project: Project, canvas: Canvas, box: Box, title: str, quantity: DiagramQuantity) -> None:
-    """One graph over the cycle under its title."""
-    angle = graphs.angle_axis(project, box)[0]
-    _graph(project, canvas, canvas.title(box, title, str(angle)), angle, quantity)
-
-
-def balancing_sizes(project: Project, canvas: Canvas, options: graphs.Options) -> tuple[tuple[float, float], ...]:
+def balancing_sizes(project: Project, canvas: Canvas, options: Options) -> tuple[tuple[float, float], ...]:
     """Sizes that the graph can do with, mm; none for a crank that is driven by a force."""
-    return GRAPH_SIZES if project.driver is None else ()
+    return cycle_graphs.sizes(project, balancing_graph(project), GRAPH_SIZES) if project.driver is None else ()
 
 
-def balancing_table_sizes(project: Project, canvas: Canvas, options: graphs.Options) -> list[tuple[float, float]]:
+def balancing_table_sizes(project: Project, canvas: Canvas, options: Options) -> list[tuple[float, float]]:
     """Places that the table can do with, mm; none for a crank that is driven by a force."""
     if project.driver is not None:
         return []
@@ -193,7 +178,7 @@ def balancing_table_sizes(project: Project, canvas: Canvas, options: graphs.Opti
     return [*upright, *((width, 11.0 + row * rows) for width, row in ((170.0, 7.5), (150.0, 6.0), (130.0, 5.0)))]
 
 
-def balancing_table(project: Project, canvas: Canvas, box: Box, options: graphs.Options) -> None:
+def balancing_table(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """The balancing moment at the positions by kinetostatics and by Zhukovsky's lever, in columns side by side.
 
     In one below the other in a place that is higher than wide.
@@ -230,24 +215,26 @@ _NO_MOMENT = (marked("the diagram of the balancing moment needs a crank driven b
               marked('write kind = "moment" in [balancing]'))
 
 
-def _of_points(project: Project, names: list[str]) -> tuple[DiagramQuantity, ...]:
-    units = (("graph-S", "S", tr("m")), ("graph-V", "V", tr("m/s")), ("graph-a", "a", tr("m/s^2")))
+def _of_points(project: Project, names: list[str]) -> Column:
+    units = (("graph-S", "S", tr("m"), MAIN), ("graph-V", "V", tr("m/s"), CURVE), ("graph-a", "a", tr("m/s^2"), CURVE))
     return _quantities(project, [project.motion.point(name) for name in names], units)
 
 
-def _of_links(project: Project, names: list[str]) -> tuple[DiagramQuantity, ...]:
-    units = (("graph-psi", "ψ", tr("rad")), ("graph-omega", "ω", tr("s^{−1}")), ("graph-epsilon", "ε", tr("s^{−2}")))
+def _of_links(project: Project, names: list[str]) -> Column:
+    units = (("graph-psi", "ψ", tr("rad"), MAIN), ("graph-omega", "ω", tr("s^{−1}"), CURVE),
+             ("graph-epsilon", "ε", tr("s^{−2}"), CURVE))
     return _quantities(project, [project.motion.link(name) for name in names], units)
 
 
-def _quantities(project: Project, outputs: list[Output], units: Iterable[tuple[str, str, str]]) -> tuple[DiagramQuantity, ...]:
+def _quantities(project: Project, outputs: list[Output], units: Iterable[tuple[str, str, str, float]]) -> Column:
     turned = project.motion.turned
-    curves = [[DiagramCurve(here.symbol, here, turned, _row(between, turned), _row(here, project.study.turned))
+    curves = [[Curve(here.symbol, here.path, turned, _row(between, turned), _row(here, project.study.turned))
                for here, between in zip(one.at_positions, one.between, strict=True)] for one in outputs]
-    return tuple(_quantity(*of, list(row)) for of, row in zip(units, zip(*curves, strict=True), strict=True))
+    return tuple(Quantity.of(key, letter, unit, row, floor)
+                 for (key, letter, unit, floor), row in zip(units, zip(*curves, strict=True), strict=True))
 
 
-def _row(step: Step, turned: Any) -> Any:
+def _row(step: Step, turned: Floats) -> Floats:
     """Values of a step at some angles, of one that is the same at all of them as well.
 
     An angular acceleration that is nothing beside all that the points of its link are accelerated by is nothing.
@@ -258,69 +245,3 @@ def _row(step: Step, turned: Any) -> Any:
         return values
     big_q, big_b, q, b = map(value_of, source.args)
     return np.where(np.abs(values) <= NOISE * np.max(np.abs(b - q) / np.abs(big_b - big_q)), 0.0, values)
-
-
-def _quantity(key: str, sign: str, unit: str, curves: list[DiagramCurve]) -> DiagramQuantity:
-    """A single curve gives the ordinate its name, several are named where they run."""
-    if len(curves) == 1:
-        return DiagramQuantity(key, curves[0].symbol, unit, tuple(curves))
-    return DiagramQuantity(key, sign, unit, tuple(curves))
-
-
-# --- drawing ----------------------------------------------------------------------------------------------------------
-
-
-def _graph(project: Project, canvas: Canvas, box: Box, angle: Scale, q: DiagramQuantity,
-           level: tuple[str, float] | None = None) -> None:
-    high = max(0.0, *(float(np.max(c.values)) for c in q.curves))
-    low = min(0.0, *(float(np.min(c.values)) for c in q.curves))
-    above, below = 10.0, 6.0
-    per_mm = tr("({unit})/mm") if "/" in q.unit or "{" in q.unit else tr("{unit}/mm")
-    least = (high - low) / (box.height - above - below)
-    scale = pick(project, canvas, q.key, f"μ_{q.letter[0]}", per_mm.format(unit=q.unit), least)
-    length = angle.mm(project.cycle.period)
-    top, bottom = scale.mm(high), scale.mm(low)
-    spare = box.height - above - below - (top - bottom)
-    o = complex(graphs.angle_axis(project, box)[1], box.y0 + below + spare / 2 - bottom)
-    canvas.of = q.key
-    if level is None:
-        canvas.begin(box, tr("Graph of {quantity}").format(quantity=q.letter))
-    at = PlanFrame(scale, o, angle)
-    frames = [canvas.placed(c.step.plan, "", o, at.mu) for c in q.curves]
-    axis = (q.curves[0].step.path, "", frames[0])
-    with canvas.traced("axis", *axis):
-        canvas.arrow(o, o + length + graphs.OVER, "axis", 3.0)
-        graphs.turned_angle(canvas, o + length + graphs.OVER)
-        canvas.arrow(o + 1j * (bottom - 3.0 if bottom else 0.0), o + 1j * (top + graphs.OVER), "axis", 3.0)
-        canvas.text(o + 1j * (top + graphs.OVER - 3.0) - 2.0, f"{q.letter}, {q.unit}", 3.5, "right")
-    # Over the numbers, where these stand on the upper side of an axis with nothing above it.
-    canvas.text(o + length + 1j * (top + graphs.OVER - (4.0 if top > 6.0 else 1.0)), str(scale), 3.5, "right")
-    feet, drawn = at(project.cycle.turned), [at(c.turned + 1j * c.values) for c in q.curves]
-    for c, frame, curve in zip(q.curves, frames, drawn, strict=True):
-        with canvas.traced("curve", c.step.path, "", frame, c.symbol):
-            canvas.polyline(curve, "curve")
-        for label, foot, y in zip(project.cycle.labels, feet, scale.mm(c.at), strict=True):
-            with canvas.traced("construction", c.step.path, label, frame, c.symbol):
-                canvas.line(foot, foot + 1j * y, "thin")
-    with canvas.traced("axis", *axis):
-        if level is not None:
-            greatest = max(float(np.abs(c.values).max()) for c in q.curves)
-            y = o + 1j * scale.mm(level[1])
-            canvas.line(y, y + length, "axis")
-            canvas.label(y + 0.9 * length, f"{level[0]} = {enough(level[1], 1, greatest)} {q.unit}", 1j, 3.5, 0.8)
-        _numbers(project, canvas, o, angle.mm(project.cycle.turned), length, q)
-    for c in q.curves if len(q.curves) > 1 else ():
-        peak = int(np.argmax(np.abs(c.values)))
-        canvas.label(complex(at(c.turned[peak] + 1j * c.values[peak])), c.symbol, 1j * np.sign(c.values[peak]), 3.5, 0.8)
-
-
-def _numbers(project: Project, canvas: Canvas, o: complex, x: Any, length: float, q: DiagramQuantity) -> None:
-    """Numbers of the positions at the axis, on the side where the first graph is not, and of the one that closes the turn."""
-    pitch = length / len(project.cycle.labels)
-    height = 3.5 if pitch >= letter("00", 3.5).width + 2.0 else 2.5
-    first = q.curves[0]
-    for xi, label, y in zip([*x, length], project.cycle.ends, [*first.at, first.at[0]], strict=False):
-        at, width = o + xi, letter(label, height).width
-        canvas.line(at - 0.8j, at + 0.8j, "axis")
-        shift = complex(-2.0 - width, -height / 2) if xi == 0 else -width / 2 + (1.3j if y <= 0 else -1j * (1.3 + height))
-        canvas.number(at, at + shift, label, height, pitch, first=bool(xi == 0))

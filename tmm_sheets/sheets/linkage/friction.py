@@ -18,7 +18,7 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, is_zero, number
-from tmm_sheets.sheets.components import graphs
+from tmm_sheets.sheets.components import cycle_graphs, graphs
 from tmm_sheets.sheets.frame import PlanFrame, fit_frame, ratio, standard
 from tmm_sheets.sheets.linkage import diagrams, link_marks
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
@@ -332,16 +332,20 @@ def positions(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
 
 def power_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[tuple[float, float], ...]:
     """Sizes that the graph of the power of friction can do with, mm; none without friction."""
-    return diagrams.GRAPH_SIZES if project.study.forces.friction is not None else ()
+    rubbing = project.study.forces.friction is not None
+    return cycle_graphs.sizes(project, power_graph(project), diagrams.GRAPH_SIZES) if rubbing else ()
 
 
 def power(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Power of friction in all pairs over the whole cycle."""
+    cycle_graphs.draw(project, canvas, box, tr("Power of friction in the pairs"), [power_graph(project)])
+
+
+def power_graph(project: Project) -> cycle_graphs.Column:
+    """The graph of that power."""
     every, step, course = project.course.turned, _friction(project).total, project.course.forces.friction
     assert course is not None
     values = [np.broadcast_to(np.real(of.total.value), np.shape(at)) for of, at in
               ((course, every), (_friction(project), project.cycle.turned))]
     sign, unit = tr("N_f, W").split(", ")
-    curve = diagrams.DiagramCurve("", step, every, *values)
-    diagrams.single(project, canvas, box, tr("Power of friction in the pairs"),
-                    diagrams.DiagramQuantity("graph-N", sign, unit, (curve,)))
+    return (cycle_graphs.Quantity("graph-N", sign, unit, (cycle_graphs.Curve("", step.path, every, *values),)),)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 from math import inf
 from typing import TYPE_CHECKING
 
 from tmm_sheets.sheets.border_solver import Need
+from tmm_sheets.sheets.components import cycle_graphs
 from tmm_sheets.sheets.linkage import friction
 from tmm_sheets.sheets.view_sizes import leaf, reaching, rows
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
+    from tmm_sheets.remarks import Remark
     from tmm_sheets.sheets.arrangement import ViewPlace
     from tmm_sheets.sheets.border_solver import BorderNode
 
@@ -32,7 +35,12 @@ def pairs(project: Project, view: ViewPlace) -> BorderNode:
 
 def power(project: Project, view: ViewPlace) -> BorderNode:
     """The power lost over the turn."""
-    return leaf(view.box, Need(least=(170.0, 76.0), most=(inf, 130.0), drawn=lambda w, h: 0.7 * w * h), 0.5)
+    return leaf(view.box, cycle_graphs.need(project, [friction.power_graph(project)]), 0.5)
+
+
+def power_low(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
+    """The graph of that power on sheet ``n``, where it is too low."""
+    return cycle_graphs.low(project, n, view, lambda project, _: [friction.power_graph(project)])
 
 
 def table(project: Project, view: ViewPlace) -> BorderNode:

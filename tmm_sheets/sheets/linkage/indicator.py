@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,7 +16,11 @@ from tmm_sheets.sheets.frame import pick
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from tmm_sheets.methods.linkage.loads import Applied
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.components.graphs import Floats
     from tmm_sheets.sheets.player import PlayerStage
 
 GAP = 25.0
@@ -34,7 +38,7 @@ class Indicator:
     ``area`` m2 turns the force into a pressure; 1 where the ordinate is the force itself.
     """
 
-    force: Any
+    force: Applied
     along: complex
     side: complex
     area: float
@@ -46,9 +50,9 @@ class Indicator:
         said = tr("{quantity}, MPa") if self.area != 1 else tr("{quantity}, N")
         return said.format(quantity=name)
 
-    def ordinate(self, turned: Any, side: int = 0) -> Any:
-        """Pressure, MPa, or force, N."""
-        value = self.force.magnitude(turned, side) / self.area
+    def ordinate(self, turned: ArrayLike, side: int = 0) -> Floats:
+        """Pressure, MPa, or force, N, at angles from position 0, rad, in their shape."""
+        value = np.asarray(self.force.magnitude(turned, side)) / self.area
         return value * 1e-6 if self.area != 1 else value
 
 
@@ -101,7 +105,7 @@ def reach(project: Project) -> tuple[list[complex], list[complex]]:
     return z, d
 
 
-def _angles(project: Project) -> Any:
+def _angles(project: Project) -> Floats:
     cycle = project.cycle
     turns = round(cycle.period / (2 * pi))
     return np.unique(np.concatenate((np.linspace(0, cycle.period, turns * (SAMPLES - 1) + 1), cycle.turned)))

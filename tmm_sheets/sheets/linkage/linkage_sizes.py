@@ -232,21 +232,6 @@ def values(project: Project, view: ViewPlace) -> BorderNode:
     return rows(project, view, count, 8.0 * tables, (4.6, 7.0), (140.0, 200.0))
 
 
-def motion(project: Project, view: ViewPlace) -> BorderNode | None:
-    """Diagrams of displacement, velocity and acceleration."""
-    if not project.diagrams:
-        return None
-    return leaf(view.box, Need(least=(180.0, 150.0), drawn=lambda w, h: 0.75 * w * h), 0.5)
-
-
-def loads(project: Project, view: ViewPlace) -> BorderNode | None:
-    """The load over the turn, where it is more than pressure in a cylinder."""
-    pressures = {f.name for f in project.variant.force if f.bore is not None}
-    if all(f.name in pressures for f in project.applied):
-        return None
-    return leaf(view.box, Need(least=(150.0, 70.0), most=(inf, 110.0), drawn=lambda w, h: 0.7 * w * h))
-
-
 def synthesis(project: Project, view: ViewPlace) -> BorderNode | None:
     """The given sizes and what is found from them."""
     return fixed(view.box) if project.variant.synthesis is not None else None

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from math import degrees, pi
+from collections.abc import Iterator
+from math import degrees
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import fixed
-from tmm_sheets.sheets.components import graphs
-from tmm_sheets.sheets.frame import PlanFrame, pick
+from tmm_sheets.sheets.components import cycle_graphs
+from tmm_sheets.sheets.components.cycle_graphs import Column, Curve, Quantity
+from tmm_sheets.sheets.components.graphs import Floats
 from tmm_sheets.sheets.linkage.link_marks import indexed
+from tmm_sheets.sheets.view_sizes import leaf
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.loads import Applied
     from tmm_sheets.project import Project
+    from tmm_sheets.remarks import Remark
+    from tmm_sheets.sheets.arrangement import ViewPlace
+    from tmm_sheets.sheets.border_solver import BorderNode
 
 SAMPLES = 361
 """Angles at which the curves are drawn, besides both sides of every jump."""
@@ -29,39 +34,48 @@ HAIR = 1e-9
 
 def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Magnitudes of the forces or of the moments that are not given as pressures, over the angle of the crank."""
-    pressures = {f.name for f in project.variant.force if f.bore is not None}
-    shown = [f for f in project.applied if f.name not in pressures]
-    if not shown:
+    if not (column := load_graph(project)):
         return
-    cycle = project.cycle
+    title = tr("Technological load (taken)") if _accepted(project, _shown(project)) else tr("Technological load")
+    cycle_graphs.draw(project, canvas, box, title, [column])
+    if (said := _many_strokes(project, _shown(project))) is not None:
+        canvas.note(box, said)
+
+
+def place(project: Project, view: ViewPlace) -> BorderNode | None:
+    """What the graph needs of its place."""
+    column = load_graph(project)
+    return leaf(view.box, cycle_graphs.need(project, [column])) if column else None
+
+
+def low(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
+    """The graph on sheet ``n``, where it is too low."""
+    return cycle_graphs.low(project, n, view, lambda project, _: [load_graph(project)])
+
+
+def load_graph(project: Project) -> Column:
+    """The graph of these loads; nothing where there are none."""
+    shown, cycle = _shown(project), project.cycle
+    if not shown:
+        return ()
     turned = _angles(shown, cycle.period)
-    kind, unit = ("F", tr("N")) if shown[0].point is not None else ("M", tr("N·m"))
-    inside = box.inset(10.0, 8.0, 14.0, 24.0)
-    top = max(0.0, *(float(np.max(f.shown(turned))) for f in shown))
-    low = min(0.0, *(float(np.min(f.shown(turned))) for f in shown))
-    scale = pick(project, canvas, "loads", f"μ_{kind}", tr("{unit}/mm").format(unit=unit), (top - low) / inside.height)
-    angle, start = graphs.angle_axis(project, box)
-    length = angle.mm(cycle.period)
-    title = tr("Technological load (taken)") if _accepted(project, shown) else tr("Technological load")
-    canvas.title(box, title, f"{scale}, {angle}")
-    at = PlanFrame(scale, complex(start, inside.y0 - low / scale.mu), angle)
-    if (said := _many_strokes(project, shown)) is not None:
-        canvas.text(complex(box.centre.real, inside.y1 + 1.0), said, size_for([said], box.width, 3.5), "centre")
-    frame, o = canvas.placed("loads", "", at.origin, at.mu), at.origin
-    with canvas.traced("axis", f"loads/{shown[0].name}", "", frame):
-        canvas.arrow(o + 1j * low / scale.mu, o + 1j * (top / scale.mu + 8.0), "axis", 3.0)
-        canvas.arrow(o, o + length + 10.0, "axis", 3.0)
-        canvas.label(o + 1j * (top / scale.mu + 6.0), f"{', '.join(indexed(f.name) for f in shown)}, {unit}", 1 + 0j, 3.5, 1.5)
-        graphs.turned_angle(canvas, o + length + 10.0)
-    _positions(project, canvas, shown, at, frame)
-    for f in shown:
-        with canvas.traced("curve", f"loads/{f.name}", "", frame):
-            canvas.polyline(at(turned + 1j * f.shown(turned)), "curve")
-            if len(shown) > 1:
-                _sign(canvas, f, turned, at)
+    letter, unit = ("F", tr("N")) if shown[0].point is not None else ("M", tr("N·m"))
+
+    def at(f: Applied) -> Floats:
+        """Of both sides of a jump the one with the greater magnitude."""
+        sides = np.array([f.shown(cycle.turned, side) for side in (-1, 1)])
+        return np.asarray(np.where(np.abs(sides[0]) > np.abs(sides[1]), *sides))
+
+    curves = [Curve(indexed(f.name), f"loads/{f.name}", turned, f.shown(turned), at(f)) for f in shown]
+    return (Quantity.of("loads", letter, unit, curves),)
 
 
-def _angles(shown: list[Applied], period: float) -> Any:
+def _shown(project: Project) -> list[Applied]:
+    pressures = {f.name for f in project.variant.force if f.bore is not None}
+    return [f for f in project.applied if f.name not in pressures]
+
+
+def _angles(shown: list[Applied], period: float) -> Floats:
     """Angles at which the curves are drawn, both sides of every jump among them."""
     jumps = [j + s * HAIR for f in shown for j in f.jumps for s in (-1, 1)]
     turned = np.unique(np.concatenate((np.linspace(0, period, SAMPLES), jumps)))
@@ -84,31 +98,3 @@ def _many_strokes(project: Project, shown: list[Applied]) -> str | None:
     a, b = (fixed(degrees(x) % degrees(cycle.period), 1) for x in (strokes.begin, strokes.end))
     return tr("Point {point} turns back {times} a turn; working stroke φ = {begin}°…{end}°").format(
         point=strokes.output, times=times(len(strokes.runs)), begin=a, end=b)
-
-
-def _sign(canvas: Canvas, f: Applied, turned: Any, at: PlanFrame) -> None:
-    """Sign of one of several loads over the middle of where it is at least half its greatest."""
-    acting = turned[f.magnitude(turned) >= 0.5 * f.magnitude(turned).max()]
-    middle = float(acting[len(acting) // 2]) if len(acting) else pi
-    canvas.label(complex(at(complex(middle, np.ravel(f.shown(middle))[0]))), indexed(f.name), 1j, 3.5, 1.5)
-
-
-def _size(of: tuple[float, str]) -> tuple[float, str]:
-    """By magnitude, then by name."""
-    return abs(of[0]), of[1]
-
-
-def _positions(project: Project, canvas: Canvas, shown: list[Applied], at: PlanFrame, frame: int) -> None:
-    """Numbers of the positions under the axis, and ordinates of the largest load over those inside the turn."""
-    cycle = project.cycle
-    pitch = abs(complex(at(cycle.period) - at(0.0))) / len(cycle.labels)
-    for k, (number, angle) in enumerate(zip(cycle.ends, (*cycle.turned, cycle.period), strict=False)):
-        label = cycle.labels[k % len(cycle.labels)]
-        value, largest = max(((float(np.ravel(f.shown(angle, side))[0]), f.name) for f in shown for side in (-1, 1)), key=_size)
-        foot = complex(at(angle))
-        with canvas.traced("curve", f"loads/{largest}", label, frame):
-            if value and 0 < angle < cycle.period:
-                canvas.line(foot, complex(at(angle + 1j * value)), "thin")
-        with canvas.traced("axis", f"loads/{largest}", label, frame):
-            canvas.line(foot - 1j, foot, "thin")
-            canvas.number(foot, foot - letter(number, 2.5).width / 2 - 5.0j, number, 2.5, pitch, first=angle == 0)
