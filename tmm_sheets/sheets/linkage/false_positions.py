@@ -10,7 +10,7 @@ import numpy as np
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.sheets.frame import fit_frame
 from tmm_sheets.sheets.linkage import link_marks
 from tmm_sheets.sheets.player import PlayerStage, play, stage
@@ -108,7 +108,7 @@ def _size(pos: Positions, g: TriadGroup, k: int) -> float:
     return float(np.abs(z - z.mean()).max())
 
 
-def reach(project: Project, g: TriadGroup) -> tuple[Any, Any]:
+def reach(project: Project, g: TriadGroup) -> tuple[Points, Points]:
     """Points of the view, m, and what sticks out of them on paper, mm."""
     pos, k = project.study.positions, project.force_index
     special = pos.special[g.kind.about(g)].step

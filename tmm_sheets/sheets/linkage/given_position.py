@@ -15,6 +15,7 @@ from tmm_sheets.sheets.linkage.link_marks import indexed
 from tmm_sheets.words import tell, tr, tr_in
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.step import Step
     from tmm_sheets.project import Project
 
 ROW = 7.0
@@ -97,10 +98,10 @@ def _loads(project: Project) -> list[list[str]]:
     return rows
 
 
-def _size(step: Any, k: int, kind: float) -> str:
+def _size(step: Step | None, k: int, kind: float) -> str:
     return "−" if step is None else number(float(abs(step.at(k))), kind=kind)
 
 
-def _signed(step: Any, k: int, kind: float) -> str:
+def _signed(step: Step | None, k: int, kind: float) -> str:
     """A number with its sign, counter-clockwise positive."""
     return "−" if step is None else number(float(np.real(step.at(k))), kind=kind)

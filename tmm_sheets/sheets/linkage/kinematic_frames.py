@@ -12,6 +12,7 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale
+from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.frame import SHORTEST, PlanFrame, ScaleBook, extent, fit_frame, pick, raised, together
@@ -95,7 +96,7 @@ def positions_around(project: Project, options: dict[str, Any]) -> tuple[float, 
     return 8.0, 4.0 + (graph if below else 0.0), 8.0, 20.0 + (0.0 if below else graph)
 
 
-def positions_reach(project: Project) -> tuple[Any, Any]:
+def positions_reach(project: Project) -> tuple[Points, Points]:
     """Points of all position plans and of the way of the crank pin, m, and what sticks out of each on paper, mm."""
     pos = project.study.positions
     m, c = pos.mechanism, pos.mechanism.crank

@@ -17,7 +17,7 @@ from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.ink_index import STRONG
 from tmm_sheets.drawing.lettering import letter, size_for
-from tmm_sheets.drawing.marks import Box, Text
+from tmm_sheets.drawing.marks import Box, Points, Text
 from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.drawing.tables import needs, size_in, widened
 from tmm_sheets.mechanism.structure import decompose
@@ -231,7 +231,7 @@ def by_stroke(project: Project, name: str, marks: list[int]) -> tuple[list[int],
     return [i for i in marks if ahead[i]], [i for i in marks if not ahead[i]]
 
 
-def crowds(marks: list[int], z: Any) -> list[list[int]]:
+def crowds(marks: list[int], z: Points) -> list[list[int]]:
     """Marks in turn along a path, those that stand too close for numbers of their own together."""
     found: list[list[int]] = []
     for i in marks:
@@ -301,13 +301,13 @@ CLEAR = 3.0
 """Distance of an arrow of rotation from other links and arrows that is enough, mm."""
 
 
-def _along_bar(s: PlayerStage, pos: Positions, shape: link_marks.Shape) -> Any:
+def _along_bar(s: PlayerStage, pos: Positions, shape: link_marks.Shape) -> Points:
     """Points along the line of a link, a millimetre apart."""
     z = [s.at(pos.points[name]) for name in (link_marks.along_bar(s, pos, shape) if shape.bar else (str(shape.block),))]
     return np.concatenate([z, *(np.linspace(a, b, 2 + int(abs(b - a))) for a, b in pairwise(z))])
 
 
-def _along_arrow(arrow: _Arrow) -> Any:
+def _along_arrow(arrow: _Arrow) -> Points:
     """Points along an arrow of rotation and under its sign."""
     about, radius, towards = arrow
     u = towards / abs(towards)
@@ -315,7 +315,7 @@ def _along_arrow(arrow: _Arrow) -> Any:
     return about + u * np.append(radius * np.exp(1j * np.linspace(-half, half, 12)), radius + np.array([2.0, 4.0]))
 
 
-def _free_arrows(shape: link_marks.Shape, s: PlayerStage, pos: Positions, busy: Any) -> tuple[_Arrow, _Arrow]:
+def _free_arrows(shape: link_marks.Shape, s: PlayerStage, pos: Positions, busy: Points) -> tuple[_Arrow, _Arrow]:
     """Arrows of velocity and acceleration of a bar: the first places clear of ``busy`` points, or the clearest.
 
     Those of a rocker go round its pivot, those of a link that moves stand on each side of it, outwards first.

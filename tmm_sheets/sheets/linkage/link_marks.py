@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.marks import Points
 from tmm_sheets.sheets.player import PlayerStage
 
 if TYPE_CHECKING:
@@ -192,7 +193,7 @@ class FreeEnd(NamedTuple):
     """An end of a line of a link without a hinge: the arm that runs to it, empty for the bar; its places, m, at the positions."""
 
     arm: tuple[str, ...]
-    at: NDArray[Any]
+    at: Points
 
 
 def free_ends(pos: Positions) -> dict[str, list[FreeEnd]]:
@@ -215,7 +216,7 @@ def free_ends(pos: Positions) -> dict[str, list[FreeEnd]]:
     return found
 
 
-def _ends_of(pos: Positions, names: tuple[str, ...], base: Any, u: Any, centre: float | None) -> list[complex]:
+def _ends_of(pos: Positions, names: tuple[str, ...], base: Points, u: Points, centre: float | None) -> list[complex]:
     """Places of the free ends of a line through some points, from its base and turned with its link; none if it is not straight."""
     ways = [(np.asarray(pos.points[name].value) - base) * np.conj(u) for name in names] if len(names) > 1 else []
     far = max((complex(np.ravel(way)[np.nanargmax(np.abs(way))]) for way in ways), key=abs, default=0j)
@@ -229,7 +230,7 @@ def _ends_of(pos: Positions, names: tuple[str, ...], base: Any, u: Any, centre: 
     return [end * along for end in _ends(fixed, sliding, centre) if end is not None]
 
 
-def _centre(pos: Positions, shape: Shape, base: Any, u: Any) -> float | None:
+def _centre(pos: Positions, shape: Shape, base: Points, u: Points) -> float | None:
     """Place of a link's centre of mass along its bar, None if it is off the bar, or at its pivot."""
     name = pos.mechanism.links[shape.link].centre
     if name is None:
@@ -239,7 +240,7 @@ def _centre(pos: Positions, shape: Shape, base: Any, u: Any) -> float | None:
     return here if np.max(np.abs(way - here)) < 1e-6 * abs(here) else None
 
 
-def _ends(fixed: list[float], sliding: list[Any], centre: float | None) -> tuple[float | None, float | None]:
+def _ends(fixed: list[float], sliding: list[NDArray[np.float64]], centre: float | None) -> tuple[float | None, float | None]:
     """Places of the free ends of a bar with its fixed points and its slider blocks, whose places vary, along it."""
     if not sliding:
         return None, None

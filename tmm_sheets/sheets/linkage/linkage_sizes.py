@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 from math import ceil, floor, inf, log10
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY
@@ -19,6 +19,7 @@ from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.view_sizes import fixed, leaf, reaching, rows
 
 if TYPE_CHECKING:
+    from tmm_sheets.mechanism.groups.force_plan import ForcePlan
     from tmm_sheets.project import Project
 
 MAIN = 4
@@ -166,7 +167,7 @@ def _parted(box: Box, share: float, scheme: Need, plans: list[Need]) -> BorderNo
     return min(found, key=lambda tree: round(tree.cost(box.width, box.height), 3))
 
 
-def _force_plan(project: Project, fp: Any, k: int) -> Need:
+def _force_plan(project: Project, fp: ForcePlan, k: int) -> Need:
     real = kinetic_frames.polygon(fp, k)[1]
     left, below, right, above = kinetic_frames.AROUND
     sides = kinetic_frames.acting_sides(fp, k, project.study.forces.force_size(k))
