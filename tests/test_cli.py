@@ -64,7 +64,7 @@ def test_list_json(capsys):
 def test_headings_are_those_of_the_whole_files():
     for entry in catalogue.entries():
         variant = catalogue.read(entry.name)
-        assert entry == catalogue.Entry(entry.name, variant.project.title, variant.project.variant, variant.sheets)
+        assert entry == catalogue.ShippedProject(entry.name, variant.project.title, variant.project.variant, variant.sheets)
 
 
 @pytest.mark.parametrize("arguments", [[], ["--help"], ["--version"], ["list"], ["build", "--help"]])

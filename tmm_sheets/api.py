@@ -19,7 +19,7 @@ from tmm_sheets.task import variant as variants
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
-    from tmm_sheets.catalogue import Entry
+    from tmm_sheets.catalogue import ShippedProject
     from tmm_sheets.compare.report import Kind, Report
     from tmm_sheets.optimising.optimum import Optimum
     from tmm_sheets.output.view_pictures import Picture
@@ -72,7 +72,7 @@ def new(name: str = "mechanism", /, *, language: str = "", **tables: Any) -> Ope
     return Opened(variants.parse(text, f"{name}{catalogue.SUFFIX}"), title_entries.given({}), language)
 
 
-def projects(word: str = "") -> tuple[Entry, ...]:
+def projects(word: str = "") -> tuple[ShippedProject, ...]:
     """The shipped projects, or those with a word in their names or titles."""
     return catalogue.found(word) if word else catalogue.entries()
 

@@ -30,7 +30,7 @@ class Asker(NamedTuple):
     shown: bool
 
 
-class Reader(NamedTuple):
+class StepReader(NamedTuple):
     """A module that read a step's value, and the sheet and view that were drawn then (0 and empty outside of all)."""
 
     module: str
@@ -54,7 +54,7 @@ class Askers:
     """Readers of steps, and the steps in whose arithmetic others were evaluated."""
 
     def __init__(self) -> None:
-        self.readers: dict[Step, Reader] = {}
+        self.readers: dict[Step, StepReader] = {}
         self.within: dict[Step, Step] = {}
 
     def note(self, step: Step, frame: FrameType) -> None:
@@ -119,7 +119,7 @@ def listening() -> Iterator[Askers]:
         type.__setattr__(Step, "value", usual)
 
 
-def _reader(frame: FrameType | None) -> Reader:
+def _reader(frame: FrameType | None) -> StepReader:
     """The module nearest to a reading that is no construction itself, and the view in whose drawing it happened."""
     from tmm_sheets.sheets import composing
 
@@ -130,9 +130,9 @@ def _reader(frame: FrameType | None) -> Reader:
             module = name.removeprefix(HERE)
         if frame.f_code in (composing.viewed.__code__, composing.ask_again.__code__):
             view = frame.f_locals.get("view")
-            return Reader(module, frame.f_locals["n"], view.draw) if view is not None else Reader(module, 0, "")
+            return StepReader(module, frame.f_locals["n"], view.draw) if view is not None else StepReader(module, 0, "")
         frame = frame.f_back
-    return Reader(module, 0, "")
+    return StepReader(module, 0, "")
 
 
 def _drawn(drawings: Mapping[int, Drawing]) -> dict[str, str]:

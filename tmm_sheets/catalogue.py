@@ -21,7 +21,7 @@ SUFFIX = ".toml"
 
 
 @dataclass(frozen=True)
-class Entry:
+class ShippedProject:
     """A shipped project as ``list`` shows it."""
 
     name: str
@@ -41,19 +41,19 @@ def _files() -> list[str]:
     return sorted(p.with_suffix("").as_posix() for p in paths if p.parts[0] not in families.known())
 
 
-def entries() -> tuple[Entry, ...]:
+def entries() -> tuple[ShippedProject, ...]:
     """Every shipped project with its title, variant and sheets; only the heading of each file is looked at."""
     return tuple(_entries())
 
 
-def _entries() -> Iterator[Entry]:
+def _entries() -> Iterator[ShippedProject]:
     for name in shipped():
         with suppress(BadInput):  # of a family that somebody has not finished
             table = _heading(name)
-            yield Entry(name, table["title"], table.get("variant", ""), tuple(table.get("sheets", ())))
+            yield ShippedProject(name, table["title"], table.get("variant", ""), tuple(table.get("sheets", ())))
 
 
-def found(word: str) -> tuple[Entry, ...]:
+def found(word: str) -> tuple[ShippedProject, ...]:
     """Shipped projects that have a word, or part of one, in their names, titles or variants, in any language."""
     wanted = word.casefold()
     return tuple(e for e in entries() if any(wanted in text.casefold() for text in (e.name, *every(e.title), *every(e.variant))))

@@ -22,7 +22,7 @@ from tests.compare.students import OWN, PENCIL, READING, Hand, opened
 from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.judged import JudgedValue
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables
-from tmm_sheets.compare.measured.measured_file import Filled
+from tmm_sheets.compare.measured.measured_file import FilledTable
 from tmm_sheets.construction.step import Step
 
 PROJECTS = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/3:2", "sixbar/6:3", "sixbar/9:1", "transport/diesel@01-Т-27",
@@ -103,7 +103,7 @@ class Slipping(Hand):
         """An equation of moments is solved with the senses as they were taken."""
         return self.measured(e) if e.terms and e.terms[0][0].plan == "moments" else super().computed(e, written)
 
-    def filled(self, chosen: Mapping[str, Measurable] | None = None) -> Filled:
+    def filled(self, chosen: Mapping[str, Measurable] | None = None) -> FilledTable:
         filled = super().filled(chosen)
         for slip in self.slips:
             by_id = {line.entry.id: line for line in filled.lines}
@@ -369,7 +369,7 @@ def student(project: str, number: int, seed: int, kinds: tuple[str, ...], everyt
         return None
     state = rng.bit_generator.state
 
-    def filled(slips: Sequence[Slip]) -> Filled:
+    def filled(slips: Sequence[Slip]) -> FilledTable:
         """The same hand each time."""
         rng.bit_generator.state = state
         return Slipping(found, rng, slips).filled(asked)

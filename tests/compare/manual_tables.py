@@ -23,7 +23,7 @@ from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.collecting import measurables
 from tmm_sheets.compare.measured.judged import JudgedValue
 from tmm_sheets.compare.measured.measurable import Measurables
-from tmm_sheets.compare.measured.measured_file import Filled, read
+from tmm_sheets.compare.measured.measured_file import FilledTable, read
 from tmm_sheets.project import Project
 
 MANUALS = Path(__file__).parents[1] / "manuals"
@@ -300,7 +300,7 @@ def compared(table: Table, folder: Path) -> tuple[list[Outcome], list[Cell]]:
     lines += [f"{entry};{cell.printed}" for entry, cell in cells.items()]
     path = folder / "table.csv"
     path.write_text("\n".join(lines), encoding="utf-8")
-    filled: Filled = read(path, Project(catalogue.read(table.project)), found)
+    filled: FilledTable = read(path, Project(catalogue.read(table.project)), found)
     judged = {j.entry.id: j for j in judge(filled, found, 0.25, 0.5)}
     return [Outcome(cell, judged[entry]) for entry, cell in cells.items()], [c for c in table.cells if c.entry not in found.entries]
 

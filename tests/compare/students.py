@@ -24,7 +24,7 @@ from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.collecting import measurables
 from tmm_sheets.compare.measured.judged import JudgedValue
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables
-from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine
+from tmm_sheets.compare.measured.measured_file import FilledTable, MeasuredLine
 from tmm_sheets.construction import error
 from tmm_sheets.construction.step import Step, value_of
 from tmm_sheets.project import Project
@@ -155,7 +155,7 @@ class Hand:
             made[at] = made[at] * (value / abs(made[at])) if e.is_size else value / g.real
             self.drawn[id(step)] = made
 
-    def filled(self, chosen: Mapping[str, Measurable] | None = None) -> Filled:
+    def filled(self, chosen: Mapping[str, Measurable] | None = None) -> FilledTable:
         """A file with everything that can be measured, or with what was chosen."""
         lines: list[MeasuredLine] = []
         written: dict[str, float] = {}
@@ -172,7 +172,7 @@ class Hand:
             if np.isfinite(value):
                 half = 0.25 if e.kind != "result" else 0.5 * 10.0 ** (np.floor(np.log10(abs(value) or 1)) - 2)
                 lines.append(MeasuredLine(e, value, float(half), i))
-        return Filled(lines)
+        return FilledTable(lines)
 
 
 def compared(found: Measurables, rng: np.random.Generator, plants: tuple[Plant, ...] = (),

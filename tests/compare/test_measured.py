@@ -17,7 +17,7 @@ from tests.few import seldom
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.compare.measured.chain import judge
-from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, read
+from tmm_sheets.compare.measured.measured_file import FilledTable, MeasuredLine, read
 from tmm_sheets.compare.measured.measured_lengths import NAME
 from tmm_sheets.compare.measured.misplaced_point import covariance
 from tmm_sheets.construction.step import value_at
@@ -80,7 +80,7 @@ def test_exact_numbers_are_green(shaper):
         return float(f"{e.value:.4g}") if e.kind == "result" else round(2 * e.value) / 2
 
     lines = [MeasuredLine(e, written(e), 0.0, 1) for e in shaper.entries.values()]
-    of = judged(shaper, Filled(lines))
+    of = judged(shaper, FilledTable(lines))
     assert len(of) > 600
     assert {j.verdict for j in of} == {"green"}
     assert all(name.isascii() and name == e.id for name, e in shaper.entries.items())
@@ -185,7 +185,7 @@ def test_a_sum_is_plotted_from_its_parts(shaper, off, said):
     own = {work.id: work.value - 0.7, driving.id: driving.value}
     own[total.id] = 10 / 4 * (own[work.id] + 0.5 * own[driving.id]) + off
     lines = [MeasuredLine(shaper.entries[name], value, 0.05, i) for i, (name, value) in enumerate(own.items())]
-    found = {j.entry.id: j for j in judged(shaper, Filled(lines))}[total.id]
+    found = {j.entry.id: j for j in judged(shaper, FilledTable(lines))}[total.id]
     assert found.tolerance == pytest.approx(2.25, abs=0.1)
     assert found.verdict == said
     assert found.starts == (said == "red")
@@ -361,7 +361,7 @@ def test_results_of_a_cam_are_as_exact_as_they_are_drawn(shaper):
     """0.25 mm at 0.0002 m/mm is 0.05 mm: r_0 is the distance of two points, off by more than half a per cent of 8.9 mm."""
     entries = [shaper.entries[f"results/{name}"] for name in ("r0", "s0")]
     lines = [MeasuredLine(e, e.value, 0.0, 1) for e in entries]
-    for j in judged(shaper, Filled(lines)):
+    for j in judged(shaper, FilledTable(lines)):
         assert 0.1 < j.tolerance < 0.25
 
 

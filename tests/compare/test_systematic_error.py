@@ -12,7 +12,7 @@ from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.measured import measured_lengths
 from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.collecting import measurables
-from tmm_sheets.compare.measured.measured_file import Filled
+from tmm_sheets.compare.measured.measured_file import FilledTable
 from tmm_sheets.compare.report import Report
 
 LINKS = {
@@ -39,8 +39,8 @@ def _said(other):
 
 def told(found, lines, change=lambda e, value: value):
     """The judged numbers of a table, some of them written otherwise, and what is told was done otherwise."""
-    judged = judge(Filled([replace(line, value=change(line.entry, line.value), half_digit=5e-5) for line in lines]), found, PENCIL,
-                   READING)
+    said = [replace(line, value=change(line.entry, line.value), half_digit=5e-5) for line in lines]
+    judged = judge(FilledTable(said), found, PENCIL, READING)
     return judged, [(j.wrong[0].words, _said(j.wrong[0].other)) if j.wrong else j.entry.id for j in judged if j.starts]
 
 
@@ -131,7 +131,7 @@ def test_a_table_of_another_mechanism_is_told_as_that(found, lines):
     assert len(starts) > measured_lengths.MOST
     (said,) = measured_lengths._advice(judged)
     assert said.startswith("So many mistakes: was another variant drawn")
-    assert measured_lengths._summary(judged, Filled([]))[1] == said
+    assert measured_lengths._summary(judged, FilledTable([]))[1] == said
     findings, start = measured_lengths.records(judged)
     faults, mistakes = group._faults(Report("", {}, findings=findings, start=start))
     assert [m.told.said() for m in mistakes] == [said]

@@ -6,7 +6,7 @@ import pytest
 from tests.few import few
 from tests.living import javascript
 from tests.methods.linkage.test_function import CLOSE, N, forceless, over_positions, studied
-from tmm_sheets.construction.javascript_language import Source, literal, told
+from tmm_sheets.construction.javascript_language import JavaScriptSource, literal, told
 from tmm_sheets.construction.program import program, rows_of
 from tmm_sheets.construction.step import value_of
 
@@ -38,7 +38,7 @@ def test_a_page_computes_what_the_steps_are(name, tmp_path):
     found = list(over_positions(study))
     wanted = {step.path: step for step, _ in found}
     rows = rows_of(wanted.values(), N)
-    source = Source(program(wanted, rows, exact=True))
+    source = JavaScriptSource(program(wanted, rows, exact=True))
     inputs = [list(row) for row in zip(*(told(value_of(r)) for r in rows), strict=True)]
     run = javascript.modules("digits", "primitives") + f"\nconst f = {source.text};\n{RUN}"
     values = np.array(javascript.run(run, {"k": source.constants, "rows": inputs}, tmp_path), dtype=float)

@@ -33,14 +33,14 @@ from tmm_sheets.note.document import (
     Formula,
     Heading,
     Note,
-    Number,
+    NumberedTable,
+    NumberInText,
     Paragraph,
     Symbol,
-    Table,
     Text,
     Where,
 )
-from tmm_sheets.note.formula import Barred, Figures, Letters, Node, Row, Scripts
+from tmm_sheets.note.formula import Barred, Figures, FormulaRow, Letters, Node, Scripts
 from tmm_sheets.project import Project
 
 SHARE = ("lugansk/shaper", "lugansk/engine", "transport/crusher@12-СДМ-1908", "sixbar/3:2", "screen")
@@ -70,18 +70,18 @@ def line(node: Node) -> str:
 def lines(block: Formula) -> str:
     """A formula broken into lines as one, without the signs that are repeated."""
     parts = [x for i, of in enumerate(block.lines) for x in _items(of)[bool(i):]]
-    return line(Row(tuple(parts)))
+    return line(FormulaRow(tuple(parts)))
 
 
 def _items(node: Node) -> tuple[Node, ...]:
-    return node.items if isinstance(node, Row) else (node,)
+    return node.items if isinstance(node, FormulaRow) else (node,)
 
 
 def texts(block: Any) -> Iterator[Text]:
     """Running texts of a block."""
     if isinstance(block, Paragraph):
         yield block.text
-    elif isinstance(block, Table):
+    elif isinstance(block, NumberedTable):
         yield (block.title,)
         for row in block.rows:
             yield from row
@@ -106,13 +106,13 @@ def empty(block: Any) -> Iterator[str]:
             yield m[0]
         elif re.search(r"(?:^|\s)(?:рис|табл|fig)\.\s*(?:$|[^\d\s\u00a0])|(?:таблиц[аеу]|table)\s*(?:$|\.)", told):
             yield told[-60:]
-    if isinstance(block, Table) and any(len(row) != len(block.rows[0]) for row in block.rows):
+    if isinstance(block, NumberedTable) and any(len(row) != len(block.rows[0]) for row in block.rows):
         yield f"table {block.number}: rows of different length"
 
 
 def unnamed(block: Any) -> Iterator[str]:
     """Rows of a table whose first cell names nothing."""
-    if isinstance(block, Table):
+    if isinstance(block, NumberedTable):
         for row in block.rows:
             if said(row[0]).strip(" –-—") == "":
                 yield f"table {block.number}: {' | '.join(map(said, row))}"
@@ -127,7 +127,8 @@ def braces(block: Any) -> Iterator[str]:
         for x in text:
             if isinstance(x, str) and (m := _MARKUP.search(x)):
                 yield x[max(m.start() - 20, 0) : m.end() + 20]
-            if isinstance(x, Number) and (re.search(r"[^\d\s.,·⁰¹²³⁴⁵⁶⁷⁸⁹⁻−°′″∞–]", x.text) and x.text != composing.PAGES.text):
+            if (isinstance(x, NumberInText) and re.search(r"[^\d\s.,·⁰¹²³⁴⁵⁶⁷⁸⁹⁻−°′″∞–]", x.text)
+                    and x.text != composing.PAGES.text):
                 yield x.text
     if isinstance(block, Formula):
         for of in block.lines:
@@ -144,7 +145,7 @@ def units(block: Any, language: str) -> Iterator[str]:
     known = {u.strip() for u in phrases.words(language)["units"].values()} | {"", "%", "°", "–"}
     found: list[str] = []
     for text in texts(block):
-        found += [x.unit for x in text if isinstance(x, Number)]
+        found += [x.unit for x in text if isinstance(x, NumberInText)]
         for x in text:
             if isinstance(x, Symbol):
                 found += re.findall("⟦([^⟧]*)⟧", line(x.node))
@@ -152,7 +153,7 @@ def units(block: Any, language: str) -> Iterator[str]:
         found += [u for of in block.lines for u in re.findall("⟦([^⟧]*)⟧", line(of))]
     if isinstance(block, Where):
         found += [row.unit for row in block.rows]
-    if isinstance(block, Table):
+    if isinstance(block, NumberedTable):
         for cell in block.rows[0]:
             head = said(cell)
             if isinstance(cell[0], Symbol) and ", " in head:
@@ -233,7 +234,7 @@ def where(blocks: list[Any]) -> Iterator[str]:
 def atoms(node: Node) -> Iterator[str]:
     """Letters with their indices, one after another; a power is no part of its letter."""
     if isinstance(node, Scripts) and isinstance(node.base, Letters | Barred):
-        power = isinstance(node.above, Figures) or (isinstance(node.above, Row) and isinstance(node.above.items[0], Figures))
+        power = isinstance(node.above, Figures) or (isinstance(node.above, FormulaRow) and isinstance(node.above.items[0], Figures))
         yield line(Scripts(node.base, node.below, None if power else node.above))
     elif isinstance(node, Letters | Barred):
         yield line(node)
@@ -290,9 +291,10 @@ OURS = ("scales.", "structure.", "note.", "cycle", "forces.gravity")
 
 def untold(note: Note) -> Iterator[str]:
     """Numbers of the project file that formulas use and the task does not give."""
-    tables = (b for b in note.front if isinstance(b, Table))
-    task = {x.step for b in tables for row in b.rows for cell in row for x in cell if isinstance(x, Number)}
-    told = {x.step for b in note.blocks() for text in texts(b) for x in text if isinstance(x, Number) and GIVEN.fullmatch(x.step)}
+    tables = (b for b in note.front if isinstance(b, NumberedTable))
+    task = {x.step for b in tables for row in b.rows for cell in row for x in cell if isinstance(x, NumberInText)}
+    told = {x.step for b in note.blocks() for text in texts(b) for x in text
+            if isinstance(x, NumberInText) and GIVEN.fullmatch(x.step)}
     used = {x.step for b in note.blocks() if isinstance(b, Formula) for of in b.lines for x in of.numbers()}
     yield from sorted(u for u in used if GIVEN.fullmatch(u) and not u.startswith(OURS) and u not in task | told)
 
@@ -303,7 +305,7 @@ def misnumbered(blocks: list[Any]) -> Iterator[str]:
     for block in blocks:
         if isinstance(block, Heading) and (block.level == 1 or not block.number):
             section = block.number
-        if isinstance(block, Table | Figure | Formula) and block.number:
+        if isinstance(block, NumberedTable | Figure | Formula) and block.number:
             head, dot, _ = block.number.strip("()").rpartition(".")
             if head != section or bool(dot) != bool(section):
                 yield f"{type(block).__name__} {block.number} in section {section or 'without number'}"

@@ -7,7 +7,7 @@ from itertools import pairwise
 import pytest
 
 from tmm_sheets.note.arranging import PAGE, Measured, arranged, tied
-from tmm_sheets.note.document import Figure, Formula, Heading, Paragraph, Reference, Table, Where
+from tmm_sheets.note.document import Figure, Formula, Heading, NumberedTable, Paragraph, Reference, Where
 from tmm_sheets.note.formula import letters
 
 ROOM = {"section": (4.0, 7.0), "heading": (7.0, 4.0), "paragraph": (2.0, 2.0), "formula": (2.0, 2.0), "where": (1.3, 2.3),
@@ -17,7 +17,7 @@ AROUND = 8.0
 
 def put(*blocks):
     """The blocks, arranged; each comes with its own height, and the room below it is that of the next one or its own."""
-    single = {Figure: 8.0, Table: 7.5}
+    single = {Figure: 8.0, NumberedTable: 7.5}
     own = [h + single[type(b)] if type(b) in single else h for b, h in blocks]
     running = [k for k, (b, _) in enumerate(blocks) if type(b) not in single]
     measured = Measured((), ROOM)
@@ -75,9 +75,9 @@ def test_a_long_table_goes_on_on_the_next_page_a_short_one_does_not():
     speaks, part = (says("table:1.1"), 5.0), (Heading(2, "1.2", "Next"), 5.0)
     texts = [(Paragraph((f"Text {i}.",)), 20.0) for i in range(3)]
     for rows, parted in ((60, True), (19, False)):
-        table = Table("1.1", "Title", (("Head",), *(((str(i),),) for i in range(rows))))
+        table = NumberedTable("1.1", "Title", (("Head",), *(((str(i),),) for i in range(rows))))
         found = put(SECTION, *texts, speaks, (table, 10.0 + 5.0 * (rows + 1)), part, TEXT)
-        made = next(b for b in found if isinstance(b, Table))
+        made = next(b for b in found if isinstance(b, NumberedTable))
         assert bool(made.parts) is parted
         assert not parted or sum(made.parts) == rows
         assert found.index(speaks[0]) < found.index(made)
@@ -91,7 +91,7 @@ def test_a_figure_whose_paragraph_is_in_another_part_stands_there():
 
 def test_parts_of_a_picture_follow_one_another():
     speaks = (says("figure:1.1"), 5.0)
-    table = Table("1.1", "Title", (("Head",), *(((str(i),),) for i in range(15))))
+    table = NumberedTable("1.1", "Title", (("Head",), *(((str(i),),) for i in range(15))))
     one, two = (figure("1.1", 190.0) for _ in range(2))
     parts = [(replace(one[0], part=1), one[1]), (replace(two[0], part=2), two[1])]
     found = put(SECTION, speaks, (says("table:1.1"), 5.0), *parts, (table, 90.0), TEXT)
@@ -125,7 +125,7 @@ def section(rng):
                 else:
                     rows = rng.choice((3, 12, 30, 70))
                     cells = (("Head",), *(((str(i),),) for i in range(rows)))
-                    pending.append((Table(number, "Title", cells), 10 + 5.0 * (rows + 1)))
+                    pending.append((NumberedTable(number, "Title", cells), 10 + 5.0 * (rows + 1)))
                 if rng.random() < 0.6:
                     blocks += pending
                     pending = []
@@ -138,18 +138,18 @@ def section(rng):
 def test_rules_hold_for_any_section(seed):
     blocks = section(random.Random(seed))
     found = put(*blocks)
-    text = [b for b, _ in blocks if not isinstance(b, Figure | Table)]
-    assert [b for b in found if not isinstance(b, Figure | Table)] == text
-    for kind in (Figure, Table):
+    text = [b for b, _ in blocks if not isinstance(b, Figure | NumberedTable)]
+    assert [b for b in found if not isinstance(b, Figure | NumberedTable)] == text
+    for kind in (Figure, NumberedTable):
         assert [b.number for b in found if isinstance(b, kind)] == [b.number for b, _ in blocks if isinstance(b, kind)]
     for i, b in enumerate(found):
-        if not isinstance(b, Figure | Table):
+        if not isinstance(b, Figure | NumberedTable):
             continue
         target = f"{type(b).__name__.lower()}:{b.number}"
         asked = [{getattr(y, "target", "") for y in x.text} if isinstance(x, Paragraph) else set() for x in found]
         at = next(k for k, targets in enumerate(asked) if target in targets)
         assert at < i
         assert not [x for x in found[at:i] if isinstance(x, Heading)]
-        before = next(x for x in reversed(found[:i]) if not isinstance(x, Figure | Table))
-        after = next((x for x in found[i:] if not isinstance(x, Figure | Table)), None)
+        before = next(x for x in reversed(found[:i]) if not isinstance(x, Figure | NumberedTable))
+        after = next((x for x in found[i:] if not isinstance(x, Figure | NumberedTable)), None)
         assert after is None or not tied(before, after)

@@ -13,7 +13,19 @@ from tests.note.opened import composed, opened
 from tmm_sheets import results, words
 from tmm_sheets.drawing.styles import line_types
 from tmm_sheets.note import composing, phrases
-from tmm_sheets.note.document import Contents, Figure, Formula, Heading, Number, Paragraph, Reference, Sheet, Table, Where, numbers
+from tmm_sheets.note.document import (
+    Contents,
+    Figure,
+    Formula,
+    Heading,
+    NumberedTable,
+    NumberInText,
+    Paragraph,
+    Reference,
+    Sheet,
+    Where,
+    numbers,
+)
 from tmm_sheets.note.formula import Letters, Words
 from tmm_sheets.note.phrases import plain_text
 from tmm_sheets.note.pictures import LETTERS, READABLE, Pictures
@@ -38,7 +50,7 @@ def test_the_parts_of_manual_000_in_their_order(note):
     assert [b.number for b in note.body if isinstance(b, Sheet)] == ["1", "2", "3", "4"]
 
 
-@pytest.mark.parametrize("kind", [Figure, Table])
+@pytest.mark.parametrize("kind", [Figure, NumberedTable])
 def test_figures_and_tables_are_numbered_through_each_section(note, kind):
     found = [b.number for b in note.blocks() if isinstance(b, kind) and not getattr(b, "further", False)]
     section = {}
@@ -51,7 +63,7 @@ def test_figures_and_tables_are_numbered_through_each_section(note, kind):
 
 def test_every_reference_leads_somewhere(note):
     targets = {f"figure:{b.number}" for b in note.blocks() if isinstance(b, Figure)}
-    targets |= {f"table:{b.number}" for b in note.blocks() if isinstance(b, Table)}
+    targets |= {f"table:{b.number}" for b in note.blocks() if isinstance(b, NumberedTable)}
     targets |= {f"formula:{b.number[1:-1]}" for b in note.blocks() if isinstance(b, Formula) and b.number}
     asked = [x.target for b in note.blocks() if isinstance(b, Paragraph) for x in b.text if isinstance(x, Reference) and x.target]
     assert asked
@@ -61,7 +73,7 @@ def test_every_reference_leads_somewhere(note):
 def test_every_figure_and_table_is_spoken_of(note):
     asked = {x.target for b in note.blocks() if isinstance(b, Paragraph) for x in b.text if isinstance(x, Reference)}
     assert {f"figure:{b.number}" for b in note.blocks() if isinstance(b, Figure)} <= asked
-    assert {f"table:{b.number}" for b in note.blocks() if isinstance(b, Table)} <= asked
+    assert {f"table:{b.number}" for b in note.blocks() if isinstance(b, NumberedTable)} <= asked
 
 
 def test_the_abstract_counts_what_is_there(note):
@@ -70,7 +82,7 @@ def test_the_abstract_counts_what_is_there(note):
     sources = sum(bool(re.match(r"\d+\. ", plain_text(b.text))) for b in note.body if isinstance(b, Paragraph) and b.look == "item")
     counted = {int(n) for n in re.findall(r"(?:Ил|Табл|Библиогр)\.:?\s(\d+)", text)}
     drawn = sum(isinstance(b, Figure) and not b.further for b in blocks)
-    assert counted == {drawn, sum(isinstance(b, Table) for b in blocks)} | {sources}
+    assert counted == {drawn, sum(isinstance(b, NumberedTable) for b in blocks)} | {sources}
 
 
 def test_sources_stand_in_the_order_of_citation(note):
@@ -125,7 +137,7 @@ def test_nothing_is_empty_or_unfilled(note):
             text = plain_text(b.text)
             assert any(c.isalpha() for c in text) or len(b.text) > 1
             assert not re.search(r"[{}\[]{2}|\{@|nan|None", text), text
-        if isinstance(b, Table):
+        if isinstance(b, NumberedTable):
             assert len(b.rows) > 1
             assert len({len(row) for row in b.rows}) == 1
             assert b.title
@@ -285,7 +297,7 @@ def test_plural_forms():
 def test_number_nodes_know_their_step(note):
     found = list(numbers(list(note.blocks())))
     assert len(found) > 800
-    assert all(isinstance(n, Number) and n.step for n in found)
+    assert all(isinstance(n, NumberInText) and n.step for n in found)
 
 
 def test_words_stay_on_the_paper_alone():
@@ -328,7 +340,7 @@ def test_a_note_in_another_language(language, name, foreign):
     said = [plain_text(b.text) for b in made.blocks() if isinstance(b, Paragraph) and b not in sources]
     said += [b.text for b in made.blocks() if isinstance(b, Heading)]
     said += [plain_text(r.meaning) for b in made.blocks() if isinstance(b, Where) for r in b.rows]
-    said += [plain_text(cell) for b in made.blocks() if isinstance(b, Table) for row in b.rows for cell in row]
+    said += [plain_text(cell) for b in made.blocks() if isinstance(b, NumberedTable) for row in b.rows for cell in row]
     assert not [text for text in said if re.search(foreign, text)]
     assert not made.problems
     test_nothing_is_empty_or_unfilled(made)

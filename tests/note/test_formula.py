@@ -9,10 +9,10 @@ from tmm_sheets.note.alphabets import TYPST, equation, spelt, string
 from tmm_sheets.note.formula import (
     Fenced,
     Figures,
+    FormulaRow,
     Fraction,
     Letters,
     Operand,
-    Row,
     Scripts,
     Sign,
     Underlined,
@@ -35,7 +35,7 @@ def test_indices_of_several_letters_hang_together():
     assert letters("ψ_max") == Scripts(Letters("ψ"), Words("max"))
     assert letters("J_доб") == Scripts(Letters("J"), Words("доб"))
     assert letters("M_{с}^{пр}") == Scripts(Letters("M"), Words("с"), Words("пр"))
-    assert letters("N_1N_2") == Row((Scripts(Letters("N"), Figures("1")), Scripts(Letters("N"), Figures("2"))))
+    assert letters("N_1N_2") == FormulaRow((Scripts(Letters("N"), Figures("1")), Scripts(Letters("N"), Figures("2"))))
     assert letters("S''").above == Sign("″")
 
 
@@ -75,7 +75,7 @@ def test_an_angle_is_in_degrees_inside_a_function_only():
 
 
 def test_every_node_is_well_formed_omml():
-    node = Row((Fraction(letters("a_1"), letters("b^2")), Sign("="), Fenced("(", Underlined(letters("V̅_B"), 2), ")"),
+    node = FormulaRow((Fraction(letters("a_1"), letters("b^2")), Sign("="), Fenced("(", Underlined(letters("V̅_B"), 2), ")"),
                 Words("кг & м"), of_tree(e.Operation("sqrt", (A,)), [Operand(letters("x"))]), letters("F_{21}^{τ}")))  # fmt: skip
     tree = ET.fromstring(equation(node))
     tags = {x.tag.rpartition("}")[2] for x in tree.iter()}

@@ -10,8 +10,8 @@ from tests.note import check_notes
 from tests.note.opened import composed, opened
 from tmm_sheets import words
 from tmm_sheets.note import phrases
-from tmm_sheets.note.document import Explained, Formula, Heading, Number, Paragraph, Symbol, Table, Where
-from tmm_sheets.note.formula import Figures, Letters, Row, Sign, Words, letters
+from tmm_sheets.note.document import Explained, Formula, Heading, NumberedTable, NumberInText, Paragraph, Symbol, Where
+from tmm_sheets.note.formula import Figures, FormulaRow, Letters, Sign, Words, letters
 from tmm_sheets.task.variant import Variant
 
 READ = [(name, "ru") for name in check_notes.SHARE] + [("lugansk/engine", "uk"), ("transport/crusher@12-СДМ-1908", "en")]
@@ -31,9 +31,9 @@ def test_the_note_of_an_own_project_has_no_fault(project):
 
 def formula(text, number="(1.1)"):
     """A formula whose equation reads like ``text``: numbers are marked as such, all else are signs."""
-    nodes = [Figures(t, Number(t, "plan/x", 0.0)) if t[0].isdigit() else Words(t) if t.startswith("\u00a0") else Sign(t)
+    nodes = [Figures(t, NumberInText(t, "plan/x", 0.0)) if t[0].isdigit() else Words(t) if t.startswith("\u00a0") else Sign(t)
              for t in text.split(" ")]  # fmt: skip
-    return Formula((Row((Letters("x"), Sign("="), *nodes)),), number)
+    return Formula((FormulaRow((Letters("x"), Sign("="), *nodes)),), number)
 
 
 def explained(symbol, meaning, unit=""):
@@ -44,16 +44,16 @@ HEAD = tuple((h,) for h in phrases.words("ru")["task"]["head"])
 PLANTED = [
     ("empty", Paragraph(("Наибольшее ускорение возникает в положениях ", "."))),
     ("empty", Paragraph(("См. рис. , там показано.",))),
-    ("empty", Table("1", "", ((("Звено",),), (("1",),)))),
-    ("unnamed row", Table("1", "Данные", (HEAD, (("–",), ("l",), ("м",), ("0,1",))))),
+    ("empty", NumberedTable("1", "", ((("Звено",),), (("1",),)))),
+    ("unnamed row", NumberedTable("1", "Данные", (HEAD, (("–",), ("l",), ("м",), ("0,1",))))),
     ("markup", Paragraph(("Момент $M$ равен {value}.",))),
-    ("markup", Paragraph(("Работа равна ", Number("5,233e-6", "a/b", 5e-6), "."))),
+    ("markup", Paragraph(("Работа равна ", NumberInText("5,233e-6", "a/b", 5e-6), "."))),
     ("markup", Paragraph(("Момент, {Nm}",))),
-    ("markup", Formula((Row(tuple(map(Letters, "column"))),))),
-    ("unit", Table("1", "Данные", (HEAD, (("момент",), ("M",), ("N m",), ("8",))))),
-    ("unit", Paragraph(("Сила равна ", Number("3", "a/b", 3.0, unit="lbf"), "."))),
+    ("markup", Formula((FormulaRow(tuple(map(Letters, "column"))),))),
+    ("unit", NumberedTable("1", "Данные", (HEAD, (("момент",), ("M",), ("N m",), ("8",))))),
+    ("unit", Paragraph(("Сила равна ", NumberInText("3", "a/b", 3.0, unit="lbf"), "."))),
     ("alphabet", Paragraph(("Сила force равна нулю.",))),
-    ("plural", Paragraph(("Строим ", Number("21", "a/b", 21), " совмещённых плана положений."))),
+    ("plural", Paragraph(("Строим ", NumberInText("21", "a/b", 21), " совмещённых плана положений."))),
     ("formula", formula("0,1765 + 0 − 0,1713 = 0,005132")),
     ("formula", formula("2 · = 5")),
     ("sum", Paragraph(("Угол φ = −162° + (−1)·72° = −235°.",))),
@@ -76,14 +76,14 @@ def test_a_planted_fault_is_found(note, kind, block):
 
 
 def test_a_letter_without_words_is_found(note):
-    line = Row((letters("Q_7"), Sign("="), *formula("2 · 3 = 6").lines[0].items[2:]))
+    line = FormulaRow((letters("Q_7"), Sign("="), *formula("2 · 3 = 6").lines[0].items[2:]))
     planted = replace(note, body=(*note.body, Formula((line,), "(9)")))
     assert any(f.kind == "unexplained" and "Q_{7}" in f.text for f in check_notes.content_faults(planted))
 
 
 def test_a_given_number_that_the_task_lacks_is_found(note):
-    source = Number("3,56", "synthesis.rod_ratio", 3.56)
-    line = Row((Letters("x"), Sign("="), Figures("3,56", source), Sign("="), Figures("3,56")))
+    source = NumberInText("3,56", "synthesis.rod_ratio", 3.56)
+    line = FormulaRow((Letters("x"), Sign("="), Figures("3,56", source), Sign("="), Figures("3,56")))
     planted = replace(note, body=(*note.body, Formula((line,), "(9)")))
     assert any(f.kind == "not in the task" and f.text == "synthesis.rod_ratio" for f in check_notes.content_faults(planted))
 
@@ -91,9 +91,9 @@ def test_a_given_number_that_the_task_lacks_is_found(note):
 def test_right_blocks_have_no_fault(note):
     right = (
         Heading(1, "", "Пример"),
-        Paragraph(("Строим ", Number("21", "a/b", 21), " совмещённый план; |", Symbol(letters("pd")), "| : |ab| = 2 : 3.")),
+        Paragraph(("Строим ", NumberInText("21", "a/b", 21), " совмещённый план; |", Symbol(letters("pd")), "| : |ab| = 2 : 3.")),
         Paragraph(("Угол φ = −162° + (−1)·72° = −234°.",)),
-        Table("3", "Данные", (HEAD, (("момент",), ("M",), ("Н·м",), ("8",)))),
+        NumberedTable("3", "Данные", (HEAD, (("момент",), ("M",), ("Н·м",), ("8",)))),
         formula("0,17647 + 0 − 0,17134 = 0,00513 \u00a0Н", "(1)"), explained("x", "сила", "Н"),
     )  # fmt: skip
     assert not list(check_notes.content_faults(replace(note, body=(*note.body, *right))))

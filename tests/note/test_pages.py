@@ -6,7 +6,7 @@ import pytest
 
 from tests.note import check_pages
 from tests.note.check_pages import Event, faults_of
-from tmm_sheets.note.document import Figure, Table
+from tmm_sheets.note.document import Figure, NumberedTable
 
 pytest.importorskip("pypdfium2")
 
@@ -73,7 +73,7 @@ def test_long_names_stay_in_their_cells(note):
     typst_writer = pytest.importorskip("tmm_sheets.note.typst_writer")
     fields = {"student": LONG, "supervisor": LONG, "designation": "ТММ.КП." * 9, "institution": "Кафедра " + LONG[::-1],
               "group": "М" * 40, "subject": "Тема " * 60}  # fmt: skip
-    front = tuple(b for b in note.front if not isinstance(b, Figure | Table))
+    front = tuple(b for b in note.front if not isinstance(b, Figure | NumberedTable))
     short = replace(note, front=front, body=note.body[:2], frame=replace(note.frame, fields=note.frame.fields | fields))
     document = pypdfium2.PdfDocument(typst_writer.render(short)[0])
     cells = {LONG[:12]: (37, 60, 5, 45), "ТММ.КП.": (85, 205, 5, 45), "ММММ": (155, 205, 5, 20), "Кафедра": (155, 205, 5, 20),

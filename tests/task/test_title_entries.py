@@ -7,7 +7,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import title_entries, user_folder
-from tmm_sheets.task.title_entries import Entry, Names, given
+from tmm_sheets.task.title_entries import Names, TitleEntry, given
 
 
 @pytest.fixture
@@ -48,7 +48,7 @@ def test_what_only_keeps_a_place_goes_last(folder):
 def test_without_names_the_project_stays_itself(folder):
     shipped = catalogue.read("press")
     assert given({}).filled(shipped) is shipped
-    named = Names({"student": "X"}, {"group": Entry("G")}).filled(shipped)
+    named = Names({"student": "X"}, {"group": TitleEntry("G")}).filled(shipped)
     assert (named.title_block.student, named.title_block.group) == ("X", "G")
     assert named.content != shipped.content  # what is kept of it is another sheet
 

@@ -142,7 +142,7 @@ def render_coloured(layers: Sequence[tuple[Drawing, tuple[float, float, float]]]
     return buffer.getvalue()
 
 
-class Page(NamedTuple):
+class PdfPage(NamedTuple):
     """A page that shows a ``part`` of a sheet, moved there by ``shift``, and marks of its own (its size is theirs), mm."""
 
     part: Box
@@ -150,7 +150,7 @@ class Page(NamedTuple):
     own: Drawing
 
 
-def render_pages(drawing: Drawing, pages: Iterable[Page]) -> bytes:
+def render_pages(drawing: Drawing, pages: Iterable[PdfPage]) -> bytes:
     """The bytes of a PDF with parts of one drawing, 1:1; the drawing is in the file once, whatever the number of pages.
 
     Raises

@@ -30,7 +30,7 @@ from tmm_sheets.words import tell, tell_n
 
 
 @dataclass(frozen=True)
-class ViewPlace:
+class StatedViewPlace:
     """The place of one view: points of our sheet, mm, and the same points in the image, pixels, or in the drawing, its units."""
 
     view: ElementView
@@ -55,7 +55,7 @@ class ViewPlace:
         return Placing(turn, at[0] - turn * self.ours[0])
 
 
-def read(path: Path, views: Sequence[ElementView]) -> tuple[ViewPlace, ...]:
+def read(path: Path, views: Sequence[ElementView]) -> tuple[StatedViewPlace, ...]:
     """Read a file of places.
 
     Raises
@@ -93,7 +93,7 @@ class _Table:
     path: str
     problems: list[Problem]
 
-    def place(self, views: Sequence[ElementView]) -> ViewPlace | None:
+    def place(self, views: Sequence[ElementView]) -> StatedViewPlace | None:
         """The place it gives, None where something is wrong."""
         before = len(self.problems)
         for key in sorted(self.values.keys() - {"name", "ours", "theirs", "mu"}):
@@ -108,7 +108,7 @@ class _Table:
             self._check_points(ours, theirs, mu)
         if view is None or ours is None or theirs is None or len(self.problems) > before:
             return None
-        return ViewPlace(view, ours, theirs, mu)
+        return StatedViewPlace(view, ours, theirs, mu)
 
     def _wrong(self, key: str, message: str, hint: str = "") -> None:
         self.problems.append(Problem(message, self.path, field=f"{self.field}.{key}", hint=hint))

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.numpy_language import Source
+from tmm_sheets.construction.numpy_language import NumpySource
 from tmm_sheets.construction.program import depending, is_row, program
 from tmm_sheets.construction.replay import Replay
 from tmm_sheets.construction.step import Step, ordered, parents, value_of
@@ -47,7 +47,7 @@ class Function:
 
     def __init__(self, wanted: Mapping[str, Step], rows: Sequence[Any], chosen: Sequence[str] = ()) -> None:
         self.program = program(wanted, rows, chosen)
-        self.source = Source(self.program)
+        self.source = NumpySource(self.program)
         self._steps = dict(wanted)
         self._run = self.source.function()
         self._points = [name for name, parts in self.program.results.items() if len(parts) == 2]

@@ -56,7 +56,7 @@ def literal(x: float) -> str:
     return repr(float(x)) if isfinite(x) else "NaN" if isnan(x) else "Infinity" if x > 0 else "-Infinity"
 
 
-class Source:
+class JavaScriptSource:
     """The text of a program as ``function (x, k, p)``: inputs, ``constants``, primitives by their names.
 
     It returns the parts of all results one after another: two numbers of a point, one of a number; ``results`` says which, by the

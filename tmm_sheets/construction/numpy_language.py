@@ -101,7 +101,7 @@ def single(x: Any) -> Any:
     return x if x.ndim else x.item()
 
 
-class Source:
+class NumpySource:
     """The text of a program's function ``f(x, k, r)``: inputs, ``constants``, ``rows`` of the work array, the first ``results`` of
     which are filled; the least guard of each position is left in row ``check``, -1 for none.
     """

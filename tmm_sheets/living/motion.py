@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction.given import Given, GivenNumber, GivenPoint
-from tmm_sheets.construction.javascript_language import Source, told
+from tmm_sheets.construction.javascript_language import JavaScriptSource, told
 from tmm_sheets.construction.program import depending, is_row, program, rows_of
 from tmm_sheets.construction.step import Step, ordered, parents, value_of
 from tmm_sheets.living.searches import Searches
@@ -34,14 +34,14 @@ ANY = 101
 
 
 @dataclass(frozen=True)
-class Written:
+class WrittenPlan:
     """A program as text with how the page has each of its inputs.
 
     {"angle": "world"} or "turned", {"course": ...}, {"load": ...} or {"friction": ...} by a search, {"diagram": its name, ...},
     {"found": value} by plans that the page does not have, {"given": name}.
     """
 
-    source: Source
+    source: JavaScriptSource
     inputs: list[dict[str, Any]]
 
     @property
@@ -51,15 +51,15 @@ class Written:
 
 
 @dataclass(frozen=True)
-class Motion:
+class MotionProgram:
     """The program of a linkage's plans with what it takes.
 
     ``all`` computes every plan, ``watched`` what ``searches`` ask for. ``crank`` are the ids of its pivot and its pin; ``start``
     its angle in position 0, rad.
     """
 
-    all: Written
-    watched: Written
+    all: WrittenPlan
+    watched: WrittenPlan
     givens: list[dict[str, Any]]
     crank: tuple[str, str]
     start: float
@@ -73,7 +73,7 @@ class Motion:
                 "start": self.start, "sense": self.sense, "period": self.period, "searches": self.searches}
 
 
-def motion(project: Project, index: StepIndex) -> Motion:
+def motion(project: Project, index: StepIndex) -> MotionProgram:
     """The program of all plans of a project's linkage, by the ids of their steps in the record."""
     study, cycle = _studied(project), project.cycle
     own = [step for plan in study.plans.values() for step in (*plan.auxiliaries.values(), *plan)]
@@ -93,21 +93,21 @@ def motion(project: Project, index: StepIndex) -> Motion:
               if step.path in index.steps and id(step) not in lost and np.ndim(step.value) < 2 and _plain(step)} | search.forces
     chosen: dict[str, _Told] = {}
 
-    def written(steps: Mapping[str, Step]) -> Written:
+    def written(steps: Mapping[str, Step]) -> WrittenPlan:
         frozen = dict(_frozen(steps.values(), over))
         own = _givens(steps.values(), {*objects, *frozen})
         chosen.update(own)
         made = program(steps, [*objects.values(), *frozen.values()], [*own], exact=True)
         inputs = [*(rows[key] for key in objects), *map(_fixed, frozen.values()), *({"given": name} for name in own)]
-        return Written(Source(made), inputs)
+        return WrittenPlan(JavaScriptSource(made), inputs)
 
     points, crank = study.positions.points, study.mechanism.crank
     ends = points[crank.pivot].path, points[crank.pin].path
     every, watched = written(wanted), written(search.watched)
     factors = [{"name": one["diagram"], "symbol": one["symbol"], "unit": "", "value": 1.0}
                for one in every.inputs if "diagram" in one]
-    return Motion(every, watched, [*map(_told_given, chosen.values()), *factors], ends, float(cycle.start), float(cycle.sense),
-                  float(cycle.period), search.told)
+    return MotionProgram(every, watched, [*map(_told_given, chosen.values()), *factors], ends, float(cycle.start),
+                         float(cycle.sense), float(cycle.period), search.told)
 
 
 def _fixed(step: Step) -> dict[str, Any]:

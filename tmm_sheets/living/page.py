@@ -15,7 +15,7 @@ from tmm_sheets.drawing.styles import line_types
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.living.hanging import hung
 from tmm_sheets.living.markers import markers
-from tmm_sheets.living.motion import Motion, Written, motion
+from tmm_sheets.living.motion import MotionProgram, WrittenPlan, motion
 from tmm_sheets.living.page_words import page_words
 from tmm_sheets.living.sliders import slider
 from tmm_sheets.note import phrases
@@ -100,7 +100,7 @@ def _views(record: Mapping[str, Any]) -> dict[str, str]:
     return {view: name for view in drawn if (name := called(view))}
 
 
-def _written(record: Mapping[str, Any], made: Motion | None) -> str:
+def _written(record: Mapping[str, Any], made: MotionProgram | None) -> str:
     """The file: style, data and modules in their places of the template."""
     packed = gzip.compress(json.dumps(record, ensure_ascii=False, separators=(",", ":")).encode(), 9, mtime=0)
     parts = {
@@ -113,7 +113,7 @@ def _written(record: Mapping[str, Any], made: Motion | None) -> str:
     return re.sub(r"<!--(\w+)-->", lambda m: parts[m[1]], _text("page.html"))
 
 
-def _program(written: Written) -> str:
+def _program(written: WrittenPlan) -> str:
     return written.source.text.replace("</", "<\\/")
 
 

@@ -17,11 +17,11 @@ from tmm_sheets.note.document import (
     Formula,
     Heading,
     NewPage,
+    NumberedTable,
     Paragraph,
     Reference,
     Sheet,
     Symbol,
-    Table,
     Text,
     Where,
 )
@@ -117,13 +117,13 @@ def arranged(blocks: Sequence[Block], measured: Measured) -> list[Block]:
     """
     made: list[Block] = []
     section: list[tuple[Block, _Slice]] = []
-    following = [next((a for a in blocks[k + 1:] if not isinstance(a, Figure | Table)), None) for k in range(len(blocks))]
+    following = [next((a for a in blocks[k + 1:] if not isinstance(a, Figure | NumberedTable)), None) for k in range(len(blocks))]
     for b, after, height in [*zip(blocks, following, measured.heights, strict=True), (NewPage(), None, 0.0)]:
         if pinned(b):
             made += _section(section)
             section = []
         above, below = measured.of(b)
-        if isinstance(b, Figure | Table):
+        if isinstance(b, Figure | NumberedTable):
             height -= above + below
         elif after is not None and not pinned(after):
             height -= max(below, measured.of(after)[0])
@@ -143,7 +143,7 @@ class _Chunk:
 class _Floating:
     """A figure or table: it may stand after chunk ``after``, not after chunk ``last``."""
 
-    block: Figure | Table
+    block: Figure | NumberedTable
     size: _Slice
     after: int
     last: int
@@ -156,7 +156,7 @@ class _Floating:
         rows = len(self.block.rows)
         return replace(self.size, height=self.size.height / rows * 5) if rows > TOGETHER else self.size
 
-    def ways(self, room: float) -> Iterator[tuple[Figure | Table, _Slice, float]]:
+    def ways(self, room: float) -> Iterator[tuple[Figure | NumberedTable, _Slice, float]]:
         """The ways in which it may be printed whole, with the size and what it costs; one fills the room of a page."""
         yield self.block, self.size, 0.0
         if isinstance(self.block, Figure):
@@ -218,7 +218,7 @@ class _State:
 
 def _section(section: Sequence[tuple[Block, _Slice]]) -> list[Block]:
     """The blocks of a section, arranged."""
-    if not any(isinstance(b, Figure | Table) for b, _ in section):
+    if not any(isinstance(b, Figure | NumberedTable) for b, _ in section):
         return [b for b, _ in section]
     state: _State | None = _found(section)
     made: list[Block] = []
@@ -231,7 +231,7 @@ def _section(section: Sequence[tuple[Block, _Slice]]) -> list[Block]:
 def _found(section: Sequence[tuple[Block, _Slice]]) -> _State:
     """The best arrangement of a section: its beginnings, by what of it stands already, grow by one block after another."""
     chunks, floating = _parted(section)
-    figures, tables = ([f for f in floating if isinstance(f.block, kind)] for kind in (Figure, Table))
+    figures, tables = ([f for f in floating if isinstance(f.block, kind)] for kind in (Figure, NumberedTable))
     states: dict[tuple[int, int, int], list[_State]] = {(0, 0, 0): [_State()]}
     for total in range(len(chunks) + len(floating)):
         for key in [k for k in states if sum(k) == total]:
@@ -280,13 +280,13 @@ def _next(
                 rest = (*(x for x in rest if x[:2] != (k, n + 1)), (k, n + 1, to.page))
             to = replace(to, cost=to.cost + NEXT_PAGE * min(away, 1) + FAR * max(away - 1, 0), spoken=rest)
             yield moved, to
-        if isinstance(f.block, Table) and (broken := _broken(f, state)) is not None:
+        if isinstance(f.block, NumberedTable) and (broken := _broken(f, state)) is not None:
             yield moved, replace(broken, spoken=rest)
 
 
 def _broken(f: _Floating, state: _State) -> _State | None:
     """A long table that goes on on the next page; None where it has to stay on one."""
-    assert isinstance(f.block, Table)
+    assert isinstance(f.block, NumberedTable)
     rows = len(f.block.rows) - 1
     if rows < TOGETHER or state.fits(f.size):
         return None
@@ -306,7 +306,7 @@ HEAD, AGAIN = 10.0, 6.0
 
 def _parted(section: Sequence[tuple[Block, _Slice]]) -> tuple[list[_Chunk], list[_Floating]]:
     """Chunks of text, and what may stand between them."""
-    texts = [(b, size) for b, size in section if not isinstance(b, Figure | Table)]
+    texts = [(b, size) for b, size in section if not isinstance(b, Figure | NumberedTable)]
     chunks: list[_Chunk] = []
     of_block: list[int] = []
     for k, (b, size) in enumerate(texts):
@@ -323,7 +323,7 @@ def _parted(section: Sequence[tuple[Block, _Slice]]) -> tuple[list[_Chunk], list
     floating: list[_Floating] = []
     before = -1
     for block, size in section:
-        if not isinstance(block, Figure | Table):
+        if not isinstance(block, Figure | NumberedTable):
             before += 1
             continue
         target = f"{'figure' if isinstance(block, Figure) else 'table'}:{block.number}"

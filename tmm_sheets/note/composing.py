@@ -19,11 +19,11 @@ from tmm_sheets.note.document import (
     Frame,
     Heading,
     Note,
-    Number,
+    NumberedTable,
+    NumberInText,
     Paragraph,
     Sheet,
     Symbol,
-    Table,
     Text,
     Where,
 )
@@ -127,13 +127,13 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
     told = [*(b for blocks in before.values() for b in blocks), *body]
     counts = {
         "figures": sum(isinstance(b, Figure) and not b.further for b in told),
-        "tables": sum(isinstance(b, Table) for b in told),
+        "tables": sum(isinstance(b, NumberedTable) for b in told),
         "sources": len(numbering.cited),
         "sheets": len(sheets),
         "formulas": numbering.total.get("formula", 0),
     }
     before["abstract"] = writer.blocks(
-        "abstract", Scope(summary | {k: Number(str(v), f"note.{k}", v) for k, v in counts.items()} | {"pages": PAGES})
+        "abstract", Scope(summary | {k: NumberInText(str(v), f"note.{k}", v) for k, v in counts.items()} | {"pages": PAGES})
     )
     front = [b for name in front_order for b in before[name]]
     reminders = writer.blocks("reminders", base)
@@ -166,13 +166,13 @@ def _reworded(blocks: Iterable[Block], table: dict[str, str]) -> Iterator[Block]
             yield replace(b, lines=tuple(reworded(x, table) for x in b.lines))
         elif isinstance(b, Where):
             yield replace(b, rows=tuple(Explained(reworded(r.symbol, table), text(r.meaning), r.unit) for r in b.rows))
-        elif isinstance(b, Table):
+        elif isinstance(b, NumberedTable):
             yield replace(b, rows=tuple(tuple(map(text, row)) for row in b.rows))
         else:
             yield b
 
 
-PAGES = Number("\u0001", "note.pages", 0)
+PAGES = NumberInText("\u0001", "note.pages", 0)
 """Stands for the number of pages until they are counted."""
 
 
@@ -181,7 +181,7 @@ def counted(note: Note, pages: int) -> Note:
 
     def settled(text: Text) -> Text:
         return tuple(
-            replace(x, text=str(pages), value=pages) if isinstance(x, Number) and x.text == PAGES.text else x for x in text
+            replace(x, text=str(pages), value=pages) if isinstance(x, NumberInText) and x.text == PAGES.text else x for x in text
         )
 
     front = tuple(replace(b, text=settled(b.text)) if isinstance(b, Paragraph) else b for b in note.front)

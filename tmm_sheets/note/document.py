@@ -14,7 +14,7 @@ from tmm_sheets.note.formula import Node
 
 
 @dataclass(frozen=True)
-class Number:
+class NumberInText:
     """A number of the record as it is written: ``text`` with at most ``digits`` significant digits, and its ``unit`` in words.
 
     ``step`` is "plan/name" of the step it is the value of, or the path of a given number; ``position`` the label of the position;
@@ -52,7 +52,7 @@ class Reference:
         return self.text
 
 
-Inline = str | Number | Symbol | Reference
+Inline = str | NumberInText | Symbol | Reference
 Text = tuple[Inline, ...]
 
 
@@ -103,7 +103,7 @@ WORD = 12
 
 
 @dataclass(frozen=True)
-class Table:
+class NumberedTable:
     """A table under its number and title; the first row is its head. ``parts``: rows on each of its pages, none of a whole one."""
 
     number: str
@@ -174,7 +174,7 @@ class NewPage:
     """The next block begins a page."""
 
 
-Block = Heading | Paragraph | Formula | Where | Table | Figure | Sheet | Contents | NewPage
+Block = Heading | Paragraph | Formula | Where | NumberedTable | Figure | Sheet | Contents | NewPage
 
 
 @dataclass(frozen=True)
@@ -218,13 +218,13 @@ class Note:
         yield from self.body
 
 
-def numbers(blocks: tuple[Block, ...] | list[Block]) -> Iterator[Number]:
+def numbers(blocks: tuple[Block, ...] | list[Block]) -> Iterator[NumberInText]:
     """All numbers of the record that some blocks show, those of formulas too."""
     for block in blocks:
         if isinstance(block, Paragraph):
-            yield from (x for x in block.text if isinstance(x, Number))
-        elif isinstance(block, Table):
-            yield from (x for row in block.rows for cell in row for x in cell if isinstance(x, Number))
+            yield from (x for x in block.text if isinstance(x, NumberInText))
+        elif isinstance(block, NumberedTable):
+            yield from (x for row in block.rows for cell in row for x in cell if isinstance(x, NumberInText))
         elif isinstance(block, Formula):
             for line in block.lines:
                 yield from line.numbers()

@@ -20,11 +20,11 @@ from tmm_sheets.note.document import (
     Heading,
     NewPage,
     Note,
+    NumberedTable,
     Paragraph,
     Reference,
     Sheet,
     Symbol,
-    Table,
     Text,
     Where,
 )
@@ -368,7 +368,7 @@ class _Writer:
             end = "." if i == len(b.rows) - 1 else ";"
             self._text(p, (" – ", *row.meaning, f", {row.unit}{end}" if row.unit else end))
 
-    def _table(self, b: Table) -> None:
+    def _table(self, b: NumberedTable) -> None:
         from docx.enum.text import WD_ALIGN_PARAGRAPH
 
         p = self.made.add_paragraph(style="Caption")
@@ -389,7 +389,7 @@ class _Writer:
         after = self.made.add_paragraph()
         after.paragraph_format.line_spacing = self.pt(6)
 
-    def _grid(self, b: Table, rows: Sequence[Sequence[Text]]) -> None:
+    def _grid(self, b: NumberedTable, rows: Sequence[Sequence[Text]]) -> None:
         """Rows of a table, which stay on one page, in cells as wide as all its rows want them."""
         from docx.enum.table import WD_TABLE_ALIGNMENT
         from docx.enum.text import WD_ALIGN_PARAGRAPH
@@ -519,7 +519,7 @@ class _Writer:
             p._p.append(_parsed(f'<w:r xmlns:w="{_W}"><w:fldChar w:fldCharType="end"/></w:r>'))
 
 
-def widths_of(b: Table) -> list[float]:
+def widths_of(b: NumberedTable) -> list[float]:
     """Widths of the columns of a table, mm, by what stands in them; together at most that of the text."""
     from tmm_sheets.note.phrases import plain_text
 

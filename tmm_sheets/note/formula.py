@@ -70,7 +70,7 @@ class Words(Node):
 
 
 @dataclass(frozen=True)
-class Row(Node):
+class FormulaRow(Node):
     """Parts one after another."""
 
     items: tuple[Node, ...]
@@ -161,7 +161,7 @@ def letters(markup: str) -> Node:
     if _WORD.fullmatch(markup):
         return Words(markup)
     if markup.startswith("inv "):
-        return Row((Words("inv "), letters(markup[4:])))
+        return FormulaRow((Words("inv "), letters(markup[4:])))
     found: list[Node] = []
     for m in _TOKEN.finditer(_INDEX.sub(r"_{\1}", markup.replace("²", "^2"))):
         below, above = (
@@ -176,7 +176,7 @@ def letters(markup: str) -> Node:
             _attach(found, None, "′" if m[5] == "'" else m[5])
         elif m[5] != "\\":
             _append(found, m[5])
-    return found[0] if len(found) == 1 else Row(tuple(found))
+    return found[0] if len(found) == 1 else FormulaRow(tuple(found))
 
 
 def reworded(node: Node, table: Mapping[str, str]) -> Node:
@@ -199,14 +199,14 @@ def reworded(node: Node, table: Mapping[str, str]) -> Node:
 
 
 def _attach(found: list[Node], below: str | None, above: str | None) -> None:
-    base = found.pop() if found else Row(())
+    base = found.pop() if found else FormulaRow(())
     old = base if isinstance(base, Scripts) else Scripts(base)
     new_below = letters(below) if below is not None else None
     new_above = letters(above) if above is not None else None
     if new_below is not None and old.below is not None:
         old = Scripts(old)
     if new_above is not None and old.above is not None:
-        new_above = Sign("″") if old.above == new_above == Sign("′") else Row((old.above, new_above))
+        new_above = Sign("″") if old.above == new_above == Sign("′") else FormulaRow((old.above, new_above))
     found.append(Scripts(old.base, new_below or old.below, new_above or old.above))
 
 
@@ -409,13 +409,14 @@ def _power(parts: Sequence[Part]) -> Part:
 
 
 def _sum(parts: Sequence[Part]) -> Part:
-    rest = [held(p, PRODUCT) if isinstance(p[0], Row) and p[0].items[:1] == (Sign("−"),) else _held_sum(p) for p in parts[1:]]
+    rest = [held(p, PRODUCT) if isinstance(p[0], FormulaRow) and p[0].items[:1] == (Sign("−"),) else _held_sum(p)
+            for p in parts[1:]]
     return joined("+", [parts[0][0], *rest]), SUM
 
 
 def _difference(parts: Sequence[Part]) -> Part:
     if len(parts) == 1:
-        return Row((Sign("−"), held(parts[0], PRODUCT))), SUM
+        return FormulaRow((Sign("−"), held(parts[0], PRODUCT))), SUM
     return joined("−", [parts[0][0], *(held(p, PRODUCT) for p in parts[1:])]), SUM
 
 
@@ -436,7 +437,7 @@ def _function(name: str, parts: Sequence[Part]) -> Part:
     shown = _FUNCTIONS.get(name, name)
     inside = joined(";", [p[0] for p in parts])
     single = len(parts) == 1 and parts[0][1] == ATOM and not isinstance(parts[0][0], Fraction)
-    return Row((Words(f"{shown} "), inside) if single else (Words(shown), Fenced("(", inside, ")"))), PRODUCT
+    return FormulaRow((Words(f"{shown} "), inside) if single else (Words(shown), Fenced("(", inside, ")"))), PRODUCT
 
 
 def _held_sum(part: tuple[Node, int]) -> Node:
@@ -457,13 +458,13 @@ def joined(sign: str, nodes: Sequence[Node]) -> Node:
     for i, node in enumerate(nodes):
         if i and not (sign == "·" and found and isinstance(found[-1], Figures) and found[-1].source is None and _lettered(node)):
             found.append(Sign(sign))
-        found += node.items if isinstance(node, Row) else (node,)
-    return Row(tuple(found))
+        found += node.items if isinstance(node, FormulaRow) else (node,)
+    return FormulaRow(tuple(found))
 
 
 def _lettered(node: Node) -> bool:
     """Whether a factor begins with a letter: no sign is needed between it and a number before it."""
-    first = node.items[0] if isinstance(node, Row) and node.items else node
+    first = node.items[0] if isinstance(node, FormulaRow) and node.items else node
     first = first.base if isinstance(first, Scripts) else first
     return isinstance(first, Letters | Barred) or (isinstance(first, Fenced) and not any(True for _ in first.numbers()))
 
@@ -479,9 +480,9 @@ def _constant(value: float | complex) -> tuple[Node, int]:
 
 _NAMED: tuple[tuple[float, Node, int], ...] = (
     (pi, Letters("π"), PRODUCT),
-    (2 * pi, Row((Figures("2"), Letters("π"))), PRODUCT),
+    (2 * pi, FormulaRow((Figures("2"), Letters("π"))), PRODUCT),
     (pi / 2, Fraction(Letters("π"), Figures("2")), ATOM),
-    (0.2, Row((Figures("1"), Sign("/"), Figures("5"))), ATOM),
+    (0.2, FormulaRow((Figures("1"), Sign("/"), Figures("5"))), ATOM),
 )
 """Numbers of formulas that are not written as such: of each the value, the node, and how tightly it binds."""
 

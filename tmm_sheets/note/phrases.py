@@ -25,15 +25,15 @@ from tmm_sheets.note.document import (
     Heading,
     Inline,
     NewPage,
-    Number,
+    NumberedTable,
+    NumberInText,
     Paragraph,
     Reference,
     Symbol,
-    Table,
     Text,
     Where,
 )
-from tmm_sheets.note.formula import Fenced, Fraction, Node, Row, Sign, letters, letters_of
+from tmm_sheets.note.formula import Fenced, FormulaRow, Fraction, Node, Sign, letters, letters_of
 from tmm_sheets.resources import template
 from tmm_sheets.task import units
 from tmm_sheets.words import plural_form, tell
@@ -79,7 +79,7 @@ def names(language: str) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Said:
+class ShownFormula:
     """A formula as a section offers it to its template: what is shown, and the letters that are to be explained."""
 
     letters: Node
@@ -93,7 +93,7 @@ class Scope:
     """What a template may name: fields, formulas, tables, figures, lists for %each."""
 
     fields: dict[str, Any] = field(default_factory=dict)
-    formulas: dict[str, Said | list[Said]] = field(default_factory=dict)
+    formulas: dict[str, ShownFormula | list[ShownFormula]] = field(default_factory=dict)
     tables: dict[str, tuple[tuple[Text, ...], ...]] = field(default_factory=dict)
     figures: dict[str, Figure] = field(default_factory=dict)
     letters: dict[str, str] = field(default_factory=dict)
@@ -101,10 +101,10 @@ class Scope:
 
     def within(self, fields: Mapping[str, Any]) -> Scope:
         """The same with some fields more."""
-        own = {k: v for k, v in fields.items() if not isinstance(v, Said | Figure)}
+        own = {k: v for k, v in fields.items() if not isinstance(v, ShownFormula | Figure)}
         return Scope(
             self.fields | own,
-            self.formulas | {k: v for k, v in fields.items() if isinstance(v, Said)},
+            self.formulas | {k: v for k, v in fields.items() if isinstance(v, ShownFormula)},
             self.tables,
             self.figures | {k: v for k, v in fields.items() if isinstance(v, Figure)},
             self.letters,
@@ -282,7 +282,8 @@ class Writer:
                     name=name, known=", ".join(scope.tables) or "–"), n)
             rows = scope.tables[name]
             if len(rows) > 1:
-                yield Table(self.numbering.next("table", label(scope, name)), "".join(map(str, self.text(title, n, scope))), rows)
+                yield NumberedTable(self.numbering.next("table", label(scope, name)), "".join(map(str, self.text(title, n, scope))),
+                                rows)
         elif word == "figure":
             figure = scope.figures.get(name)
             if figure is not None:
@@ -291,21 +292,21 @@ class Writer:
         else:
             raise _Wrong(tell('"%{word}" is no command of a template').format(word=word), n)
 
-    def _formula(self, name: str, said: Said | list[Said], own: Mapping[str, str]) -> Iterator[Block]:
+    def _formula(self, name: str, said: ShownFormula | list[ShownFormula], own: Mapping[str, str]) -> Iterator[Block]:
         for i, one in enumerate(said if isinstance(said, list) else [said]):
             number = self.numbering.next("formula", name if not i else f"{name}-{i}")
             rows = tuple(self._explained(one, own))
             together = one.numbers is not None and characters(one.letters) + characters(one.numbers) < LONGEST
             if one.numbers is not None and together:
-                yield Formula((Row((*items(one.letters), Sign("="), *items(one.numbers))),), f"({number})")
+                yield Formula((FormulaRow((*items(one.letters), Sign("="), *items(one.numbers))),), f"({number})")
             else:
                 yield Formula(broken(one.letters), f"({number})")
             if rows:
                 yield Where(words(self.language)["where"], rows)
             if one.numbers is not None and not together:
-                yield Formula(broken(Row((*items(_left(one.letters) or Row(())), Sign("="), *items(one.numbers)))))
+                yield Formula(broken(FormulaRow((*items(_left(one.letters) or FormulaRow(())), Sign("="), *items(one.numbers)))))
 
-    def _explained(self, said: Said, own: Mapping[str, str]) -> Iterator[Explained]:
+    def _explained(self, said: ShownFormula, own: Mapping[str, str]) -> Iterator[Explained]:
         for markup, unit in said.explained:
             meaning = own.get(bare(markup)) or meaning_of(markup, self.language, self.template)
             # Its index may have two spellings; an arm on a plan is not that of the mechanism.
@@ -350,7 +351,7 @@ class Writer:
         if value is None:
             raise _Wrong(tell('there is no field "{name}" here; there are {known}').format(
                     name=name, known=", ".join(sorted(scope.fields))), n)
-        if isinstance(value, str | Number | Symbol):
+        if isinstance(value, str | NumberInText | Symbol):
             return [value]
         if isinstance(value, int):
             return [str(value)]
@@ -395,18 +396,18 @@ def broken(node: Node) -> tuple[Node, ...]:
     flat: list[Node] = []
     for x in items(node):
         if isinstance(x, Fraction) and characters(x.over) > WIDEST // 2:
-            under = x.under if not isinstance(x.under, Row) or len(x.under.items) == 1 else Fenced("(", x.under, ")")
+            under = x.under if not isinstance(x.under, FormulaRow) or len(x.under.items) == 1 else Fenced("(", x.under, ")")
             flat += [Sign("("), *items(x.over), Sign(")"), Sign("/"), *items(under)]
         else:
             flat.append(x)
     lines: list[list[Node]] = [[]]
     for i, x in enumerate(flat):
         rest = next((j for j in range(i + 1, len(flat)) if flat[j] in _BREAKS), len(flat))
-        if x in _BREAKS and lines[-1] and characters(Row((*lines[-1], *flat[i:rest]))) > WIDEST:
+        if x in _BREAKS and lines[-1] and characters(FormulaRow((*lines[-1], *flat[i:rest]))) > WIDEST:
             lines[-1].append(x)
             lines.append([])
         lines[-1].append(x)
-    return tuple(Row(tuple(line)) for line in lines)
+    return tuple(FormulaRow(tuple(line)) for line in lines)
 
 
 _BREAKS = (Sign("+"), Sign("−"), Sign("="))
@@ -414,7 +415,7 @@ _BREAKS = (Sign("+"), Sign("−"), Sign("="))
 
 def items(node: Node) -> tuple[Node, ...]:
     """Parts of a row, or the node alone."""
-    return node.items if isinstance(node, Row) else (node,)
+    return node.items if isinstance(node, FormulaRow) else (node,)
 
 
 def label(scope: Scope, name: str) -> str:
@@ -424,15 +425,15 @@ def label(scope: Scope, name: str) -> str:
 
 def _left(node: Node) -> Node | None:
     """What stands before the first sign of equality."""
-    if isinstance(node, Row):
+    if isinstance(node, FormulaRow):
         for i, x in enumerate(node.items):
             if x == Sign("="):
-                return Row(node.items[:i])
+                return FormulaRow(node.items[:i])
     return None
 
 
 def _count(value: Any) -> float:
-    return value.value if isinstance(value, Number) else len(value) if isinstance(value, list | tuple) else float(str(value))
+    return value.value if isinstance(value, NumberInText) else len(value) if isinstance(value, list | tuple) else float(str(value))
 
 
 @cache

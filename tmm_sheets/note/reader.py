@@ -18,12 +18,12 @@ from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.note import digits, phrases
 from tmm_sheets.note.digits import DIGITS, Digits, shown
-from tmm_sheets.note.document import Inline, Number, Symbol, Text
+from tmm_sheets.note.document import Inline, NumberInText, Symbol, Text
 from tmm_sheets.note.formula import (
     Figures,
+    FormulaRow,
     Node,
     Operand,
-    Row,
     Scripts,
     Sign,
     Words,
@@ -36,7 +36,7 @@ from tmm_sheets.note.formula import (
     simplified,
     with_numbers,
 )
-from tmm_sheets.note.phrases import Said
+from tmm_sheets.note.phrases import ShownFormula
 from tmm_sheets.numbers import degrees_and_minutes, fixed, is_zero, number
 from tmm_sheets.record.recording import book_of, unit
 from tmm_sheets.task import units
@@ -125,7 +125,7 @@ class Reader:
 
     def number(
         self, value: float, unit: str = "", step: str = "", position: str = "", digits: int = DIGITS, kind: float = 0.0
-    ) -> Number:
+    ) -> NumberInText:
         """A number as it is written; large and small ones as a product with a power of ten in words of the paper.
 
         Beside ``kind``, the size of its kind, it has no more decimals than a drawing could show of that: a table has no 5·10⁻⁶ in a
@@ -137,7 +137,7 @@ class Reader:
         if kind and value and isfinite(value) and isfinite(kind):
             digits = min(digits, floor(log10(abs(value))) - floor(log10(kind)) + FINEST)
             value = value if digits > 0 else 0.0
-        return Number(shown(value, digits), step, value, position, digits, self.unit(unit))
+        return NumberInText(shown(value, digits), step, value, position, digits, self.unit(unit))
 
     def of(
         self,
@@ -146,7 +146,7 @@ class Reader:
         unit_: str | None = None,
         digits: int = DIGITS,
         kind: float = 0.0,
-    ) -> Number:
+    ) -> NumberInText:
         """Value of a step at a position; of a vector its magnitude."""
         at = self.at(step, k)
         value = value_at(step, at)
@@ -156,14 +156,14 @@ class Reader:
             float(value), self.unit_of(step) if unit_ is None else unit_, self.id(step), self.position(step, at), digits, kind
         )
 
-    def fixed(self, value: float, unit: str, decimals: int, step: str = "", position: str = "") -> Number:
+    def fixed(self, value: float, unit: str, decimals: int, step: str = "", position: str = "") -> NumberInText:
         """A number with a fixed number of decimals: millimetres of a drawing, degrees."""
         value = float(value)
-        return Number(fixed(value, decimals), step, value, position, decimals, self.unit(unit))
+        return NumberInText(fixed(value, decimals), step, value, position, decimals, self.unit(unit))
 
-    def angle(self, value: float, step: str = "", position: str = "") -> Number:
+    def angle(self, value: float, step: str = "", position: str = "") -> NumberInText:
         """An angle in degrees and minutes."""
-        return Number(degrees_and_minutes(float(value)), step, float(value), position)
+        return NumberInText(degrees_and_minutes(float(value)), step, float(value), position)
 
     def at(self, step: Step, k: int | None) -> int:
         """Number of a position in the plan of a step: by its label when the plan has others."""
@@ -225,7 +225,7 @@ class Reader:
         k: int | None = None,
         symbol: str = "",
         as_unit: str | None = None,
-    ) -> Said | None:
+    ) -> ShownFormula | None:
         """The formula of a step by its own expression; None when it has none that can be written."""
         tree = step.rule.tree(len(step.args))
         if tree is None or isinstance(tree, expression.Argument) or not can_be_written(tree):
@@ -278,7 +278,7 @@ class Reader:
         return str(phrases.words(self.language).get("symbols", {}).get(a.name) or a.symbol or a.name)
 
     def written(self, symbol: str, tree: expression.Expression, quantities: Sequence[NoteQuantity],
-                result: NoteQuantity | None) -> Said:
+                result: NoteQuantity | None) -> ShownFormula:
         """A formula from its expression and the quantities in the places of its arguments; without ``result`` letters only."""
         in_letters = [Operand(letters(q.symbol), None, bool(_SUM.search(q.symbol))) for q in quantities]
         head = letters(symbol)
@@ -289,9 +289,9 @@ class Reader:
             for i in used
             if not _plain(quantities[i].symbol) and not _TERM.search(quantities[i].symbol)
         ]
-        formula = Row((head, Sign("="), *_items(of_tree(tree, in_letters))))
+        formula = FormulaRow((head, Sign("="), *_items(of_tree(tree, in_letters))))
         if result is None:
-            return Said(formula, None, tuple(explained))
+            return ShownFormula(formula, None, tuple(explained))
         rounded, of_result = digits.chosen(
             tree,
             [q.value for q in quantities],
@@ -304,28 +304,28 @@ class Reader:
         in_numbers = [self._figures(q, of) for q, of in zip(quantities, rounded, strict=True)]
         gives = self.result(replace(result, digits=of_result))
         worked_out = () if isinstance(tree, expression.Argument) else (*_items(of_tree(tree, in_numbers)), Sign("="))
-        return Said(formula, Row((*worked_out, *gives)), tuple(explained))
+        return ShownFormula(formula, FormulaRow((*worked_out, *gives)), tuple(explained))
 
     def _figures(self, q: NoteQuantity, of: Digits) -> Operand:
-        source = Number(shown(q.value, of.number), q.step, q.value, q.position, of.number)
+        source = NumberInText(shown(q.value, of.number), q.step, q.value, q.position, of.number)
         node = figures(source) if q.step else Figures(source.text)
         as_angle = None
         if q.unit == "rad":
             text = degrees_and_minutes(q.value, of.angle)
-            as_angle = Figures(text, Number(text, q.step, q.value, q.position))
+            as_angle = Figures(text, NumberInText(text, q.step, q.value, q.position))
         return Operand(node, as_angle, q.value < 0 and source.text != "0")
 
     def result(self, q: NoteQuantity) -> tuple[Node, ...]:
         """A result with its unit; an angle in degrees and minutes too."""
-        n = Number(shown(q.value, q.digits), q.step, q.value, q.position, q.digits)
+        n = NumberInText(shown(q.value, q.digits), q.step, q.value, q.position, q.digits)
         unit_ = self.unit(q.unit)
         found: tuple[Node, ...] = (figures(n), *((Words("\u00a0" + unit_),) if unit_ else ()))
         if q.unit == "rad":
             text = degrees_and_minutes(q.value)
-            found = (*found, Sign("="), Figures(text, Number(text, q.step, q.value, q.position)))
+            found = (*found, Sign("="), Figures(text, NumberInText(text, q.step, q.value, q.position)))
         return found
 
-    def of_turns(self, path: str, turns: str, omega: NoteQuantity) -> Said | None:
+    def of_turns(self, path: str, turns: str, omega: NoteQuantity) -> ShownFormula | None:
         """Formula of the angular velocity of a speed that the project file gives by its turns; None where it is given in rad/s."""
         value: Any = self.project.variant.data
         for key in path.split("."):
@@ -344,7 +344,7 @@ class Reader:
         step: Step,
         k: int | None = None,
         unit_: str | None = None,
-    ) -> Said:
+    ) -> ShownFormula:
         """A formula in the words of the field for a step that the record computes with vectors: its value must be the step's.
 
         Raises
@@ -437,7 +437,7 @@ def _plain(symbol: str) -> bool:
 
 
 def _items(node: Node) -> tuple[Node, ...]:
-    return node.items if isinstance(node, Row) else (node,)
+    return node.items if isinstance(node, FormulaRow) else (node,)
 
 
 def symbol_of(step: Step) -> str:
@@ -448,12 +448,12 @@ def symbol_of(step: Step) -> str:
 _LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789−")
 
 
-def figures(n: Number) -> Node:
+def figures(n: NumberInText) -> Node:
     """A number in a formula, its power of ten raised."""
     mantissa, _, power = n.text.partition("·10")
     if not power:
         return Figures(n.text, n)
-    return Row((Figures(mantissa, n), Sign("·"), Scripts(Figures("10"), None, Figures(power.translate(_LOWERED)))))
+    return FormulaRow((Figures(mantissa, n), Sign("·"), Scripts(Figures("10"), None, Figures(power.translate(_LOWERED)))))
 
 
 # --- sentences of the record with letters set as letters -----------------------------------------------------------
@@ -491,7 +491,7 @@ def marked(sentence: str, step: str, position: str, language: str, names: Collec
         else:
             text, _, unit_ = m["number"].partition(" ")
             bare = text.rstrip("°").replace("−", "-").replace(",", ".")
-            yield Number(text, step, float(bare), position, 0, unit_)
+            yield NumberInText(text, step, float(bare), position, 0, unit_)
     yield sentence[at:]
 
 

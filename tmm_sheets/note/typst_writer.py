@@ -23,11 +23,11 @@ from tmm_sheets.note.document import (
     Heading,
     NewPage,
     Note,
-    Number,
+    NumberedTable,
+    NumberInText,
     Paragraph,
     Sheet,
     Symbol,
-    Table,
     Text,
     Where,
 )
@@ -72,8 +72,8 @@ def placed(note: Note) -> Note:
     import json
 
     blocks = list(note.blocks())
-    order = sorted(range(len(blocks)), key=lambda k: isinstance(blocks[k], Figure | Table))
-    running = sum(not isinstance(b, Figure | Table) for b in blocks)
+    order = sorted(range(len(blocks)), key=lambda k: isinstance(blocks[k], Figure | NumberedTable))
+    running = sum(not isinstance(b, Figure | NumberedTable) for b in blocks)
     with _compiler(_measuring(note, [blocks[k] for k in order], running), {BLANK: NOTHING}) as compiler:
         found = json.loads(compiler.query("<heights>", field="value", one=True))
     heights = found["heights"]
@@ -208,7 +208,7 @@ def _block(b: Block | None, after: Block | None, file: str = "") -> str:
         case Where():
             rows = (f"([${spelt(r.symbol, TYPST)}$], [{text((*r.meaning, f', {r.unit}' if r.unit else ''))}])," for r in b.rows)
             return f"#where({string(b.word)}, ({' '.join(rows)}))"
-        case Table():
+        case NumberedTable():
             rows = ("(" + ", ".join(f"[{text(c)}]" for c in row) + ",)," for row in b.rows)
             looks = f"{'true' if b.worded else 'false'}, {'true' if b.parts else 'false'}"
             return f"#grid-table({string(b.number)}, {string(b.title)}, {max(map(len, b.rows))}, ({' '.join(rows)}), {looks})"
@@ -231,7 +231,7 @@ def text(parts: Text) -> str:
         else "#pages-of-all;"
         if getattr(x, "step", "") == "note.pages"
         else f"#box({string(str(x))});"  # no unit is parted behind its slash
-        if isinstance(x, Number) and "/" in x.unit
+        if isinstance(x, NumberInText) and "/" in x.unit
         else f"#{string(str(x))};"
         for x in parts
     )

@@ -135,7 +135,7 @@ def _printed(drawing: Drawing, name: str, look: PlotLook) -> Job:
         except ValueError as e:
             raise BadInput(str(e), hint=tell("choose another --overlap")) from None
         corner = complex(part.x0, part.y0)
-        pages = [pdf.Page(_moved(t.part, corner, part), t.shift - corner, t.page) for t in made]
+        pages = [pdf.PdfPage(_moved(t.part, corner, part), t.shift - corner, t.page) for t in made]
         last = made[-1]
         note = tell_n("{n} page {paper}: rows: {rows}, in each: {columns}, overlap {overlap:g} mm",
                       "{n} pages {paper}: {rows} rows of {columns}, overlap {overlap:g} mm", len(made))
@@ -144,7 +144,7 @@ def _printed(drawing: Drawing, name: str, look: PlotLook) -> Job:
                    (*UNSCALED, "-o", f"media={look.tile.upper()}"), (note, tell(PRINT)))  # fmt: skip
     if look.window is not None:
         own = Drawing(part.width, part.height, drawing.title, (), drawing.author)
-        data = pdf.render_pages(drawing, [pdf.Page(part, -complex(part.x0, part.y0), own)])
+        data = pdf.render_pages(drawing, [pdf.PdfPage(part, -complex(part.x0, part.y0), own)])
     else:
         data = pdf.render(drawing)
     size = f"{part.width:g}x{part.height:g}mm"

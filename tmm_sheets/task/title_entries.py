@@ -46,7 +46,7 @@ class SettingsTable(Table):
 
 
 @dataclass(frozen=True)
-class Entry:
+class TitleEntry:
     """A text of the title block, or of the paper, and where it was told."""
 
     text: str
@@ -58,9 +58,9 @@ class Names:
     """What title blocks are filled in with beside what projects and the settings beside them say: options, the user's settings."""
 
     options: Mapping[str, str] = field(default_factory=dict)
-    user: Mapping[str, Entry] = field(default_factory=dict)
+    user: Mapping[str, TitleEntry] = field(default_factory=dict)
 
-    def entries(self, variant: Variant) -> dict[str, Entry]:
+    def entries(self, variant: Variant) -> dict[str, TitleEntry]:
         """What stands in the title blocks of a project, by field.
 
         Raises
@@ -71,8 +71,8 @@ class Names:
         block, beside = variant.title_block, of_file(beside_of(variant))
         found = {}
         for name in FIELDS:
-            written = Entry(getattr(block, name), _place(variant, name))
-            option = Entry(self.options[name], f"--{name}") if name in self.options else None
+            written = TitleEntry(getattr(block, name), _place(variant, name))
+            option = TitleEntry(self.options[name], f"--{name}") if name in self.options else None
             own = None if variant.shipped or is_blank(written.text) else written
             ways = (option, own, beside.get(name), self.user.get(name), written)
             found[name] = next(entry for entry in ways if entry is not None)
@@ -136,7 +136,7 @@ def given(options: Mapping[str, str]) -> Names:
     return Names({name: " ".join(text.split()) for name, text in options.items()}, of_file(path) if path is not None else {})
 
 
-def of_file(path: Path) -> dict[str, Entry]:
+def of_file(path: Path) -> dict[str, TitleEntry]:
     """What a settings file says; nothing where there is none, or nothing in it.
 
     Raises
@@ -166,7 +166,7 @@ def of_file(path: Path) -> dict[str, Entry]:
                        for name in wrong)
     found = {("title_block", name): " ".join(getattr(block, name).split()) for name in FIELDS}
     found |= {("paper", name): getattr(settings.paper, name) for name in settings.paper.model_fields_set}
-    return {path[1]: Entry(text, f"{file}:{lines.line(path)}") for path, text in found.items() if text}
+    return {path[1]: TitleEntry(text, f"{file}:{lines.line(path)}") for path, text in found.items() if text}
 
 
 def _problem(problem: Problem) -> Problem:

@@ -15,7 +15,7 @@ from tmm_sheets.compare.cad.line_fit import lines, refine, search
 from tmm_sheets.compare.cad.view_search import FoundView
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.placing import Placing
-from tmm_sheets.compare.view_places import ViewPlace
+from tmm_sheets.compare.view_places import StatedViewPlace
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import decimal, told
 from tmm_sheets.words import tell, tell_n
@@ -74,7 +74,7 @@ def ink(elements: Sequence[Element]) -> Points:
     return lines([e.points for e in elements if e.kind not in ("text", "hatch", "fill")]).points(1.0)
 
 
-def find(elements: Sequence[Element], space: DrawingSpace, given: Sequence[tuple[ViewPlace, Placing]] = (),
+def find(elements: Sequence[Element], space: DrawingSpace, given: Sequence[tuple[StatedViewPlace, Placing]] = (),
          say: Callable[[str], None] = lambda _: None, found: Mapping[ElementView, FoundView] = MappingProxyType({})) -> Layout:
     """Place every view of a sheet.
 
@@ -114,7 +114,7 @@ class _ViewFinder:
         self.notes: list[str] = []
         self.elsewhere: list[ElementView] = []
 
-    def layout(self, given: Sequence[tuple[ViewPlace, Placing]], found: Mapping[ElementView, FoundView]) -> Layout:
+    def layout(self, given: Sequence[tuple[StatedViewPlace, Placing]], found: Mapping[ElementView, FoundView]) -> Layout:
         """Place the views from the file, then the others near their places or their texts, last those that are nowhere near."""
         for place, whole in given:
             self._place_given(place, whole)
@@ -126,7 +126,7 @@ class _ViewFinder:
         self._search([v for v in self.views if v not in self.moves and (v in self.share or not self._place_near(v))])
         return Layout(self.moves, self.share, tuple(self.notes), tuple(self.elsewhere), bool(found))
 
-    def _place_given(self, place: ViewPlace, whole: Placing) -> None:
+    def _place_given(self, place: StatedViewPlace, whole: Placing) -> None:
         v = place.view
         move = place.placing([complex(whole(z)) for z in place.theirs])
         if len(self.points[v]) >= ENOUGH:

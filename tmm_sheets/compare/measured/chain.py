@@ -23,7 +23,7 @@ from tmm_sheets.compare.measured.evidence import CURVED, Evidence, Explanation, 
 from tmm_sheets.compare.measured.explaining import explanation
 from tmm_sheets.compare.measured.judged import JudgedValue, Place
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angle_apart
-from tmm_sheets.compare.measured.measured_file import Filled, MeasuredLine, factor_of
+from tmm_sheets.compare.measured.measured_file import FilledTable, MeasuredLine, factor_of
 from tmm_sheets.compare.measured.own_numbers import OwnNumbers
 from tmm_sheets.compare.measured.plan_scales import wrong_scales
 from tmm_sheets.compare.measured.student_recompute import OwnValue
@@ -52,7 +52,7 @@ EXACT = 1e-6
 """Tolerance of what is neither drawn nor computed: numbers of teeth."""
 
 
-def judge(filled: Filled, found: Measurables, pencil: float, reading: float) -> list[JudgedValue]:
+def judge(filled: FilledTable, found: Measurables, pencil: float, reading: float) -> list[JudgedValue]:
     """Judge every filled line, in the order of the sheets."""
     errors = found.errors(filled.factors, pencil, reading)
     numbers = {name: i for i, name in enumerate(found.entries)}
@@ -185,7 +185,7 @@ def _slip(measured: float, exact: float, tolerance: float, unit: str) -> Remark 
 # --- arithmetic --------------------------------------------------------------------------------------------------------------
 
 
-def _check_arithmetic(judged: list[JudgedValue], filled: Filled, found: Measurables) -> dict[int, list[JudgedValue]]:
+def _check_arithmetic(judged: list[JudgedValue], filled: FilledTable, found: Measurables) -> dict[int, list[JudgedValue]]:
     """Compute results again from the numbers they should have come from: only rounding may stand between them.
 
     A result that is exact but for rounding is right, wherever it came from. Returns the numbers that each result, by its id(),

@@ -75,7 +75,7 @@ class MeasuredLine:
 
 
 @dataclass
-class Filled:
+class FilledTable:
     """A file that was read: lines, scale factors by key, and what was mended."""
 
     lines: list[MeasuredLine] = field(default_factory=list)
@@ -141,7 +141,7 @@ class _Refused(Exception):
         self.message, self.hint, self.column = message, hint, column
 
 
-def read(path: Path, project: Project, found: Measurables) -> Filled:
+def read(path: Path, project: Project, found: Measurables) -> FilledTable:
     """Read a filled file of a project.
 
     Raises
@@ -150,7 +150,7 @@ def read(path: Path, project: Project, found: Measurables) -> Filled:
         every problem found, each with file, line and column.
     """
     name = str(path)
-    filled = Filled()
+    filled = FilledTable()
     text = _decoded(_bytes(path, project), name, filled.notes)
     _check_project(text, name, project)
     rows = _rows(text, name, filled.notes, project)
@@ -310,7 +310,7 @@ class _Table:
 
     name: str
     found: Measurables
-    filled: Filled
+    filled: FilledTable
     columns: Mapping[Column, int]
     head: Sequence[str]
     start: int
@@ -398,7 +398,7 @@ class _Table:
             raise BadInput(self.problems)
 
 
-def _factor(key: str, written: str, found: Measurables, filled: Filled, used: set[str]) -> None:
+def _factor(key: str, written: str, found: Measurables, filled: FilledTable, used: set[str]) -> None:
     known = {plain(scale): scale for scale in used}
     wanted = plain(key).partition("/")[2]
     if wanted not in known:
@@ -436,7 +436,7 @@ def _known(key: str, found: Measurables) -> str:
     return next((k for k in (key, plain(key)) if k in found.entries), "")
 
 
-def _entry(key: str, found: Measurables, filled: Filled, name: str, number: int) -> Measurable:
+def _entry(key: str, found: Measurables, filled: FilledTable, name: str, number: int) -> Measurable:
     known = _known(key, found)
     if not known:
         near = spelling.near(key, found.entries, 2)
@@ -448,7 +448,7 @@ def _entry(key: str, found: Measurables, filled: Filled, name: str, number: int)
     return found.entries[known]
 
 
-def _number(written: str, unit: str, entry: Measurable, filled: Filled, place: str) -> tuple[float, float]:
+def _number(written: str, unit: str, entry: Measurable, filled: FilledTable, place: str) -> tuple[float, float]:
     """The number in the entry's unit, and half a unit of its last digit."""
     text = _plain(written)
     match = _NUMBER.match(text)

@@ -89,7 +89,7 @@ HEAD = ("", marked("pos."), marked("quantity"), marked("exact"), marked("measure
         marked("verdict"))
 
 
-def _text(judged: list[JudgedValue], filled: measured_file.Filled) -> str:
+def _text(judged: list[JudgedValue], filled: measured_file.FilledTable) -> str:
     head = tuple(map(tell, HEAD))
     rows: list[tuple[str, ...]] = []
     titles: dict[int, str] = {}
@@ -157,7 +157,7 @@ def _place(j: JudgedValue, more: int = 0) -> Remark:
     return Remark("", row, (("title", e.title), ("position", Own(e.label)), ("quantity", e.quantity)))
 
 
-def _story(title: str, judged: list[JudgedValue], filled: measured_file.Filled, notes: tuple[str, ...],
+def _story(title: str, judged: list[JudgedValue], filled: measured_file.FilledTable, notes: tuple[str, ...],
            pictures: PlanPictures) -> story.Story:
     """The report as it is read: the mistakes, the numbers plan by plan."""
     tables = tuple(story.StoryTable(of, tuple(map(tell, HEAD[1:])), tuple(_row(j)[1:] for j in some),
@@ -166,7 +166,7 @@ def _story(title: str, judged: list[JudgedValue], filled: measured_file.Filled, 
     return story.Story(title, (_counted(judged, filled), *_advice(judged), *notes), tuple(_mistakes(judged, pictures)), tables)
 
 
-def _summary(judged: list[JudgedValue], filled: measured_file.Filled) -> list[str]:
+def _summary(judged: list[JudgedValue], filled: measured_file.FilledTable) -> list[str]:
     mistakes = [line for i, m in enumerate(_mistakes(judged), 1)
                 for line in (f"{i}. {m.where}: {m.what}", *(f"   {line}" for line in m.details))]
     many = _too_many(judged)
@@ -178,7 +178,7 @@ def _own(judged: list[JudgedValue]) -> dict[str, int]:
     return {v: sum(j.verdict == v for j in judged if j.follows is None) for v in ("green", "amber", "red")}
 
 
-def _counted(judged: list[JudgedValue], filled: measured_file.Filled) -> str:
+def _counted(judged: list[JudgedValue], filled: measured_file.FilledTable) -> str:
     said = tell_n("{n} number: {green} green, {amber} amber, {red} red, {follow} following from an earlier mistake; {empty} "
                   "left empty",
                   "{n} numbers: {green} green, {amber} amber, {red} red, {follow} following from an earlier mistake; {empty} "

@@ -23,7 +23,7 @@ from tmm_sheets.compare.photo.sheet_map import FRAME, Map
 from tmm_sheets.compare.photo.stations import as_lines, fit, similarity_base
 from tmm_sheets.compare.photo.traces import ExtraInk
 from tmm_sheets.compare.placing import BESIDE, SYMBOL, Placing, moved
-from tmm_sheets.compare.view_places import ViewPlace
+from tmm_sheets.compare.view_places import StatedViewPlace
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import decimal, told
 from tmm_sheets.words import tell, tell_n
@@ -72,7 +72,7 @@ class PlacedViews:
         return [Box.around(e.points) for e in self.elements if e.view in scaled and e.kind in ("hatch", "fill")]
 
 
-def place(known: Sequence[Element], places: Sequence[ViewPlace], m: Map, ink: Any) -> PlacedViews:
+def place(known: Sequence[Element], places: Sequence[StatedViewPlace], m: Map, ink: Any) -> PlacedViews:
     """Move the elements of a sheet to where the photograph has them.
 
     Parameters
@@ -177,7 +177,7 @@ def _drawn(e: Element, ink: Any, level: float) -> bool:
 
 
 def _notes(
-    placed: Mapping[ElementView, _PlacedView], given: Mapping[ElementView, ViewPlace],
+    placed: Mapping[ElementView, _PlacedView], given: Mapping[ElementView, StatedViewPlace],
 ) -> Iterator[str]:
     """What is worth telling: of each view the file places, of views not found, of lines left out."""
     for view, p in placed.items():
@@ -193,7 +193,7 @@ def _notes(
         yield said.format(n=count)
 
 
-def _told(view: ElementView, placed: _PlacedView, given: ViewPlace) -> str:
+def _told(view: ElementView, placed: _PlacedView, given: StatedViewPlace) -> str:
     """What became of a view the file places: how large it was drawn, against ours or against the scale factor it was given."""
     if placed.where is None:
         said = tell('view "{view}" was not found where --views says: {share} % of its lines are there')

@@ -215,7 +215,7 @@ def _change_points(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     yield from assembled(s)
 
 
-def _compared(s: State, true: list[truth.ExactMotion | None]) -> Iterator[Residual]:
+def _compared(s: State, true: list[truth.MotionTruth | None]) -> Iterator[Residual]:
     """Velocity and acceleration of the first group's hinge against exact arithmetic at the first positions of a state."""
     pin, n = s.m.crank.speed * s.m.crank.length, len(true)
     v, a = (np.array([np.nan if t is None else getattr(t, name) for t in true]) for name in "va")

@@ -50,7 +50,7 @@ def vector(z: complex) -> Vector:
 
 
 @dataclass(frozen=True)
-class ExactMotion:
+class MotionTruth:
     """The inner hinge of the group: position, velocity, acceleration; None where the group does not assemble."""
 
     z: complex
@@ -58,7 +58,7 @@ class ExactMotion:
     a: complex
 
 
-def motion(m: Mechanism, phi: float) -> ExactMotion | None:
+def motion(m: Mechanism, phi: float) -> MotionTruth | None:
     """Motion of the inner hinge of the first group (kind 1 or 2, between crank pin and frame); None where it does not assemble."""
     with localcontext(prec=DIGITS):
         c, g = m.crank, m.groups[0]
@@ -76,7 +76,7 @@ def motion(m: Mechanism, phi: float) -> ExactMotion | None:
         # On a line the second condition has no normal part.
         own = v.dot(v) if g.kind == RRR else Decimal(0)
         a = _solved(r1, r2, r1.dot(ab) - relative.dot(relative), -own)
-        return ExactMotion(complex(z), complex(v), complex(a))
+        return MotionTruth(complex(z), complex(v), complex(a))
 
 
 def _solved(r1: Vector, r2: Vector, a: Decimal, b: Decimal) -> Vector:

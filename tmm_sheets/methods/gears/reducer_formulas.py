@@ -136,7 +136,7 @@ def said_with_sign(rule: Rule, sign: int) -> str:
     return tr(rule.wording).replace("±", "+" if sign > 0 else "−").replace("∓", "−" if sign > 0 else "+")
 
 
-class Names:
+class SpeedNames:
     """Names of the teeth's steps: wheels 1 to 4 of a stage, and pinion and wheel of the simple one."""
 
     def __init__(self, data: ReducerTable) -> None:
@@ -171,7 +171,7 @@ def ratio_plan(data: ReducerTable, teeth: ToothSet, k: int, criterion: str, chos
                    tr("Number of teeth {{name}} = {{value}} found by search: {criterion}.").format(criterion=criterion))
             searched = True
         plan.add(name, TEETH, found, symbol=f"z_{{{name[1:]}}}", say=say)
-    names = Names(data)
+    names = SpeedNames(data)
     stages = Given(data.stages, "reducer.stages", over="none")
     sign = scheme.signs[0] * scheme.signs[1]
     if names.simple:
@@ -270,7 +270,7 @@ def conditions_plan(data: ReducerTable, ratio: Plan) -> Plan:
     """Coaxiality, assembly, neighbourhood, and the least rings of internal pairs."""
     plan = Plan("reducer-conditions", tr("Conditions of coaxiality, assembly and neighbourhood"), "")
     scheme = planetary.SCHEMES[data.scheme]
-    s, z = scheme.signs, [ratio[name] for name in Names(data).stage]
+    s, z = scheme.signs, [ratio[name] for name in SpeedNames(data).stage]
     q = plan.add("q", SATELLITES, Given(data.satellites, "reducer.satellites", "q", over="none"))
     h = plan.add("ha", ADDENDUM, GivenNumber(data.addendum, "reducer.addendum"), symbol="h_a^{*}")
     left, right = (plan.add(f"coaxiality_{side}", SIDE_OF_COAXIALITY, s[i], z[a], z[b],
@@ -283,7 +283,7 @@ def conditions_plan(data: ReducerTable, ratio: Plan) -> Plan:
     plan.add("neighbourhood", NEIGHBOURHOOD, between, width)
     for satellite, ring, sign in internal_pairs(s):
         if sign < 0:
-            name = Names(data).stage[ring]
+            name = SpeedNames(data).stage[ring]
             plan.add(f"least_{name}", LEAST_RING, z[satellite], h, symbol=f"{name[0]}_{{{name[1:]}min}}")
     return plan
 

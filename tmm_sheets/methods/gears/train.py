@@ -21,7 +21,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Reported, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears import reducer_speeds
-from tmm_sheets.methods.gears.train_steps import DISTANCE, FRAME, Kinematics, Mesh, Picture, distance_of, is_wheel
+from tmm_sheets.methods.gears.train_steps import DISTANCE, FRAME, Kinematics, Mesh, TrainSpeedPicture, distance_of, is_wheel
 from tmm_sheets.numbers import number
 from tmm_sheets.words import tell, tr
 
@@ -77,7 +77,7 @@ class Train:
     @cached_property
     def velocities(self) -> Plan:
         """Picture of velocities: points ``A`` .. with their velocities ``a`` .., and a line named after each link."""
-        return Picture(self).plan
+        return TrainSpeedPicture(self).plan
 
     def speeds(self, distance: float) -> Plan:
         """Plan of the speeds of rotation with its pole ``distance`` m over the line on which they are read."""

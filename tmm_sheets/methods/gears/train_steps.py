@@ -217,7 +217,7 @@ TOGETHER = Rule("speed by all equations of Willis", together, (N, N), N,
 # --- picture of velocities ------------------------------------------------------------------------------------------------
 
 
-class Picture(SpeedPicture):
+class TrainSpeedPicture(SpeedPicture):
     """Adds the links in the order in which their speeds are found; each line goes through two velocities that are there."""
 
     def __init__(self, train: Any) -> None:

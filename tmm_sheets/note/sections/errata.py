@@ -9,7 +9,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.note import phrases
-from tmm_sheets.note.document import Number, Symbol, Text
+from tmm_sheets.note.document import NumberInText, Symbol, Text
 from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Scope
 from tmm_sheets.note.reader import Reader, marked
@@ -51,7 +51,7 @@ def scope(r: Reader) -> Scope:
     rows: list[tuple[Text, ...]] = []
     for i, m in enumerate(misprints):
         unit = r.unit(m.unit)
-        numbers = (Number(written(str(x)), f"misprint[{i}]", float(x)) for x in (m.printed, m.suggested))
+        numbers = (NumberInText(written(str(x)), f"misprint[{i}]", float(x)) for x in (m.printed, m.suggested))
         rows.append(((Symbol(letters(letters_of(m.symbol))), f", {unit}" if unit else ""), *((n,) for n in numbers),
                      tuple(marked(_written(tr(m.reason)), f"misprint[{i}]", "", r.language))))  # fmt: skip
     found.tables["misprints"] = (tuple((h,) for h in said["suspected"]), *rows)

@@ -12,9 +12,9 @@ import numpy as np
 
 from tmm_sheets.construction import expression
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.note.document import Number, Symbol, Text
-from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
-from tmm_sheets.note.phrases import Said, Scope, bare, words
+from tmm_sheets.note.document import NumberInText, Symbol, Text
+from tmm_sheets.note.formula import FormulaRow, Node, Sign, Underlined, Words, letters, letters_of
+from tmm_sheets.note.phrases import Scope, ShownFormula, bare, words
 from tmm_sheets.note.reader import Differs, NoteQuantity, Reader
 from tmm_sheets.note.sections.task import pressure_of
 from tmm_sheets.numbers import is_zero
@@ -191,7 +191,7 @@ def _terms(r: Reader, total: Step) -> Iterator[tuple[str, complex, complex, floa
 
 
 def _sum(r: Reader, total: Step, symbol: str, result: Step, length: NoteQuantity | None,
-         sign: float = 1.0) -> tuple[Said, Node] | None:
+         sign: float = 1.0) -> tuple[ShownFormula, Node] | None:
     """A force or moment from a sum of moments: its formula, and the equation of equilibrium."""
     size = r.project.study.forces.moment_size(r.k)
     terms = [t for t in _terms(r, total) if not is_zero(t[3], size)]
@@ -226,7 +226,7 @@ def _sum(r: Reader, total: Step, symbol: str, result: Step, length: NoteQuantity
     said = r.written(symbol, tree, quantities, NoteQuantity("", value, r.unit_of(result), n.step, n.position))
     own = [letters(symbol), *((Sign("·"), letters(length.symbol)) if length is not None else ())]
     equation += [Sign("+" if target >= 0 else "−"), *own, Sign("="), Words("0")]
-    return said, Row(tuple(equation))
+    return said, FormulaRow(tuple(equation))
 
 
 def index_of(symbol: str) -> str:
@@ -297,11 +297,11 @@ def _of_group(name: str, links: Iterable[str]) -> bool:
     return not set(index.split(",") if "," in index else index).isdisjoint(links)
 
 
-def _shown(equation: Node, name: str, about: str) -> Said:
+def _shown(equation: Node, name: str, about: str) -> ShownFormula:
     """An equation of moments with its left side."""
     head = letters(f"ΣM_{{{about}}}")
-    items = equation.items if isinstance(equation, Row) else (equation,)
-    return Said(Row((head, Sign("="), *items)))
+    items = equation.items if isinstance(equation, FormulaRow) else (equation,)
+    return ShownFormula(FormulaRow((head, Sign("="), *items)))
 
 
 def _arm(r: Reader, name: str, step: Step) -> dict[str, Any]:
@@ -352,7 +352,7 @@ def _force_plan(r: Reader, fp: Any) -> dict[str, Any]:
         nodes.append(Underlined(letters(symbol), times) if times else letters(symbol))
     nodes += [Sign("="), Words("0")]
     found: dict[str, Any] = {
-        "equation": Said(Row(tuple(nodes))),
+        "equation": ShownFormula(FormulaRow(tuple(nodes))),
         "links": "–".join(fp.links),
         "one": len(fp.links) == 1,
         "two": len(unknown) > 1,
@@ -399,7 +399,7 @@ def _named(symbol: str) -> str:
 def scale_text(scale: Any) -> Text:
     """A scale factor as it is written."""
     head, _, rest = str(scale).partition(" = ")
-    return (Symbol(Row((letters(head), Sign("="), Words(rest)))),)
+    return (Symbol(FormulaRow((letters(head), Sign("="), Words(rest)))),)
 
 
 def _crank(r: Reader) -> list[dict[str, Any]]:
@@ -518,7 +518,7 @@ def _compare(r: Reader, found: Scope) -> None:
     )
 
 
-def _size(r: Reader, step: Step, unit: str | None = "") -> Number:
+def _size(r: Reader, step: Step, unit: str | None = "") -> NumberInText:
     """A force or moment without its sign: the formulas give its size."""
     n = r.of(step, None, unit)
     return replace(n, text=n.text.removeprefix("−"))

@@ -14,8 +14,8 @@ from tmm_sheets.construction.rules import GIVEN, LINE_LINE, TURN
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.note.digits import shown
 from tmm_sheets.note.document import Figure, Symbol, Text
-from tmm_sheets.note.formula import Node, Row, Sign, Underlined, Words, letters, letters_of
-from tmm_sheets.note.phrases import Said, Scope, listed, words
+from tmm_sheets.note.formula import FormulaRow, Node, Sign, Underlined, Words, letters, letters_of
+from tmm_sheets.note.phrases import Scope, ShownFormula, listed, words
 from tmm_sheets.note.reader import NoteQuantity, Reader, named
 from tmm_sheets.numbers import is_zero, number
 from tmm_sheets.sheets.linkage.false_positions import triads
@@ -55,7 +55,7 @@ def scope(r: Reader) -> Scope:
     found = Scope(fields)
     _first_formulas(r, found)
     for plan, key in ((v.plan, "velocity"), (a.plan, "acceleration")):
-        found.fields[f"{key}_equations"] = [{"equation": Said(e), "known": known} for e, known in _equations(r, plan)]
+        found.fields[f"{key}_equations"] = [{"equation": ShownFormula(e), "known": known} for e, known in _equations(r, plan)]
         found.formulas |= {f"{key}-{name}": said for name, said in _lengths(r, plan)}
         found.fields[f"{key}_angular"] = list(_angular(r, plan, v.omega if key == "velocity" else a.epsilon))
         found.fields[f"{key}_several"] = len(found.fields[f"{key}_equations"]) > 1
@@ -95,7 +95,7 @@ def _diagrams(r: Reader) -> Iterator[Figure]:
 def _scale(r: Reader, scale: Any) -> Text:
     """A scale factor as it is written: letter = number unit."""
     head, _, rest = str(scale).partition(" = ")
-    return (Symbol(Row((letters(head), Sign("="), Words(rest)))),)
+    return (Symbol(FormulaRow((letters(head), Sign("="), Words(rest)))),)
 
 
 def _first_formulas(r: Reader, found: Scope) -> None:
@@ -175,7 +175,7 @@ def _equations(r: Reader, plan: Plan) -> Iterator[tuple[Node, Text]]:
             for own in rest if start.name != pole else [head]:
                 if direction:
                     known += [", "] if known else []
-                    known += [Symbol(Row((letters(own), *_items(direction))))]
+                    known += [Symbol(FormulaRow((letters(own), *_items(direction))))]
             if start.name == pole:
                 continue
             nodes: list[Node] = []
@@ -185,12 +185,12 @@ def _equations(r: Reader, plan: Plan) -> Iterator[tuple[Node, Text]]:
             for symbol in rest:
                 nodes += [Sign("+")] if nodes else []
                 nodes.append(Underlined(letters(symbol), 1))
-            sides.append(Row(tuple(nodes)))
+            sides.append(FormulaRow(tuple(nodes)))
         if sides:
             items: list[Node] = [letters(head)]
             for side in sides:
                 items += [Sign("="), *_items(side)]
-            yield Row(tuple(items)), tuple(known)
+            yield FormulaRow(tuple(items)), tuple(known)
 
 
 def _of_special(r: Reader, plan: Plan, step: Step, start: Step, path: Sequence[str]) -> list[str]:
@@ -251,7 +251,7 @@ def letters_symbol(name: str) -> Symbol:
 
 
 def _items(node: Node) -> tuple[Node, ...]:
-    return node.items if isinstance(node, Row) else (node,)
+    return node.items if isinstance(node, FormulaRow) else (node,)
 
 
 def _path(plan: Plan, pole: str, name: str) -> list[str] | None:
@@ -275,7 +275,7 @@ def direction_of(r: Reader, along: Any) -> Node | None:
     to = name.replace("⟂", "")
     said = r.quoted(to)
     of = (Words(f" {said}"),) if said != to else _items(letters(named(to)))
-    return Row((Sign("⟂" if "⟂" in name else "∥"), *of))
+    return FormulaRow((Sign("⟂" if "⟂" in name else "∥"), *of))
 
 
 def _greatest_acceleration(r: Reader, plan: Plan) -> dict[str, Any]:
@@ -328,10 +328,10 @@ def _greatest(plan: Plan, k: int) -> float:
 
 
 def _segment(s: Segment) -> Node:
-    return Row((letters(named(s.tail.name)), letters(named(s.head.name))))
+    return FormulaRow((letters(named(s.tail.name)), letters(named(s.head.name))))
 
 
-def _lengths(r: Reader, plan: Plan) -> Iterator[tuple[str, Said]]:
+def _lengths(r: Reader, plan: Plan) -> Iterator[tuple[str, ShownFormula]]:
     """Size of one vector of a plan from its segment: the first that is found by a crossing."""
     scale = r.scales.get(plan.name)
     if scale is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tmm_sheets.construction import expression
 from tmm_sheets.note import phrases
-from tmm_sheets.note.document import Number, Symbol, Text
+from tmm_sheets.note.document import NumberInText, Symbol, Text
 from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Scope
 from tmm_sheets.note.reader import NoteQuantity, Reader
@@ -39,10 +39,10 @@ def scope(r: Reader) -> Scope:
     figure = r.pictures.figure("kinematics.structure")
     fields = {
         "groups": groups,
-        "n": Number(str(n), "structure.links", n),
-        "p5": Number(str(p5), "structure.pairs", p5),
-        "turning": Number(str(turning), "structure.pairs", turning),
-        "sliding": Number(str(p5 - turning), "structure.pairs", p5 - turning),
+        "n": NumberInText(str(n), "structure.links", n),
+        "p5": NumberInText(str(p5), "structure.pairs", p5),
+        "turning": NumberInText(str(turning), "structure.pairs", turning),
+        "sliding": NumberInText(str(p5 - turning), "structure.pairs", p5 - turning),
         "structure": m.structure,
         "mobile": m.mobility == 1,
         "turning_only": turning == p5,
@@ -50,7 +50,7 @@ def scope(r: Reader) -> Scope:
         "grade": str(m.grade),
         "grade_to": said["grades_to"][m.grade - 1],
         "third": m.grade == 3,
-        "W": Number(str(m.mobility), "structure.W", m.mobility),
+        "W": NumberInText(str(m.mobility), "structure.W", m.mobility),
         "crank": m.crank.link,
         "count": len(groups),
         "several": len(groups) > 1,
@@ -86,7 +86,7 @@ def _pairs_of(r: Reader, group: str) -> Text:
     return tuple(found)  # type: ignore[arg-type]
 
 
-def _mobility(r: Reader, symbol: str, n: int, p5: int, value: int, step: str) -> phrases.Said:
+def _mobility(r: Reader, symbol: str, n: int, p5: int, value: int, step: str) -> phrases.ShownFormula:
     """Chebyshev's formula W = 3n - 2p5 - p4."""
     a = [expression.Argument(i) for i in range(3)]
     tree = expression.Operation("-", (3 * a[0] - 2 * a[1], a[2]))

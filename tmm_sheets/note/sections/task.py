@@ -11,7 +11,7 @@ from typing import Any
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.note import phrases
 from tmm_sheets.note.digits import read
-from tmm_sheets.note.document import Number, Symbol, Text
+from tmm_sheets.note.document import NumberInText, Symbol, Text
 from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Scope
 from tmm_sheets.note.reader import Reader
@@ -121,7 +121,7 @@ EXACT = 6
 """Digits that somebody writes: a number with more of them was computed."""
 
 
-def _exact(r: Reader, value: float, path: str = "") -> Number:
+def _exact(r: Reader, value: float, path: str = "") -> NumberInText:
     """A given number as it was given; a computed one rounded as all others."""
     written = r.number(value, "", path, digits=EXACT)
     return written if isclose(read(value, EXACT)[0], value, rel_tol=1e-12) else r.number(value, "", path)
