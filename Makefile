@@ -21,7 +21,7 @@ test: lint  ## everything the tests prove: ruff, mypy beside pytest
 	@$(BIN)/mypy & types=$$!; $(PYTEST); tests=$$?; wait $$types && exit $$tests
 
 trials: $(VENV)/.tested  ## the long tests: every project, every language, random students, photographs, kills, clusters
-	$(PYTEST) -m trial
+	$(PYTEST) -m 'trial or hypothesis' --hypothesis-profile many
 
 lint: $(VENV)/.tested  ## style of the code (ruff)
 	$(BIN)/ruff check .

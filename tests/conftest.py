@@ -15,8 +15,9 @@ from hypothesis import settings
 from tmm_sheets import kept
 
 # A busy machine is no mistake of the program: time is measured by benchmarks, never by tests.
-settings.register_profile("untimed", deadline=None)
-settings.load_profile("untimed")
+settings.register_profile("few", deadline=None, max_examples=40)
+settings.register_profile("many", deadline=None, max_examples=400)  # make trials
+settings.load_profile("few")
 
 os.environ["LANGUAGE"] = "en"  # messages are compared in the language of the code, wherever the tests run
 # Sheets that one test has composed are there for all others, of all workers and of the programs they start; the user's are not.

@@ -245,7 +245,8 @@ NOT_RUN = {
     "--measured": "needs a table filled in; tests/test_quoted.py fills one in",
 }
 """Commands of docs/ that the next test leaves out, by what they have in them, and why."""
-LONG = ("note", "--list", "roster", "optimise", "family check", "tests/projects", "--dxf", "lugansk/shaper press my.toml")
+LONG = ("note", "--lang uk", "page my.toml --sheet", "--list", "roster", "optimise", "family check", "tests/projects", "--dxf",
+        "lugansk/shaper press my.toml")
 """Commands of docs/ that are run in a trial only, by what they have in them."""
 
 
@@ -286,7 +287,7 @@ def test_other_commands_work(every, tmp_path, monkeypatch, capsys):
         shutil.rmtree("mine", ignore_errors=True)
         for template in Path().rglob("measured.csv"):
             template.unlink()
-        long = command.startswith("plot ") or "png" in command
+        long = command.startswith("plot ") or any(word in command for word in ("png", "--paper", "--portrait"))
         asked = [*shlex.split(command), *(("--sheet", "4") if long and "--sheet" not in command else ())]
         assert __main__.run(asked) == __main__.DONE, (command, capsys.readouterr().err)
         capsys.readouterr()

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tests.attack import SOURCES
-from tests.few import few
+from tests.few import seldom
 from tests.project_files import merged, project
 from tmm_sheets import results
 from tmm_sheets.project import Project
@@ -26,11 +26,15 @@ OWN = re.compile(r"F[0-9]{2}|[GQZ][0-9]+|[FM]и[0-9]+|W[0-9]+")
 """Signs that loads of the machine have already, and its own plain names: two loads with one sign are refused."""
 
 
+FEW = ("stirrer", "press")
+"""The projects whose signs are tried where not all are: one of them the machine itself."""
+
+
 @cache
-def signs():
-    """Names and letters of the steps of all plans of many projects; of those that differ by a number alone, one."""
+def signs(sources):
+    """Names and letters of the steps of all plans of projects; of those that differ by a number alone, one."""
     found = {}
-    for text in SOURCES.values():
+    for text in map(SOURCES.__getitem__, sources):
         p = Project(variant.parse(text, "own.toml"))
         results.told(p, None, refused={})
         steps = [s for of in p.plans.values() for plan in (of or {}).values() for s in (*plan, *plan.auxiliaries.values())]
@@ -86,13 +90,13 @@ def truth():
     return solved(machine(PLAIN, PLAIN, PLAIN, PLAIN, LINKS))[1]
 
 
-def chunks(kind, size):
+def chunks(kind, size, sources):
     """The signs that may be names of a kind, so many at a time, filled up with plain ones."""
-    names = [s for s in signs() if SPELT[kind](s)]
+    names = [s for s in signs(sources) if SPELT[kind](s)]
     return [names[k : k + size] + PLAIN[: max(0, k + size - len(names))] for k in range(0, len(names), size)]
 
 
-parts = pytest.mark.parametrize("part", few(range(180), 3))
+parts = pytest.mark.parametrize(("part", "sources"), [(2, FEW), *(seldom(part, tuple(SOURCES)) for part in range(180))])
 
 
 def fitting(kind, names, taken=()):
@@ -101,8 +105,8 @@ def fitting(kind, names, taken=()):
 
 
 @parts
-def test_points_guides_loads_and_positions_with_signs_of_plans(part, truth):
-    for names in chunks("position", MANY)[part::180]:
+def test_points_guides_loads_and_positions_with_signs_of_plans(part, sources, truth):
+    for names in chunks("position", MANY, sources)[part::180]:
         points = fitting("point", names, {"A", "B", "C", "D", "S2", "S3"})
         loads = fitting("force", names, {"Fc", "Mt", "M10", *filter(OWN.fullmatch, names)})
         p, found = solved(machine(points, fitting("guide", names), loads, fitting("position", names, set("0123456")), LINKS))
@@ -111,7 +115,7 @@ def test_points_guides_loads_and_positions_with_signs_of_plans(part, truth):
 
 
 @parts
-def test_links_with_signs_of_plans(part, truth):
-    for names in chunks("link", len(LINKS))[part::180]:
+def test_links_with_signs_of_plans(part, sources, truth):
+    for names in chunks("link", len(LINKS), sources)[part::180]:
         links = [name if name not in {"0", "1", "10", "11"} else plain for name, plain in zip(names, LINKS, strict=False)]
         assert solved(machine(PLAIN, PLAIN, PLAIN, PLAIN, links))[1] == truth, names
