@@ -237,3 +237,15 @@ def test_check_refuses_the_diagram_of_a_point_that_goes_round(name, straight):
     asked = project(project_files.merged(project_files.SLIDER, project_files.EVEN), {"cycle.diagrams": [name]})
     with nullcontext() if straight else pytest.raises(CannotBuild, match="straight line"):
         asked.check()
+
+
+@pytest.mark.parametrize("asked", [0.001, 3e-5])
+def test_a_scale_factor_that_is_asked_for_is_refused_with_one_that_fits(asked):
+    p = project(SLIDER, EVEN, {"cycle.diagrams": ["B"], "scales": {"graph-S": asked}})
+    with pytest.raises(CannotBuild) as refused:
+        diagrams.motion(p, Canvas(), Box(0, 0, 200, 230), {})
+    fits = float(refused.value.hint.partition("scales.graph-S = ")[2].partition(",")[0])
+    p = project(SLIDER, EVEN, {"cycle.diagrams": ["B"], "scales": {"graph-S": fits}})
+    canvas = Canvas()
+    diagrams.motion(p, canvas, Box(0, 0, 200, 230), {})
+    assert canvas.scales["graph-S"].mu == fits

@@ -204,10 +204,13 @@ def placed(project: Project, columns: Sequence[Column], box: Box) -> list[GraphP
     for n, column in enumerate(shape):
         mus = _fitted(project, column, box.height - len(column) * (ABOVE + BELOW))
         heights = [q.span / mu + ABOVE + BELOW for q, mu in zip(column, mus, strict=True)]
-        spare, top = (box.height - sum(heights)) / len(column), box.y1
-        for q, mu, height in zip(column, mus, heights, strict=True):
-            found.append(GraphPlace(q, Box(box.x0 + n * width, top - height - spare, box.x0 + (n + 1) * width, top), mu))
-            top -= height + spare
+        spare, top = box.height - sum(heights), box.y1
+        # What is left is for all; what is lacking, for those whose scale factors the project file asks for.
+        sharing = [spare >= 0 or q.key in project.variant.scales for q in column]
+        for q, mu, height, own in zip(column, mus, heights, sharing, strict=True):
+            low = top - height - own * spare / max(sum(sharing), 1)
+            found.append(GraphPlace(q, Box(box.x0 + n * width, low, box.x0 + (n + 1) * width, top), mu))
+            top = low
     return found
 
 
@@ -235,7 +238,7 @@ def low(project: Project, n: int, view: ViewPlace, columns: Callable[[Project, V
     """What of the graphs of a view on sheet ``n`` (from 1) is below its floor; ``columns`` are those that the view has there."""
     from tmm_sheets.sheets.legibility import below
 
-    shown = [q for column in columns(project, view) for q in column if q.span]
+    shown = [q for column in columns(project, view) for q in column if q.span and q.key not in project.variant.scales]
     for q in shown:
         def height(project: Project, view: ViewPlace, key: str = q.key) -> float:
             return next(q.extent / mu for q, _, mu in placed(project, columns(project, view), view.box) if q.key == key)
@@ -260,7 +263,10 @@ def _graph(project: Project, canvas: Canvas, place: GraphPlace) -> None:
     """Axes, curves with their ordinates at the positions, names of several curves, the level."""
     q, cycle = place.quantity, project.cycle
     per_mm = tr("({unit})/mm") if "/" in q.unit or "{" in q.unit else tr("{unit}/mm")
-    scale = pick(project, canvas, q.key, f"μ_{q.letter[0]}", per_mm.format(unit=q.unit), place.mu if q.span else 0.0)
+    # One that the project file asks for has to fit what its neighbours leave.
+    asked = q.key in project.variant.scales
+    least = q.span / max(place.box.height - ABOVE - BELOW, 1.0) if asked or not q.span else place.mu
+    scale = pick(project, canvas, q.key, f"μ_{q.letter[0]}", per_mm.format(unit=q.unit), least)
     angle, left = angle_axis(project, place.box)
     length, top, bottom = angle.mm(cycle.period), scale.mm(q.high), scale.mm(q.low)
     spare = place.box.height - ABOVE - BELOW - (top - bottom)
