@@ -201,7 +201,7 @@ VIEWS = {view.draw: view for view in (
     ViewKind("train.table", "train", place="gear_sizes.links_of_train"),
     ViewKind("train.willis", "train", place="gear_sizes.willis"),
     # cams
-    ViewKind("cam.motion", "cam"),
+    ViewKind("cam.motion", "cam", read="legibility.cam_motion"),
     ViewKind("cam.pressure", "cam", place="cam_sizes.pressure"),
     ViewKind("cam.spring", "cam", place="cam_sizes.spring"),
     ViewKind("cam.table", "cam", name=marked("Table of the law of motion")),

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 HEADS = 66.0
 """Height the diagrams leave to headings, axes and dimensions, mm."""
+TITLE = 8.0
+"""Height of a title of one line over a view, mm."""
 ANGLE = "α"
 """Letter of the pressure angle; an arrangement may name another one as the option ``angle``."""
 View = Callable[["Project", Canvas, Box, dict[str, Any]], None]
@@ -100,6 +102,11 @@ def in_degrees(symbol: str) -> str:
 # --- diagrams of the motion -----------------------------------------------------------------------------------------
 
 
+def motion_in(cam: Cam, box: Box) -> FollowerMotion:
+    """The diagrams to the scale factors that they have in a place of the sheet, mm."""
+    return cam.motion_on(box.width, box.height - TITLE - HEADS)
+
+
 @for_cams
 def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """S'', S' and S one under another over a common axis of the cam angle, with both graphical integrations."""
@@ -109,7 +116,7 @@ def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     title = tr("Law of motion of the rocker ({laws})") if law.symbol == "ψ" else tr("Law of motion of the follower ({laws})")
     # The turned designation of the sheet stands in the upper left corner.
     area = canvas.title(Box(max(box.x0, 92.0), box.y0, box.x1, box.y1), title.format(laws=laws))
-    m = cam.motion_on(box.width, area.height - HEADS)
+    m = motion_in(cam, box)
     canvas.scales[m.plan.name] = Scale("μ", 1.0, tr("mm/mm"))  # it is constructed in millimetres of paper
     curves = (m.curve_dds(), m.curve_ds(), m.curve_s())
     ups = [max(float(c.imag.max()), 0.0) for c in curves]
