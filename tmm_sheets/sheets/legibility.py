@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 APART = 3.0
 """Length of a group's links, or of the lever, that one force on it needs at least to be told from the next one, mm."""
-POLES, GRAPHS = marked("the pole distance {symbol}"), marked("the graph of {symbol}")
+POLES = tuple(Remark(marked("the pole distance {symbol}"), {"symbol": symbol}) for symbol in ("H_1", "H_2"))
 """What is too small of the motion of a cam."""
 OF_THEIR_OWN = ("kinematics", "forces")
 """Arrangements that give kinematics and forces a sheet each."""
@@ -111,27 +111,22 @@ def below(project: Project, n: int, view: ViewPlace, what: Remark, least: float,
         return
     if here >= least * (1 - 1e-6):
         return
-    said = _too_small(n, what, here, least, hint)
+    said = Remark(marked("sheet {n}: {what} is {size:.0f} mm large, it is read from {least:.0f} mm on: {hint}"),
+                  {"n": n, "what": what, "size": here, "least": least, "hint": Remark(hint)})
     apart = _apart(project, n, view, size, least)
     yield said if apart is None else Remark(marked("{said}, or take a sheet more, sheets = [{names}]"),
                                             {"said": said, "names": apart})
 
 
-def _too_small(n: int, what: Remark, size: float, least: float, hint: str) -> Remark:
-    """That something on sheet ``n`` is smaller, mm, than it is read."""
-    return Remark(marked("sheet {n}: {what} is {size:.0f} mm large, it is read from {least:.0f} mm on: {hint}"),
-                  {"n": n, "what": what, "size": size, "least": least, "hint": Remark(hint)})
-
-
 def cam_motion(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
-    """Pole distances or graphs of the motion of a cam are too small; up to rounding to the millimetre."""
+    """Pole distances or graphs of the motion of a cam are too small, to the millimetre."""
     from tmm_sheets.sheets.cams.cam import motion_in
 
-    motion, law = motion_in(project.cam, view.box), project.cam.law
-    for symbol, size, least, said in (("H_1", motion.scales.h1, POLE, POLES), ("H_2", motion.scales.h2, POLE, POLES),
-                                      (law.symbol, motion.scales.s.mm(law.stroke), MAIN, GRAPHS)):
-        if round(size) < least:
-            yield _too_small(n, Remark(said, {"symbol": symbol}), size, least, marked("longer phases of rise and return"))
+    scales, law = motion_in(project.cam, view.box).scales, project.cam.law
+    graph = Remark(marked("the graph of {quantity}"), {"quantity": law.symbol})
+    for what, size, least in ((POLES[0], scales.h1, POLE), (POLES[1], scales.h2, POLE), (graph, scales.s.mm(law.stroke), MAIN)):
+        yield from below(project, n, view, what, least, lambda _, __, size=size: float(round(size)),  # type: ignore[misc]
+                         marked("longer phases of rise and return"))
 
 
 def _apart(project: Project, n: int, view: ViewPlace, size: Size, least: float) -> str | None:
