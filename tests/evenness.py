@@ -32,7 +32,7 @@ from tmm_sheets.sheets.composed import Composed
 from tmm_sheets.sheets.floors import CRANK, EMPTY, LETTERED, SHARE, VECTOR, Floor
 from tmm_sheets.sheets.linkage import kinematic_frames, kinematics
 from tmm_sheets.sheets.sheet import composed
-from tmm_sheets.words import tr
+from tmm_sheets.words import tell
 
 MEAN, MOST = 0.12, 0.18
 """At most so many cells are empty in the mean of a kind, on one sheet."""
@@ -98,7 +98,7 @@ def sizes(project: Project, sheet: Composed) -> Iterator[Size]:
             continue
         study = project.study
         if frame.plan == study.positions.plan.name:
-            yield Size(view, 2 * project.mechanism.crank.length / frame.mu[0], CRANK, tr(CRANK.what) in told)
+            yield Size(view, 2 * project.mechanism.crank.length / frame.mu[0], CRANK, tell(CRANK.what) in told)
         plan = next((of.plan for of in (study.velocities, study.accelerations) if of.plan.name == frame.plan), None)
         if plan is None:
             continue
@@ -113,8 +113,8 @@ def sizes(project: Project, sheet: Composed) -> Iterator[Size]:
         at = [complex(frame(complex(plan[name].at(k)))) for name in points if plan[name].path in lettered]
         near = min((abs(a - b) for a, b in combinations(at, 2) if abs(a - b) > 0.5), default=inf)
         if near < kinematics.CLEAR_LETTER:
-            yield Size(f"{view} {frame.position}", max(np.ptp(z.real), np.ptp(z.imag)), LETTERED, tr(LETTERED.what) in told)
-    yield from (Size(view, size, VECTOR, tr(VECTOR.what) in told) for view, size in vectors.items())
+            yield Size(f"{view} {frame.position}", max(np.ptp(z.real), np.ptp(z.imag)), LETTERED, tell(LETTERED.what) in told)
+    yield from (Size(view, size, VECTOR, tell(VECTOR.what) in told) for view, size in vectors.items())
 
 
 OF_PLANS = ("kinematics.position_plans", "kinematics.velocity_plans", "kinematics.acceleration_plan",

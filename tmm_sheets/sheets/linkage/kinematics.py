@@ -654,7 +654,7 @@ def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[
 
 
 def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the second acceleration plan can do with, mm; none in which its vectors and their signs would crowd."""
+    """Places that the second acceleration plan can do with, mm; none in which its vectors would be short or their signs crowd."""
     plan, i = project.study.accelerations.plan, kinematic_frames.other_stroke(project)
     real = kinematic_frames.plan_extent(plan, i)
     left, below, right, above = kinematic_frames.ACCELERATIONS
@@ -665,7 +665,8 @@ def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[s
     titled = letter(kinematic_frames.title_of_accelerations(project, kinematic_frames.other_stroke(project)), 5.0).width + 0.1
     places = [(size * real.width / longest + left + right + 12.0, size * real.height / longest + below + above + 10.0)
               for size in (120.0, 100.0, 80.0)
-              if kinematic_frames.crowd(plan, i, handy(longest / size)) <= kinematic_frames.TOGETHER_READ]
+              if kinematic_frames.longest(plan, [i]) >= VECTOR.least * handy(longest / size) * (1 - 1e-6)
+              and kinematic_frames.crowd(plan, i, handy(longest / size)) <= kinematic_frames.TOGETHER_READ]
     return [(max(wide, least), high) for least in (titled, 76.0) for wide, high in places]
 
 
