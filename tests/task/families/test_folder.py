@@ -27,13 +27,13 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("quick", few((True, False), True))
 def test_all_ciphers_of_both_machines_can_be_built(quick):
-    """Their project files can be read; of every tenth, and in trials of all, the mechanism assembles."""
+    """Their project files can be read; where each digit stands in either place once, and in trials of all, they assemble."""
     found = [*family_check.tried(EXAMPLE, quick)]
     assert len(found) == 200
     assert [t for t in found if t.problem] == []
     assert {t.project for t in found if t.warnings} == {f"department/feeder@4{b}" for b in range(10)}
     family = family_folder.FolderFamily(EXAMPLE)
-    for t in found[5::10] if quick else ():
+    for t in found[::11] if quick else ():
         Project(family.read(t.project)).check()
 
 
