@@ -27,14 +27,15 @@ function look(style) {
   return `stroke-width="${width}"${pattern.length ? ` stroke-dasharray="${pattern.join(" ")}"` : ""}`;
 }
 
-function markText(x, y, height, angle, string) {
-  const turned = angle ? ` transform="rotate(${fixed(-angle * 180 / Math.PI)} ${fixed(x)} ${fixed(y)})"` : "";
+function markText(x, y, height, angle, string, wide = 1) {
+  const turned = wide !== 1 ? ` transform="translate(${fixed(x)} ${fixed(y)}) rotate(${fixed(-angle * 180 / Math.PI)}) scale(${wide} 1) translate(${fixed(-x)} ${fixed(-y)})"` :
+    angle ? ` transform="rotate(${fixed(-angle * 180 / Math.PI)} ${fixed(x)} ${fixed(y)})"` : "";
   return `x="${fixed(x)}" y="${fixed(y)}" font-size="${fixed(height / CAPITAL)}"${turned}>${plain(string)}`;
 }
 
 function markSvg(mark, n, height) {
   const g = mark.geometry;
-  if (g.text) return `<text class="mark" data-n="${n}" ${markText(g.text.at[0], height - g.text.at[1], g.text.height, g.text.angle, g.text.string)}</text>`;
+  if (g.text) return `<text class="mark" data-n="${n}" ${markText(g.text.at[0], height - g.text.at[1], g.text.height, g.text.angle, g.text.string, g.text.wide)}</text>`;
   if (g.fill) return `<path class="mark fill" data-n="${n}" d="${pathOf(g, height)}"/>`;
   return `<path class="mark" data-n="${n}" ${look(mark.style)} d="${pathOf(g, height)}"/>`;
 }

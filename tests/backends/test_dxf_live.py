@@ -17,6 +17,7 @@ from tmm_sheets.backends import dxf
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.dashes import interrupted
+from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.lettering import glyph
 from tmm_sheets.drawing.marks import Arc, Drawing, Form, FormField, Line, Polyline, Text, View
 from tmm_sheets.drawing.placing import place
@@ -248,12 +249,25 @@ def test_every_line_of_the_form_has_a_place_in_its_cell(fields):
     assert {a.dxf.tag.lower(): a.dxf.text for a in block.attribs if a.dxf.text and a.dxf.tag.lower() in fields} == fields
 
 
-def test_a_long_name_is_the_surname():
+def test_a_long_name_has_narrower_letters_in_every_format():
     canvas = Canvas()
     draw_frame(canvas, {"developed": "Щербакова Ё. А.", "checked": "Ли И. И."}, "1", 1, 1)
-    texts = {m.text for m in canvas.marks if isinstance(m, Text)}
-    assert {"Щербакова", "Ли И. И."} <= texts
-    assert canvas.shortened == {"Щербакова Ё. А.": "Щербакова"}
+    texts = {m.text: m for m in canvas.marks if isinstance(m, Text)}
+    mark = texts["Щербакова Ё. А."]
+    assert 0.7 <= mark.wide < texts["Ли И. И."].wide == 1.0
+    assert not canvas.shortened
+    ends = [max(z.real.max() for z in letters(m)) - mark.at.real for m in (mark, mark._replace(wide=1.0))]
+    assert ends[0] == pytest.approx(mark.wide * ends[1])
+    drawing = Drawing(841, 594, "", tuple(canvas.marks), forms=tuple(canvas.forms))
+    doc = opened(dxf.render(drawing))
+    assert not doc.audit().has_issues
+    entries = [a for insert in doc.modelspace().query("INSERT") for a in insert.attribs if a.dxf.text == mark.text]
+    entries += [t for t in doc.modelspace().query("TEXT") if t.dxf.text == mark.text]
+    assert [e.dxf.width for e in entries] == [mark.wide] * 2
+    strokes = [np.array(e.get_points("xy")) for e in opened(dxf.render(drawing, "strokes")).modelspace().query("LWPOLYLINE")]
+    ours = np.concatenate(list(letters(mark)))
+    there = np.concatenate(strokes) @ (1, 1j)
+    assert max(np.abs(there - z).min() for z in ours) < 1e-3
 
 
 def test_every_entity_is_in_the_group_of_its_view(sheet):

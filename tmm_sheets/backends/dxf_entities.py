@@ -9,7 +9,7 @@ from math import degrees, pi
 import numpy as np
 
 from tmm_sheets.backends.dxf_frame import weight
-from tmm_sheets.drawing.lettering import PEN, glyph
+from tmm_sheets.drawing.lettering import PEN, glyph, widened
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Text
 
 ALONG = 128
@@ -93,11 +93,11 @@ def letter_strokes(texts: Iterable[Text], owner: str, layer: str, handles: Itera
         for char in mark.text:
             letter = glyph(char)
             for stroke in letter.strokes:
-                parts.append(stroke)
+                parts.append(stroke if mark.wide == 1.0 else widened(stroke, mark.wide))
                 factors.append(u)
                 origins.append(at)
                 heads.append(start)
-            at += u * letter.advance
+            at += u * letter.advance * mark.wide
     if not parts:
         return ""
     counts = [len(p) for p in parts]

@@ -85,7 +85,7 @@ class LiveSheet:
     def _text(self, mark: Text, owner: str, on: str, more: str = "") -> Iterator[tuple[int, str]]:
         """A run of letters as TEXT; those that the font of the style has not are drawn."""
         for part in (lacking_in_common() if self.style == COMMON else WHOLE).finditer(mark.text):
-            at = mark.at + _direction(mark.angle) * advance(mark.text[: part.start()], mark.height)
+            at = mark.at + _direction(mark.angle) * advance(mark.text[: part.start()], mark.height) * mark.wide
             run = mark._replace(at=at, text=part[0])
             handle = next(self.handles)
             if part.lastgroup != "drawn":
@@ -142,17 +142,24 @@ class LiveSheet:
         self._add(form.first, [(insert, text)])
         for f in form.fields:
             if value := self._value(f):
-                left = f.at - _direction(f.angle) * _length(value, f.height) / 2
-                self._add(form.first, list(self._text(Text(left, value, f.height, f.angle), owner, TEXT_LAYER, HIDDEN)))
+                wide = self._wide(f)
+                left = f.at - _direction(f.angle) * _length(value, f.height) * wide / 2
+                run = Text(left, value, f.height, f.angle, wide=wide)
+                self._add(form.first, list(self._text(run, owner, TEXT_LAYER, HIDDEN)))
 
     def _value(self, f: FormField) -> str:
         """What stands in a field."""
         return "".join(mark.text for mark in self.marks[f.first : f.end] if isinstance(mark, Text))
 
+    def _wide(self, f: FormField) -> float:
+        """How wide the letters in a field are."""
+        return next((mark.wide for mark in self.marks[f.first : f.end] if isinstance(mark, Text)), 1.0)
+
     def _attribute(self, kind: str, f: FormField, owner: str) -> str:
         tag, value = f.name.upper(), self._value(f)
         prompt = f"3\n{f.name.replace('_', ' ')}\n" if kind == "ATTDEF" else ""
-        return (f"0\n{kind}\n5\n{next(self.handles):X}\n{head('AcDbText', owner, TEXT_LAYER)}{_centred(f, value, self.style)}"
+        letters = _centred(f, value, self.style, self._wide(f))
+        return (f"0\n{kind}\n5\n{next(self.handles):X}\n{head('AcDbText', owner, TEXT_LAYER)}{letters}"
                 f"100\nAcDb{'AttributeDefinition' if prompt else 'Attribute'}\n280\n0\n{prompt}2\n{tag}\n70\n0\n74\n0\n280\n1\n")
 
     def _group(self, name: str, handles: list[int]) -> None:
@@ -243,11 +250,11 @@ def _text(handle: int, owner: str, on: str, mark: Text, style: str, more: str = 
     """A run as TEXT from its left end; two letters and more are fitted to their length, whatever the font."""
     if missing := lacking(mark.text):
         raise ValueError(f"the drawing font has no character '{missing[0]}' (U+{ord(missing[0]):04X})")
-    end = mark.at + _direction(mark.angle) * _length(mark.text, mark.height)
+    end = mark.at + _direction(mark.angle) * _length(mark.text, mark.height) * mark.wide
     fit = f"72\n5\n{flat(11, end)}" if len(mark.text) > 1 else ""
     angle = f"50\n{short(degrees(mark.angle) % 360)}\n" if mark.angle else ""
     return (f"0\nTEXT\n5\n{handle:X}\n{head('AcDbText', owner, on, more + _look(mark.height))}{flat(10, mark.at)}"
-            f"40\n{mark.height:g}\n1\n{_escaped(mark.text)}\n{angle}7\n{style}\n{fit}100\nAcDbText\n")
+            f"40\n{mark.height:g}\n1\n{_escaped(mark.text)}\n{angle}{_width(mark.wide)}7\n{style}\n{fit}100\nAcDbText\n")
 
 
 def _length(text: str, height: float) -> float:
@@ -258,8 +265,12 @@ def _length(text: str, height: float) -> float:
     return height * (first.right - first.left - PEN) + advance(text[1:], height)
 
 
-def _centred(f: FormField, value: str, style: str) -> str:
+def _width(wide: float) -> str:
+    return "" if wide == 1.0 else f"41\n{short(wide)}\n"
+
+
+def _centred(f: FormField, value: str, style: str, wide: float) -> str:
     """Tags of lettering about the middle of its baseline; its left end is told too, as a matter of form."""
-    left = f.at - _direction(f.angle) * _length(value, f.height) / 2
+    left = f.at - _direction(f.angle) * _length(value, f.height) * wide / 2
     angle = f"50\n{short(degrees(f.angle) % 360)}\n" if f.angle else ""
-    return f"{place(10, left)}40\n{f.height:g}\n1\n{_escaped(value)}\n{angle}7\n{style}\n72\n1\n{place(11, f.at)}"
+    return f"{place(10, left)}40\n{f.height:g}\n1\n{_escaped(value)}\n{angle}{_width(wide)}7\n{style}\n72\n1\n{place(11, f.at)}"

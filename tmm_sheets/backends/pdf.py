@@ -274,7 +274,7 @@ def _arc(mark: Arc) -> str:
 def _lettering(drawing: Drawing, page: Any) -> str:
     """Text operators, run by run in the order of the drawing."""
     font, doc, escape = pdfmetrics.getFont(FONT), page._doc, page._escape
-    out, now = ["BT"], ""
+    out, now, wide = ["BT"], "", 1.0
     for mark in drawing.marks:
         if not isinstance(mark, Text):
             continue
@@ -285,6 +285,9 @@ def _lettering(drawing: Drawing, page: Any) -> str:
         if "n" in place:
             raise ValueError(f"lettering '{mark.text}' of '{mark.of}' has no finite place: {mark}")
         out.append(place)
+        if mark.wide != wide:
+            out.append(f"{100 * mark.wide:g} Tz")
+            wide = mark.wide
         for subset, code in font.splitString(mark.text, doc):
             look = f"{font.getSubsetInternalName(subset, doc)} {mark.height / CAP:.4f} Tf"
             out.append(f"({escape(code)}) Tj" if look == now else f"{look} ({escape(code)}) Tj")

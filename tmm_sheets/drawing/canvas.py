@@ -332,11 +332,12 @@ class Canvas:
             self.line(p, p + depth * u * (-1 + 1j * side), "hatch")
         self._one("hatch", first)
 
-    def text(self, at: complex, markup: str, height: float = 3.5, align: Align = "left", angle: float = 0.0) -> Lettering:
-        """Lettering at a fixed place: ``at`` is the left end, middle or right end of the baseline."""
+    def text(self, at: complex, markup: str, height: float = 3.5, align: Align = "left", angle: float = 0.0,
+             wide: float = 1.0) -> Lettering:
+        """Lettering at a fixed place: ``at`` is left end, middle or right end of the baseline, letters ``wide`` times as wide."""
         laid = letter(markup, height)
-        shift = {"left": 0.0, "centre": -laid.width / 2, "right": -laid.width}[align]
-        self.put(laid, at + rect(1, angle) * shift, angle, markup)
+        shift = {"left": 0.0, "centre": -wide * laid.width / 2, "right": -wide * laid.width}[align]
+        self.put(laid, at + rect(1, angle) * shift, angle, markup, wide)
         return laid
 
     def number(self, foot: complex, at: complex, text: str, height: float, pitch: float, *, first: bool = False) -> None:
@@ -352,17 +353,19 @@ class Canvas:
         for i, line in enumerate(lines):
             self.text(at - 1j * i * step, line, height, align)
 
-    def put(self, laid: Lettering, at: complex, angle: float = 0.0, markup: str = "") -> None:
-        """Set laid out lettering with the left end of its baseline at ``at``."""
+    def put(self, laid: Lettering, at: complex, angle: float = 0.0, markup: str = "", wide: float = 1.0) -> None:
+        """Set laid out lettering with the left end of its baseline at ``at``, its letters ``wide`` times as wide."""
         u, first = rect(1, angle), len(self.marks)
         by = Provenance("text", *self.by[1:]) if self.by is not None else Provenance("text")
         # Programs that read a PDF back know upright rectangles only: those of slanting letters and indices overlap sooner.
         loose = LOOSE if abs(sin(2 * angle)) > 1e-6 else 0.0
         for run in laid.runs:
             shift = loose if run.at.imag else 0.0
-            self.marks.append(Text(at + u * (run.at + shift), run.text, run.height, angle, self.of, by))
+            place = complex(run.at.real * wide, run.at.imag) if wide != 1.0 else run.at
+            self.marks.append(Text(at + u * (place + shift), run.text, run.height, angle, self.of, by, wide))
         for bar in laid.bars:
-            self.marks.append(Line(at + u * bar.a, at + u * bar.b, "text", self.of, by))
+            a, b = (complex(z.real * wide, z.imag) if wide != 1.0 else z for z in bar)
+            self.marks.append(Line(at + u * a, at + u * b, "text", self.of, by))
         self._one("lettering", first, markup)
 
     def label(self, anchor: complex, markup: str, away: complex = 0j, height: float = 3.5, gap: float = 1.0,

@@ -51,7 +51,7 @@ def letters(text: Text) -> Iterator[Points]:
     """Centre lines of the strokes of lettering in its place on the sheet, mm."""
     turn = exp(1j * text.angle)
     for points in lettering.strokes(text.text, text.height):
-        yield text.at + turn * points
+        yield text.at + turn * (points if text.wide == 1.0 else lettering.widened(points, text.wide))
 
 
 def check(mark: Mark) -> None:

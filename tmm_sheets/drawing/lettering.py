@@ -131,6 +131,11 @@ def strokes(text: str, height: float) -> list[Points]:
     return out
 
 
+def widened(points: Points, wide: float) -> Points:
+    """Points of letters so many times as wide, from the left end of their baseline."""
+    return np.asarray(wide * points.real + 1j * points.imag)
+
+
 def plain(text: str) -> str:
     """Markup that sets ``text`` literally, whatever signs it holds."""
     return text.replace("\\", "\\\\").replace("_", "\\_").replace("^", "\\^")

@@ -96,7 +96,10 @@ class Polyline(NamedTuple):
 
 
 class Text(NamedTuple):
-    """One run of plain text; ``at`` is the left end of the baseline, ``height`` that of a capital letter, mm."""
+    """One run of plain text; ``at`` is the left end of the baseline, ``height`` that of a capital letter, mm.
+
+    Letters are ``wide`` times as wide as usual.
+    """
 
     at: complex
     text: str
@@ -104,6 +107,7 @@ class Text(NamedTuple):
     angle: float = 0.0
     of: str = ""
     by: Provenance | None = None
+    wide: float = 1.0
 
 
 class Fill(NamedTuple):

@@ -8,13 +8,14 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.drawing.lettering import advance, letter
+from tmm_sheets.drawing.lettering import advance, letter, widened
 from tmm_sheets.drawing.marks import Points, Text
 
 
 def text_box(mark: Text) -> Points:
     """Corners, shape (4,), of the rectangle round a run of text (slanted letters reach a little to the right of their advance)."""
     corners = _corners(mark.text, mark.height)
+    corners = corners if mark.wide == 1.0 else widened(corners, mark.wide)
     return np.asarray(mark.at + (complex(np.cos(mark.angle), np.sin(mark.angle)) * corners if mark.angle else corners))
 
 
@@ -23,7 +24,7 @@ def text_boxes(marks: Sequence[Text]) -> npt.NDArray[np.complex128]:
     if not marks:
         return np.empty((0, 4), complex)
     found = np.array([mark.at for mark in marks])[:, None] + np.array([_corners(mark.text, mark.height) for mark in marks])
-    for k in (k for k, mark in enumerate(marks) if mark.angle):
+    for k in (k for k, mark in enumerate(marks) if mark.angle or mark.wide != 1.0):
         found[k] = text_box(marks[k])
     return np.asarray(found)
 

@@ -26,6 +26,8 @@ TURNS = {0.0: 1 + 0j, pi / 2: 1j, pi: -1 + 0j}
 """Directions of lettering by its angle, exact."""
 CAPTION = 2.5
 DOTS, MOST = "...", 4
+NARROWEST, NARROWER = 0.7, (0.95, 0.9, 0.85, 0.8, 0.75, 0.7)
+"""Text too long for a cell in the least size has letters so many times as wide, as CAD programs have, and no narrower ones."""
 PITCH = 1.7  # between lines of type B lettering, in letter heights
 SIDE, ENDS = 1.0, 1.25  # least distance of lettering to the lines at its sides, above and below, mm
 BESIDE = 0.5  # the same of the printed words, whose cells are as wide as the standard wants them
@@ -154,14 +156,15 @@ PATRONYMIC = re.compile(r"(ич|вна|чна)$")
 def short_name(name: str) -> str:
     """A name as long as its cell has room for with the least letters.
 
-    Where it is too long first without spaces between its initials, then with first names as initials; at last what GOST 2.104 asks
-    for there, the surname alone.
+    Where it is too long first with first names as initials and without spaces between these, then in narrower letters; only what
+    is too long even so has what GOST 2.104 asks for there, the surname alone.
     """
     words = name.split()
     surname = _surname(words)
     initials = "".join(word if word.endswith(".") else f"{word[0]}." for word in words if word != surname)
     short = f"{surname} {initials}" if words[:1] == [surname] else f"{initials} {surname}"
-    return next((way for way in (name, short) if letter(plain(way), CAPTION).width <= NAME_WIDTH), surname)
+    ways = ((way, room) for room in (NAME_WIDTH, NAME_WIDTH / NARROWEST) for way in (name, short))
+    return next((way for way, room in ways if letter(plain(way), CAPTION).width <= room), surname)
 
 
 def _surname(words: list[str]) -> str:
@@ -221,23 +224,24 @@ def _rise(laid: Lettering, size: float) -> float:
     return laid.ascent - size if laid.ascent > 1.1 * size + 1e-9 else 0.0
 
 
-def _fitted(parts: Mapping[str, str], sizes: tuple[float, ...], width: float, height: float) -> tuple[float, dict[str, list[str]]]:
-    """Letter height and lines of each part: the largest size at which they fit, in up to four lines.
+def _fitted(parts: Mapping[str, str], sizes: tuple[float, ...], width: float, height: float) -> tuple[
+        float, float, dict[str, list[str]]]:
+    """Letter height, how wide the letters are, and lines of each part: the largest size at which they fit, in up to four lines.
 
-    What is too long for the smallest size, which must stay readable, ends in dots.
+    What is too long for the smallest size, which must stay readable, has narrower letters, and ends in dots if that is not enough.
     """
-    for size in sizes:
+    for size, wide in (*((size, 1.0) for size in sizes), *((sizes[-1], wide) for wide in NARROWER)):
         room = int((height / size - 1) / PITCH + 1 + 1e-9)  # lines
-        wrapped = {name: _wrap(part, size, width) if room > 1 else [part] if part else [] for name, part in parts.items()}
+        wrapped = {name: _wrap(part, size, width / wide) if room > 1 else [part] if part else [] for name, part in parts.items()}
         laid = [letter(plain(line), size) for lines in wrapped.values() for line in lines]
         if not laid:
-            return size, wrapped
+            return size, wide, wrapped
         widest = max(line.width for line in laid)
         tall = size * (1 + PITCH * (len(laid) - 1)) + 2 * _rise(laid[0], size)
         # Three lines and more need some air between the rules of their cell.
-        if widest <= width and tall <= height - (1.0 if len(laid) > 2 else 0.0) and len(laid) <= MOST:
-            return size, wrapped
-    return size, _shortened(wrapped, size, width, min(max(room, len(parts)), MOST))
+        if widest * wide <= width and tall <= height - (1.0 if len(laid) > 2 else 0.0) and len(laid) <= MOST:
+            return size, wide, wrapped
+    return size, wide, _shortened(wrapped, size, width / wide, min(max(room, len(parts)), MOST))
 
 
 def _shortened(wrapped: Mapping[str, list[str]], size: float, width: float, room: int) -> dict[str, list[str]]:
@@ -264,7 +268,7 @@ def _lines(canvas: Canvas, cell: Box, parts: Mapping[str, str], sizes: tuple[flo
     ``parts`` are texts by name, each begins a line. Returns the lines; a part without text has an empty one below the others.
     """
     along, across = (cell.height, cell.width) if angle == pi / 2 else (cell.width, cell.height)
-    size, wrapped = _fitted(parts, sizes, along - 2 * side, across - (2 * ENDS if across > 5 else 0.5))
+    size, wide, wrapped = _fitted(parts, sizes, along - 2 * side, across - (2 * ENDS if across > 5 else 0.5))
     canvas.shortened |= {parts[name]: " ".join(lines) for name, lines in wrapped.items()
                          if " ".join(lines) != " ".join(parts[name].split())}
     up = 1j * TURNS[angle]
@@ -276,7 +280,7 @@ def _lines(canvas: Canvas, cell: Box, parts: Mapping[str, str], sizes: tuple[flo
             at, first = cell.centre + up * max(y, ENDS - across / 2), len(canvas.marks)
             if line:
                 at = cell.centre + up * y
-                canvas.text(at, plain(line), size, "centre", angle)
+                canvas.text(at, plain(line), size, "centre", angle, wide)
             found.append(FormField(name if n == 1 else f"{name}_{n}", first, len(canvas.marks), at, size, angle))
             y -= PITCH * size
     return found

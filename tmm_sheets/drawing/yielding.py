@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import strokes
+from tmm_sheets.drawing.lettering import strokes, widened
 from tmm_sheets.drawing.marks import Arc, Line, Mark, Points, Polyline, Text, flat
 from tmm_sheets.drawing.styles import line_type
 
@@ -93,18 +93,19 @@ def _chords(mark: Mark) -> Points:
 
 
 @lru_cache(maxsize=4096)
-def _ink(text: str, height: float) -> tuple[complex, complex] | None:
+def _ink(text: str, height: float, wide: float) -> tuple[complex, complex] | None:
     """Corners of the ink of a run of letters from its beginning."""
     drawn = strokes(text, height)
     if not drawn:
         return None
     z = np.concatenate(drawn)
+    z = z if wide == 1.0 else widened(z, wide)
     clear = complex(CLEAR, CLEAR)
     return complex(z.real.min(), z.imag.min()) - clear, complex(z.real.max(), z.imag.max()) + clear
 
 
 def _letters(texts: Sequence[Text]) -> _Letters | None:
-    shown = [(mark, ink) for mark in texts if (ink := _ink(mark.text, mark.height)) is not None]
+    shown = [(mark, ink) for mark in texts if (ink := _ink(mark.text, mark.height, mark.wide)) is not None]
     if not shown:
         return None
     at, angle = np.array([m.at for m, _ in shown]), np.array([m.angle for m, _ in shown])

@@ -89,7 +89,8 @@ def geometry(mark: Mark) -> dict[str, Any]:
         return {"polyline": _points(mark.points), **({"closed": True} if mark.closed else {})}
     if isinstance(mark, Fill):
         return {"fill": _points(mark.points)}
-    return {"text": {"at": _point(mark.at), "height": mark.height, "angle": round(float(mark.angle), 9), "string": mark.text}}
+    return {"text": {"at": _point(mark.at), "height": mark.height, "angle": round(float(mark.angle), 9), "string": mark.text,
+                     **({"wide": mark.wide} if mark.wide != 1.0 else {})}}
 
 
 def _point(z: complex) -> list[float]:

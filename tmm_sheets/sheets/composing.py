@@ -138,10 +138,10 @@ def shortened(project: Project) -> list[str]:
 
 
 def _code(project: Project, n: int) -> str:
-    """Code of sheet ``n`` in the designations: its arrangement's, the sheet's number where these do not rise over the project."""
+    """Code of sheet ``n`` in the designations: its arrangement's; its number where it is the only one or these do not rise."""
     codes = [arrangement(name).code for name in project.sheets]
     rising = all(int(a[1:]) < int(b[1:]) for a, b in pairwise(codes)) if all(code[1:].isdecimal() for code in codes) else False
-    return tr(codes[n - 1]) if rising else tr("D{number}").format(number=n)
+    return tr(codes[n - 1]) if rising and len(codes) > 1 else tr("D{number}").format(number=n)
 
 
 def _views(canvas: Canvas) -> tuple[View, ...]:

@@ -34,7 +34,7 @@ from tmm_sheets.drawing.marks import (
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.composed import Composed, Leaving
 
-FORM = "3"
+FORM = "4"
 """Number of the form, another one for every change of it."""
 NUMBERS = np.dtype("<f8")
 KINDS: dict[str, type[Any]] = {"L": Line, "A": Arc, "P": Polyline, "T": Text, "F": Fill}
@@ -112,6 +112,7 @@ def _marks(marks: Sequence[Mark], points: list[Any]) -> dict[str, Any]:
         "arcs": [[m.radius, m.start, m.end] for m in arcs],
         "closed": [m.closed for m in polylines], "lengths": [len(m.points) for m in (*polylines, *fills)],
         "gaps": {k: m.gaps for k, m in enumerate(marks) if isinstance(m, Line | Arc | Polyline) and m.gaps},
+        "wide": {k: m.wide for k, m in enumerate(marks) if isinstance(m, Text) and m.wide != 1.0},
         "texts": [m.text for m in texts], "letters": [letters((m.height, m.angle)) for m in texts],
         "tables": [list(table.known) for table in (of, traces, styles, letters)],
     }  # fmt: skip
@@ -136,9 +137,10 @@ def _marks_of(tree: dict[str, Any], points: Any) -> Iterator[Mark]:
         "T": ((z, text, *letters[k]) for z, text, k in zip(at[centres:], texts, tree["letters"], strict=True)),
         "F": zip(curves[count:], looks[3], strict=True),
     }
-    gaps = {int(k): (tuple(map(_pair, found)),) for k, found in tree["gaps"].items()}
+    last: dict[int, tuple[Any]] = {int(k): (tuple(map(_pair, found)),) for k, found in tree["gaps"].items()}
+    last |= {int(k): (wide,) for k, wide in tree["wide"].items()}
     for k, (kind, i, j) in enumerate(zip(kinds, tree["of"], tree["by"], strict=True)):
-        yield KINDS[kind](*next(heads[kind]), of[i], traces[j], *gaps.get(k, ()))
+        yield KINDS[kind](*next(heads[kind]), of[i], traces[j], *last.get(k, ()))
 
 
 class _Numbered:

@@ -40,17 +40,17 @@ def links(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     height = size_in(row)
     widths = needs(rows, height, ROOMY)
     spare = max(box.width - sum(widths), 0.0) / len(widths)
-    canvas.text(complex(box.centre.real, box.y1 - 5.5), _title(), 3.5, "centre")
+    canvas.text(complex(box.centre.real, box.y1 - 5.5), _title(project), 3.5, "centre")
     canvas.table(complex(box.x0, box.y1 - HEAD), [w + spare for w in widths], rows, row, height)
 
 
-def _title() -> str:
-    return tr("Given sizes and masses")
+def _title(project: Project) -> str:
+    return tr("Given sizes and masses") if any(link.mass for link in project.mechanism.links.values()) else tr("Given sizes")
 
 
 def _forms(project: Project) -> Iterator[tuple[tuple[float, float], Rows, float]]:
     """Size on paper, rows and their height, of the forms of the table: the clearest first."""
-    cells = [[symbol, value] for symbol, value in _quantities(project)]
+    cells, title = [[symbol, value] for symbol, value in _quantities(project)], _title(project)
     if not cells:
         return
     for row, beside in product(ROWS, BESIDE):
@@ -58,7 +58,7 @@ def _forms(project: Project) -> Iterator[tuple[tuple[float, float], Rows, float]
         columns = [cells[n * count:(n + 1) * count] for n in range(beside)]
         lines = [[text for column in columns for text in (column[i] if i < len(column) else ["", ""])] for i in range(count)]
         rows = [[tr("Quantity"), tr("Value")] * beside, *lines]
-        width = max(sum(needs(rows, size_in(row), ROOMY)), letter(_title(), 3.5).width + 4.0)
+        width = max(sum(needs(rows, size_in(row), ROOMY)), letter(title, 3.5).width + 4.0)
         yield (width, HEAD + row * len(rows)), rows, row
 
 
