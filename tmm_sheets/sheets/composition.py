@@ -41,8 +41,8 @@ def arranged(project: Project, n: int) -> Arrangement:
         from tmm_sheets.sheets.flywheel import enlarged, flywheel
 
         return enlarged.apart(project, flywheel.apart(project, plan))
-    # Whoever sets scale factors by hand has the boxes as they are written.
-    if project.variant.scales:
+    # Whoever sets scale factors by hand has the boxes as they are written; an indicator diagram only makes its mechanism larger.
+    if project.variant.scales.keys() - {"indicator"}:
         return plan
     if not any(view.kind.place for view in plan.views):
         return plan
