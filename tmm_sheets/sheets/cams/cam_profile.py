@@ -253,6 +253,11 @@ def table_size(cam: Cam) -> tuple[float, float]:
     return sum(_widths(cam)), _ROW * len(_given(cam))
 
 
+def in_full(length: float) -> str:
+    """A length of the synthesis, m, in mm to the micrometre: as a given one is written where it is one."""
+    return number(round(length * 1e3, 3), 9)
+
+
 def _given(cam: Any, letter_of: str = ANGLE) -> list[list[str]]:
     """Given numbers and main dimensions."""
     d, law = cam.data, cam.law
@@ -262,7 +267,7 @@ def _given(cam: Any, letter_of: str = ANGLE) -> list[list[str]]:
     if "flat" in cam.traits:
         p = cam.plate
         return [head, [tr("Stroke of the follower S, mm"), number(d.stroke * 1e3)], phases,
-                [in_mm("r_{min}"), fixed(p.r_min * 1e3, 3)], [in_mm("r_0"), number(p.r0 * 1e3)],
+                [in_mm("r_{min}"), in_full(p.r_min)], [in_mm("r_0"), number(p.r0 * 1e3)],
                 [in_mm("l_1 / l_2"), f"{fixed(p.l1 * 1e3, 2)} / {fixed(p.l2 * 1e3, 2)}"]]
     z = cam.zone
     angle = [tr("[{angle}] on the rise, deg").format(angle=letter_of) if d.limit == "rise" else in_degrees(f"[{letter_of}]"),
@@ -270,14 +275,14 @@ def _given(cam: Any, letter_of: str = ANGLE) -> list[list[str]]:
     if "rocker" in cam.traits:
         rows = [head, [tr("Angle of swing ψ, deg"), number(degrees(d.swing))],
                 [tr("Length of the rocker AB, mm"), number(d.arm * 1e3)], phases, angle,
-                [in_mm("r_0"), fixed(z.r0 * 1e3, 3)], [in_mm("l_0"), fixed(z.l0 * 1e3, 3)]]
+                [in_mm("r_0"), in_full(z.r0)], [in_mm("l_0"), in_full(z.l0)]]
     else:
         rows = [head, [tr("Stroke of the follower S, mm"), number(d.stroke * 1e3)], phases, angle,
-                [in_mm("S_0"), fixed(z.s0 * 1e3, 3)], [in_mm("e"), fixed(z.e * 1e3, 3)], [in_mm("r_0"), fixed(z.r0 * 1e3, 3)]]
+                [in_mm("S_0"), in_full(z.s0)], [in_mm("e"), in_full(z.e)], [in_mm("r_0"), in_full(z.r0)]]
     rows.append([in_mm("r_p"), number(cam.roller * 1e3)])
     if d.closure == "geometric":
         rows.append([tr("Angle between the arms"), f"{fixed(degrees(cam.spread), 2)}°"] if "rocker" in cam.traits
-                    else [tr("Between the rollers L, mm"), fixed(cam.distance * 1e3, 3)])
+                    else [tr("Between the rollers L, mm"), in_full(cam.distance)])
     return rows
 
 
@@ -332,7 +337,7 @@ def _circles(s: PlayerStage, picture: _ProfilePicture) -> None:
             angle = start + cam.right * (idle.start + share * idle.angle)
             tip = origin + rect(scale.mm(radius), angle)
             s.pen("O", "dimension").arrow(origin + rect(3.0, angle), tip, "thin", 3.0)
-            text = f"{name} = {fixed(radius * 1e3, 3)}"
+            text = f"{name} = {in_full(radius)}"
             wide = letter(text, 3.5).width
             if scale.mm(radius) < 2.0 * wide:  # beyond its arrow, where there is more room
                 canvas.label(tip, text, rect(1, angle), 3.5, 1.0)
@@ -432,7 +437,7 @@ def _rocker(s: PlayerStage, picture: _ProfilePicture) -> None:
     pen.circle(b0, picture.hole, "main")
     canvas.label(a0, "A_0", (a0 - b0) / arm, 3.5, 3.0)
     canvas.label(b0, "B_0", -u + 1j, 3.5, 2.0)
-    canvas.label(picture.origin + 0.55 * (a0 - picture.origin), f"l_0 = {fixed(cam.zone.l0 * 1e3, 3)}",  # type: ignore[attr-defined]
+    canvas.label(picture.origin + 0.55 * (a0 - picture.origin), f"l_0 = {in_full(cam.zone.l0)}",  # type: ignore[attr-defined]
                  1j * (a0 - picture.origin), 3.5, 0.6)
 
 
