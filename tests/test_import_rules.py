@@ -57,7 +57,7 @@ RULES = {
     "output": ("backends catalogue drawing explain project sheets task.title_entries", "task"),
     "output.family_check": ("project task.family_folder", ""),
     "output.batch": ("catalogue output task.title_entries", ""),
-    "output.roster": ("catalogue output", ""),
+    "output.roster": ("catalogue output task.families", ""),
     "output.handouts": ("compare.measured living note output project", ""),
     "page": ("backends catalogue compare drawing living output project sheets task", ""),
     "note": ("backends construction drawing project record results sheets task.synthesis_refs task.units", "task"),

@@ -1,5 +1,8 @@
 """A whole group from a table: who has which task, what each student gets, what of it is handed in."""
 
+import shutil
+from pathlib import Path
+
 import pytest
 
 from tmm_sheets import catalogue
@@ -94,3 +97,14 @@ def test_who_is_told_to_stop_says_how_to_go_on(tmp_path, monkeypatch, capsys):
     assert {"made.csv", "projects.toml", "A/note.pdf", "A/sheet1.svg"} <= made
     assert not any(name.startswith("B/") or name.endswith((".part", ".tmp")) for name in made)
     assert 'B" = "../own/my.toml"' in (tmp_path / "works/projects.toml").read_text("utf-8")
+
+
+def test_families_of_a_department(tmp_path, monkeypatch):
+    """A machine for all with a cipher for each, in whichever column, as its family writes it."""
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(Path(__file__).parents[2] / "docs/examples/department", tmp_path / "department")
+    for text in ("student;cipher\nA;27", "student;variant\nA;27", "student;cipher\nA;department/pump@27"):
+        assert read(tmp_path, text, "department/pump")[0].project == "department/pump@27"
+    family = tmp_path / "department/family.toml"
+    family.write_text(f'separator = ":"\n{family.read_text("utf-8")}', encoding="utf-8")
+    assert read(tmp_path, "student;variant\nA;27", "department/pump")[0].project == "department/pump:27"

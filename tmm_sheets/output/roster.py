@@ -21,6 +21,7 @@ from unicodedata import normalize
 from tmm_sheets import catalogue, encodings, files
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
 from tmm_sheets.output.handouts import KINDS
+from tmm_sheets.task import families
 from tmm_sheets.words import both, tell
 
 if TYPE_CHECKING:
@@ -157,12 +158,12 @@ def _project(told: Mapping[str, str], beside: Path, common: str) -> str:
         if not machine:
             raise _Wrong("cipher", tell("expected a machine beside the cipher: diesel, press, compressor or crusher"),
                          tell("in a column task, or for all --task transport/diesel"))
-        return f"{machine if '/' in machine else f'transport/{machine}'}@{rest}"
+        return _of_family(machine if "/" in machine else f"transport/{machine}", rest)
     if variant and (not task or catalogue.is_shipped(variant)):
         return variant if "/" in variant else f"sixbar/{variant}"
     if variant:
-        family, _, number = task.partition(":")[0].rpartition("/")
-        return f"{family or 'sixbar'}/{number}:{variant}"
+        machine = re.split("[:@]", task)[0]
+        return _of_family(machine if "/" in machine else f"sixbar/{machine}", variant)
     if not task:
         raise _Wrong("task", tell("expected a task, such as sixbar/3:2"))
     if re.fullmatch(r"\d+:\d+", task):
@@ -171,6 +172,12 @@ def _project(told: Mapping[str, str], beside: Path, common: str) -> str:
         if not catalogue.is_shipped(task) and (beside / task).is_file():
             return str(beside / task)
     return task
+
+
+def _of_family(machine: str, cipher: str) -> str:
+    """The project of a machine and a cipher, or of a task and a variant, as its family writes it."""
+    family = families.of(machine)
+    return f"{machine}{'@' if family is None else family.rules.separator}{cipher}"
 
 
 # --- what was made ----------------------------------------------------------------------------------------------------------
