@@ -14,6 +14,7 @@ import pytest
 from tests import catalogues, docs, docs_site, figures, pictures
 from tests.few import few
 from tmm_sheets import __main__, catalogue, cli, resources
+from tmm_sheets.backends import dxf_frame
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.task import keys, schema, variant
@@ -50,6 +51,8 @@ def test_the_wheel_has_what_is_read_and_no_more():
     left_out = {name.removeprefix("/") for name in wheel["exclude"]} - {"*.po"}
     assert {"templates/pictures", "templates/fonts/build.py"} <= left_out
     assert all((ROOT / name).exists() for name in left_out)
+    written = {f"templates/fonts/{font}.lff" for font in (dxf_frame.COMMON, dxf_frame.OWN)}  # beside each DXF
+    assert not written & left_out
     assert wheel["sources"] == {"templates": "tmm_sheets/_templates", "variants": "tmm_sheets/_variants"}
     assert (ROOT / "tmm_sheets/py.typed").is_file()
     for compiled in (p.with_suffix(".mo") for p in (ROOT / "templates/locale").rglob("*.po") if p.parts[-3] != "en"):
