@@ -34,6 +34,7 @@ RULES = {
     "task.families": ("task", ""),
     "task.family_folder": ("task", ""),
     "task.cipher_form": ("task", ""),
+    "task.family_listing": ("task", ""),
     "task.title_entries": ("task", ""),
     "task.new_file": ("catalogue task", ""),
     "task.keys": ("task", ""),

@@ -14,7 +14,8 @@ cd "$work"
 unset PYTHONPATH
 export PATH="$work/venv/bin:$PATH"
 tmm-sheets --version
-tmm-sheets list | grep -q '^lugansk/shaper '
+tmm-sheets list > list.txt # all of it: who stops reading a pipe stops the program
+grep -q '^lugansk/shaper ' list.txt
 tmm-sheets check lugansk/shaper
 tmm-sheets build lugansk/shaper
 for n in 1 2 3 4; do

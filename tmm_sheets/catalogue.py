@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import quoting, resources, spelling
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.task import families, headings
+from tmm_sheets.task import families, family_listing, headings
 from tmm_sheets.words import either, every, tell
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def entries() -> tuple[ShippedProject, ...]:
 
 def _entries() -> Iterator[ShippedProject]:
     for name in shipped():
-        with suppress(BadInput):  # of a family that somebody has not finished
+        with suppress(OSError, ValueError, LookupError, TypeError, AttributeError):  # of a family that somebody has not finished
             table = _heading(name)
             yield ShippedProject(name, table["title"], table.get("variant", ""), tuple(table.get("sheets", ())))
 
@@ -60,8 +60,8 @@ def found(word: str) -> tuple[ShippedProject, ...]:
 
 
 def _heading(name: str) -> dict[str, Any]:
-    family = families.of(name)
-    return family.heading(name) if family is not None else headings.of(_path(name).read_text(encoding="utf-8"))
+    folder = families.folder_of(name)
+    return family_listing.heading(folder, name) if folder is not None else headings.of(_path(name).read_text(encoding="utf-8"))
 
 
 def read(project: str, corrected: bool = False) -> Variant:
@@ -82,7 +82,7 @@ def read(project: str, corrected: bool = False) -> Variant:
 
 def is_shipped(project: str) -> bool:
     """Whether a project is meant by a shipped name, not by a path."""
-    return (families.of(project) is not None and not project.endswith(SUFFIX)) or project in _files()
+    return (families.folder_of(project) is not None and not project.endswith(SUFFIX)) or project in _files()
 
 
 def located(project: str) -> Path:

@@ -16,8 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tmm_sheets import resources
-from tmm_sheets.errors import BadInput
-from tmm_sheets.task import user_folder
+from tmm_sheets.task import family_listing, user_folder
 
 if TYPE_CHECKING:
     from tmm_sheets.task.family_folder import FolderFamily
@@ -31,22 +30,25 @@ def known() -> tuple[str, ...]:
 
 def of(project: str) -> FolderFamily | None:
     """The family that a project name belongs to."""
+    folder = folder_of(project)
+    return _read(folder) if folder is not None else None
+
+
+def folder_of(project: str) -> Path | None:
+    """The folder of the family that a project name belongs to."""
     family, sign, _ = project.partition("/")
     if not sign or not re.fullmatch(r"[\w-]+", family):
         return None
     if family in known():
-        return _read(resources.variants() / family)
-    if (resources.variants() / family).is_dir():
-        return None
-    folder = _folder(family)
-    return _read(folder) if folder is not None else None
+        return resources.variants() / family
+    return None if (resources.variants() / family).is_dir() else _folder(family)
 
 
 def names() -> Iterator[str]:
     """Names of all families' projects; none of a folder that cannot be read."""
     for folder in (*(resources.variants() / name for name in known()), *folders().values()):
-        with suppress(BadInput):
-            yield from _read(folder).names()
+        with suppress(OSError, ValueError, LookupError, TypeError, AttributeError):  # somebody has not finished it
+            yield from family_listing.listed(folder)
 
 
 FILE, PATH, GROUP = "family.toml", "TMM_SHEETS_PATH", "tmm_sheets.families"

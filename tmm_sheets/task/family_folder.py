@@ -14,13 +14,13 @@ from decimal import Decimal, InvalidOperation
 from functools import cached_property
 from pathlib import Path
 from string import Template
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pydantic import Field, ValidationError
 
 from tmm_sheets import spelling
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.task import family_tables, formulas, headings, toml_file
+from tmm_sheets.task import family_listing, family_tables, formulas, toml_file
 from tmm_sheets.task.cipher_form import Cipher, CipherForm, CipherTable, of_signs
 from tmm_sheets.task.family_tables import Choice, Row
 from tmm_sheets.task.filling import SOURCE, filled
@@ -98,8 +98,8 @@ class FamilyTable(Table):
     example: str = Field(description=marked('a cipher, for example "27"'))
     separator: str = "@"
     """what stands before the cipher in the names of projects"""
-    every: bool = False
-    """whether `list` shows all ciphers, not one of each machine"""
+    shown: tuple[str, ...] = ()
+    """ciphers that `list` shows of each machine, instead of one"""
     source: str = ""
     """where numbers come from, with `$file`, `$table`, `$key`, `$symbol`, `$digit`, `$column` and `$machine`; a text without these
     stands before file, quantity, digit and column"""
@@ -157,8 +157,7 @@ class FolderFamily:
 
     def names(self) -> tuple[str, ...]:
         """Every machine with a cipher."""
-        return tuple(name for machine in self.rules.machine for name in (
-            self.every(machine) if self.rules.every else [self._named(machine, self._example(machine))]))
+        return tuple(family_listing.listed(self.folder))
 
     def every(self, machine: str) -> Iterator[str]:
         """Names of a machine with all ciphers, evenly spread where there are too many."""
@@ -169,22 +168,6 @@ class FolderFamily:
 
     def _example(self, machine: str) -> str:
         return self.rules.machine[machine].example or self.rules.example
-
-    def heading(self, name: str) -> dict[str, Any]:
-        """Table ``[project]`` of one of these.
-
-        Raises
-        ------
-        BadInput
-            when there is no such machine or cipher, or something is wrong in the folder.
-        """
-        called, cipher = self._parts(name)
-        scheme = self.folder / self.rules.machine[called].scheme[0]
-        try:
-            return headings.of(scheme.read_text(encoding="utf-8"),
-                               {key: own.text for key, own in self._about(called, cipher).items()})
-        except (OSError, KeyError, IndexError):  # it needs more of the tables, or is somewhere else
-            return headings.of(self.text(name)[0])
 
     def read(self, name: str, corrected: bool = False) -> Variant:
         """Project of a machine and a cipher.
@@ -218,7 +201,7 @@ class FolderFamily:
                 name=self._named(called, self._example(called))))
         cipher = self.form.read(text)
         if cipher is None:
-            known = ", ".join(self.form.every(self.rules.example)) if self.rules.every else ""
+            known = ", ".join(self.rules.shown)
             raise BadInput(tell('not a cipher: "{text}"').format(text=text), hint=(
                 tell("known are {known}").format(known=known) if known else
                 tell("write for example {name}").format(name=self._example(called))))

@@ -1,0 +1,31 @@
+"""What `list` shows of a family of tasks, from ``family.toml`` and the heads of its schemes: nothing is checked or computed."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from tmm_sheets.task import headings
+
+
+def listed(folder: Path) -> Iterator[str]:
+    """Names of a family's projects: of each machine the example, or all ciphers that ``shown`` has."""
+    rules = _rules(folder)
+    for name, machine in rules["machine"].items():
+        for cipher in rules.get("shown") or [machine.get("example") or rules["example"]]:
+            yield f"{folder.resolve().name}/{name}{rules.get('separator', '@')}{cipher}"
+
+
+def heading(folder: Path, project: str) -> dict[str, Any]:
+    """Table ``[project]`` of one of these names; a KeyError where it needs what tables have."""
+    rules = _rules(folder)
+    called, _, cipher = project.partition("/")[2].partition(rules.get("separator", "@"))
+    machine = rules["machine"][called]
+    about = {"name": project, "machine": called, "cipher": cipher, "title": machine.get("title") or called}
+    return headings.of((folder / machine["scheme"][0]).read_text(encoding="utf-8-sig"), about)
+
+
+def _rules(folder: Path) -> dict[str, Any]:
+    return tomllib.loads((folder / "family.toml").read_text(encoding="utf-8-sig"))
