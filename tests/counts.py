@@ -98,10 +98,10 @@ def watch() -> Callable[[], dict[str, int]]:
 
     after(Step, "__init__", lambda step, *_, **__: steps.append(step))
     after(composing, "composed", count("composed"))
-    after(Cells, "__init__", count("grids"))
-    after(Cells, "under", count("places", lambda _, sides: sides.shape[1]))
-    after(Cells, "lattice", count("places", lambda _, x0, y0, *__: len(x0) * len(y0)))
-    after(InkIndex, "struck", count("places", lambda _, boxes, __: len(boxes)))
+    after(InkIndex, "_cells", count("grids"))
+    after(Cells, "count_under", count("places", lambda _, sides: sides.shape[1]))
+    after(Cells, "count_lattice", count("places", lambda _, x0, y0, *__: len(x0) * len(y0)))
+    after(InkIndex, "count_near", count("places", lambda _, boxes, __: len(boxes)))
     return lambda: {"made": len(steps), "evaluated": sum(step.evaluated for step in steps), **found}
 
 

@@ -82,7 +82,7 @@ def judged(project, n):
     widths = [line_type(m.style).width if hasattr(m, "style") else 0.0 for m in ink.marks]
     faults = []
     for p in kept:
-        what = "" if p.leader else owners.Round(ink, p.label, 60.0).reads(p.box)
+        what = "" if p.leader else owners.Surroundings(ink, p.label, 60.0).misreading(p.box)
         near = ink.near(p.box, 0.0)
         over = near[ink_index.enters(ink.a[near], ink.b[near] - ink.a[near], *p.box)]
         if any(widths[ink.of[k]] > THICK for k in over):
@@ -121,14 +121,14 @@ def _badly_led(p, kept, written):
     for line in p.leader:
         if ink_index.enters(line.a, line.b - line.a, *boxes.T).any():
             return LED[0]
-        if len(a) and ink_index.crossing(a, b, line.a, line.b).any():
+        if len(a) and ink_index.crosses(a, b, line.a, line.b).any():
             return LED[1]
     return ""
 
 
 def _runs_on(p, kept, written):
     boxes = np.vstack([written, *(q.box for q in kept if q is not p)])
-    return bool(placing._beside(np.array(p.box)[:, None], boxes, placing.WORD * p.label.height)[0])
+    return bool(placing._read_on(np.array(p.box)[:, None], boxes, placing.WORD * p.label.height)[0])
 
 
 def of_project(name):

@@ -1,5 +1,6 @@
 """A label reads as what stands nearest: the judge on drawings of known answers, the placing on sheets."""
 
+import numpy as np
 import pytest
 
 from tests import labels as trial
@@ -9,7 +10,7 @@ from tmm_sheets.drawing import ink_index, labels, owners
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.marks import Box, Line, Provenance, Text
 from tmm_sheets.drawing.placing import place
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_boxes import size, text_box
 from tmm_sheets.project import Project
 
 A, B = Provenance("vector", "plan/a", "1", 0), Provenance("vector", "plan/b", "1", 0)
@@ -17,14 +18,17 @@ A, B = Provenance("vector", "plan/a", "1", 0), Provenance("vector", "plan/b", "1
 LINES = [Line(0j, 60 + 0j, "vector", by=A), Line(10j, 60 + 10j, "vector", by=B)]
 
 
-def expecting(count, area, marks):
-    """A grid of some marks to which so many labels are to come."""
-    return labels.Grid(ink_index.InkIndex(marks, area), count)
+def placing(area, marks, *placements):
+    """Labels in their places on a sheet of some marks."""
+    placed = labels.PlacedLabels(ink_index.InkIndex(marks, area), [label for label, _, _ in placements])
+    for k, placement in enumerate(placements):
+        placed.put(k, placement)
+    return placed
 
 
 def reads(box, marks=LINES, anchor=30 + 0j, by=A):
     label = Label(anchor, "x", 3.5, by=by)
-    return owners.Round(ink_index.InkIndex(marks), label, 60.0).reads(Box(*box))
+    return owners.Surroundings(ink_index.InkIndex(marks), label, 60.0).misreading(Box(*box))
 
 
 @pytest.mark.parametrize(("box", "said"), [
@@ -51,18 +55,40 @@ def test_a_symbol_about_the_anchor_is_its_own():
     canvas.circle(0j, 1.5, "main")
     canvas.line(3j - 30, 3j + 30)
     label = Label(0j, "A", 5.0, gap=2.5)
-    here = owners.Round(ink_index.InkIndex(canvas.marks), label, 60.0)
-    assert here.reads(Box(2.2, -3, 6, 2)) == ""
-    assert here.reads(Box(-2, 4, 2, 8)) == "crossed"
+    here = owners.Surroundings(ink_index.InkIndex(canvas.marks), label, 60.0)
+    assert here.misreading(Box(2.2, -3, 6, 2)) == ""
+    assert here.misreading(Box(-2, 4, 2, 8)) == "crossed"
 
 
 def test_the_leader_of_another_label_from_the_same_point_is_foreign():
     """A second letter beside the leader of the first is read as its letter, not the point's."""
     ink, label = ink_index.InkIndex([Line(0j, 40 + 0j, "main")]), Label(0j, "D", 5.0)
     beside = Box(-9.0, -9.0, -5.5, -5.0)
-    assert owners.Round(ink, label, 60.0).reads(beside) == ""
-    ink.lead([0j], [-10 - 10j])
-    assert owners.Round(ink, label, 60.0).reads(beside) == "nearer"
+    assert owners.Surroundings(ink, label, 60.0).misreading(beside) == ""
+    ink.set_leaders([0j], [-10 - 10j])
+    assert owners.Surroundings(ink, label, 60.0).misreading(beside) == "nearer"
+
+
+def test_ink_half_way_between_two_vectors_is_vague_however_near_a_corner_of_its_box_is():
+    """The upper right corner of a name with an index is empty: the index stands lower."""
+    here = owners.Surroundings(ink_index.InkIndex(LINES), Label(30 + 0j, "F_{21}", 3.5, by=A), 60.0)
+    wide, high = size("F_{21}", 3.5)
+    for low, vague in ((0.6, False), (5.0 - high / 2, True), (9.4 - high, True), (-0.6 - high, False)):
+        assert here.is_vague(Box(28.0, low, 28.0 + wide, low + high)) is vague
+
+
+def test_names_of_two_vectors_that_cross_stand_at_their_own():
+    canvas, ends = Canvas(), ((0j, 60j), (12 + 0j, -8 + 60j))
+    for (a, b), by in zip(ends, (A, B), strict=True):
+        canvas.marks.append(Line(a, b, "vector", by=by))
+        with canvas.traced(*by):
+            canvas.label((a + b) / 2, "F_{21}", 1.0)
+    assert place(canvas, Box(-100, -100, 100, 100)) == []
+    a, b = np.array(ends).T
+    for own, name in enumerate(m for m in canvas.marks if isinstance(m, Text) and m.text == "F"):
+        corners = text_box(name)
+        off = np.array([ink_index.distance(a, b, z) for z in corners]).min(axis=0)
+        assert off[own] + 0.5 < off[1 - own]
 
 
 def test_vectors_on_one_line_are_named_together():
@@ -74,24 +100,24 @@ def test_vectors_on_one_line_are_named_together():
 def test_no_lines_at_all_and_a_leader_that_is_added():
     assert reads((28, 1, 32, 4), []) == ""
     ink = ink_index.InkIndex(LINES)
-    ink.lead([30 + 5j], [30 + 1.2j])
-    here = owners.Round(ink, Label(40 + 0j, "x", 3.5, by=A), 60.0)
-    assert here.reads(Box(31, 1.3, 35, 4.3)) == "nearer"
+    ink.set_leaders([30 + 5j], [30 + 1.2j])
+    here = owners.Surroundings(ink, Label(40 + 0j, "x", 3.5, by=A), 60.0)
+    assert here.misreading(Box(31, 1.3, 35, 4.3)) == "nearer"
 
 
 def test_a_leader_runs_along_no_line_and_crosses_no_strong_one():
-    here = owners.Round(ink_index.InkIndex(LINES), Label(30 + 0j, "x", 3.5, by=A), 60.0)
-    assert here.met(30 + 0j, 34 - 8j) == 0
-    assert here.met(30 + 0j, 40 + 0.5j) == 1
-    assert here.met(30 + 0j, 32 + 12j) == 1
+    here = owners.Surroundings(ink_index.InkIndex(LINES), Label(30 + 0j, "x", 3.5, by=A), 60.0)
+    assert here.count_crossed(30 + 0j, 34 - 8j) == 0
+    assert here.count_crossed(30 + 0j, 40 + 0.5j) == 1
+    assert here.count_crossed(30 + 0j, 32 + 12j) == 1
 
 
 def test_a_leader_crosses_no_other_leader():
     ink = ink_index.InkIndex(LINES)
-    ink.lead([28 - 3j, 28 + 3j], [36 - 3j, 26 + 3j])
-    here = owners.Round(ink, Label(30 + 0j, "x", 3.5, by=A), 60.0)
-    assert here.met(30 + 0j, 34 - 8j) == owners.LED
-    assert here.met(30 + 0j, 24 - 8j) == 0
+    ink.set_leaders([28 - 3j, 28 + 3j], [36 - 3j, 26 + 3j])
+    here = owners.Surroundings(ink, Label(30 + 0j, "x", 3.5, by=A), 60.0)
+    assert here.count_crossed(30 + 0j, 34 - 8j) == owners.LED
+    assert here.count_crossed(30 + 0j, 24 - 8j) == 0
 
 
 def hemmed(texts):
@@ -126,7 +152,7 @@ def test_a_leader_runs_over_no_lettering():
 ])  # fmt: skip
 def test_lettering_under_a_leader_is_seen_however_little(a, b, over):
     boxes = labels.np.array([(8.0, 19.9, 19.95, 30.0), (float("nan"),) * 4])
-    assert labels._over(boxes, a, b) == over
+    assert labels._count_crossed(boxes, a, b) == over
 
 
 @pytest.mark.parametrize(("by", "moves"), [("construction", True), ("text", False)])
@@ -136,7 +162,7 @@ def test_the_letter_of_an_arm_moves_along_it_and_that_of_a_point_does_not(by, mo
     with canvas.traced("construction", "plan/h", "1", 0):
         canvas.line(100 + 100j, 180 + 100j)
     ink, label = ink_index.InkIndex(canvas.marks), Label(140 + 100j, "h", 2.5, by=Provenance(by, "plan/h", "1", 0))
-    assert bool(owners.Round(ink, label, 60.0).along()) is moves
+    assert bool(owners.Surroundings(ink, label, 60.0).places_along()) is moves
 
 
 @pytest.mark.parametrize("room", [True, False])
@@ -145,15 +171,13 @@ def test_a_label_takes_another_place_that_leaves_room_for_the_other(room):
     canvas.label(100 + 100j, "1", 1j, 3.5)
     canvas.label(104 + 100j, "1000", 1j, 3.5)
     marks = [] if room else [Line(complex(60, y), complex(150, y), "main") for y in range(60, 160, 2)]
-    grid = expecting(2, Box(0, 0, 300, 200), marks)
-    found = [(canvas.labels[0], Box(119, 120, 121, 123.5), True), (canvas.labels[1], Box(78, 120, 87, 123.5), True)]
-    for k, (label, box, _) in enumerate(found):
-        grid.put(k, label, box)
-    before = list(found)
-    assert grid.ill(0) == 1
-    assert labels._made_room(grid, canvas.labels, found, 0, 1) is room
-    assert (found == before) is not room
-    assert grid.ill(0) == (0 if room else 1)
+    boxes = Box(119, 120, 121, 123.5), Box(78, 120, 87, 123.5)
+    placed = placing(Box(0, 0, 300, 200), marks, *((label, box, True) for label, box in zip(canvas.labels, boxes, strict=True)))
+    before = list(placed.at)
+    assert placed.count_faults(0) == 1
+    assert placed.make_room(0, 1) is room
+    assert (placed.at == before) is not room
+    assert placed.count_faults(0) == (0 if room else 1)
 
 
 def test_letters_of_two_things_are_not_read_as_one_word():
@@ -216,18 +240,15 @@ def test_leaders_that_cross_change_places():
     for x in (100, 104):
         canvas.label(complex(x, 100), "12", 1j, 3.5)
     left, right = Box(80, 120, 86, 123.5), Box(118, 120, 124, 123.5)
-    grid = expecting(2, Box(0, 0, 300, 200), [])
-    found = [(canvas.labels[0], right, True), (canvas.labels[1], left, True)]
-    for k, (label, box, _) in enumerate(found):
-        grid.put(k, label, box)
-    assert grid.ill(0) == grid.ill(1) == 1
-    assert grid.met(0) == [1]
-    assert labels._exchanged(grid, found, 0, 1)
-    assert (found[0][1].centre, found[1][1].centre) == (left.centre, right.centre)
-    assert grid.ill(0) == grid.ill(1) == 0
+    placed = placing(Box(0, 0, 300, 200), [], (canvas.labels[0], right, True), (canvas.labels[1], left, True))
+    assert placed.count_faults(0) == placed.count_faults(1) == 1
+    assert placed.in_conflict(0) == [1]
+    assert placed.exchange(0, 1)
+    assert (placed.at[0][1].centre, placed.at[1][1].centre) == (left.centre, right.centre)
+    assert placed.count_faults(0) == placed.count_faults(1) == 0
     # Once they stand well they are left alone.
-    assert not labels._exchanged(grid, found, 0, 1)
-    assert found[0][1].centre == left.centre
+    assert not placed.exchange(0, 1)
+    assert placed.at[0][1].centre == left.centre
 
 
 def test_labels_change_places_only_where_both_have_room():
@@ -235,13 +256,12 @@ def test_labels_change_places_only_where_both_have_room():
     canvas.label(100 + 100j, "1", 1j, 3.5)
     canvas.label(104 + 100j, "1000", 1j, 3.5)
     canvas.line(123 + 110j, 123 + 130j, "main")  # beside the short one: the long one has no room there
-    grid = expecting(2, Box(0, 0, 300, 200), canvas.marks)
-    found = [(canvas.labels[0], Box(119, 120, 121, 123.5), True), (canvas.labels[1], Box(78, 120, 87, 123.5), True)]
-    for k, (label, box, _) in enumerate(found):
-        grid.put(k, label, box)
-    before = list(found)
-    assert not labels._exchanged(grid, found, 0, 1)
-    assert found == before
+    boxes = Box(119, 120, 121, 123.5), Box(78, 120, 87, 123.5)
+    pairs = zip(canvas.labels, boxes, strict=True)
+    placed = placing(Box(0, 0, 300, 200), canvas.marks, *((label, box, True) for label, box in pairs))
+    before = list(placed.at)
+    assert not placed.exchange(0, 1)
+    assert placed.at == before
 
 
 def test_a_label_keeps_to_the_place_of_its_view():
@@ -271,8 +291,8 @@ def test_a_window_parts_no_label_from_what_it_names():
     (2.0, 80 + 66j, 1),  # through the letters
 ])  # fmt: skip
 def test_the_shelf_of_a_name_is_part_of_it(shelf, end, ill):
-    grid = expecting(2, Box(0.0, 0.0, 100.0, 100.0), [])
-    grid.put(0, Label(65 + 80j, "II", 5.0, shelf=shelf), Box(60.0, 60.0, 70.0, 65.0))
-    grid.put(1, Label(50 + 58j, "3, 4", 2.5), Box(end.real, end.imag, end.real + 5, end.imag + 2.5))
-    assert min(grid.ill(1), 1) == ill
-    assert (0 in grid.met(1)) is bool(ill)
+    detail = Label(65 + 80j, "II", 5.0, shelf=shelf), Box(60.0, 60.0, 70.0, 65.0), True
+    number = Label(50 + 58j, "3, 4", 2.5), Box(end.real, end.imag, end.real + 5, end.imag + 2.5), True
+    placed = placing(Box(0.0, 0.0, 100.0, 100.0), [], detail, number)
+    assert min(placed.count_faults(1), 1) == ill
+    assert (0 in placed.in_conflict(1)) is bool(ill)

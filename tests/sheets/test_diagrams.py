@@ -206,7 +206,7 @@ def test_numbers_of_positions_keep_off_the_curves_and_each_other(curves):
     graphs.numbers(canvas, graphs.Graph(0j), x, [str(k + 9) for k in range(len(x))], np.where(x < 50, 1.0, -1.0))
     for curve in curves:
         canvas.polyline(curve)
-    axis_numbers.clear(canvas, InkIndex(canvas.marks))
+    axis_numbers.set_numbers(canvas, InkIndex(canvas.marks))
     texts = [m for m in canvas.marks if isinstance(m, Text)]
     assert len(texts) == len(x)
     boxes = [Box.around(text_box(m)) for m in texts]

@@ -12,6 +12,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.cells import sum_area
 from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.drawing.marks import Polyline
 from tmm_sheets.numbers import number
@@ -35,7 +36,7 @@ def canvas_with(*lines):
 
 
 def cells(canvas):
-    return optional_views._of_part(canvas, 0, FIELD, optional_views._closed(FIELD, []).shape)
+    return optional_views._of_part(canvas, 0, FIELD)
 
 
 @pytest.mark.parametrize(("lines", "found"), [
@@ -117,12 +118,12 @@ def test_what_belongs_to_a_plan_stands_beside_it_and_not_beside_another():
 def test_gaps_are_where_an_empty_rectangle_of_160_by_120_is(lines, count):
     canvas = canvas_with(*lines, (20 + 5j, 20 + 5j))
     gaps = optional_views._gaps(canvas, FIELD, [], (160.0, 120.0))
-    inked = optional_views._cells(canvas, range(1), FIELD, (408, 292))
+    inked = optional_views._cells(canvas, range(1), FIELD)
     assert not (gaps & inked).any()
     nx, ny = 80, 60
     by_hand = np.zeros_like(gaps)
     for w, h in ((nx, ny), (ny, nx)):
-        for i, j in np.argwhere(optional_views._windows(optional_views._summed(inked), w, h) == 0):
+        for i, j in np.argwhere(optional_views._windows(sum_area(inked), w, h) == 0):
             by_hand[i:i + w, j:j + h] = True
     assert (gaps == by_hand).all()
     if count is not None:
@@ -137,7 +138,7 @@ def test_nothing_parts_a_scheme_from_its_force_plans():
         for title, x in (("scheme", 100.0), ("plan", 500.0)):
             canvas.begin(FIELD, title)
             canvas.line(x + y - 20j, x + y + 20j, "main")
-    whole = optional_views._whole(canvas, FIELD, optional_views._closed(FIELD, []).shape)
+    whole = optional_views._whole(canvas, FIELD)
     at = {z: whole[int((z.real - FIELD.x0) / optional_views.CELL), int((z.imag - FIELD.y0) / optional_views.CELL)] for z in
           (300 + 500j, 300 + 300j, 300 + 100j, 300 + 400j, 600 + 500j)}
     assert list(at.values()) == [True, True, False, False, False]
@@ -317,7 +318,7 @@ def test_nothing_stands_between_a_title_and_the_plans_of_several_positions():
         canvas.begin(Box(x, 100.0, x + 80.0, 280.0), "Plan of a position")
         canvas.line(complex(x, 110.0), complex(x + 80.0, top), "vector")
     canvas.begin(FIELD, "", "other view")
-    taken = optional_views._of_part(canvas, 1, FIELD, optional_views._closed(FIELD, []).shape)
+    taken = optional_views._of_part(canvas, 1, FIELD)
     assert taken[int((440 - FIELD.x0) / 2), int((265 - FIELD.y0) / 2)]
     assert taken[int((300 - FIELD.x0) / 2), int((265 - FIELD.y0) / 2)]
     assert not taken[int((600 - FIELD.x0) / 2), int((265 - FIELD.y0) / 2)]

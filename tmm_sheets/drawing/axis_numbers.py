@@ -19,9 +19,10 @@ from tmm_sheets.drawing.ink_index import WORSE, InkIndex, distance, enters
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Text
 from tmm_sheets.drawing.owners import AT
+from tmm_sheets.drawing.text_boxes import CLEAR
 
-TOUCH, CLEAR = 0.1, 0.4
-"""Distance from the edge of a line below which a number is struck, and which it is given when it is set again, mm."""
+TOUCH = 0.1
+"""Distance from the edge of a line below which a number is struck, mm; when it is set again it keeps ``CLEAR``."""
 WORD, ROWS = 1.5, 0.6
 """Distance of other lettering on the level of a number, and above or below it, mm."""
 OFF, CLOSER = np.arange(1.5, 10.0, 0.5), np.arange(1.2, 10.0, 0.1)
@@ -47,29 +48,29 @@ class _Place(NamedTuple):
     box: Box
 
 
-class _Numbers:
+class _NumbersOnSheet:
     """Numbers among what is drawn on a sheet."""
 
     def __init__(self, canvas: Canvas, ink: InkIndex) -> None:
         self.canvas, self.ink = canvas, ink
 
-    def clear(self, places: Sequence[_Place], apart: float) -> list[_Place]:
+    def clear_places(self, places: Sequence[_Place], apart: float) -> list[_Place]:
         """Those of some places that no line comes nearer to than ``apart``."""
-        struck = self.ink.struck(np.array([place.box for place in places]), apart)
+        struck = self.ink.count_near(np.array([place.box for place in places]), apart)
         return [places[k] for k in np.flatnonzero(struck == 0).tolist()]
 
-    def crowded(self, number: AxisNumber, box: Box) -> bool:
+    def is_crowded(self, number: AxisNumber, box: Box) -> bool:
         """Whether other lettering stands too near to a rectangle."""
-        return any(self.ink.texts[row] != number.mark for row in self.ink.lettering(box, WORD, ROWS).tolist())
+        return any(self.ink.texts[row] != number.mark for row in self.ink.lettering_near(box, WORD, ROWS).tolist())
 
-    def wrong(self, number: AxisNumber, box: Box) -> int:
+    def count_faults(self, number: AxisNumber, box: Box) -> int:
         """How much is wrong with a place."""
-        return int(self.ink.struck(np.array([box]), TOUCH)[0]) + WORSE * self.crowded(number, box)
+        return int(self.ink.count_near(np.array([box]), TOUCH)[0]) + WORSE * self.is_crowded(number, box)
 
-    def ill(self, number: AxisNumber) -> bool:
+    def stands_badly(self, number: AxisNumber) -> bool:
         """Whether a number had better stand elsewhere."""
         mark = self.canvas.marks[number.mark]
-        return isinstance(mark, Text) and bool(self.wrong(number, _figures(number, mark.at, mark.height)))
+        return isinstance(mark, Text) and bool(self.count_faults(number, _figures_box(number, mark.at, mark.height)))
 
     def move(self, number: AxisNumber, place: _Place | None) -> None:
         """Set a number in a place, or where it was."""
@@ -77,81 +78,81 @@ class _Numbers:
         if isinstance(mark, Text):
             if place is not None:
                 mark = self.canvas.marks[number.mark] = mark._replace(at=number.foot + place.corner, height=place.level[1])
-            self.ink.write(number.mark, mark)
+            self.ink.move_text(number.mark, mark)
 
 
-def clear(canvas: Canvas, ink: InkIndex) -> None:
+def set_numbers(canvas: Canvas, ink: InkIndex) -> None:
     """Set those numbers again that lines run through, the numbers of each axis together; ``ink`` is all of the canvas."""
-    sheet = _Numbers(canvas, ink)
+    sheet = _NumbersOnSheet(canvas, ink)
     rows: dict[tuple[int, float], list[AxisNumber]] = defaultdict(list)
     for number in canvas.numbers:
-        if sheet.ill(number):
+        if sheet.stands_badly(number):
             rows[number.part, round(number.foot.imag, 3)].append(number)
     for row in rows.values():
         _set_row(sheet, row)
     canvas.numbers.clear()
 
 
-def _set_row(sheet: _Numbers, row: Sequence[AxisNumber]) -> None:
+def _set_row(sheet: _NumbersOnSheet, row: Sequence[AxisNumber]) -> None:
     """Set the struck numbers of one axis again: the more of them a level suits the better it is."""
     for number in row:
-        sheet.ink.write(number.mark, None)
-    free = {number: _free(sheet, number) for number in row}
+        sheet.ink.move_text(number.mark, None)
+    free = {number: _free_places(sheet, number) for number in row}
     suits: dict[Level, int] = defaultdict(int)
     for places in free.values():
         for level in {place.level for place in places}:
             suits[level] += 1
     before: Level | None = None
     for number in sorted(row, key=lambda number: number.foot.real):
-        if not sheet.ill(number):  # it was too near one that has gone
+        if not sheet.stands_badly(number):  # it was too near one that has gone
             sheet.move(number, None)
             continue
         cost = {place: place.cost - ALIKE * (suits[place.level] / len(row) + (place.level == before)) for place in free[number]}
-        apart = (place for place in sorted(cost, key=lambda place: cost[place]) if not sheet.crowded(number, place.box))
-        place = next(apart, None) or min(_places(number, OFF), key=lambda place: (sheet.wrong(number, place.box), place.cost))
+        apart = (place for place in sorted(cost, key=lambda place: cost[place]) if not sheet.is_crowded(number, place.box))
+        place = next(apart, None) or min(_places(number, OFF), key=lambda at: (sheet.count_faults(number, at.box), at.cost))
         sheet.move(number, place)
         before = place.level
 
 
-class Plain:
+class PointNumbers:
     """What is drawn about the points of an upright axis with lines to both sides: each has its number right at its lines."""
 
     def __init__(self, canvas: Canvas) -> None:
         self._ink = InkIndex(canvas.marks)
         self._set: list[Box] = []
 
-    def set(self, pen: Canvas, at: complex, text: str) -> bool:
+    def place(self, pen: Canvas, at: complex, text: str) -> bool:
         """Set the number of a point over or under its lines, to the right or left, if it is nobody else's there."""
         for height in (3.5, SMALLEST):
-            wide = _wide(text, height)
+            wide = _width(text, height)
             for x in (BESIDE, -wide - BESIDE):
                 for y in (RIGHT_AT, -height - RIGHT_AT):
                     p = at + complex(x, y)
                     box = Box(p.real, p.imag, p.real + wide, p.imag + height)
-                    if self._clear(box, at) and all(_apart(box, other) for other in self._set):
+                    if self._stands_clear(box, at) and all(_is_apart(box, other) for other in self._set):
                         pen.text(p, text, height)
                         self._set.append(box)
                         return True
         return False
 
-    def _clear(self, box: Box, at: complex) -> bool:
+    def _stands_clear(self, box: Box, at: complex) -> bool:
         """Whether no line but those through a point comes near a rectangle beside it, nor runs through it, nor other lettering."""
         near = self._ink.near(box, 3.0)
         a, b = self._ink.a[near], self._ink.b[near]
         away = self._ink.half[near] + np.where(distance(a, b, at) <= AT, TOUCH, FOREIGN)
-        return not len(self._ink.lettering(box, ROWS, ROWS)) and not enters(
+        return not len(self._ink.lettering_near(box, ROWS, ROWS)) and not enters(
             a, b - a, box.x0 - away, box.y0 - away, box.x1 + away, box.y1 + away).any()
 
 
-def _apart(box: Box, other: Box) -> bool:
+def _is_apart(box: Box, other: Box) -> bool:
     return other.x0 > box.x1 + WORD or other.x1 < box.x0 - WORD or other.y0 > box.y1 + ROWS or other.y1 < box.y0 - ROWS
 
 
-def _free(sheet: _Numbers, number: AxisNumber) -> list[_Place]:
+def _free_places(sheet: _NumbersOnSheet, number: AxisNumber) -> list[_Place]:
     """Places of a number that no line comes near, or where there is none those that no line enters."""
     for off, apart in ((OFF, CLEAR), (CLOSER, TOUCH)):
-        found = sheet.clear([*_places(number, off)], apart)
-        if any(not sheet.crowded(number, place.box) for place in found):
+        found = sheet.clear_places([*_places(number, off)], apart)
+        if any(not sheet.is_crowded(number, place.box) for place in found):
             return found
     return found
 
@@ -159,7 +160,7 @@ def _free(sheet: _Numbers, number: AxisNumber) -> list[_Place]:
 def _places(number: AxisNumber, distances: npt.NDArray[np.float64]) -> Iterator[_Place]:
     """Places about the foot of a number on its axis."""
     for height in dict.fromkeys((number.height, SMALLEST)):
-        wide = _figures(number, 0j, height).width
+        wide = _figures_box(number, 0j, height).width
         shifts = [-wide / 2, BESIDE, -wide - BESIDE]
         for x in [*shifts, *(-wide - far for far in (1.5, 2.5, 4.0))] if number.first else shifts:
             stray = STRAY * (abs(x + wide / 2) >= number.pitch / 2 and not number.first)
@@ -168,13 +169,13 @@ def _places(number: AxisNumber, distances: npt.NDArray[np.float64]) -> Iterator[
                     corner = complex(x, off if side > 0 else -off - height)
                     cost = off - float(OFF[0]) + ASIDE * abs(x + wide / 2) + ACROSS * (side != number.side) + stray
                     yield _Place(corner, (side * off, height), cost + SMALL * (height < number.height),
-                                 _figures(number, number.foot + corner, height))
+                                 _figures_box(number, number.foot + corner, height))
 
 
-def _figures(number: AxisNumber, at: complex, height: float) -> Box:
+def _figures_box(number: AxisNumber, at: complex, height: float) -> Box:
     """Rectangle of the figures of a number with that left end of its base line."""
-    return Box(at.real, at.imag, at.real + _wide(number.text, height), at.imag + height)
+    return Box(at.real, at.imag, at.real + _width(number.text, height), at.imag + height)
 
 
-def _wide(text: str, height: float) -> float:
+def _width(text: str, height: float) -> float:
     return letter(text, height).width + 0.15 * height

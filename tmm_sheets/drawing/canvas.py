@@ -37,7 +37,7 @@ ARROW = (5.0, 0.85)
 """Length and half width of an arrow head, mm (GOST 2.307: about 20 degrees)."""
 KEPT_OFF = 4.0
 """How many times more than other lettering do letters keep off thin lines that one of their own, or the next, would strike."""
-CLEAR = 0.4
+OVER_RULE = 0.4
 """Distance of a descending index from the rule under it, mm."""
 LOOSE = 0.25
 """Further distance of an index from its base in slanting lettering, mm."""
@@ -203,15 +203,19 @@ class Canvas:
         """Begin a view, or a part of the present one when ``draw`` is left out: something that has a place of its own."""
         self.parts.append(Part(len(self.marks), draw or (self.parts[-1].draw if self.parts else ""), title, box, len(self.scales)))
 
+    def span(self, k: int) -> tuple[int, int]:
+        """Number of the first mark of part ``k``, and of the one after its last."""
+        return self.parts[k].first, self.parts[k + 1].first if k + 1 < len(self.parts) else len(self.marks)
+
     def tracing(self, role: Role, step: str = "", position: str = "", frame: int = -1, name: str = "") -> Canvas:
-        """The same canvas for marks of one role that come from that step, see :class:`Trace`."""
+        """The same canvas for marks of one role that come from that step, see :class:`~tmm_sheets.drawing.marks.Provenance`."""
         other = copy(self)
         other.by = Provenance(role, step, position, frame, name)
         return other
 
     @contextmanager
     def traced(self, role: Role, step: str = "", position: str = "", frame: int = -1, name: str = "") -> Iterator[None]:
-        """The marks drawn inside have this role and come from that step, see :class:`Trace`."""
+        """The marks drawn inside have this role and come from that step, see :class:`~tmm_sheets.drawing.marks.Provenance`."""
         before, self.by = self.by, Provenance(role, step, position, frame, name)
         try:
             yield
@@ -377,7 +381,7 @@ class Canvas:
                       thin, dimension))
 
     def note(self, box: Box, text: str, signs: Iterable[str] = (), about: Any = None) -> None:
-        """Ask for a remark in words to the view in ``box``; see :class:`Note`."""
+        """Ask for a remark in words to the view in ``box``; see :class:`PlacedNote`."""
         self.notes.append(PlacedNote(text, box, self.of, len(self.parts) - 1, tuple(signs), about))
 
     def title(self, box: Box, text: str, factor: str = "", height: float = 5.0) -> Box:
@@ -448,7 +452,7 @@ class Canvas:
                 laid = fitted(cell, w - 1.0 + 1e-9, height)  # a column may be exactly as wide as its text needs
                 size = max((run.height for run in laid.runs), default=height)
                 free = (row - laid.ascent - laid.descent) / 2  # an index that hangs low lifts its letters off the rule
-                low = max((row - size) / 2, laid.descent + min(CLEAR, free))
+                low = max((row - size) / 2, laid.descent + min(OVER_RULE, free))
                 self.put(laid, complex(x + (w - laid.width) / 2, y1 - (i + 1) * row + low), 0.0, cell)
                 x += w
         return Box(x0, y0, x0 + total, y1)

@@ -1,6 +1,6 @@
 """An area in square cells: which of them hold ink, and how many of those lie under rectangles.
 
-A summed-area table makes the ink under any rectangle a matter of four look-ups, so all places that a piece of lettering or a view
+A sum_area-area table makes the ink under any rectangle a matter of four look-ups, so all places that a piece of lettering or a view
 may have are judged at once.
 """
 
@@ -22,17 +22,17 @@ class Cells:
 
     def __init__(self, area: Box, side: float) -> None:
         self.side = side
-        self.taken = np.zeros((int(area.width / side) + 3, int(area.height / side) + 3), bool)
+        self.taken = np.zeros((int(area.width / side), int(area.height / side)), bool)
         self._corner = np.array([area.x0, area.y0] * 2)[:, None]
         self._last = np.array(self.taken.shape * 2)[:, None]
 
-    def ink(self, z: Points) -> None:
+    def add_points(self, z: Points) -> None:
         """The cells of some points, shape (n,), are taken."""
         i, j = (((v - low) / self.side).astype(int) for v, low in zip((z.real, z.imag), self._corner[:2, 0], strict=True))
         there = (i >= 0) & (i < self.taken.shape[0]) & (j >= 0) & (j < self.taken.shape[1])
         self.taken[i[there], j[there]] = True
 
-    def cover(self, boxes: npt.NDArray[np.float64]) -> None:
+    def add_boxes(self, boxes: npt.NDArray[np.float64]) -> None:
         """Those of some rectangles (x0, y0, x1, y1; shape (n, 4)) are."""
         for i0, j0, i1, j1 in self._spans(boxes.T).T.tolist():
             self.taken[i0:i1, j0:j1] = True
@@ -48,14 +48,14 @@ class Cells:
     @cached_property
     def table(self) -> npt.NDArray[np.int32]:
         """How many cells are taken to the left of and below each corner of the cells, shape (nx + 1, ny + 1)."""
-        return summed(self.taken)
+        return sum_area(self.taken)
 
-    def under(self, sides: npt.NDArray[np.float64]) -> npt.NDArray[np.int32]:
+    def count_under(self, sides: npt.NDArray[np.float64]) -> npt.NDArray[np.int32]:
         """Taken cells under rectangles; ``sides`` are their x0, y0, x1, y1, shape (4, n)."""
         i0, j0, i1, j1 = self._spans(sides)
         return np.asarray(self.table[i1, j1] - self.table[i0, j1] - self.table[i1, j0] + self.table[i0, j0])
 
-    def lattice(self, x0: npt.NDArray[np.float64], y0: npt.NDArray[np.float64], width: float, height: float,
+    def count_lattice(self, x0: npt.NDArray[np.float64], y0: npt.NDArray[np.float64], width: float, height: float,
                 ) -> npt.NDArray[np.int32]:
         """The same under rectangles of one size with their left edges at ``x0``, (n,), the lower ones at ``y0``, (m,): (n, m)."""
         i0, _, i1, _ = self._spans(np.array([x0, x0, x0 + width, x0]))
@@ -68,7 +68,7 @@ class Cells:
         return np.asarray(np.minimum(np.maximum(cells, 0), self._last))
 
 
-def summed(taken: npt.NDArray[np.bool_]) -> npt.NDArray[np.int32]:
+def sum_area(taken: npt.NDArray[np.bool_]) -> npt.NDArray[np.int32]:
     """Summed-area table of cells."""
     table = np.zeros((taken.shape[0] + 1, taken.shape[1] + 1), np.int32)
     np.cumsum(taken, axis=1, dtype=np.int32, out=table[1:, 1:])

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from tmm_sheets.box import Box
+from tmm_sheets.drawing.ink_index import sample
 from tmm_sheets.drawing.marks import Drawing, Mark, Points, Text, flat
 from tmm_sheets.drawing.text_boxes import text_box
 
@@ -55,14 +56,7 @@ def dense(marks: Iterable[Mark], step: float) -> Points:
     outlines = [_outline(mark) for mark in marks]
     if not outlines:
         return np.empty(0, complex)
-    z = np.concatenate(outlines)
-    before = np.arange(len(z)) - 1
-    before[np.cumsum([0, *map(len, outlines[:-1])])] += 1  # a segment to each point from the one before, to a first one from itself
-    begin = z[before]
-    count = 2 + (np.abs(z - begin) / step).astype(int)
-    first = np.cumsum(count) - count
-    t = (np.arange(count.sum()) - np.repeat(first, count)) / np.repeat(count - 1, count)
-    return np.asarray(np.repeat(begin, count) + t * np.repeat(z - begin, count))
+    return sample(np.concatenate([z[:-1] for z in outlines]), np.concatenate([z[1:] for z in outlines]), step)
 
 
 def covering(box: Box) -> Points:

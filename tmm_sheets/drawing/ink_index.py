@@ -51,7 +51,7 @@ class InkIndex:
         self.half, self.sides = np.empty(0), np.empty((4, 0))
         self.written, self._corners, self.texts = np.empty((0, 4)), np.empty((0, 4), complex), list[int]()
         self._filled, self._steps = np.empty((0, 4)), dict[tuple[str | int, ...], list[int]]()
-        self.lead(np.empty(0), np.empty(0))
+        self.set_leaders(np.empty(0), np.empty(0))
         self.add(marks)
 
     def add(self, marks: Iterable[Mark]) -> None:
@@ -73,7 +73,7 @@ class InkIndex:
             else:
                 points = flat(mark, 1.0)
                 if isinstance(mark, Polyline):
-                    points = _thinned(points)
+                    points = _thin(points)
                 elif isinstance(mark, Fill):
                     x, y, width = points.real.tolist(), points.imag.tolist(), 0.0
                     filled.append((min(x), min(y), max(x), max(y)))
@@ -97,13 +97,13 @@ class InkIndex:
         for known in ("heavy", "light", "_outlines"):
             vars(self).pop(known, None)
 
-    def write(self, number: int, text: Text | None) -> None:
+    def move_text(self, number: int, text: Text | None) -> None:
         """Lettering of a mark stands elsewhere now, or is taken off."""
         row = self.texts.index(number)
         self._corners[row] = np.nan if text is None else text_boxes([text])[0]
         self.written[row] = np.nan if text is None else bounds_of(self._corners[[row]])[0]
 
-    def lead(self, a: Any, b: Any) -> None:
+    def set_leaders(self, a: Any, b: Any) -> None:
         """The leaders there are now, from ``a`` to ``b``, shape (n,)."""
         self._leaders = np.asarray(a, complex), np.asarray(b, complex)
 
@@ -113,9 +113,16 @@ class InkIndex:
 
     def near(self, box: Box, reach: float) -> Numbers:
         """Numbers of the segments that may be within ``reach`` of a rectangle, mm."""
-        return within(self.sides, box, reach)
+        return find_near(self.sides, box, reach)
 
-    def about(self, p: complex, reach: float) -> tuple[Points, Points, Numbers, Flags]:
+    def bounds(self, *spans: tuple[int, int]) -> Box | None:
+        """Rectangle round the marks with these numbers, from where to where; None where there are none."""
+        edges = np.vstack((self.sides.T, self.written))
+        of = np.append(self.of, self.texts)
+        own = edges[np.any([(of >= first) & (of < end) for first, end in spans], axis=0)] if spans else edges[:0]
+        return Box(*own[:, :2].min(axis=0).tolist(), *own[:, 2:].max(axis=0).tolist()) if len(own) else None
+
+    def parting(self, p: complex, reach: float) -> tuple[Points, Points, Numbers, Flags]:
         """What may part a label from what it names within ``reach`` of a point: ``a``, ``b``, number of the mark, strength.
 
         Bars over letters do not, nor windows; leaders come last.
@@ -128,22 +135,21 @@ class InkIndex:
         return (np.append(self.a[here], a[near]), np.append(self.b[here], b[near]),
                 np.append(self.of[here], np.full(n, LEADER)), np.append(self.strong[here], np.zeros(n, bool)))
 
-    def met(self, box: Box, origin: complex = 0j, direction: float = 0.0) -> int:
-        """How many lines are in a rectangle of axes that are turned by an angle about a point, rad; lettering counts more."""
+    def count_in(self, box: Box, origin: complex = 0j, direction: float = 0.0) -> int:
+        """How many lines are in a rectangle of axes turned by an angle about a point, rad; strong ones and lettering count more."""
         along, p = rect(1, direction), box.centre
         middle = origin + p * along
         start, end, around, counts = self._outlines
-        near = within(around, Box(*[middle.real, middle.imag] * 2), abs(complex(box.x0, box.y0) - p) + ROUNDING)
+        near = find_near(around, Box(*[middle.real, middle.imag] * 2), abs(complex(box.x0, box.y0) - p) + ROUNDING)
         a, b = ((z[near] - origin) / along for z in (start, end))
         return int(counts[near[enters(a, b - a, *box)]].sum())
 
-    def crossed(self, a: complex, b: complex) -> bool:
+    def is_crossed(self, a: complex, b: complex) -> bool:
         """Whether a line would cross a strong one, or run over lettering."""
         start, end, _, counts = self._outlines
-        strong = np.append(self.strong, counts[len(self.strong):] > 1)
-        return bool(crossing(start[strong], end[strong], a, b).any())
+        return bool(crosses(start[counts > 1], end[counts > 1], a, b).any())
 
-    def struck(self, boxes: Floats, apart: float) -> npt.NDArray[np.int_]:
+    def count_near(self, boxes: Floats, apart: float) -> npt.NDArray[np.int_]:
         """How many lines come nearer than ``apart``, mm, to each of some rectangles, shape (m, 4); a strong one counts more."""
         x0, y0, x1, y1 = boxes.T[:, :, None]
         near = self.near(Box(x0.min(), y0.min(), x1.max(), y1.max()), WIDEST)
@@ -154,15 +160,15 @@ class InkIndex:
         first = np.flatnonzero(np.diff(self.of[near], prepend=-1))
         return np.asarray(np.logical_or.reduceat(met, first, axis=1) @ np.where(self.strong[near[first]], WORSE, 1))
 
-    def lettering(self, box: Box, beside: float, above: float) -> Numbers:
+    def lettering_near(self, box: Box, beside: float, above: float) -> Numbers:
         """Rows of the lettering nearer to a rectangle than ``beside`` on its level, and ``above`` over or under it, mm."""
-        return within(self.written.T, box.inset(-beside, -above, -beside, -above), 0.0)
+        return find_near(self.written.T, box.inset(-beside, -above, -beside, -above), 0.0)
 
     @cached_property
     def _outlines(self) -> tuple[Points, Points, Floats, npt.NDArray[np.int_]]:
         """Lines and sides of lettering: ``a``, ``b``, their edges, what they count."""
         a, b = np.append(self.a, np.roll(self._corners, 1, axis=1)), np.append(self.b, self._corners)
-        return a, b, sides(a, b), np.repeat((1, WORSE), (len(self.a), self._corners.size))
+        return a, b, sides(a, b), np.append(np.where(self.strong, WORSE, 1), np.full(self._corners.size, WORSE))
 
     @cached_property
     def heavy(self) -> Cells:
@@ -171,7 +177,7 @@ class InkIndex:
         Main lines are up to a millimetre wide: their neighbours count as inked too.
         """
         cells = self._cells(self._heavy)
-        cells.cover(np.vstack((self.written, self._filled)))
+        cells.add_boxes(np.vstack((self.written, self._filled)))
         cells.widen()
         return cells
 
@@ -182,11 +188,11 @@ class InkIndex:
 
     def _cells(self, which: Flags) -> Cells:
         cells = Cells(self.area, CELL)
-        cells.ink(sampled(self.a[which], self.b[which], CELL / 2))
+        cells.add_points(sample(self.a[which], self.b[which], CELL / 2))
         return cells
 
 
-def sampled(a: Any, b: Any, step: float) -> Points:
+def sample(a: Any, b: Any, step: float) -> Points:
     """Points along segments from ``a`` to ``b``, shape (n,), their ends among them, no farther apart than ``step`` mm."""
     count = (np.abs(b - a) / step).astype(int) + 2
     share = (np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count - 1, count)
@@ -199,13 +205,13 @@ def sides(a: Any, b: Any) -> Floats:
     return np.array([*low, *high])
 
 
-def within(edges: Floats, box: Box, reach: float) -> npt.NDArray[np.intp]:
+def find_near(edges: Floats, box: Box, reach: float) -> npt.NDArray[np.intp]:
     """Numbers of those of some edges, (4, n), that may be within ``reach`` of a rectangle."""
     x0, y0, x1, y1 = edges
     return np.flatnonzero((x0 <= box.x1 + reach) & (x1 >= box.x0 - reach) & (y0 <= box.y1 + reach) & (y1 >= box.y0 - reach))
 
 
-def _thinned(points: Any) -> Any:
+def _thin(points: Any) -> Any:
     """A curve of hundreds of points by fewer chords: no point but the last is nearer than a millimetre to the one before."""
     if len(points) < 50:
         return points
@@ -232,7 +238,7 @@ def enters(a: Any, d: Any, x0: Any, y0: Any, x1: Any, y1: Any) -> Flags:
     return np.asarray(first <= last)
 
 
-def crossing(a: Any, b: Any, p: complex, q: complex) -> Flags:
+def crosses(a: Any, b: Any, p: complex, q: complex) -> Flags:
     """Whether segments cross the way from ``p`` to ``q``; touching its ends does not count."""
     def side(u: Any, v: Any, w: Any) -> Any:
         return ((v - u) * np.conj(w - u)).imag

@@ -19,16 +19,14 @@ from tmm_sheets.drawing.crowded import Crowded
 from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
-from tmm_sheets.drawing.text_boxes import size
+from tmm_sheets.drawing.text_boxes import CLEAR, SHELF, size
 
 TOGETHER = 64
 """So many labels have their places judged in one go."""
 NEAR = 5.0
 """Clear distance, mm, up to which a label is read without a leader line."""
-CLEAR = 0.4
-"""Clear margin kept round lettering, mm."""
 LIGHT = 0.9
-"""Cost of a grid cell of thin line under lettering, in millimetres of distance."""
+"""Cost of a cell of thin line under lettering, in millimetres of distance."""
 
 FAR = 1e3
 """Cost of a place that needs a leader line, for labels that should have none."""
@@ -43,6 +41,8 @@ COVERING = 30.0
 """Cost of a place over the leader of another label, in millimetres of distance."""
 CROSSING, OVER, MISREAD = 8.0, 300.0, 1e4
 """Cost of each thing a leader crosses or runs along, of lettering under it, of being read as another thing's letter, mm."""
+VAGUE = 6.0
+"""Cost of a place about as near to another line as to the vector that is named, in millimetres of distance."""
 OUTSIDE = 20.0
 """Cost of a place that leaves the place of the label's view, in millimetres of distance."""
 AWAY, STRAYED = 8.0, 24.0
@@ -51,8 +51,6 @@ SEVERAL = 10
 """So many leaders met are as bad as a label that is read as another thing's."""
 TURNING = 4.0
 """Cost of the direction opposite to the one asked for, in millimetres of distance."""
-SHELF = 0.8
-"""Clear distance, mm, of lettering from the shelf it stands on."""
 
 Around = tuple[npt.NDArray[np.float64], Points]
 """Distances and directions, the first being the one asked for, in which places are tried."""
@@ -62,88 +60,100 @@ CLOSER: Around = np.concatenate(([0.0, 0.6, 1.4, 2.5], np.arange(4.0, 40.0))), n
 _MARGIN = CLEAR * np.array([-1.0, -1.0, 1.0, 1.0])[:, None]
 
 
+Placement = tuple[Label, Box, bool]
+"""A label, which may have moved along its vector, its place, whether there was room for it."""
+
+
 def set_labels(canvas: Canvas, ink: InkIndex) -> list[Crowded]:
     """Set every requested label of a canvas on its ``ink``, to which they come; returns those that found no free place.
 
     What meets a leader that was set after it gets another place when all the others have theirs.
     """
     first = len(canvas.marks)
-    grid = Grid(ink, len(canvas.labels), [part.box for part in canvas.parts])
-    found = [*_first(grid, canvas.labels)]
+    placed = PlacedLabels(ink, canvas.labels, [part.box for part in canvas.parts])
+    placed.place_all()
     for around in (USUAL, USUAL, CLOSER):
-        for k in range(len(found)):
-            if not grid.quiet(k) and _ill(grid, found, (k,)):
-                # One that has no better place gets it when the one it meets makes room, or changes places with it.
-                ways = ((k,), *(pair for q in grid.met(k) for pair in ((k, q), (q, k))))
-                done = any(_set_again(grid, canvas.labels, found, some, around) for some in ways) or \
-                    any(_exchanged(grid, found, k, q) for q in grid.met(k))
-                if around is CLOSER and not done:
-                    any(_made_room(grid, canvas.labels, found, *pair) for pair in ways[1:])
-    for label, box, _ in found:
+        for k in range(len(canvas.labels)):
+            placed.improve(k, around)
+    for label, box, _ in placed.at:
         _draw(canvas, label, box)
     ink.add(canvas.marks[first:])
-    crowded = [Crowded(label.text, label.anchor) for label, (_, _, free) in zip(canvas.labels, found, strict=True) if not free]
+    crowded = [Crowded(label.text, label.anchor) for label, (_, _, free) in zip(canvas.labels, placed.at, strict=True) if not free]
     canvas.labels.clear()
     return crowded
 
 
-class Grid:
-    """Labels of a canvas on its ``ink``: lettering (``written``), theirs (``boxes``) last, and their leaders.
+class PlacedLabels:
+    """Labels where they stand (``at``) on the ``ink`` of a canvas, with their leaders.
 
-    Places of labels that are not set are not numbers. ``views`` are the places of the parts that labels belong to.
+    Lettering of the canvas (``written``) ends with theirs (``boxes``): x0, y0, x1, y1, mm, not numbers where one is not set.
+    ``views`` are the places of the parts that labels belong to.
     """
 
-    def __init__(self, ink: InkIndex, labels: int, views: Sequence[Box] = ()) -> None:
-        """So many ``labels`` are to come, to parts in the places ``views``."""
-        self.ink, self.views = ink, views
+    def __init__(self, ink: InkIndex, labels: Sequence[Label], views: Sequence[Box] = ()) -> None:
+        self.ink, self.labels, self.views = ink, labels, views
+        self.at = list[Placement]()
         self.inside = np.array([ink.area.x0 + 1, ink.area.y0 + 1, ink.area.x1 - 1, ink.area.y1 - 1])[:, None]
-        self.written = np.vstack((ink.written, np.full((labels, 4), np.nan)))
+        self.written = np.vstack((ink.written, np.full((len(labels), 4), np.nan)))
         self.boxes = self.written[len(ink.written):]
         self._led: dict[int, tuple[complex, complex]] = {}
-        self._lead()
+        self._update_leaders()
 
-    def put(self, k: int, label: Label, box: Box) -> None:
+    def put(self, k: int, placement: Placement) -> None:
         """Label ``k`` is set; the shelf it may stand on is part of it."""
+        self.at[k:k + 1] = [placement]
+        label, box, _ = placement
         self.boxes[k] = box._replace(y0=box.y0 - SHELF - CLEAR) if label.shelf else box
         before = self._led.pop(k, None)
-        if _led(label, box):
-            self._led[k] = _way(label, box)
+        if _needs_leader(label, box):
+            self._led[k] = _leader_ends(label, box)
         if before is not None or k in self._led:
-            self._lead()
+            self._update_leaders()
 
     def lift(self, k: int) -> None:
         """Label ``k`` is taken off."""
         self.boxes[k] = np.nan
         if self._led.pop(k, None) is not None:
-            self._lead()
+            self._update_leaders()
 
-    def _lead(self) -> None:
+    def _update_leaders(self) -> None:
         self._whose = np.array(list(self._led), int)
         self._ends = np.array(list(self._led.values()), complex).reshape(-1, 2)
         self._led_sides = ink_index.sides(*self._ends.T)
-        self.leaders = ink_index.sampled(self._ends[:, 0], self._ends[:, 1], ink_index.CELL / 2)
-        self.ink.lead(*self._ends.T)
+        self.leaders = ink_index.sample(self._ends[:, 0], self._ends[:, 1], ink_index.CELL / 2)
+        self.ink.set_leaders(*self._ends.T)
 
-    def quiet(self, k: int) -> bool:
+    def _is_undisturbed(self, k: int) -> bool:
         """Whether label ``k`` has no leader, and none is near it: nothing can be wrong with it that was not before."""
-        return k not in self._led and not len(ink_index.within(self._led_sides, Box(*self.boxes[k]), NEAR + ink_index.ROUNDING))
+        return k not in self._led and not len(ink_index.find_near(self._led_sides, Box(*self.boxes[k]), NEAR + ink_index.ROUNDING))
 
-    def ill(self, k: int) -> int:
+    def count_faults(self, *some: int) -> int:
+        """How many things are wrong with some labels where they stand; to be read as another thing's is worse than the others."""
+        return sum(self._count_met(k) + SEVERAL * self._is_misread(k) for k in some)
+
+    def _count_met(self, k: int) -> int:
         """How many other leaders and how much other lettering the leader of label ``k`` meets; how many leaders its lettering."""
         _, a, b = self._others(k)
         over = int(ink_index.enters(a, b - a, *self.boxes[k]).sum())
         if k not in self._led:
             return over
         written = np.delete(self.written, len(self.written) - len(self.boxes) + k, axis=0)
-        return int(ink_index.crossing(a, b, *self._led[k]).sum()) + _over(written, *self._led[k]) + over
+        return int(ink_index.crosses(a, b, *self._led[k]).sum()) + _count_crossed(written, *self._led[k]) + over
 
-    def met(self, k: int) -> list[int]:
+    def _is_misread(self, k: int) -> bool:
+        """Whether label ``k`` has no leader and is read as another's because of the leader of one."""
+        label, box, _ = self.at[k]
+        p, (x0, y0, x1, y1) = self.leaders, box.inset(-NEAR)
+        near = (p.real > x0) & (p.real < x1) & (p.imag > y0) & (p.imag < y1)
+        return k not in self._led and bool(near.any()) and bool(_surroundings(self.ink, label).misreading(box))
+
+    def in_conflict(self, k: int) -> list[int]:
         """Labels whose leader or lettering the leader of label ``k`` meets, and those whose leader meets its lettering."""
         others, a, b = self._others(k)
         found = others[ink_index.enters(a, b - a, *self.boxes[k])].tolist()
         if k in self._led:
             start, end = self._led[k]
-            found += others[ink_index.crossing(a, b, start, end)].tolist()
+            found += others[ink_index.crosses(a, b, start, end)].tolist()
             found += [n for n in np.flatnonzero(ink_index.enters(start, end - start, *self.boxes.T)).tolist() if n != k]
         return list(dict.fromkeys(found))
 
@@ -153,20 +163,85 @@ class Grid:
         a, b = self._ends[other].T
         return self._whose[other], a, b
 
-    def free(self, box: Box) -> bool:
+    def is_free(self, box: Box) -> bool:
         """Whether a rectangle lies inside the sheet, clear of heavy lines, lettering and the labels that are set."""
         sides = np.array(box)[:, None]
-        near = self.boxes[ink_index.within(self.boxes.T, box, CLEAR)]
-        return bool(self.clear(sides)[0] and not _meeting(sides + _MARGIN, near)[0])
+        near = self.boxes[ink_index.find_near(self.boxes.T, box, CLEAR)]
+        return bool(self.are_clear(sides)[0] and not _overlap(sides + _MARGIN, near)[0])
 
-    def clear(self, sides: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    def are_clear(self, sides: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
         """Which rectangles lie inside the sheet, clear of heavy lines and lettering but for that of labels."""
-        blocked = self.ink.heavy.under(sides + _MARGIN) > 0
+        blocked = self.ink.heavy.count_under(sides + _MARGIN) > 0
         blocked |= (sides[:2] < self.inside[:2]).any(axis=0) | (sides[2:] > self.inside[2:]).any(axis=0)
         return np.asarray(~blocked)
 
+    def place_all(self) -> None:
+        """Set labels one after another."""
+        for begin in range(0, len(self.labels), TOGETHER):
+            some = self.labels[begin:begin + TOGETHER]
+            for k, (label, candidates) in enumerate(zip(some, _candidates(self, some), strict=True), begin):
+                self.put(k, _place(self, label, candidates, USUAL))
 
-class _Lattice(NamedTuple):
+    def improve(self, k: int, around: Around) -> None:
+        """Give label ``k`` a better place if something is wrong with it, and what it meets another one if need be."""
+        if self._is_undisturbed(k) or not self.count_faults(k):
+            return
+        # One that has no better place gets it when the one it meets makes room, or changes places with it.
+        ways = ((k,), *(pair for q in self.in_conflict(k) for pair in ((k, q), (q, k))))
+        if not any(self._set_again(some, around) for some in ways) and not any(self.exchange(k, q) for q in self.in_conflict(k)) \
+                and around is CLOSER:
+            any(self.make_room(*pair) for pair in ways[1:])
+
+    def _place_again(self, k: int, around: Around) -> None:
+        (candidates,) = _candidates(self, [self.labels[k]], around)
+        self.put(k, _place(self, self.labels[k], candidates, around))
+
+    def _set_again(self, some: tuple[int, ...], around: Around) -> bool:
+        """Take some labels off and set them again in this order; they stay where they were unless that makes it better."""
+        before, faults = [self.at[k] for k in some], self.count_faults(*some)
+        for k in some:
+            self.lift(k)
+        for k in some:
+            self._place_again(k, around)
+        return self._keep_if_better(some, before, faults)
+
+    def make_room(self, k: int, q: int) -> bool:
+        """Try the places of label ``k`` one after another until label ``q`` has a good one, too; else both stay where they were."""
+        before, label = [self.at[k], self.at[q]], self.labels[k]
+        for n in (k, q):
+            self.lift(n)
+        places = _Places(self, label, *_candidates(self, [label], CLOSER))
+        for at in places.well_apart(_surroundings(self.ink, label)):
+            self.put(k, (label, places.box(at), True))
+            self._place_again(q, CLOSER)
+            if not self.count_faults(k, q):
+                return True
+            for n in (k, q):
+                self.lift(n)
+        return self._keep_if_better((k, q), before, 0)
+
+    def exchange(self, k: int, q: int) -> bool:
+        """Let two labels change places, as leaders that cross ask for, if both have room there and that makes it better."""
+        before, faults = [self.at[k], self.at[q]], self.count_faults(k, q)
+        for n in (k, q):
+            self.lift(n)
+        for n, (label, own, _), to in ((k, before[0], before[1][1].centre), (q, before[1], before[0][1].centre)):
+            half = complex(own.width, own.height) / 2
+            box = Box((to - half).real, (to - half).imag, (to + half).real, (to + half).imag)
+            reads = _needs_leader(label, box) or not _surroundings(self.ink, label).misreading(box)
+            self.put(n, (label, box, self.is_free(box) and reads))
+        return self._keep_if_better((k, q), before, faults if self.at[k][2] and self.at[q][2] else 0)
+
+    def _keep_if_better(self, some: tuple[int, ...], before: list[Placement], faults: int) -> bool:
+        """Whether labels have fewer than so many ``faults`` now; else they go back to where they were before."""
+        if faults and self.count_faults(*some) < faults:
+            return True
+        for k, was in zip(some, before, strict=True):
+            self.put(k, was)
+        return False
+
+
+class _Candidates(NamedTuple):
     """Places about a label's anchor before others are set: rectangles ``sides`` (x0, y0, x1, y1; shape (4, n)) and their ``cost``.
 
     ``beyond`` is how far they leave the place of the label's view, mm, None where it has none. ``clear`` are those inside the sheet
@@ -180,7 +255,7 @@ class _Lattice(NamedTuple):
     around: Box
 
 
-def _lattices(grid: Grid, labels: Sequence[Label], around: Around = USUAL) -> Iterator[_Lattice]:
+def _candidates(placed: PlacedLabels, labels: Sequence[Label], around: Around = USUAL) -> Iterator[_Candidates]:
     """Places about the anchors of some labels, judged together."""
     away, directions = around
     turned = TURNING * np.abs(np.angle(directions)) / pi
@@ -192,18 +267,18 @@ def _lattices(grid: Grid, labels: Sequence[Label], around: Around = USUAL) -> It
     centres = np.array([label.anchor for label in labels])[:, None, None] + units[:, None] * (distances + support)
     sides = np.array([centres.real - w, centres.imag - h, centres.real + w, centres.imag + h]).reshape(4, len(labels), -1)
     flat_ = sides.reshape(4, -1)
-    light = grid.ink.light.under(flat_).reshape(sides.shape[1:])
-    clear = grid.clear(flat_).reshape(sides.shape[1:])
+    light = placed.ink.light.count_under(flat_).reshape(sides.shape[1:])
+    clear = placed.are_clear(flat_).reshape(sides.shape[1:])
     edges = [*sides[:2].min(axis=2), *sides[2:].max(axis=2)]
     for k, label in enumerate(labels):
         # A label that should do without a leader line gets one only when nothing near is free.
         cost = distances[k] * 1.2 + (0.0 if label.leader else FAR * (away > NEAR)[:, None])
         cost = (cost + turned if label.away else np.repeat(cost, len(directions), axis=1)).ravel()
         beyond = None
-        if 0 <= label.part < len(grid.views) and (view := grid.views[label.part]).contains(label.anchor):
+        if 0 <= label.part < len(placed.views) and (view := placed.views[label.part]).contains(label.anchor):
             x0, y0, x1, y1 = sides[:, k] + _MARGIN
             beyond = np.maximum.reduce([view.x0 - x0, view.y0 - y0, x1 - view.x1, y1 - view.y1])
-        yield _Lattice(sides[:, k], cost + label.thin * LIGHT * light[k], beyond, clear[k], Box(*(edge[k] for edge in edges)))
+        yield _Candidates(sides[:, k], cost + label.thin * LIGHT * light[k], beyond, clear[k], Box(*(edge[k] for edge in edges)))
 
 
 class _Places:
@@ -211,23 +286,23 @@ class _Places:
     numbers of the ``free`` ones, the cheapest first.
     """
 
-    def __init__(self, grid: Grid, label: Label, lattice: _Lattice) -> None:
-        self.label, self._grid = label, grid
-        self.sides, cost, beyond, clear, around = lattice
+    def __init__(self, placed: PlacedLabels, label: Label, candidates: _Candidates) -> None:
+        self.label, self._placed = label, placed
+        self.sides, cost, beyond, clear, around = candidates
         free = np.flatnonzero(clear)
-        near = grid.boxes[ink_index.within(grid.boxes.T, around, CLEAR)]
+        near = placed.boxes[ink_index.find_near(placed.boxes.T, around, CLEAR)]
         if len(free) and len(near):
-            free = free[~_meeting(self.sides[:, free] + _MARGIN, near)]
+            free = free[~_overlap(self.sides[:, free] + _MARGIN, near)]
         some = free if len(free) else np.arange(len(cost))  # what the others would cost nobody asks
         there = self.sides[:, some]
         gap = WORD * label.height
-        read_on = _beside(there, grid.written[ink_index.within(grid.written.T, around, gap)], gap)
+        read_on = _read_on(there, placed.written[ink_index.find_near(placed.written.T, around, gap)], gap)
         more = cost[some] + RUN_ON * read_on
         self._strayed = None
         if beyond is not None:
             more = more + OUTSIDE * (beyond[some] > 0)
             self._strayed = beyond > AWAY
-        p = grid.leaders
+        p = placed.leaders
         x0, y0, x1, y1 = around.inset(-CLEAR)
         p = p[(p.real > x0) & (p.real < x1) & (p.imag > y0) & (p.imag < y1)]
         if len(p):
@@ -239,61 +314,65 @@ class _Places:
         self.run_on[some] = read_on
         self.free = free[np.argsort(self.cost[free], kind="stable")]
 
-    def read(self, here: owners.Round, leaders: bool = True) -> int | None:
-        """The cheapest free place where the label reads as what it names, or has a leader that meets nothing.
+    def choose(self, here: owners.Surroundings, leaders: bool = True) -> tuple[int | None, float]:
+        """The cheapest free place where the label reads as what it names, or has a leader that meets nothing; cost of its fault.
 
         Where there is none the best of the others: a leader had better cross a line than the label be read as another thing's, or
-        the leader run over lettering. None without ``leaders``.
+        the leader run over lettering. Without ``leaders`` none of those but such as are only vague.
         """
-        poor, least = None, np.inf
+        best, least, worst, enough = None, np.inf, np.inf, np.inf
         for k in map(int, self.free):
-            if not leaders and _led(self.label, self.box(k)):
+            if self.cost[k] >= enough:
+                break
+            if not leaders and _needs_leader(self.label, self.box(k)):
                 continue
-            ill = self.ill(here, k)
-            if not ill:
-                return k
-            if self.cost[k] + ill < least:
-                poor, least = k, self.cost[k] + ill
-        return poor if leaders else None
+            fault = self.fault(here, k)
+            if not fault:
+                return k, 0.0
+            if self.cost[k] + fault < least and (leaders or fault <= VAGUE):
+                best, least, worst = k, self.cost[k] + fault, fault
+            if fault <= VAGUE:
+                enough = min(enough, self.cost[k] + fault)
+        return best, worst
 
     def box(self, k: int) -> Box:
         """A place."""
         return Box(*self.sides[:, k].tolist())
 
-    def ill(self, here: owners.Round, k: int) -> float:
+    def fault(self, here: owners.Surroundings, k: int) -> float:
         """Cost of what is wrong with the label at a place, 0 for nothing."""
         box = self.box(k)
         far = STRAYED * bool(self._strayed is not None and self._strayed[k])
-        if not _led(self.label, box):
-            return far + (MISREAD if here.reads(box) else 0.0)
-        over = _over(self._grid.written, *_way(self.label, box))
-        return far + (OVER * over if over else CROSSING * here.met(*_way(self.label, box)))
+        if not _needs_leader(self.label, box):
+            return far + (MISREAD if here.misreading(box) else VAGUE * here.is_vague(box))
+        over = _count_crossed(self._placed.written, *_leader_ends(self.label, box))
+        return far + (OVER * over if over else CROSSING * here.count_crossed(*_leader_ends(self.label, box)))
 
-    def apart(self, here: owners.Round) -> Iterator[int]:
+    def well_apart(self, here: owners.Surroundings) -> Iterator[int]:
         """Free places whose leader runs over no lettering, the cheapest first, none near one before it."""
         centres = (self.sides[:2] + self.sides[2:]).T @ [0.5, 0.5j]
         left = self.free
         while len(left):
             k, left = int(left[0]), left[1:]
-            if self.ill(here, k) < OVER:
+            if self.fault(here, k) < OVER:
                 yield k
                 left = left[np.abs(centres[left] - centres[k]) > NEAR]
 
-    def least(self) -> int:
+    def cheapest(self) -> int:
         """The cheapest place, or where none is free the one that is least inked."""
         if len(self.free):
             return int(self.free[0])
-        return int(np.argmin(self.cost + 20.0 * self._grid.ink.heavy.under(self.sides)))
+        return int(np.argmin(self.cost + 20.0 * self._placed.ink.heavy.count_under(self.sides)))
 
 
-def _meeting(sides: npt.NDArray[np.float64], boxes: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+def _overlap(sides: npt.NDArray[np.float64], boxes: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
     """Which rectangles (x0, y0, x1, y1; shape (4, n)) overlap one of the ``boxes``, shape (m, 4)."""
     x0, y0, x1, y1 = sides[:, :, None]
     b = boxes.T
     return np.asarray(((x0 < b[2]) & (x1 > b[0]) & (y0 < b[3]) & (y1 > b[1])).any(axis=1))
 
 
-def _beside(sides: npt.NDArray[np.float64], boxes: npt.NDArray[np.float64], gap: float) -> npt.NDArray[np.bool_]:
+def _read_on(sides: npt.NDArray[np.float64], boxes: npt.NDArray[np.float64], gap: float) -> npt.NDArray[np.bool_]:
     """Which of them have one of the boxes on their level nearer than ``gap``."""
     x0, y0, x1, y1 = sides[:, :, None]
     b = boxes.T
@@ -301,92 +380,12 @@ def _beside(sides: npt.NDArray[np.float64], boxes: npt.NDArray[np.float64], gap:
     return np.asarray(((x0 - gap < b[2]) & (x1 + gap > b[0]) & (y0 + level < b[3]) & (y1 - level > b[1])).any(axis=1))
 
 
-Found = tuple[Label, Box, bool]
-"""A label, which may have moved, its place, whether there was room for it."""
-
-
-def _first(grid: Grid, labels: Sequence[Label]) -> Iterator[Found]:
-    """Set labels one after another."""
-    for begin in range(0, len(labels), TOGETHER):
-        some = labels[begin:begin + TOGETHER]
-        for k, (label, lattice) in enumerate(zip(some, _lattices(grid, some), strict=True), begin):
-            found = _placed(grid, label, lattice, USUAL)
-            grid.put(k, *found[:2])
-            yield found
-
-
-def _found(grid: Grid, k: int, label: Label, around: Around) -> Found:
-    (lattice,) = _lattices(grid, [label], around)
-    found = _placed(grid, label, lattice, around)
-    grid.put(k, *found[:2])
-    return found
-
-
-def _ill(grid: Grid, found: list[Found], some: tuple[int, ...]) -> int:
-    """What is wrong with some labels where they stand, see :meth:`Grid.ill` and :func:`_misread`."""
-    return sum(grid.ill(k) + _misread(grid, *found[k][:2]) for k in some)
-
-
-def _set_again(grid: Grid, labels: list[Label], found: list[Found], some: tuple[int, ...],
-               around: Around) -> bool:
-    """Take some labels off and set them again in this order; they stay where they were unless that makes it better."""
-    before, ill = [found[k] for k in some], _ill(grid, found, some)
-    for k in some:
-        grid.lift(k)
-    for k in some:
-        found[k] = _found(grid, k, labels[k], around)
-    return _kept(grid, found, some, before, ill)
-
-
-def _made_room(grid: Grid, labels: list[Label], found: list[Found], k: int, q: int) -> bool:
-    """Try the places of label ``k`` one after another until label ``q`` has a good one, too; else both stay where they were."""
-    before, label = [found[k], found[q]], labels[k]
-    for n in (k, q):
-        grid.lift(n)
-    places = _Places(grid, label, *_lattices(grid, [label], CLOSER))
-    for at in places.apart(owners.Round(grid.ink, label, 2 * (NEAR + label.gap) + size(label.text, label.height)[0])):
-        found[k] = label, places.box(at), True
-        grid.put(k, *found[k][:2])
-        found[q] = _found(grid, q, labels[q], CLOSER)
-        if not _ill(grid, found, (k, q)):
-            return True
-        for n in (k, q):
-            grid.lift(n)
-    for n, was in zip((k, q), before, strict=True):
-        found[n] = was
-        grid.put(n, *was[:2])
-    return False
-
-
-def _exchanged(grid: Grid, found: list[Found], k: int, q: int) -> bool:
-    """Let two labels change places, as leaders that cross ask for, if both have room there and that makes it better."""
-    before, ill = [found[k], found[q]], _ill(grid, found, (k, q))
-    for n in (k, q):
-        grid.lift(n)
-    for n, (label, own, _), to in ((k, before[0], before[1][1].centre), (q, before[1], before[0][1].centre)):
-        half = complex(own.width, own.height) / 2
-        box = Box((to - half).real, (to - half).imag, (to + half).real, (to + half).imag)
-        found[n] = label, box, grid.free(box) and (_led(label, box) or not _reads(grid.ink, label, box))
-        grid.put(n, label, box)
-    return _kept(grid, found, (k, q), before, ill if found[k][2] and found[q][2] else 0)
-
-
-def _kept(grid: Grid, found: list[Found], some: tuple[int, ...], before: list[Found], ill: int) -> bool:
-    """Whether labels stand better than ``ill`` now; else they go back to where they were before."""
-    if _ill(grid, found, some) < ill:
-        return True
-    for k, was in zip(some, before, strict=True):
-        found[k] = was
-        grid.put(k, *was[:2])
-    return False
-
-
 def _draw(canvas: Canvas, label: Label, box: Box) -> None:
     laid = letter(label.text, label.height)
     canvas.of, first = label.of, len(canvas.marks)
     with canvas.traced("text", *(label.by[1:] if label.by is not None else ())):
         canvas.put(laid, complex(box.x0, box.y0 + laid.descent), 0.0, label.text)
-        _leader(canvas, label, box)
+        _draw_leader(canvas, label, box)
     if len(canvas.marks) > first:
         # The leader line belongs to its label.
         canvas.groups[-1] = canvas.groups[-1]._replace(end=len(canvas.marks), part=label.part, anchor=label.anchor)
@@ -395,68 +394,61 @@ def _draw(canvas: Canvas, label: Label, box: Box) -> None:
         canvas.dimensions[label.dimension] = d._replace(label=(first, len(canvas.marks)), middle=box.centre)
 
 
-def _placed(grid: Grid, label: Label, lattice: _Lattice, around: Around) -> Found:
+def _place(placed: PlacedLabels, label: Label, candidates: _Candidates, around: Around) -> Placement:
     """Place of a label, which may have moved along the vector it names rather than have a leader; whether there is room for it."""
-    places, reach = _Places(grid, label, lattice), 2 * (NEAR + label.gap) + size(label.text, label.height)[0]
-    here = owners.Round(grid.ink, label, reach)
-    k = places.read(here)
-    if k is None or places.run_on[k] or _led(label, Box(*places.sides[:, k])):
-        # Lettering that keeps off thin lines had better have a leader than stand over some.
-        most = np.inf if label.thin <= 1.0 or k is None else float(places.cost[k]) + places.ill(here, k)
-        moves = [replace(label, anchor=anchor) for anchor in here.along()]
-        for moved, other in zip(moves, _lattices(grid, moves, around) if moves else (), strict=True):
-            others = _Places(grid, moved, other)
-            there = others.read(owners.Round(grid.ink, moved, reach), leaders=False)
-            if there is not None and not others.run_on[there] and others.cost[there] < most:
-                return moved, Box(*others.sides[:, there]), True
-    return label, Box(*places.sides[:, places.least() if k is None else k]), bool(len(places.free))
+    places, here = _Places(placed, label, candidates), _surroundings(placed.ink, label)
+    k, fault = places.choose(here)
+    found, vague = (label, places.box(places.cheapest() if k is None else k), bool(len(places.free))), 0 < fault <= VAGUE
+    cost = fault if k is None else float(places.cost[k]) + fault
+    if k is None or places.run_on[k] or vague or _needs_leader(*found[:2]):
+        for moved in (replace(label, anchor=anchor) for anchor in here.places_along()):
+            others = _Places(placed, moved, *_candidates(placed, [moved], around))
+            there, fault = others.choose(_surroundings(placed.ink, moved), leaders=False)
+            # Lettering that keeps off thin lines had better have a leader than stand over some.
+            if there is not None and not others.run_on[there] and (
+                    others.cost[there] + fault < cost or not (fault or vague or label.thin > 1.0)):
+                found, cost = (moved, others.box(there), True), others.cost[there] + fault
+                if not fault:
+                    break
+    return found
 
 
-def _misread(grid: Grid, label: Label, box: Box) -> int:
-    """Whether a label without a leader is read as another's because of the leader of one: more than a crossing of two leaders."""
-    p = grid.leaders
-    near = (p.real > box.x0 - NEAR) & (p.real < box.x1 + NEAR) & (p.imag > box.y0 - NEAR) & (p.imag < box.y1 + NEAR)
-    if _led(label, box) or not near.any():
-        return 0
-    return SEVERAL * bool(_reads(grid.ink, label, box))
+def _surroundings(ink: InkIndex, label: Label) -> owners.Surroundings:
+    """What is near the anchor of a label, as far as it may stand from there."""
+    return owners.Surroundings(ink, label, 2 * (NEAR + label.gap) + size(label.text, label.height)[0])
 
 
-def _reads(ink: InkIndex, label: Label, box: Box) -> str:
-    """What is wrong with a label there that has no leader, see :meth:`owners.Round.reads`."""
-    return owners.Round(ink, label, 2 * (NEAR + label.gap) + box.width).reads(box)
-
-
-def _led(label: Label, box: Box) -> bool:
+def _needs_leader(label: Label, box: Box) -> bool:
     """Whether lettering there stands too far to be read without a leader."""
     return bool(label.shelf) or abs(box.nearest(label.anchor) - label.anchor) > NEAR + label.gap
 
 
-def _way(label: Label, box: Box) -> tuple[complex, complex]:
+def _leader_ends(label: Label, box: Box) -> tuple[complex, complex]:
     """From the anchor to the nearest point of the lettering, or from the edge of what it names to its shelf."""
     if not label.shelf:
         return label.anchor, box.nearest(label.anchor)
-    end = min(_shelf(box), key=lambda z: abs(z - label.anchor))
+    end = min(_shelf_ends(box), key=lambda z: abs(z - label.anchor))
     return label.anchor + label.shelf * (end - label.anchor) / abs(end - label.anchor), end
 
 
-def _shelf(box: Box) -> tuple[complex, complex]:
+def _shelf_ends(box: Box) -> tuple[complex, complex]:
     """Ends of the shelf under lettering."""
     return complex(box.x0, box.y0 - SHELF), complex(box.x1, box.y0 - SHELF)
 
 
-def _over(boxes: npt.NDArray[np.float64], a: complex, b: complex) -> int:
+def _count_crossed(boxes: npt.NDArray[np.float64], a: complex, b: complex) -> int:
     """Over how much lettering a leader runs."""
     x0, y0, x1, y1 = boxes[(boxes[:, 2] > min(a.real, b.real)) & (boxes[:, 0] < max(a.real, b.real))].T
     return int(ink_index.enters(a, b - a, x0, y0, x1, y1).sum())
 
 
-def _leader(canvas: Canvas, label: Label, box: Box) -> None:
+def _draw_leader(canvas: Canvas, label: Label, box: Box) -> None:
     """Thin line from the anchor to the nearest point of lettering that stands too far to be read without one."""
     if label.shelf:
-        canvas.line(*_way(label, box), "thin")
-        canvas.line(*_shelf(box), "thin")
-    elif _led(label, box):
-        _, end = _way(label, box)
+        canvas.line(*_leader_ends(label, box), "thin")
+        canvas.line(*_shelf_ends(box), "thin")
+    elif _needs_leader(label, box):
+        _, end = _leader_ends(label, box)
         u = (end - label.anchor) / abs(end - label.anchor)
         # A label that keeps off its anchor stands beside a symbol: the line ends at that symbol's edge, not inside it.
         canvas.line(label.anchor + max(label.gap - BESIDE, 0.0) * u, end - 0.6 * u, "thin")

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from itertools import chain, product
+from itertools import product
 
 import numpy as np
 
 from tmm_sheets.drawing.canvas import Canvas, PlacedNote
 from tmm_sheets.drawing.crowded import Crowded
-from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
@@ -37,8 +36,7 @@ def set_notes(canvas: Canvas, ink: InkIndex) -> list[Crowded]:
     """Set every note of a canvas on its ``ink``, to which they come; returns those that found no free place, which are left out."""
     crowded, area = [], ink.area
     for note in canvas.notes:
-        own = _ink(canvas, note)
-        pictures = _pictures(canvas, note)
+        pictures, own = _takes(canvas, ink, note)
         # Best between no picture of the view and its caption, if that is not far from the view.
         for apart, region, height in product((pictures, []), (note.box, area), HEIGHTS):
             found = [choice for n in LINES if (choice := _choice(ink, region, own, note, height, n, apart)) is not None
@@ -75,25 +73,16 @@ def wrapped(text: str, height: float, count: int) -> list[str]:
         room += height
 
 
-def _pictures(canvas: Canvas, note: PlacedNote) -> list[Box]:
-    """Rectangles round the pictures that a view has several of, each with its caption."""
-    if note.part < 0:
-        return []
-    ends = [*(part.first for part in canvas.parts[1:]), len(canvas.marks)]
-    drawn = [dense(canvas.marks[part.first:end], 5.0) for part, end in zip(canvas.parts, ends, strict=True)
-             if part.title and part.box != note.box and all(note.box.contains(z, 0.1) for z in part.box.corners)]
-    return [Box.around(z) for z in drawn if len(z)]
+def _takes(canvas: Canvas, ink: InkIndex, note: PlacedNote) -> tuple[list[Box], Box]:
+    """Rectangles round the pictures that the view of a note has several of, each with its caption; round all that it has drawn.
 
-
-def _ink(canvas: Canvas, note: PlacedNote) -> Box:
-    """What is drawn of a view, in all its parts; its place where there is nothing, or nobody said what belongs to it."""
-    if note.part < 0:
-        return note.box
-    ends = [*(part.first for part in canvas.parts[1:]), len(canvas.marks)]
-    own = [canvas.marks[part.first:end] for part, end in zip(canvas.parts, ends, strict=True)
-           if part.draw == canvas.parts[note.part].draw and all(note.box.contains(z, 0.1) for z in part.box.corners)]
-    drawn = dense(chain.from_iterable(own), 5.0)
-    return Box.around(drawn) if len(drawn) else note.box
+    No pictures, and its place, where there is nothing, or nobody said what belongs to it.
+    """
+    own_place = note.box.inset(-0.1)
+    parts = [k for k, part in enumerate(canvas.parts) if note.part >= 0 and all(map(own_place.contains, part.box.corners))]
+    pictures = (ink.bounds(canvas.span(k)) for k in parts if canvas.parts[k].title and canvas.parts[k].box != note.box)
+    own = ink.bounds(*(canvas.span(k) for k in parts if canvas.parts[k].draw == canvas.parts[note.part].draw))
+    return [box for box in pictures if box is not None], note.box if own is None else own
 
 
 def _choice(ink: InkIndex, region: Box, own: Box, note: PlacedNote, height: float, count: int,
@@ -111,7 +100,8 @@ def _choice(ink: InkIndex, region: Box, own: Box, note: PlacedNote, height: floa
     below = np.arange(region.y0 + CLEAR, region.y1 - h - CLEAR, STEP)
     if not left.size or not below.size:
         return None
-    heavy, light = (cells.lattice(left - APART, below - CLEAR, w + 2 * APART, h + 2 * CLEAR) for cells in (ink.heavy, ink.light))
+    size = w + 2 * APART, h + 2 * CLEAR
+    heavy, light = (cells.count_lattice(left - APART, below - CLEAR, *size) for cells in (ink.heavy, ink.light))
     covered = heavy + light > 0
     for b in apart:
         covered |= ((left < b.x1) & (left + w > b.x0))[:, None] & ((below < b.y1) & (below + h > b.y0))

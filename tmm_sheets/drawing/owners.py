@@ -6,19 +6,23 @@ nearer than any other, and the shortest way there must cross none. Where there i
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 import numpy as np
 
 from tmm_sheets.drawing.canvas import Label
-from tmm_sheets.drawing.ink_index import LEADER, ROUNDING, Flags, Floats, InkIndex, crossing, distance, enters, sides, within
+from tmm_sheets.drawing.ink_index import LEADER, ROUNDING, Flags, Floats, InkIndex, crosses, distance, enters, find_near, sides
 from tmm_sheets.drawing.marks import Box, Line, flat
+from tmm_sheets.drawing.text_boxes import run_corners
 
 AT = 0.3
 """Lines that pass this near the anchor meet there: a letter at a point is nearer to all of them than to any other, mm."""
 SLACK = 0.1
 """By so much another line may be nearer before anybody takes the label for its letter, mm."""
 
+CLEARLY, SEEN = 1.0, 6.0
+"""By so much its own vector is nearer to a letter that nobody takes for another's, of all that is within so many mm."""
 SYMBOL = 0.6
 """By so much a symbol about the anchor may reach beyond the distance its letter keeps, mm."""
 
@@ -31,26 +35,45 @@ LONG = 12.0
 """Places along a vector where its letter may stand, when it is longer than so many mm."""
 
 
-class Round:
+class Surroundings:
     """Segments about a label's anchor, and which of them are its own."""
 
     def __init__(self, ink: InkIndex, label: Label, reach: float) -> None:
         p = label.anchor
         self.anchor = p
-        self.a, self.b, self.of, self.strong = ink.about(p, reach)
+        self.a, self.b, self.of, self.strong = ink.parting(p, reach)
         self.sides = sides(self.a, self.b)
         self.leaders = self.of == LEADER
+        self._runs = run_corners(label.text, label.height)
         self.own = _own(ink, self, label)
         self._vector = _vector(ink, self, label)
         if self._vector is not None:  # what lies on it is named together with it
             self.own |= np.maximum(_to_line(self.a, *self._vector), _to_line(self.b, *self._vector)) <= AT
 
-    def reads(self, box: Box) -> str:
+    def misreading(self, box: Box) -> str:
         """What is wrong with lettering in a rectangle: "crossed", "nearer", or "" for nothing."""
+        margin = self.margin(box)
+        return "crossed" if margin == -inf else "nearer" if margin < -SLACK else ""
+
+    def is_vague(self, box: Box) -> bool:
+        """Whether the letter of a vector has its ink there about as near to another strong line as to its own."""
+        if self._vector is None:
+            return False
+        near = find_near(self.sides, box, SEEN)
+        near = near[self.own[near] | self.strong[near]]
+        own = self.own[near]
+        if own.all() or not own.any():
+            return False
+        corner = complex(box.x0, box.y0)
+        gaps = np.min([_to_box(self.a[near], self.b[near], Box.around(run + corner))[0] for run in self._runs], axis=0)
+        return bool(gaps[~own].min() < gaps[own].min() + CLEARLY)
+
+    def margin(self, box: Box) -> float:
+        """How much nearer to lettering in a rectangle its own line or point is than any other, mm; -inf where a line is between."""
         start, end = box.nearest(self.anchor), self.anchor
-        near = within(self.sides, box, abs(start - end) + ROUNDING)  # nothing beyond the anchor is nearer
+        near = find_near(self.sides, box, abs(start - end) + ROUNDING)  # nothing beyond the anchor is nearer
         if not len(near):
-            return ""
+            return inf
         a, b, own = self.a[near], self.b[near], self.own[near]
         gaps, starts, ends = _to_box(a, b, box)
         if own.any():
@@ -58,16 +81,16 @@ class Round:
             if gaps[k] < abs(start - end):
                 start, end = complex(starts[k]), complex(ends[k])
         gap = abs(start - end)
-        foreign = ~own & (gaps <= gap)
-        if not foreign.any():
-            return ""
-        if gap > SLACK and crossing(a[foreign], b[foreign], start, end).any():
-            return "crossed"
-        return "nearer" if gaps[foreign].min() < gap - SLACK else ""
+        if own.all():
+            return inf
+        between = ~own & (gaps <= gap)
+        if gap > SLACK and between.any() and crosses(a[between], b[between], start, end).any():
+            return -inf
+        return float(gaps[~own].min() - gap)
 
-    def met(self, start: complex, end: complex) -> int:
+    def count_crossed(self, start: complex, end: complex) -> int:
         """How many strong lines but its own a leader from the anchor crosses, and lines it runs along; other leaders count more."""
-        near = within(self.sides, Box(*sides(np.array([start]), np.array([end]))[:, 0]), BESIDE + ROUNDING)
+        near = find_near(self.sides, Box(*sides(np.array([start]), np.array([end]))[:, 0]), BESIDE + ROUNDING)
         if not len(near):
             return 0
         a, b, along = self.a[near], self.b[near], end - start
@@ -75,11 +98,11 @@ class Round:
         parallel = np.abs((d * np.conj(along)).imag) < PARALLEL * np.abs(d) * abs(along)
         apart = np.minimum(_to_line(a, start, end), _to_line(b, start, end))
         beside = np.minimum(apart, np.minimum(distance(a, b, start + 0.5 * along), distance(a, b, end)))
-        crossed = near[(self.strong[near] | self.leaders[near]) & ~self.own[near]]
-        crosses = crossing(self.a[crossed], self.b[crossed], start, end)
-        return int((parallel & (beside < BESIDE)).sum() + crosses.sum() + (LED - 1) * (crosses & self.leaders[crossed]).sum())
+        foreign = near[(self.strong[near] | self.leaders[near]) & ~self.own[near]]
+        crossed = crosses(self.a[foreign], self.b[foreign], start, end)
+        return int((parallel & (beside < BESIDE)).sum() + crossed.sum() + (LED - 1) * (crossed & self.leaders[foreign]).sum())
 
-    def along(self) -> list[complex]:
+    def places_along(self) -> list[complex]:
         """Other places on the vector that the label names, the nearer the middle the sooner; none where it names no vector."""
         if self._vector is None:
             return []
@@ -87,7 +110,7 @@ class Round:
         return [a + share * (b - a) for share in SHARES if abs(a + share * (b - a) - self.anchor) > SYMBOL]
 
 
-def _vector(ink: InkIndex, here: Round, label: Label) -> tuple[complex, complex] | None:
+def _vector(ink: InkIndex, here: Surroundings, label: Label) -> tuple[complex, complex] | None:
     """Ends of the vector, or of the construction line or line of a detail named by its own letter, beside which a label stands."""
     if label.by is None or not label.by.step:
         return None
@@ -101,7 +124,7 @@ def _vector(ink: InkIndex, here: Round, label: Label) -> tuple[complex, complex]
     return None
 
 
-def _own(ink: InkIndex, here: Round, label: Label) -> Flags:
+def _own(ink: InkIndex, here: Surroundings, label: Label) -> Flags:
     """Which segments a label may stand for: those of the step it names, and what meets or lies about its anchor.
 
     The letter of a vector or a curve stands beside it: there lines that only pass by the anchor are foreign.
@@ -117,7 +140,7 @@ def _own(ink: InkIndex, here: Round, label: Label) -> Flags:
     return np.asarray((found | about | (distance(here.a, here.b, label.anchor) <= AT)) & (here.of != LEADER))
 
 
-def _at_end(ink: InkIndex, here: Round, lines: Flags, anchor: complex) -> bool:
+def _at_end(ink: InkIndex, here: Surroundings, lines: Flags, anchor: complex) -> bool:
     """Whether the anchor is where one of these lines ends, or on none of them."""
     on = lines & (distance(here.a, here.b, anchor) <= 2 * AT)
     ends = [flat(ink.marks[number])[[0, -1]] for number in np.unique(here.of[on])]

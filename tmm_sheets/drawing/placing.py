@@ -13,7 +13,7 @@ def place(canvas: Canvas, area: Box) -> list[Crowded]:
     """Set all that a canvas asks for inside ``area``, as a part of its own; returns what found no free place."""
     ink = InkIndex(canvas.marks, area, canvas.windows)
     numbers = list(canvas.numbers)
-    axis_numbers.clear(canvas, ink)
+    axis_numbers.set_numbers(canvas, ink)
     axis_heights.even(canvas, numbers)
     canvas.begin(area, "", "labels")
     crowded = labels.set_labels(canvas, ink)

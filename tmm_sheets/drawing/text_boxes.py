@@ -11,6 +11,11 @@ import numpy.typing as npt
 from tmm_sheets.drawing.lettering import advance, letter, widened
 from tmm_sheets.drawing.marks import Points, Text
 
+CLEAR = 0.4
+"""What is kept free round lettering, mm."""
+SHELF = 0.8
+"""Distance of lettering from the shelf it stands on, mm."""
+
 
 def text_box(mark: Text) -> Points:
     """Corners, shape (4,), of the rectangle round a run of text (slanted letters reach a little to the right of their advance)."""
@@ -39,6 +44,13 @@ def size(markup: str, height: float) -> tuple[float, float]:
     """Width and height of laid out lettering with its indices, mm."""
     laid = letter(markup, height)
     return laid.width + 0.15 * height, laid.ascent + laid.descent
+
+
+@lru_cache(maxsize=10_000)
+def run_corners(markup: str, height: float) -> tuple[Points, ...]:
+    """Corners of the rectangles of its runs, shape (4,) each, from the lower left corner of the whole, mm."""
+    laid = letter(markup, height)
+    return tuple(run.at + 1j * laid.descent + _corners(run.text, run.height) for run in laid.runs)
 
 
 def spread(heights: list[float], least: float) -> list[float]:

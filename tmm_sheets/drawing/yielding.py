@@ -18,11 +18,10 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import strokes, widened
 from tmm_sheets.drawing.marks import Arc, Line, Mark, Points, Polyline, Text, flat
 from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.drawing.text_boxes import CLEAR
 
 THIN = 0.4
 """Width of the widest lines that yield, mm: axes; contours and vectors do not, labels keep off them."""
-CLEAR = 0.4
-"""What is left free round the ink of the letters, mm."""
 SHOWN = 0.8
 """A piece shorter than this between letters or at an end is left out, mm."""
 KEPT = 0.3

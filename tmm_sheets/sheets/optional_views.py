@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas, Label, Part
+from tmm_sheets.drawing.cells import Cells, sum_area
 from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Points
@@ -21,7 +22,8 @@ from tmm_sheets.sheets.views import VIEWS, function
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
-Cells = NDArray[Any]
+Taken = NDArray[Any]
+"""Cells of the sheet, shape (nx, ny): which of them are taken."""
 Counts = NDArray[np.int32]
 
 CELL = 2.0
@@ -56,15 +58,15 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside:
     """
     taken = _closed(inside, closed)
     seen, forces = 0, _of_forces(canvas, inside)
-    whole, drawn = (_whole(canvas, inside, taken.shape, lettering) for lettering in (True, False))
+    whole, drawn = (_whole(canvas, inside, lettering) for lettering in (True, False))
     for view, wanted in _wanted(project, canvas, offered):
         box = None
         for k in range(seen, len(canvas.parts)):
-            taken |= _of_part(canvas, k, inside, taken.shape)
+            taken |= _of_part(canvas, k, inside)
         seen = len(canvas.parts)
         if view.kind.near:
             spot, own, others = function(view.kind.near)(project, canvas, view.options)
-            pictures = [_ink_box(canvas, k, inside, taken.shape) for k in (own, *others)]
+            pictures = [_ink_box(canvas, k, inside) for k in (own, *others)]
             # What may stand elsewhere too rather has large letters than the nearest place.
             tried = [[size] for size in wanted] if view.kind.stands else [wanted]
             box = next((box for sizes in tried if (box := _near(taken, sizes, inside, spot, pictures)) is not None), None)
@@ -109,16 +111,16 @@ def _wanted(project: Project, canvas: Canvas, offered: Sequence[ViewPlace]) -> I
             yield view, wanted
 
 
-def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float, float]) -> Cells:
+def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float, float]) -> Taken:
     """Cells of empty rectangles of these sides, mm, lying or upright."""
     inked = _closed(inside, closed)
-    inked |= _cells(canvas, range(len(canvas.parts)), inside, inked.shape)
+    inked |= _cells(canvas, range(len(canvas.parts)), inside)
     gaps = np.zeros(inked.shape, bool)
-    table = _summed(inked)
+    table = sum_area(inked)
     for size in (sides, sides[::-1]):
         nx, ny = (int(np.ceil(length / CELL)) for length in size)
         begins = _windows(table, nx, ny) == 0
-        # How many of them have a corner here, with its sign: summed up, how many lie over a cell.
+        # How many of them have a corner here, with its sign: sum_area up, how many lie over a cell.
         count = np.zeros(np.add(inked.shape, 1), np.int64)
         for (i, j), sign in {(0, 0): 1, (nx, 0): -1, (0, ny): -1, (nx, ny): 1}.items():
             count[i:i + begins.shape[0], j:j + begins.shape[1]] += sign * begins
@@ -126,19 +128,12 @@ def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float
     return gaps
 
 
-def _summed(taken: Cells) -> Counts:
-    """How many cells are taken of all to the left of and below each corner of the cells."""
-    table = np.zeros(np.add(taken.shape, 1), np.int32)
-    table[1:, 1:] = taken.cumsum(axis=0, dtype=np.int32).cumsum(axis=1, dtype=np.int32)
-    return table
-
-
 def _windows(table: Counts, nx: int, ny: int) -> Counts:
-    """How many cells are taken of each rectangle of so many cells, by its lower left one; of a table by :func:`_summed`."""
+    """How many cells are taken of each rectangle of so many cells, by its lower left one; of their sum_area-area table."""
     return np.asarray(table[nx:, ny:] - table[:-nx, ny:] - table[nx:, :-ny] + table[:-nx, :-ny])
 
 
-def _free(table: Counts, sizes: Sequence[tuple[float, float]]) -> Iterator[tuple[tuple[float, float], float, Cells]]:
+def _free(table: Counts, sizes: Sequence[tuple[float, float]]) -> Iterator[tuple[tuple[float, float], float, Taken]]:
     """The sizes with distances from all else, the widest first, and the lowest left cells of all places that have them."""
     for size in sizes:
         for apart in APART:
@@ -150,12 +145,12 @@ def _free(table: Counts, sizes: Sequence[tuple[float, float]]) -> Iterator[tuple
                 yield size, apart, free
 
 
-def _place(taken: Cells, sizes: Sequence[tuple[float, float]], inside: Box, left: float | None = None) -> Box | None:
+def _place(taken: Taken, sizes: Sequence[tuple[float, float]], inside: Box, left: float | None = None) -> Box | None:
     """The first of the sizes for which there is room beside the cells ``taken``, where it is farthest from all else.
 
     With the edge ``left``, mm, where there is room for any of them with it.
     """
-    table = _summed(taken)
+    table = sum_area(taken)
     for edge in (None,) if left is None else (left, None):
         for (width, height), apart, free in _free(table, sizes):
             if edge is not None:
@@ -168,9 +163,9 @@ def _place(taken: Cells, sizes: Sequence[tuple[float, float]], inside: Box, left
     return None
 
 
-def _near(taken: Cells, sizes: Sequence[tuple[float, float]], inside: Box, spot: complex, pictures: Sequence[Box]) -> Box | None:
+def _near(taken: Taken, sizes: Sequence[tuple[float, float]], inside: Box, spot: complex, pictures: Sequence[Box]) -> Box | None:
     """The place nearest to a spot of the first picture, no nearer to the others, of the first size that has one in reach."""
-    table = _summed(taken)
+    table = sum_area(taken)
     for reach in CLOSE:
         for (width, height), apart, free in _free(table, sizes):
             corners = complex(inside.x0 + apart, inside.y0 + apart) + CELL * (free[:, 0] + 1j * free[:, 1])
@@ -189,20 +184,20 @@ def _off(z: Points, box: Box) -> NDArray[np.float64]:
     return np.asarray(np.hypot(x, y))
 
 
-def _ink_box(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> Box:
+def _ink_box(canvas: Canvas, k: int, inside: Box) -> Box:
     """What a part's ink takes."""
-    i, j = np.nonzero(_cells(canvas, range(k, k + 1), inside, shape))
+    i, j = np.nonzero(_cells(canvas, range(k, k + 1), inside))
     return Box(*(float(edge) for edge in (inside.x0 + CELL * i.min(), inside.y0 + CELL * j.min(),
                                           inside.x0 + CELL * (i.max() + 1), inside.y0 + CELL * (j.max() + 1))))
 
 
-def _whole(canvas: Canvas, inside: Box, shape: tuple[int, ...], lettering: bool = True) -> Cells:
+def _whole(canvas: Canvas, inside: Box, lettering: bool = True) -> Taken:
     """Cells between the pictures of one view of forces: a loaded scheme and its force plans; ``lettering`` is part of them."""
-    taken = np.zeros(shape, bool)
+    taken = _closed(inside, [])
     begins = [k for k, part in enumerate(canvas.parts) if not part.title]
     for begin, end in pairwise([*begins, len(canvas.parts)]):
         if _picture(canvas.parts[begin]) == "force plans":
-            picture = _cells(canvas, range(begin, end), inside, shape, lettering)
+            picture = _cells(canvas, range(begin, end), inside, lettering)
             taken |= _between(picture, 0)[1] | _between(picture, 1)[1]
     return taken
 
@@ -212,7 +207,7 @@ def _picture(part: Part) -> str:
     return VIEWS[part.draw].picture if part.draw in VIEWS else ""
 
 
-def _of_forces(canvas: Canvas, inside: Box) -> Cells:
+def _of_forces(canvas: Canvas, inside: Box) -> Taken:
     """Cells of the views of forces, and between them."""
     boxes = [part.box for part in canvas.parts if _picture(part) == "force plans"]
     alone = [part.box for part in canvas.parts if _picture(part) == "forces"]
@@ -223,20 +218,17 @@ def _of_forces(canvas: Canvas, inside: Box) -> Cells:
 
 def _closed(inside: Box, closed: Sequence[Box]) -> NDArray[np.bool_]:
     """Cells of the sheet, those within boxes ``closed`` to views taken."""
-    taken = np.zeros([int(length / CELL) for length in (inside.width, inside.height)], bool)
-    for box in closed:
-        i0, i1 = (int((x - inside.x0) / CELL) for x in (box.x0, box.x1))
-        j0, j1 = (int((y - inside.y0) / CELL) for y in (box.y0, box.y1))
-        taken[max(i0, 0):i1 + 1, max(j0, 0):j1 + 1] = True
-    return taken
+    cells = Cells(inside, CELL)
+    cells.add_boxes(np.reshape(closed, (-1, 4)))
+    return cells.taken
 
 
-def _of_part(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+def _of_part(canvas: Canvas, k: int, inside: Box) -> NDArray[np.bool_]:
     """Cells with ink of a part of a view, or between its ink: within its picture nothing else may stand."""
     part = canvas.parts[k]
     if part.draw == "title block":
-        return np.zeros(shape, bool)
-    own = _cells(canvas, range(k, k + 1), inside, shape)
+        return _closed(inside, [])
+    own = _cells(canvas, range(k, k + 1), inside)
     along, across = _between(own, 0), _between(own, 1)
     taken = along[0] | across[0] | along[1] & across[1]
     if _picture(part) == "wheels":
@@ -245,24 +237,21 @@ def _of_part(canvas: Canvas, k: int, inside: Box, shape: tuple[int, ...]) -> NDA
         # A title is that of all parts up to the next one: plans of several positions.
         after = (n for n in range(k + 1, len(canvas.parts)) if canvas.parts[n].headed or canvas.parts[n].draw != part.draw)
         whole = range(k, next(after, len(canvas.parts))) if part.headed else range(k, k + 1)
-        picture = _between(_cells(canvas, whole, inside, shape), 0)[1] if len(whole) > 1 else own
+        picture = _between(_cells(canvas, whole, inside), 0)[1] if len(whole) > 1 else own
         taken |= _under_title(picture)
         if len(whole) > 1:
             taken |= _between(picture, 1)[1]
     return taken
 
 
-def _cells(canvas: Canvas, parts: range, inside: Box, shape: tuple[int, ...], lettering: bool = True) -> NDArray[np.bool_]:
+def _cells(canvas: Canvas, parts: range, inside: Box, lettering: bool = True) -> NDArray[np.bool_]:
     """Cells with ink of parts that follow each other, or under their labels not set yet; without ``lettering`` lines alone."""
-    end = canvas.parts[parts.stop].first if parts.stop < len(canvas.parts) else len(canvas.marks)
-    marks = canvas.marks[canvas.parts[parts.start].first:end]
+    marks = canvas.marks[canvas.span(parts.start)[0]:canvas.span(parts.stop - 1)[1]]
     z = np.concatenate((dense(marks, CELL), *(_about(label) for label in canvas.labels if label.part in parts))) if lettering \
         else dense((mark for mark in marks if mark.by is None or mark.by.role != "text"), CELL)
-    own = np.zeros(shape, bool)
-    i, j = ((z.real - inside.x0) / CELL).astype(int), ((z.imag - inside.y0) / CELL).astype(int)
-    there = (i >= 0) & (i < shape[0]) & (j >= 0) & (j < shape[1])
-    own[i[there], j[there]] = True
-    return own
+    cells = Cells(inside, CELL)
+    cells.add_points(z)
+    return cells.taken
 
 
 def _under_title(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:

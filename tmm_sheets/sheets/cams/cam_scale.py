@@ -9,18 +9,16 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.step import Step
-from tmm_sheets.drawing.ink_index import WORSE, InkIndex
+from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Points
-from tmm_sheets.drawing.text_boxes import spread
+from tmm_sheets.drawing.text_boxes import CLEAR, spread
 from tmm_sheets.sheets.player import PlayerStage
 
-HEIGHT, BETWEEN, CLEAR = 2.5, 0.8, 0.4
-"""Height of the numbers, what is left between them and round them, mm."""
+HEIGHT, BETWEEN = 2.5, 0.8
+"""Height of the numbers, and what is left between them, mm."""
 MARK = 1.8
 """Half the length of a mark, mm."""
-HEAVY = 4
-"""A main line in a number is as bad as so many thin ones more."""
 SAME = 0.05
 """Marks nearer than this, mm, are one."""
 
@@ -91,7 +89,7 @@ def _row(ink: InkIndex, closed: Box, marks: Sequence[tuple[int, float, str]], pa
 
         def met(box: Box) -> int:
             over = min(box.x1, closed.x1) > max(box.x0, closed.x0) and min(box.y1, closed.y1) > max(box.y0, closed.y0)
-            return ink.met(box) + 10 * over + HEAVY * int(ink.struck(np.array([box]), 0.0)[0] >= WORSE)
+            return ink.count_in(box) + 10 * over
 
         begin, tried = max(wanted, before + least), list[tuple[int, float]]()
         for t in begin + np.arange(0.0, 8.0, 1.0):

@@ -9,9 +9,8 @@ from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas, lettered
 from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
+from tmm_sheets.drawing.text_boxes import CLEAR
 
-CLEAR = 0.4
-"""What is kept free round lettering, mm."""
 ALONG = 1.2
 """What is kept free at both sides of a dimension line, mm: no other line may seem to be it."""
 SHARES = 0.5, 0.4, 0.6, 0.3, 0.7
@@ -27,7 +26,7 @@ def around(text: str) -> Box:
 def crossed(ink: InkIndex, a: complex, b: complex, offset: float, text: str, share: float = 0.5) -> int:
     """How many lines would run through the lettering of a dimension."""
     at, along = lettered(a, b, offset, text, share=share)
-    return ink.met(around(text), at, phase(along))
+    return ink.count_in(around(text), at, phase(along))
 
 
 def dimension(canvas: Canvas, first: int, a: complex, b: complex, offsets: Iterable[float], text: str,
@@ -42,7 +41,7 @@ def dimension(canvas: Canvas, first: int, a: complex, b: complex, offsets: Itera
     long = Box(2.0, -ALONG, abs(b - a) - 2.0, ALONG)
 
     def ill(place: tuple[float, float]) -> int:
-        return 10 * crossed(ink, a, b, place[0], text, place[1]) + ink.met(long, a + place[0] * 1j * u, phase(u))
+        return 10 * crossed(ink, a, b, place[0], text, place[1]) + ink.count_in(long, a + place[0] * 1j * u, phase(u))
 
     offset, share = min(((offset, share) for offset in offsets for share in SHARES), key=ill)
     canvas.dimension(a, b, offset, text, share=share, factor=factor)

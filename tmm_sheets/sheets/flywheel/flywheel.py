@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from tmm_sheets.construction.scale import times
-from tmm_sheets.drawing.axis_numbers import Plain
+from tmm_sheets.drawing.axis_numbers import PointNumbers
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
 from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.lettering import letter, size_for
@@ -301,10 +301,10 @@ def _rays(s: PlayerStage, fw: Flywheel, intervals: list[str]) -> None:
     shown = [[every[i] for i in same] for same in together(list(heights.values()), 1e-6)]
     shown.sort(key=lambda names: -abs(heights[names[0]]))
     play(s, [f"P{names[0]}" for names in shown])
-    plain = Plain(s.canvas)
+    numbers = PointNumbers(s.canvas)
     for names in shown:
         # Points of the ordinate axis that nearly coincide cannot all be numbered; the rays tell them apart.
-        plain.set(s.pen(names[0], "text"), s.at(names[0]), ", ".join(names))
+        numbers.place(s.pen(names[0], "text"), s.at(names[0]), ", ".join(names))
 
 
 def works(project: Project, canvas: Canvas, box: Box, options: Options) -> None:

@@ -324,7 +324,7 @@ class GearPicture:
             at = end + way * (0.5 + min(half.real / max(abs(way.real), 1e-9), half.imag / max(abs(way.imag), 1e-9)))
             box = Box(at.real - half.real, at.imag - half.imag, at.real + half.real, at.imag + half.imag).inset(-0.5)
             start = self.pole + 2.0 * way
-            return end, at, not (ink.met(box) or ink.crossed(start, end))
+            return end, at, not (ink.count_in(box) or ink.is_crossed(start, end))
 
         turns = sorted(np.arange(-60.0, 61.0, 4.0), key=abs)
         places = (tried(turn, beyond) for beyond in np.arange(1.5, 26.0, 0.5) for turn in turns)

@@ -14,6 +14,7 @@ from tmm_sheets.drawing.clipping import arcs_inside
 from tmm_sheets.drawing.ink_index import InkIndex, enters
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Box, Dimension
+from tmm_sheets.drawing.text_boxes import SHELF
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets.gears.gear_marks import CIRCLES
 
@@ -33,8 +34,6 @@ LEVEL = radians(7)
 """Angle that radii keep from the level centre line."""
 INSIDE, OVER, HEIGHT, HEAD = 4.0, 1.2, 3.5, 2.5
 """Distance of the names from the innermost circle that ends them, over their radii, their height, length of arrow heads, mm."""
-SHELF = 0.8
-"""Distance of lettering from the shelf it stands on, mm."""
 CLEAR = 0.8
 """What is kept free round the name of a radius between the teeth and the picture's edge, mm."""
 ENGAGED = 1.2
@@ -148,14 +147,14 @@ class _Radii:
 
     def clear(self, key: str, direction: float) -> bool:
         """Whether nothing but this wheel's circles is met by a radius that begins with its name."""
-        ends = sorted((self.outer, self.tips[key]))
-        return self.legible(key, direction) and not self.drawn.met(Box(ends[0], -CLEAR, ends[1], CLEAR), self.centre, direction)
+        start, end = sorted((self.outer, self.tips[key]))
+        return self.legible(key, direction) and not self.drawn.count_in(Box(start, -CLEAR, end, CLEAR), self.centre, direction)
 
     def legible(self, key: str, direction: float) -> bool:
         """Whether nothing is drawn where the name of a radius would stand."""
         width, up = letter(self.texts[key], HEIGHT).width, 1 if cos(direction) >= -1e-9 else -1
         low, high = sorted((-up * CLEAR, up * (OVER + HEIGHT + CLEAR)))
-        return not self.drawn.met(Box(self.outer - width - INSIDE, low, self.outer + CLEAR, high), self.centre, direction)
+        return not self.drawn.count_in(Box(self.outer - width - INSIDE, low, self.outer + CLEAR, high), self.centre, direction)
 
     def on_shelf(self, key: str, drawn: InkIndex) -> bool:
         """Radius of a circle without room for its name: an arrow from outside all circles or inside them, the name on a shelf."""
@@ -171,9 +170,9 @@ class _Radii:
             side = sense if u.real >= 0 else -sense
             x0, x1 = sorted((end.real, end.real + side * (laid.width + 1.0)))
             box = Box(x0 - SHELF, end.imag, x1 + SHELF, end.imag + SHELF + laid.descent + HEIGHT)
-            if not (place.contains(complex(x0, box.y0)) and place.contains(complex(x1, box.y1))) or drawn.met(box.inset(-CLEAR)):
+            if not (place.contains(complex(x0, box.y0)) and place.contains(complex(x1, box.y1))):
                 continue
-            if drawn.crossed(tip + CLEAR * u, end):
+            if drawn.count_in(box.inset(-CLEAR)) or drawn.is_crossed(tip + CLEAR * u, end):
                 continue
             if enters(tip, end - tip, x0, end.imag + SHELF, x1, box.y1):  # over its own name
                 continue

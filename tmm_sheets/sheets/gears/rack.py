@@ -13,6 +13,7 @@ from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas
 from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.text_boxes import SHELF
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets.frame import PlanFrame, ratio, standard
 from tmm_sheets.sheets.gears.gear_marks import Window, distance, gap
@@ -36,8 +37,8 @@ OVER = 16.0 + NOTES
 """Room over the rack with the title, mm."""
 NAMED = 36.0, 6.0, 12.0
 """Distance of the names of the rack's lines from the window's side, from one another, and the least from the side, mm."""
-CLEAR, SHELF, HEAD, TAIL = 0.8, 0.8, 2.5, 9.0
-"""What is kept free about sizes of the rack, distance of one from the shelf it stands on, arrow head, tail of a small size, mm."""
+CLEAR, HEAD, TAIL = 0.8, 2.5, 9.0
+"""What is kept free about sizes of the rack, arrow head, tail of a small size, mm."""
 USUAL, MOST = 1.6, 2.2
 """How far the window goes under the pole, in what must be seen there: without the wheel's centre, and with it at the most."""
 BELOW = 0.5
@@ -239,7 +240,7 @@ class _RackPicture:
             box = Box(end.real, end.imag + CLEAR, end.real + laid.width + 1.0, end.imag + SHELF + laid.descent + 3.5 + CLEAR)
             if box.y0 < self.window.box.y0 + CLEAR or box.x1 > self.window.box.x1 - CLEAR:
                 break
-            if not drawn.met(box):
+            if not drawn.count_in(box):
                 c.line(tip, end, "thin")
                 c.line(end, end + laid.width + 1.0, "thin")
                 c.put(laid, end + complex(0.5, SHELF + laid.descent), 0.0, text)
@@ -252,13 +253,13 @@ class _RackPicture:
         laid, drawn, w = letter(text, 3.5), InkIndex(c.marks[self.first:]), self.window.box
         for x in np.arange(w.x1 - 8.0, self.pole.real + 8.0, -1.0):
             arrows = Box(x - 1.0, high + CLEAR, x + 1.0, high + TAIL), Box(x - 1.0, low - TAIL, x + 1.0, low - CLEAR)
-            if any(map(drawn.met, arrows)):
+            if any(map(drawn.count_in, arrows)):
                 continue
             for side, y in ((-1, high + 3.0), (1, high + 3.0), (-1, low - 6.5), (1, low - 6.5)):
                 left = x + 1.5 if side > 0 else x - 1.5 - laid.width
                 if not w.contains(complex(left, y)) or not w.contains(complex(left + laid.width, y)):
                     continue
-                if not drawn.met(Box(left, y - laid.descent, left + laid.width, y + 3.5).inset(-CLEAR)):
+                if not drawn.count_in(Box(left, y - laid.descent, left + laid.width, y + 3.5).inset(-CLEAR)):
                     distance(c, complex(x, low), complex(x, high))
                     c.put(laid, complex(left, y), 0.0, text)
                     return

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterator, Sequence
 from itertools import pairwise
 from math import degrees, inf, pi
 from typing import TYPE_CHECKING, Any
@@ -15,7 +15,7 @@ from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Align, Canvas
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.evenness import dense
-from tmm_sheets.drawing.ink_index import STRONG
+from tmm_sheets.drawing.ink_index import STRONG, distance
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box, Points, Text
 from tmm_sheets.drawing.notes import TOGETHER
@@ -145,13 +145,13 @@ def _guide_line(pos: Positions, s: PlayerStage, name: str, room: Box) -> None:
 
 
 def _position_numbers(project: Project, s: PlayerStage) -> None:
-    """Position numbers at the crank pin and the hinges, and as marks on the paths of the sliders."""
+    """Numbers at the crank pin and the hinges, and at marks on the paths of sliders; with letters where paths are close."""
     pos, m = project.study.positions, project.mechanism
-    sliding = on_fixed_guides(m)
-    numbered = dict.fromkeys(_hinges(m, sliding))
-    for name in numbered:
-        z = np.asarray(s.frame(pos.points[name].value))
-        _hinge_numbers(project, s, name, s.at(m.crank.pivot) if name == m.crank.pin else z.mean() - 40j)
+    sliding, paths = on_fixed_guides(m), list[Points]()
+    for name in dict.fromkeys(_hinges(m, sliding)):
+        z = np.ravel(s.frame(pos.points[name].value))
+        _hinge_numbers(project, s, name, s.at(m.crank.pivot) if name == m.crank.pin else z.mean() - 40j, _close(z, paths))
+        paths.append(z)
     on = list(sliding.values())
     for name, guide in sliding.items():
         u = complex(pos.guide_directions[guide].at(0))
@@ -160,8 +160,7 @@ def _position_numbers(project: Project, s: PlayerStage) -> None:
             _shared_path(project, s, name, n * (1 if name == next(p for p, g in sliding.items() if g == guide) else -1))
         else:
             z = np.ravel(s.frame(pos.points[name].value))[:, None]
-            others = np.concatenate([np.ravel(s.frame(pos.points[other].value)) for other in numbered])
-            own_path(project, s, name, n, whose=bool(np.nanmin(np.abs(z - others)) < MIXED))
+            own_path(project, s, name, n, whose=bool(np.nanmin(np.abs(z - np.concatenate(paths))) < CLOSE))
 
 
 def _hinges(m: Mechanism, sliding: Container[str]) -> Iterator[str]:
@@ -174,13 +173,31 @@ def _hinges(m: Mechanism, sliding: Container[str]) -> Iterator[str]:
         yield from link_marks.traced(m, link)
 
 
-def _hinge_numbers(project: Project, s: PlayerStage, name: str, middle: complex) -> None:
-    """Small hinges at a point in all positions but the highlighted one, their numbers away from ``middle``, mm."""
+def _close(z: Points, paths: Sequence[Points]) -> bool:
+    """Whether hinges of one point, shape (n,), stand so near to the path of another that their numbers may be read as its own."""
+    return any(sum(distance(path, np.roll(path, -1), at).min() < CLOSE for at in z.tolist()) > 1 for path in paths)
+
+
+CLOSE = 6.0
+"""Distance of a point from another's path, or from its numbered hinges, mm, below which its numbers say whose they are."""
+
+
+def _numbered(name: str, number: str) -> str:
+    """Letter of a point with the number of its position."""
+    return f"{link_marks.indexed(name)}({number})"
+
+
+def _hinge_numbers(project: Project, s: PlayerStage, name: str, middle: complex, named: bool) -> None:
+    """Small hinges at a point in all positions but the highlighted one, their numbers away from ``middle``, mm.
+
+    With the letter of the point where it is to be ``named``.
+    """
     for i, _ in project.cycle.drawn:
         here = s.position(i)
         if i != s.k:
             symbols.hinge(here.pen(name, "symbol"), here.at(name), "thin", 0.7)
-            here.letters(name, project.cycle.labels[i], here.at(name) - middle, 2.5, 0.9, leader=False)
+            label = project.cycle.labels[i]
+            here.letters(name, _numbered(name, label) if named else label, here.at(name) - middle, 2.5, 0.9, leader=False)
 
 
 def _upper_side(u: complex) -> complex:
@@ -199,14 +216,10 @@ def on_fixed_guides(m: Mechanism) -> dict[str, str]:
     return {point: guide for g in m.groups for point, guide in g.kind.guided(g) if m.guides[guide].link == m.frame}
 
 
-MIXED = 6.0
-"""Distance of a slider from a numbered hinge, mm, below which its numbers say whose they are."""
-
-
 def own_path(project: Project, s: PlayerStage, name: str, n: complex, *, whose: bool = False) -> None:
     """Marks of the only slider on a path: numbers of the working stroke on side ``n`` of it, of the idle one on the other.
 
-    They are indices of its letter where others stand close (``whose``).
+    They have its letter where others stand close (``whose``).
     """
     cycle = project.cycle
     z = np.asarray(s.frame(project.study.positions.points[name].value))
@@ -217,8 +230,7 @@ def own_path(project: Project, s: PlayerStage, name: str, n: complex, *, whose: 
         for crowd in crowds(there, z):
             at = complex(sum(z[i] for i in crowd)) / len(crowd)
             said = graphs.ranged([cycle.labels[i] for i in crowd])
-            said = f"{name[0]}_{{{name[1:]}{said}}}" if whose else said
-            s.position(crowd[0]).letters(name, said, side, 2.5, 0.6, at + 2.0 * side, False)
+            s.position(crowd[0]).letters(name, _numbered(name, said) if whose else said, side, 2.5, 0.6, at + 2.0 * side, False)
 
 
 def by_stroke(project: Project, name: str, marks: list[int]) -> tuple[list[int], list[int]]:
@@ -247,13 +259,13 @@ CROWDED = 2.8
 
 
 def _shared_path(project: Project, s: PlayerStage, name: str, n: complex) -> None:
-    """Marks of one of several sliders on one path: all its numbers on its own side, those of one place together."""
+    """Marks of one of several sliders on one path: all its numbers on its own side with its letter, those of one place together."""
     drawn = [i for i, _ in project.cycle.drawn]
     for same in together([s.position(i).at(name) for i in drawn], 1.0):
         place = [drawn[n] for n in same]
         here = s.position(place[0])
         _path_mark(here, name, n)
-        text = ", ".join(project.cycle.labels[i] for i in place)
+        text = _numbered(name, ", ".join(project.cycle.labels[i] for i in place))
         here.letters(name, text, n, 2.5, 0.6, here.at(name) + (2.0 if s.k not in place else 5.5) * n, False)
 
 
@@ -266,7 +278,7 @@ def _point_letters(project: Project, s: PlayerStage) -> None:
         moving, letters = name not in m.fixed, link_marks.indexed(name)
         if name in masses and name in own:
             symbols.centre_of_mass(s.pen(step, "symbol"), s.at(step))
-        text = f"{letters}({project.cycle.labels[project.force_index]})" if moving and not name[1:] else letters
+        text = _numbered(name, project.cycle.labels[project.force_index]) if moving and not name[1:] else letters
         s.letters(step, text, 0j if moving else 1 - 0.5j, 3.5, symbols.HINGE + 1.2)
 
 
