@@ -20,6 +20,7 @@ _OF_SYSTEM = (
     marked("not a directory"), marked("read-only file system"), marked("file name too long"), marked("input/output error"),
     marked("disk quota exceeded"), marked("file too large"), marked("bad file descriptor"), marked("too many open files"),
     marked("operation not permitted"), marked("invalid argument"), marked("too many levels of symbolic links"),
+    marked("address already in use"), marked("cannot assign requested address"),
 )  # fmt: skip
 """What systems usually say, for the catalogues."""
 

@@ -44,7 +44,7 @@ function unask() {
 }
 
 function invite() {
-  $("panel").replaceChildren(node("h2", {}, record.words["how to"]), ...["play it", "click a line", "turn the crank"].map((key) =>
+  $("panel").replaceChildren(node("h2", {}, record.words["how to"]), ...["play it", "click a line", ...(record.motion ? ["turn the crank"] : [])].map((key) =>
     node("p", { class: "hint" }, say(key))), viewList());
 }
 

@@ -1,5 +1,7 @@
 // The doors of the server: a request is a piece of work; whoever stops listening ends it.
 
+import { say } from "./dom.js";
+
 export const languages = { chosen: localStorage.getItem("lang") ?? "" };
 
 export const told = async (door) => (await fetch(`${door}?lang=${languages.chosen}`)).json();
@@ -9,8 +11,8 @@ export async function ask(door, fields, { heard = () => {}, signal, files = [] }
   const form = new FormData();
   for (const [key, value] of Object.entries({ lang: languages.chosen, ...fields })) form.append(key, value ?? "");
   for (const file of files) form.append("file", file, file.path || file.webkitRelativePath || file.name);
-  const answer = await fetch(door, { method: "POST", body: form, signal });
-  if (!answer.ok) throw new Error((await answer.text()).trim());
+  const answer = await fetch(door, { method: "POST", body: form, signal }).catch(unheard);
+  if (!answer.ok) throw new Error(answer.status === 503 ? say("busy") : (await answer.text()).trim());
   for await (const line of lines(answer.body)) {
     const message = JSON.parse(line);
     if (message.done) return message.done;
@@ -20,11 +22,13 @@ export async function ask(door, fields, { heard = () => {}, signal, files = [] }
   throw new DOMException("", "AbortError");
 }
 
+function unheard(error) { throw aborted(error) ? error : new Error(say("no answer")); }
+
 async function* lines(stream) {
   const reader = stream.pipeThrough(new TextDecoderStream()).getReader();
   let left = "";
   for (;;) {
-    const { done, value } = await reader.read();
+    const { done, value } = await reader.read().catch(unheard);
     if (done) return;
     const parts = value.split("\n");
     parts[0] = left + parts[0];

@@ -13,8 +13,10 @@ const TABS = ["choose", "sheets", "turn", "file", "take", "check"];
 const page = { tab: "choose", sound: false, living: null, warnings: [], corrected: null, followed: false };
 const checking = latest();
 
-function openTab(name) {
+// A tab is a place of the browser's history: its back button leads to the one before.
+function openTab(name, remembered = false) {
   if (name !== "choose" && !project.text) return;
+  if (!remembered && page.tab !== name) history.pushState(name, "");
   page.tab = name;
   for (const one of TABS) $(one).hidden = one !== name && !(one === "file" && ["sheets", "turn"].includes(name));
   document.body.dataset.tab = name;
@@ -69,6 +71,9 @@ function showLiving() {
   page.living = project.text;
   const fields = { text: project.text, name: project.name, lang: languages.chosen };
   const form = node("form", { action: "living", method: "post", target: "living", enctype: "multipart/form-data", hidden: true }, ...Object.entries(fields).map(([name, value]) => node("textarea", { name }, value)));
+  const frame = $("living"), fresh = frame.cloneNode(); // another one: what it showed is no place of the browser's history
+  fresh.onload = () => { $("waits").hidden = true; };
+  frame.replaceWith(fresh);
   $("waits").textContent = say("drawing");
   $("waits").hidden = false;
   document.body.append(form);
@@ -92,7 +97,7 @@ async function start() {
   startTake();
   startCheck();
   project.watchers.push(follow);
-  $("living").onload = () => { $("waits").hidden = true; };
+  addEventListener("popstate", ({ state }) => openTab(TABS.includes(state) ? state : "choose", true));
   addEventListener("message", ({ source, data }) => {
     if (source === $("living").contentWindow && typeof data?.file === "string" && data.file.length < 2e6 && data.file !== project.text) change(data.file, "living");
   });

@@ -15,7 +15,12 @@ export function startSheets() {
     node("div", { class: "tools" }, button("+", () => view.zoom.by(1.4), { "aria-label": say("zoom in") }), button("−", () => view.zoom.by(1 / 1.4), { "aria-label": say("zoom out") }), button("⤢", () => view.zoom.fit(), { "aria-label": say("whole sheet") })));
 }
 
-export const stopSheets = () => work.stop();
+// Nothing more is drawn: what is shown is older than the text.
+export function stopSheets() {
+  work.stop();
+  view.state = view.state.map(() => "old");
+  showLeaves();
+}
 
 export async function drawSheets(titles) {
   const signal = work.begin(), text = project.text, name = project.name;
@@ -39,11 +44,11 @@ export async function drawSheets(titles) {
 function showLeaves() {
   const state = view.state[view.at], shown = view.pictures[view.at];
   $("leaves").replaceChildren(...view.titles.map((title, n) => button(say("sheet {n}", { n: n + 1 }), () => { view.at = n; showLeaves(); },
-    { role: "tab", "aria-selected": String(n === view.at), class: view.state[n] === "drawing" ? "drawing" : view.state[n] ? "failed" : false })),
+    { role: "tab", "aria-selected": String(n === view.at), class: { "": false, drawing: "drawing", old: false }[view.state[n]] ?? "failed" })),
   node("span", { class: "hint", role: "status" }, state === "drawing" ? say("drawing") : ""));
-  view.zoom.frame.classList.toggle("old", state === "drawing");
+  view.zoom.frame.classList.toggle("old", ["drawing", "old"].includes(state));
   if (shown && view.img.shown !== shown) { picture(view.img, shown); view.img.shown = shown; view.img.alt = say("sheet {n}", { n: view.at + 1 }); }
   view.img.hidden = !shown;
   view.zoom.frame.querySelector(".bad")?.remove();
-  if (state && state !== "drawing") view.zoom.frame.append(node("p", { class: "bad over" }, state));
+  if (state && !["drawing", "old"].includes(state)) view.zoom.frame.append(node("p", { class: "bad over" }, state));
 }

@@ -62,6 +62,8 @@ def test_a_day_at_the_page(tmp_path):
         assert said.startswith(f"{line}: crank.length: expected a length greater than zero")
         assert page.now("document.querySelector('#gutter .wrong').textContent") == str(line)
         assert page.now(SHOWN) == before
+        assert page.now("document.querySelector('.zoom').classList.contains('old')")
+        assert page.now(DRAWN)  # nothing is
         # another length, another sheet
         page.now(typed('length = "-0.09 m"', 'length = "0.0901 m"'))
         page.until(f"{DRAWN} && {SHOWN} !== '{before}'")
@@ -74,6 +76,9 @@ def test_a_day_at_the_page(tmp_path):
         page.now("tmm.open('turn')", inside=True)
         page.now(LET_GO, inside=True)
         page.until("/\\nlength = .0\\.09[45]/.test(document.getElementById('text').value)")
+        page.now(pressed("take"))
+        page.now("history.back()")
+        page.until("document.body.dataset.tab === 'turn'")
         page.now(pressed("take"))
         page.now("document.querySelector('.take button.main').click()")
         assert page.until("document.querySelector('.take .good')?.textContent").startswith("Files made: 2")

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import ipaddress
 import socket
+from asyncio import CancelledError
 from collections.abc import Mapping
+from contextlib import suppress
 from hmac import compare_digest
 
 from starlette.exceptions import HTTPException
@@ -54,7 +56,8 @@ class Guard:
             await send(message)
 
         inside = {**scope, "path": f"/{path}", "raw_path": f"/{path}".encode(), "root_path": ""}
-        await self.app(inside, _counted(receive, most), answer)
+        with suppress(CancelledError):  # the server is ended, which is no mistake
+            await self.app(inside, _counted(receive, most), answer)
 
     def _refused(self, method: str, token: str, headers: Mapping[str, str], most: int) -> tuple[int, str] | None:
         """Status and words for whoever may not come in."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import socket
 import threading
 from collections.abc import Callable
@@ -48,7 +49,8 @@ def serve(shown: Shown, host: str, port: int | None, tell_address: Callable[[str
     number = listening.getsockname()[1]
     named = f"[{host}]" if ":" in host else "127.0.0.1" if host == "0.0.0.0" else host
     app = doors.app(token, host, shown)
-    config = uvicorn.Config(app, log_level="error", access_log=False, server_header=False, lifespan="off", ws="none",
+    level = "error" if os.environ.get("TMM_SHEETS_TRACEBACK") else "critical"
+    config = uvicorn.Config(app, log_level=level, access_log=False, server_header=False, lifespan="off", ws="none",
                             timeout_graceful_shutdown=1, limit_concurrency=200)
     threading.Thread(target=workers.warm, daemon=True).start()
     tell_address(f"http://{named}:{number}/{token}/")
@@ -62,6 +64,6 @@ def _listening(host: str, port: int | None) -> socket.socket:
         try:
             return socket.create_server((host, number), family=family)
         except OSError as e:
-            why = e
+            why = OSError(e.errno, os.strerror(e.errno)) if e.errno and e.errno > 0 else e
     raise BadInput(Problem(tell("nobody can listen there: {why}").format(why=reason_of(why)), f"{host}:{port or PORT}",
                            hint=tell("choose another --port or --host")))

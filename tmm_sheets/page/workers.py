@@ -79,12 +79,13 @@ def _carry_out(end: Connection, job: Job, asked: Mapping[str, str], folder: str,
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # it ends the server, which ends its work
     languages.speak()
     _limit(limits)
-    os.chdir(folder)
 
     def say(**message: Any) -> None:
-        end.send_bytes(json.dumps(message, ensure_ascii=False, allow_nan=False).encode())
+        with suppress(BrokenPipeError):
+            end.send_bytes(json.dumps(message, ensure_ascii=False, allow_nan=False).encode())
 
     try:
+        os.chdir(folder)  # which is gone where whoever asked has gone away
         say(done=job(asked, say))
     except BadInput as e:
         say(problem=str(e), mistakes=[told(p) for p in e.problems])
@@ -92,8 +93,6 @@ def _carry_out(end: Connection, job: Job, asked: Mapping[str, str], folder: str,
         say(problem=str(e))
     except MemoryError:
         say(problem=tell("this takes more memory than the page gives one piece of work"))
-    except BrokenPipeError:
-        pass
     except OSError as e:
         say(problem=reason_of(e))
     except Exception as e:
