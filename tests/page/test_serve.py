@@ -265,7 +265,7 @@ def test_a_hostile_file_has_mistakes(client, text):
 
 def work(job, limits, **fields):
     async def last():
-        return await Workers(1).last(job, fields, Languages("en"), limits)
+        return [message async for message in Workers(1).messages(job, fields, Languages("en"), limits)][-1]
 
     return asyncio.run(last())
 

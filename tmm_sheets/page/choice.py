@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TypedDict
 
 from tmm_sheets import catalogue, words
 from tmm_sheets.words import marked, tell
@@ -16,9 +16,25 @@ CIPHER = "@"
 """What stands between the machine and the cipher in a project's name."""
 
 
-def manuals() -> list[dict[str, Any]]:
-    """Manuals with their tasks: title, variants by name, the machine whose cipher may be typed, the project of the picture."""
-    found: dict[str, dict[str, dict[str, Any]]] = {manual: {} for manual in MANUALS}
+class Task(TypedDict):
+    """A task: its title, the machine whose cipher may be typed, the project of the picture, variants with ``name`` and ``said``."""
+
+    title: str
+    machine: str
+    scheme: str
+    variants: list[dict[str, str]]
+
+
+class Manual(TypedDict):
+    """A manual and its tasks."""
+
+    title: str
+    tasks: list[Task]
+
+
+def manuals() -> list[Manual]:
+    """Manuals with their tasks."""
+    found: dict[str, dict[str, Task]] = {manual: {} for manual in MANUALS}
     for entry in catalogue.entries():
         manual = entry.name.partition("/")[0] if "/" in entry.name else ""
         machine, cipher, _ = entry.name.partition(CIPHER)

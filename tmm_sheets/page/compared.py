@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
 
 from tmm_sheets.compare.group import DRAWINGS, NUMBERS, PICTURES
 from tmm_sheets.compare.report import Report
@@ -48,7 +47,7 @@ def compare(asked: Mapping[str, str], say: Say) -> Message:
     raise BadInput(tell("such a file is not compared"), tell("save it as .dxf, .csv, .jpg, .png or .pdf"))
 
 
-def _picture(project: Project, n: int, path: Path, told: Any) -> Message:
+def _picture(project: Project, n: int, path: Path, told: Callable[[str], None]) -> Message:
     from tmm_sheets.compare.photo import image, overlay
     from tmm_sheets.compare.photo.image_report import image_report
     from tmm_sheets.compare.photo.sheet_map import PAPER
@@ -65,7 +64,7 @@ def _picture(project: Project, n: int, path: Path, told: Any) -> Message:
     return _found(report) | {"theirs": _inline("image/png", theirs), "ours": _sheet(project, n), "sheet": n}
 
 
-def _drawing(project: Project, n: int | None, path: Path, told: Any) -> Message:
+def _drawing(project: Project, n: int | None, path: Path, told: Callable[[str], None]) -> Message:
     from dataclasses import replace
 
     from tmm_sheets.backends import svg

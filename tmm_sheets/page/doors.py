@@ -9,7 +9,7 @@ import re
 from collections.abc import AsyncIterator, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, get_args
+from typing import get_args
 
 from starlette.applications import Starlette
 from starlette.datastructures import UploadFile
@@ -96,8 +96,10 @@ def app(token: str, host: str, shown: Shown, processes: int | None = None) -> Gu
     async def living(request: Request) -> Response:
         asked, folder, _ = await _asked(request)
         with folder:
-            last = await workers.last(*JOBS["living"][:1], asked, _languages(asked), JOBS["living"][1])
-        page = last["done"]["html"] if "done" in last else jobs.refusal(last["problem"])
+            job, limits = JOBS["living"]
+            *_, last = [message async for message in workers.messages(job, asked, _languages(asked), limits)]
+        done = last.get("done")
+        page = str(done["html"]) if isinstance(done, dict) else jobs.refusal(str(last["problem"]))
         return HTMLResponse(page, headers={"content-security-policy": _own_policy(page)})
 
     return Guard(Starlette(routes=[
@@ -114,13 +116,13 @@ def _own_policy(page: str) -> str:
             "font-src data:; img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'self'")
 
 
-def _languages(asked: Mapping[str, Any]) -> Languages:
+def _languages(asked: Mapping[str, str]) -> Languages:
     """The languages of a request: as ``--lang`` where it tells one, else those of the server."""
     told = asked.get("lang", "")
     return Languages(told, told) if told in LANGUAGES else Languages(words.reader(), words.asked())
 
 
-async def _asked(request: Request) -> tuple[dict[str, str], Any, dict[str, Path]]:
+async def _asked(request: Request) -> tuple[dict[str, str], TemporaryDirectory[str], dict[str, Path]]:
     """Fields of a form, and its files in a folder under names of our own."""
     asked: dict[str, str] = {}
     files: dict[str, Path] = {}

@@ -18,11 +18,15 @@ from functools import cache
 from multiprocessing.connection import Connection
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 from tmm_sheets import words
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
 from tmm_sheets.words import tell
+
+if TYPE_CHECKING:
+    from multiprocessing.context import BaseContext
+    from multiprocessing.process import BaseProcess
 
 LARGEST_ANSWER = 400_000_000
 """Bytes of the largest message from a process."""
@@ -31,7 +35,7 @@ NICE = {"long": 5, "behind": 10}
 WAITING = 20.0
 """How many times its seconds of processor a piece of work may take by the clock: others work too, and it gives way to them."""
 
-Message = dict[str, Any]
+Message = dict[str, object]
 Say = Callable[..., None]
 """Sends a message, its keys by name."""
 Job = Callable[[Mapping[str, str], Say], Message]
@@ -80,7 +84,7 @@ def _carry_out(end: Connection, job: Job, asked: Mapping[str, str], folder: str,
     languages.speak()
     _limit(limits)
 
-    def say(**message: Any) -> None:
+    def say(**message: object) -> None:
         with suppress(BrokenPipeError):
             end.send_bytes(json.dumps(message, ensure_ascii=False, allow_nan=False).encode())
 
@@ -115,7 +119,7 @@ def _limit(limits: Limits) -> None:
 
 
 @cache
-def _context() -> Any:
+def _context() -> BaseContext:
     """Where processes come from: forks of one that has loaded everything; on Windows each loads for itself."""
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
@@ -124,16 +128,22 @@ def _context() -> Any:
     return context
 
 
+def _process(act: Callable[..., object], *what: object) -> BaseProcess:
+    """One that does something; contexts have processes of their own kinds, which the type of all contexts does not tell."""
+    made: BaseProcess = _context().Process(target=act, args=what, daemon=True)  # type: ignore[attr-defined]
+    return made
+
+
 def warm() -> None:
     """Let the process that others are forks of load everything now, and wait for it."""
-    process = _context().Process(target=os.getpid, daemon=True)
+    process = _process(os.getpid)
     process.start()
     process.join()
 
 
-def _begin(*what: Any) -> tuple[Any, Connection]:
+def _begin(job: Job, asked: Mapping[str, str], folder: str, languages: Languages, limits: Limits) -> tuple[BaseProcess, Connection]:
     ours, theirs = _context().Pipe(duplex=False)
-    process = _context().Process(target=_carry_out, args=(theirs, *what), daemon=True)
+    process = _process(_carry_out, theirs, job, asked, folder, languages, limits)
     process.start()
     theirs.close()
     return process, ours
@@ -168,15 +178,8 @@ class Workers:
                     process.kill()
                     process.join(5)
 
-    async def last(self, *what: Any) -> Message:
-        """The last message of a piece of work."""
-        message: Message = {}
-        async for one in self.messages(*what):
-            message = one
-        return message
 
-
-async def _said(process: Any, connection: Connection, limits: Limits) -> AsyncIterator[Message]:
+async def _said(process: BaseProcess, connection: Connection, limits: Limits) -> AsyncIterator[Message]:
     """Messages of a process, and what is to be told of one that was ended."""
     clock = asyncio.get_running_loop().time
     latest = clock() + WAITING * limits.seconds
