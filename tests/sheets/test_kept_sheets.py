@@ -96,6 +96,15 @@ def test_the_second_time_nothing_is_composed(place, tmp_path, monkeypatch, capsy
     assert len(list(place.iterdir())) in (2, 3)  # what was asked; and the fingerprint of the program, unless it was known
 
 
+def test_steps_of_a_kept_sheet_with_details_are_made(place):
+    """Its views are asked again, without the lettering for which a place is enlarged."""
+    made = sheet.composed(opened("lugansk/shaper"), 1)
+    assert any(part.draw == "details.dense" for part in made.parts)
+    project = opened("lugansk/shaper")
+    assert same(made, sheet.composed(project, 1, steps=True))
+    assert 1 in project.shown
+
+
 @pytest.mark.parametrize(("name", "words_"), [
     ("lugansk/cam_flat", ["record", "--json", "-"]), seldom("sixbar/8:3", ["record", "--json", "-"]),
     seldom("sixbar/8:3", ["compare", "--template", "--all"]),
