@@ -171,7 +171,7 @@ function gapOf(id, values) {
 
 function changePanel() {
   const wanted = record.motion.givens.filter((g) => g.line !== undefined && (isLoad(g) ? isTable(g) || /\.value$/.test(g.name)
-    : ["m", "kg", "kg*m2", "rad/s", "rad", "m/s", "m/s2"].includes(g.unit) && (g.symbol || g.unit !== "rad")));
+    : ["m", "kg", "kg*m2", "rad/s", "rad", "m/s", "m/s2"].includes(g.unit) && g.symbol));
   const group = (title, units) => {
     const own = wanted.filter((g) => (units ? !isLoad(g) && units.includes(g.unit) : isLoad(g)) && !Array.isArray(g.value));
     return own.length ? [node("h3", {}, say(title)), ...own.flatMap(slidersOf)] : [];
