@@ -48,8 +48,8 @@ def column(machine, c, output=None, **over):
     planetary, plain = MODULES[machine]
     values = {
         "input_speed": table["n_in"][c] * pi / 30, "output_speed": table["n_out"][c if output is None else output] * pi / 30,
-        "module": table[planetary][c] / 1000, "simple_module": table[plain][c] / 1000, "satellites": table["q"][c],
-        "addendum": float(table["ha"][c]), "clearance": float(table["c"][c]), "pinion": (pinion, table[pinion][c]),
+        "module": table[planetary][c] / 1000, "simple_module": table[plain][c] / 1000, "satellites": int(table["q"][c]),
+        "addendum": float(table["ha"][c]), "clearance": float(table["c"][c]), "pinion": (pinion, int(table[pinion][c])),
         "scheme": scheme,
     }
     return data(simple=simple, stages=stages, **(values | over))
