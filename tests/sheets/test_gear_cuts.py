@@ -5,7 +5,7 @@ import pytest
 from tests import project_files as files
 from tmm_sheets import catalogue
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.gears import gear
+from tmm_sheets.sheets.gears import gear_picture
 from tmm_sheets.sheets.sheet import composed
 
 
@@ -20,8 +20,8 @@ def pair(teeth, module):
     ([12, 14], "3 mm", 200, 330, 5.0),  # at 2.5:1 16 mm
 ])
 def test_the_scale_where_both_wheels_would_be_cut(teeth, module, width, height, scale):
-    mu, broken = gear.picture(pair(teeth, module), width, height)
-    assert (1e-3 / mu.mu, broken) == (pytest.approx(scale), gear.WHOLE)
+    mu, broken = gear_picture.picture(pair(teeth, module), width, height)
+    assert (1e-3 / mu.mu, broken) == (pytest.approx(scale), gear_picture.WHOLE)
 
 
 @pytest.mark.parametrize(("teeth", "module", "size", "drawn"), [
@@ -31,7 +31,7 @@ def test_the_scale_where_both_wheels_would_be_cut(teeth, module, width, height, 
     ([41, 60], "12 mm", (376, 562), (1.0, {1, 2})),  # no room for the feet of the line of action at 2:1: 27 mm are the most
 ])
 def test_low_teeth_break_the_greater_wheel_or_both(teeth, module, size, drawn):
-    mu, broken = gear.picture(pair(teeth, module), *size)
+    mu, broken = gear_picture.picture(pair(teeth, module), *size)
     assert (1e-3 / mu.mu, broken) == drawn
 
 

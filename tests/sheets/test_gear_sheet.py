@@ -18,8 +18,7 @@ from tmm_sheets.methods.gears.gear_pair import gear_pair
 from tmm_sheets.numbers import fixed
 from tmm_sheets.project import Project
 from tmm_sheets.resources import template
-from tmm_sheets.sheets.gears import gear as gear_sheet
-from tmm_sheets.sheets.gears import gear_radii
+from tmm_sheets.sheets.gears import gear_picture, gear_radii
 from tmm_sheets.sheets.views import function
 
 TITLE_BLOCK = Box(651, 5, 836, 60)
@@ -165,7 +164,7 @@ def test_nothing_of_a_broken_wheel_is_drawn_beyond_its_break(teeth, shift, modul
     """Radii that are lettered beside the mesh begin at the break, not at the far centre."""
     data, box = project(teeth, shift, module, 1), dict(arrangement())["gear.engagement"]
     points = ink(drawn("gear.engagement", box, data).marks)
-    assert gear_sheet.picture(data.gear, box.width, box.height)[1]
+    assert gear_picture.picture(data.gear, box.width, box.height)[1]
     assert box.contains(points.real.min() + 1j * points.imag.min(), 1e-6)
     assert box.contains(points.real.max() + 1j * points.imag.max(), 1e-6)
 
@@ -178,8 +177,8 @@ def test_nothing_of_a_broken_wheel_is_drawn_beyond_its_break(teeth, shift, modul
 def test_a_far_greater_wheel_is_broken_so_that_the_mesh_can_be_read(teeth, shift, driver, broken):
     data, box = project(teeth, shift, 0.004, driver), dict(arrangement())["gear.engagement"]
     gear, canvas = data.gear, drawn("gear.engagement", box, data)
-    assert bool(gear_sheet.picture(gear, box.width, box.height)[1]) is broken
-    whole = gear.picture_scale(gear_sheet.picture_room(gear, box.width, box.height)).mu
+    assert bool(gear_picture.picture(gear, box.width, box.height)[1]) is broken
+    whole = gear.picture_scale(gear_picture.picture_room(gear, box.width, box.height)).mu
     mu = canvas.scales["gear-engagement"].mu
     anchors = {label.text: label.anchor for label in canvas.labels}
     apart = abs(anchors["O_1"] - anchors["O_2"])
@@ -199,7 +198,7 @@ def test_a_far_greater_wheel_is_broken_so_that_the_mesh_can_be_read(teeth, shift
 @pytest.mark.parametrize("size", [(393, 565), (213, 428), (150, 428), (120, 300)], ids=["wide", "narrow", "narrower", "small"])
 def test_radii_stand_apart_where_they_are_named_and_end_inside_the_picture(size):
     gear = Project(read("lugansk/shaper")).gear
-    picture = gear_sheet.GearPicture(gear, Canvas(), Box(20, 20, 20 + size[0], 20 + size[1]))
+    picture = gear_picture.GearPicture(gear, Canvas(), Box(20, 20, 20 + size[0], 20 + size[1]))
     for wheel in gear.wheels:
         found = [(key, a) for key, (a, begin) in gear_radii._Radii(picture, wheel).directions().items() if begin == 2.0]
         apart = [abs(a - b) * 0.7 * picture.mm(wheel.rf) for (_, a), (_, b) in combinations(found, 2)]

@@ -20,7 +20,7 @@ from tmm_sheets.sheets.gears.gear_marks import CIRCLES
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.gears.gear_geometry import GearWheel
-    from tmm_sheets.sheets.gears.gear import GearPicture
+    from tmm_sheets.sheets.gears.gear_picture import GearPicture
 
 APART, CLOSE = 7.0, 5.8
 """Distance of radii from each other where they are named, and the least one between the teeth and the picture's edge, mm."""

@@ -11,7 +11,7 @@ from tmm_sheets.construction.readable import TOOTH
 from tmm_sheets.sheets.border_solver import BorderNode, Need
 from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.frame import standard
-from tmm_sheets.sheets.gears import gear, rack, reducer, train
+from tmm_sheets.sheets.gears import gear, gear_picture, rack, reducer, train
 from tmm_sheets.sheets.view_sizes import reached
 
 if TYPE_CHECKING:
@@ -35,10 +35,10 @@ def _node(view: ViewPlace, least: tuple[float, float], drawn: Callable[[int, int
 def engagement(project: Project, view: ViewPlace) -> BorderNode:
     """The smaller wheel is to be seen whole, the other may be cut at both sides; teeth that are too low fill nothing."""
     pair = project.gear
-    tooth = gear.highest_tooth(pair)
+    tooth = gear_picture.highest_tooth(pair)
 
     def drawn(width: int, height: int) -> float:
-        mu, broken = gear.picture(pair, width, height)
+        mu, broken = gear_picture.picture(pair, width, height)
         if broken:
             return float(width * height) * reached(mu.mm(tooth), TOOTH)
         whole = min(2 * min(w.ra for w in pair.wheels) / mu.mu + BESIDE, width)
