@@ -10,7 +10,7 @@ from tmm_sheets.project import Project
 from tmm_sheets.sheets.cams import cam, cam_profile, cam_zone
 from tmm_sheets.sheets.composition import arranged
 
-RING = str(Path(__file__).parents[1] / "projects" / "ring.toml")
+RING = str(Path(__file__).parents[2] / "projects" / "ring.toml")
 
 
 def places(name):

@@ -12,7 +12,7 @@ from tmm_sheets.sheets.gears.reducer_equations import _lines
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import variant
 
-WINDER = Path(__file__).parents[1] / "projects" / "winder.toml"
+WINDER = Path(__file__).parents[2] / "projects" / "winder.toml"
 UNIT = " об/мин"
 
 

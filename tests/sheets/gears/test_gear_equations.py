@@ -11,7 +11,7 @@ from tmm_sheets.project import Project
 from tmm_sheets.sheets.gears.gear_equations import OF_PAIR, OF_WHEEL, equations
 from tmm_sheets.task import variant
 
-RING = Path(__file__).parents[1] / "projects" / "ring.toml"
+RING = Path(__file__).parents[2] / "projects" / "ring.toml"
 FUNCTIONS = {"tg": tan, "cos": cos, "sin": sin}
 
 

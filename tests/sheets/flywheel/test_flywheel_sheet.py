@@ -28,7 +28,7 @@ from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.sheets.views import function
 from tmm_sheets.task import variant
 
-VIEWS = tomllib.loads((Path(__file__).parents[2] / "templates/sheets/flywheel.toml").read_text(encoding="utf-8"))["view"]
+VIEWS = tomllib.loads((Path(__file__).parents[3] / "templates/sheets/flywheel.toml").read_text(encoding="utf-8"))["view"]
 FRAME = Box(20, 5, 836, 589)
 TITLE_BLOCK = Box(651, 5, 836, 60)
 DESIGNATION = Box(20, 575, 90, 589)
@@ -200,7 +200,7 @@ def test_a_place_that_is_too_small_is_refused(name):
 
 def test_the_graph_of_excess_energy_is_never_a_line():
     """Where the links' inertia decides (the screen's dE is 0.5 J beside 88 J), its own scale factor is printed."""
-    screen = Project(variant.read(Path(__file__).parents[2] / "variants" / "screen.toml"))
+    screen = Project(variant.read(Path(__file__).parents[3] / "variants" / "screen.toml"))
     sheet = composed(screen, 3)
     fw, path = screen.flywheel, screen.flywheel.total_plan["points"].path
     curve = [m for m in sheet.drawing.marks if m.by and m.by.role == "curve" and m.by.step == path]
