@@ -539,7 +539,7 @@ def test_misprints_are_told_and_the_printed_value_is_used(capsys):
     out, err = capsys.readouterr()
     assert re.search(r"points\.O3 +0 m, -0\.21 m", out)
     assert err.count("\n") == 2
-    assert err.startswith("sixbar/5:2: a = 0.21 m is a suspected misprint (probable), suggested 0.27 m: ")
+    assert err.startswith("sixbar/5:2: a, 2: 0.21 m is probably a misprint of 0.27 m (")
 
 
 def test_corrected_takes_the_suggested_value(capsys):

@@ -69,9 +69,11 @@ def test_nothing_empty_and_nothing_crowded_on_its_sheet(name):
         assert not part.title or end - first > 2 or "В этом положении сил нет" in said, part.title
 
 
-def test_where_nothing_acts_it_is_said():
+def test_where_nothing_acts_there_is_no_force_plan():
     p = project(*PRESSED, IDLE)
-    assert [group.text for group in composed(p, 1).groups].count("В этом положении сил нет") == 2
+    titles = [part.title for part in composed(p, 1).parts]
+    assert "Группа Ассура 2–3 (2-й вид)" in titles
+    assert not any(title.startswith("План сил") for title in titles)
     assert abs(p.study.forces.balancing.at(p.force_index)) == 0
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -25,8 +26,8 @@ _OF_SYSTEM = (
 """What systems usually say, for the catalogues."""
 
 
-LONGEST = 500
-"""Characters of a message, a key or a hint of a :class:`Problem`."""
+LONGEST = {"message": 500, "field": 500, "hint": 4000}
+"""Characters of the parts of a :class:`Problem`: hints list plans and results, of which a project has hundreds."""
 
 
 def reason_of(e: OSError) -> str:
@@ -48,8 +49,8 @@ class Problem:
     hint: str = ""
 
     def __post_init__(self) -> None:
-        for name in ("message", "field", "hint"):
-            object.__setattr__(self, name, _shortened(getattr(self, name)))
+        for name, most in LONGEST.items():
+            object.__setattr__(self, name, _shortened(getattr(self, name), most))
 
     def __str__(self) -> str:
         place = self.file + (f":{self.line}" if self.line is not None else "")
@@ -57,9 +58,10 @@ class Problem:
         return f"{text}\n    {self.hint}" if self.hint else text
 
 
-def _shortened(text: str) -> str:
+def _shortened(text: str, most: int) -> str:
     """A text without the middle of what is too long to be read: a value that a program wrote is not told whole."""
-    return f"{text[:LONGEST // 2]} … {text[-LONGEST // 4:]}" if len(text) > LONGEST else text
+    text = re.sub(r"\S{200,}", lambda long: f"{long[0][:100]} … {long[0][-50:]}", text)
+    return f"{text[:most // 2]} … {text[-most // 4:]}" if len(text) > most else text
 
 
 class CannotBuild(Exception):

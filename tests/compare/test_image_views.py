@@ -85,7 +85,7 @@ def drawn():
 def file(tmp_path):
     text = ""
     rng = np.random.default_rng(2)
-    for name, ours, mu in ((WHEEL, (713 + 148j, 787 + 148j), ""), (PLAN.lower(), (91 + 242j, 51 + 266j), "mu = 0.032")):
+    for name, ours, mu in ((WHEEL, (713 + 148j, 787 + 148j), ""), (PLAN.lower(), (91 + 242j, 51 + 266j), "mu = 0.024")):
         title = WHEEL if name == WHEEL else PLAN
         theirs = [to_pixels(by(title, z) + complex(*rng.normal(0, 0.4, 2))) for z in ours]  # clicked by hand
         text += f'[[view]]\nname = "{name}"\nours = {[[z.real, z.imag] for z in ours]}\ntheirs = {theirs}\n{mu}\n'

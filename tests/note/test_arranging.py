@@ -145,7 +145,7 @@ def test_rules_hold_for_any_section(seed):
     for i, b in enumerate(found):
         if not isinstance(b, Figure | NumberedTable):
             continue
-        target = f"{type(b).__name__.lower()}:{b.number}"
+        target = f"{'figure' if isinstance(b, Figure) else 'table'}:{b.number}"
         asked = [{getattr(y, "target", "") for y in x.text} if isinstance(x, Paragraph) else set() for x in found]
         at = next(k for k, targets in enumerate(asked) if target in targets)
         assert at < i

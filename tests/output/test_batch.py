@@ -470,7 +470,7 @@ def test_a_signal_ends_a_batch_in_order(number, to_all, tmp_path):
     said, errors = running.communicate(timeout=ALL_DONE)
     assert running.returncode == 128 + number, errors
     *warnings, last = errors.splitlines()
-    assert all(line.startswith("sixbar/") and "suspected misprint" in line for line in warnings)
+    assert all(line.startswith("sixbar/") and "probably a misprint" in line for line in warnings)
     told = re.fullmatch(r"stopped, (\d+) of 50 projects left; the same command goes on from there", last)
     assert told, errors
     counts = re.search(r"(\d+) built; (\d+) files", said)

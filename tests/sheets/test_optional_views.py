@@ -221,9 +221,12 @@ def test_every_vertex_of_the_lever_has_its_letters(name):
     assert said >= {f"{link_marks.indexed(end)}′" for end in ends}
 
 
-@pytest.mark.parametrize(("name", "codes"), [("lugansk/shaper", "1234"), ("screen", "123"), ("lugansk/cam_flat", "4")])
+@pytest.mark.parametrize(("name", "codes"), [("lugansk/shaper", "1234"), ("screen", "123"), ("lugansk/cam_flat", "1")])
 def test_designations_of_a_project_rise(name, codes):
-    """The codes of the arrangements where these rise, else the sheets' numbers: the screen's two kinds of sheet 2 are no two D2."""
+    """The codes of the arrangements where these rise, else the sheets' numbers.
+
+    The screen's two kinds of sheet 2 are no two D2, and the only sheet of a project is D1.
+    """
     p = Project(read(name))
     assert [_code(p, n) for n in range(1, len(p.sheets) + 1)] == [f"Д{code}" for code in codes]
 

@@ -87,8 +87,8 @@ class Measured:
 
     def of(self, b: Block) -> tuple[float, float]:
         """Room above and below a block."""
-        level = {1: "section", 2: "heading"}
-        kind = level[b.level] if isinstance(b, Heading) else type(b).__name__.lower()
+        kinds = {Paragraph: "paragraph", Formula: "formula", Where: "where", NumberedTable: "table", Figure: "figure"}
+        kind = ("section", "heading")[b.level - 1] if isinstance(b, Heading) else kinds.get(type(b), "")
         return self.room.get(kind, (0.0, 0.0))
 
 

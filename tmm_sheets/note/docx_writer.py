@@ -6,6 +6,7 @@ import io
 import zipfile
 from collections.abc import Sequence
 from datetime import datetime
+from functools import singledispatchmethod
 from itertools import accumulate, count, pairwise
 from typing import Any
 from xml.sax.saxutils import escape
@@ -306,10 +307,12 @@ class _Writer:
 
     # --- blocks
 
+    @singledispatchmethod
     def block(self, b: Block) -> None:
-        """One block."""
-        getattr(self, f"_{type(b).__name__.lower()}")(b)
+        """One block, of whatever kind."""
+        raise TypeError(f"no block of a note: {b!r}")
 
+    @block.register
     def _heading(self, b: Heading) -> None:
         _, text, mark = self.headings[self.seen]
         self.seen += 1
@@ -319,6 +322,7 @@ class _Writer:
         self.fresh = False
         _bookmark(p, mark, next(self.ids), lambda: p.add_run(text))
 
+    @block.register
     def _paragraph(self, b: Paragraph) -> None:
         from docx.enum.text import WD_ALIGN_PARAGRAPH
 
@@ -341,6 +345,7 @@ class _Writer:
             else:
                 p.add_run(str(x))
 
+    @block.register
     def _formula(self, b: Formula) -> None:
         from docx.enum.text import WD_TAB_ALIGNMENT
 
@@ -357,6 +362,7 @@ class _Writer:
                 p.add_run("\t")
                 _bookmark(p, mark_of(f"formula:{b.number.strip('()')}"), next(self.ids), lambda p=p: p.add_run(b.number))
 
+    @block.register
     def _where(self, b: Where) -> None:
         for i, row in enumerate(b.rows):
             p = self.made.add_paragraph()
@@ -368,6 +374,7 @@ class _Writer:
             end = "." if i == len(b.rows) - 1 else ";"
             self._text(p, (" – ", *row.meaning, f", {row.unit}{end}" if row.unit else end))
 
+    @block.register
     def _table(self, b: NumberedTable) -> None:
         from docx.enum.text import WD_ALIGN_PARAGRAPH
 
@@ -425,6 +432,7 @@ class _Writer:
         if title:
             p.add_run(f". {title}")
 
+    @block.register
     def _figure(self, b: Figure) -> None:
         self._picture(b, b.width, b.height, b.turned)
         from docx.enum.text import WD_ALIGN_PARAGRAPH
@@ -470,6 +478,7 @@ class _Writer:
             )
         )
 
+    @block.register
     def _sheet(self, b: Sheet) -> None:
         from docx.enum.text import WD_ALIGN_PARAGRAPH
 
@@ -485,9 +494,11 @@ class _Writer:
         title.alignment = WD_ALIGN_PARAGRAPH.CENTER
         self._picture(b, 224.0, 224.0 * b.height / b.width, True)
 
+    @block.register
     def _newpage(self, b: NewPage) -> None:
         self.made.add_paragraph().paragraph_format.page_break_before = True
 
+    @block.register
     def _contents(self, b: Contents) -> None:
         from docx.enum.text import WD_ALIGN_PARAGRAPH, WD_TAB_ALIGNMENT, WD_TAB_LEADER
 

@@ -35,7 +35,11 @@ def test_all_24_numbers_can_be_read_on_the_enlarged_path(sheet):
 
 def test_the_plans_keep_the_numbers_at_the_ends_of_the_path(sheet):
     (part,) = (part for part in sheet.parts if part.draw == path_marks.VIEW and part.title)
-    assert 1 <= len(numbers(sheet, part.box)) <= 2
+    (enlarged,) = (part for part in sheet.parts if part.draw == VIEW and part.title)
+    there = numbers(sheet, part.box)
+    for text in numbers(sheet, enlarged.box):  # it may stand in the corner of the plans
+        there.remove(text)
+    assert 1 <= len(there) <= 2
 
 
 @pytest.mark.parametrize(("z", "together"), [

@@ -38,7 +38,7 @@ TITLE = 8.0
 ANGLE = "α"
 """Letter of the pressure angle; an arrangement may name another one as the option ``angle``."""
 View = Callable[["Project", Canvas, Box, dict[str, Any]], None]
-OVER = 2.0
+BEYOND = 2.0
 """So far the centre lines of the auxiliary circle go beyond it, mm."""
 
 
@@ -127,7 +127,7 @@ def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     left = max(m.scales.h1, m.scales.h2) + 6.0
     if m.circle:
         centre = complex(m.plan["M"].value)
-        left = max(left, max(abs(complex(s.value) - centre) for s in m.circle.values()) + OVER - centre.real)
+        left = max(left, max(abs(complex(s.value) - centre) for s in m.circle.values()) + BEYOND - centre.real)
     x0 = box.x0 + left + max(box.width - left - end - 13.0, 0.0) / 2
     foot = 22.0  # numbers and dimensions of the phases under the lowest diagram
     gap = (area.height - foot - sum(ups) - sum(downs)) / 3
@@ -246,7 +246,7 @@ def _auxiliary_circle(s: PlayerStage, m: FollowerMotion) -> None:
             same = [m.law.labels[first + j] for j in range(half) if abs(at[j] - p) < 0.5]
             outwards = (p - centre) / radius
             canvas.label(p, ", ".join(same), -outwards if radius >= largest - 1e-9 else outwards, 2.5, 0.5, leader=False)
-    reach = largest + OVER
+    reach = largest + BEYOND
     pen = s.pen("M", "axis")
     pen.line(centre - reach, centre + reach, "centre")
     pen.line(centre - 1j * reach, centre + 1j * reach, "centre")
