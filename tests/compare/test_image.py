@@ -88,7 +88,8 @@ def test_planted_errors_are_found_and_nothing_else():
     guilty = {e.number for e in known() if any(m is marks[i] for i in planted for m in e.marks)}
     assert len(guilty) == len(planted) == 5
     assert set(verdicts) == guilty
-    assert [*verdicts.values()] == ["red"] * 5
+    # One is a thin arc of which the picture may have lost the rest: that is never more than a remark.
+    assert sorted(verdicts.values()) == ["amber", *["red"] * 4]
     by_number = {t.element.number: t for t in traces}
     circle = next(by_number[n] for n in guilty if any(m is marks[planted[-1]] for m in by_number[n].element.marks))
     assert circle.growth == pytest.approx(2.5, abs=0.3)

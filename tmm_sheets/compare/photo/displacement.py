@@ -29,6 +29,8 @@ SURE, PIVOT, PALE = 0.95, 0.8, 0.6
 and its least darkness as a share of that of its place, where others are darker."""
 BETWEEN = 0.6
 """Darkness between a stroke and a line beside it, as a share of the line's, below which paper separates them."""
+EDGE, HALF = 0.4, 0.5
+"""mm to either side of a line within which others' ink may be taken for its own, and share of its length that may be so."""
 RIDGE = 1.0  # mm beyond such a line within which there is paper again
 BROAD, STROKE = 1.6, 0.7
 """mm to either side of a line within which what belongs to its stroke is told by the ink, and within which others are of it."""
@@ -139,6 +141,9 @@ def beside(t: InkTrace, s: Stations, ink: Any, lines: Any, taken: Any, owners: O
     dark = profile[row, column]
     inside, beyond = (np.where(side & there, profile, 255).min(1) for there in (from_it < 0, (from_it > 0) & (from_it < RIDGE)))
     apart = (dark > level) & ~unknown[row, column] & (np.maximum(inside, beyond) < BETWEEN * dark)
+    # Most of it at the edges of lines that are meant to be there is theirs.
+    if (drawn & (np.abs(offsets - way[:, None]) <= EDGE)).any(1).mean() > HALF:
+        return None
     # Lines that cross may hide as much of it again.
     length = apart.sum() * t.element.length / len(way)
     return replace(found, status="beside") if length >= LEAST / 2 and np.ptp(share[apart]) * t.element.length >= LEAST else None
