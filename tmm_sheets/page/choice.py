@@ -16,7 +16,7 @@ CIPHER = "@"
 """What stands between the machine and the cipher in a project's name."""
 
 
-class Task(TypedDict):
+class ListedTask(TypedDict):
     """A task: its title, the machine whose cipher may be typed, the project of the picture, variants with ``name`` and ``said``."""
 
     title: str
@@ -29,12 +29,12 @@ class Manual(TypedDict):
     """A manual and its tasks."""
 
     title: str
-    tasks: list[Task]
+    tasks: list[ListedTask]
 
 
 def manuals() -> list[Manual]:
     """Manuals with their tasks."""
-    found: dict[str, dict[str, Task]] = {manual: {} for manual in MANUALS}
+    found: dict[str, dict[str, ListedTask]] = {manual: {} for manual in MANUALS}
     for entry in catalogue.entries():
         manual = entry.name.partition("/")[0] if "/" in entry.name else ""
         machine, cipher, _ = entry.name.partition(CIPHER)

@@ -72,7 +72,7 @@ class Piece:
         return replace(self, marks=tuple((k, mark) for k, mark in kept if mark is not None))
 
 
-class Page(NamedTuple):
+class PaperPage(NamedTuple):
     """Pieces on a paper, each with the way it is moved."""
 
     paper: Paper
@@ -148,7 +148,7 @@ def _around(a: Box, b: Box) -> Box:
 # --- pages ----------------------------------------------------------------------------------------------------------------
 
 
-def _pages(pieces: Sequence[Piece], asked: Paper, first: str) -> list[Page]:
+def _pages(pieces: Sequence[Piece], asked: Paper, first: str) -> list[PaperPage]:
     """Pages by a simple rule: the largest piece first, each on the first page that has room for it, there high and then left."""
     def has_room(unit: Piece, form: str = first) -> bool:
         return _paper_for(unit, asked, form).name == asked.name
@@ -165,18 +165,18 @@ def _pages(pieces: Sequence[Piece], asked: Paper, first: str) -> list[Page]:
         inside = [piece for piece in pieces if dict(piece.marks).keys() <= own]
         units += [unit] if has_room(unit, FOLLOWING) else _together((piece.parted() for piece in inside), within)
     # What stands in the gaps of something stays there, if that makes it no larger than a page.
-    units = _together(units, lambda a, b: _near(a.ink, b.ink) and _put(a.with_other(b), Page(asked, []), first))
-    pages = list[Page]()
+    units = _together(units, lambda a, b: _near(a.ink, b.ink) and _put(a.with_other(b), PaperPage(asked, []), first))
+    pages = list[PaperPage]()
     for unit in sorted(units, key=lambda unit: (not has_room(unit), -unit.ink.width * unit.ink.height)):
         usual = ((page, first if k == 0 else FOLLOWING) for k, page in enumerate(pages) if page.paper.name == asked.name)
         if not any(_put(unit, page, form) for page, form in usual):
             form = FOLLOWING if pages else first
-            pages.append(Page(_paper_for(unit, asked, form), []))
+            pages.append(PaperPage(_paper_for(unit, asked, form), []))
             _put(unit, pages[-1], form)
     return [_spread(page, first if k == 0 else FOLLOWING) for k, page in enumerate(pages)]
 
 
-def _spread(page: Page, form: str) -> Page:
+def _spread(page: PaperPage, form: str) -> PaperPage:
     """The page with what stands on it farther apart, and in the middle of it, as far as there is room."""
     inside, closed = page.paper.frame.inset(EDGE), [block(form, page.paper), page.paper.designation]
     for wide, high in sorted(product(SPREADS, SPREADS), key=lambda way: -way[0] * way[1]):
@@ -188,7 +188,7 @@ def _spread(page: Page, form: str) -> Page:
             by = complex(share_x * (inside.x1 - right), -share_y * (low - inside.y0))
             there = [box.moved(by) for box in places]
             if right <= inside.x1 and low >= inside.y0 and not any(_near(a, b, APART) for a in there for b in closed):
-                return Page(page.paper, [(piece, complex(box.x0 - piece.ink.x0, box.y1 - piece.ink.y1))
+                return PaperPage(page.paper, [(piece, complex(box.x0 - piece.ink.x0, box.y1 - piece.ink.y1))
                                          for (piece, _), box in zip(page.placed, there, strict=True)])
     return page
 
@@ -197,10 +197,10 @@ def _paper_for(piece: Piece, asked: Paper, form: str) -> Paper:
     """The paper asked for if a piece has room on it, whichever way; else the smallest that has."""
     larger = [paper(name, asked.width < asked.height) for name, (short, _) in reversed(MAIN.items()) if short > min(asked[1:])]
     ways = [way for one in (asked, *larger) for way in (one, one.other_way)]
-    return next((way for way in ways if _put(piece, Page(way, []), form)), ways[-2])
+    return next((way for way in ways if _put(piece, PaperPage(way, []), form)), ways[-2])
 
 
-def _put(piece: Piece, page: Page, form: str) -> bool:
+def _put(piece: Piece, page: PaperPage, form: str) -> bool:
     """Put a piece on a page where it has room; whether it has."""
     inside, ink = page.paper.frame.inset(EDGE), piece.ink
     closed = [block(form, page.paper), page.paper.designation, *(other.ink.moved(by) for other, by in page.placed)]
@@ -215,7 +215,7 @@ def _put(piece: Piece, page: Page, form: str) -> bool:
     return False
 
 
-def _drawn(project: Project, n: int, sheet: Drawing, page: Page, number: int, count: int) -> Drawing:
+def _drawn(project: Project, n: int, sheet: Drawing, page: PaperPage, number: int, count: int) -> Drawing:
     """A page with its frame and title block; dimensions, views and forms are told as on the sheet."""
     canvas = Canvas()
     form = project.variant.title_block.form if number == 1 else FOLLOWING
