@@ -8,6 +8,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
 from tmm_sheets.words import marked
 
 
@@ -28,3 +31,13 @@ SHARE = 0.5
 """Share of its place that a position plan takes at least, 0 .. 1: the mechanism is what the sheet is about."""
 EMPTY = 160.0 * 120.0
 """Area of the largest rectangle without ink that no eye stops at, mm^2."""
+
+
+LEVEL = 1e-9
+"""Share of the largest ordinate up to which a curve rises by rounding."""
+
+
+def risen(values: npt.NDArray[np.float64]) -> float:
+    """What values extend over, in their unit; nothing where they are level but for rounding."""
+    extent, largest = float(np.ptp(values)), float(np.abs(values).max())
+    return extent if extent > LEVEL * largest else 0.0

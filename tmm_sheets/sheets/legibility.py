@@ -12,7 +12,7 @@ from tmm_sheets.construction.readable import CURVE, MAIN, POLE
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.composition import arranged, placed_where
-from tmm_sheets.sheets.floors import CRANK, VECTOR
+from tmm_sheets.sheets.floors import CRANK, VECTOR, risen
 from tmm_sheets.sheets.frame import extent, fit_frame
 from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.linkage.linkage_sizes import LINKS
@@ -88,7 +88,7 @@ def flywheel(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
              "J": fw.scales.inertia.mm(fw.inertia(fw.samples))}
     for quantity, ordinates in shown.items():
         def height(project: Project, view: ViewPlace, ordinates: Floats = ordinates) -> float:
-            return float(np.ptp(ordinates)) or CURVE  # one that is level has none
+            return risen(ordinates) or CURVE  # one that is level has none
 
         yield from below(project, n, view, Remark(marked("the graph of {quantity}"), {"quantity": quantity}), CURVE, height,
                          marked("take the other method of [flywheel]"))

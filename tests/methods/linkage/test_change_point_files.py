@@ -3,6 +3,7 @@
 import json
 from math import pi
 
+import numpy as np
 import pytest
 
 from tmm_sheets import __main__
@@ -144,3 +145,22 @@ def test_a_sheet_holds_no_rounding(solved, tmp_path):
     solved(FOLLOW)
     assert __main__.run(["build", "my.toml", "--format", "svg", "--text", "live", "-o", "out"]) == 0
     assert "0,00000" not in (tmp_path / "out/sheet1.svg").read_text(encoding="utf-8")
+
+
+SHOWN = ('positions = 8\n', 'positions = 8\ndiagrams = ["3"]\n')
+ALONE = ('sheets = ["kinematics_forces"]', 'sheets = ["kinematics"]')
+
+
+def test_graphs_of_a_rocker_that_turns_as_the_crank_does(solved, tmp_path, capsys):
+    """Omega is level and has no size to be read, epsilon is zero and said so; both are drawn, and rounding is not."""
+    solved(FOLLOW, SHOWN, ALONE)
+    assert __main__.run(["--lang", "en", "build", "my.toml", "--format", "svg", "-o", "out"]) == 0
+    assert "graph of" not in capsys.readouterr().err
+    assert __main__.run(["--lang", "en", "record", "my.toml", "--json", "r.json"]) == 0
+    (sheet,) = json.loads((tmp_path / "r.json").read_text("utf-8"))["sheets"]
+    assert not any("0,0000" in mark["geometry"]["text"]["string"] for mark in sheet["marks"] if "text" in mark["geometry"])
+    high = {mark["view"]: np.ptp([y for _, y in mark["geometry"]["polyline"]])
+            for mark in sheet["marks"] if mark["role"] == "curve"}
+    assert high["Graph of ω3"] == pytest.approx(0, abs=1e-9)
+    assert high["Graph of ε3"] == pytest.approx(0, abs=1e-9)
+    assert high["Graph of ψ3"] > 60

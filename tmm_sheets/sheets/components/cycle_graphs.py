@@ -22,6 +22,7 @@ from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.border_solver import Need
 from tmm_sheets.sheets.components import graphs
 from tmm_sheets.sheets.components.graphs import Floats
+from tmm_sheets.sheets.floors import risen
 from tmm_sheets.sheets.frame import PlanFrame, pick
 from tmm_sheets.words import marked, tr
 
@@ -109,7 +110,7 @@ class Quantity:
     @property
     def extent(self) -> float:
         """The same of the curves alone, without the axis, but for one that is level."""
-        return float(np.ptp(np.concatenate([c.values for c in self.curves]))) or self.span
+        return risen(np.concatenate([c.values for c in self.curves])) or self.span
 
     @property
     def coarsest(self) -> float:
@@ -256,17 +257,21 @@ def draw(project: Project, canvas: Canvas, box: Box, title: str, columns: Sequen
         canvas.of = place.quantity.key
         if len(places) > 1:
             canvas.begin(place.box, tr("Graph of {quantity}").format(quantity=place.quantity.letter))
-        _graph(project, canvas, place)
+        _graph(project, canvas, place, any(other.quantity.span for other in places))
 
 
-def _graph(project: Project, canvas: Canvas, place: GraphPlace) -> None:
-    """Axes, curves with their ordinates at the positions, names of several curves, the level."""
+def _graph(project: Project, canvas: Canvas, place: GraphPlace, beside: bool) -> None:
+    """Axes, curves with their ordinates at the positions, names of several curves, the level.
+
+    What is zero all the time is said ``beside`` graphs of something, and refused alone.
+    """
     q, cycle = place.quantity, project.cycle
     per_mm = tr("({unit})/mm") if "/" in q.unit or "{" in q.unit else tr("{unit}/mm")
     # One that the project file asks for has to fit what its neighbours leave.
-    asked = q.key in project.variant.scales
+    asked, zero = q.key in project.variant.scales, not q.span and beside
     least = q.span / max(place.box.height - ABOVE - BELOW, 1.0) if asked or not q.span else place.mu
-    scale = pick(project, canvas, q.key, f"μ_{q.letter[0]}", per_mm.format(unit=q.unit), least)
+    scale = (Scale("", 1.0, "") if zero and not asked else
+             pick(project, canvas, q.key, f"μ_{q.letter[0]}", per_mm.format(unit=q.unit), least))
     angle, left = angle_axis(project, place.box)
     length, top, bottom = angle.mm(cycle.period), scale.mm(q.high), scale.mm(q.low)
     spare = place.box.height - ABOVE - BELOW - (top - bottom)
@@ -280,7 +285,8 @@ def _graph(project: Project, canvas: Canvas, place: GraphPlace) -> None:
             canvas.tracing("construction", c.step, label, frame, c.symbol).line(foot, end, "thin")
     graphs.axes(axis, g, length, bottom, top, f"{q.letter}, {q.unit}")
     # Over the numbers, where these stand on the upper side of an axis with nothing above it.
-    canvas.text(o + length + 1j * (top + graphs.OVER - (4.0 if top > 6.0 else 1.0)), str(scale), 3.5, "right")
+    canvas.text(o + length + 1j * (top + graphs.OVER - (4.0 if top > 6.0 else 1.0)),
+                f"{q.letter} = 0" if zero else str(scale), 3.5, "right")
     if q.level is not None:
         name, value = q.level
         y = complex(at(1j * value))

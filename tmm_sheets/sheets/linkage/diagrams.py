@@ -237,9 +237,12 @@ def _quantities(project: Project, outputs: list[Output], units: Iterable[tuple[s
 def _row(step: Step, turned: Floats) -> Floats:
     """Values of a step at some angles, of one that is the same at all of them as well.
 
-    An angular acceleration that is nothing beside all that the points of its link are accelerated by is nothing.
+    An angle that is nothing beside a radian is nothing, and an angular acceleration beside all that the points of its link are
+    accelerated by.
     """
     values = np.broadcast_to(step.value, np.shape(turned))
+    if step.rule.gives == "angle":
+        return np.where(np.abs(values) <= NOISE, 0.0, values)
     source = step.args[0] if step.args and isinstance(step.args[0], Step) else step
     if source.rule.unit != "rad/s2" or len(source.args) != 4:
         return values

@@ -47,9 +47,9 @@ def _accelerations(project: Project) -> tuple[str, Columns]:
     sizes = [(f"a_{{{name}}}", np.abs(step.value)) for name, step in acc.points.items() if np.ndim(step.value)]
     found: Columns = [(name, v) for name, v in sizes if not np.allclose(v, v[0])]  # that of the crank pin is the same everywhere
     # That of the crank stands in the table of its running, there positive in its sense.
-    crank = project.mechanism.crank.link
+    crank, speed = project.mechanism.crank.link, project.mechanism.crank.speed
     turning = [(f"ε_{link}", np.real(step.value)) for link, step in acc.epsilon.items() if np.ndim(step.value) and link != crank]
-    size = max((float(np.nanmax(np.abs(v))) for _, v in turning), default=0.0)
+    size = max((float(np.nanmax(np.abs(v))) for _, v in turning), default=0.0) + speed**2  # where none but rounding turns them
     found += [(name, v) for name, v in turning if not is_zero(np.abs(v).max(), size)]
     return tr("Accelerations of the points, m/s², and of the links, s^{−2}"), found
 
