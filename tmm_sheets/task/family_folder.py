@@ -7,7 +7,6 @@ cipher chooses in its tables and with what follows from that. docs/families.md s
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
@@ -27,7 +26,6 @@ from tmm_sheets.task.filling import SOURCE, filled
 from tmm_sheets.task.messages import said
 from tmm_sheets.task.misprint import Misprint
 from tmm_sheets.task.schema import Table
-from tmm_sheets.task.toml_lines import scan
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
@@ -143,11 +141,7 @@ class FolderFamily:
         except (FileNotFoundError, NotADirectoryError):
             raise BadInput(Problem(tell("no such file"), file,
                                    hint=tell("a family of tasks is a folder with family.toml"))) from None
-        try:
-            data = tomllib.loads(text)
-        except tomllib.TOMLDecodeError as e:
-            raise BadInput(toml_file.syntax(str(e), text, file)) from None
-        lines = scan(text)
+        data, lines = toml_file.parsed(text, file)
         try:
             self.rules = FamilyTable.model_validate(data)
         except ValidationError as e:

@@ -8,7 +8,6 @@ there stands for nobody and goes last, and so it is where a file was copied from
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -20,7 +19,6 @@ from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.task import toml_file, user_folder
 from tmm_sheets.task.messages import said
 from tmm_sheets.task.schema import PaperTable, Table, TitleBlockTable
-from tmm_sheets.task.toml_lines import scan
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -149,11 +147,7 @@ def of_file(path: Path) -> dict[str, TitleEntry]:
         text, _ = toml_file.text_of(path, LARGEST)
     except (FileNotFoundError, NotADirectoryError):
         return {}
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as e:
-        raise BadInput(toml_file.syntax(str(e), text, file)) from None
-    lines = scan(text)
+    data, lines = toml_file.parsed(text, file)
     try:
         settings = SettingsTable.model_validate(data)
     except ValidationError as e:

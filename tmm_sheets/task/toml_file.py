@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from pathlib import Path
+from typing import Any
 
 from tmm_sheets import encodings, files
 from tmm_sheets.errors import BadInput, Problem, reason_of
 from tmm_sheets.task.messages import of_parser
-from tmm_sheets.task.toml_lines import KeyPath, TomlLines
+from tmm_sheets.task.toml_lines import KeyPath, TomlLines, scan
 from tmm_sheets.words import tell
 
 
@@ -36,6 +38,20 @@ def text_of(path: Path, most: int) -> tuple[str, str]:
     except encodings.NotText as e:
         raise BadInput(Problem(str(e), file, e.line, hint=tell("save the file in the encoding UTF-8"))) from None
     return encodings.cleaned(text), note
+
+
+def parsed(text: str, file: str) -> tuple[dict[str, Any], TomlLines]:
+    """The tables of a text and where its keys stand.
+
+    Raises
+    ------
+    BadInput
+        when it is not valid TOML.
+    """
+    try:
+        return tomllib.loads(text), scan(text)
+    except tomllib.TOMLDecodeError as e:
+        raise BadInput(syntax(str(e), text, file)) from None
 
 
 def syntax(message: str, text: str, file: str) -> Problem:
