@@ -1,6 +1,6 @@
 """An area in square cells: which of them hold ink, and how many of those lie under rectangles.
 
-A sum_area-area table makes the ink under any rectangle a matter of four look-ups, so all places that a piece of lettering or a view
+A summed-area table makes the ink under any rectangle a matter of four look-ups, so all places that a piece of lettering or a view
 may have are judged at once.
 """
 
@@ -60,8 +60,15 @@ class Cells:
         """The same under rectangles of one size with their left edges at ``x0``, (n,), the lower ones at ``y0``, (m,): (n, m)."""
         i0, _, i1, _ = self._spans(np.array([x0, x0, x0 + width, x0]))
         _, j0, _, j1 = self._spans(np.array([y0, y0, y0, y0 + height]))
-        band = self.table[i1] - self.table[i0]
-        return np.asarray(band[:, j1] - band[:, j0])
+        i, j = i0.min(), j0.min()  # of the part they are in: it is asked once, and the whole sheet is many times as large
+        table = sum_area(self.taken[i:i1.max(), j:j1.max()])
+        band = table[i1 - i] - table[i0 - i]
+        return np.asarray(band[:, j1 - j] - band[:, j0 - j])
+
+    def include(self, others: Cells) -> None:
+        """What is taken of other cells of the same area is taken, too."""
+        self.taken |= others.taken
+        vars(self).pop("table", None)
 
     def _spans(self, sides: npt.NDArray[np.float64]) -> npt.NDArray[np.int_]:
         cells = ((sides - self._corner) / self.side).astype(int) + _FIRST_BEYOND

@@ -56,6 +56,7 @@ class InkIndex:
 
     def add(self, marks: Iterable[Mark]) -> None:
         """Something more is drawn."""
+        before = self._counts
         first, starts, ends, lines = len(self.marks), list[Any](), list[Any](), list[tuple[int, bool, bool, bool, float]]()
         texts, filled = dict[int, Text](), list[tuple[float, float, float, float]]()
         self.marks.extend(marks)
@@ -94,8 +95,10 @@ class InkIndex:
             self._corners, self.written = np.vstack((self._corners, corners)), np.vstack((self.written, bounds_of(corners)))
         if filled:
             self._filled = np.vstack((self._filled, filled))
-        for known in ("heavy", "light", "_outlines"):
-            vars(self).pop(known, None)
+        vars(self).pop("_outlines", None)
+        for known, cells in (("heavy", self._heavy_cells), ("light", self._light_cells)):
+            if known in vars(self):
+                vars(self)[known].include(cells(*before))
 
     def move_text(self, number: int, text: Text | None) -> None:
         """Lettering of a mark stands elsewhere now, or is taken off."""
@@ -170,25 +173,37 @@ class InkIndex:
         a, b = np.append(self.a, np.roll(self._corners, 1, axis=1)), np.append(self.b, self._corners)
         return a, b, sides(a, b), np.append(np.where(self.strong, WORSE, 1), np.full(self._corners.size, WORSE))
 
+    @property
+    def _counts(self) -> tuple[int, int, int]:
+        """How many segments, rectangles of lettering, and of fills there are."""
+        return len(self.a), len(self.written), len(self._filled)
+
     @cached_property
     def heavy(self) -> Cells:
         """Cells that lettering must not touch: main lines, curves, axes, fills, other lettering, and the neighbours of these.
 
         Main lines are up to a millimetre wide: their neighbours count as inked too.
         """
-        cells = self._cells(self._heavy)
-        cells.add_boxes(np.vstack((self.written, self._filled)))
-        cells.widen()
-        return cells
+        return self._heavy_cells()
 
     @cached_property
     def light(self) -> Cells:
         """Cells of thin lines, which it had better avoid."""
-        return self._cells(~self._heavy)
+        return self._light_cells()
 
-    def _cells(self, which: Flags) -> Cells:
+    def _heavy_cells(self, lines: int = 0, texts: int = 0, fills: int = 0) -> Cells:
+        """Those of what is drawn from these numbers on."""
+        cells = self._cells(self._heavy, lines)
+        cells.add_boxes(np.vstack((self.written[texts:], self._filled[fills:])))
+        cells.widen()
+        return cells
+
+    def _light_cells(self, lines: int = 0, *_: int) -> Cells:
+        return self._cells(~self._heavy, lines)
+
+    def _cells(self, which: Flags, first: int) -> Cells:
         cells = Cells(self.area, CELL)
-        cells.add_points(sample(self.a[which], self.b[which], CELL / 2))
+        cells.add_points(sample(self.a[first:][which[first:]], self.b[first:][which[first:]], CELL / 2))
         return cells
 
 

@@ -6,6 +6,7 @@ nearer than any other, and the shortest way there must cross none. Where there i
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import inf
 from typing import Any
 
@@ -44,10 +45,11 @@ class Surroundings:
         self.a, self.b, self.of, self.strong = ink.parting(p, reach)
         self.sides = sides(self.a, self.b)
         self.leaders = self.of == LEADER
-        self._runs = run_corners(label.text, label.height)
         self.own = _own(ink, self, label)
         self._vector = _vector(ink, self, label)
-        if self._vector is not None:  # what lies on it is named together with it
+        if self._vector is not None:
+            self._runs = np.array([Box.around(run) for run in run_corners(label.text, label.height)]).T
+            # What lies on the vector is named together with it.
             self.own |= np.maximum(_to_line(self.a, *self._vector), _to_line(self.b, *self._vector)) <= AT
 
     def misreading(self, box: Box) -> str:
@@ -64,8 +66,10 @@ class Surroundings:
         own = self.own[near]
         if own.all() or not own.any():
             return False
-        corner = complex(box.x0, box.y0)
-        gaps = np.min([_to_box(self.a[near], self.b[near], Box.around(run + corner))[0] for run in self._runs], axis=0)
+        count = self._runs.shape[1]  # each segment and each run, all at once
+        runs = np.repeat(self._runs + np.array([box.x0, box.y0] * 2)[:, None], len(near), axis=1)
+        gaps = _to_box(np.tile(self.a[near], count), np.tile(self.b[near], count), runs)[0]
+        own = np.tile(own, count)
         return bool(gaps[~own].min() < gaps[own].min() + CLEARLY)
 
     def margin(self, box: Box) -> float:
@@ -153,17 +157,20 @@ def _to_line(p: Any, a: complex, b: complex) -> Floats:
     return np.asarray(np.abs(a + t * (b - a) - p))
 
 
-def _to_box(a: Any, b: Any, box: Box) -> tuple[Floats, Any, Any]:
-    """Distances of segments to a rectangle, 0 where they meet; the nearest points on the rectangle and on the segment."""
-    corners = np.array([complex(box.x0, box.y0), complex(box.x1, box.y0), complex(box.x1, box.y1), complex(box.x0, box.y1)])
+def _to_box(a: Any, b: Any, box: Iterable[Any]) -> tuple[Floats, Any, Any]:
+    """Distances of segments to a rectangle, or each to its own (x0, y0, x1, y1, shape (n,) then), 0 where they meet;
+    the nearest points on the rectangle and on the segment.
+    """
+    x0, y0, x1, y1 = box
+    corners = np.array([x0 + 1j * y0, x1 + 1j * y0, x1 + 1j * y1, x0 + 1j * y1]).reshape(4, -1)
     d = b - a
     length2 = np.maximum(d.real**2 + d.imag**2, 1e-18)
-    t = np.minimum(np.maximum(((corners[:, None] - a) * np.conj(d)).real / length2, 0.0), 1.0)
+    t = np.minimum(np.maximum(((corners - a) * np.conj(d)).real / length2, 0.0), 1.0)
     on = np.concatenate((a + t * d, [a, b]))
-    at = np.minimum(np.maximum(on.real, box.x0), box.x1) + 1j * np.minimum(np.maximum(on.imag, box.y0), box.y1)
+    at = np.minimum(np.maximum(on.real, x0), x1) + 1j * np.minimum(np.maximum(on.imag, y0), y1)
     gaps = np.abs(on - at)
     best = np.argmin(gaps, axis=0)
     k = np.arange(len(a))
     gap = gaps[best, k]
-    gap[enters(a, d, *box)] = 0.0
+    gap[enters(a, d, x0, y0, x1, y1)] = 0.0
     return gap, at[best, k], on[best, k]

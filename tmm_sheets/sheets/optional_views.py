@@ -120,7 +120,7 @@ def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float
     for size in (sides, sides[::-1]):
         nx, ny = (int(np.ceil(length / CELL)) for length in size)
         begins = _windows(table, nx, ny) == 0
-        # How many of them have a corner here, with its sign: sum_area up, how many lie over a cell.
+        # How many of them have a corner here, with its sign: summed up, how many lie over a cell.
         count = np.zeros(np.add(inked.shape, 1), np.int64)
         for (i, j), sign in {(0, 0): 1, (nx, 0): -1, (0, ny): -1, (nx, ny): 1}.items():
             count[i:i + begins.shape[0], j:j + begins.shape[1]] += sign * begins
@@ -129,7 +129,7 @@ def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float
 
 
 def _windows(table: Counts, nx: int, ny: int) -> Counts:
-    """How many cells are taken of each rectangle of so many cells, by its lower left one; of their sum_area-area table."""
+    """How many cells are taken of each rectangle of so many cells, by its lower left one; of their summed-area table."""
     return np.asarray(table[nx:, ny:] - table[:-nx, ny:] - table[nx:, :-ny] + table[:-nx, :-ny])
 
 
