@@ -71,7 +71,7 @@ def set_as_code(key: Key) -> tuple[str, ...]:
 
 def whole() -> str:
     """Keys and tables of a project file that stand in no table of their own."""
-    return table(HEAD, *(set_as_code(key) for key in keys_of(variant.Variant) if key.name in ("schema", "points", "scales")))
+    return table(HEAD, *(set_as_code(key) for key in keys_of(variant.Variant) if key.name in ("schema", "points", "given", "scales")))
 
 
 def groups() -> str:

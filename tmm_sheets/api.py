@@ -248,7 +248,8 @@ class Opened:
 
                 every = range(1, len(project.sheets) + 1)
                 told += (*composition.left_out(project, every), *legibility.crowded(project, every),
-                         *flat_crossings.lines(project), *project.dead_positions, *summary.swing(project), *summary.signs(project))
+                         *flat_crossings.lines(project), *project.dead_positions, *summary.swing(project), *summary.signs(project),
+                         *summary.given(project))
             told += project.flywheel.remarks if variant.flywheel is not None else ()
             return tuple(map(str, told))
 

@@ -15,6 +15,7 @@ from tmm_sheets.task.variant import Variant
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
+    from tmm_sheets.task.given import Printed
     from tmm_sheets.construction.plan import Plan
     from tmm_sheets.construction.search_count import SearchCount
     from tmm_sheets.mechanism.groups.three_legs import Course
@@ -105,6 +106,13 @@ class Project:
                 tell("add the table [{name}] to the project file or leave its sheet out").format(name=name),
             )
         return section
+
+    @property
+    def given(self) -> tuple[Printed, ...]:
+        """Quantities as the task prints them; none where the file does not say."""
+        from tmm_sheets.task import given
+
+        return tuple(given.printed(self.variant.given))
 
     @cached_property
     def mechanism(self) -> Mechanism:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import in_a_row, listed, of_reader
-from tmm_sheets.task import title_entries
+from tmm_sheets.task import edited_text, title_entries, units
 from tmm_sheets.words import of_file, tell, tell_n
 
 if TYPE_CHECKING:
@@ -92,6 +92,34 @@ def signs(project: Project) -> Iterator[str]:
             yield tell_n("force {name} has the sign of the velocity; the task has the other one at position {positions}",
                          "force {name} has the sign of the velocity; the task has the other one at positions {positions}",
                          len(others)).format(name=given.name, positions=", ".join(others))
+
+
+COMPARED = ("length", "mass", "force", "moment of inertia", "moment", "speed of rotation")
+"""Quantities whose numbers a file has, or the distances in its mechanism are; of angles and bare numbers it may need others."""
+
+
+def given(project: Project) -> Iterator[str]:
+    """Quantities in ``[given]`` that the mechanism is not drawn with: somebody changed one and left the other."""
+    import numpy as np
+
+    variant, m = project.variant, project.mechanism
+    sizes = [units.si(v) for name, v in edited_text.numbers(variant.data) if not name.startswith("given.")]
+    sizes += [link.mass * variant.forces.gravity for link in variant.link]
+    if variant.given:
+        points = np.array([np.broadcast_to(step.value, len(project.cycle.labels)) for step in project.study.positions.points.values()])
+        apart = np.abs(points[:, None] - points)
+        sizes += apart.min(axis=2)[np.ptp(apart, axis=2) <= SAME * m.crank.length].tolist()
+        sizes += [((at - g.through) * np.exp(-1j * g.direction)).imag
+                  for g in m.guides.values() if isinstance(g.through, complex) for at in m.fixed.values()]
+    known = np.abs(np.array(sizes, dtype=float))
+    for q in project.given:
+        if units.quantity_of(q.unit) in COMPARED and not np.isclose(known, abs(q.value), rtol=SAME, atol=0).any():
+            yield tell('given.{name}: the sheets are not drawn with "{value}", but show it as given; write what the task gives').format(
+                name=q.name, value=variant.given[q.name])
+
+
+SAME = 1e-5
+"""Share of itself by which a number may differ from the one a task prints: what follows from it is written with six digits."""
 
 
 def _inputs(variant: Variant) -> Iterator[tuple[str, str, str]]:

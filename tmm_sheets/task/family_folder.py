@@ -86,6 +86,8 @@ class MachineTable(Table):
     derived: dict[str, DerivedTable] = Field(default={})
     misprint: tuple[MisprintTable, ...] = ()
     remark: tuple[RemarkTable, ...] = ()
+    given: tuple[str, ...] = ()
+    """quantities of the table "Given data" of the sheets, in order: they become `[given]` of the project file"""
 
 
 class FamilyTable(Table):
@@ -227,7 +229,19 @@ class FolderFamily:
         remarks = tuple(self._remarks(called, machine, cipher, values))
         values |= {f"{key}{SOURCE}": Choice(own.source) for key, own in values.items()}
         schemes = (Template(scheme).safe_substitute({key: own.text for key, own in values.items()}) for scheme in machine.scheme)
-        return "".join(self._filled(scheme, values) for scheme in schemes), doubts, remarks
+        text = "".join(self._filled(scheme, values) for scheme in schemes)
+        return text + "".join(self._given(called, machine, values)), doubts, remarks
+
+    def _given(self, called: str, machine: MachineTable, values: Mapping[str, Choice]) -> Iterator[str]:
+        """``[given]`` as text; what is 0, a dash of the manual, is not given."""
+        if unknown := [key for key in machine.given if key not in values]:
+            raise BadInput(Problem(tell("no table has it"), str(self.folder / FILE), None, f"machine.{called}.given: {unknown[0]}"))
+        if machine.given:
+            yield "\n[given]\n"
+        for key in machine.given:
+            if _number(values[key].text) != 0:
+                name = key if re.fullmatch(r"[\w-]+", key, re.ASCII) else f'"{key}"'
+                yield f'{name} = "{values[key].text}"{f"  # {values[key].source}" if values[key].source else ""}\n'
 
     def _choice(self, called: str, row: Row, cipher: Cipher, doubt: Doubt | None) -> Choice:
         column, own = row.cell(cipher.digits)

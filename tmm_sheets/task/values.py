@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, WrapValidator
 
 from tmm_sheets import resources, spelling
-from tmm_sheets.task import units
+from tmm_sheets.task import given, units
 from tmm_sheets.words import marked, tell
 
 LEAST, GREATEST = 1e-12, 1e12
@@ -130,6 +130,14 @@ _PHASE = from_to(0, units.parse("360 deg", units.ANGLE), marked("expected an ang
 _FRACTION = from_to(0, 1, marked("expected a number from 0 to 1"))
 _INNER_FRACTION = in_range(marked("expected a number between 0 and 1, both excluded"), lambda x: 0 < x < 1)
 
+def _printed(value: Any) -> str:
+    """Number with a known unit, or a fraction such as `"1/80"`."""
+    if isinstance(value, bool) or not isinstance(value, str | int | float) or not given.split(str(value))[0]:
+        raise ValueError(tell('expected a number with its unit, or a fraction, for example "80 N" or "1/80"'))
+    return str(value)
+
+
+PrintedNumber = Annotated[str, BeforeValidator(_printed)]
 Coordinate = Annotated[float, si(units.LENGTH)]
 Length = Annotated[float, positive(units.LENGTH, marked("expected a length greater than zero"))]
 Angle = Annotated[float, si(units.ANGLE)]

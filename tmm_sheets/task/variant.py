@@ -49,7 +49,7 @@ from tmm_sheets.task.schema import (
     TrainTable,
 )
 from tmm_sheets.task.toml_lines import KeyPath, TomlLines
-from tmm_sheets.task.values import Coordinate, Name, PositiveNumber
+from tmm_sheets.task.values import Coordinate, Name, PositiveNumber, PrintedNumber
 from tmm_sheets.words import either, marked, tell
 
 LINKAGE = ("positions", "velocities", "accelerations", "forces")
@@ -94,6 +94,10 @@ class Variant(Table):
     reducer: ReducerTable | None = None
     train: TrainTable | None = None
     cam: CamTable | None = None
+    given: dict[Name, PrintedNumber] = Field(default={})
+    """quantities as the task prints them, for the table "Given data" of the sheets and for nothing else: `G2 = "80 N"`,
+    `theta = "60 deg"`, `delta = "1/80"`; without it the table has the lengths and masses of the file
+    """
     scales: dict[Name, PositiveNumber] = Field(default={})
     """scale factors that the program is not to choose itself, by the names of plans in `protocol`, SI per mm:
     `velocities = 0.02`

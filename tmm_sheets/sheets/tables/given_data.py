@@ -1,4 +1,4 @@
-"""Table of what is given of the links, for room that a sheet has left: lengths, masses and moments of inertia."""
+"""Table of what is given, for room that a sheet has left: the task's quantities, or the file's lengths, masses and inertias."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import needs, size_in
-from tmm_sheets.numbers import is_zero, number
+from tmm_sheets.numbers import is_zero, number, written
 from tmm_sheets.sheets.linkage.link_marks import drawn_points
-from tmm_sheets.words import tr
+from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -28,6 +28,11 @@ ROOMY = 8.0
 
 Rows = list[list[str]]
 
+UNITS = {"deg": "°", **{unit.replace(" ", "").replace("·", "").replace("²", "2"): unit for unit in (
+    marked("m"), marked("mm"), marked("cm"), marked("kg"), marked("kg·m²"), marked("N"), marked("kN"), marked("N·m"),
+    marked("kN·m"), marked("rad/s"), marked("rpm"), marked("m/s"), marked("MPa"), marked("kW"))}}
+"""How the units of a task are written on paper, by their common spelling; others stand as they are."""
+
 
 def links_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
     """Places that the table can do with, mm; none where a mechanism has no length of its own."""
@@ -35,7 +40,11 @@ def links_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> li
 
 
 def links(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Where the fixed hinges are, lengths in the order in which the links are put together, then masses and moments of inertia."""
+    """What the task gives as it prints it.
+
+    Where the file does not say: where the fixed hinges are, lengths in the order in which the links are put together, then masses
+    and moments of inertia.
+    """
     _, rows, row = next(form for form in _forms(project) if form[0][0] <= box.width + 1e-6 and form[0][1] <= box.height + 1e-6)
     height = size_in(row)
     widths = needs(rows, height, ROOMY)
@@ -45,6 +54,8 @@ def links(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
 
 
 def _title(project: Project) -> str:
+    if project.given:
+        return tr("Given data")
     return tr("Given sizes and masses") if any(link.mass for link in project.mechanism.links.values()) else tr("Given sizes")
 
 
@@ -63,7 +74,14 @@ def _forms(project: Project) -> Iterator[tuple[tuple[float, float], Rows, float]
 
 
 def _quantities(project: Project) -> Iterator[tuple[str, str]]:
-    """Letters with unit, and number, of what the task gives of frame and links or a synthesis has found; nothing that is zero."""
+    """Letters with unit, and number: as the task prints them, or of frame and links, where a synthesis may have found them.
+
+    Of the latter nothing that is zero.
+    """
+    if project.given:
+        for given in project.given:
+            yield ", ".join(filter(None, (given.symbol, tr(UNITS.get(given.unit, given.unit))))), written(given.number)
+        return
     m = project.mechanism
     lengths: list[Any] = [m.crank.length]
     for g in m.groups:
