@@ -71,7 +71,11 @@ def set_as_code(key: Key) -> tuple[str, ...]:
 
 def whole() -> str:
     """Keys and tables of a project file that stand in no table of their own."""
-    return table(HEAD, *(set_as_code(key) for key in keys_of(variant.Variant) if key.name in ("schema", "points", "given", "scales")))
+    return table(HEAD, *(set_as_code(key) for key in keys_of(variant.Variant) if key.name in TOP))
+
+
+TOP = ("schema", "points", "given", "scales")
+"""Keys and tables of the project file without a section of their own."""
 
 
 def groups() -> str:

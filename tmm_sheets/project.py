@@ -15,7 +15,6 @@ from tmm_sheets.task.variant import Variant
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
-    from tmm_sheets.task.given import Printed
     from tmm_sheets.construction.plan import Plan
     from tmm_sheets.construction.search_count import SearchCount
     from tmm_sheets.mechanism.groups.three_legs import Course
@@ -35,6 +34,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.motion import Motion
     from tmm_sheets.methods.linkage.study import Study
     from tmm_sheets.methods.linkage.synthesis import Synthesis
+    from tmm_sheets.task.given import Printed
 
 
 PLANNED = ("synthesis", "cycle", "driver", "applied", "study", "motion", "reduced", "flywheel", "reducer", "gear", "train", "cam")

@@ -106,7 +106,8 @@ def given(project: Project) -> Iterator[str]:
     sizes = [units.si(v) for name, v in edited_text.numbers(variant.data) if not name.startswith("given.")]
     sizes += [link.mass * variant.forces.gravity for link in variant.link]
     if variant.given:
-        points = np.array([np.broadcast_to(step.value, len(project.cycle.labels)) for step in project.study.positions.points.values()])
+        steps = project.study.positions.points.values()
+        points = np.array([np.broadcast_to(step.value, len(project.cycle.labels)) for step in steps])
         apart = np.abs(points[:, None] - points)
         sizes += apart.min(axis=2)[np.ptp(apart, axis=2) <= SAME * m.crank.length].tolist()
         sizes += [((at - g.through) * np.exp(-1j * g.direction)).imag
@@ -114,8 +115,8 @@ def given(project: Project) -> Iterator[str]:
     known = np.abs(np.array(sizes, dtype=float))
     for q in project.given:
         if units.quantity_of(q.unit) in COMPARED and not np.isclose(known, abs(q.value), rtol=SAME, atol=0).any():
-            yield tell('given.{name}: the sheets are not drawn with "{value}", but show it as given; write what the task gives').format(
-                name=q.name, value=variant.given[q.name])
+            said = tell('given.{name}: the sheets are not drawn with "{value}", but show it as given; write what the task gives')
+            yield said.format(name=q.name, value=variant.given[q.name])
 
 
 SAME = 1e-5
