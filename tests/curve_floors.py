@@ -21,15 +21,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tests.gallery import names
-from tests.labels import drawn_lots
+from tests.labels import add_options, chosen
 from tmm_sheets import catalogue
 from tmm_sheets.construction.readable import CURVE, MAIN, POLE, TOOTH
 from tmm_sheets.drawing.marks import flat
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
-
-OWN = Path(__file__).parent / "projects"
+from tmm_sheets.words import set_paper
 
 
 class Graph(NamedTuple):
@@ -111,12 +109,8 @@ def _others(project, n, sheet):
     if views & {"flywheel.moments", "mertsalov.column"}:
         yield "moments", "H", project.flywheel.scales.pole, POLE
     if "cam.motion" in views:
-        whole = next(part.box for part in sheet.parts if part.draw == "cam.motion")
-        from tmm_sheets.sheets.cams import cam
-        motion = cam.motion_in(project.cam, whole) if hasattr(cam, "motion_in") else project.cam.motion_on(
-            whole.width, whole.height - 14 - cam.HEADS)
-        yield "cam.motion", "H1", motion.scales.h1, POLE
-        yield "cam.motion", "H2", motion.scales.h2, POLE
+        yield "cam.motion", "H1", project.cam.motion.scales.h1, POLE
+        yield "cam.motion", "H2", project.cam.motion.scales.h2, POLE
     for view, scale in (("gear.engagement", "gear-engagement"),):
         if view in views:
             tooth = max(abs(w.ra - w.rf) for w in project.gear.wheels)
@@ -146,14 +140,12 @@ def measured(name):
 
 def main(args):
     parser = argparse.ArgumentParser(prog="python -m tests.curve_floors")
-    parser.add_argument("--ciphers", type=int, default=0)
-    parser.add_argument("--seed", type=int, default=1)
+    add_options(parser, 0)
     parser.add_argument("--each", action="store_true", help="a line for every size, not only for those below their floor")
-    parser.add_argument("project", nargs="*")
     asked = parser.parse_args(args)
-    which = names(asked.project)
-    which += [] if asked.project else [*map(str, sorted(OWN.glob("*.toml"))), *drawn_lots(asked.ciphers, asked.seed)]
-    with Pool() as pool:
+    which = chosen(asked)
+    set_paper(asked.lang)
+    with Pool(asked.jobs) as pool:
         found = [s for of_project in pool.imap(measured, which) for s in of_project]
     sizes = [s for s in found if isinstance(s, Size)]
     for s in sizes:

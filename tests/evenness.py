@@ -1,6 +1,7 @@
 """How evenly finished sheets are filled, kind by kind, against the aims.
 
-Usage: python -m tests.evenness [--ciphers N --seed S] [--each] [PROJECT ...]; without names all shipped projects and the ciphers.
+Usage: python -m tests.evenness [--ciphers N --seed S] [--lang L] [--each] [--jobs N] [PROJECT ...]; as :mod:`tests.labels`, with 60
+ciphers.
 
 For every arrangement: share of cells of 50 mm without ink (mean, most), sheets with an empty rectangle of more than 160 x 120 mm,
 what position plans take of their places, and what of the kinematics is below its floor (:mod:`tmm_sheets.sheets.floors`): one line
@@ -21,8 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tests.gallery import names
-from tests.labels import drawn_lots
+from tests.labels import add_options, chosen
 from tmm_sheets import catalogue
 from tmm_sheets.box import Box
 from tmm_sheets.drawing import evenness
@@ -32,7 +32,7 @@ from tmm_sheets.sheets.composed import Composed
 from tmm_sheets.sheets.floors import CRANK, EMPTY, LETTERED, SHARE, VECTOR, Floor
 from tmm_sheets.sheets.linkage import kinematic_frames, kinematics
 from tmm_sheets.sheets.sheet import composed
-from tmm_sheets.words import tell
+from tmm_sheets.words import set_paper, tell
 
 MEAN, MOST = 0.12, 0.18
 """At most so many cells are empty in the mean of a kind, on one sheet."""
@@ -142,14 +142,12 @@ def measured(name: str) -> list[Sheet | str]:
 
 def main(args: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.evenness")
-    parser.add_argument("--ciphers", type=int, default=60)
-    parser.add_argument("--seed", type=int, default=1)
+    add_options(parser, 60)
     parser.add_argument("--each", action="store_true", help="a line for every sheet")
-    parser.add_argument("project", nargs="*")
     asked = parser.parse_args(args)
-    which = names(asked.project) + ([] if asked.project else drawn_lots(asked.ciphers, asked.seed))
-    with Pool() as pool:
-        found = [s for of_project in pool.imap(measured, which) for s in of_project]
+    set_paper(asked.lang)
+    with Pool(asked.jobs) as pool:
+        found = [s for of_project in pool.imap(measured, chosen(asked)) for s in of_project]
     sheets = [s for s in found if isinstance(s, Sheet)]
     kinds = defaultdict(list)
     for s in sheets:

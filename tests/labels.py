@@ -1,9 +1,11 @@
 """Labels of finished sheets: do they read as what they name?
 
-Usage: python -m tests.labels [--ciphers N --seed S] [--lang L] [PROJECT ...]; without names all shipped projects.
+Usage: python -m tests.labels [--ciphers N --seed S] [--lang L] [--jobs N] [PROJECT ...]; without names all of
+them: shipped projects, those of the tests, and N ciphers.
 
 For every label: its own line or point is nearer than any other and the shortest way there crosses nothing, or it has a leader; it
-covers no line thicker than 0.25 mm; no line at all runs over ink of letters. See :mod:`tmm_sheets.drawing.owners`.
+covers no line thicker than 0.25 mm. See :mod:`tmm_sheets.drawing.owners`. For every run of letters: no line at all runs over its
+ink, no rule of a table (then it is beyond its cell), no other lettering, and it is on the sheet, inside the frame.
 Leaders that run over lettering or cross each other are faults, too; labels so near other lettering on their level that both read as
 one word are only counted.
 """
@@ -15,6 +17,7 @@ import random
 import sys
 from collections import Counter
 from multiprocessing import Pool
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -22,21 +25,24 @@ import numpy as np
 from tests.gallery import names
 from tmm_sheets import catalogue
 from tmm_sheets import kept as stored
-from tmm_sheets.drawing import ink_index, lettering, owners
+from tmm_sheets.drawing import evenness, ink_index, lettering, owners
 from tmm_sheets.drawing import labels as placing
 from tmm_sheets.drawing.canvas import Label
 from tmm_sheets.drawing.dashes import strokes
 from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.drawing.text_boxes import text_box
-from tmm_sheets.drawing.yielding import STAYS
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
 from tmm_sheets.words import LANGUAGES, set_paper
 
 THICK = 0.25
+CARRIES = ("text", "frame")
+"""Roles of lines that belong to lettering: fraction bars, leaders, shelves, the title block."""
 LED = ("leader over lettering", "leaders cross")
 """What is told of leaders."""
+OWN = Path(__file__).parent / "projects"
+"""Mechanisms of nobody's task."""
 MACHINES = {"compressor": "В", "crusher": "СДМ", "diesel": "Т", "press": "ЭПС"}
 """Transport machines and the letters of their specialities."""
 
@@ -91,13 +97,44 @@ def judged(project, n):
         if what:
             faults.append(Fault(f"{project.variant.project.name} {n}", p.label.of, p.label.text, p.label.anchor, what))
     run_on = sum(_runs_on(p, kept, written) for p in kept)
-    faults += [Fault(f"{project.variant.project.name} {n}", style, text, at, "line over letters")
-               for text, style, at in crossings(composed.drawing)]
+    name = f"{project.variant.project.name} {n}"
+    faults += [Fault(name, style, text, at, CELL if role == "table" else CROSSED)
+               for text, style, at, role in crossings(composed.drawing)]
+    faults += [Fault(name, "", text, at, what) for text, at, what in strayed(composed.drawing)]
     return faults, len(kept), sum(bool(p.leader) for p in kept), run_on
 
 
+CROSSED, CELL, BEYOND, OVER = "line over letters", "beyond its cell", "beyond the frame", "letters over letters"
+"""What is told of runs of letters."""
+PEN = 0.35
+"""Lettering so near to other lettering touches it, mm."""
+
+
+def strayed(drawing):
+    """Runs of letters beyond the frame of the sheet, and those that touch others: what is lettered, where, and which of both."""
+    texts = [m for m in drawing.marks if isinstance(m, Text) and lettering.strokes(m.text, m.height) and m.of != evenness.FRAME]
+    if not texts:
+        return
+    strokes_of = [[m.at + np.exp(1j * m.angle) * (z if m.wide == 1.0 else lettering.widened(z, m.wide))
+                   for z in lettering.strokes(m.text, m.height)] for m in texts]
+    field = evenness.FIELD
+    cells = []
+    for k, (text, lines) in enumerate(zip(texts, strokes_of, strict=True)):
+        z = np.concatenate(lines)
+        if z.real.min() < field.x0 or z.real.max() > field.x1 or z.imag.min() < field.y0 or z.imag.max() > field.y1:
+            yield text.text, text.at, BEYOND
+        inked = ink_index.sample(np.concatenate([z[:-1] for z in lines]), np.concatenate([z[1:] for z in lines]), PEN / 2)
+        at = np.unique(np.round(inked.real / PEN) + 1j * np.round(inked.imag / PEN))
+        cells.append(np.column_stack([at.real, at.imag, np.full(len(at), k)]))
+    cells = np.concatenate(cells)
+    cells = cells[np.lexsort(cells.T[[2, 1, 0]])]
+    same = (cells[1:, :2] == cells[:-1, :2]).all(axis=1)
+    for k, other in {(int(a), int(b)) for a, b in zip(cells[1:, 2][same], cells[:-1, 2][same], strict=True)}:
+        yield f"{texts[other].text} {texts[k].text}", texts[k].at, OVER
+
+
 def crossings(drawing):
-    """Lines that cross the ink of level letters: what is lettered, the style of the line, and where."""
+    """Lines that cross the ink of level letters: what is lettered, style of the line, where, and its role."""
     marks = list(strokes(drawing.marks))
     ink = ink_index.InkIndex(marks)
     found = []
@@ -108,9 +145,9 @@ def crossings(drawing):
             box = Box(z.real.min(), z.imag.min(), z.real.max(), z.imag.max())
             near = ink.near(box, 0.0)
             over = near[ink_index.enters(ink.a[near], ink.b[near] - ink.a[near], *box)]
-            lines = {ink.of[k] for k in over}
-            found += [(text.text, ink.marks[k].style, text.at) for k in lines
-                      if not isinstance(ink.marks[k], Text) and not (ink.marks[k].by and ink.marks[k].by.role in STAYS)]
+            lines = [ink.marks[k] for k in {ink.of[k] for k in over}]
+            found += [(text.text, m.style, text.at, m.by.role if m.by else "") for m in lines
+                      if not isinstance(m, Text) and not (m.by and m.by.role in CARRIES)]
     return found
 
 
@@ -148,6 +185,21 @@ def of_project(name):
     return found, counts
 
 
+def add_options(parser, ciphers):
+    """Options that say which projects are looked at, and how."""
+    parser.add_argument("--ciphers", type=int, default=ciphers)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--lang", choices=LANGUAGES, default=LANGUAGES[0])
+    parser.add_argument("--jobs", type=int, help="processes at a time")
+    parser.add_argument("project", nargs="*")
+
+
+def chosen(asked):
+    """Projects that are asked for by :func:`add_options`: those named, or all shipped ones, those of the tests and some ciphers."""
+    every = [] if asked.project else [*map(str, sorted(OWN.glob("*.toml"))), *drawn_lots(asked.ciphers, asked.seed)]
+    return names(asked.project) + every
+
+
 def drawn_lots(count, seed):
     """Ciphers as students have them, of all machines in turn."""
     lots = random.Random(seed)
@@ -157,16 +209,13 @@ def drawn_lots(count, seed):
 
 
 def main(args):
-    asked = argparse.ArgumentParser(prog="python -m tests.labels")
-    asked.add_argument("--ciphers", type=int, default=0)
-    asked.add_argument("--seed", type=int, default=1)
-    asked.add_argument("--lang", choices=LANGUAGES, default=LANGUAGES[0])
-    asked.add_argument("project", nargs="*")
-    o = asked.parse_args(args)
-    which = drawn_lots(o.ciphers, o.seed) + (names(o.project) if o.project or not o.ciphers else [])
+    parser = argparse.ArgumentParser(prog="python -m tests.labels")
+    add_options(parser, 0)
+    o = parser.parse_args(args)
+    which = chosen(o)
     faults, counts = [], np.zeros(3, int)
     set_paper(o.lang)
-    with Pool() as pool:
+    with Pool(o.jobs) as pool:
         for found, numbers in pool.imap(of_project, which):
             faults += found
             counts += numbers

@@ -120,9 +120,7 @@ def below(project: Project, n: int, view: ViewPlace, what: Remark, least: float,
 
 def cam_motion(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
     """Pole distances or graphs of the motion of a cam are too small, to the millimetre."""
-    from tmm_sheets.sheets.cams.cam import motion_in
-
-    scales, law = motion_in(project.cam, view.box).scales, project.cam.law
+    scales, law = project.cam.motion.scales, project.cam.law
     graph = Remark(marked("the graph of {quantity}"), {"quantity": law.symbol})
     for what, size, least in ((POLES[0], scales.h1, POLE), (POLES[1], scales.h2, POLE), (graph, scales.s.mm(law.stroke), MAIN)):
         yield from below(project, n, view, what, least, lambda _, __, size=size: float(round(size)),  # type: ignore[misc]

@@ -201,10 +201,10 @@ VIEWS = {view.draw: view for view in (
     ViewKind("train.table", "train", place="gear_sizes.links_of_train"),
     ViewKind("train.willis", "train", place="gear_sizes.willis"),
     # cams
-    ViewKind("cam.motion", "cam", read="legibility.cam_motion"),
+    ViewKind("cam.motion", "cam", place="cam_sizes.motion", read="legibility.cam_motion"),
     ViewKind("cam.pressure", "cam", place="cam_sizes.pressure"),
     ViewKind("cam.spring", "cam", place="cam_sizes.spring"),
-    ViewKind("cam.table", "cam", name=marked("Table of the law of motion")),
+    ViewKind("cam.table", "cam", place="cam_sizes.table", name=marked("Table of the law of motion")),
     ViewKind("cam_law.equations", "cam", sizes="cam_law.equations_sizes", stands="anywhere"),
     ViewKind("cam_profile.profile", "cam", place="cam_sizes.profile"),
     ViewKind("cam_profile.radii", "cam", sizes="cam_profile.radii_sizes"),

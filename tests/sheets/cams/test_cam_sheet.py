@@ -159,7 +159,9 @@ def test_protocol_has_the_scale_factors_of_the_sheet():
 def test_diagrams_on_the_sheet_are_those_of_the_protocol(data):
     box = places(data)["cam.motion"]
     assert DIAGRAMS[data.cam.kind] == pytest.approx((box.width, box.height - 8 - HEADS), abs=2e-12)
-    assert data.cam.motion_on(box.width, box.height - 8 - HEADS) is data.cam.motion
+    motion = data.cam.motion
+    ink = np.concatenate([np.ravel(m.points) for m in drawn("cam.motion", data).marks if isinstance(m, Polyline)])
+    assert np.ptp(ink.real) == pytest.approx(motion.scales.phi.mm(motion.law.fall.end), abs=1e-6)
 
 
 def test_profile_on_paper_is_the_profile():

@@ -238,15 +238,7 @@ class Cam:
 
     @cached_property
     def _scales(self) -> MotionScales:
-        return self._scales_on(*DIAGRAMS[self.kind])
-
-    def _scales_on(self, width: float, height: float) -> MotionScales:
-        return motion_scales(self.law, width, height)
-
-    def motion_on(self, width: float, height: float) -> FollowerMotion:
-        """Diagrams S'', S', S at the scale factors that suit another place on paper, mm."""
-        scales = self._scales_on(width, height)
-        return self.motion if scales == self._scales else motion(self.law, scales, self.exact)
+        return motion_scales(self.law, *DIAGRAMS[self.kind], equal=self.kind == "flat")
 
     # --- profile
 
@@ -667,9 +659,6 @@ class RockerCam(RollerCam):
 @dataclass(frozen=True, eq=False)
 class FlatCam(Cam):
     """A cam under a flat follower (плоский толкатель)."""
-
-    def _scales_on(self, width: float, height: float) -> MotionScales:
-        return motion_scales(self.law, width, height, equal=True)
 
     @cached_property
     def plate(self) -> Plate:

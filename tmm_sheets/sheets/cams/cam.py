@@ -33,11 +33,15 @@ if TYPE_CHECKING:
 
 HEADS = 66.0
 """Height the diagrams leave to headings, axes and dimensions, mm."""
+HEAD = 22.0
+"""Where the head of a diagram begins beside its axis, mm: the letter of the quantity stands before it."""
 TITLE = 8.0
 """Height of a title of one line over a view, mm."""
 ANGLE = "α"
 """Letter of the pressure angle; an arrangement may name another one as the option ``angle``."""
 View = Callable[["Project", Canvas, Box, dict[str, Any]], None]
+BEHIND = 13.0
+"""So far the axis of the cam angle goes beyond the phases, mm."""
 BEYOND = 2.0
 """So far the centre lines of the auxiliary circle go beyond it, mm."""
 
@@ -104,9 +108,13 @@ def in_degrees(symbol: str) -> str:
 # --- diagrams of the motion -----------------------------------------------------------------------------------------
 
 
-def motion_in(cam: Cam, box: Box) -> FollowerMotion:
-    """The diagrams to the scale factors that they have in a place of the sheet, mm."""
-    return cam.motion_on(box.width, box.height - TITLE - HEADS)
+def reach_of_motion(m: FollowerMotion) -> tuple[float, float]:
+    """How far the diagrams reach to the left and to the right of their origins, mm."""
+    left = max(m.scales.h1, m.scales.h2) + 6.0
+    if m.circle:
+        centre = complex(m.plan["M"].value)
+        left = max(left, max(abs(complex(s.value) - centre) for s in m.circle.values()) + BEYOND - centre.real)
+    return left, float(m.scales.phi.mm(m.law.fall.end)) + BEHIND
 
 
 @for_cams
@@ -118,17 +126,13 @@ def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     title = tr("Law of motion of the rocker ({laws})") if law.symbol == "ψ" else tr("Law of motion of the follower ({laws})")
     # The turned designation of the sheet stands in the upper left corner.
     area = canvas.title(Box(max(box.x0, 92.0), box.y0, box.x1, box.y1), title.format(laws=laws))
-    m = motion_in(cam, box)
+    m = cam.motion
     canvas.scales[m.plan.name] = Scale("μ", 1.0, tr("mm/mm"))  # it is constructed in millimetres of paper
     curves = (m.curve_dds(), m.curve_ds(), m.curve_s())
     ups = [max(float(c.imag.max()), 0.0) for c in curves]
     downs = [max(float(-c.imag.min()), 0.0) for c in curves]
-    end = float(m.scales.phi.mm(law.fall.end))
-    left = max(m.scales.h1, m.scales.h2) + 6.0
-    if m.circle:
-        centre = complex(m.plan["M"].value)
-        left = max(left, max(abs(complex(s.value) - centre) for s in m.circle.values()) + BEYOND - centre.real)
-    x0 = box.x0 + left + max(box.width - left - end - 13.0, 0.0) / 2
+    left, right = reach_of_motion(m)
+    x0 = box.x0 + left + max(box.width - left - right, 0.0) / 2
     foot = 22.0  # numbers and dimensions of the phases under the lowest diagram
     gap = (area.height - foot - sum(ups) - sum(downs)) / 3
     origins, y = [], area.y1
@@ -145,7 +149,7 @@ def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     smooth = (m.between, m.plan[m.names[1]], m.plan[m.names[2]])
     every = zip(stages, ups, downs, curves, steps, symbols, _heads(m), smooth, strict=True)
     for s, up, down, points, ordinates, symbol, head, step in every:
-        _diagram(s, ordinates[0], up, down, end, symbol)
+        _diagram(s, ordinates[0], up, down, right, symbol)
         # Over the first diagram there is no pole distance: its left side is free, too, and wider beside short phases.
         _head(canvas, s.frame(0j) + 1j * (up + 6.0), head, box, both=step is m.between)
         _ordinates(s, m, ordinates)
@@ -193,20 +197,25 @@ def _heads(m: FollowerMotion) -> tuple[str, str, str]:
             f"a_1/a_2 = {equal}{number(abs(m.plan['a_1'].value))}/{number(abs(m.plan['a_2'].value))}", first, second)
 
 
-def _diagram(s: PlayerStage, step: Step, up: float, down: float, end: float, symbol: str) -> None:
+def heads_width(m: FollowerMotion) -> float:
+    """How far the heads reach to the right of the axes, in their usual letters, mm."""
+    return HEAD + max(letter(head, 3.5).width for head in _heads(m)) + 4.0
+
+
+def _diagram(s: PlayerStage, step: Step, up: float, down: float, right: float, symbol: str) -> None:
     """Axes of one diagram with the letter of its quantity."""
     canvas, o = s.canvas, s.frame(0j)
-    axes(s, step, end + 13.0, (-down, up + 10.0), 3.0 if down else 0.0)
+    axes(s, step, right, (-down, up + 10.0), 3.0 if down else 0.0)
     canvas.text(o + complex(2.5, up + 6.0), symbol, 3.5)
-    canvas.label(o + end + 8.0, tr("{symbol}, rad").format(symbol="φ"), 1j, 3.5, 1.5, leader=False)
+    canvas.label(o + right - 5.0, tr("{symbol}, rad").format(symbol="φ"), 1j, 3.5, 1.5, leader=False)
 
 
 def _head(canvas: Canvas, at: complex, text: str, box: Box, *, both: bool) -> None:
     """Scale factors over a diagram, beside the letter at its axis: at the right, or where that is free at its wider side."""
-    right, left = box.x1 - at.real - 22.0, at.real - box.x0 - 4.0
+    right, left = box.x1 - at.real - HEAD, at.real - box.x0 - 4.0
     beside = both and right < min(left, letter(text, 3.5).width)
     laid = fitted(text, left if beside else right, 3.5)
-    canvas.put(laid, at + (-4.0 - laid.width if beside else 22.0), 0.0, text)
+    canvas.put(laid, at + (-4.0 - laid.width if beside else HEAD), 0.0, text)
 
 
 def _ordinates(s: PlayerStage, m: FollowerMotion, steps: list[Step]) -> None:

@@ -84,6 +84,10 @@ def _pictured(cam: Cam, box: Box, table: tuple[float, float] | None = None) -> _
 
 HOLE = 30.0
 """So much farther from the figure the foot of its place must be for the table of its sizes to stand there, mm."""
+BESIDE = 1 / 6
+"""So much of the width that is spare the figure stands to the left of the middle: its table stands rather at the right."""
+LETTERS = 24.0
+"""What the letters at both sides of the figure take of it, mm."""
 GUIDE = 22.0
 """What the guide of a translating follower and the end of its rod take above the roller, mm of paper."""
 
@@ -170,7 +174,8 @@ class _ProfilePicture:
         y0, y1 = float(self.points.imag.min()), float(self.points.imag.max())
         top = max(self.scale.mm(y1), self.scale.mm(self.guide) + over) if over else self.scale.mm(y1)
         middle = complex(self.scale.mm((x0 + x1) / 2), (self.scale.mm(y0) + top) / 2)
-        self.origin = complex(room.centre - middle)
+        spare = max(rooms[0] - float(self.scale.mm(x1 - x0)) - LETTERS, 0.0)
+        self.origin = complex(room.centre - middle - BESIDE * spare)
         self.roller = float(self.scale.mm(radius))
         self.hole = min(1.8, 0.3 * self.roller)  # that its axis turns in
         self.start = phase(complex(inv.plan["A_0" if self.kind == "rocker" else "B_0"].value) * self.turn)

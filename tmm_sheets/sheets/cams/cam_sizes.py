@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, lru_cache
+from math import inf
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -15,7 +16,7 @@ from tmm_sheets.sheets.border_solver import Need
 from tmm_sheets.sheets.cams import cam as cam_views
 from tmm_sheets.sheets.cams import cam_profile, cam_zone
 from tmm_sheets.sheets.frame import standard
-from tmm_sheets.sheets.view_sizes import leaf
+from tmm_sheets.sheets.view_sizes import leaf, reached
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam, TappetCam
@@ -28,12 +29,32 @@ NUMBERED = CURVE
 """Height of a curve on which all positions are numbered, mm."""
 
 
+CROWDED = 30.0
+"""Height of a curve below which the numbers of its positions stand on one another, mm."""
+
+
 ORDINATES = 4.0
 """Distance of two ordinates that can be read, mm."""
 
 
 GRAPH = 45.0
 """Height of a graph that can be read, mm."""
+
+
+def motion(project: Project, view: ViewPlace) -> BorderNode:
+    """The diagrams are as large as their scale factors make them: what they leave is for others."""
+    m = project.cam.motion
+    left, right = cam_views.reach_of_motion(m)
+    width = left + max(right, cam_views.heads_width(m))
+    high = sum(float(np.ptp(curve.imag)) for curve in (m.curve_dds(), m.curve_ds(), m.curve_s()))
+    high += cam_views.TITLE + cam_views.HEADS
+    return leaf(view.box, Need(least=(width, high), most=(width, view.box.height), drawn=lambda w, h: w * h))
+
+
+def table(project: Project, view: ViewPlace) -> BorderNode:
+    """As high as it is written and no narrower: it takes what the diagrams leave beside them."""
+    w, h = view.box.width, view.box.height
+    return leaf(view.box, Need(least=(w, h), most=(inf, h), drawn=lambda w, h: w * h))
 
 
 def wide(project: Project, view: ViewPlace) -> BorderNode:
@@ -49,7 +70,8 @@ def zone_of_tappet(project: Project, view: ViewPlace) -> BorderNode | None:
 
     @cache
     def in_place(width: int, height: int) -> float:
-        return 0.6 * width * height * min(cam_zone.stroke_in(cam, rays, width, height) / NUMBERED, 1.0)
+        stroke = cam_zone.stroke_in(cam, rays, width, height)
+        return 0.6 * width * height * min(stroke / NUMBERED, 1.0) * reached(stroke, CROWDED)
 
     need = Need(least=(0.88 * view.box.width, 0.8 * view.box.height), drawn=lambda w, h: in_place(int(w), int(h)))
     return leaf(view.box, need)
