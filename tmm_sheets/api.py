@@ -89,6 +89,9 @@ class Opened:
     """
 
     def __init__(self, variant: Variant, names: Names | None = None, language: str = "") -> None:
+        if language and language not in words.LANGUAGES:
+            raise BadInput(tell('unknown language "{language}"').format(language=language),
+                           tell("known are {known}").format(known=", ".join(words.LANGUAGES)))
         self._read, self._names = variant, names
         self.language = language or words.of_project(variant.project.language)
         self.project = Project(names.filled(variant) if names is not None else variant)
@@ -162,6 +165,8 @@ class Opened:
 
         if sum(x is not None for x in (phi, phi_deg, positions)) > 1:
             raise BadInput(tell("give one of phi, phi_deg and positions"))
+        if positions is not None and positions < 1:
+            raise BadInput(tell("positions: expected a number from 1 on, not {n}").format(n=positions))
         at = phi if phi_deg is None else np.radians(np.asarray(phi_deg, dtype=float))
         angles = None if at is None else tuple(np.atleast_1d(np.asarray(at, dtype=float)).tolist())
         refused: dict[str, CannotBuild] = {}
@@ -357,7 +362,7 @@ class Opened:
         Raises
         ------
         BadInput
-            when the folder has one already.
+            when the folder has one already that somebody has changed.
         """
         from tmm_sheets import files
         from tmm_sheets.compare.measured import measured_lengths

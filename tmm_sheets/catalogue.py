@@ -96,7 +96,7 @@ def located(project: str) -> Path:
     path = Path(project)
     if os.path.lexists(path):
         return path
-    near = spelling.near(project, (*map(str, files_beside(path)), *shipped()), 3)
+    near = spelling.near(project, (*map(str, files_beside(path)), *shipped()), 3) or [e.name for e in found(project)[:3]]
     listing = tell("{command} shows the shipped projects").format(command=quoting.command("list"))
     hint = tell("did you mean {near}?").format(near=either(near)) if near else listing
     if project.endswith(SUFFIX):

@@ -111,6 +111,12 @@ def test_marks_go_by_what_was_handed_in(folder, tmp_path):
     assert (found["One"]["mark"], found["One"]["faults"]["missing_sheet"]) == (80, 1)
     assert found["Four"]["mark"] is None
     assert "−47 (94 × 0.5)" in report.text
+    # A file alone: of the sheets that it does not show nobody knows.
+    alone = [group.marked(of(None, 1, None), group.MarkingScheme(100, {"unfilled": 0.5, "missing_sheet": 20}, {}, ((50, "3"),)))
+             for of in (numbers, drawing)]
+    assert [(a.tree["mark"], a.tree["grade"], a.text.strip()) for a in alone] == [
+        (53, "3", "mark 53 (3); without faults 100; numbers left empty, % −47 (94 × 0.5)"),
+        (100, "3", "mark 100 (3); without faults 100")]
 
 
 def test_a_project_file_is_seen_from_the_folder(folder, tmp_path):

@@ -287,11 +287,16 @@ def test_template_has_no_answers(cam):
     assert len({r["id"] for r in table}) == len(table)
 
 
-def test_a_filled_file_is_not_overwritten(cam, capsys):
-    before = cam.read_bytes()
-    assert run(["compare", "lugansk/cam_flat", "--template", "-o", str(cam.parent)]) == 2
+def test_a_filled_file_is_not_overwritten(cam, tmp_path, capsys):
+    """One that nobody has changed is as good as new."""
+    file = tmp_path / "measured.csv"
+    file.write_bytes(before := cam.read_bytes())
+    assert run(["compare", "lugansk/cam_flat", "--template", "-o", str(tmp_path)]) == 0
+    assert file.read_bytes() == before
+    file.write_bytes(before := before + b"5\n")
+    assert run(["compare", "lugansk/cam_flat", "--template", "-o", str(tmp_path)]) == 2
     assert "may be filled in; nothing was written" in capsys.readouterr().err
-    assert cam.read_bytes() == before
+    assert file.read_bytes() == before
 
 
 def test_measured(cam, tmp_path, capsys):

@@ -92,6 +92,11 @@ def test_last_digit(filled, text, half):
     assert filled(row("velocities/2/pb", text)).lines[0].half_digit == pytest.approx(half)
 
 
+def test_a_guess_is_no_rounding(filled):
+    """A result of 10 written as 1e1 is rounded to a twentieth of it at most."""
+    assert filled(row("results/F21", "1e1")).lines[0].half_digit == pytest.approx(0.5)
+
+
 @pytest.mark.parametrize(("name", "unit", "value", "expected"), [
     ("positions/2/angle-AB", "рад", "0,5", 28.6479), ("results/F21", "кН", "1,5", 1500.0), ("results/F21", "kN", "1,5", 1500.0),
     ("results/1'/h50", "мм", "115", 0.115), ("results/2/V_B", "m/s", "0,6", 0.6), ("results/2/omega3", "rad/s", "1,5", 1.5),

@@ -15,6 +15,7 @@ from tmm_sheets.localized_cli import command, option
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
+    from tmm_sheets.compare.marking import MarkingScheme
     from tmm_sheets.compare.report import Kind, Report
     from tmm_sheets.project import Project
 
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 @option("--dxf", type=click.Path(path_type=Path), metavar="FILE", help="Compare a CAD drawing.")
 @option("--group", type=click.Path(path_type=Path), metavar="FOLDER",
               help="Compare the work of a whole group: a folder in it for each student.")
-@option("--marks", type=click.Path(path_type=Path), metavar="FILE", help="With --group: what each fault costs, for marks.")
+@option("--marks", type=click.Path(path_type=Path), metavar="FILE", help="What each fault costs, for marks.")
 @option("--pencil", type=click.FloatRange(0.01, 5), default=0.25, show_default=True, metavar="MM",
               help="Error of a point drawn by hand.")
 @option("--reading", type=click.FloatRange(0.01, 5), default=0.5, show_default=True, metavar="MM",
@@ -52,8 +53,8 @@ def run(
     """Compare a hand drawing of PROJECT with the exact one: measured lengths, a photograph or a CAD drawing."""
     if sum((template, measured is not None, image is not None, dxf is not None, group is not None)) != 1:
         raise click.UsageError(tell("give one of --template, --measured FILE, --image FILE, --dxf FILE and --group FOLDER"))
-    if marks is not None and group is None:
-        raise click.UsageError(tell("--marks goes with --group FOLDER"))
+    if marks is not None and template:
+        raise click.UsageError(tell("--marks goes with what is compared"))
     if everything and not template:
         raise click.UsageError(tell("--all goes with --template"))
     if read_numbers and image is None:
@@ -64,6 +65,11 @@ def run(
     from tmm_sheets import files
     from tmm_sheets.progress import Progress
 
+    scheme = None
+    if marks is not None:
+        from tmm_sheets.compare import marking
+
+        scheme = marking.read(marks)
     opened = opening.open_project(project, corrected)
     folder = opening.folder_of(opened.variant, output)
     with Progress() as progress:
@@ -75,7 +81,7 @@ def run(
 
             report = by_ruler.template(opened, folder, everything, say)
         elif group is not None:
-            report = _of_group(group, opened, corrected, marks, pencil, reading, say)
+            report = _of_group(group, opened, corrected, scheme, pencil, reading, say)
         else:
             from tmm_sheets.api import compared
 
@@ -88,6 +94,10 @@ def run(
                 for name in e.files:
                     click.echo(folder / name, err=True)
                 raise
+            if scheme is not None:
+                from tmm_sheets.compare import group as whole
+
+                report = whole.marked(report, scheme)
     made = {folder / name: data for name, data in report.files.items()}
     if target is not None and target != "-":
         made[Path(target)] = (report.as_json() + "\n").encode()
@@ -106,14 +116,11 @@ def run(
         click.echo(path, err=target == "-")
 
 
-def _of_group(group: Path, opened: Project, corrected: bool, marks: Path | None, pencil: float, reading: float,
+def _of_group(group: Path, opened: Project, corrected: bool, scheme: MarkingScheme | None, pencil: float, reading: float,
               say: Callable[[str], None]) -> Report:
     """The report on the work of a whole group."""
     from tmm_sheets.api import compared
     from tmm_sheets.compare import group as whole
-    from tmm_sheets.compare import marking
-
-    scheme = marking.read(marks) if marks is not None else None
 
     def judged(kind: Kind, project: Project, sheet: int | None, path: Path) -> Report:
         return compared(project, kind, path, sheet, None, pencil, reading)

@@ -13,7 +13,7 @@ import re
 import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from unicodedata import normalize
@@ -147,6 +147,20 @@ def compare(folder: Path, project: str, opened: Callable[[str], Project], judged
         count = len(project_of(own).variant.sheets) if any(f.report is not None for f in files) else 0
         students.append(Student(name, own, tuple(files), count))
     return _report(folder, students, scheme)
+
+
+def marked(report: Report, scheme: MarkingScheme) -> Report:
+    """The report on one file with its mark: below the table, on its pages, in the JSON."""
+    work = Student("", "", (Judgement("", *_faults(report), report=report),))
+    mark = scheme.mark(work.faults)
+    grade = scheme.grade(mark)
+    lost = [f"{said} {scheme.counted(kind, n)}" for (kind, n), said in zip(work.faults.items(), called_kinds(), strict=True)
+            if scheme.lost(kind, n)]
+    line = "; ".join((f"{tell('mark')} {told(f'{mark:.4g}')}{f' ({grade})' if grade else ''}",
+                      f"{tell('without faults')} {told(f'{scheme.full:g}')}", *lost))
+    tree = {**report.tree, "mark": mark, "grade": grade or None, "costs": {k: scheme.lost(k, n) for k, n in work.faults.items()}}
+    story = None if report.story is None else replace(report.story, about=(*report.story.about, line))
+    return replace(report, text=f"{report.text}\n{line}", tree=tree, story=story)
 
 
 def _works(folder: Path) -> dict[str, list[Path]]:

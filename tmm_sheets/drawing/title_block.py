@@ -161,7 +161,8 @@ def short_name(name: str) -> str:
     """
     words = name.split()
     surname = _surname(words)
-    initials = "".join(word if word.endswith(".") else f"{word[0]}." for word in words if word != surname)
+    lettered = (re.sub(r"^\W+", "", word) for word in words if word != surname)  # "Pat" is P.
+    initials = "".join(word if word.endswith(".") else f"{word[0]}." for word in lettered if word)
     short = f"{surname} {initials}" if words[:1] == [surname] else f"{initials} {surname}"
     ways = ((way, room) for room in (NAME_WIDTH, NAME_WIDTH / NARROWEST) for way in (name, short))
     return next((way for way, room in ways if letter(plain(way), CAPTION).width <= room), surname)

@@ -152,6 +152,10 @@ def varied(text: str, data: Mapping[str, Any]) -> Varied:
     if not a < b:
         raise BadInput(tell("{text}: the range is empty").format(text=text), tell("write the less of both first"))
     own = edited_text.at(data, name)
+    digits, own_unit = units.split(own)
+    if digits and units.quantity_of(own_unit) != units.quantity_of(unit):
+        said = tell("{text}: expected a range in a unit such as that of {own}, which the file has")
+        raise BadInput(said.format(text=text, own=own))
     whole = isinstance(own, int) and not isinstance(own, bool) and a == int(a) and b == int(b)
     decimals = 0 if whole else max(0, -floor(log10((b - a) / STEPS)))
     return Varied(name, a, b, unit, decimals, whole)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -53,10 +54,13 @@ def table(found: list[Tried]) -> str:
         doubtful = sum(bool(t.warnings) for t in own)
         lines.append(tell("{machine}: {n} ciphers, {good} can be built, {doubtful} with doubtful numbers").format(
             machine=machine, n=len(own), good=good, doubtful=doubtful))
-        reasons: dict[str, list[Tried]] = {}
+        reasons: dict[str, list[tuple[Tried, str]]] = {}
         for t in own:
-            if t.problem:
-                reasons.setdefault(t.problem.partition("\n")[0].replace(t.project, machine), []).append(t)
-        lines += [tell("  {n} ciphers, such as {project}: {reason}").format(n=len(some), project=some[0].project, reason=reason)
-                  for reason, some in reasons.items()]
+            for problem in re.split(r"\n(?=\S)", t.problem) if t.problem else ():
+                reason, _, hint = problem.replace(t.project, machine).partition("\n")
+                reasons.setdefault(reason, []).append((t, hint))
+        for reason, some in reasons.items():
+            (first, hint), *_ = some
+            said = tell("  {n} ciphers, such as {project}: {reason}").format(n=len(some), project=first.project, reason=reason)
+            lines += [said, *([f"  {hint}"] if hint else [])]
     return "\n".join(lines)

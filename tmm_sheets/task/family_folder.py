@@ -7,8 +7,8 @@ cipher chooses in its tables and with what follows from that. docs/families.md s
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from decimal import Decimal, InvalidOperation
 from functools import cached_property
 from pathlib import Path
@@ -175,8 +175,12 @@ class FolderFamily:
         """
         from tmm_sheets.task import variant
 
-        text, doubts, remarks = self.text(name, corrected)
-        return variant.parse(text, name, (*remarks, *(doubt.warning() for doubt in doubts)), doubts)
+        pieces, doubts, remarks = self._filled_in(name, corrected)
+        told = (*remarks, *(doubt.warning() for doubt in doubts))
+        try:
+            return variant.parse("".join(text for _, text in pieces), name, told, doubts)
+        except BadInput as e:
+            raise BadInput(_of_scheme(problem, pieces) for problem in e.problems) from None
 
     @cached_property
     def form(self) -> CipherForm:
@@ -218,6 +222,11 @@ class FolderFamily:
         BadInput
             when there is no such machine or cipher, or something is wrong in the folder.
         """
+        pieces, doubts, remarks = self._filled_in(name, corrected)
+        return "".join(text for _, text in pieces), doubts, remarks
+
+    def _filled_in(self, name: str, corrected: bool) -> tuple[list[tuple[str, str]], tuple[Doubt, ...], tuple[str, ...]]:
+        """The same in pieces, each with the file it comes from: a line of a scheme makes a line of it."""
         called, cipher = self._parts(name)
         machine = self.rules.machine[called]
         rows = {row.key: row for table in machine.tables for row in family_tables.read(self.folder / table, self.form.letters)}
@@ -229,8 +238,9 @@ class FolderFamily:
         remarks = tuple(self._remarks(called, machine, cipher, values))
         values |= {f"{key}{SOURCE}": Choice(own.source) for key, own in values.items()}
         schemes = (Template(scheme).safe_substitute({key: own.text for key, own in values.items()}) for scheme in machine.scheme)
-        text = "".join(self._filled(scheme, values) for scheme in schemes)
-        return text + "".join(self._given(called, machine, values)), doubts, remarks
+        pieces = [*((str(self.folder / scheme), self._filled(scheme, values)) for scheme in schemes),
+                  (self._named(called, cipher.text), "".join(self._given(called, machine, values)))]
+        return pieces, doubts, remarks
 
     def _given(self, called: str, machine: MachineTable, values: Mapping[str, Choice]) -> Iterator[str]:
         """``[given]`` as text; what is 0, a dash of the manual, is not given."""
@@ -312,6 +322,16 @@ class FolderFamily:
             known = tell("did you mean {near}?").format(near=near[0]) if near else tell("known are {known}").format(
                 known=", ".join(values))
             raise BadInput(Problem(tell("nothing is called ${name}").format(name=key), str(path), line, hint=known)) from None
+
+
+def _of_scheme(problem: Problem, pieces: Iterable[tuple[str, str]]) -> Problem:
+    """What is wrong in a project file, told of the scheme whose line it is: each fills one line in."""
+    line = problem.line or 0
+    for file, piece in pieces:
+        if 0 < line <= (lines := piece.count("\n")):
+            return replace(problem, file=file, line=line)
+        line -= lines
+    return problem
 
 
 def _numbers(values: Mapping[str, Choice]) -> dict[str, float]:

@@ -56,6 +56,21 @@ def test_misprints(folder):
     assert "printed 206, suspected misprint" in corrected.source("group", 0, "lengths")
 
 
+def test_mistakes_are_told_of_the_scheme(folder, capsys):
+    """Each with the line of the file that is to be mended, not of the project file that was made of them."""
+    for name, before, after in (("head.toml", '"counter-clockwise"', '"left"'), ("pump.toml", 'output = "B"', 'output = "3"')):
+        file = folder / name
+        file.write_text(file.read_text("utf-8").replace(before, after), encoding="utf-8")
+    lines = {name: (folder / name).read_text("utf-8").splitlines().index(said) + 1
+             for name, said in (("head.toml", 'sense = "left"'), ("pump.toml", 'output = "3"'))}
+    assert run(["check", "department/pump@27"]) == 2
+    told = capsys.readouterr().err
+    assert f"department/head.toml:{lines['head.toml']}: crank.sense: " in told
+    assert f"department/pump.toml:{lines['pump.toml']}: cycle.output: " in told
+    assert run(["family", "check", "department", "--quick"]) == 1
+    assert capsys.readouterr().err.count("100 ciphers, such as department/pump@00: department/") == 2
+
+
 def test_commands_take_it(folder, capsys):
     assert run(["list", "питатель"]) == 0
     assert "department/feeder@27" in capsys.readouterr().out

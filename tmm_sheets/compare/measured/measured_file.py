@@ -54,6 +54,8 @@ APART = 300.0
 """How many times as large or small as on the sheet a scale factor may be: metres for millimetres are more."""
 ABSURD = 1e12
 """No number on a sheet is as large."""
+ROUGHEST = 0.05
+"""Share of the greatest number of a row of results that rounding may be: "1" for 0.64 m is no rounding."""
 SHOWN = 20
 """Problems told at once."""
 
@@ -320,6 +322,10 @@ class _Table:
         self.unknown: list[Problem] = []
         self.seen: dict[str, MeasuredLine] = {}
         self.used = {e.scale for e in self.found.entries.values() if e.scale in self.found.scales}
+        self.greatest: dict[tuple[str, str], float] = {}
+        for e in self.found.entries.values():
+            row = e.plan, e.quantity
+            self.greatest[row] = max(self.greatest.get(row, 0.0), abs(e.value))
         self.points = self.commas = 0
         self.nothing = {"-", "–", "—", *(said.lower() for said in every(NOT_MEASURED))}
 
@@ -350,6 +356,8 @@ class _Table:
                 return
             entry = _entry(key, self.found, self.filled, self.name, number)
             value, half = _number(written, cell("unit"), entry, self.filled, f"{self.name}:{number}")
+            if entry.kind == "result":
+                half = min(half, ROUGHEST * self.greatest[entry.plan, entry.quantity])
             own = cell("factor") if entry.scale else ""
             factor = _like(_positive(own), self.found.scales[entry.scale]) if own else None
         except _Refused as e:

@@ -43,15 +43,15 @@ def template(project: Project, folder: Path, everything: bool, say: Callable[[st
     Raises
     ------
     BadInput
-        when the folder has such a file already: it may be filled in.
+        when the folder has such a file already that somebody has changed: it may be filled in.
     """
     path = folder / NAME
-    if path.exists():
-        raise BadInput(Problem(tell("is there already and may be filled in; nothing was written"), str(path),
-                               hint=tell("rename it, or choose another folder with -o")))
     found = measurables(project, say)
     called = project.variant.called
     data = measured_file.template(called, found, everything)
+    if path.exists() and path.read_bytes() != data:
+        raise BadInput(Problem(tell("is there already and may be filled in; nothing was written"), str(path),
+                               hint=tell("rename it, or choose another folder with -o")))
     asked = measured_file.asked_for(found, everything)
     count = len(asked)
     said = tell_n("{project}: {n} quantity to measure or compute; fill in what you have, then",
