@@ -13,6 +13,7 @@ from typing import Any, Literal, NamedTuple, TypeVar, cast
 
 import numpy as np
 
+from tmm_sheets.drawing.headings import LEADING, TOGETHER, heading
 from tmm_sheets.drawing.lettering import Lettering, fitted, letter, size_for
 from tmm_sheets.drawing.marks import (
     Arc,
@@ -384,16 +385,21 @@ class Canvas:
         """Ask for a remark in words to the view in ``box``; see :class:`PlacedNote`."""
         self.notes.append(PlacedNote(text, box, self.of, len(self.parts) - 1, tuple(signs), about))
 
-    def title(self, box: Box, text: str, factor: str = "", height: float = 5.0) -> Box:
-        """Title of a view centred at the top of its place, the scale factor under it and no larger; returns what is left below."""
+    def title(self, box: Box, text: str, factor: str = "", height: float = 5.0, spare: float = 0.0) -> Box:
+        """Title of a view centred at the top of its place, the scale factor under it and no larger; returns what is left below.
+
+        It may be on more lines for each ``LEADING`` mm of height that the view can ``spare``.
+        """
+        text = text.replace(TOGETHER, " ")
         self.begin(box, text)
         x = (box.x0 + box.x1) / 2
         y = box.y1 - height
-        laid = fitted(text, box.width, height)
-        self.put(laid, complex(x - laid.width / 2, y), 0.0, text)
+        lines, large, wide = heading(text, box.width, height, 1 + max(int(spare / LEADING), 0))
+        for n, line in enumerate(lines):
+            y -= LEADING * (n > 0)
+            self.text(complex(x, y), line, large, "centre", wide=wide)
         if factor:
-            y -= 8.0
-            large = max((run.height for run in laid.runs), default=height)
+            y -= LEADING
             self.text(complex(x, y), factor, size_for([factor], box.width - 2.0, min(large, 5.0)), "centre")
         self.parts[-1] = self.parts[-1]._replace(headed=len(self.marks))
         return Box(box.x0, box.y0, box.x1, y - 3.0)

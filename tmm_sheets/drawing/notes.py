@@ -8,6 +8,7 @@ import numpy as np
 
 from tmm_sheets.drawing.canvas import Canvas, PlacedNote
 from tmm_sheets.drawing.crowded import Crowded
+from tmm_sheets.drawing.headings import wrapped
 from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
@@ -16,12 +17,10 @@ HEIGHTS = (3.5, 2.5)
 """Heights of lettering, mm, the second where the first finds no place in the view, or on the whole sheet (GOST 2.304)."""
 LEADING = 1.6
 """Distance of the lines of a note, in heights of its capitals."""
-LINES = (2, 1, 3, 4, 5)
+LINES = (1, 2, 3, 4, 5)
 """Numbers of lines a note may have, the most welcome first."""
 CLEAR, APART = 1.5, 6.0
 """Margins kept above and below a note, and at its sides, where other lettering would be read on as one line, mm."""
-TOGETHER = "\u00a0"
-"""Space of a note at which no line ends: between a number and its unit."""
 STEP = 1.0
 """Distance of the places tried, mm."""
 OUTSIDE = 4.0
@@ -51,26 +50,6 @@ def set_notes(canvas: Canvas, ink: InkIndex) -> list[Crowded]:
             crowded.append(Crowded(note.said, note.box.centre))
     canvas.notes.clear()
     return crowded
-
-
-def wrapped(text: str, height: float, count: int) -> list[str]:
-    """The text broken between words into ``count`` lines of about one length; ``TOGETHER`` is a space that is not broken."""
-    words = text.split(" ")
-    widths = [letter(word, height).width for word in words]
-    space = letter("н н", height).width - 2 * letter("н", height).width
-    room = (sum(widths) + space * (len(words) - count)) / count
-    while True:
-        lines: list[list[str]] = [[]]
-        used = 0.0
-        for word, width in zip(words, widths, strict=True):
-            if lines[-1] and used + space + width > room:
-                lines.append([])
-                used = 0.0
-            used += width + (space if lines[-1] else 0.0)
-            lines[-1].append(word)
-        if len(lines) <= count:
-            return [" ".join(line).replace(TOGETHER, " ") for line in lines]
-        room += height
 
 
 def _takes(canvas: Canvas, ink: InkIndex, note: PlacedNote) -> tuple[list[Box], Box]:

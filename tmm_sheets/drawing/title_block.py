@@ -12,6 +12,7 @@ from functools import cache
 from math import pi
 from typing import TYPE_CHECKING, Any
 
+from tmm_sheets.drawing.headings import NARROWEST
 from tmm_sheets.drawing.lettering import Lettering, letter, plain
 from tmm_sheets.drawing.marks import Box, Form, FormField
 from tmm_sheets.drawing.paper import A1, Paper
@@ -26,7 +27,7 @@ TURNS = {0.0: 1 + 0j, pi / 2: 1j, pi: -1 + 0j}
 """Directions of lettering by its angle, exact."""
 CAPTION = 2.5
 DOTS, MOST = "...", 4
-NARROWEST, NARROWER = 0.7, (0.95, 0.9, 0.85, 0.8, 0.75, 0.7)
+NARROWER = (0.95, 0.9, 0.85, 0.8, 0.75, NARROWEST)
 """Text too long for a cell in the least size has letters so many times as wide, as CAD programs have, and no narrower ones."""
 PITCH = 1.7  # between lines of type B lettering, in letter heights
 SIDE, ENDS = 1.0, 1.25  # least distance of lettering to the lines at its sides, above and below, mm

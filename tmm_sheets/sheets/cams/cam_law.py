@@ -35,9 +35,9 @@ def equations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -
 def equations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Displacement and both derivatives on the rise and on the return."""
     canvas.of = project.cam.motion.plan.name
-    left = canvas.title(box, tr("Law of motion in formulas"))
     fitting = (form for form in _forms(project.cam.law) if all(np.array(form[0]) <= np.array((box.width, box.height)) + 1e-6))
-    _, columns, height, step = next(fitting)
+    (_, high), columns, height, step = next(fitting)
+    left = canvas.title(box, tr("Law of motion in formulas"), spare=box.height - high)
     x = box.x0 + 3.0
     for lines in columns:
         canvas.lines(complex(x, left.y1 - 0.8 * step), lines, step, height)

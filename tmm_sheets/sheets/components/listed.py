@@ -48,7 +48,7 @@ class Lines:
     def __call__(self, project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
         """Draw it."""
         lines = list(self.lines(project, canvas))
-        left = canvas.title(box, tr(self.title))
+        left = canvas.title(box, tr(self.title), spare=box.height - 14.0 - HEIGHTS[-1][2] * len(lines))
         height = size_for(lines, box.width - 3.0, 5.0)
         step = min((left.y1 - box.y0) / len(lines), 12.0 if height > 3.5 else 10.0)
         canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
@@ -71,6 +71,7 @@ class Table:
     def __call__(self, project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
         """Draw it."""
         rows, widths = self.rows(project, canvas), [share * box.width for share in self.shares]
-        left = canvas.title(box, tr(self.title) if isinstance(self.title, str) else self.title(project))
+        title = tr(self.title) if isinstance(self.title, str) else self.title(project)
+        left = canvas.title(box, title, spare=box.height - 11.0 - self.places[-1][1] * len(rows))
         row, height = letters_in(left.height / len(rows), widths, rows)
         canvas.table(complex(box.x0, left.y1), widened(widths, rows, height), rows, row, height)

@@ -6,17 +6,15 @@ from collections.abc import Sequence
 from typing import Any
 
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.headings import LEADING, TOGETHER, Heading, heading
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.notes import TOGETHER, wrapped
 from tmm_sheets.drawing.tables import needs, size_in, widened
 
 Rows = Sequence[Sequence[str]]
 
 TRIED = (7.0, 3.5, 4.0), (6.4, 3.5, 2.0), (7.0, 2.5, 2.5), (5.6, 2.5, 2.0), (4.6, 2.5, 2.0)
 """Heights of rows and of their letters, and what a column is wider than its widest text, mm: the largest first."""
-LEADING = 8.0
-"""Distance of the lines of a title, mm."""
 UNDER = 3.0
 """Distance of the last of them from the table, mm."""
 LINES = 3
@@ -30,14 +28,15 @@ def sizes(title: str, rows: Rows, widest: float = float("inf")) -> list[tuple[fl
     """
     word = max(letter(word, 3.5).width for word in title.split(" "))
     found = [(max(sum(needs(rows, height, gap)), word), row) for row, height, gap in TRIED]
-    return [(width, _head(title, width)[2] + row * len(rows)) for width, row in found if width <= widest]
+    return [(width, _head(title, width)[1] + row * len(rows)) for width, row in found if width <= widest]
 
 
 def draw(canvas: Canvas, box: Box, title: str, rows: Rows, header: int = 1) -> None:
     """A table and its title, as large as the place lets them be; the first ``header`` of its rows are heads."""
     canvas.begin(box, title.replace(TOGETHER, " "))
-    lines, height, head = _head(title, box.width)
-    canvas.lines(complex(box.centre.real, box.y1 - LEADING + 1.0), lines, LEADING, height, "centre")
+    (lines, height, wide), head = _head(title, box.width)
+    for k, line in enumerate(lines):
+        canvas.text(complex(box.centre.real, box.y1 - LEADING * (k + 1) + 1.0), line, height, "centre", wide=wide)
     row = min((box.height - head) / len(rows), TRIED[0][0])
     letters = size_in(row) if sum(needs(rows, size_in(row))) <= box.width + 1e-6 else 2.5
     first = needs([[line[0]] for line in rows], letters)[0]
@@ -51,11 +50,7 @@ def left_edge(options: dict[str, Any]) -> float | None:
     return found
 
 
-def _head(title: str, width: float) -> tuple[list[str], float, float]:
-    """Lines of a title over a table of a width, mm, the height of their letters and the room they take."""
-    for height in (5.0, 3.5):
-        for count in range(1, LINES + 1):
-            lines = wrapped(title, height, count)
-            if max(letter(line, height).width for line in lines) <= width:
-                return lines, height, LEADING * len(lines) + UNDER - 1.0
-    return [title], 2.5, LEADING + UNDER - 1.0
+def _head(title: str, width: float) -> tuple[Heading, float]:
+    """A title over a table of a width, mm, and the room it takes."""
+    found = heading(title, width, 5.0, LINES)
+    return found, LEADING * len(found.lines) + UNDER - 1.0

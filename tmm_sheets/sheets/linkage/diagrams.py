@@ -64,6 +64,10 @@ def motion_low(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
     return cycle_graphs.low(project, n, view, lambda project, view: motion_graphs(project, view.options))
 
 
+ROW = 5.6
+"""Height of the rows of a table of motion from which on its title rather has two lines than narrow letters, mm."""
+
+
 def motion_table(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """The values of the kinematic diagrams at the positions, one row each; with ``links`` those of the bars before them."""
     every = [(c.symbol, q.unit, c.at) for column in motion_graphs(project, options) for q in column for c in q.curves]
@@ -72,8 +76,9 @@ def motion_table(project: Project, canvas: Canvas, box: Box, options: Options) -
     # The same quantities of one output stand together.
     every.sort(key=lambda row: row[0][1:])
     beside = _of_bars(project, {symbol for symbol, _, _ in every}) if options.get("links") else []
-    left = canvas.title(box, tr("Motion of the links") if beside else _of_outputs(len(every)))
+    title = tr("Motion of the links") if beside else _of_outputs(len(every))
     every = [*beside, *every]
+    left = canvas.title(box, title, spare=box.height - 11.0 - ROW * (len(_rows_of(project)) + 1 + bool(beside)))
     for digits in (4, 3):
         rows = _motion_rows(_rows_of(project), every, digits, two=bool(beside))
         if sum(needs(rows, 2.5, LEAST)) <= left.width:
@@ -96,7 +101,7 @@ def motion_table_sizes(project: Project, canvas: Canvas, options: Options) -> li
     if not motion_graphs(project, options):
         return []
     rows, columns = len(_rows_of(project)) + 1, 3 * len(project.diagrams)
-    sizes = ((26.0, 7.0), (22.0, 7.0), (20.0, 5.6), (16.0, 4.6))
+    sizes = ((26.0, 7.0), (22.0, 7.0), (20.0, ROW), (16.0, 4.6))
     # As wide as its title is in letters of the height that the others have, if there is room.
     titled = [letter(_of_outputs(columns), height).width + 2.0 for height in (5.0, 3.5)]
     return [(max(12.0 + wide * columns, least), 11.0 + row * rows) for wide, row in sizes for least in titled]

@@ -15,10 +15,10 @@ from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Align, Canvas
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.evenness import dense
+from tmm_sheets.drawing.headings import TOGETHER
 from tmm_sheets.drawing.ink_index import STRONG, distance
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box, Points, Text
-from tmm_sheets.drawing.notes import TOGETHER
 from tmm_sheets.drawing.tables import needs, size_in, widened
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import decimals_for, fixed, is_zero, number

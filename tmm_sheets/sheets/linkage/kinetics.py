@@ -13,9 +13,9 @@ from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import ARROW, KEPT_OFF, Align, Canvas
+from tmm_sheets.drawing.headings import TOGETHER, wrapped
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.notes import TOGETHER, wrapped
 from tmm_sheets.drawing.tables import widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, decimals_for, fixed, is_zero, number
@@ -60,7 +60,7 @@ from tmm_sheets.sheets.player import PlayerStage, play, stage
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Segment
+    from tmm_sheets.construction.plan import Plan, Segment
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.groups.force_plan import ForcePlan
     from tmm_sheets.mechanism.model import StructuralGroup
@@ -308,17 +308,24 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
                                                  value=newtons(clean(fp.plan.length(tail, head).at(k), size)))
              for sign, tail, head in asked]
     frame, lines, height = _over_equation(project, canvas, box, fp, (terms(sides), found))
+    tiny = _tiny(fp.plan, sides, k, frame)
+    small = tr("Less than 1{space}mm: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny.values())) if tiny else ""
+    if small and letter(small, height).width <= box.width - 4.0 and len(lines) < 2 * LINES:
+        ends = [complex(frame(z)).imag for z in points.values()]
+        lift = max(ROOM + LINE * (len(lines) + 1) - (min(ends) - box.y0), 0.0)
+        if lift <= inside.y1 - max(ends) + 1e-9:
+            frame, lines, small = replace(frame, origin=frame.origin + 1j * lift), [*lines, small.replace(TOGETHER, " ")], ""
     canvas.title(box, fp.plan.title, str(frame.scale))
     flat_crossings.warn(project, canvas, box, fp.plan)
     s = stage(canvas, fp.plan, k, frame)
-    tiny = _draw_sides(s, sides, inside.centre)
+    _draw_sides(s, sides, inside.centre)
     for seg in extra:
         s.vector(seg.tail, seg.head)
         s.letters(seg.head, seg.symbol, at=(s.at(seg.tail) + s.at(seg.head)) / 2)
     for names in joined({name: frame(z) for name, z in points.items()}, tiny, 0.5):
         s.letters(names[0], ", ".join(sorted(names, key=int)), s.at(names[0]) - inside.centre, 2.5, 0.8)
-    if tiny:
-        canvas.note(box, tr("Less than 1{space}mm: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny.values())))
+    if small:
+        canvas.note(box, small)
     # Equation and values close under a polygon that does not fill the height of its place.
     lowest = min(frame(z).imag for z in points.values())
     low = max(box.y0, lowest - ROOM - max(AROUND[1], LINE * len(lines)))
@@ -375,20 +382,23 @@ def heads_apart(sides: Sequence[tuple[complex, complex]]) -> list[float | None]:
     return sizes
 
 
-def _draw_sides(s: PlayerStage, sides: Sequence[tuple[str, Step, Step, bool]], centre: complex) -> dict[tuple[str, str], str]:
-    """Sides of a force polygon with their signs outside it; those too short to be drawn are told by their vertices."""
-    tiny = {}
+def _tiny(plan: Plan, sides: Sequence[tuple[str, Step, Step, bool]], k: int, frame: PlanFrame) -> dict[tuple[str, str], str]:
+    """Sides of a force polygon too short to be drawn, by their vertices: sign and value."""
+    return {(tail.name, head.name): tr("{quantity} = {value} N").format(
+                quantity=sign, value=newtons(plan.length(tail, head).at(k))).replace(" ", TOGETHER)
+            for sign, tail, head, _ in sides if abs(frame(head.at(k)) - frame(tail.at(k))) < SHORTEST}
+
+
+def _draw_sides(s: PlayerStage, sides: Sequence[tuple[str, Step, Step, bool]], centre: complex) -> None:
+    """Sides of a force polygon with their signs outside it, but for those too short to be drawn."""
     heads = heads_apart([(s.at(tail), s.at(head)) for _, tail, head, _ in sides])
     for (sign, tail, head, _), size in zip(sides, heads, strict=True):
         a, b = s.at(tail), s.at(head)
         if abs(b - a) < SHORTEST:
-            value = newtons(s.value(s.plan.length(tail, head)))
-            tiny[tail.name, head.name] = tr("{quantity} = {value} N").format(quantity=sign, value=value).replace(" ", TOGETHER)
             continue
         s.vector(tail, head, size=size)
         middle, n = (a + b) / 2, 1j * (b - a)
         s.letters(head, sign, -n if (np.conj(n) * (middle - centre)).real < 0 else n, at=middle)
-    return tiny
 
 
 def newtons(force: float) -> str:
