@@ -15,7 +15,8 @@ import numpy as np
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.marks import Arc, Drawing, Line, Text
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.sheet import compose
+from tmm_sheets.sheets.composed import Composed
+from tmm_sheets.sheets.sheet import composed
 
 FOLDER = Path(__file__).parent.parent / "gold"
 PROJECTS = {"lugansk/shaper": 4, "press": 4, "sixbar/8:3": 2, "transport/press@07-ЭПС-718": 3}
@@ -73,8 +74,8 @@ def path(project: str, n: int) -> Path:
     return FOLDER / f"{project.replace('/', '-').replace(':', '-')}-{n}.txt"
 
 
-def draw(project: str, n: int) -> list[Listed]:
-    return listed(compose(Project(read(project)), n))
+def sheet(project: str, n: int) -> Composed:
+    return composed(Project(read(project)), n)
 
 
 def load(project: str, n: int) -> list[Listed]:
@@ -107,7 +108,7 @@ def main() -> None:
     FOLDER.mkdir(exist_ok=True)
     for project, sheets in PROJECTS.items():
         for n in range(1, sheets + 1):
-            path(project, n).write_text("".join(mark.line() for mark in draw(project, n)), encoding="utf-8")
+            path(project, n).write_text("".join(mark.line() for mark in listed(sheet(project, n).drawing)), encoding="utf-8")
             print(path(project, n))
 
 

@@ -100,7 +100,7 @@ class Need:
         return small + max(1.0 - self.ink(width, height) / (width * height * self.filled), 0.0) if self.filled else small
 
 
-TOO_SMALL, BELOW = 1e8, 1e7
+TOO_SMALL, BELOW = 1e9, 1e7
 """Price of a place that is too small by its own size, mm^2: more than that of any sheet; and of what is not seen at all in it."""
 
 
