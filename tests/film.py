@@ -18,7 +18,7 @@ def film(name="lugansk/shaper"):
     """Text of the film: a path for each link and vector, through all its places."""
     project = Project(catalogue.read(name))
     record, _ = recording.record(project, [1])
-    known = motion(project, recording.book_of(project)).all.source.results
+    known = motion(project, recording.book_of(project)).programs["all"].source.results
     turned = np.linspace(0, project.cycle.period, MOMENTS + 1)
     study = project.study_at(turned, tuple(map(str, range(len(turned)))))
     _ = study.positions, study.velocities

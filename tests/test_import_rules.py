@@ -52,7 +52,7 @@ RULES = {
     "askers": ("construction sheets", "drawing"),
     "protocols": ("construction sheets", "project"),
     "record": ("construction drawing project results sheets", ""),
-    "living": ("construction drawing mechanism.groups methods.linkage note project record results task", ""),
+    "living": ("construction drawing mechanism.groups methods.flywheel methods.linkage note project record results task", ""),
     "sheets": ("construction drawing mechanism.structure", f"project mechanism {METHODS}"),
     "backends": ("drawing", ""),
     "output": ("backends catalogue drawing explain project sheets task.title_entries", "task"),

@@ -126,17 +126,19 @@ class Cosine {
 const far = (z) => magnitude(many(z[0])) + magnitude(many(z[1]));
 const alike = (length, other, size) => (magnitude(length - other) <= times(MEANT, size) ? other : length);
 
-const known = new Map();
+const RECENT = 24, known = {};
 
-// What is made once for the same numbers.
+const alikeIn = (a, b) => (typeof a === "number" ? a === b : a.every((x, i) => alikeIn(x, b[i])));
+
+// What is made once for the same numbers: a mechanism asks for a few at all angles of its turn.
 function once(name, numbers, make) {
+  const recent = known[name] ??= [];
+  for (const one of recent) if (alikeIn(one.numbers, numbers)) return one.made;
   if (!numbers.flat().every(Number.isFinite)) return null;
-  const key = name + numbers.flat().join();
-  if (!known.has(key)) {
-    if (known.size > 500) known.clear();
-    known.set(key, make());
-  }
-  return known.get(key);
+  const made = make();
+  recent.unshift({ numbers, made });
+  recent.length = Math.min(recent.length, RECENT);
+  return made;
 }
 
 function gapOfArcs([l1, ahead, pivot, fixed], plus, minus = 0) {

@@ -1,4 +1,4 @@
-// What searches find for given numbers: ways of assembly, where the cycle begins, strokes of the loads. On the page's own program.
+// What searches find for given numbers: ways of assembly, where the cycle begins, strokes of the loads, how the crank runs. On the page's own program.
 
 // One set of given numbers with what is found for it; the program is run without what comes later.
 function searched(given) {
@@ -9,8 +9,9 @@ function searched(given) {
     return known.get(phi);
   };
   const asked = (arg) => (phi) => argumentOf(arg, at(phi), given);
-  if (m.searches.dead) found.start = startOf(m.searches.dead, asked, given);
+  if (m.searches.dead) [found.start, found.stroke] = startOf(m.searches.dead, asked, given);
   for (const load of m.searches.loads) found.loads.push(motionOf(load, asked, found.start));
+  found.wheel = wheelOf(found);
   return found;
 }
 
@@ -33,16 +34,17 @@ function argumentOf(arg, values, given, of = record.motion.watched) {
   return count === 2 ? [values[place], values[place + 1]] : values[place];
 }
 
-// World angle of the crank where the working stroke of the output begins, or of the stroke that K asks for.
+// World angle of the crank where the working stroke of the output begins, or of the stroke that K asks for, and its width.
 function startOf(dead, asked, given) {
   const { sense } = record.motion, [place, speed] = [asked(dead.place), asked(dead.speed)];
   const hinges = dead.hinges.map((arg) => asked(arg)(0));
   const way = wayOf((t) => place(sense * t), (t) => speed(sense * t), dead.axis, hinges, given["crank.length"]);
   const runs = way ? runsOf(way.speed) : [];
-  if (runs.length < 2) return NaN;
+  if (runs.length < 2) return [NaN, NaN];
   const ways = runs.map((r) => way.travelled(r.begin)), stroke = workingStroke(inStrokes(runs, ways));
-  if (!stroke || !(reach(ways) > 1e-9 * given["crank.length"])) return NaN;
-  return sense * (stroke[0] + (dead.stroke === undefined ? 0 : (stroke[1] - stroke[0] - dead.stroke) / 2));
+  if (!stroke || !(reach(ways) > 1e-9 * given["crank.length"])) return [NaN, NaN];
+  const width = dead.stroke ?? stroke[1] - stroke[0];
+  return [sense * (stroke[0] + (stroke[1] - stroke[0] - width) / 2), width];
 }
 
 // How the output of a load moves: its runs over the cycle; its way from the lowest place on, how long that is, which run follows another.
@@ -53,31 +55,35 @@ function motionOf(load, asked, start) {
   const along = (t) => { const z = place(world(t)); return turning ? load.sense * Math.atan2(z[1], z[0]) : plainDot(z, load.sense); };
   const runs = runsOf((t) => { const v = speed(world(t)); return turning ? load.sense * v : plainDot(v, load.sense); });
   if (!runs.length) return none;
-  let ways = runs.map((r) => along(r.begin)), found;
+  let ways = runs.map((r) => along(r.begin));
   if (turning) {
     const t = [...new Set([...spread(0, TURN, SWEEP + 1), ...runs.map((r) => r.begin)])].sort((a, b) => a - b), angles = unwrapped(t.map(along));
     const turns = Math.round((angles.at(-1) - angles[0]) / TURN);
     if (turns || !runs.some((r) => r.sense)) {
       const cut = runs.flatMap((r) => (r.end > TURN + NEAR ? [{ ...r, end: TURN }, { begin: 0, end: r.end - TURN, sense: r.sense, stroke: 0 }] : [r]));
       const whole = cut.map((r) => ({ ...r, working: turns > 0 })).sort((a, b) => a.begin - b.begin);
-      return actingOn(load, { runs: overCycle(whole, period, load.first), low: NaN, long: NaN, way: turns >= 0 ? 1 : -1 });
+      return actingOn(load, { runs: overCycle(whole, period, load.first), low: NaN, long: NaN, way: turns >= 0 ? 1 : -1, endless: true });
     }
     ways = runs.map((r) => angles[t.indexOf(r.begin)]);
   }
   const low = Math.min(...ways), long = reach(ways);
   if (!(long > (turning ? 0 : 1e-9 * machine.given["crank.length"]))) return none;
-  found = { runs: overCycle(inStrokes(runs, ways), period, load.first), low, long, way: 1 };
+  const share = turning ? (t) => swung(place(world(t)), load.sense, low, long) : (t) => clip((along(t) - low) / long, 0, 1);
+  const found = { runs: overCycle(inStrokes(runs, ways), period, load.first), low, long, way: 1, share };
   if (turning || (load.from === 0 && load.to === 1)) return actingOn(load, found);
-  const share = (t) => clip((along(t) - low) / long, 0, 1);
   return actingOn(load, { ...found, runs: found.runs.flatMap((r) => within(r, share, load.from, load.to)) });
+}
+
+// Angles inside a run where it passes some fractions of the way.
+function crossingsOf(run2, share, fractions) {
+  const ends = [share(run2.begin), share(run2.end)].sort((a, b) => a - b);
+  return fractions.filter((x) => run2.sense && ends[0] + NEAR < x && x < ends[1] - NEAR)
+    .map((x) => rootOf((t) => run2.sense * (share(t) - x), run2.begin, run2.end)).sort((a, b) => a - b);
 }
 
 // The parts of a run between two fractions of the way.
 function within(run2, share, from, to) {
-  const ends = [share(run2.begin), share(run2.end)].sort((a, b) => a - b);
-  const cuts = [from, to].filter((x) => x > 0 && x < 1 && ends[0] + NEAR < x && x < ends[1] - NEAR && run2.sense)
-    .map((x) => rootOf((t) => run2.sense * (share(t) - x), run2.begin, run2.end)).sort((a, b) => a - b);
-  const borders = [run2.begin, ...cuts, run2.end], parts2 = [];
+  const borders = [run2.begin, ...crossingsOf(run2, share, [from, to].filter((x) => x > 0 && x < 1)), run2.end], parts2 = [];
   for (let i = 0; i + 1 < borders.length; i++) {
     const middle = share((borders[i] + borders[i + 1]) / 2);
     if (middle >= from && middle <= to) parts2.push({ ...run2, begin: borders[i], end: borders[i + 1] });
@@ -91,21 +97,23 @@ function actingOn(load, motion) {
   if (strokes % many) return { runs: [], low: NaN, long: NaN, way: 1, lost: true };
   const tables = runs.map((r) => ((load.stroke === "both" || (load.stroke === "working") === r.working) && load.tables[r.stroke % many] ? r.stroke % many : -1));
   const signs = runs.map((r) => load.times * (load.against === undefined ? 1 : load.against * r.sense));
-  const follows = runs.map((r, i) => Math.abs(mod((r.begin - runs.at(i - 1).end) * TURN / record.motion.period + Math.PI, TURN) - Math.PI) < NEAR);
-  const same = (a, b) => (a + 1) % runs.length === b && follows[b] && tables[a] === tables[b] && signs[a] === signs[b];
+  const same = (a, b) => (a + 1) % runs.length === b && meets(runs[a], runs[b]) && tables[a] === tables[b] && signs[a] === signs[b];
   return { ...motion, load, tables, signs, same };
 }
 
-// What a load's row is at an angle turned.
+// Whether a run begins where another ends.
+const meets = (a, b) => Math.abs(mod((b.begin - a.end) * TURN / record.motion.period + Math.PI, TURN) - Math.PI) < NEAR;
+
+// What a load's row is at an angle turned; at a jump its side counts.
 function rowOf(motion, input, turned) {
   if (input.row === "low" || input.row === "long") return motion[input.row];
   if (motion.lost || Number.isNaN(turned)) return NaN;
-  const { period } = record.motion, { runs } = motion;
-  let i = runAt(runs, period, turned, motion.load.always ? 1 : 0);
-  if (i < 0) {
+  const { period } = record.motion, { runs } = motion, { side = 0 } = input;
+  let i = runAt(runs, period, turned, motion.load.always && !side ? 1 : side);
+  if (i < 0 && !side) {
     const [a, b] = [runAt(runs, period, turned, -1), runAt(runs, period, turned, 1)];
     if (a >= 0 && b >= 0 && motion.same(a, b)) i = b;
   }
-  if (input.row === "ahead") return i < 0 ? 1 : runs[i].sense * motion.way;
+  if (input.row === "ahead") return i < 0 ? 1 : (side || 1) * runs[i].sense * motion.way;
   return i >= 0 && motion.tables[i] === input.table ? motion.signs[i] : 0;
 }

@@ -12,10 +12,11 @@ from tmm_sheets.construction.given import Given, GivenNumber, GivenPoint
 from tmm_sheets.construction.javascript_language import JavaScriptSource, told
 from tmm_sheets.construction.program import depending, is_row, program, rows_of
 from tmm_sheets.construction.step import Step, ordered, parents, value_of
-from tmm_sheets.living.searches import Searches
+from tmm_sheets.living.searches import Searches, drawn_through
 from tmm_sheets.methods.linkage.loads import DIAGRAM, PISTON
 
 if TYPE_CHECKING:
+    from tmm_sheets.living.uneven_crank import UnevenCrank
     from tmm_sheets.methods.linkage.study import Study
     from tmm_sheets.project import Project
     from tmm_sheets.record.step_index import StepIndex
@@ -38,7 +39,7 @@ class WrittenPlan:
     """A program as text with how the page has each of its inputs.
 
     {"angle": "world"} or "turned", {"course": ...}, {"load": ...} or {"friction": ...} by a search, {"diagram": its name, ...},
-    {"found": value} by plans that the page does not have, {"given": name}.
+    {"wheel": name} by the running of the crank, {"found": value} by plans that the page does not have, {"given": name}.
     """
 
     source: JavaScriptSource
@@ -54,12 +55,13 @@ class WrittenPlan:
 class MotionProgram:
     """The program of a linkage's plans with what it takes.
 
-    ``all`` computes every plan, ``watched`` what ``searches`` ask for. ``crank`` are the ids of its pivot and its pin; ``start``
+    Of ``programs`` "all" computes every plan, "watched" what ``searches`` ask for, "wheel" the reduced quantities where the
+    crank runs as its flywheel lets it, of which ``wheel`` tells more. ``crank`` are the ids of its pivot and its pin; ``start``
     its angle in position 0, rad.
     """
 
-    all: WrittenPlan
-    watched: WrittenPlan
+    programs: dict[str, WrittenPlan]
+    wheel: dict[str, Any]
     givens: list[dict[str, Any]]
     crank: tuple[str, str]
     start: float
@@ -69,26 +71,35 @@ class MotionProgram:
 
     def told(self) -> dict[str, Any]:
         """What the page takes besides the programs' texts."""
-        return {"all": self.all.told, "watched": self.watched.told, "givens": self.givens, "crank": self.crank,
-                "start": self.start, "sense": self.sense, "period": self.period, "searches": self.searches}
+        programs = {name: one.told | (self.wheel if name == "wheel" else {}) for name, one in self.programs.items()}
+        return {**programs, "givens": self.givens, "crank": self.crank, "start": self.start, "sense": self.sense,
+                "period": self.period, "searches": self.searches}
 
 
 def motion(project: Project, index: StepIndex) -> MotionProgram:
     """The program of all plans of a project's linkage, by the ids of their steps in the record."""
     study, cycle = _studied(project), project.cycle
+    positions = len(study.turned)
     own = [step for plan in study.plans.values() for step in (*plan.auxiliaries.values(), *plan)]
-    search = Searches(project, study, own)
+    wheel = _uneven(project, study)
+    reduced = list(wheel.steps.values()) if wheel is not None else []
+    search = Searches(project, study, [*own, *reduced], wheel.sides if wheel is not None else {})
     rows = dict(search.inputs)
-    taken = {id(a): a for step in ordered(own, parents) for a in step.args if id(a) in rows}
-    angles = (study.positions.angle, cycle.turned_row(study.turned), *rows_of(own, len(study.turned)))
+    every = [*own, *reduced]
+    taken = {id(a): a for step in ordered(every, parents) for a in step.args if id(a) in rows}
+    angles = (study.positions.angle, cycle.turned_row(study.turned), *rows_of(every, positions))
     for x in angles:
         for name, row in (("world", study.positions.phi), ("turned", study.turned)):
             if np.array_equal(value_of(x), row) and id(x) not in rows:
                 rows[id(x)] = {"angle": name}
-    objects = {id(x): x for x in angles if id(x) in rows} | taken
+    found = wheel.found if wheel is not None else []
+    rows |= {id(x): told for x, told in found}
+    objects = {id(x): x for x in (*angles, *(x for x, _ in found)) if id(x) in rows} | taken
     # A number that a search finds makes nothing move by itself.
     over = {key: x for key, x in objects.items() if "row" not in rows[key] or rows[key]["row"] in ("ahead", "sign")}
-    lost = _lost(own, over, len(study.turned))
+    lost = _lost(every, over, positions)
+    if wheel is not None and (wheel.turning_back or any(id(step) in lost for step in reduced)):
+        wheel = None  # angles that the page does not search, or what it does not compute
     wanted = {step.path: step for step in own
               if step.path in index.steps and id(step) not in lost and np.ndim(step.value) < 2 and _plain(step)} | search.forces
     chosen: dict[str, _Told] = {}
@@ -97,17 +108,29 @@ def motion(project: Project, index: StepIndex) -> MotionProgram:
         frozen = dict(_frozen(steps.values(), over))
         own = _givens(steps.values(), {*objects, *frozen})
         chosen.update(own)
-        made = program(steps, [*objects.values(), *frozen.values()], [*own], exact=True)
-        inputs = [*(rows[key] for key in objects), *map(_fixed, frozen.values()), *({"given": name} for name in own)]
+        met = {id(x) for step in ordered(steps.values(), parents) for x in (step, *step.args)}
+        taken = {key: x for key, x in objects.items() if key in met}
+        made = program(steps, [*taken.values(), *frozen.values()], [*own], exact=True)
+        inputs = [*(rows[key] for key in taken), *map(_fixed, frozen.values()), *({"given": name} for name in own)]
         return WrittenPlan(JavaScriptSource(made), inputs)
 
     points, crank = study.positions.points, study.mechanism.crank
     ends = points[crank.pivot].path, points[crank.pin].path
-    every, watched = written(wanted), written(search.watched)
-    factors = [{"name": one["diagram"], "symbol": one["symbol"], "unit": "", "value": 1.0}
-               for one in every.inputs if "diagram" in one]
-    return MotionProgram(every, watched, [*map(_told_given, chosen.values()), *factors], ends, float(cycle.start),
-                         float(cycle.sense), float(cycle.period), search.told)
+    programs = {"all": written(wanted), "watched": written(search.watched)}
+    if wheel is not None:
+        programs["wheel"] = written(wheel.steps)
+    factors = {one["diagram"]: {"name": one["diagram"], "symbol": one["symbol"], "unit": "", "value": 1.0}
+               for made in programs.values() for one in made.inputs if "diagram" in one}
+    return MotionProgram(programs, wheel.told if wheel is not None else {}, [*map(_told_given, chosen.values()), *factors.values()],
+                         ends, float(cycle.start), float(cycle.sense), float(cycle.period), search.told)
+
+
+def _uneven(project: Project, study: Study) -> UnevenCrank | None:
+    if study.running is None:
+        return None
+    from tmm_sheets.living.uneven_crank import UnevenCrank
+
+    return UnevenCrank(project, study)
 
 
 def _fixed(step: Step) -> dict[str, Any]:
@@ -115,7 +138,7 @@ def _fixed(step: Step) -> dict[str, Any]:
     if step.rule is not DIAGRAM:
         return {"found": told(step.value)}
     x, acts, smooth, turns = step.args
-    y, *more = acts.args if isinstance(acts, Step) else (acts,)
+    y, more = drawn_through(step), acts.args[1:] if isinstance(acts, Step) else ()
     kind = {"piston": more} if isinstance(acts, Step) and acts.rule is PISTON else {"sign": more[0]} if more else {}
     return {"diagram": y.name, "symbol": y.symbol, "x": told(value_of(x)), "y": told(value_of(y)), "smooth": float(smooth),
             "turns": float(turns), **kind}

@@ -28,8 +28,8 @@ from tmm_sheets.words import tell
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
-MODULES = ("digits", "primitives", "strokes", "courses", "searches", "formula", "data", "machine", "sheet", "viewport", "steps",
-           "ask", "markers", "player", "stage", "drag", "change", "main")
+MODULES = ("digits", "primitives", "strokes", "courses", "searches", "formula", "data", "flywheel", "machine", "sheet", "viewport",
+           "steps", "ask", "markers", "player", "stage", "drag", "change", "main")
 """Modules of the page in templates/living, in the order in which they stand in it."""
 
 
@@ -52,7 +52,7 @@ def page(project: Project, numbers: Iterable[int] = (), plan: str = "") -> tuple
         lines = scan(project.variant.text).lines
         record["motion"] = made.told() | {"givens": [g | slider(project.variant, lines, g["name"]) for g in made.givens]}
         for sheet in record["sheets"]:
-            sheet["live"] = hung(record, sheet, made.all.source.results)
+            sheet["live"] = hung(record, sheet, made.programs["all"].source.results)
     for sheet in record["sheets"]:
         sheet["markers"] = markers(project, record, sheet)
     _check_plan(record, plan)
@@ -106,15 +106,17 @@ def _written(record: Mapping[str, Any], made: MotionProgram | None) -> str:
     parts = {
         "lang": str(record["lang"]), "title": escape(", ".join(filter(None, (record["project"], record["variant"])))),
         "style": _text("page.css"), "font": b64encode(template("fonts/TMMSheetsB.ttf").read_bytes()).decode(),
-        "record": b64encode(packed).decode(), "program": _program(made.all) if made is not None else "null",
-        "watched": _program(made.watched) if made is not None else "null",
+        "record": b64encode(packed).decode(),
+        "programs": _programs(made.programs if made is not None else {}),
         "modules": "\n".join(_text(f"{name}.js") for name in MODULES),
     }  # fmt: skip
     return re.sub(r"<!--(\w+)-->", lambda m: parts[m[1]], _text("page.html"))
 
 
-def _program(written: WrittenPlan) -> str:
-    return written.source.text.replace("</", "<\\/")
+def _programs(programs: Mapping[str, WrittenPlan]) -> str:
+    """The programs as an object of functions by their names."""
+    told = ",\n".join(f"{name}: {written.source.text}" for name, written in programs.items())
+    return f"{{\n{told}\n}}".replace("</", "<\\/")
 
 
 def _text(name: str) -> str:

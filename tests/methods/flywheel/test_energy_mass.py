@@ -94,3 +94,13 @@ def test_speed_obeys_the_equation_of_motion():
         phi, w = phi + h, w + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
     (found,) = speed(moment, inertia, np.array([0, 2 * pi]), flywheel, (0.0, 10.0), np.array([pi]))
     assert found == pytest.approx(w, rel=1e-12)
+
+
+@pytest.mark.parametrize("top", [-0.003, 0.003])
+@pytest.mark.parametrize("extra", [[], [1e-15]], ids=["at the ends of a cycle", "beside a doubled sample"])
+def test_a_hump_beside_the_best_sample_is_found(top, extra):
+    """Before the end of a cycle, whose last sample is as great as the first; behind one that stands twice up to rounding."""
+    middle = np.pi if extra else 0.0
+    samples = np.unique(np.concatenate((np.linspace(0, 2 * np.pi, 721), middle + np.array(extra))))
+    found = highest(lambda t: np.cos(t - middle - top), samples)
+    assert np.cos(found - middle - top) == pytest.approx(1, abs=1e-14)

@@ -31,12 +31,23 @@ def highest(f: Callable[[Floats], Floats], samples: Floats) -> float:
     """Argument of the largest value of a continuous function between the first and the last of the ``samples``.
 
     The samples must separate the humps; corners of ``f`` (where a force begins or ends) must be samples. The bracket
-    round the best sample is divided in 256 again and again until it is flat to rounding.
+    round the best sample is divided in 256 again and again until it is flat to rounding. The first and the last are
+    one angle of a cycle: which of them is greater, rounding tells.
     """
-    values = f(samples)
+    values, last = f(samples), len(samples) - 1
     k = int(np.argmax(values))
-    low, best, high = samples[max(k - 1, 0)], samples[k], samples[min(k + 1, len(samples) - 1)]
-    value = float(values[k])
+    found = [_beside(f, samples, i, float(values[i])) for i in ((0, last) if k in (0, last) else (k,))]
+    return max(found, key=lambda one: one[1])[0]
+
+
+def _beside(f: Callable[[Floats], Floats], samples: Floats, k: int, value: float) -> tuple[float, float]:
+    """Argument of the largest value between the neighbours of a sample, and that value.
+
+    What differs by rounding is no neighbour: a border of an interval beside an angle of the grid.
+    """
+    best, near = samples[k], 1e-9 * (samples[-1] - samples[0])
+    before, behind = np.searchsorted(samples, best - near) - 1, np.searchsorted(samples, best + near, side="right")
+    low, high = samples[max(before, 0)], samples[min(behind, len(samples) - 1)]
     while high - low > 1e-15 * (samples[-1] - samples[0]):
         t = np.linspace(low, high, 257)
         y = f(t)
@@ -48,7 +59,7 @@ def highest(f: Callable[[Floats], Floats], samples: Floats) -> float:
             break
         step = (high - low) / 256
         low, high = max(best - step, low), min(best + step, high)
-    return float(best)
+    return float(best), value
 
 
 def touched(curve: Curve, angle: float, side: int, samples: Floats) -> float:

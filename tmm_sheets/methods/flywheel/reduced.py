@@ -223,7 +223,7 @@ def turning(link: Link) -> float:
     return link.inertia if link.pivot_inertia is None else link.pivot_inertia
 
 
-def _turning_back(m: Mechanism, cycle: Cycle) -> list[float]:
+def turning_back(m: Mechanism, cycle: Cycle) -> list[float]:
     """Angles turned, rad, at which links turn back at once: change points of groups that keep their side."""
     changes = [a for g in m.groups if not g.follow for a in passages(m).angles(g)]
     once = [float(np.mod(cycle.sense * (a - cycle.start), 2 * np.pi)) for a in changes]
@@ -248,7 +248,7 @@ class Reduced:
         self.period = cycle.period
         self.omega1 = mechanism.crank.speed
         self.omega = named(self.omega1, "crank.speed", "ω_1", "rad/s")
-        self.breaks = tuple(x for x in distinct((*(x for f in forces for x in f.jumps), *_turning_back(mechanism, cycle)),
+        self.breaks = tuple(x for x in distinct((*(x for f in forces for x in f.jumps), *turning_back(mechanism, cycle)),
                                                 cycle.period) if x > 0)
         self.numbered = Reduction(self, "" if drawn else "@positions", cycle.turned, cycle.labels, drawn)
         self.kept: dict[str, Reduction] = {}

@@ -48,6 +48,8 @@ STEEP = 3.0
 """A curve between two points that is nowhere steeper at its ends, in slopes of the chord, neither rises nor falls beyond them
 (F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17, 1980).
 """
+LEVEL = 1e-12
+"""Slope of a curve that is level but for rounding, in slopes of the chord."""
 JUMP = 1e-6
 """Ordinates of a graph on both sides of a border that differ by more, mm, are those of a jump."""
 BULGE = Rule("bulge of a curve", lambda y, a, b, share: y - ((1 - share) * a + share * b), ("number",) * 4, "number",
@@ -224,7 +226,8 @@ class Works(Diagrams):
             steep = np.array([slopes["+"].value[k], slopes["−"].value[k + 1]]) * self.pole * chord
             for side, at, border, ahead in zip("+−", (left, right), (k, k + 1), steep, strict=True):
                 plan.add(f"{side}{interval}", *(
-                    (STEEPEST, plan[f"y{interval}"], self.pole, STEEP) if steep.min() >= 0 and ahead > STEEP * chord**2 > 0 else
+                    (STEEPEST, plan[f"y{interval}"], self.pole, STEEP)
+                    if steep.min() >= -LEVEL * chord**2 and ahead > STEEP * chord**2 > 0 else
                     (SLOPE_OF_CHORD, slopes[side], border) if at is None else (BORDER_SLOPE, at, self.pole)))
         return plan
 
