@@ -310,7 +310,8 @@ def test_own_title_stands_in_every_language(tmp_path, monkeypatch):
 def test_an_order_takes_its_languages_along(workers, tmp_path):
     """In processes of their own, which know nothing of the options of the command."""
     order = Order((), ("svg",), language="en", reader="uk")
-    done = {o.project: o for o in batch.run(("lugansk/cam_flat", "lugansk/cam_rocker", "no/such"), order, tmp_path, workers)}
+    tasks = batch.tasks(("lugansk/cam_flat", "lugansk/cam_rocker", "no/such"))
+    done = {o.project: o for o in batch.carry_out(tasks, order, tmp_path, workers)}
     assert (words.reader(), words.paper()) == ("en", "ru")
     assert "невідомий проєкт" in done["no/such"].problem
     assert 'xml:lang="en"' in (tmp_path / "lugansk-cam_flat" / "sheet1.svg").read_text("utf-8")

@@ -27,6 +27,8 @@ LONG = 86_400.0
 """Seconds after which a passing file belongs to nobody, whatever its name says."""
 LARGEST = 500_000_000
 """Bytes of the largest file that is read."""
+URL = re.compile(r"([a-z][a-z0-9+.-]+):/+")
+"""How a place in an object store begins; one letter is a drive of Windows."""
 _SPECIAL = (
     (stat.S_ISFIFO, marked("expected a file, this is a pipe")), (stat.S_ISSOCK, marked("expected a file, this is a socket")),
     (stat.S_ISCHR, marked("expected a file, this is a device")), (stat.S_ISBLK, marked("expected a file, this is a device")),
@@ -212,6 +214,8 @@ def check_folder(folder: Path) -> None:
     BadInput
         when it cannot.
     """
+    if URL.match(folder.as_posix()):
+        raise BadInput(Problem(tell("only build and roster write into an object store"), URL.sub(r"\1://", folder.as_posix())))
     try:
         nearest = next(p for p in (folder, *folder.absolute().parents) if os.path.lexists(p))
         nearest.stat()

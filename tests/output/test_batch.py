@@ -375,7 +375,7 @@ def test_a_killed_worker_costs_its_project_only_this_time(tmp_path, monkeypatch)
         return Outcome(task.project)
 
     monkeypatch.setattr(batch, "one", one)
-    found = {o.project: o.problem for o in batch.run(("a", "deadly", "b"), Order(), tmp_path, 2)}
+    found = {o.project: o.problem for o in batch.carry_out(batch.tasks(("a", "deadly", "b")), Order(), tmp_path, 2)}
     assert set(found) == {"a", "b", "deadly"}
     assert "killed" in found["deadly"]
 

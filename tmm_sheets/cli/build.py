@@ -10,7 +10,7 @@ import click
 from tmm_sheets import kept, words
 from tmm_sheets.cli import opening
 from tmm_sheets.cli.batches import come_of, say_stopped
-from tmm_sheets.cli.options import CORRECTED, JOBS, NO_CACHE, REMAKE, SHEETS, formats_of, on_paper, plotter, titled
+from tmm_sheets.cli.options import CORRECTED, DASK, JOBS, NO_CACHE, REMAKE, SHEETS, formats_of, on_paper, plotter, titled
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
 from tmm_sheets.localized_cli import argument, command, option
 from tmm_sheets.words import tell
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 @option("--zip", "archive", is_flag=True, help="Put each project into a zip file instead of a folder.")
 @REMAKE
 @JOBS
-@option("--dask", "scheduler", metavar="ADDRESS", help="Build several projects on a dask cluster.")
+@DASK
 @NO_CACHE
 @option("--with-note", is_flag=True, help="Also the explanatory note, note.pdf; the numbers of the sheets run on after its pages.")
 @option("--views", is_flag=True, help="Also each view as a picture of its own, in the folder views: those of the formats that are "
@@ -63,7 +63,9 @@ def run(
         raise click.UsageError(tell("--one-file is for PDF: add pdf to --format"))
     from tmm_sheets import files
     from tmm_sheets.output.building import Order
+    from tmm_sheets.output.object_store import place
 
+    output = None if output is None else place(output)
     settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": machine}, "dxf": {"text": text},
                                            "pdf": {"date": files.source_date()}}  # fmt: skip
     order = Order(sheets, formats, settings, corrected, force, archive, one_file, words.asked(), words.reader(), kept.used(),
@@ -92,17 +94,14 @@ def _build_many(
 ) -> None:
     from time import monotonic
 
-    from tmm_sheets import files
-    from tmm_sheets.output import batch
+    from tmm_sheets.output import batch, build_store
 
     names = batch.chosen(projects, families, [_listed(file) for file in lists])
     if not names:
         raise BadInput(tell("no projects to build"), hint=tell("the list is empty"))
-    files.check_folder(parent)
+    build_store.check(parent)
     start = monotonic()
-    running = (batch.run(names, order, parent, jobs or batch.processors()) if scheduler is None
-               else batch.run_on_dask(names, order, parent, scheduler))  # fmt: skip
-    done, stopped = come_of(running, len(names))
+    done, stopped = come_of(batch.on(batch.tasks(names), order, parent, jobs, scheduler), len(names))
     for outcome in sorted(done, key=lambda o: o.project):
         for warning in outcome.warnings:
             click.echo(f"{outcome.project}: {warning}", err=True)

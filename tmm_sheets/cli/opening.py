@@ -52,8 +52,7 @@ def folder_of(variant: Variant, output: Path | None) -> Path:
 
 def put(folder: Path, made: Mapping[str, bytes], force: bool) -> tuple[tuple[Path, ...], list[str]]:
     """Write files that are made whole each time; where they are, and what is to be said of those that were changed by hand."""
-    from tmm_sheets.output.build_store import Folder
-    from tmm_sheets.output.build_store import put as put_into
+    from tmm_sheets.output import build_store
 
-    written, kept = put_into(Folder(folder), made, force)
+    written, kept = build_store.put(build_store.outlet(folder), made, force)
     return tuple(folder / name for name in written), kept

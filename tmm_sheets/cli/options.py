@@ -103,6 +103,7 @@ def formats_of(default: str) -> Callable[..., Any]:
 PROJECT = argument("project")
 SHEETS = option("--sheet", "sheets", type=int, multiple=True, metavar="N", help="Only this sheet; may be repeated.")
 JOBS = option("--jobs", type=click.IntRange(1), metavar="N", help="Processes for several projects.  [default: all processors]")
+DASK = option("--dask", "scheduler", metavar="ADDRESS", help="Build several projects on a dask cluster.")
 REMAKE = option("--force", is_flag=True, help="Make again also what has not changed, and overwrite what was changed by hand.")
 NO_CACHE = option("--no-cache", is_flag=True, expose_value=False, callback=_forgo,
                   help="Draw every sheet anew, without the drawings kept of earlier times.")  # fmt: skip

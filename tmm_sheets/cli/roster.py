@@ -10,7 +10,7 @@ import click
 from tmm_sheets import kept, words
 from tmm_sheets.cli import opening
 from tmm_sheets.cli.batches import come_of, say_stopped
-from tmm_sheets.cli.options import CORRECTED, JOBS, NO_CACHE, REMAKE, formats_of, titled
+from tmm_sheets.cli.options import CORRECTED, DASK, JOBS, NO_CACHE, REMAKE, formats_of, titled
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.localized_cli import argument, command, option
 
@@ -25,21 +25,25 @@ from tmm_sheets.localized_cli import argument, command, option
         help="Folder with one for each student.")
 @REMAKE
 @JOBS
+@DASK
 @NO_CACHE
-def run(table: Path, task: str, corrected: bool, formats: tuple[str, ...], output: Path, force: bool, jobs: int | None) -> None:
+def run(table: Path, task: str, corrected: bool, formats: tuple[str, ...], output: Path, force: bool, jobs: int | None,
+        scheduler: str | None) -> None:
     """Make the work of a whole group: for each student of a CSV FILE sheets, note, living page, a table to fill in."""
     from tmm_sheets import files
-    from tmm_sheets.output import batch
+    from tmm_sheets.output import batch, build_store
     from tmm_sheets.output import roster as rosters
     from tmm_sheets.output.building import Order
+    from tmm_sheets.output.object_store import place
 
     students = rosters.read(table, task)
-    files.check_folder(output)
+    output = place(output)
+    build_store.check(output)
     settings: dict[str, dict[str, Any]] = {"pdf": {"date": files.source_date()}}
     order = Order((), formats, settings, corrected, force, False, False, words.asked(), words.reader(), kept.used(),
                   opening.names())
     works = [batch.Task(s.project, s.folder, s.student, s.group) for s in students]
-    came, stopped = come_of(batch.carry_out(works, order, output, jobs or batch.processors()), len(works))
+    came, stopped = come_of(batch.on(works, order, output, jobs, scheduler), len(works))
     done = {outcome.folder: outcome for outcome in came}
     written, hand = opening.put(output, rosters.lists(students, done, output), force)
     for s in students:

@@ -32,8 +32,6 @@ from tmm_sheets.words import tell
 
 LARGEST_CHUNK = 25
 """Most projects of one task for a worker: a second or so of waiting for its result, and next to nothing for handing it over."""
-SMALLEST_DASK_CHUNK, LARGEST_DASK_CHUNK = 25, 100
-"""Projects of one task for a cluster: 1.5 ms for handing it over are then nothing."""
 CHUNKS_EACH = 64
 """Least number of tasks for each worker, so that all of them end together."""
 
@@ -151,7 +149,8 @@ def _end() -> None:
         os._exit(1)
 
 
-def _chunks(tasks: Sequence[Task], size: int) -> list[Sequence[Task]]:
+def _chunks(tasks: Sequence[Task], workers: int) -> list[Sequence[Task]]:
+    size = max(1, min(LARGEST_CHUNK, len(tasks) // (workers * CHUNKS_EACH)))
     return [tasks[k : k + size] for k in range(0, len(tasks), size)]
 
 
@@ -160,9 +159,9 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def run(projects: Sequence[str], order: Order, parent: Path, workers: int) -> Iterator[Outcome]:
-    """Build projects in ``workers`` processes, see :func:`carry_out`."""
-    return carry_out(_tasks(projects), order, parent, workers)
+def on(works: Sequence[Task], order: Order, parent: Path, jobs: int | None, scheduler: str | None) -> Iterator[Outcome]:
+    """Do tasks on a dask cluster where a scheduler is told, else in so many processes, all processors unless told."""
+    return run_on_dask(works, order, parent, scheduler) if scheduler else carry_out(works, order, parent, jobs or processors())
 
 
 def carry_out(works: Sequence[Task], order: Order, parent: Path, workers: int) -> Iterator[Outcome]:
@@ -180,7 +179,7 @@ def carry_out(works: Sequence[Task], order: Order, parent: Path, workers: int) -
         for work in works:
             yield one(work, order, parent)
         return
-    chunks = _chunks(works, max(1, min(LARGEST_CHUNK, len(works) // (workers * CHUNKS_EACH))))
+    chunks = _chunks(works, workers)
     method = "fork" if "fork" in multiprocessing.get_all_start_methods() else None
     context = multiprocessing.get_context(method)
     told, end = context.Pipe(duplex=False)
@@ -221,8 +220,10 @@ def _signals(act: Callable[[], None]) -> Iterator[list[int]]:
             signal.signal(number, handler)
 
 
-def run_on_dask(projects: Sequence[str], order: Order, parent: Path, address: str) -> Iterator[Outcome]:
-    """Build projects on a dask cluster whose workers have this program and see the same output folder.
+def run_on_dask(works: Sequence[Task], order: Order, parent: Path, address: str) -> Iterator[Outcome]:
+    """Do tasks on a dask cluster whose workers have this program and see the same output folder.
+
+    The tasks of a worker that is lost are done by the others.
 
     Raises
     ------
@@ -240,8 +241,7 @@ def run_on_dask(projects: Sequence[str], order: Order, parent: Path, address: st
         hint = tell("give the scheduler's address, such as tcp://127.0.0.1:8786")
         raise BadInput(tell("no dask scheduler answers at {address}: {why}").format(address=address, why=e), hint=hint) from None
     with client:
-        each = len(projects) // (max(len(client.scheduler_info()["workers"]), 1) * 4)
-        chunks = _chunks(_tasks(projects), max(SMALLEST_DASK_CHUNK, min(LARGEST_DASK_CHUNK, each)))
+        chunks = _chunks(works, max(len(client.nthreads()), 1))
         tasks = {client.submit(several, chunk, order, parent.absolute(), pure=False): chunk for chunk in chunks}
         for task in finished(tasks):
             try:
@@ -311,7 +311,8 @@ def _alike(folder: str) -> str:
     return unicodedata.normalize("NFC", folder).casefold()
 
 
-def _tasks(projects: Sequence[str]) -> list[Task]:
+def tasks(projects: Sequence[str]) -> list[Task]:
+    """A task for each project of a batch."""
     place = folders(projects)
     return [Task(project, place.get(project, "")) for project in projects]
 

@@ -18,6 +18,7 @@ from typing import Any
 
 from tmm_sheets import files
 from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.output.object_store import ObjectStore, Url
 from tmm_sheets.program import fingerprint
 from tmm_sheets.words import tell
 
@@ -137,7 +138,27 @@ class Archive:
         files.write_all({self.place: buffer.getvalue()})
 
 
-Outlet = Folder | Archive
+Outlet = Folder | Archive | ObjectStore
+
+
+def outlet(place: Path, archive: bool = False) -> Outlet:
+    """A place for files: a folder, one of an object store, an ``archive``.
+
+    Raises
+    ------
+    BadInput
+        for an archive in an object store.
+    """
+    if isinstance(place, Url):
+        if archive:
+            raise BadInput(tell("--zip writes into a folder"))
+        return ObjectStore(place)
+    return Archive(place) if archive else Folder(place)
+
+
+def check(place: Path) -> None:
+    """Refuse a place that cannot be written, before any work is done for it."""
+    outlet(place).check()
 
 
 def record_of(outlet: Outlet) -> BuildRecord:
@@ -162,10 +183,11 @@ def free_name(outlet: Outlet, record: BuildRecord, name: str) -> str:
     return next(other for other in names if (data := outlet.read(other)) is None or fingerprint(data) in ours)
 
 
-def put(outlet: Outlet, made: Mapping[str, bytes], force: bool) -> tuple[list[str], list[str]]:
+def put(outlet: Outlet, made: Mapping[str, bytes], force: bool, made_from: str = "") -> tuple[list[str], list[str]]:
     """Write files that are made anew each time; the names they got, and what is to be said of those that were changed by hand.
 
-    Such a file stays, and the new one goes beside it; with ``force`` it is overwritten.
+    Such a file stays, and the new one goes beside it; with ``force`` it is overwritten. ``made_from`` is the fingerprint of their
+    inputs, for who asks whether they are :func:`current`.
     """
     record = record_of(outlet)
     named, kept = dict[str, bytes](), list[str]()
@@ -174,7 +196,7 @@ def put(outlet: Outlet, made: Mapping[str, bytes], force: bool) -> tuple[list[st
         if new != name:
             kept.append(of_hand(name, new))
         named[new] = data
-    keep(outlet, record, named, dict.fromkeys(named, ""), None)
+    keep(outlet, record, named, dict.fromkeys(named, made_from), None)
     return list(named), kept
 
 

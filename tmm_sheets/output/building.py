@@ -14,14 +14,13 @@ from tmm_sheets import words
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.explain import Stopwatch
 from tmm_sheets.output.build_store import (
-    Archive,
     BuildRecord,
-    Folder,
     Outlet,
     current,
     free_name,
     keep,
     of_hand,
+    outlet,
     record_of,
 )
 from tmm_sheets.program import fingerprint, program
@@ -90,7 +89,7 @@ class Order:
 
     def outlet(self, place: Path) -> Outlet:
         """The folder, or the archive of that name."""
-        return Archive(place) if self.archive else Folder(place)
+        return outlet(place, self.archive)
 
 
 @dataclass(frozen=True)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tmm_sheets import words
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.output.build_store import Folder, put
+from tmm_sheets.output.build_store import current, outlet, put, record_of
+from tmm_sheets.program import fingerprint, program
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -20,40 +22,46 @@ KINDS = ("note", "measured", "page")
 def write(project: Project, folder: Path, force: bool) -> tuple[dict[str, bool], tuple[str, ...]]:
     """Write into the student's folder what can be made; which kinds are there now, and what is to be said of the others."""
     made, said = dict[str, bool](), list[str]()
+    place = outlet(folder)
     for kind in KINDS:
+        name, make = _MAKERS[kind]
+        made_from = fingerprint(program(), words.paper(), words.reader(), project.variant.content, kind)
+        # What somebody may have filled in stays whatever it was made from.
+        if place.read(name) is not None if kind == "measured" else not force and current(place, record_of(place), name, made_from):
+            made[kind] = True
+            continue
         try:
-            files = _MAKERS[kind](project, folder)
+            data = make(project)
         except (BadInput, CannotBuild) as e:
             made[kind] = False
             said.append(tell("{what}: {why}").format(what=kind, why=e))
             continue
-        said += put(Folder(folder), files, force)[1]
+        said += put(place, {name: data}, force, made_from)[1]
         made[kind] = True
     return made, tuple(said)
 
 
-def _note(project: Project, folder: Path) -> Mapping[str, bytes]:
+def _note(project: Project) -> bytes:
     from tmm_sheets.note import note
 
-    return note.write(project, ("pdf",)).files
+    return note.write(project, ("pdf",)).files["note.pdf"]
 
 
-def _measured(project: Project, folder: Path) -> Mapping[str, bytes]:
-    """The table; nothing where one lies that may be filled in."""
+def _measured(project: Project) -> bytes:
     from tmm_sheets.compare.measured import measured_lengths
 
-    if (folder / measured_lengths.NAME).exists():
-        return {}
-    return measured_lengths.template(project, folder, False, lambda what: None).files
+    return measured_lengths.table(project)
 
 
-def _page(project: Project, folder: Path) -> Mapping[str, bytes]:
+def _page(project: Project) -> bytes:
     from tmm_sheets.living.page import page
 
     text, problem = page(project)
     if problem is not None and not text:
         raise problem
-    return {"page.html": text.encode()}
+    return text.encode()
 
 
-_MAKERS: dict[str, Callable[[Project, Path], Mapping[str, bytes]]] = {"note": _note, "measured": _measured, "page": _page}
+_MAKERS: dict[str, tuple[str, Callable[[Project], bytes]]] = {
+    "note": ("note.pdf", _note), "measured": ("measured.csv", _measured), "page": ("page.html", _page)}
+"""The name of each, and what makes it."""

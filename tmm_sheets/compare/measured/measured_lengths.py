@@ -63,6 +63,11 @@ def template(project: Project, folder: Path, everything: bool, say: Callable[[st
     return Report("\n".join(lines), {"project": project.variant.project.name, "quantities": rows}, {NAME: data}, tuple(found.notes))
 
 
+def table(project: Project) -> bytes:
+    """The same file, without a word."""
+    return measured_file.template(project.variant.called, measurables(project, lambda what: None))
+
+
 def compare(project: Project, path: Path, pencil: float, reading: float, say: Callable[[str], None]) -> Report:
     """Judge the numbers of a filled file."""
     measured_file.check(path, project)
