@@ -53,7 +53,13 @@ class ObjectStore:
             raise BadInput(Problem(str(e), str(self.place), hint=install("store"))) from None
 
     def check(self) -> None:
-        """Refuse a place that cannot be written, before any work is done for it."""
+        """Refuse a place that cannot be written, before any work is done for it.
+
+        Raises
+        ------
+        BadInput
+            when it cannot, or no library for it is installed.
+        """
         self._put(TRIED, b"")
         self._store.rm_file(str(self.path(TRIED)))
 
@@ -72,7 +78,13 @@ class ObjectStore:
             return None
 
     def write(self, made: Mapping[str, bytes]) -> None:
-        """Put objects, the last first: that is the record."""
+        """Put objects, the last first: that is the record.
+
+        Raises
+        ------
+        BadInput
+            when one of them cannot be put.
+        """
         for name in reversed([*made]):
             self._put(name, made[name])
 
