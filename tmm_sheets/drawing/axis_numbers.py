@@ -121,25 +121,26 @@ class PointNumbers:
         self._ink = InkIndex(canvas.marks)
         self._set: list[Box] = []
 
-    def place(self, pen: Canvas, at: complex, text: str) -> bool:
-        """Set the number of a point over or under its lines, to the right or left, if it is nobody else's there."""
+    def place(self, pen: Canvas, points: Sequence[complex], text: str) -> bool:
+        """Set the number of a point, or of some close together, over or under their lines, if it is nobody else's there."""
+        top, low = (pick(points, key=lambda z: z.imag) for pick in (max, min))
         for height in (3.5, SMALLEST):
             wide = _width(text, height)
             for x in (BESIDE, -wide - BESIDE):
-                for y in (RIGHT_AT, -height - RIGHT_AT):
-                    p = at + complex(x, y)
+                for p in (top + complex(x, RIGHT_AT), low + complex(x, -height - RIGHT_AT)):
                     box = Box(p.real, p.imag, p.real + wide, p.imag + height)
-                    if self._stands_clear(box, at) and all(_is_apart(box, other) for other in self._set):
+                    if self._stands_clear(box, points) and all(_is_apart(box, other) for other in self._set):
                         pen.text(p, text, height)
                         self._set.append(box)
                         return True
         return False
 
-    def _stands_clear(self, box: Box, at: complex) -> bool:
-        """Whether no line but those through a point comes near a rectangle beside it, nor runs through it, nor other lettering."""
+    def _stands_clear(self, box: Box, points: Sequence[complex]) -> bool:
+        """Whether no line but those through the points comes near a rectangle beside them, nor runs through it, nor lettering."""
         near = self._ink.near(box, 3.0)
         a, b = self._ink.a[near], self._ink.b[near]
-        away = self._ink.half[near] + np.where(distance(a, b, at) <= AT, TOUCH, FOREIGN)
+        own = np.logical_or.reduce([distance(a, b, at) <= AT for at in points])
+        away = self._ink.half[near] + np.where(own, TOUCH, FOREIGN)
         return not len(self._ink.lettering_near(box, ROWS, ROWS)) and not enters(
             a, b - a, box.x0 - away, box.y0 - away, box.x1 + away, box.y1 + away).any()
 

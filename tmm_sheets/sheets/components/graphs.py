@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import floor, log10
 from typing import Any
 
@@ -133,6 +134,12 @@ def dense(curve: Points) -> Points:
 def ranged(labels: list[str]) -> str:
     """Numbers of neighbouring positions: 7, 8 or 7–10."""
     return f"{labels[0]}–{labels[-1]}" if len(labels) > 2 else ", ".join(labels)
+
+
+def in_ranges(labels: Sequence[str], numbers: Sequence[int]) -> str:
+    """Labels of rising ``numbers``, neighbours as a range: 1, 7–10."""
+    starts = [i for i, n in enumerate(numbers) if not i or numbers[i - 1] != n - 1]
+    return ", ".join(ranged([labels[n] for n in numbers[a:b]]) for a, b in pairwise([*starts, len(numbers)]))
 
 
 def column(values: Sequence[float] | Floats, digits: int = 4, least: int = 0) -> list[str]:

@@ -302,9 +302,21 @@ def _rays(s: PlayerStage, fw: Flywheel, intervals: list[str]) -> None:
     shown.sort(key=lambda names: -abs(heights[names[0]]))
     play(s, [f"P{names[0]}" for names in shown])
     numbers = PointNumbers(s.canvas)
-    for names in shown:
-        # Points of the ordinate axis that nearly coincide cannot all be numbered; the rays tell them apart.
-        numbers.place(s.pen(names[0], "text"), s.at(names[0]), ", ".join(names))
+    left = [names for names in shown if not numbers.place(s.pen(names[0], "text"), [s.at(names[0])], ", ".join(names))]
+    # Points of the ordinate axis between which no number stands have one together.
+    left.sort(key=lambda names: s.at(names[0]).imag)
+    places = [s.at(names[0]) for names in left]
+    ends = [i for i in range(1, len(left)) if (places[i] - places[i - 1]).imag > PARTED]
+    for a, b in pairwise([0, *ends, len(left)] if left else []):
+        points, named = places[a:b], {name for names in left[a:b] for name in names}
+        said = graphs.in_ranges(every, [n for n, name in enumerate(every) if name in named])
+        pen = s.pen(left[a][0], "text")
+        if not numbers.place(pen, points, said):
+            pen.label(points[len(points) // 2], said, -1 + 0j, 2.5, 1.0)
+
+
+PARTED = 3.5
+"""Distance of points of an axis from which on a number stands between them, mm."""
 
 
 def works(project: Project, canvas: Canvas, box: Box, options: Options) -> None:

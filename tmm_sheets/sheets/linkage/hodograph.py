@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -78,11 +77,7 @@ def _numbers(project: Project, canvas: Canvas, ends: Points, middle: complex, tr
     for z, numbers in there.items():
         with canvas.traced("point", step.path, labels[numbers[0]], placed, name):
             canvas.dot(z, 0.5)
-            # Neighbours as a range: the first of each run, its last.
-            starts = [i for i, n in enumerate(numbers) if not i or numbers[i - 1] != n - 1]
-            runs = [numbers[a:b] for a, b in pairwise([*starts, len(numbers)])]
-            said = ", ".join(graphs.ranged([labels[n] for n in run]) for run in runs)
-            canvas.label(z, said, z - middle, 2.5, 0.9)
+            canvas.label(z, graphs.in_ranges(labels, numbers), z - middle, 2.5, 0.9)
 
 
 def _reaction(project: Project) -> tuple[str, Step, Points]:

@@ -75,6 +75,8 @@ GAP = 4.0
 """Distance of groups that share a place, mm."""
 ROOM = 6.0
 """Room for labels between a force polygon and its equation, mm."""
+UP = 3.0
+"""What a force polygon may take of the room under its scale factor where its equation needs it, mm."""
 LINE, LINES = 6.25, 3
 """Distance of the lines of that equation and of the values under it, mm, and how many there is always room for."""
 STACKED = 90.0
@@ -310,11 +312,12 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
     frame, lines, height = _over_equation(project, canvas, box, fp, (terms(sides), found))
     tiny = _tiny(fp.plan, sides, k, frame)
     small = tr("Less than 1{space}mm: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny.values())) if tiny else ""
-    if small and letter(small, height).width <= box.width - 4.0 and len(lines) < 2 * LINES:
-        ends = [complex(frame(z)).imag for z in points.values()]
-        lift = max(ROOM + LINE * (len(lines) + 1) - (min(ends) - box.y0), 0.0)
-        if lift <= inside.y1 - max(ends) + 1e-9:
-            frame, lines, small = replace(frame, origin=frame.origin + 1j * lift), [*lines, small.replace(TOGETHER, " ")], ""
+    ends = [complex(frame(z)).imag for z in points.values()]
+    above, under = inside.y1 + UP - max(ends), min(ends) - box.y0 - ROOM
+    if small and letter(small, height).width <= box.width - 4.0 and LINE * (len(lines) + 1) <= under + above + 1e-9:
+        lines, small = [*lines, small.replace(TOGETHER, " ")], ""
+    # The letters of the lowest side have room over the equation, if the polygon can go up.
+    frame = replace(frame, origin=frame.origin + 1j * min(max(LINE * len(lines) - under, 0.0), max(above, 0.0)))
     canvas.title(box, fp.plan.title, str(frame.scale))
     flat_crossings.warn(project, canvas, box, fp.plan)
     s = stage(canvas, fp.plan, k, frame)
