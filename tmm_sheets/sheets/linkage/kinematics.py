@@ -686,7 +686,7 @@ def second_accelerations(project: Project, canvas: Canvas, box: Box, options: di
     """Acceleration plan of a position of the other stroke, with a scale factor of its own."""
     acc, k = project.study.accelerations, kinematic_frames.other_stroke(project)
     real = kinematic_frames.plan_extent(acc.plan, k)
-    inside = box.inset(*kinematic_frames.ACCELERATIONS).inset(6.0, 5.0)
+    inside = box.inset(*kinematic_frames.ACCELERATIONS).inset(6.0, 5.0, 6.0, 5.0)
     scale = Scale("μ_a", handy(max(real.width / inside.width, real.height / inside.height)), tr("(m/s²)/mm"))
     canvas.title(box, kinematic_frames.title_of_accelerations(project, k), str(scale))
     tiny = _draw_plan(stage(canvas, acc.plan, k, PlanFrame(scale, inside.centre - scale.mm(real.centre))), "π", symbols_at=True)
