@@ -95,17 +95,27 @@ def test_a_number_of_the_ordinate_axis_stands_right_at_its_lines():
     for y in (5.0, 12.0, 12.6, 30.0):
         canvas.line(1j * y, 50 + 1j * y)
     plain = axis_numbers.PointNumbers(canvas)
-    assert plain.place(canvas, 5j, "1′")
-    assert plain.place(canvas, 30j, "4′")
+    assert plain.place(canvas, [5j], "1′")
+    assert plain.place(canvas, [30j], "4′")
     mark = texts(canvas)["1′"]
     assert 5 < mark.at.imag < 6
-    assert not plain.place(canvas, 12j, "2′") or texts(canvas)["2′"].at.imag < 12
+    assert not plain.place(canvas, [12j], "2′") or texts(canvas)["2′"].at.imag < 12
     assert not struck(canvas)
     crowd = Canvas()
     crowd.line(-40j, 40j, "axis")
     for y in np.arange(0.0, 12.0, 1.5):
         crowd.line(1j * y - 50, 50 + 1j * y)
-    assert not axis_numbers.PointNumbers(crowd).place(crowd, 6j, "5′")
+    assert not axis_numbers.PointNumbers(crowd).place(crowd, [6j], "5′")
+
+
+def test_a_number_of_points_close_together_stands_over_the_highest_or_under_the_lowest():
+    canvas = Canvas()
+    for y in (12.0, 12.6, 13.4):
+        canvas.line(1j * y, 50 + 1j * y)
+    numbers = axis_numbers.PointNumbers(canvas)
+    assert numbers.place(canvas, [12j, 12.6j, 13.4j], "2′–4′")
+    assert 13.4 < texts(canvas)["2′–4′"].at.imag < 14.4
+    assert not struck(canvas)
 
 
 def test_numbers_of_one_axis_are_of_one_height():

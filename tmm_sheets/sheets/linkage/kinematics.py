@@ -687,7 +687,7 @@ def second_accelerations(project: Project, canvas: Canvas, box: Box, options: di
     acc, k = project.study.accelerations, kinematic_frames.other_stroke(project)
     real = kinematic_frames.plan_extent(acc.plan, k)
     inside = box.inset(*kinematic_frames.ACCELERATIONS).inset(6.0, 5.0, 6.0, 5.0)
-    scale = Scale("μ_a", handy(max(real.width / inside.width, real.height / inside.height)), tr("(m/s²)/mm"))
+    scale = Scale("μ_a", handy(_need(real, inside)), tr("(m/s²)/mm"))
     canvas.title(box, kinematic_frames.title_of_accelerations(project, k), str(scale))
     tiny = _draw_plan(stage(canvas, acc.plan, k, PlanFrame(scale, inside.centre - scale.mm(real.centre))), "π", symbols_at=True)
     if tiny:
@@ -733,10 +733,7 @@ def enlarged_velocities(project: Project, canvas: Canvas, box: Box, options: dic
     real = kinematic_frames.plan_extent(plan, k)
     inside = box.inset(kinematic_frames.MARGIN / 2, kinematic_frames.HEAD / 2, kinematic_frames.MARGIN / 2,
                        TITLED + kinematic_frames.HEAD / 2)
-    # A plan whose vectors all have one direction asks for no room across it, up to rounding.
-    nothing = 1e-9 * max(real.width, real.height)
-    need = max(asks / has for asks, has in ((real.width, inside.width), (real.height, inside.height)) if asks > nothing)
-    larger = max(t for t in ENLARGED if t * need <= plain.mu * (1 + 1e-6))
+    larger = max(t for t in ENLARGED if t * _need(real, inside) <= plain.mu * (1 + 1e-6))
     scale = Scale(plain.symbol, float(f"{plain.mu / larger:.6g}"), plain.unit)
     said = tr("{scale} (enlarged {times})").format(scale=scale, times=times(larger))
     canvas.title(box, tr("Velocity polygon, position {label}").format(label=project.cycle.labels[k]),
@@ -745,6 +742,12 @@ def enlarged_velocities(project: Project, canvas: Canvas, box: Box, options: dic
     tiny = _draw_plan(stage(canvas, plan, k, frame), "p", symbols_at=True)
     if tiny:
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
+
+
+def _need(real: Box, inside: Box) -> float:
+    """Scale factor that a plan needs; one whose vectors all have one direction asks for no room across it, up to rounding."""
+    nothing = 1e-9 * max(real.width, real.height)
+    return max(asks / has for asks, has in ((real.width, inside.width), (real.height, inside.height)) if asks > nothing)
 
 
 COLUMNS = 7
