@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.gears.train import Train
     from tmm_sheets.methods.linkage.checks import DeadPosition, SwingLimits
     from tmm_sheets.methods.linkage.cycle import Cycle
-    from tmm_sheets.methods.linkage.forces import GearForce
+    from tmm_sheets.methods.linkage.forces import GearForce, InputForce
     from tmm_sheets.methods.linkage.friction import Coefficients
     from tmm_sheets.methods.linkage.loads import Loads
     from tmm_sheets.methods.linkage.motion import Motion
@@ -68,8 +68,9 @@ class Project:
 
     @property
     def balancing(self) -> str:
-        """Name of the force or moment that drives the crank: a moment where the file does not tell."""
-        return self.variant.balancing.name if self.variant.balancing is not None else "Mур"
+        """Name of the force or moment that drives the crank, or the input: a moment on the crank where the file does not tell."""
+        given = self.variant.balancing
+        return given.name if given is not None else "Mур" if self.variant.input is None else "Fур"
 
     @property
     def diagrams(self) -> tuple[str, ...]:
@@ -141,7 +142,7 @@ class Project:
         from tmm_sheets.methods.linkage.synthesis import Synthesis
 
         crank = self.variant.crank
-        return Synthesis(self._section("synthesis"), crank.speed if crank is not None else 0.0)
+        return Synthesis(self._section("synthesis"), (crank.speed or 0.0) if crank is not None else 0.0)
 
     @cached_property
     def cycle(self) -> Cycle:
@@ -155,6 +156,10 @@ class Project:
         from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle, swing_cycle
 
         c = self._section("cycle")
+        if c.start == "input":
+            from tmm_sheets.methods.linkage.drive import input_cycle
+
+            return input_cycle(self.mechanism, c.positions, zero=c.zero)
         if c.end is not None:
             return swing_cycle(self.mechanism, c.start, c.end, c.positions, zero=c.zero, extra=c.extra)
         if c.start == "dead":
@@ -162,6 +167,17 @@ class Project:
             return dead_cycle(self.mechanism, c.output, c.working_sense, c.working, c.idle, k, c.turns)
         return even_cycle(self.mechanism, c.start, c.positions, zero=c.zero, turns=c.turns, extra=c.extra, output=c.output,
                           working_sense=c.working_sense)
+
+    def parts_of_cycle(self, count: int) -> Any:
+        """Angles turned from position 0, rad, at ``count`` places equally far apart; both ends of a swing or a stroke are such."""
+        import numpy as np
+
+        cycle = self.cycle
+        if self.mechanism.drive is not None and count > 1:
+            from tmm_sheets.methods.linkage.drive import input_cycle
+
+            return input_cycle(self.mechanism, count - 1).turned
+        return (cycle.period / max(count - 1, 1) if cycle.swings else cycle.period / count) * np.arange(count)
 
     @cached_property
     def applied(self) -> Loads:
@@ -171,11 +187,13 @@ class Project:
         return applied_of(self.variant, self.mechanism, self.cycle)
 
     @cached_property
-    def driver(self) -> GearForce | None:
-        """Gear force on the crank shaft; None when a pure moment balances the crank."""
-        from tmm_sheets.methods.linkage.forces import GearForce
+    def driver(self) -> GearForce | InputForce | None:
+        """Gear force on the crank shaft, or force on an input; None when a pure moment balances the crank."""
+        from tmm_sheets.methods.linkage.forces import GearForce, InputForce
         from tmm_sheets.task.assembly import Givens
 
+        if self.mechanism.drive is not None:
+            return InputForce(self.balancing, self.mechanism.drive)
         b: Any = self.variant.balancing
         if b is None or b.kind == "moment":
             return None
@@ -415,10 +433,10 @@ class Project:
 
     @cached_property
     def swing_limits(self) -> SwingLimits | None:
-        """How far a crank that only swings could go; None for one that turns round."""
+        """How far a crank that only swings could go; None for one that turns round, or goes as far as an input drives it."""
         from tmm_sheets.methods.linkage.checks import swing_limits
 
-        return swing_limits(self.mechanism, self.cycle) if self.cycle.swings else None
+        return swing_limits(self.mechanism, self.cycle) if self.cycle.swings and self.mechanism.drive is None else None
 
     @cached_property
     def dead_positions(self) -> tuple[DeadPosition, ...]:

@@ -309,7 +309,7 @@ def _study_of(project: Project, phi: tuple[float, ...] | None, positions: int | 
     if phi is not None:
         turned: Any = cycle.sense * (np.asarray(phi, dtype=float) - cycle.start)
     elif positions is not None:
-        turned = (cycle.period / max(positions - 1, 1) if cycle.swings else cycle.period / positions) * np.arange(positions)
+        turned = project.parts_of_cycle(positions)
     else:
         return project.study, [project.force_index]
     labels = tuple(str(i) for i in range(len(turned)))
@@ -323,6 +323,7 @@ def _cycle(project: Project, study: Study) -> dict[str, Any]:
         "phi": Reported(angle) if isinstance(angle, Step) else study.positions.phi,
         "omega1": Reported(study.velocities.omega[crank]),
         "epsilon1": Reported(study.accelerations.epsilon[crank]),
+        **({} if study.mechanism.drive is None else {"input": Reported(study.place_of_input)}),
     }
 
 

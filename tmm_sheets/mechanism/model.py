@@ -304,6 +304,38 @@ class Crank:
 
 
 @dataclass(frozen=True)
+class Drive:
+    """What moves the crank where its turning is not given: a slider or a cylinder of the group on its pin.
+
+    ``place`` of it at the beginning and at the end of the stroke, m: of a slider along its guide from the point that is given of
+    it, of a cylinder the length between its hinges. ``sense`` is +1 where that grows; ``speed``, m/s, and ``acceleration``, m/s2,
+    count that way. ``side`` +1: the crank pin is left of the line from the far hinge, of slider or cylinder, to the pivot.
+    """
+
+    link: str
+    group: StructuralGroup
+    place: tuple[float, float]
+    speed: float
+    acceleration: float = 0.0
+    side: float = 1
+
+    @property
+    def sense(self) -> float:
+        """+1 where the place grows, -1 where it becomes less."""
+        return 1.0 if self.place[1] > self.place[0] else -1.0
+
+    @property
+    def slides(self) -> bool:
+        """True for a slider on a fixed guide, False for a cylinder."""
+        return bool(self.group.guides)
+
+    @property
+    def far(self) -> str:
+        """Hinge at the other end of the rod, or of the cylinder, whose one end is the crank pin."""
+        return str(self.group.inner) if self.slides else self.group.outer[1]
+
+
+@dataclass(frozen=True)
 class Mechanism:
     """A mechanism of class II or III: crank and groups in order of attachment, with the points and links they carry.
 
@@ -342,6 +374,8 @@ class Mechanism:
     points: tuple[LinkPoint, ...]
     links: dict[str, Link]
     frame: str = "0"
+    drive: Drive | None = None
+    """what moves the crank where its turning is not given: its speed is then the mean one"""
     searches: dict[str, SearchCount] = field(default_factory=dict, compare=False, repr=False)
     """what has been looked for with plans of this mechanism, by purpose"""
     courses: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)

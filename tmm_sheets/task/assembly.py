@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from math import cos, pi, sin
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import KINDS, TRIAD
 from tmm_sheets.mechanism.groups.hints import Leg
 from tmm_sheets.mechanism.groups.triad import TriadGroup
-from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
+from tmm_sheets.mechanism.model import Crank, Drive, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.loads import (
     DIAGRAM,
@@ -32,7 +33,7 @@ from tmm_sheets.methods.linkage.loads import (
     turning_motion,
 )
 from tmm_sheets.task import synthesis_refs
-from tmm_sheets.task.schema import ForceTable, GroupTable, LinkTable, MomentTable
+from tmm_sheets.task.schema import ForceTable, GroupTable, InputTable, LinkTable, MomentTable
 from tmm_sheets.task.variant import Variant
 from tmm_sheets.words import tell, tr
 
@@ -63,7 +64,7 @@ def mechanism_of(variant: Variant, synthesis: Synthesis | None = None) -> Mechan
     acceleration = c.angular_acceleration if isinstance(c.angular_acceleration, float) else 0.0
     crank = Crank(c.link, c.pivot, c.pin,
                   of.length(c.length, f"l_{{{c.pivot}{c.pin}}}", "crank", "length"),
-                  of.number(c.speed, f"ω_{c.link}", "rad/s", "crank", "speed"),
+                  1.0 if c.speed is None else of.number(c.speed, f"ω_{c.link}", "rad/s", "crank", "speed"),
                   of.number(-1.0 if c.sense == "clockwise" else 1.0, "", "", "crank", "sense"),
                   of.number(acceleration, f"ε_{c.link}", "rad/s2", "crank", "angular_acceleration"))
     fixed: dict[str, complex] = {name: of.point(at, name, "points", name) for name, at in variant.points.items()}
@@ -82,7 +83,21 @@ def mechanism_of(variant: Variant, synthesis: Synthesis | None = None) -> Mechan
     groups = tuple(_group(of, i, g) for i, g in enumerate(variant.group))
     names = [crank.link, *(name for g in groups for name in g.links)]
     links = {name: listed.get(name, Link(name)) for name in names}
-    return Mechanism(crank, fixed, guides, groups, points, links)
+    mechanism = Mechanism(crank, fixed, guides, groups, points, links)
+    if variant.input is None:
+        return mechanism
+    from tmm_sheets.methods.linkage.drive import driven
+
+    return driven(replace(mechanism, drive=_drive(of, variant.input, groups)))
+
+
+def _drive(of: Givens, given: InputTable, groups: Iterable[StructuralGroup]) -> Drive:
+    """The slider or cylinder that drives the crank."""
+    group = next(g for g in groups if given.link in g.links)
+    place = (of.number(given.start, "s_0", "m", "input", "start"), of.number(given.end, "s_{n}", "m", "input", "end"))
+    return Drive(given.link, group, place, of.number(given.speed, "V", "m/s", "input", "speed"),
+                 of.number(given.acceleration, "a", "m/s2", "input", "acceleration"),
+                 of.number(given.side, "", "", "input", "side"))
 
 
 class Givens:

@@ -12,6 +12,7 @@ from typing import Any
 
 from tmm_sheets import spelling
 from tmm_sheets.construction.indices import pair_index
+from tmm_sheets.task.schema import CrankTable
 from tmm_sheets.task.toml_lines import KeyPath
 from tmm_sheets.words import marked, tell, tell_n
 
@@ -106,6 +107,7 @@ class _Names:
             yield from self.group(path, group)
             yield from self.attach()
         yield from self.left_over()
+        yield from self.input()
         yield from self.links()
         yield from self.uses()
 
@@ -313,6 +315,53 @@ class _Names:
             if isinstance(name, str):
                 self.points.add(name)
                 self.on.setdefault(link, set()).add(name)
+
+    def input(self) -> Iterator[Found]:
+        """A crank turns as it is told, or as a slider or a cylinder on its pin drives it."""
+        crank, given = _table(self.data, "crank"), _table(self.data, "input")
+        begins = _table(self.data, "cycle").get("start") == "input"
+        balancing = _table(self.data, "balancing").get("kind")
+        if balancing in ("moment", "gear force", "input force") and (balancing == "input force") != ("input" in self.data):
+            yield ("balancing", "kind"), tell("what drives the mechanism is its [input]") if "input" in self.data else tell(
+                "there is no [input]"), tell('write kind = "input force"') if "input" in self.data else tell(
+                    'write kind = "moment" or "gear force"')
+        if "input" not in self.data:
+            for key in ("speed", "sense") if crank else ():
+                if key not in crank:
+                    yield ("crank", key), tell("missing; expected {what}").format(
+                        what=tell(str(CrankTable.model_fields[key].description))), ""
+            if begins:
+                yield ("cycle", "start"), tell("there is no [input]"), tell(
+                    "tell in [input] which slider or cylinder drives the crank")
+            return
+        for key in ("speed", "sense", "angular_acceleration"):
+            if key in crank:
+                yield ("crank", key), tell("the [input] tells how the crank moves"), tell("leave it out")
+        for key in ("friction", "flywheel"):
+            if key in self.data:
+                yield (key,), tell("[{name}] needs a crank whose turning is given, not an [input]").format(name=key), tell(
+                    "leave it out")
+        if not begins:
+            yield ("cycle",), tell("the cycle is the stroke of [input]"), tell('write start = "input"')
+        if given.get("start") == given.get("end") and "start" in given:
+            yield ("input", "end"), tell("the stroke ends where it begins"), ""
+        link, drives = given.get("link"), list(self.drives(crank.get("pin")))
+        if isinstance(link, str) and link not in drives:
+            said = tell('link "{link}" drives no crank: expected the slider of a group of kind 2 or a link of one of kind 3 '
+                        "without offset, on the crank pin and the frame")
+            yield (("input", "link"), said.format(link=link),
+                   tell("known here are {known}").format(known=", ".join(drives)) if drives else "")
+
+    def drives(self, pin: Any) -> Iterator[str]:
+        """Sliders on fixed guides and cylinders on fixed hinges whose other end is the crank pin."""
+        for _, group in _tables(self.data, "group"):
+            outer, links = _words(group.get("outer")), _words(group.get("links"))
+            if outer[:1] != [pin] or len(links) != 2:
+                continue
+            if group.get("kind") == 2 and "link" not in self.guides.get(str(group.get("guide")), {}):
+                yield links[1]
+            if group.get("kind") == 3 and outer[-1] in self.on[FRAME] and "offset" not in group:
+                yield from links
 
     def links(self) -> Iterator[Found]:
         moving = set(self.on) - {FRAME}

@@ -27,6 +27,8 @@ from tmm_sheets.task.values import (
     GuidePoint,
     Inertia,
     InnerFraction,
+    InputAcceleration,
+    InputSpeed,
     Length,
     ManualName,
     Mass,
@@ -145,14 +147,29 @@ class CrankTable(Table):
     pivot: Name = Field(description=marked('fixed point it turns about, for example "A"'))
     pin: Name = Field(description=marked('point at its end, for example "B"'))
     length: Length = Field(description=marked('length with its unit, for example "0.08 m"'))
-    speed: Speed = Field(description=marked('speed of rotation, for example "72 rpm" or "7.54 rad/s"'))
-    """without sign, `sense` has it"""
-    sense: Sense = Field(description=marked('"clockwise" or "counter-clockwise"'))
-    """of the crank"""
+    speed: Speed | None = Field(default=None, description=marked('speed of rotation, for example "72 rpm" or "7.54 rad/s"'))
+    """without sign, `sense` has it; needed, but for a crank that an [input] drives"""
+    sense: Sense | None = Field(default=None, description=marked('"clockwise" or "counter-clockwise"'))
+    """of the crank; needed, but for a crank that an [input] drives"""
     angular_acceleration: CrankAcceleration = 0.0
     """positive in the sense of rotation; `"flywheel"`: that of the uneven running with the flywheel found, whose inertia the
     crank then carries
     """
+
+
+class InputTable(Table):
+    """``[input]``: a slider or a cylinder on the crank pin that drives the mechanism instead of the crank."""
+
+    link: Name = Field(description=marked('number of the slider, or of the cylinder or its rod, for example "3"'))
+    start: Coordinate = Field(description=marked('place at position 0, for example "1.2 m"'))
+    """of a slider its way along the guide from the point the guide goes `through`, of a cylinder the length between its hinges"""
+    end: Coordinate = Field(description=marked('place at the last position, for example "1.6 m"'))
+    speed: InputSpeed = Field(description=marked('speed of the input, for example "0.1 m/s"'))
+    """without sign: from `start` to `end`"""
+    acceleration: InputAcceleration = 0.0
+    """positive from `start` to `end`"""
+    side: Side = 1
+    """1: the crank pin is left of the line from the slider, or from the cylinder's other hinge, to the crank's pivot"""
 
 
 class GuideTable(Table):
@@ -297,7 +314,7 @@ class CycleTable(Table):
     start: Start = Field(
         description=marked('"dead" or the crank angle of position 0, for example "90 deg"')
     )
-    """`"dead"`: where the working stroke of `output` begins"""
+    """`"dead"`: where the working stroke of `output` begins; `"input"`: where the stroke of [input] begins"""
     end: Angle | None = None
     """crank angle of the last position, of a crank that only swings: from `start` to it in its sense, in so many `positions`"""
     output: Name | None = None
@@ -305,7 +322,7 @@ class CycleTable(Table):
     working_sense: Literal["+x", "-x", "+y", "-y"] | None = None
     """the way of the output on the working stroke"""
     positions: TurnParts | None = None
-    """parts of one turn, with a crank angle as `start`"""
+    """parts of one turn, with a crank angle as `start`; of the stroke, with `"input"`"""
     working: Parts | None = None
     """parts of the working stroke, with `start = "dead"`"""
     idle: Parts | None = None
@@ -329,6 +346,10 @@ class CycleTable(Table):
 
     @model_validator(mode="after")
     def _start_has_its_keys(self) -> Self:
+        if self.start == "input" and (
+                lost := sorted(self.model_fields_set & {"end", "extra", "turns", "output", "working_sense"})):
+            raise ValueError(tell('{keys}: not with start = "input": the stroke of [input] is the whole cycle').format(
+                keys=", ".join(lost)))
         if self.start != "dead":
             if self.positions is None:
                 raise ValueError(
@@ -492,10 +513,10 @@ def _diagrams(load: ForceTable | MomentTable, quantity: units.Quantity) -> tuple
 
 
 class BalancingTable(Table):
-    """``[balancing]``: what drives the crank: a pure moment, or the force of a gear pair on the crank shaft."""
+    """``[balancing]``: what drives the crank: a pure moment, the force of a gear pair on its shaft, or the force on an input."""
 
-    kind: Literal["moment", "gear force"] = Field(description=marked('"moment" or "gear force"'))
-    """what drives the crank"""
+    kind: Literal["moment", "gear force", "input force"] = Field(description=marked('"moment", "gear force" or "input force"'))
+    """what drives the crank; `"input force"`, along the motion of [input], with one and only then"""
     name: Name = Field(description=marked('symbol, for example "F1"'))
     teeth: Teeth | None = None
     """of the wheel on the crank shaft"""
@@ -512,8 +533,9 @@ class BalancingTable(Table):
         absent = [k for k in keys if getattr(self, k) is None]
         if self.kind == "gear force" and absent:
             raise ValueError(tell('kind = "gear force" needs {absent} as well').format(absent=", ".join(absent)))
-        if self.kind == "moment" and len(absent) < len(keys):
-            raise ValueError(tell('kind = "moment" has no {names}').format(names=", ".join(k for k in keys if k not in absent)))
+        if self.kind != "gear force" and len(absent) < len(keys):
+            raise ValueError(tell('kind = "{kind}" has no {names}').format(
+                kind=self.kind, names=", ".join(k for k in keys if k not in absent)))
         return self
 
 

@@ -49,6 +49,11 @@ def si_or(word: str, quantity: units.Quantity) -> BeforeValidator:
     return BeforeValidator(lambda value: value if value == word else parsed(value, quantity))
 
 
+def or_word(word: str) -> WrapValidator:
+    """Lets one word stand for the value."""
+    return WrapValidator(lambda value, read: value if value == word else read(value))
+
+
 def in_range(wording: str, holds: Callable[[float], bool]) -> AfterValidator:
     """Refuses values for which ``holds`` is false; ``wording`` says what was expected, a text of the catalogues."""
 
@@ -146,7 +151,9 @@ PhaseAngle = Annotated[float, si(units.ANGLE), _PHASE]
 Speed = Annotated[float, positive(units.ANGULAR_VELOCITY, marked("expected a speed of rotation greater than zero"))]
 SignedSpeed = Annotated[float, si(units.ANGULAR_VELOCITY)]
 CrankAcceleration = Annotated[float | Literal["flywheel"], si_or("flywheel", units.ANGULAR_ACCELERATION)]
-Start = Annotated[str | float, si_or("dead", units.ANGLE)]
+Start = Annotated[str | float, si_or("dead", units.ANGLE), or_word("input")]
+InputSpeed = Annotated[float, positive(units.VELOCITY, marked("expected a velocity greater than zero"))]
+InputAcceleration = Annotated[float, si(units.ACCELERATION)]
 Gravity = Annotated[float, si(units.ACCELERATION), not_negative(marked("expected a gravity of zero or more"))]
 Mass = Annotated[float, si(units.MASS), not_negative(marked("expected a mass of zero or more"))]
 Inertia = Annotated[float, si(units.INERTIA), not_negative(marked("expected a moment of inertia of zero or more"))]
@@ -319,11 +326,6 @@ def _known(name: str, names: Iterable[str], message: str) -> str:
 
 SheetName = Annotated[Name, AfterValidator(_arrangement)]
 ManualName = Annotated[str, AfterValidator(_manual)]
-
-
-def or_word(word: str) -> WrapValidator:
-    """Lets one word stand for the value."""
-    return WrapValidator(lambda value, read: value if value == word else read(value))
 
 
 def meant(word: str, known: list[str]) -> tuple[str, str]:

@@ -37,6 +37,7 @@ from tmm_sheets.task.schema import (
     GroupTable,
     GuideTable,
     HeadingTable,
+    InputTable,
     LinkTable,
     MomentTable,
     NoteTable,
@@ -75,6 +76,7 @@ class Variant(Table):
     note: NoteTable = NoteTable()
     synthesis: SynthesisTable | None = None
     crank: CrankTable | None = None
+    input: InputTable | None = None
     points: dict[Name, tuple[Coordinate, Coordinate]] = Field(
         default={}, description=marked('coordinates x and y with their units, for example C = ["0 m", "-0.26 m"]')
     )

@@ -15,6 +15,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step, value_of
 from tmm_sheets.mechanism.groups.hints import Turning
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
+from tmm_sheets.methods.linkage.drive import drive_accelerations
 from tmm_sheets.methods.linkage.positions import SEARCHED, passages, position_plan
 from tmm_sheets.methods.linkage.velocities import POLE, MotionPolygon, Velocities, plan_name, turning, velocity_plan
 from tmm_sheets.words import marked, tr
@@ -132,6 +133,23 @@ def acceleration_plan(vel: Velocities, epsilon1: Any = None, where: str = "") ->
         acc.points[name] = pole
     acc.epsilon[m.frame] = plan.add("ε0", SAME, 0.0)
     c = m.crank
+    if m.drive is not None:
+        drive_accelerations(acc)
+    else:
+        _of_crank(acc, epsilon1)
+    acc.further_points(c.link)
+    for g in m.groups:
+        if m.drive is None or g.name != m.drive.group.name:
+            g.kind.acceleration(acc, g)
+        for link in g.links:
+            acc.further_points(link)
+    _number_alike(acc)
+    return acc
+
+
+def _of_crank(acc: Accelerations, epsilon1: Any) -> None:
+    """Acceleration of the pin of a crank whose turning is given."""
+    plan, pos, vel, pole, c = acc.plan, acc.positions, acc.velocities, acc.pole, acc.positions.mechanism.crank
     name = f"ε{c.link}"
     acc.epsilon[c.link] = (plan.add(name, OF_CRANK, c.sense, c.acceleration) if epsilon1 is None
                            else plan.add(name, OF_CRANK, c.sense, epsilon1) if isinstance(epsilon1, Step)
@@ -148,13 +166,6 @@ def acceleration_plan(vel: Velocities, epsilon1: Any = None, where: str = "") ->
     plan.vector(f"a̅_{c.pin}", pole, b)
     acc.points[c.pin] = b
     acc.reference[c.link] = (c.pivot, c.pin, pole, b)
-    acc.further_points(c.link)
-    for g in m.groups:
-        g.kind.acceleration(acc, g)
-        for link in g.links:
-            acc.further_points(link)
-    _number_alike(acc)
-    return acc
 
 
 def _second_of_last(m: Mechanism, phi: Any) -> Any:

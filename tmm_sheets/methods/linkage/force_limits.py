@@ -12,7 +12,7 @@ from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.mechanism.groups.force_plan import Load
 from tmm_sheets.methods.linkage.accelerations import Accelerations
-from tmm_sheets.methods.linkage.forces import TOTAL, GearForce, kinetostatics
+from tmm_sheets.methods.linkage.forces import TOTAL, GearForce, InputForce, kinetostatics
 from tmm_sheets.methods.linkage.passages import CHOICE, Floats, PassagePlace, alone, beside
 from tmm_sheets.methods.linkage.positions import SEARCHED, Positions, passages, position_plan
 
@@ -21,7 +21,7 @@ FORCE_ZONE = 1e-5
 
 
 def limits_of_forces(pos: Positions, acc: Accelerations, loads: dict[str, list[Load]], couples: dict[str, list[Step]],
-                     driver: GearForce | None) -> dict[str, Given]:
+                     driver: GearForce | InputForce | None) -> dict[str, Given]:
     """Limits of what force plans cannot tell next to change points, as rows over the positions, NaN elsewhere.
 
     Lines of a group's plan fall together there, and its reactions grow beyond all bounds unless nothing loads it; what they do to
@@ -38,7 +38,7 @@ def limits_of_forces(pos: Positions, acc: Accelerations, loads: dict[str, list[L
 
 
 def _limits_at(pos: Positions, acc: Accelerations, loads: dict[str, list[Load]], couples: dict[str, list[Step]],
-               driver: GearForce | None, place: PassagePlace, k: int, x: float) -> dict[str, float]:
+               driver: GearForce | InputForce | None, place: PassagePlace, k: int, x: float) -> dict[str, float]:
     """Limits at position ``k``, ``x`` from the change point: of the moments on the crank, and of groups that have one."""
     m, names = pos.mechanism, {id(step): name for name, step in pos.points.items()}
     force = max((abs(value_at(load.vector, k)) for of in loads.values() for load in of), default=0.0)

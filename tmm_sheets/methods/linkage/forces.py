@@ -24,7 +24,7 @@ from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.mechanism.groups.force_plan import OPPOSITE_COUPLE, ForcePlan, Load, Role, TangentialPart
 from tmm_sheets.mechanism.groups.triad import BY_MOMENTS
-from tmm_sheets.mechanism.model import StructuralGroup, lettered
+from tmm_sheets.mechanism.model import Drive, StructuralGroup, lettered
 from tmm_sheets.methods.linkage.accelerations import Accelerations
 from tmm_sheets.methods.linkage.positions import Positions
 from tmm_sheets.numbers import Sizes
@@ -329,6 +329,11 @@ class GearForce:
         """What follows from the numbers of the gear pair."""
         return {self.plan.name: self.plan}
 
+    @property
+    def wheel(self) -> tuple[float, float] | None:
+        """Radius of its pitch circle, m, and direction to its mate, rad."""
+        return self.radius, self.mate
+
     def line(self, sense: float) -> Step:
         """Unit vector of the force that drives the wheel in the sense of rotation and presses it from its mate."""
         return self.plan["u"] if "u" in self.plan else self.plan.add("u", LINE_OF_ACTION, sense, self.mate, self.angle)
@@ -350,6 +355,50 @@ def _line_of_action(sense: Any, mate: Any, angle: Any) -> Any:
 LINE_OF_ACTION = Rule("line of action", _line_of_action, ("number", "angle", "angle"), "direction",
                       marked("At the working pressure angle {2} to the perpendicular to the line of centres draw the line of "
                              "action of the force {name}."))
+
+
+@dataclass(frozen=True)
+class InputForce:
+    """Force on a slider along its guide, or of a cylinder along its axis, that moves the mechanism; positive as it moves.
+
+    Of a cylinder it acts on the rod in the crank pin, and the opposite one on its other part. The lever gives it.
+    """
+
+    name: str
+    drive: Drive
+
+    @property
+    def plans(self) -> dict[str, Plan]:
+        """Nothing is constructed for it beforehand."""
+        return {}
+
+    @property
+    def wheel(self) -> tuple[float, float] | None:
+        """It acts on no wheel."""
+        return None
+
+    def loaded(self, pos: Positions, loads: dict[str, list[Load]], plan: Plan, force: Step) -> dict[str, list[Load]]:
+        """Loads of all links with this ``force``, a step of ``plan``, N."""
+        drive, found = self.drive, dict(loads)
+        rod, body = drive.group.links
+        link, at = (body, pos.points[drive.far]) if drive.slides else (rod, pos.points[pos.mechanism.crank.pin])
+        found[link] = [*loads[link], Load(symbol(self.name), link, at, force, "applied")]
+        if not drive.slides:
+            back = plan.add(plan.named(f"{self.name}′"), OPPOSITE, force)
+            found[body] = [*loads[body], Load(f"{symbol(self.name)}′", body, at, back, "applied")]
+        return found
+
+    def by_statics(self, k: Kinetostatics, by_lever: Step, line: Step) -> Step:
+        """The force by the force plans: that of the lever, and what balances the moment that they leave on the crank."""
+        assert k.balancing is not None
+        omega = k.accelerations.velocities.omega[k.positions.mechanism.crank.link]
+        return k.plan.add(k.plan.named(self.name), WITH_REST, by_lever, k.balancing, omega, self.drive.speed, line)
+
+
+WITH_REST = Rule("force of an input by force plans", lambda force, moment, omega, v, u: (force + moment * omega / v) * u,
+                 ("number", "number", "number", "number", "direction"), "force",
+                 marked("With the moment {1} that the force plans leave on the crank: {name} = {0} + {1}·{2}/V = {value}."),
+                 unit="N")
 
 
 def contact_point(pos: Positions, driver: GearForce) -> Step:
@@ -402,7 +451,7 @@ def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: 
 
 
 def kinetostatics(pos: Positions, acc: Accelerations, loads: dict[str, list[Load]], couples: dict[str, list[Step]],
-                  driver: GearForce | None, plan: Plan | None = None, friction: Friction | None = None,
+                  driver: GearForce | InputForce | None, plan: Plan | None = None, friction: Friction | None = None,
                   search: SearchCount | None = None, limits: dict[str, Given] | None = None) -> Kinetostatics:
     """Force plans of all groups from the farthest to the crank; ``driver`` None means a pure balancing moment.
 
@@ -420,7 +469,7 @@ def kinetostatics(pos: Positions, acc: Accelerations, loads: dict[str, list[Load
     return k
 
 
-def _crank(k: Kinetostatics, driver: GearForce | None) -> None:
+def _crank(k: Kinetostatics, driver: GearForce | InputForce | None) -> None:
     """Initial link: the balancing force from moments about the crank pivot, then the force plan."""
     pos, m = k.positions, k.positions.mechanism
     c = m.crank
@@ -433,7 +482,7 @@ def _crank(k: Kinetostatics, driver: GearForce | None) -> None:
     tail = plan.chain(1, first, reactions)
     n = 1 + len(reactions)
     known = (k.limits[TOTAL],) if TOTAL in k.limits else ()
-    if driver is None:
+    if not isinstance(driver, GearForce):
         k.balancing = k.plan.add("Mур", BALANCING if known else OPPOSITE_COUPLE, total, *known, symbol=tr("Mb"))
     else:
         at = contact_point(pos, driver)

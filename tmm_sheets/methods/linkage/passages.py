@@ -250,7 +250,7 @@ class Passages:
 
     def _told(self, g: StructuralGroup, place: PassagePlace, what: str, told: Callable[[Mechanism, Any], Any], zero: bool,
               x: Floats) -> dict[str, Any]:
-        m = replace(self.m, crank=replace(self.m.crank, speed=1.0, sense=1.0, acceleration=0.0))
+        m = replace(self.m, drive=None, crank=replace(self.m.crank, speed=1.0, sense=1.0, acceleration=0.0))
         at = told(alone(m, g, {name: side * np.sign(x) for name, side in place.sides}), place.angle + x)
         return {what: np.broadcast_to(at, x.shape) / (x if zero else 1.0)}
 

@@ -17,8 +17,9 @@ from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.integration import weighted
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.cycle import Cycle
+from tmm_sheets.methods.linkage.drive import place_of_input
 from tmm_sheets.methods.linkage.force_limits import limits_of_forces
-from tmm_sheets.methods.linkage.forces import GearForce, Kinetostatics, external_loads, kinetostatics
+from tmm_sheets.methods.linkage.forces import GearForce, InputForce, Kinetostatics, external_loads, kinetostatics
 from tmm_sheets.methods.linkage.loads import Applied
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.sliding import Sliding
@@ -59,7 +60,7 @@ class Study:
     labels: tuple[str, ...]
     gravity: float
     technological: Callable[[], tuple[Applied, ...]]
-    driver: GearForce | None
+    driver: GearForce | InputForce | None
     running: Callable[[], CrankMotion] | None = None
     purpose: str = ""
     friction: Coefficients | None = None
@@ -94,6 +95,11 @@ class Study:
     def positions(self) -> Positions:
         """Position plan."""
         return position_plan(self.mechanism, self.cycle.angles(self.turned), self.labels, purpose=self.purpose)
+
+    @property
+    def place_of_input(self) -> Step:
+        """Place of the slider or cylinder that drives the mechanism, m."""
+        return place_of_input(self.positions)
 
     @cached_property
     def velocities(self) -> Velocities:
@@ -130,6 +136,15 @@ class Study:
     def forces(self) -> Kinetostatics:
         """Force plans of all groups and the crank."""
         loads, couples, _ = self.loads
+        if isinstance(self.driver, InputForce):
+            by_lever = self.lever
+            assert by_lever.force is not None
+            assert by_lever.balancing is not None
+            assert by_lever.line is not None
+            loads = self.driver.loaded(self.positions, loads, by_lever.plan, by_lever.force)
+            found = kinetostatics(self.positions, self.accelerations, loads, couples, self.driver)
+            found.balancing = self.driver.by_statics(found, by_lever.balancing, by_lever.line)
+            return found
 
         def statics(friction: Friction | None = None, search: SearchCount | None = None) -> Kinetostatics:
             return kinetostatics(self.positions, self.accelerations, loads, couples, self.driver, friction=friction, search=search)

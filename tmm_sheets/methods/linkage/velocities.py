@@ -17,6 +17,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.mechanism.groups.hints import Turning
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
+from tmm_sheets.methods.linkage.drive import drive_velocities
 from tmm_sheets.methods.linkage.positions import SEARCHED, Positions, passages, position_plan
 from tmm_sheets.words import marked, tr
 
@@ -210,14 +211,18 @@ def velocity_plan(pos: Positions) -> Velocities:
         vel.points[name] = pole
     vel.omega[m.frame] = plan.add("ω0", SAME, 0.0)
     c = m.crank
-    vel.omega[c.link] = plan.add(f"ω{c.link}", OF_CRANK, c.sense, c.speed)
-    b = plan.add(plan_name(plan, c.pin), CRANK_VELOCITY, pos.points[c.pivot], pos.points[c.pin], vel.omega[c.link])
-    plan.vector(f"V̅_{c.pin}", pole, b)
-    vel.points[c.pin] = b
-    vel.reference[c.link] = (c.pivot, c.pin, pole, b)
+    if m.drive is not None:
+        drive_velocities(vel)
+    else:
+        vel.omega[c.link] = plan.add(f"ω{c.link}", OF_CRANK, c.sense, c.speed)
+        b = plan.add(plan_name(plan, c.pin), CRANK_VELOCITY, pos.points[c.pivot], pos.points[c.pin], vel.omega[c.link])
+        plan.vector(f"V̅_{c.pin}", pole, b)
+        vel.points[c.pin] = b
+        vel.reference[c.link] = (c.pivot, c.pin, pole, b)
     vel.further_points(c.link)
     for g in m.groups:
-        g.kind.velocity(vel, g)
+        if m.drive is None or g.name != m.drive.group.name:
+            g.kind.velocity(vel, g)
         for link in g.links:
             vel.further_points(link)
     return vel

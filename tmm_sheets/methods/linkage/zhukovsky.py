@@ -17,7 +17,8 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.mechanism.groups.force_plan import Load
-from tmm_sheets.methods.linkage.forces import GearForce, contact_point
+from tmm_sheets.methods.linkage.drive import RELATIVE
+from tmm_sheets.methods.linkage.forces import GearForce, InputForce, contact_point
 from tmm_sheets.methods.linkage.velocities import POLE, SAME, SIMILAR, Velocities
 from tmm_sheets.words import marked, tr
 
@@ -56,7 +57,10 @@ class LeverForce:
 
 @dataclass
 class Lever:
-    """Zhukovsky's lever of all positions; ``balancing`` is the force along ``line`` (N) or the moment (N m)."""
+    """Zhukovsky's lever of all positions; ``balancing`` is the force along ``line`` (N) or the moment (N m).
+
+    ``force`` is that force as a vector; None for a moment.
+    """
 
     plan: Plan
     velocities: Velocities
@@ -65,6 +69,7 @@ class Lever:
     balancing: Step | None = None
     contact: Step | None = None
     line: Step | None = None
+    force: Step | None = None
 
     @property
     def direction(self) -> complex | None:
@@ -72,7 +77,8 @@ class Lever:
         return None if self.line is None else complex(self.line.value)
 
 
-def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]], driver: GearForce | None) -> Lever:
+def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]],
+          driver: GearForce | InputForce | None) -> Lever:
     """Record the lever from the velocity plan, the external and inertia forces, N, and the couples of each link, N m."""
     pos = vel.positions
     m = pos.mechanism
@@ -124,19 +130,35 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
         result.contact = b
         hang(tr("F̅_{Mb}"), b, plan.add("Fур на рычаге", VECTOR_OF, force, across, symbol=tr("Fb on the lever")), "F̅_{Мур}")
         return result
+    if isinstance(driver, InputForce):
+        drive = driver.drive
+        contact = turned(vel.points[drive.far] if drive.slides else vel.plan[RELATIVE])
+        result.line = plan.add("u", ALONG_MOTION, pos.directions[drive.link], drive.sense)
+        return _driven(result, driver.name, contact, terms)
     at = contact_point(pos, driver)
     known = {*vel.plan.steps, *plan.steps}
     letter = next((letter for letter in CONTACT if not {letter, f"{letter}′"} & known), plan.free("f"))
     f_step = plan.add(letter, SIMILAR, vel.pole, vel.points[c.pin], pos.points[c.pivot], pos.points[c.pin], at)
     contact = plan.add(f"{letter}′", TURNED, f_step)
     result.line = driver.line(c.sense)
-    result.balancing = plan.add(plan.named(driver.name), BALANCE, pole, contact, result.line, *terms)
-    force = plan.add(plan.named(f"{driver.name} на рычаге"), VECTOR_OF, result.balancing, result.line,
-                     symbol=tr("{force} on the lever").format(force=driver.name))
+    return _driven(result, driver.name, contact, terms)
+
+
+def _driven(result: Lever, name: str, contact: Step, terms: list[Step]) -> Lever:
+    """The lever with a balancing force along its line at a point."""
+    plan, pole = result.plan, result.plan["p"]
+    assert result.line is not None
+    result.balancing = plan.add(plan.named(name), BALANCE, pole, contact, result.line, *terms)
+    result.force = force = plan.add(plan.named(f"{name} на рычаге"), VECTOR_OF, result.balancing, result.line,
+                                    symbol=tr("{force} on the lever").format(force=name))
     result.contact = contact
-    arm = plan.add(plan.named(f"h {driver.name}"), rules.ARM, pole, contact, force)
-    result.hung.append(LeverForce(symbol(driver.name), contact, force, arm))
+    arm = plan.add(plan.named(f"h {name}"), rules.ARM, pole, contact, force)
+    result.hung.append(LeverForce(symbol(name), contact, force, arm))
     return result
+
+
+ALONG_MOTION = Rule("direction of the motion of an input", lambda u, sense: sense * u, ("direction", "number"), "direction",
+                    marked("Draw the line of action of the balancing force {name} along {0}, the way the input moves."))
 
 
 def _turning(vel: Velocities, link: str) -> str | None:

@@ -237,7 +237,8 @@ def by_stroke(project: Project, name: str, marks: list[int]) -> tuple[list[int],
     """Positions of a slider in which it goes the way of the working stroke, and the others."""
     cycle, pos = project.cycle, project.study.positions
     u = complex(pos.guide_directions[on_fixed_guides(pos.mechanism)[name]].at(0))
-    speed = (np.asarray(project.study.velocities.points[name].value) * np.conj(u)).real
+    velocity = np.broadcast_to(project.study.velocities.points[name].value, len(cycle.labels))  # an input has one for all
+    speed = (velocity * np.conj(u)).real
     working = speed[np.argmax(np.abs(speed))] if cycle.strokes is None else (cycle.strokes.path * np.conj(u)).real
     ahead = speed * (np.sign(working) or 1.0) > -1e-9 * np.abs(speed).max()
     return [i for i in marks if ahead[i]], [i for i in marks if not ahead[i]]

@@ -246,7 +246,7 @@ def crank_scheme(project: Project, k: int, shown: list[Shown]) -> tuple[list[com
     """Points of the initial link's scheme and what reaches from them, the arrows of rotation with their signs among it."""
     c, driver, pos = project.mechanism.crank, project.driver, project.study.positions
     pivot, ends = complex(pos.points[c.pivot].at(k)), [complex(pos.points[name].at(k)) for name in link_marks.crank_pins(pos)]
-    wheel = [] if driver is None else [pivot + driver.radius * z for z in (1, -1, 1j, -1j)]
+    wheel = [] if driver is None or driver.wheel is None else [pivot + driver.wheel[0] * z for z in (1, -1, 1j, -1j)]
     outermost = [couple_radius(n) for n, couple in couples_of(project, c.link) if hinge_of(project, couple) is None]
     turning = (max(outermost, default=10.0 if driver is not None else 24.0) + 8.0) * clear(pivot, ends, shown)
     return loaded([pivot, *ends, *(force.at for force in shown), *wheel], shown, pivot, [(pivot, turning)])
@@ -261,8 +261,9 @@ def on_lever(project: Project, k: int) -> list[Shown]:
 
 
 def balancing_sign(project: Project) -> str:
-    """Sign of what drives the crank: the project's own, in every language as it stands; "Mур" is what one without has."""
-    return link_marks.indexed(tr("Mb") if project.balancing == "Mур" else project.balancing)
+    """Sign of what drives the crank: the project's own, in every language as it stands; "Mур" or "Fур" of one without."""
+    own = {"Mур": tr("Mb"), "Fур": tr("Fb")}
+    return link_marks.indexed(own.get(project.balancing, project.balancing))
 
 
 def flat(sign: str) -> str:

@@ -450,10 +450,11 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
                       finest_crank(project))
     canvas.title(left, tr("Input link"), str(frame.scale))
     s = stage(canvas, pos.plan, k, frame)
-    if driver is not None and pos.contact is not None:  # pitch circle of the wheel on the shaft, and its pitch point
+    # Pitch circle of the wheel on the shaft, and its pitch point.
+    if driver is not None and driver.wheel is not None and pos.contact is not None:
         play(s, [pos.contact], "centre", only="circle")
         s.dot(pos.contact, 0.6, "thin")
-        s.letters(pos.contact, "P", 1j * complex(np.exp(1j * driver.mate)), gap=1.5)
+        s.letters(pos.contact, "P", 1j * complex(np.exp(1j * driver.wheel[1])), gap=1.5)
     link_marks.draw(s, pos, "main", [c.link])
     for point in (centre, *pins):
         s.letters(point, link_marks.indexed(point.name), gap=2.8)
@@ -512,7 +513,7 @@ def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     s.dot("p", 0.9)
     s.letters("p", "p", gap=1.2)
     _turned_letters(s, turned, lv.points, vectors)
-    if lv.contact is not None and project.driver is not None:
+    if lv.contact is not None and project.driver is not None and lv.contact not in lv.points.values():
         play(s, [lv.contact], "axis")
         s.letters(lv.contact, lv.contact.name, gap=1.2)
     draw_arms(s, 0j, shown, points=[frame(z) for z in points])
@@ -551,12 +552,9 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
     assert study.lever.balancing is not None
     force, sign = project.driver is not None, balancing_sign(project)
     kind = forces.force_size(k) if force else forces.moment_size(k)
-    drives = 1.0
-    if project.driver is not None:  # signed along the line that drives the crank
-        along = project.driver.direction(project.mechanism.crank.sense)
-        drives = -1.0 if (complex(forces.balancing.at(k)) * along.conjugate()).real < 0 else 1.0
-    kinetic, hung = (clean(drives * abs(step.at(k)), kind) for step in (forces.balancing, study.lever.balancing)) if force else \
-        (clean(float(study.balance[name].at(k)), kind) for name in ("M", "M_р"))
+    # A force is signed along the line that drives the crank.
+    kinetic, hung = (clean(float(step.at(k)), kind) for step in (
+        (study.balance["along"], study.lever.balancing) if force else (study.balance["M"], study.balance["M_р"])))
     unit = tr("N") if force else tr("N·m")
     difference = float(study.balance["Δ"].at(k)) if kinetic else 0.0
     heading = tr("Balancing force") if force else tr("Balancing moment (“+”: in the sense of ω_1)")
@@ -567,6 +565,8 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
             [tr("Difference, %"), number(difference, 2, 100.0)]]
     row, width = min(box.height / len(rows), 9.0), min(box.width, 210.0)
     canvas.table(complex(box.x0, box.y1), widened([width * 0.66, width * 0.34], rows, 3.5), rows, row, 3.5)
-    if force and kinetic < 0:
+    if force and kinetic < 0 and project.mechanism.drive is not None:
+        canvas.note(box, tr("{quantity} < 0: it holds the input back").format(quantity=sign))
+    elif force and kinetic < 0:
         canvas.note(box, tr("{quantity} < 0: the mate holds the wheel back, in truth by the other flanks of its teeth").format(
             quantity=sign))

@@ -203,7 +203,7 @@ def free_ends(pos: Positions) -> dict[str, list[FreeEnd]]:
     for them.
     """
     found: dict[str, list[FreeEnd]] = {}
-    for shape in shapes(pos):
+    for shape in (shape for shape in shapes(pos) if shape.link not in _cylinder(pos)):
         u = np.asarray(pos.directions[shape.link].value)
         lines: list[tuple[str, ...]] = [*shape.arms, *([] if shape.arms else [(*shape.bar, *shape.over)])]
         ends = []
@@ -258,19 +258,58 @@ def draw(s: PlayerStage, pos: Positions, style: str, only: Collection[str] | Non
 
     A link looks the same whatever is drawn: a slotted one has its full length also alone.
     """
-    ends = free_ends(pos)
+    ends, cylinder = free_ends(pos), _cylinder(pos)
     drawn = [shape for shape in shapes(pos) if only is None or shape.link in only]
     # A dict, not a set: the order of the marks must be the same in every run.
     at = {name: s.at(pos.points[name]) for shape in drawn for name in (*shape.bar, shape.block or "") if name}
     free = [*centres(pos.mechanism), *(name for shape in drawn for name in traced(pos.mechanism, shape.link))]
     gaps = [name for name in at if name not in free] if style == "main" else [name for name in at if name in pos.mechanism.fixed]
     for shape in drawn:
-        if shape.bar:
+        if shape.link in cylinder:
+            _draw_of_cylinder(s, pos, shape.link, style)
+        elif shape.bar:
             _draw_bar(s, pos, shape, [at[name] for name in gaps], style, ends.get(shape.link, []))
         elif shape.along is not None:
             _draw_block(s, pos, shape, style)
     if style == "main":
         _draw_pairs(s, pos, at, whole=only is None)
+
+
+def _cylinder(pos: Positions) -> tuple[str, ...]:
+    """Links of the cylinder that drives the mechanism: its rod, and the part that the rod slides in; none without one."""
+    drive = pos.mechanism.drive
+    return () if drive is None or drive.slides else drive.group.links
+
+
+def _draw_of_cylinder(s: PlayerStage, pos: Positions, link: str, style: str) -> None:
+    """Rod with its piston, or the part that it slides in, which is open at the rod's end; as bare lines the axis alone."""
+    drive = pos.mechanism.drive
+    assert drive is not None
+    (rod, _), line = drive.group.links, pos.directions[link]
+    far, pin = s.at(pos.points[drive.far]), s.at(pos.points[pos.mechanism.crank.pin])
+    if style != "main":
+        if link != rod:
+            s.line(line, far, pin, style, "link")
+        return
+    u = (pin - far) / abs(pin - far)
+    across, least = CYLINDER * 1j * u, min(drive.place) / s.frame.mu[1]
+    bottom, mouth = far + 0.08 * least * u, far + 0.85 * least * u
+    stroke = abs(drive.place[1] - drive.place[0]) / s.frame.mu[1]
+    piston = max(abs(pin - far) - least - max(stroke - 0.65 * least, 0.0), 0.0) + 0.15 * least
+    if link == rod:
+        at = far + min(piston, 0.8 * least) * u
+        s.line(line, at, pin - symbols.HINGE * u, style, "link")
+        s.line(line, at + 0.9 * across, at - 0.9 * across, style, "link")
+        return
+    s.line(line, far + symbols.HINGE * u, bottom, style, "link")
+    for a, b in ((bottom + across, bottom - across), (bottom + across, mouth + across), (bottom - across, mouth - across)):
+        s.line(line, a, b, style, "link")
+    for side in (1, -1):
+        s.line(line, mouth + side * across, mouth + side * 0.3 * across, style, "link")
+
+
+CYLINDER = 3.0
+"""Half of the width of a cylinder, mm."""
 
 
 def _draw_bar(s: PlayerStage, pos: Positions, shape: Shape, hinges: list[complex], style: str,

@@ -87,15 +87,17 @@ def _quantities(project: Project) -> Iterator[tuple[str, str]]:
     for g in m.groups:
         lengths += [*g.lengths, g.offset, *getattr(g, "sides", ()), *(leg.length for leg in getattr(g, "legs", ()))]
     lengths += [p.distance for p in m.points]
+    given_of_input: list[Any] = [] if m.drive is None else [*m.drive.place, m.drive.speed, m.drive.acceleration]
     for name, at in ((name, at) for name, at in m.fixed.items() if name in drawn_points(project.study.positions)):
         for axis, value in (("x", at.real), ("y", at.imag)):
             if not is_zero(value, float(m.crank.length)):
                 yield f"{axis}_{{{name}}}, {tr('m')}", number(value)
     links = sorted(m.links.values(), key=lambda link: (len(link.name), link.name))
     of_links = [getattr(link, name) for name in ("mass", "inertia") for link in links]
-    for unit, values in ((tr("m"), lengths), (None, of_links)):
+    for unit, values in ((tr("m"), lengths), (None, given_of_input), (None, of_links)):
         for value in values:
             given = getattr(value, "step", value)  # one that a synthesis found has the letters of its step
             if value and getattr(given, "symbol", ""):
-                said = unit or {"kg": tr("kg"), "kg*m2": tr("kg·m²")}[given.unit]
-                yield f"{given.symbol}, {said}", number(abs(float(value)))  # the other way along its line is no length
+                units = {"kg": tr("kg"), "kg*m2": tr("kg·m²"), "m": tr("m"), "m/s": tr("m/s"), "m/s2": tr("m/s²")}
+                # The other way along its line is no length.
+                yield f"{given.symbol}, {unit or units[given.unit]}", number(abs(float(value)))
