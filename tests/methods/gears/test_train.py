@@ -31,7 +31,24 @@ BACK = {"1": 20, "2": 40, "3": 24, "4": 36}, (mesh("1", "2"), mesh("4", "3"))
 CLOSED = ({"1": 24, "2": 30, "3": 84, "4": 20, "5": 40, "6": 24, "7": 36},
           (mesh("1", "2", "H"), mesh(ring="3", planet="2", carrier="H"), mesh("4", "5"), mesh("7", "6")))
 JOINED = [("1", "4"), ("5", "6"), ("7", "3")]
+THREE = ({"1": 24, "2": 30, "3": 84, "4": 20, "5": 25, "6": 70, "7": 18, "8": 27, "9": 72},
+         tuple(m for k, (s, p, r) in enumerate(("123", "456", "789"), 1)
+               for m in (mesh(s, p, f"H{k}"), mesh(ring=r, planet=p, carrier=f"H{k}"))))
+# Planets on two pins of one arm, at two distances, each in a ring of its own (Khurmi and Gupta, Theory of Machines, chapter 13).
+SHAFTS = ({"1": 28, "2": 18, "3": 64, "4": 26, "5": 18, "6": 62},
+          (mesh("1", "2", "H"), mesh(ring="3", planet="2", carrier="H"), mesh("4", "5", "H"),
+           mesh(ring="6", planet="5", carrier="H")))
+FIVE = {"1": 30, "2": 24, "3": 27, "4": 32}, (mesh("1", "2", "H"), mesh("4", "3", "H"))
+FREE = {"1": 20, "2": 40, "3": 24, "4": 40, "5": 18, "6": 54, "7": 90}, (mesh("1", "2"), mesh("3", "4"), mesh("5", "6"),
+                                                                         mesh(ring="7", planet="6"))
 CASES = {
+    "three carriers": (*THREE, {"1": 1500, "3": 0, "6": 0, "9": 0}, (("H1", "4"), ("H2", "7"))),
+    "three carriers, two of them driven": (*THREE, {"1": 1500, "H3": 10, "6": 0, "9": 0}, (("H1", "4"), ("H2", "7"))),
+    "two planets' shafts": (*SHAFTS, {"H": -100, "3": 0}, (("1", "4"),)),
+    "two planets' shafts, ring turns": (*SHAFTS, {"H": -100, "3": 10}, (("1", "4"),)),
+    "sums of teeth differ by five": (*FIVE, {"1": 0, "H": 100}, (("2", "3"),)),
+    "free axes": (*FREE, {"1": 1000}, (("2", "3"), ("4", "5"))),
+    "free axes, backwards": (*FREE, {"7": 11}, (("4", "5"), ("2", "3"))),
     "reducer without a simple stage": (*EPICYCLIC, {"1": 1500, "3": 0}, ()),
     "ring drives": (*EPICYCLIC, {"3": 700, "1": 0}, ()),
     "two inputs": (*EPICYCLIC, {"1": 960, "3": -400}, ()),
@@ -143,10 +160,38 @@ def test_bad_tables(changes, message):
         read(train(*CASES["two inputs"]), changes)
 
 
-def test_pair_off_the_main_axis_is_refused():
-    teeth, meshes = {"1": 20, "2": 40, "3": 30, "4": 30}, (mesh("1", "2"), mesh("3", "4"))
-    with pytest.raises(CannotBuild, match="wheel 3 of the pair 3–4 is not on the main axis"):
-        _ = project(train(teeth, meshes, {"1": 100}, [("2", "3")])).train.velocities
+def test_arm_with_two_planets_shafts():
+    """Published answers: the second ring turns at 4.1 rpm with the arm; at 5.4 rpm against it where the first does so at 10."""
+    for ring, other in ((0, -4.1), (10, 5.4)):
+        made = project(train(*SHAFTS, {"H": -100, "3": ring}, (("1", "4"),))).train
+        assert made.kinematics["n6"].value == pytest.approx(other, abs=0.05)
+    assert [made.kinematics[name].value for name in ("a_1-2", "a_4-5")] == [46, 44]
+    assert made.warnings == ()
+
+
+def test_pair_of_a_block_has_a_module_of_its_own_where_shifts_cannot():
+    made = project(train(*CASES["sums of teeth differ by five"])).train
+    pair = made.meshes[1]
+    assert made.own_module(pair) == pytest.approx(0.002 * 54 / 59)
+    assert made.radius("4", pair) + made.radius("3", pair) == pytest.approx(0.054)
+    assert "1,831" in made.warnings[0]
+
+
+def test_axes_farther_and_farther_away():
+    made = project(train(*CASES["free axes"])).train
+    assert [round(1e3 * made.height(name), 9) for name in "1234567"] == [0, 60, 60, 124, 124, 196, 232]
+    assert made.velocities["O6"].value == pytest.approx(0.196j)
+
+
+@pytest.mark.parametrize(("teeth", "meshes", "shafts", "message"), [
+    ({"1": 20, "2": 40, "3": 30, "4": 30, "5": 20, "6": 20}, (mesh("1", "2"), mesh("3", "4"), mesh("5", "6")), [("3", "5")],
+     "neither wheel of the pair 3–4 is on an axis"),
+    ({"1": 20, "2": 40, "3": 44, "4": 22}, (mesh("1", "2"), mesh("4", "3")), [("2", "3"), ("1", "4")], "60 mm apart.* needs 66 mm"),
+])
+def test_axes_that_cannot_be(teeth, meshes, shafts, message):
+    speeds = {"1": 100, "4": 50} if len(meshes) > 2 else {"1": 100}
+    with pytest.raises(CannotBuild, match=message):
+        _ = project(train(teeth, meshes, speeds, shafts)).train
 
 
 @pytest.mark.parametrize("case", ["two stages and a pair", "closed"])

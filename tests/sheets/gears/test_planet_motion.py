@@ -8,18 +8,24 @@ import pytest
 
 from tests.project_files import project
 from tmm_sheets.catalogue import read
+from tmm_sheets.methods.gears.train import Train
+from tmm_sheets.methods.gears.train_steps import Mesh
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.gears import planet_motion
 from tmm_sheets.sheets.sheet import composed
 
 
 def mesh(central, planet, sign, carrier="H"):
-    return SimpleNamespace(central=central, planet=planet, sign=sign, carrier=carrier)
+    return Mesh(central, planet, carrier, sign)
 
 
 def train(meshes, teeth, speeds, satellites=3):
     plan = {f"n{name}": SimpleNamespace(value=n) for name, n in speeds.items()}
-    return SimpleNamespace(meshes=meshes, data=SimpleNamespace(teeth=teeth, satellites=satellites), kinematics=plan)
+    made = Train.__new__(Train)
+    together = {m.planet: meshes[0].planet for m in meshes if m.carrier}
+    made.__dict__.update(meshes=tuple(meshes), data=SimpleNamespace(teeth=teeth, satellites=satellites, module=0.002),
+                         shafts=together, kinematics=plan)
+    return made
 
 
 ROW = [mesh("1", "2", 1), mesh("3", "2", -1)]
@@ -48,7 +54,8 @@ def test_conditions_of_planets(meshes, teeth, satellites, said):
     ([ROW[0], mesh("3", "2", 1)], {"1": 100, "2": 20, "3": 101}, 3, 1),  # Ferguson's
 ])  # fmt: skip
 def test_planets_are_drawn_where_they_can_be_put_in(meshes, teeth, wanted, drawn):
-    assert planet_motion.at_equal_angles(train(meshes, teeth, {}, wanted), "H") == drawn
+    made = train(meshes, teeth, {}, wanted)
+    assert planet_motion.at_equal_angles(made, made.stages[0]) == drawn
 
 
 @pytest.mark.parametrize(("meshes", "speeds", "count"), [

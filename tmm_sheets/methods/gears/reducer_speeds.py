@@ -9,6 +9,7 @@ parallel to it through the pole of the plan of speeds cuts off its speed of rota
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import chain, count
 from math import pi
 from typing import Any
 
@@ -68,7 +69,7 @@ class SpeedPicture:
     def __init__(self, part: str = "reducer") -> None:
         self.plan = Plan(f"{part}-velocities", tr("Picture of velocities"), "m/s")
         self.axis = self.plan.add("O", GIVEN, 0j)
-        self.letters = iter(LETTERS)
+        self.letters = chain(LETTERS, (f"{letter}{n}" for n in count(1) for letter in LETTERS))
 
     def point(self, at: Rule, size: Step, side: int = 1) -> Step:
         """A point of the reducer over (``side`` -1: under) the main axis, at half a diameter or at a distance."""

@@ -9,7 +9,7 @@ shifts are needed. Diameters in millimetres, speeds in 1/min.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -44,12 +44,26 @@ class Train:
         self.shafts = {name: shaft[0] for shaft in data.shafts for name in shaft}
         _check_speeds(self)
         _check_distances(self)
-        self.axes = dict(heights(self))
-        """Heights of the axes of all links over the main one, m."""
+        self.axes = standing_axes(self)
+        """Axes of all links but planets on carriers."""
 
     def link(self, name: str) -> str:
         """The link a wheel or carrier belongs to, by its first name."""
         return self.shafts.get(name, name)
+
+    def stage(self, m: Mesh) -> tuple[Mesh, ...]:
+        """Meshes at one distance of the axes: those of a carrier whose planets turn together, or a pair whose axes stand still."""
+        return tuple(o for o in self.meshes if o is m or (m.carrier and o.carrier == m.carrier
+                                                          and self.link(o.planet) == self.link(m.planet)))
+
+    @property
+    def stages(self) -> tuple[tuple[Mesh, ...], ...]:
+        """All of them, each once."""
+        return tuple(dict.fromkeys(map(self.stage, self.meshes)))
+
+    def teeth(self, m: Mesh) -> int:
+        """z_c ± z_p of a mesh: twice the distance of its axes in modules."""
+        return int(self.data.teeth[m.central] + m.sign * self.data.teeth[m.planet])
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -120,17 +134,26 @@ class Train:
     def height(self, name: str) -> float:
         """Height of the axis of a wheel or carrier over the main one, m; of a planet on a carrier that of one over it."""
         on = next((m for m in self.meshes if m.carrier and self.link(m.planet) == self.link(name)), None)
-        return self.distance(on) if on else self.axes[self.link(name)]
+        return self.distance(on) if on else self.axes[self.link(name)].height
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """Remarks for the sheet."""
         out = []
-        for carrier, sums in _sums(self).items():
-            if carrier and len(set(sums)) > 1:
+        for first, *others in self.stages:
+            near = [self.teeth(m) for m in (first, *others) if not self.own_module(m)]
+            if len(set(near)) > 1:
                 out.append(tr("the stage with the carrier {carrier} needs shifts: its distances differ by {teeth} m").format(
-                    carrier=carrier, teeth=number((max(sums) - min(sums)) / 2)))
+                    carrier=first.carrier, teeth=number((max(near) - min(near)) / 2)))
+            out += [tr("the pair {wheel}–{mate} has a module of its own, {module} mm, for the distance of {first}–{planet}").format(
+                wheel=m.central, mate=m.planet, module=number(1e3 * module), first=first.central, planet=first.planet)
+                for m in others if (module := self.own_module(m))]
         return tuple(out)
+
+    def own_module(self, m: Mesh) -> float:
+        """Module, m, with which a mesh comes to the distance of its stage where shifts cannot; 0 where they can."""
+        first = self.teeth(self.stage(m)[0])
+        return float(self.data.module * first / self.teeth(m)) if abs(self.teeth(m) - first) > FARTHEST else 0.0
 
     def results(self) -> dict[str, Any]:
         """The ``train`` section of ``solve --json``: speeds in 1/min, distances in millimetres."""
@@ -187,49 +210,66 @@ def _joint(train: Train, before: Mesh, after: Mesh) -> list[str]:
     return [before.carrier or before.central, after.central if after.central not in train.given else after.carrier or after.planet]
 
 
-def _sums(train: Train) -> dict[str, list[int]]:
-    """z_c ± z_p of the meshes of each carrier."""
-    found: dict[str, list[int]] = {}
-    for m in train.meshes:
-        found.setdefault(m.carrier, []).append(train.data.teeth[m.central] + m.sign * train.data.teeth[m.planet])
-    return found
-
-
 def _check_distances(train: Train) -> None:
     for m in train.meshes:
         if m.sign < 0 and train.data.teeth[m.central] <= train.data.teeth[m.planet]:
             raise CannotBuild(tell("train: ring {ring} has no more teeth than planet "
                                    "{planet}").format(ring=m.central, planet=m.planet),
                               tell("a ring is the larger wheel"))
-    for carrier, sums in _sums(train).items():
-        if carrier and max(sums) - min(sums) > FARTHEST:
-            raise CannotBuild(tell("train: the central wheels of carrier {carrier} have no common axis: z_c ± z_p are "
+    for planet in dict.fromkeys(m.planet for m in train.meshes if m.carrier):
+        # A wheel has one module: what meshes with it has the same.
+        sums = [train.teeth(m) for m in train.meshes if m.planet == planet]
+        if max(sums) - min(sums) > FARTHEST:
+            raise CannotBuild(tell("train: the wheels that mesh with planet {planet} have no common axis: z_c ± z_p are "
                                    "{sums}").format(
-                carrier=carrier, sums=", ".join(map(str, sums))), tell("shifts bridge two teeth at most"))
+                planet=planet, sums=", ".join(map(str, sums))), tell("shifts bridge two teeth at most"))
 
 
-def heights(train: Train) -> Iterator[tuple[str, float]]:
-    """Heights of the axes of all links over the main one, m; planets on carriers are left out.
+@dataclass(frozen=True)
+class Axis:
+    """An axis that stands still: its ``height`` over the main one, m, and the mesh and link from whose axis it was reached."""
+
+    height: float
+    mesh: Mesh | None = None
+    base: str = ""
+
+
+def standing_axes(train: Train) -> dict[str, Axis]:
+    """Axes of all links but planets on carriers, as the train is unfolded into one plane.
 
     The main axis is that of the carriers and their central wheels, without any that of the first wheel. Pairs beside it stand over
-    it where they lead in first, under it else.
+    it where they lead in first, under it else; further ones lead back to it where their distance allows, else farther away.
 
     Raises
     ------
     CannotBuild
-        when a pair has no wheel on the main axis.
+        when a pair hangs on no axis that is known, or its wheels stand at another distance than it needs.
     """
     on = [m for m in train.meshes if m.carrier]
-    found = {train.link(name): 0.0 for m in on for name in (m.central, m.carrier)} or {train.link(train.meshes[0].central): 0.0}
-    for m in (m for m in train.meshes if not m.carrier):
-        central, planet, apart = train.link(m.central), train.link(m.planet), train.distance(m)
-        if central not in found and abs(abs(found.get(planet, 0.0)) - apart) < 1e-9 * apart:
-            found[central] = 0.0
-        if found.get(central) != 0.0 or found.get(planet) == 0.0:
-            raise CannotBuild(tell("train: wheel {wheel} of the pair {wheel}–{mate} is not on the main axis").format(
+    main = [train.link(name) for m in on for name in (m.central, m.carrier)] or [train.link(train.meshes[0].central)]
+    found = dict.fromkeys(main, Axis(0.0))
+    waiting = [m for m in train.meshes if not m.carrier]
+    while waiting:
+        m = next((m for m in waiting if {train.link(m.central), train.link(m.planet)} & set(found)), waiting[0])
+        waiting.remove(m)
+        known, other = (train.link(name) for name in (m.central, m.planet))
+        if known not in found:
+            known, other = other, known
+        if known not in found:
+            raise CannotBuild(tell("train: neither wheel of the pair {wheel}–{mate} is on an axis that is known").format(
                 wheel=m.central, mate=m.planet), _to_main_axis(m))
-        found.setdefault(planet, apart * (1 if m is train.meshes[0] else -1))
-    yield from found.items()
+        height, apart = found[known].height, train.distance(m)
+        near = 1e-9 * apart
+        if other in found:
+            if abs(abs(found[other].height - height) - apart) > near:
+                raise CannotBuild(tell("train: the axes of {wheel} and {mate} are {there} mm apart, but the pair needs {apart} "
+                                       "mm").format(wheel=m.central, mate=m.planet, apart=number(1e3 * apart),
+                                                    there=number(1e3 * abs(found[other].height - height))), _to_main_axis(m))
+            continue
+        back = height and abs(abs(height) - apart) < near
+        away = (1.0 if m is train.meshes[0] else -1.0) if not height else (1.0 if height > 0 else -1.0)
+        found[other] = Axis(0.0) if back else Axis(height + away * apart, m, known)
+    return found
 
 
 def _to_main_axis(m: Mesh) -> str:

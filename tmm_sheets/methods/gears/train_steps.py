@@ -121,8 +121,10 @@ def is_wheel(name: str) -> bool:
 
 
 def distance_of(train: Any, mesh: Mesh) -> str:
-    """Name of the step with the distance of a mesh: one for all of a carrier, else one for each pair."""
-    return f"a_{mesh.carrier}" if mesh.carrier else f"a_{mesh.central}-{mesh.planet}"
+    """Name of the step with the distance of a mesh: one for all whose planets turn together, else one for each pair."""
+    first = train.stage(mesh)[0]
+    alone = mesh.carrier and all(train.stage(m)[0] is first for m in train.meshes if m.carrier == mesh.carrier)
+    return f"a_{mesh.carrier}" if alone else f"a_{first.central}-{first.planet}"
 
 
 class Kinematics:
@@ -209,6 +211,11 @@ LAID_BESIDE = Rule(
     "velocity of another point of a link", lambda end, n, p, q: end + (1j + n * pi / 30) * np.imag(q - p),
     ("point", "number", "point", "point"), "point",
     marked("At the height of {3} lay off from {0} the difference of the velocities πn/30·{2}{3} at {1} rpm: end {name}."))
+FROM_AXIS = Rule("axis at a distance from another", lambda o, side, a: o + side * 1j * (a / 1e3), ("point", "number", "number"),
+                 "point", marked("At the distance {2} mm from {0} mark the axis {name}."), unit="m")
+ON_PITCH_CIRCLE = Rule("point on a pitch circle about an axis", lambda o, side, d: o + side * 1j * (d / 2e3),
+                       ("point", "number", "number"), "point",
+                       marked("At the pitch radius {2}/2 mm from {0} mark point {name}."), unit="m")
 TOGETHER = Rule("speed by all equations of Willis", together, (N, N), N,
                 marked("The train is closed; the Willis equations of all its meshes together give {name} = {value} "
                        "rpm."), unit="1/min")
@@ -234,28 +241,31 @@ class TrainSpeedPicture(SpeedPicture):
 
     def centre(self, link: str) -> Step:
         """Point of the axis a link turns about."""
-        height = self.axes[self.train.link(link)]
-        if height == 0:
+        axis = self.axes[self.train.link(link)]
+        if axis.mesh is None:
             return self.axis
         name = f"O{self.train.link(link)}"
         if name not in self.plan:
-            mesh = next(m for m in self.train.meshes if not m.carrier and self.train.link(link) in (
-                self.train.link(m.planet), self.train.link(m.central)))
-            self.plan.add(name, reducer_speeds.AT_DISTANCE, 1.0 if height > 0 else -1.0,
-                          self.train.kinematics[distance_of(self.train, mesh)])
+            side, distance = 1.0 if axis.height > 0 else -1.0, self.train.kinematics[distance_of(self.train, axis.mesh)]
+            if (base := self.centre(axis.base)) is self.axis:
+                self.plan.add(name, reducer_speeds.AT_DISTANCE, side, distance)
+            else:
+                self.plan.add(name, FROM_AXIS, base, side, distance)
         return self.plan[name]
 
     def contact(self, m: Mesh) -> Step:
         """Pitch point of a mesh, over the main axis."""
         key = (m.central, m.planet, "contact")
         if key not in self.points:
-            side = 1 if m.carrier or self.axes[self.train.link(m.planet)] > 0 else -1
-            self.points[key] = self.point(reducer_speeds.AT_RADIUS, self.train.kinematics[f"d{m.central}-{m.planet}"], side)
+            diameter, centre = self.train.kinematics[f"d{m.central}-{m.planet}"], self.centre(m.central)
+            side = 1 if m.carrier or self.train.height(m.planet) > self.train.height(m.central) else -1
+            self.points[key] = self.point(reducer_speeds.AT_RADIUS, diameter, side) if centre is self.axis else self.plan.add(
+                next(self.letters), ON_PITCH_CIRCLE, centre, side, diameter)
         return self.points[key]
 
     def planet_axis(self, m: Mesh) -> Step:
         """Point of the planet's axis, over the main one."""
-        key = (m.carrier, "", "axis")
+        key = (distance_of(self.train, m), "", "axis")
         if key not in self.points:
             self.points[key] = self.point(reducer_speeds.AT_DISTANCE, self.train.kinematics[distance_of(self.train, m)])
         return self.points[key]

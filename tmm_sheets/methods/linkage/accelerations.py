@@ -15,7 +15,6 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step, value_of
 from tmm_sheets.mechanism.groups.hints import Turning
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
-from tmm_sheets.methods.linkage.drive import drive_accelerations
 from tmm_sheets.methods.linkage.positions import SEARCHED, passages, position_plan
 from tmm_sheets.methods.linkage.velocities import POLE, MotionPolygon, Velocities, plan_name, turning, velocity_plan
 from tmm_sheets.words import marked, tr
@@ -134,6 +133,8 @@ def acceleration_plan(vel: Velocities, epsilon1: Any = None, where: str = "") ->
     acc.epsilon[m.frame] = plan.add("ε0", SAME, 0.0)
     c = m.crank
     if m.drive is not None:
+        from tmm_sheets.methods.linkage.drive import drive_accelerations
+
         drive_accelerations(acc)
     else:
         _of_crank(acc, epsilon1)

@@ -17,7 +17,6 @@ from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.integration import weighted
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
 from tmm_sheets.methods.linkage.cycle import Cycle
-from tmm_sheets.methods.linkage.drive import place_of_input
 from tmm_sheets.methods.linkage.force_limits import limits_of_forces
 from tmm_sheets.methods.linkage.forces import GearForce, InputForce, Kinetostatics, external_loads, kinetostatics
 from tmm_sheets.methods.linkage.loads import Applied
@@ -99,6 +98,8 @@ class Study:
     @property
     def place_of_input(self) -> Step:
         """Place of the slider or cylinder that drives the mechanism, m."""
+        from tmm_sheets.methods.linkage.drive import place_of_input
+
         return place_of_input(self.positions)
 
     @cached_property

@@ -17,7 +17,6 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.mechanism.groups.hints import Turning
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
-from tmm_sheets.methods.linkage.drive import drive_velocities
 from tmm_sheets.methods.linkage.positions import SEARCHED, Positions, passages, position_plan
 from tmm_sheets.words import marked, tr
 
@@ -212,6 +211,8 @@ def velocity_plan(pos: Positions) -> Velocities:
     vel.omega[m.frame] = plan.add("ω0", SAME, 0.0)
     c = m.crank
     if m.drive is not None:
+        from tmm_sheets.methods.linkage.drive import drive_velocities
+
         drive_velocities(vel)
     else:
         vel.omega[c.link] = plan.add(f"ω{c.link}", OF_CRANK, c.sense, c.speed)

@@ -17,7 +17,6 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.mechanism.groups.force_plan import Load
-from tmm_sheets.methods.linkage.drive import RELATIVE
 from tmm_sheets.methods.linkage.forces import GearForce, InputForce, contact_point
 from tmm_sheets.methods.linkage.velocities import POLE, SAME, SIMILAR, Velocities
 from tmm_sheets.words import marked, tr
@@ -131,6 +130,8 @@ def lever(vel: Velocities, loads: Iterable[Load], couples: dict[str, list[Step]]
         hang(tr("F̅_{Mb}"), b, plan.add("Fур на рычаге", VECTOR_OF, force, across, symbol=tr("Fb on the lever")), "F̅_{Мур}")
         return result
     if isinstance(driver, InputForce):
+        from tmm_sheets.methods.linkage.drive import RELATIVE
+
         drive = driver.drive
         contact = turned(vel.points[drive.far] if drive.slides else vel.plan[RELATIVE])
         result.line = plan.add("u", ALONG_MOTION, pos.directions[drive.link], drive.sense)

@@ -47,7 +47,7 @@ def _inverted(project: Project) -> Iterator[tuple[str, str, float, float]]:
 
 def _ratios(train: Train) -> Iterator[str]:
     teeth, plan = train.data.teeth, train.kinematics
-    for one, other in ((m, o) for m, o in combinations(train.meshes, 2) if m.carrier and m.carrier == o.carrier):
+    for one, other in ((m, o) for m, o in combinations(train.meshes, 2) if m.carrier and train.stage(m) == train.stage(o)):
         (a, b), (c, d) = ((m.central, m.planet) for m in (one, other))
         n_a, n_c, h = (float(plan[f"n{name}"].value) for name in (a, c, one.carrier))
         if is_zero(n_c - h, max(abs(n_c), abs(h))):
@@ -65,13 +65,12 @@ def _ratios(train: Train) -> Iterator[str]:
 
 def _checks(train: Train) -> Iterator[str]:
     teeth, q = train.data.teeth, train.data.satellites
-    for carrier in dict.fromkeys(m.carrier for m in train.meshes if m.carrier):
-        meshes = [m for m in train.meshes if m.carrier == carrier]
+    for meshes in (stage for stage in train.stages if stage[0].carrier):
         signs = ["+" if m.sign > 0 else "−" for m in meshes]
-        sums = [teeth[m.central] + m.sign * teeth[m.planet] for m in meshes]
+        sums = [train.teeth(m) for m in meshes]
         letters = [f"z_{{{m.central}}} {sign} z_{{{m.planet}}}" for m, sign in zip(meshes, signs, strict=True)]
         numbers = [f"{teeth[m.central]} {sign} {teeth[m.planet]}" for m, sign in zip(meshes, signs, strict=True)]
-        if len(meshes) > 1:
+        if len(meshes) > 1 and not any(map(train.own_module, meshes)):
             same = len(set(sums)) == 1
             yield tr("Coaxiality: {letters}; {numbers}").format(
                 letters=(" = " if same else " ≈ ").join(letters),
@@ -88,9 +87,9 @@ def _checks(train: Train) -> Iterator[str]:
         yield f"{sums[largest]}·sin(180°/{q}) = {fixed(between, 2)} {sign} {width}"
 
 
-def at_equal_angles(train: Train, carrier: str) -> int:
-    """So many planets of a carrier can be put in at equal angles, no more than the task has."""
-    one, *others = (m for m in train.meshes if m.carrier == carrier)
+def at_equal_angles(train: Train, stage: tuple[Mesh, ...]) -> int:
+    """So many planets of a stage can be put in at equal angles, no more than the task has."""
+    one, *others = stage
     wanted: int = train.data.satellites
     return next(q for q in range(wanted, 0, -1) if all(_parts(train.data.teeth, one, m) % q == 0 for m in others))
 

@@ -220,7 +220,8 @@ class SchemeViews:
         for name, value in ends.items():
             s.vector(name.upper(), name)
             way = 1 if value.real > 0 else -1
-            self.canvas.label(s.at(name), name, away=complex(way, 0.4), height=3.5, gap=1.2)
+            letters = name if len(name) == 1 else f"{name[0]}_{name[1:]}"
+            self.canvas.label(s.at(name), letters, away=complex(way, 0.4), height=3.5, gap=1.2)
 
     def lines(self, s: PlayerStage) -> None:
         """Line of each link through the ends of the velocities of all its points."""

@@ -78,13 +78,13 @@ def dimensions(project: Project) -> list[str]:
     """Distance of the axes of every stage, half the sum or the difference of its diameters, and diameters of the wheels."""
     train = project.train
     plan = train.kinematics
-    m, lines, shown = float(plan["m"].value), list[str](), set[str]()
+    m, lines, shown = float(plan["m"].value), list[str](), set[Any]()
     for mesh in train.meshes:
         c, p, sign = mesh.central, mesh.planet, "+" if mesh.sign > 0 else "−"
         z = {name: int(plan[f"z{name}"].value) for name in (c, p)}
         diameter = plan[f"d{c}-{p}"]
-        if not mesh.carrier or mesh.carrier not in shown:  # all planets of a carrier run at one distance
-            shown.add(mesh.carrier)
+        if (stage := train.stage(mesh)) not in shown:  # planets that turn together run at one distance
+            shown.add(stage)
             lines.append(f"a_{{{c}–{p}}} = m·(z_{{{c}}} {sign} z_{{{p}}})/2 = {number(m)}·({z[c]} {sign} {z[p]})/2 = "
                          f"{number(1e3 * train.distance(mesh))}")
         # Where wheels of another sum of teeth run at the same distance they roll on other circles than those of the module.
@@ -183,8 +183,21 @@ class SchemeOfTrain(SchemeViews):
 
     def turns(self, m: Mesh) -> list[float]:
         """Angles of the planets of a mesh from the first, as many as can be put in at equal angles, rad."""
-        count = at_equal_angles(self.train, m.carrier) if m.carrier else 1
-        return [2 * pi * k / count for k in range(count)]
+        count = at_equal_angles(self.train, self.train.stage(m)) if m.carrier else 1
+        # Planets of another shaft on the carrier stand between these.
+        return [2 * pi * k / count + pi * self.shaft(m.planet) / count for k in range(count)]
+
+    def shaft(self, planet: str) -> int:
+        """Number of a planet's shaft among those of its carrier, 0 for the first."""
+        own = next(m for m in self.train.meshes if m.planet == planet)
+        of = [s for s in self.train.stages if s[0].carrier == own.carrier]
+        return of.index(self.train.stage(own)) if own.carrier else 0
+
+    def sides(self, satellite: str) -> tuple[int, ...]:
+        """Sides of the main axis at which a satellite is drawn; several shafts of a carrier in turn over and under it."""
+        own = next(m for m in self.train.meshes if satellite == m.planet)
+        several = sum(s[0].carrier == own.carrier for s in self.train.stages) > 1
+        return ((1, -1)[self.shaft(satellite) % 2],) if own.carrier and several else super().sides(satellite)
 
     def draw(self) -> None:
         """Draw the three views."""
@@ -202,7 +215,7 @@ class SchemeOfTrain(SchemeViews):
         for carrier in dict.fromkeys(m.carrier for m in train.meshes):
             of = [m for m in train.meshes if m.carrier == carrier]
             if carrier:
-                self.arm(carrier, of[0], x)
+                self.arm(carrier, of, x)
                 x += self.column
             first = x
             for m in of:
@@ -211,10 +224,11 @@ class SchemeOfTrain(SchemeViews):
                 for name in (m.central, m.planet):
                     self.columns.setdefault(name, []).append(x)
                 x += self.column
-            if carrier:
-                for side in self.sides(of[0].planet):
-                    height = self.y(side * train.distance(of[0]))
-                    c.line(complex(first - self.column, height), complex(x - self.column + self.face, height), "main")
+            for stage in dict.fromkeys(map(train.stage, of)) if carrier else ():
+                last = first + of.index(stage[-1]) * self.column
+                for side in self.sides(stage[0].planet):
+                    height = self.y(side * train.distance(stage[0]))
+                    c.line(complex(first - self.column, height), complex(last + self.face, height), "main")
         self.joined()
 
     def joined(self) -> None:
@@ -253,37 +267,38 @@ class SchemeOfTrain(SchemeViews):
     def central(self, m: Mesh, x: float) -> None:
         """The wheel about the main axis with a sleeve or on its shaft, or held in the frame."""
         r, stands, free = self.train.radius(m.central, m), self.train.stands(m.central), not self.on_shaft(m.central)
+        up = self.height(m.central)
         name = "" if m.central in self.columns else m.central  # in several meshes, as ring and as sun, it is named once
         if m.sign < 0:
-            self.ring(name, r, x, stands)
+            self.ring(name, r, x, stands, up)
             return
-        self.wheel(Edge(name, 2 * r), x, 0.0, label=-1, free=free)
+        self.wheel(Edge(name, 2 * r), x, up, label=-1 if self.height(m.planet) > up or m.carrier else 1, free=free)
         if stands:
             for side in (-1, 1):
-                a, b = (complex(x + end * self.face / 2, self.axis + side * HUB) for end in (-1, 1))
+                a, b = (complex(x + end * self.face / 2, self.y(up) + side * HUB) for end in (-1, 1))
                 self.canvas.hatch(a, b, side, depth=2.0, step=2.0)
 
-    def ring(self, name: str, r: float, x: float, stands: bool) -> None:
+    def ring(self, name: str, r: float, x: float, stands: bool, up: float) -> None:
         """A ring: held in the frame where it meshes, or joined by a disc beside the planets to a sleeve about the main axis."""
         c, web = self.canvas, x + self.face + 3
         if stands:
             self.held(x, r, name)
             return
         for side in (1, -1):
-            rim = complex(x, self.y(side * r))
+            rim = complex(x, self.y(up + side * r))
             c.line(rim - self.face / 2, rim + self.face / 2, "main")
-            hub = complex(web, self.axis + side * HUB)
+            hub = complex(web, self.y(up) + side * HUB)
             c.line(rim + self.face / 2, complex(web, rim.imag), "main")
             c.line(complex(web, rim.imag), hub, "main")
             c.line(hub - self.face / 2, hub + self.face / 2, "main")
-        c.label(complex(x - self.face / 2, self.y(-r)), name, away=-1 - 0.6j, height=5, gap=1.2)
+        c.label(complex(x - self.face / 2, self.y(up - r)), name, away=-1 - 0.6j, height=5, gap=1.2)
 
-    def arm(self, carrier: str, m: Mesh, x: float) -> None:
+    def arm(self, carrier: str, of: list[Mesh], x: float) -> None:
         """The carrier's arm from the main axis to the planets'."""
         self.columns[carrier] = [x]
-        c, top = self.canvas, self.y(self.train.distance(m))
+        ends = [self.y(side * self.train.distance(m)) for m in of for side in self.sides(m.planet)]
+        c, top, low = self.canvas, max(*ends, self.axis), min(*ends, self.axis)
         c.line(complex(x - self.stub, self.axis), complex(x, self.axis), "main")
-        low = self.y(-self.train.distance(m)) if self.opposite(m.planet) else self.axis
         c.line(complex(x, low), complex(x, top), "main")
         self.bearing(x - self.stub / 2, self.axis)
         if self.train.stands(carrier):
@@ -300,8 +315,9 @@ class SchemeOfTrain(SchemeViews):
         c.dot(o, 1.2)
         named: list[tuple[complex, float, str]] = []
         for m in train.meshes:
-            named.append((o, mm(train.radius(m.central, m)), m.central))
-            c.circle(o, named[-1][1], "main" if train.stands(m.central) else "axis")
+            centre = o + 1j * mm(self.height(m.central))
+            named.append((centre, mm(train.radius(m.central, m)), m.central))
+            c.circle(centre, named[-1][1], "main" if train.stands(m.central) else "axis")
             up = mm(self.height(m.planet))
             for turn in self.turns(m):
                 at = o + rect(up, pi / 2 + turn)
