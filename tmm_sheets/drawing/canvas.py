@@ -38,8 +38,6 @@ ARROW = (5.0, 0.85)
 """Length and half width of an arrow head, mm (GOST 2.307: about 20 degrees)."""
 KEPT_OFF = 4.0
 """How many times more than other lettering do letters keep off thin lines that one of their own, or the next, would strike."""
-OVER_RULE = 0.4
-"""Distance of a descending index from the rule under it, mm."""
 LOOSE = 0.25
 """Further distance of an index from its base in slanting lettering, mm."""
 
@@ -456,10 +454,7 @@ class Canvas:
             x = x0
             for w, cell in zip(widths, cells, strict=True):
                 laid = fitted(cell, w - 1.0 + 1e-9, height)  # a column may be exactly as wide as its text needs
-                size = max((run.height for run in laid.runs), default=height)
-                free = (row - laid.ascent - laid.descent) / 2  # an index that hangs low lifts its letters off the rule
-                low = max((row - size) / 2, laid.descent + min(OVER_RULE, free))
-                self.put(laid, complex(x + (w - laid.width) / 2, y1 - (i + 1) * row + low), 0.0, cell)
+                self.put(laid, complex(x + (w - laid.width) / 2, y1 - (i + 1) * row + laid.over_rule(row)), 0.0, cell)
                 x += w
         return Box(x0, y0, x0 + total, y1)
 

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.drawing.cells import Cells
-from tmm_sheets.drawing.marks import Box, Fill, Line, Mark, Points, Polyline, Provenance, Text, flat
+from tmm_sheets.drawing.marks import Arc, Box, Fill, Line, Mark, Points, Polyline, Provenance, Text, flat
 from tmm_sheets.drawing.styles import line_types
 from tmm_sheets.drawing.text_boxes import bounds_of, text_boxes
 
@@ -26,6 +26,8 @@ WIDEST = 2.0
 """A line that is farther off than this comes no nearer to a rectangle than is asked, mm."""
 WORSE = 10
 """A side of lettering in a rectangle, or a strong line near it, is as bad as so many thin lines."""
+SHORT = 4.0
+"""Lines no longer than this are covered whole by a letter, mm: they cannot be interrupted behind it."""
 NOWHERE = Box(0.0, 0.0, 0.0, 0.0)
 LEADER = -1
 """Number of the mark that a leader of a label has."""
@@ -81,7 +83,7 @@ class InkIndex:
                 starts.append(points[:-1])
                 ends.append(points[1:])
             bar, strong = mark.style == "text", mark.style in STRONG
-            heavy, parts = strong or bar or isinstance(mark, Fill), not bar and number not in self._windows
+            heavy, parts = strong or bar or isinstance(mark, Fill) or _is_short(mark), not bar and number not in self._windows
             lines.append((number, strong, heavy, parts, width / 2))
         if lines:
             a, b = (np.fromiter(chain.from_iterable(of), complex) for of in (starts, ends))
@@ -205,6 +207,13 @@ class InkIndex:
         cells = Cells(self.area, CELL)
         cells.add_points(sample(self.a[first:][which[first:]], self.b[first:][which[first:]], CELL / 2))
         return cells
+
+
+def _is_short(mark: Mark) -> bool:
+    """Whether nothing would be left of a symbol or of hatching under a letter: a line, a circle no longer than it."""
+    if mark.by is None or mark.by.role not in ("symbol", "hatch"):
+        return False
+    return (isinstance(mark, Line) and abs(mark.b - mark.a) <= SHORT) or (isinstance(mark, Arc) and 2 * mark.radius <= SHORT)
 
 
 def sample(a: Any, b: Any, step: float) -> Points:

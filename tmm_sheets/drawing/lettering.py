@@ -26,6 +26,8 @@ SIZES = (1.8, 2.5, 3.5, 5.0, 7.0, 10.0, 14.0, 20.0)
 PEN = 0.1
 """Width of the pen of type B, in heights of a capital letter."""
 BAR = "\u0305"
+OVER_RULE = 0.4
+"""Distance of a descending index from the rule of a table under it, mm."""
 PRIMES = "′″'"
 
 _GAP = 0.2  # between letters; all in heights of a capital
@@ -58,6 +60,12 @@ class Lettering(NamedTuple):
     descent: float
     runs: tuple[LetterRun, ...]
     bars: tuple[VectorBar, ...]
+
+    def over_rule(self, row: float) -> float:
+        """Height of its baseline over the rule under its row of a table, mm: an index that hangs low lifts its letters off it."""
+        size = max((run.height for run in self.runs), default=0.0)
+        free = (row - self.ascent - self.descent) / 2
+        return max((row - size) / 2, self.descent + min(OVER_RULE, free))
 
 
 class Glyph(NamedTuple):

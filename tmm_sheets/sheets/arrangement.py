@@ -49,7 +49,8 @@ ANYWHERE = Box(0.0, 0.0, 0.0, 0.0)
 class Arrangement:
     """What stands where on one sheet, from ``templates/sheets/<name>.toml``.
 
-    ``offers`` are views for the room that is left, by :mod:`tmm_sheets.sheets.optional_views`, the ones most wanted first.
+    ``offers`` are views for the room that is left, by :mod:`tmm_sheets.sheets.optional_views`, the ones most wanted first; what may
+    stand there several times, at ``most``, is offered as the first of them, the second and so on (option ``nth``).
     """
 
     name: str
@@ -126,7 +127,7 @@ def _read(path: Path, name: str) -> Arrangement:
     try:
         views = tuple(ViewPlace(v.pop("draw"), _box(v.pop("box")), others={name: _box(at) for name, at in v.pop("or", {}).items()},
                            options=v) for v in data.get("view", []))
-        offers = tuple(ViewPlace(v.pop("draw"), ANYWHERE, options=v) for v in data.get("offer", []))
+        offers = tuple(each for v in data.get("offer", []) for each in _offered(v))
         found = Arrangement(name, data["title"], data.get("code", ""), views, dict(data.get("without", {})), offers)
     except (KeyError, TypeError, ValueError) as e:
         raise BadInput(Problem(tell("expected title and [[view]] tables with draw and box, found {found!r}").format(found=e),
@@ -136,6 +137,11 @@ def _read(path: Path, name: str) -> Arrangement:
             raise BadInput(Problem(tell('there is no view "{draw}"').format(draw=view.draw), str(path), field="view.draw",
                                    hint=tell('did you mean "{near}"?').format(near=near(view.draw, VIEWS, alike=0.0)[0])))
     return found
+
+
+def _offered(data: dict[str, Any]) -> list[ViewPlace]:
+    draw, most = data.pop("draw"), data.pop("most", 0)
+    return [ViewPlace(draw, ANYWHERE, options={**data, "nth": k}) for k in range(1, most + 1)] or [ViewPlace(draw, ANYWHERE, data)]
 
 
 def _box(sides: Any) -> Box:

@@ -143,7 +143,8 @@ VIEWS = {view.draw: view for view in (
              name=marked("Table of reactions at all positions")),
     # of whatever the sheet has
     ViewKind("hodograph.bearing", sizes="hodograph.bearing_sizes"),
-    ViewKind("details.dense", sizes="details.dense_sizes", near="details.dense_near", name=marked("Mark of an enlarged detail")),
+    ViewKind("details.dense", sizes="details.dense_sizes", near="details.dense_near", stands="anywhere",
+             name=marked("Mark of an enlarged detail")),
     ViewKind("planet_motion.checks", sizes="planet_motion.checks.sizes", stands="anywhere"),
     ViewKind("planet_motion.inverted", sizes="planet_motion.inverted.sizes"),
     ViewKind("planet_motion.ratios", sizes="planet_motion.ratios.sizes", stands="anywhere"),

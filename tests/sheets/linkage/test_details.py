@@ -37,7 +37,7 @@ def row(count, step=2.0):
 
 
 @pytest.mark.parametrize(("anchors", "crowded"), [
-    ([], 0), ([0.0], 0), (row(6), 0), (row(7), 7), ([0.0] * 9, 9), (row(9, 30.0), 0), ([*row(9), 60.0], 9),
+    ([], 0), ([0.0], 0), (row(5), 0), (row(6), 6), ([0.0] * 9, 9), (row(9, 30.0), 0), ([*row(9), 60.0], 9),
     ([*row(10, 1.0), *(80 + z for z in row(9, 1.0))], 10),  # of two crowds the thicker
 ], ids=["none", "one", "few", "many", "coincident", "apart", "one far off", "two crowds"])  # fmt: skip
 def test_what_is_a_crowd(anchors, crowded):

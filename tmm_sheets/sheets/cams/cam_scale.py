@@ -22,6 +22,9 @@ MARK = 1.8
 SAME = 0.05
 """Marks nearer than this, mm, are one."""
 
+ALONG = sorted(np.arange(-8.0, 9.0), key=abs)
+"""How far along the path a number may move from its mark, mm: no farther than is needed."""
+
 Path = Callable[[float, float], complex]
 """A point of the sheet so far along the path from its lowest mark and so far beside it, mm."""
 
@@ -68,7 +71,7 @@ def _row(ink: InkIndex, closed: Box, marks: Sequence[tuple[int, float, str]], pa
          off: float, most: float) -> tuple[float, list[Box]] | None:
     """A row at a side of the path: what it costs in lines crossed, places of the numbers; None if it costs ``most`` or more.
 
-    A number moves on along the path, with those behind it, past what is drawn where it would stand.
+    A number moves along the path, with those behind it, past what is drawn where it would stand.
     """
     if 0.04 * off >= most:
         return None
@@ -88,15 +91,17 @@ def _row(ink: InkIndex, closed: Box, marks: Sequence[tuple[int, float, str]], pa
             return Box((at - half).real, (at - half).imag, (at + half).real, (at + half).imag)
 
         def met(box: Box) -> int:
-            over = min(box.x1, closed.x1) > max(box.x0, closed.x0) and min(box.y1, closed.y1) > max(box.y0, closed.y0)
+            over = sum(min(box.x1, other.x1) > max(box.x0, other.x0) and min(box.y1, other.y1) > max(box.y0, other.y0)
+                       for other in (closed, *boxes[-1:]))
             return ink.count_in(box) + 10 * over
 
-        begin, tried = max(wanted, before + least), list[tuple[int, float]]()
-        for t in begin + np.arange(0.0, 8.0, 1.0):
-            tried.append((met(place(t).inset(-CLEAR)), t))
-            if not tried[-1][0]:
-                break
-        lines, before = min(tried)
+        begin, tried = max(wanted, before + least), list[tuple[int, float, float]]()
+        for off_mark in ALONG:
+            if begin + off_mark >= before + least:
+                tried.append((met(place(begin + off_mark).inset(-CLEAR)), abs(off_mark), begin + off_mark))
+                if not tried[-1][0]:
+                    break
+        lines, _, before = min(tried)
         boxes.append(place(before))
         cost += lines + 0.05 * abs(before - mark)
         if cost >= most:

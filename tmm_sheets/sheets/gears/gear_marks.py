@@ -144,14 +144,14 @@ def ruled_table(canvas: Canvas, box: Box, rows: Sequence[tuple[str, ...]], width
     for i, cells in enumerate(rows):
         y = box.y1 - i * row
         canvas.line(complex(box.x0, y), complex(box.x1, y), "main" if i < 2 else "thin")
-        base = y - (row + height) / 2
         for j, cell in enumerate(cells):
             if j == 0 and i:
-                canvas.put(fitted(cell, edges[1] - edges[0] - 3.0, height), complex(edges[0] + 2, base), 0.0, cell)
+                laid = fitted(cell, edges[1] - edges[0] - 3.0, height)
+                canvas.put(laid, complex(edges[0] + 2, y - row + laid.over_rule(row)), 0.0, cell)
                 continue
             right = edges[-1] if j == len(cells) - 1 else edges[j + 1]
             laid = fitted(cell, right - edges[j] - 1.0, height)
-            canvas.put(laid, complex((edges[j] + right - laid.width) / 2, base), 0.0, cell)
+            canvas.put(laid, complex((edges[j] + right - laid.width) / 2, y - row + laid.over_rule(row)), 0.0, cell)
         for x in edges[1 : len(cells)]:
             canvas.line(complex(x, y), complex(x, y - row), "thin")
     canvas.line(complex(box.x0, bottom), complex(box.x1, bottom), "main")

@@ -39,7 +39,7 @@ ONE = 0.02
 """Corners closer than this are one, mm."""
 SCHEMES = ("kinetics.lever", "kinetics.group", "kinetics.groups", "kinetics.crank")
 """Views whose letters may crowd."""
-ROUND, MANY = 12.0, 7
+ROUND, MANY = 12.0, 6
 """So many labels asked for so near to one of them, mm, are more than can be read beside each other."""
 EDGE = 2.0
 """Distance of the outermost of their anchors from the edge of the detail, mm of the scheme."""
