@@ -72,6 +72,10 @@ GRAPHS = (
 )
 
 
+NAMES = {"H1": ("distance H_1",), "H2": ("distance H_2",), "h": ("the tooth",), "S": ("the graph of S", "the graph of ψ")}
+"""What ``check`` calls some sizes."""
+
+
 class Size(NamedTuple):
     """What was measured of a sheet, and the size it should have at least, mm."""
 
@@ -84,8 +88,8 @@ class Size(NamedTuple):
 
     @property
     def below(self) -> bool:
-        """Whether it is too small, up to rounding."""
-        return self.size < self.floor - 0.05
+        """Whether it is too small, to the millimetre, as ``check`` tells it."""
+        return round(self.size) < self.floor
 
 
 def _graphs(sheet):
@@ -132,7 +136,7 @@ def measured(name):
             shown = {what.removesuffix(" enlarged") for _, what, *_ in every if what.endswith(" enlarged")}
             for view, what, size, floor in (one for one in every if one[1] not in shown):
                 found.append(Size(f"{name} {n}", view, what, float(size), floor,
-                                  any(f"the graph of {what}" in said for said in told)))
+                                  any(name in said for said in told for name in NAMES.get(what, (f"the graph of {what}",)))))
         except Exception as e:
             found.append(f"{name} {n}: {type(e).__name__}: {e}")
     return found

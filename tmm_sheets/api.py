@@ -239,21 +239,20 @@ class Opened:
         CannotBuild
             when something cannot be built.
         """
-        from tmm_sheets.sheets import composing, composition
+        from tmm_sheets.sheets import composing, composition, legibility
 
         project, variant = self.project, self.project.variant
         with self._on_paper():
             project.check()
             composition.check(project)
-            told: list[object] = [*composing.shortened(project)]
+            every = range(1, len(project.sheets) + 1)
+            told: list[object] = [*composing.shortened(project), *composition.left_out(project, every),
+                                  *legibility.crowded(project, every)]
             if variant.crank is not None:
                 from tmm_sheets import summary
-                from tmm_sheets.sheets import legibility
                 from tmm_sheets.sheets.components import flat_crossings
 
-                every = range(1, len(project.sheets) + 1)
-                told += (*composition.left_out(project, every), *legibility.crowded(project, every),
-                         *flat_crossings.lines(project), *project.dead_positions, *summary.swing(project), *summary.signs(project),
+                told += (*flat_crossings.lines(project), *project.dead_positions, *summary.swing(project), *summary.signs(project),
                          *summary.given(project))
             told += project.flywheel.remarks if variant.flywheel is not None else ()
             return tuple(map(str, told))

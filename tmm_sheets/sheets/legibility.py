@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from tmm_sheets.construction.readable import CURVE, MAIN, POLE
+from tmm_sheets.construction.readable import CURVE, MAIN, POLE, TOOTH
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.composition import arranged, placed_where
@@ -21,6 +21,7 @@ from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
     from tmm_sheets.box import Box
+    from tmm_sheets.methods.cams.cam_profile import RockerCam, TappetCam
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.methods.integration import Floats
     from tmm_sheets.project import Project
@@ -111,7 +112,7 @@ def below(project: Project, n: int, view: ViewPlace, what: Remark, least: float,
         return
     if here >= least * (1 - 1e-6):
         return
-    said = Remark(marked("sheet {n}: {what} is {size:.0f} mm large, it is read from {least:.0f} mm on: {hint}"),
+    said = Remark(marked("sheet {n}: {what} is {size:.3g} mm large, it is read from {least:.0f} mm on: {hint}"),
                   {"n": n, "what": what, "size": here, "least": least, "hint": Remark(hint)})
     apart = _apart(project, n, view, size, least)
     yield said if apart is None else Remark(marked("{said}, or take a sheet more, sheets = [{names}]"),
@@ -121,10 +122,48 @@ def below(project: Project, n: int, view: ViewPlace, what: Remark, least: float,
 def cam_motion(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
     """Pole distances or graphs of the motion of a cam are too small, to the millimetre."""
     scales, law = project.cam.motion.scales, project.cam.law
-    graph = Remark(marked("the graph of {quantity}"), {"quantity": law.symbol})
-    for what, size, least in ((POLES[0], scales.h1, POLE), (POLES[1], scales.h2, POLE), (graph, scales.s.mm(law.stroke), MAIN)):
-        yield from below(project, n, view, what, least, lambda _, __, size=size: float(round(size)),  # type: ignore[misc]
-                         marked("longer phases of rise and return"))
+    for what, size, least in ((POLES[0], scales.h1, POLE), (POLES[1], scales.h2, POLE),
+                              (_graph(law.symbol), scales.s.mm(law.stroke), MAIN)):
+        yield from _in_place(project, n, view, what, size, least, marked("longer phases of rise and return"))
+
+
+def zone(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
+    """The curve whose tangents bound the zone of a cam's axis is too low: it has one scale factor with the cam itself."""
+    from tmm_sheets.sheets.cams import cam_zone
+
+    cam, rays = project.cam, bool(view.options.get("rays"))
+    if cam.law.symbol == "S":
+        name, size = "S(S')", cam_zone.stroke_in(cast("TappetCam", cam), rays, view.box.width, view.box.height)
+    else:
+        rocker = cast("RockerCam", cam)
+        name, size = "D(ψ)", float(np.ptp(rocker.zone.curve.value.imag)) / cam_zone.fitted_rocker(rocker, rays, view.box)[0]
+    yield from _in_place(project, n, view, _graph(name), size, CURVE, marked("a larger pressure_angle makes the cam smaller"))
+
+
+def spring(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
+    """The force of a cam's spring and that of inertia are too low."""
+    from tmm_sheets.sheets.cams.cam import spring_diagram
+
+    span, diagram = spring_diagram(project.cam, view.box)
+    yield from _in_place(project, n, view, _graph("F, Q"), diagram.tall.mm(span), CURVE, marked("leave out a view of the sheet"))
+
+
+def teeth(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
+    """The teeth of the mesh are too low."""
+    from tmm_sheets.sheets.gears import gear_picture
+
+    size = gear_picture.picture(project.gear, view.box.width, view.box.height)[0].mm(gear_picture.highest_tooth(project.gear))
+    yield from _in_place(project, n, view, Remark(marked("the tooth of the mesh")), size, TOOTH,
+                         marked("a smaller ratio of the tooth numbers"))
+
+
+def _graph(quantity: str) -> Remark:
+    return Remark(marked("the graph of {quantity}"), {"quantity": quantity})
+
+
+def _in_place(project: Project, n: int, view: ViewPlace, what: Remark, size: float, least: float, hint: str) -> Iterator[Remark]:
+    """The same of a size, mm, that was found already, to the millimetre."""
+    yield from below(project, n, view, what, least, lambda _, __: float(round(size)), hint)
 
 
 def _apart(project: Project, n: int, view: ViewPlace, size: Size, least: float) -> str | None:

@@ -172,7 +172,7 @@ VIEWS = {view.draw: view for view in (
     ViewKind("mertsalov.position_table", "flywheel", after="mertsalov.procedure"),
     ViewKind("mertsalov.results", "flywheel", after="mertsalov.procedure"),
     # gears
-    ViewKind("gear.engagement", "gear", place="gear_sizes.engagement"),
+    ViewKind("gear.engagement", "gear", place="gear_sizes.engagement", read="legibility.teeth"),
     ViewKind("gear.mesh", "gear", place="gear_sizes.mesh"),
     ViewKind("gear.parameters", "gear"),
     ViewKind("gear.results", "gear"),
@@ -204,14 +204,14 @@ VIEWS = {view.draw: view for view in (
     # cams
     ViewKind("cam.motion", "cam", place="cam_sizes.motion", read="legibility.cam_motion"),
     ViewKind("cam.pressure", "cam", place="cam_sizes.pressure"),
-    ViewKind("cam.spring", "cam", place="cam_sizes.spring"),
+    ViewKind("cam.spring", "cam", place="cam_sizes.spring", read="legibility.spring"),
     ViewKind("cam.table", "cam", place="cam_sizes.table", name=marked("Table of the law of motion")),
     ViewKind("cam_law.equations", "cam", sizes="cam_law.equations_sizes", stands="anywhere"),
     ViewKind("cam_profile.profile", "cam", place="cam_sizes.profile"),
     ViewKind("cam_profile.radii", "cam", sizes="cam_profile.radii_sizes"),
     ViewKind("cam_profile.roller", "cam", place="cam_sizes.roller"),
-    ViewKind("cam_zone.of_rocker", "cam", place="cam_sizes.wide"),
-    ViewKind("cam_zone.of_tappet", "cam", place="cam_sizes.zone_of_tappet"),
+    ViewKind("cam_zone.of_rocker", "cam", place="cam_sizes.wide", read="legibility.zone"),
+    ViewKind("cam_zone.of_tappet", "cam", place="cam_sizes.zone_of_tappet", read="legibility.zone"),
     ViewKind("cam_zone.plate", "cam", place="cam_sizes.wide"),
     ViewKind("cam_zone.sum_graph", "cam", place="cam_sizes.wide"),
 )}

@@ -18,6 +18,7 @@ from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.quantities import Directions, Points, Reals, Signs
+from tmm_sheets.construction.readable import CURVE
 from tmm_sheets.construction.rules import (
     ALONG,
     ARC_ARC,
@@ -35,6 +36,8 @@ from tmm_sheets.words import marked, tr
 
 COMMON_ORDINATES = (25.0, 20.0, 15.0, 10.0, 5.0)
 """Ordinate of both speeds at the pole, mm of paper: 25 (manual 000, 6 example), less where the far one gets too high."""
+LARGER_ORDINATES = (30.0, 35.0, 40.0)
+"""Those that are tried where with none of these the graphs are so high that they can be read."""
 HIGHEST_ORDINATE = 110.0
 
 
@@ -332,10 +335,13 @@ def common_ordinate(pair: PairGeometry) -> Given:
     # over the foot of the other wheel, of an internal pair over the pinion's tip
     ratio = one.t_tip / one.t_pole - 1 if pair.internal else max(one.t_pole, two.t_pole) / min(one.t_pole, two.t_pole)
     found = next((y for y in COMMON_ORDINATES if y * (1 + ratio) <= HIGHEST_ORDINATE), COMMON_ORDINATES[-1])
-    tried = ", ".join(number(y) for y in COMMON_ORDINATES)
-    return Given(found, "gear.sliding.ordinate", "y_V", "mm", "000, 6", "none",
-                 tr("the greatest of {tried} mm with which the greatest ordinate is not higher than {most} mm").format(
-                     tried=tried, most=number(HIGHEST_ORDINATE)))
+    said = tr("the greatest of {tried} mm with which the greatest ordinate is not higher than {most} mm").format(
+        tried=", ".join(number(y) for y in COMMON_ORDINATES), most=number(HIGHEST_ORDINATE))
+    if found * (1 + ratio) < CURVE:  # of an internal pair
+        found = next(y for y in LARGER_ORDINATES if y * (1 + ratio) >= CURVE)
+        said = tr("the least of {tried} mm with which the greatest ordinate is {least} mm high").format(
+            tried=", ".join(number(y) for y in LARGER_ORDINATES), least=number(CURVE))
+    return Given(found, "gear.sliding.ordinate", "y_V", "mm", "000, 6", "none", said)
 
 
 def sliding_plan(pair: PairGeometry, engagement: Plan, parts: tuple[int, int] = (3, 4)) -> Plan:

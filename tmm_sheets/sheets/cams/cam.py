@@ -484,12 +484,10 @@ def spring(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     assert spring is not None
     steps = spring.course
     phi, force, inertia = (step.value for step in steps)
-    top, low = float(max(force.max(), inertia.max())), float(min(inertia.min(), 0.0))
     lines = _spring_lines(spring, law.symbol == "S")
     text = max(letter(line, 3.5).width for line in lines) + 16.0
     beside = _lines_beside(box.width, box.height)
-    area = box.inset(14, 8, text + 12, 32) if beside else box.inset(14, 14 + 7.0 * len(lines), 20, 32)
-    d = OverAngle.fitted(area, law.fall.end, (low, top), ("μ_F", tr("N/mm")))
+    _, d = spring_diagram(cam, box)
     canvas.title(box, tr("Closing spring"), f"{d.tall},  {d.across}")
     course, found = d.placed(canvas, spring.course_plan), d.placed(canvas, spring.plan)
     d.axes(course, steps[1], (10.0, 8.0), tr("F, Q, N"), 4.5)
@@ -510,6 +508,19 @@ def spring(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
         lines_of_text(canvas, box, lines)
         return
     canvas.lines(complex(box.x1 - text + 12.0, box.y1 - 34.0), lines, 8.0)
+
+
+def spring_diagram(cam: Cam, box: Box) -> tuple[float, OverAngle]:
+    """What the forces of the spring and of inertia extend over, N, and where they stand over the cam angle."""
+    assert cam.spring is not None
+    _, force, inertia = (step.value for step in cam.spring.course)
+    lines = _spring_lines(cam.spring, cam.law.symbol == "S")
+    text = max(letter(line, 3.5).width for line in lines) + 16.0
+    beside = _lines_beside(box.width, box.height)
+    area = box.inset(14, 8, text + 12, 32) if beside else box.inset(14, 14 + 7.0 * len(lines), 20, 32)
+    every = np.concatenate((force, inertia))
+    span = float(min(inertia.min(), 0.0)), float(every.max())
+    return float(np.ptp(every)), OverAngle.fitted(area, cam.law.fall.end, span, ("μ_F", tr("N/mm")))
 
 
 def _lines_beside(width: float, height: float) -> bool:

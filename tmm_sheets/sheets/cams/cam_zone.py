@@ -11,7 +11,7 @@ from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, hatch_polygon
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import bar, hinge
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.cams.cam import ANGLE, OverAngle, centred, distinct, for_cams, lines_of_text, raised
@@ -193,18 +193,20 @@ DEEP = 0.9
 """Greatest depth to which the zone of a rocker is drawn, in lengths of its arm."""
 
 
-@for_cams
-def of_rocker(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Positions of the rocker with the segments AB psi', rays under the permitted pressure angle, allowed zone, r0 and l0."""
-    cam = cast("RockerCam", project.cam)
+def _of_rocker(cam: RockerCam, rays: bool) -> Points:
+    """What the figure of a rocker's zone has in it, m, whatever its depth."""
     z = cam.zone
-    pivot, apex = complex(z.plan["A"].value), complex(z.apex.value)
-    curve = z.curve.value
-    rays = bool(options.get("rays"))
-    beyond = z.tips(z.beyond).value if rays and z.beyond is not None else curve[:0]
-    every = np.array([pivot, apex, 0j, *np.asarray(z.axis.value), *curve, *beyond])
+    beyond = z.tips(z.beyond).value if rays and z.beyond is not None else z.curve.value[:0]
+    return np.array([complex(z.plan["A"].value), complex(z.apex.value), 0j, *np.asarray(z.axis.value), *z.curve.value, *beyond])
+
+
+def fitted_rocker(cam: RockerCam, rays: bool, box: Box) -> tuple[float, float, Box, bool]:
+    """Scale factor of a rocker's zone in its place, depth (m, negative) to which it is drawn, its room, whether lines are beside.
+
+    The finest scale factor counts, then the deepest zone.
+    """
+    every, apex, measured = _of_rocker(cam, rays), complex(cam.zone.apex.value), _rocker_lines(cam)
     x0, x1, y1 = float(every.real.min()), float(every.real.max()), float(every.imag.max())
-    measured = _rocker_lines(cam)
     text = max(letter(line, 3.5).width for line in measured) + 14.0
     rooms = box.inset(14, 8, text + 6, 30), box.inset(12, 10 + 7.0 * len(measured), 12, 30)
 
@@ -217,7 +219,19 @@ def of_rocker(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     at_side, over = (min(fitted(room, share) for share in (0.4, 0.3, 0.2, 0.12)) for room in rooms)
     beside = box.width > 1.3 * box.height and at_side[0] <= over[0]
     room, (mu, low) = (rooms[0], at_side) if beside else (rooms[1], over)
-    low = min(low, max(y1 - mu * room.height, apex.imag - DEEP * cam.arm))  # what height is left shows more of the zone
+    return mu, min(low, max(y1 - mu * room.height, apex.imag - DEEP * cam.arm)), room, beside  # what height is left is zone
+
+
+@for_cams
+def of_rocker(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Positions of the rocker with the segments AB psi', rays under the permitted pressure angle, allowed zone, r0 and l0."""
+    cam = cast("RockerCam", project.cam)
+    z = cam.zone
+    rays, every = bool(options.get("rays")), _of_rocker(cam, bool(options.get("rays")))
+    x0, x1, y1 = float(every.real.min()), float(every.real.max()), float(every.imag.max())
+    measured = _rocker_lines(cam)
+    text = max(letter(line, 3.5).width for line in measured) + 14.0
+    mu, low, room, beside = fitted_rocker(cam, rays, box)
     scale = Scale("μ_l", mu, tr("m/mm"))
     canvas.scales[z.plan.name] = scale
     canvas.title(box, tr("Main dimensions of the cam"), f"{scale}")
