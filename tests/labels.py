@@ -110,21 +110,26 @@ PEN = 0.35
 """Lettering so near to other lettering touches it, mm."""
 
 
+def inked(text):
+    """Strokes of a run of letters on the sheet."""
+    drawn = lettering.strokes(text.text, text.height)
+    return [text.at + np.exp(1j * text.angle) * (z if text.wide == 1.0 else lettering.widened(z, text.wide)) for z in drawn]
+
+
 def strayed(drawing):
     """Runs of letters beyond the frame of the sheet, and those that touch others: what is lettered, where, and which of both."""
     texts = [m for m in drawing.marks if isinstance(m, Text) and lettering.strokes(m.text, m.height) and m.of != evenness.FRAME]
     if not texts:
         return
-    strokes_of = [[m.at + np.exp(1j * m.angle) * (z if m.wide == 1.0 else lettering.widened(z, m.wide))
-                   for z in lettering.strokes(m.text, m.height)] for m in texts]
+    strokes_of = [inked(m) for m in texts]
     field = evenness.FIELD
     cells = []
     for k, (text, lines) in enumerate(zip(texts, strokes_of, strict=True)):
         z = np.concatenate(lines)
         if z.real.min() < field.x0 or z.real.max() > field.x1 or z.imag.min() < field.y0 or z.imag.max() > field.y1:
             yield text.text, text.at, BEYOND
-        inked = ink_index.sample(np.concatenate([z[:-1] for z in lines]), np.concatenate([z[1:] for z in lines]), PEN / 2)
-        at = np.unique(np.round(inked.real / PEN) + 1j * np.round(inked.imag / PEN))
+        points = ink_index.sample(np.concatenate([z[:-1] for z in lines]), np.concatenate([z[1:] for z in lines]), PEN / 2)
+        at = np.unique(np.round(points.real / PEN) + 1j * np.round(points.imag / PEN))
         cells.append(np.column_stack([at.real, at.imag, np.full(len(at), k)]))
     cells = np.concatenate(cells)
     cells = cells[np.lexsort(cells.T[[2, 1, 0]])]
@@ -139,9 +144,9 @@ def crossings(drawing):
     ink = ink_index.InkIndex(marks)
     found = []
     for text in marks:
-        drawn = lettering.strokes(text.text, text.height) if isinstance(text, Text) and abs(np.sin(2 * text.angle)) < 0.01 else []
+        drawn = inked(text) if isinstance(text, Text) and abs(np.sin(2 * text.angle)) < 0.01 else []
         if drawn:
-            z = text.at + np.exp(1j * text.angle) * np.concatenate(drawn)
+            z = np.concatenate(drawn)
             box = Box(z.real.min(), z.imag.min(), z.real.max(), z.imag.max())
             near = ink.near(box, 0.0)
             over = near[ink_index.enters(ink.a[near], ink.b[near] - ink.a[near], *box)]

@@ -84,3 +84,22 @@ def test_angular_velocities_have_the_sign_that_they_have_elsewhere(name):
     for link, values in turning.items():
         assert np.allclose(values, project.study.velocities.omega[link].value)
     assert any(np.min(values) < 0 < np.max(values) for values in turning.values())
+
+
+@pytest.mark.parametrize(("height", "positions", "columns", "folds"), [
+    (90.0, 12, (2, 2), 2), (90.0, 12, (7, 7), 1), (130.0, 12, (2, 2), 1), (90.0, 24, (3, 4), 2), (90.0, 4, (1, 0), 1)])
+def test_rows_too_low_for_their_letters_go_on_beside_each_other(height, positions, columns, folds):
+    assert kinematics._folds(Box(20.0, 0.0, 430.0, height), positions, *columns) == folds
+
+
+@pytest.mark.parametrize("folds", [1, 2])
+def test_a_folded_table_has_every_position_once(folds):
+    project, canvas = Project(read("screen")), Canvas()
+    place = Box(100.0, 100.0, 300.0, 220.0)
+    canvas.begin(place, "", "kinematics.velocity_tables")
+    values = np.arange(100.0, 100.0 + len(project.cycle.labels))
+    kinematics._table_over_positions(project, canvas, place, "velocities", [("v", values)], 1, folds=folds)
+    written = [mark.text for mark in canvas.marks if isinstance(mark, Text)]
+    assert sorted(text for text in written if text.startswith("1") and "," in text) == [
+        f"{values[i]:.1f}".replace(".", ",") for i, _ in project.cycle.drawn]
+    assert written.count("№") == folds

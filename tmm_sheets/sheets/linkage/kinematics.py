@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterator, Sequence
 from itertools import pairwise
-from math import degrees, inf, pi
+from math import ceil, degrees, inf, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -753,6 +753,10 @@ def _need(real: Box, inside: Box) -> float:
 
 COLUMNS = 7
 """So many columns the table of lengths has in about half of the place; with more it shares the width with that of speeds."""
+WIDE = 19.0
+"""Width of a column of the table of lengths, mm: that of a number in letters of 3.5 mm."""
+FOLD = 6.0
+"""Distance of the parts of a table side by side, mm."""
 LOWEST = 3.9
 """Height of a row, mm, below which letters of 2.5 mm touch its lines."""
 
@@ -775,16 +779,17 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
     lengths = _measured_lengths(project, canvas, varying, [link.removeprefix("ω_") for link, _ in turning])
     width = box.width - 30.0
     lying = kinematic_frames.COLUMN * (max(len(lengths), len(speeds)) if stacked else len(lengths) + len(speeds)) > width
+    folds = 1 if lying or stacked else _folds(box, len(cycle.drawn), len(lengths), len(speeds))
     # Tables that lie down have the same columns.
-    left, right = _table_places(box, len(speeds) if lying and lengths else len(lengths), len(speeds), stacked=stacked)
+    left, right = _table_places(box, len(speeds) if lying and lengths else len(lengths), len(speeds), stacked=stacked, folds=folds)
     if lengths:
         mu = canvas.scales["velocities"].mu
         said = [f"{_segment(seg.tail, seg.head)} = {fixed(float(value[0]) / mu, 1)}" for seg, value in constant]
         title = "; ".join([tr("Lengths of the segments, mm"), *said])
-        _table_over_positions(project, canvas, left, title, lengths, 1, lying=lying)
+        _table_over_positions(project, canvas, left, title, lengths, 1, lying=lying, folds=folds)
     if speeds:
         title = tr("Linear, m/s, and angular, rad/s, velocities") if turning else tr("Linear velocities, m/s")
-        _table_over_positions(project, canvas, right, title, speeds, 3, lying=lying)
+        _table_over_positions(project, canvas, right, title, speeds, 3, lying=lying, folds=folds)
 
 
 def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segment, Any]],
@@ -829,7 +834,17 @@ def _lengths_on_rockers(project: Project, canvas: Canvas) -> list[tuple[str, Any
     return lengths
 
 
-def _table_places(box: Box, columns: int, speeds: int, *, stacked: bool) -> tuple[Box, Box]:
+def _folds(box: Box, positions: int, *columns: int) -> int:
+    """Parts of the tables side by side: two, where so many rows are too low for the usual letters and the columns leave room."""
+    wide = sum(2 * (10.0 + WIDE * count) + FOLD for count in columns) + 10.0
+    return 2 if size_in(_row(box, positions)) < 3.5 and wide <= box.width else 1
+
+
+def _row(place: Box, positions: int) -> float:
+    return min((place.height - 15.0) / (positions + 2), 7.5)
+
+
+def _table_places(box: Box, columns: int, speeds: int, *, stacked: bool, folds: int) -> tuple[Box, Box]:
     """Places of the tables of lengths and of speeds with so many columns; the second has all of it without any of the first."""
     if not columns:
         return box, box
@@ -837,8 +852,8 @@ def _table_places(box: Box, columns: int, speeds: int, *, stacked: bool) -> tupl
         middle = (box.y0 + box.y1) / 2
         return Box(box.x0, middle + 2.0, box.x1, box.y1), Box(box.x0, box.y0, box.x1, middle - 2.0)
     few = (0.45 * box.width - 10.0) / columns if columns <= COLUMNS else 0.0
-    one = min(19.0, max(few, (box.width - 30.0) / (columns + speeds)))
-    left = Box(box.x0, box.y0, box.x0 + 10.0 + one * columns, box.y1)
+    one = min(WIDE, max(few, (box.width - 30.0) / (columns + speeds)))
+    left = Box(box.x0, box.y0, box.x0 + folds * (10.0 + one * columns) + (folds - 1) * FOLD, box.y1)
     return left, Box(left.x1 + 10.0, box.y0, box.x1, box.y1)
 
 
@@ -847,8 +862,10 @@ NOTHING = 1e-4
 
 
 def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: str, columns: list[tuple[str, Any]],
-                          decimals: int, *, lying: bool = False) -> None:
+                          decimals: int, *, lying: bool = False, folds: int = 1) -> None:
     """A column for each quantity, a row for each position that is drawn; the other way round ``lying``; a dash for no number.
+
+    In so many ``folds`` side by side.
 
     ``decimals`` unless a column's numbers are too small for them, but for those that are nothing beside the others. What has no
     room at all is named in a remark.
@@ -866,16 +883,19 @@ def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: s
         if len(cells) > room:
             canvas.note(place, tr("The table has no room for {names}").format(names=", ".join(row[0] for row in cells[room:])))
             cells = cells[:room]
-    row = min((place.height - 15.0) / (len(cells) + 1), 7.5) if not lying else min((place.height - 9.0) / len(cells), 7.5)
+    each = ceil((len(cells) - 1) / folds)
+    row = min((place.height - 9.0) / len(cells), 7.5) if lying else _row(place, each)
     # A head that is too long goes on in a second line: beside a larger one nobody reads it.
     head = [title] if letter(title, 3.5).width <= place.width else [part for part in title.partition("; ")[::2] if part]
     begin = complex(place.centre.real, place.y1 - (5.0 if len(head) == 1 else 2.2))
     canvas.lines(begin, head, 5.0, size_for(head, place.width, 3.5), "centre")
-    height, count = size_in(row), len(cells[0]) - 1
-    if sum(needs(cells, height)) > place.width:
+    height, count, width = size_in(row), len(cells[0]) - 1, (place.width - (folds - 1) * FOLD) / folds
+    if sum(needs(cells, height)) > width:
         height = 2.5  # numbers that touch the lines cannot be read
-    widths = widened([10.0] + [(place.width - 10.0) / count] * count, cells, height)
-    canvas.table(complex(place.x0, place.y1 - 9.0), widths, cells, row, height)
+    widths = widened([10.0] + [(width - 10.0) / count] * count, cells, height)
+    for fold in range(folds):
+        part = [cells[0], *cells[1 + fold * each : 1 + (fold + 1) * each]]
+        canvas.table(complex(place.x0 + fold * (width + FOLD), place.y1 - 9.0), widths, part, row, height)
 
 
 STRUCTURE = 200.0
