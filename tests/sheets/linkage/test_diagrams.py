@@ -18,6 +18,7 @@ from tmm_sheets.drawing.marks import Line, Polyline, Text
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
+from tmm_sheets.sheets.arrangement import ViewPlace
 from tmm_sheets.sheets.components import cycle_graphs, graphs
 from tmm_sheets.sheets.linkage import diagrams
 from tmm_sheets.sheets.sheet import composed
@@ -249,3 +250,15 @@ def test_a_scale_factor_that_is_asked_for_is_refused_with_one_that_fits(asked):
     canvas = Canvas()
     diagrams.motion(p, canvas, Box(0, 0, 200, 230), {})
     assert canvas.scales["graph-S"].mu == fits
+
+
+def test_an_output_that_does_not_move_is_refused_by_its_name_and_told_by_check():
+    """The coupler of a parallelogram does not turn: psi, omega and epsilon of it are nothing but zero."""
+    fixed = project(project_files.CRANK, EVEN, {
+        "points": {"D": ["0.3 m", "0 m"]}, "cycle.diagrams": ["2"],
+        "group": [{"kind": 1, "links": ["2", "3"], "outer": ["A", "D"], "inner": "C", "lengths": ["0.3 m", "0.1 m"],
+                   "branch": "follow", "at": "90 deg"}]})  # fmt: skip
+    with pytest.raises(CannotBuild, match=r"cycle\.diagrams: 2 does not turn or move .*\n.*name a point or link that moves"):
+        drawn(fixed)
+    (said,) = diagrams.motion_low(fixed, 1, ViewPlace("diagrams.motion", BOX, {}))
+    assert str(said).startswith("2 does not turn or move")

@@ -15,18 +15,18 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import LEAST, needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import NOISE
+from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.components import cycle_graphs, graphs, upright_tables
 from tmm_sheets.sheets.components.cycle_graphs import Column, Curve, Quantity
 from tmm_sheets.sheets.components.graphs import Floats
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
 from tmm_sheets.sheets.linkage.link_marks import indexed, shapes
 from tmm_sheets.sheets.view_sizes import leaf
-from tmm_sheets.words import marked, tell, tr, tr_in
+from tmm_sheets.words import both, marked, marked_n, tell, tr, tr_in
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.motion import Output
     from tmm_sheets.project import Project
-    from tmm_sheets.remarks import Remark
     from tmm_sheets.sheets.arrangement import ViewPlace
     from tmm_sheets.sheets.border_solver import BorderNode
 
@@ -49,19 +49,42 @@ def motion(project: Project, canvas: Canvas, box: Box, options: Options) -> None
     Points have S, V, a along their straight path, links psi, omega, epsilon; both count from position 0. Those of points are
     positive in the sense in which the motion begins there, those of links counter-clockwise, as in every table.
     """
-    if columns := motion_graphs(project, options):
+    if columns := _moving(project, options):
         cycle_graphs.draw(project, canvas, box, tr("Kinematic diagrams"), columns)
+
+
+def _moving(project: Project, options: Options) -> list[Column]:
+    """The same, refused where nothing of it moves: its scale factors would be of nothing."""
+    columns = motion_graphs(project, options)
+    if columns and not _moves(columns):
+        raise CannotBuild(str(project.variant.problem(
+            str(_at_rest(project)), "cycle", "diagrams",
+            hint=tell("name a point or link that moves, or leave the view diagrams.motion out of the arrangement"))))
+    return columns
+
+
+def _moves(columns: list[Column]) -> bool:
+    return any(q.span for column in columns for q in column)
+
+
+def _at_rest(project: Project) -> Remark:
+    return Remark(marked_n("{names} does not turn or move over the whole cycle: its diagrams would be empty",
+                           "{names} do not turn or move over the whole cycle: their diagrams would be empty"),
+                  {"names": both(project.diagrams)}, len(project.diagrams))
 
 
 def motion_place(project: Project, view: ViewPlace) -> BorderNode | None:
     """What they need of their place."""
-    columns = motion_graphs(project, view.options)
+    columns = _moving(project, view.options)
     return leaf(view.box, cycle_graphs.need(project, columns), 0.5) if columns else None
 
 
 def motion_low(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
-    """Those that are too low on sheet ``n``."""
-    return cycle_graphs.low(project, n, view, lambda project, view: motion_graphs(project, view.options))
+    """Those that are too low on sheet ``n``, or of nothing that moves."""
+    columns = motion_graphs(project, view.options)
+    if columns and not _moves(columns):
+        yield _at_rest(project)
+    yield from cycle_graphs.low(project, n, view, lambda project, view: motion_graphs(project, view.options))
 
 
 ROW = 5.6
