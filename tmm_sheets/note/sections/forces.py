@@ -12,6 +12,7 @@ import numpy as np
 
 from tmm_sheets.construction import expression
 from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.methods.linkage.forces import GearForce
 from tmm_sheets.note.document import NumberInText, Symbol, Text
 from tmm_sheets.note.formula import FormulaRow, Node, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Scope, ShownFormula, bare, words
@@ -34,7 +35,7 @@ def scope(r: Reader) -> Scope:
             "label": r.label,
             "count": len(m.groups),
             "crank": m.crank.link,
-            "gear_force": study.driver is not None,
+            "driven": m.drive is not None,
             "friction": study.forces.friction is not None,
             "approximations": "" if study.forces.friction is None else str(study.forces.friction.approximations),
             "balancing": Symbol(letters(letters_of(r.project.balancing))),
@@ -56,7 +57,7 @@ def scope(r: Reader) -> Scope:
         ("balancing", "diagrams.balancing"),
     ):
         figure = r.pictures.figure(picture)
-        if figure is not None:
+        if figure is not None and (name != "lever" or "lever" in found.tables):  # without forces there is nothing to tell of it
             found.figures[name] = figure
     n = r.pictures.sheet_of("kinetics.crank") or r.pictures.sheet_of("kinetics.lever")
     found.fields["sheet"] = str(n) if n is not None else ""
@@ -411,13 +412,14 @@ def _crank(r: Reader) -> list[dict[str, Any]]:
         return []
     total = balancing.args[0]
     item: dict[str, Any] = {"pivot": Symbol(letters(letters_of(m.crank.pivot)))}
-    length = None
-    if study.driver is not None:
+    length = made = None
+    if isinstance(study.driver, GearForce):
         pivot, at = (complex(value_at(x, r.k)) for x in balancing.args[1:3])
         u = complex(value_at(balancing.args[3], r.k))
         arm = abs(float((np.conj(at - pivot) * u).imag))
         length = NoteQuantity(f"h_{{{index_of(letters_of(r.project.balancing))}}}", arm, "m", r.id(balancing.args[2]), r.label)
-    made = _sum(r, total, letters_of(r.project.balancing), balancing, length)
+    if m.drive is None:  # the force of an input is a load of the plans
+        made = _sum(r, total, letters_of(r.project.balancing), balancing, length)
     if made is not None:
         item |= {"force": made[0], "equation": _shown(made[1], total.name, m.crank.pivot)}
     plan = forces.plans.get(m.crank.link)

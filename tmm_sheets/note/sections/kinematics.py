@@ -36,6 +36,7 @@ def scope(r: Reader) -> Scope:
         "positions": len(cycle.labels),
         "crank": study.mechanism.crank.link,
         "uneven": study.running is not None,
+        "driven": study.mechanism.drive is not None,
         "position_steps": r.sentences(study.positions.plan),
         "velocity_steps": r.sentences(v.plan, _plain),
         "acceleration_steps": r.sentences(a.plan, _plain),
@@ -99,16 +100,23 @@ def _scale(r: Reader, scale: Any) -> Text:
 
 
 def _first_formulas(r: Reader, found: Scope) -> None:
-    """Speed of the crank from its revolutions, velocity of its pin, scale factors from drawn lengths."""
+    """Speed of the crank from its revolutions, velocity of its pin, scale factors from drawn lengths.
+
+    Of a mechanism with an input only its speed, from which its plan begins.
+    """
     study = r.project.study
-    crank = study.mechanism.crank
+    crank, drive = study.mechanism.crank, study.mechanism.drive
     omega = study.velocities.omega[crank.link]
     q_omega = r.quantity(omega, symbol=f"ω_{{{crank.link}}}")
     q_omega = NoteQuantity(q_omega.symbol, abs(q_omega.value), q_omega.unit, q_omega.step, q_omega.position)
+    found.fields |= {"omega1": r.number(q_omega.value, q_omega.unit, q_omega.step, q_omega.position),
+                     "pin": Symbol(letters_of_point(crank.pin))}
+    if drive is not None:
+        found.fields |= {"input": drive.link, "input_speed": r.number(float(drive.speed), "m/s", "input.speed")}
+        return
     from_turns = r.of_turns("crank.speed", "n_1", q_omega)
     if from_turns is not None:
         found.formulas["omega"] = from_turns
-    found.fields["omega1"] = r.number(q_omega.value, q_omega.unit, q_omega.step, q_omega.position)
     length = NoteQuantity(f"l_{{{crank.pivot}{crank.pin}}}", float(crank.length), "m", r.origin(crank.length, "crank.length"))
     pin = study.velocities.points[crank.pin]
     found.formulas["pin"] = r.checked(f"V_{{{crank.pin}}}", lambda w, length: w * length, [q_omega, length], pin)
@@ -118,7 +126,6 @@ def _first_formulas(r: Reader, found: Scope) -> None:
         of = NoteQuantity(f"V_{{{crank.pin}}}", abs(value_at(pin, r.k)), "m/s", r.id(pin), r.label)
         tree: Any = expression.Argument(0) / expression.Argument(1)
         found.formulas["mu_V"] = r.written("μ_{V}", tree, [of, drawn], NoteQuantity("", scale.mu, "(m/s)/mm", "scales.mu_V"))
-    found.fields["pin"] = Symbol(letters_of_point(crank.pin))
     acceleration = study.accelerations.points[crank.pin]
     if study.running is None and not value_at(study.accelerations.epsilon[crank.link], r.k):
         found.formulas["pin_acceleration"] = r.checked(
