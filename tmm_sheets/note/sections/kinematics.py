@@ -37,6 +37,7 @@ def scope(r: Reader) -> Scope:
         "crank": study.mechanism.crank.link,
         "uneven": study.running is not None,
         "driven": study.mechanism.drive is not None,
+        "given": (study.mechanism.drive or study.mechanism.crank).link,
         "position_steps": r.sentences(study.positions.plan),
         "velocity_steps": r.sentences(v.plan, _plain),
         "acceleration_steps": r.sentences(a.plan, _plain),
