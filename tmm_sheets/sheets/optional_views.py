@@ -53,8 +53,8 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside:
     """Draw those of the offered views that find room ``inside`` the sheet, away from boxes ``closed`` to them.
 
     A view tells its sizes, from what it wants down to what it can do with, and perhaps the left edge that it would like best or
-    what it belongs to: it stands near that or nowhere, and those that do so choose first; one that says where it ``stands``
-    stands there where nothing is free near.
+    what it belongs to: it stands near that or nowhere, and those that do so choose first, but equations among forces; one that says
+    where it ``stands`` stands there where nothing is free near.
     """
     taken = _closed(inside, closed)
     seen, forces = 0, _of_forces(canvas, inside)
@@ -101,8 +101,8 @@ def ask_again(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], pl
 
 
 def _wanted(project: Project, canvas: Canvas, offered: Sequence[ViewPlace]) -> Iterator[tuple[ViewPlace, Any]]:
-    """The views that have something to show with their sizes, those first that stand near another or nowhere."""
-    for view in sorted(offered, key=lambda view: not view.kind.near or bool(view.kind.stands)):
+    """The views that have something to show, with their sizes; those first that belong to another: details before tables."""
+    for view in sorted(offered, key=lambda view: not view.kind.near or view.kind.stands == "forces"):
         try:
             wanted = function(view.kind.sizes)(project, canvas, view.options)
         except CannotBuild:
