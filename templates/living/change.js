@@ -23,24 +23,33 @@ function sizeOfAll() {
   return Math.max(...record.motion.givens.filter((g) => g.unit === "m").flatMap((g) => [g.value].flat().map(Math.abs)), 0.01);
 }
 
-const LOOKS = 24, HALVES = 6, TIMES = 3;
+const LOOKS = 180, PARTS = 4, HALVES = 5, TIMES = 3;
 
 // Whether all points have a place at some angles of the turn, an angle a piece.
 function* assembles(given) {
   const now = { given, start: record.motion.start, courses: coursesOf(given), loads: [] }, { all } = record.motion;
-  assembles.places ??= Object.entries(all.results).filter(([id]) => id.startsWith("positions/")).map(([, [place]]) => place);
+  if (now.courses.some(({ places }) => places.some(([x]) => Number.isNaN(x)))) return false;
   for (const phi of round(LOOKS)) {
-    const values = run(all, phi, now);
-    if (assembles.places.some((place) => Number.isNaN(values[place]))) return false;
+    if (notThere(run(all, phi, now))) return false;
     yield;
   }
   return true;
 }
 
-// From a slider's own number to an end of it: as far as the mechanism goes round, to a part of the way.
+// The first place of the mechanism that there is none of, if there is one.
+function notThere(values) {
+  notThere.places ??= Object.entries(record.motion.all.results).filter(([id]) => id.startsWith("positions/") && record.steps?.[id]?.kind !== "direction");
+  return notThere.places.find(([, [place]]) => Number.isNaN(values[place]));
+}
+
+// From a slider's own number to an end of it: as far as the mechanism goes round all the way there, to a part of it.
 function* reachOf(own, far, put) {
-  if (yield* assembles(put(far))) return far;
-  let near = own, beyond = far;
+  let near = own, beyond = null;
+  for (let i = 1; i <= PARTS && beyond === null; i++) {
+    const next = own + (far - own) * i / PARTS;
+    if (yield* assembles(put(next))) near = next; else beyond = next;
+  }
+  if (beyond === null) return far;
   for (let i = 0; i < HALVES; i++) { const middle = (near + beyond) / 2; if (yield* assembles(put(middle))) near = middle; else beyond = middle; }
   return near;
 }
@@ -147,14 +156,13 @@ function save() {
 }
 
 // Where the mechanism does not assemble: what is missing, and for which part of the turn.
-function tellLost(lost, values) {
+function tellLost(first, values) {
   const place = $("lost");
   if (!place) return;
-  place.hidden = !lost;
-  if (!lost) return;
-  const first = Object.entries(record.motion.all.results).find(([id, [p]]) => id.startsWith("positions") && Number.isNaN(values[p]));
-  const gap = first && gapOf(first[0], values);
-  place.textContent = say("does not assemble at this angle") + (first ? `: ${stepOf(first[0]).name}` : "") + (gap ? `, ${say("gap")} ${told(gap, "m")}` : "");
+  place.hidden = !first;
+  if (!first) return;
+  const gap = gapOf(first[0], values);
+  place.textContent = `${say("does not assemble at this angle")}: ${stepOf(first[0]).name}${gap ? `, ${say("gap")} ${told(gap, "m")}` : ""}`;
 }
 
 // By how much two arcs, or an arc and a line, miss each other, m.

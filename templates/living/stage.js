@@ -188,30 +188,28 @@ function frameCard(card) {
   }).join("");
 }
 
-// Draw the marks of a card; true where some of them have no place.
+// Draw the marks of a card; those that have no place are hidden.
 function drawCard(card, values) {
   if (!card.framed) frameCard(card);
   const placed = placer(values, card.shrunk);
-  let lost = false;
   tellScale(card);
   if (card.centred) centre(card, placed);
   card.marks.forEach((mark, n) => {
     if (card.left.has(n)) return;
     const g = geometryOf(mark, placed), element = card.elements[n], there = defined(g);
     if (card.hidden[n] === there) { element.setAttribute("visibility", there ? "visible" : "hidden"); card.hidden[n] = !there; }
-    if (!there) { lost = true; return; }
+    if (!there) return;
     // A letter is moved, which costs less than setting it anew; what stays is not written again.
     const drawn = mark.kind === "text" ? `translate(${fixed(g.text.at[0])} ${fixed(-g.text.at[1])})` : pathOf(g, 0);
     if (card.drawn[n] !== drawn) element.setAttribute(mark.kind === "text" ? "transform" : "d", card.drawn[n] = drawn);
   });
-  return lost;
 }
 
 function drawStage() {
   if ($("stage").hidden || !stage.cards.length) return;
-  const values = parts(machine.phi), lost = drawCard(stage.cards[0], values);
-  for (const card of stage.cards.slice(1)) if (card.seen) drawCard(card, values);
-  if (stage.lost !== lost) for (const card of stage.cards) card.figure.classList.toggle("lost", lost);
+  const values = parts(machine.phi), lost = notThere(values);
+  for (const card of stage.cards) if (card.seen || card === stage.cards[0]) drawCard(card, values);
+  if (stage.lost !== lost) for (const card of stage.cards) card.figure.classList.toggle("lost", Boolean(lost));
   stage.lost = lost;
   tellLost(lost, values);
   const first = placer(values, stage.cards[0].shrunk);
