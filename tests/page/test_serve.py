@@ -12,7 +12,7 @@ import pytest
 
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
-from tmm_sheets.page import choice, doors, jobs, serving
+from tmm_sheets.page import choice, doors, guard, jobs, serving
 from tmm_sheets.page.shown import Shown, following
 from tmm_sheets.page.workers import Languages, Limits, Workers
 from tmm_sheets.task import keys
@@ -288,6 +288,58 @@ def test_a_file_too_large_for_the_memory_is_stopped():
     assert "memory" in work(hungry, Limits(20, 900_000_000))["problem"]
 
 
+def test_a_request_that_does_not_end_is_not_waited_for(monkeypatch):
+    async def begun():
+        pieces = [{"type": "http.request", "body": b"a", "more_body": True}]
+        receive = guard._counted(lambda: asyncio.sleep(0 if pieces else 60, pieces.pop() if pieces else None), 10)
+        assert (await receive())["body"] == b"a"
+        with pytest.raises(guard.HTTPException) as refused:
+            await receive()
+        return refused.value.status_code
+
+    monkeypatch.setattr(guard, "SILENT", 0.05)
+    assert asyncio.run(begun()) == 408
+
+
+def test_a_connection_that_asks_for_nothing_is_closed(monkeypatch):
+    """Nor one that asks for a part of a page, for ever; one that is answered stays."""
+    uvicorn = pytest.importorskip("uvicorn")
+    monkeypatch.setattr(serving, "PATIENCE", 0.1)
+
+    async def app(scope, receive, send):
+        await asyncio.sleep(0.5)
+        await send({"type": "http.response.start", "status": 204, "headers": []})
+        await send({"type": "http.response.body"})
+
+    async def all_of_them():
+        listening = serving._listening("127.0.0.1", None)
+        server = uvicorn.Server(uvicorn.Config(app, lifespan="off", log_level="critical", http=serving.patient()))
+        running = asyncio.create_task(server.serve([listening]))
+        ends = [await asyncio.open_connection(*listening.getsockname()) for _ in range(3)]
+        for (_, write), text in zip(ends, (b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: a\r\n\r\n"), strict=True):
+            write.write(text)
+        told = await asyncio.wait_for(asyncio.gather(*(read.read(12) for read, _ in ends)), 5)
+        for _, write in ends:
+            write.close()
+        server.should_exit = True
+        await running
+        return told
+
+    assert asyncio.run(all_of_them()) == [b"", b"", b"HTTP/1.1 204"]
+
+
+def test_who_listens_slowly_keeps_nobody_waiting():
+    """The place of a piece of work is free when its answer is there, not when it has been taken."""
+    async def both():
+        workers = Workers(1)
+        first = workers.messages(jobs.project, {"project": "press"}, Languages("en"), Limits(10))
+        async for message in first:
+            assert "done" in message
+            return not workers.free["front"].locked()
+
+    assert asyncio.run(both())
+
+
 def test_who_goes_away_takes_the_work_along():
     async def begun():
         workers = Workers(1)
@@ -331,5 +383,7 @@ def test_missing_packages_are_named(monkeypatch, capsys):
 def test_what_cannot_be_served(capsys, tmp_path):
     assert run(["serve", "press", "--watch", str(tmp_path / "x.toml")]) == 2
     assert run(["serve", str(tmp_path / "none.toml"), "--no-browser"]) == 2
+    assert run(["serve", "--host", "", "--no-browser"]) == 2
+    assert "expected an address" in capsys.readouterr().err
     assert run(["serve", "--host", "203.0.113.7", "--no-browser"]) == 2
     assert "nobody can listen there" in capsys.readouterr().err

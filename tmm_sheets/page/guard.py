@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import ipaddress
 import socket
 from asyncio import CancelledError
@@ -17,6 +18,8 @@ from tmm_sheets.words import tell
 
 LARGEST = 2_000_000
 """Bytes of a request that brings no files."""
+SILENT, LONGEST = 30.0, 900.0
+"""How long a request may bring nothing, and how long it may come, s."""
 HEADERS = {
     "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
                                "connect-src 'self'; font-src 'self'; frame-src 'self'; "
@@ -97,12 +100,18 @@ def is_local(host: str) -> bool:
 
 
 def _counted(receive: Receive, most: int) -> Receive:
-    """Take no more than so many bytes, whatever was announced."""
-    taken = 0
+    """Take no more than so many bytes, whatever was announced, and wait for them no longer than is sensible."""
+    taken, clock = 0, asyncio.get_running_loop().time
+    until: float | None = clock() + LONGEST
 
     async def counted() -> Message:
-        nonlocal taken
-        message = await receive()
+        nonlocal taken, until
+        try:
+            message = await (receive() if until is None else asyncio.wait_for(receive(), min(SILENT, until - clock())))
+        except TimeoutError:
+            raise HTTPException(408, tell("the request does not come to its end")) from None
+        if not message.get("more_body"):
+            until = None  # from here on it is waited for whoever goes away
         taken += len(message.get("body", b""))
         if taken > most:
             raise HTTPException(413, _too_large(most))

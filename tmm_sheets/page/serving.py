@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import socket
 import threading
 from collections.abc import Callable
 from importlib.util import find_spec
 from secrets import token_urlsafe
+from typing import Any
 
 from tmm_sheets import quoting
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
@@ -16,6 +18,8 @@ from tmm_sheets.words import both, tell
 
 PORT = 8731
 """Where it listens unless told: another free one where somebody is there already."""
+PATIENCE = 20.0
+"""How long a connection may be without a whole request, s."""
 PACKAGES = {"starlette": "starlette", "uvicorn": "uvicorn", "python_multipart": "python-multipart"}
 
 
@@ -47,18 +51,43 @@ def serve(shown: Shown, host: str, port: int | None, tell_address: Callable[[str
     listening = _listening(host, port)
     token = token_urlsafe(24)
     number = listening.getsockname()[1]
-    named = f"[{host}]" if ":" in host else "127.0.0.1" if host == "0.0.0.0" else host
+    named = {"0.0.0.0": "127.0.0.1", "::": "[::1]"}.get(host, f"[{host}]" if ":" in host else host)
     app = doors.app(token, host, shown)
     level = "error" if os.environ.get("TMM_SHEETS_TRACEBACK") else "critical"
     config = uvicorn.Config(app, log_level=level, access_log=False, server_header=False, lifespan="off", ws="none",
-                            timeout_graceful_shutdown=1, limit_concurrency=200)
+                            timeout_graceful_shutdown=1, limit_concurrency=200, http=patient())
     threading.Thread(target=workers.warm, daemon=True).start()
     tell_address(f"http://{named}:{number}/{token}/")
     uvicorn.Server(config).run(sockets=[listening])
 
 
+def patient() -> type[asyncio.Protocol]:
+    """The server's protocol, which closes connections that ask for nothing: each takes one of the places that there are for all."""
+    from uvicorn.protocols.http.auto import AutoHTTPProtocol
+
+    class Patient(AutoHTTPProtocol):  # type: ignore[misc, valid-type]
+        """Looks now and then whether a request is there, or has been since the last look."""
+
+        def connection_made(self, transport: Any) -> None:
+            """Begin to look."""
+            super().connection_made(transport)
+            self.loop.call_later(PATIENCE, self._look, None)
+
+        def _look(self, seen: Any) -> None:
+            if self.transport.is_closing():
+                return
+            if self.cycle is seen and (seen is None or seen.response_complete):
+                self.transport.close()
+            else:
+                self.loop.call_later(PATIENCE, self._look, self.cycle)
+
+    return Patient
+
+
 def _listening(host: str, port: int | None) -> socket.socket:
     """A socket that listens: at the port asked for, else at ours or at a free one."""
+    if not host:
+        raise BadInput(Problem(tell("expected an address, such as 127.0.0.1"), "--host"))
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     for number in (PORT, 0) if port is None else (port,):
         try:

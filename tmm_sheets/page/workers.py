@@ -137,14 +137,29 @@ def _process(act: Callable[..., object], *what: object) -> BaseProcess:
 def warm() -> None:
     """Let the process that others are forks of load everything now, and wait for it."""
     process = _process(os.getpid)
-    process.start()
+    _start(process)
     process.join()
+
+
+def _start(process: BaseProcess) -> None:
+    """Start a process that hears no Ctrl-C, nor does the one that it is a fork of: it ends the server, which ends its work."""
+    if not hasattr(signal, "pthread_sigmask"):
+        process.start()
+        return
+    from multiprocessing import resource_tracker
+
+    resource_tracker.ensure_running()  # which would let it through again when it is started
+    heard = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        process.start()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, heard)
 
 
 def _begin(job: Job, asked: Mapping[str, str], folder: str, languages: Languages, limits: Limits) -> tuple[BaseProcess, Connection]:
     ours, theirs = _context().Pipe(duplex=False)
     process = _process(_carry_out, theirs, job, asked, folder, languages, limits)
-    process.start()
+    _start(process)
     theirs.close()
     return process, ours
 
@@ -159,8 +174,10 @@ class Workers:
                        files: Mapping[str, Path] | None = None) -> AsyncIterator[Message]:
         """What a piece of work says, the last with ``done`` or ``problem``; who stops listening ends it.
 
-        ``files`` are put into its folder by their names there, which are no client's.
+        ``files`` are put into its folder by their names there, which are no client's. Who listens slowly to what comes last keeps
+        nobody waiting.
         """
+        last: Message = {}
         free = self.free[limits.lane]
         if free.locked():
             yield {"say": tell("waiting for its turn ...")}
@@ -172,11 +189,13 @@ class Workers:
                     path.replace(place)
                 process, connection = await asyncio.to_thread(_begin, job, asked, folder, languages, limits)
                 try:
-                    async for message in _said(process, connection, limits):
-                        yield message
+                    async for last in _said(process, connection, limits):
+                        if not _ends(last):
+                            yield last
                 finally:
                     process.kill()
                     process.join(5)
+        yield last
 
 
 async def _said(process: BaseProcess, connection: Connection, limits: Limits) -> AsyncIterator[Message]:
@@ -188,7 +207,7 @@ async def _said(process: BaseProcess, connection: Connection, limits: Limits) ->
             data = await asyncio.wait_for(asyncio.to_thread(connection.recv_bytes, LARGEST_ANSWER), latest - clock())
             message = json.loads(data)
             yield message
-            if "done" in message or "problem" in message:
+            if _ends(message):
                 return
     except TimeoutError:
         yield {"problem": _too_long(limits)}
@@ -196,6 +215,10 @@ async def _said(process: BaseProcess, connection: Connection, limits: Limits) ->
         process.join(5)
         of_time = process.exitcode in (-signal.SIGXCPU, -signal.SIGKILL) if hasattr(signal, "SIGXCPU") else False
         yield {"problem": _too_long(limits) if of_time else tell("the work was ended by the system, perhaps for want of memory")}
+
+
+def _ends(message: Message) -> bool:
+    return "done" in message or "problem" in message
 
 
 def _too_long(limits: Limits) -> str:
