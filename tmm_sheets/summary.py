@@ -103,7 +103,7 @@ def given(project: Project) -> Iterator[str]:
     import numpy as np
 
     variant, m = project.variant, project.mechanism
-    sizes = [units.si(v) for name, v in edited_text.numbers(variant.data) if not name.startswith("given.")]
+    sizes = [units.si(v) for _, v in edited_text.numbers(variant.data)]
     sizes += [link.mass * variant.forces.gravity for link in variant.link]
     if variant.given:
         steps = project.study.positions.points.values()

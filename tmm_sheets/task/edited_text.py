@@ -24,10 +24,11 @@ def key_path(name: str) -> tuple[str | int, ...]:
 
 
 def numbers(table: Any, name: str = "") -> Iterator[tuple[str, Any]]:
-    """Numbers of the tables of a project file, with their units, by their names."""
+    """Numbers of the tables of a project file that something is computed from, with their units, by their names."""
     if isinstance(table, Mapping):
         for key, value in table.items():
-            yield from numbers(value, f"{name}.{key}" if name else key)
+            if name or key != "given":  # what a task prints is shown only
+                yield from numbers(value, f"{name}.{key}" if name else key)
     elif isinstance(table, list):
         for n, value in enumerate(table):
             yield from numbers(value, f"{name}[{n}]")
