@@ -12,7 +12,7 @@ import numpy as np
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.scale import Scale, handy, times
 from tmm_sheets.drawing import symbols
-from tmm_sheets.drawing.canvas import Align, Canvas
+from tmm_sheets.drawing.canvas import SMALLEST, Align, Canvas
 from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.headings import TOGETHER
@@ -594,12 +594,13 @@ def _draw_plan(s: PlayerStage, pole: str, symbols_at: bool = False) -> list[str]
     tiny = _vectors(s, max(abs(z) for z in points.values()), symbols_at)
     z = np.array(list(points.values()))
     centre, small = s.frame(np.mean(z)), max(np.ptp(z.real), np.ptp(z.imag)) / s.frame.mu[1] < LETTERED.least
-    lettered: list[complex] = []
+    # A plan below its floor has smaller letters, and of these the ones that stand clear: the larger plans have them all.
+    lettered, height = list[complex](), SMALLEST if small else 3.5
     places = joined({name: s.frame(z) for name, z in points.items()}, tiny)
     for names in sorted(places, key=lambda names: small and pole not in names):
         q = s.at(names[0])
         if small and any(abs(q - other) < CLEAR_LETTER for other in lettered):
-            s.dot(names[0])  # of a plan below its floor the letters that stand clear are enough: the larger ones have them all
+            s.dot(names[0])
             continue
         lettered.append(q)
         shown = [link_marks.indexed(s.plan[n].symbol or n) for n in names if n != pole]
@@ -607,11 +608,11 @@ def _draw_plan(s: PlayerStage, pole: str, symbols_at: bool = False) -> list[str]
         # A long row of letters leaves the pole's own to itself.
         rows = ([[pole], shown] if len(shown) > 2 else [[pole, *shown]]) if pole in names else [shown]
         for row in rows:
-            s.letters(names[0], ", ".join(row), q - centre if abs(q - centre) > 1 else 0j)
+            s.letters(names[0], ", ".join(row), q - centre if abs(q - centre) > 1 else 0j, height)
     return list(dict.fromkeys(tiny.values()))
 
 
-CLEAR_LETTER = 9.0
+CLEAR_LETTER = 6.5
 """Distance of two points from which on their letters stand clear of each other, mm."""
 
 
