@@ -1,4 +1,4 @@
-"""The figures of docs/accuracy.md, each made by one command; ``make figures``.
+"""The figures of docs/accuracy.md and docs/cluster.md, each made by one command; ``make figures``.
 
 ``python -m tests.figures [NAME ...] [--all] [--check]``: without names those that need nothing else and take about a minute of the
 processor, ``--all`` the trials as well. A part of the page begins with ``<!-- figure: NAME -->`` and ends with ``<!-- end -->``;
@@ -19,9 +19,9 @@ from datetime import date
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs" / "accuracy.md"
-LONGEST = 12_000
-"""Bytes of the page: results, not a diary."""
+PAGES = (ROOT / "docs" / "accuracy.md", ROOT / "docs" / "cluster.md")
+LONGEST = 15_000
+"""Bytes of the pages together: results, not a diary."""
 PART = re.compile(r"^(<!-- figure: (\w+) -->\n)(.*?)^(<!-- end -->)$", re.MULTILINE | re.DOTALL)
 RAN = re.compile(r"^\*\d{4}-\d\d-\d\d, [0-9a-f]{8}, .+\*$", re.MULTILINE)
 
@@ -110,6 +110,7 @@ FIGURES = {
     "layouts": Figure(f"{LAYOUTS} --seed 711", counted, long=True),
     "photographs": Figure("tests.foreign --pictures 8 --seed 301", together, long=True),
     "photograph": Figure("tests.compare.trial --time", last(1)),
+    "cluster": Figure("tests.bench.cluster", str.strip, long=True),
 }
 
 
@@ -136,6 +137,11 @@ def made(figure: Figure) -> str | None:
     return f"```\n{figure.typed}\n```\n\n*{date.today().isoformat()}, {commit()}, {load}*\n\n{figure.shown(done.stdout)}\n"
 
 
+def whole() -> str:
+    """The pages."""
+    return "".join(page.read_text("utf-8") for page in PAGES)
+
+
 def faults(page: str) -> list[str]:
     """What does not fit together: figures that nobody makes, that are not dated or missing, a page that is too long."""
     parts = PART.findall(page)
@@ -158,13 +164,14 @@ def main() -> int:
     parser.add_argument("--check", action="store_true")
     told = parser.parse_args()
     if not told.check:
-        on_page = [name for _, name, _, _ in PART.findall(PAGE.read_text("utf-8"))]
-        for name in told.names or [n for n in on_page if told.all or not FIGURES[n].long]:
+        on_pages = [name for _, name, _, _ in PART.findall(whole())]
+        for name in told.names or [n for n in on_pages if told.all or not FIGURES[n].long]:
             if (said := made(FIGURES[name])) is not None:
-                page = PAGE.read_text("utf-8")
-                PAGE.write_text(PART.sub(lambda m, n=name, s=said: m[1] + s + m[4] if m[2] == n else m[0], page), "utf-8")
+                for page in PAGES:
+                    text = page.read_text("utf-8")
+                    page.write_text(PART.sub(lambda m, n=name, s=said: m[1] + s + m[4] if m[2] == n else m[0], text), "utf-8")
                 print(name, flush=True)
-    found = faults(PAGE.read_text("utf-8"))
+    found = faults(whole())
     print("\n".join(found))
     return int(bool(found))
 
