@@ -1,6 +1,7 @@
-"""Pictures of docs/ (``make pictures``; needs pdftoppm): sheets of the gallery by the command above each, schemes of the tutorial.
+"""Pictures of docs/ (``make pictures``; needs pdftoppm): sheets of the gallery by the command above each, schemes of the tutorial
+and of the kinds of groups.
 
-``python -m tests.pictures [NAME ...]``: all, or the gallery's of these names.
+``python -m tests.pictures [NAME ...]``: all, or the gallery's of these names; ``schemes``: all schemes.
 """
 
 from __future__ import annotations
@@ -13,10 +14,13 @@ import tempfile
 from pathlib import Path
 
 from tests import docs
+from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
+from tmm_sheets.task import new_file
 
 GALLERY = docs.ROOT / "docs" / "gallery.md"
 TUTORIAL = docs.ROOT / "docs" / "tutorial.md"
+PICTURES = docs.ROOT / "docs" / "pictures"
 SHOWN = re.compile(r"^    tmm-sheets (build .*)\n\n!\[.*\]\((pictures/(\w+)\.png)\)$", re.MULTILINE)
 STEP = re.compile(r"^```toml\n(.*?)^```\n\n    tmm-sheets check my\.toml --scheme (\w+)\.svg$", re.MULTILINE | re.DOTALL)
 WIDTH, GREYS = 640, 4
@@ -35,6 +39,25 @@ def steps(text: str) -> dict[str, str]:
         whole += part + "\n"
         found[name] = whole
     return found
+
+
+GROUPS = {"assur1": "1", "assur2": "2", "assur3": "3", "assur4": "1,4", "assur5": "5"}
+"""Pictures of docs/assur.md, and the groups that ``new`` is asked for."""
+
+
+def kinds() -> dict[str, str]:
+    """Project files of the kinds of groups and of class III by the names of their pictures, at four positions: fewer lines."""
+    found = {name: new_file.whole(name, name, new_file.of_groups([int(kind) for kind in groups.split(",")]), {})
+             for name, groups in GROUPS.items()} | {"class3": catalogue.read("screen").text}
+    return {name: re.sub(r"(?m)^positions = 12", "positions = 4", text) for name, text in found.items()}
+
+
+def scheme(text: str, to: Path) -> None:
+    """How a project file is understood."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, "my.toml")
+        file.write_text(text, encoding="utf-8")
+        run(["check", str(file), "--scheme", str(to), "--lang", "ru"])
 
 
 def small(whole: Path, to: Path) -> None:
@@ -67,21 +90,20 @@ def photographs(sheet: Path, folder: Path) -> None:
 
 def main(names: list[str]) -> None:
     """Draw the pictures."""
-    for name, command in gallery(GALLERY.read_text("utf-8")).items():
+    schemes = names == ["schemes"]
+    for name, command in () if schemes else gallery(GALLERY.read_text("utf-8")).items():
         if names and name not in names:
             continue
         with tempfile.TemporaryDirectory() as folder:
             run([*command, "--format", "pdf", "-o", folder])
             sheet, = Path(folder).glob("*.pdf")
             subprocess.run(["pdftoppm", "-r", "96", "-png", "-gray", "-singlefile", sheet, Path(folder, "whole")], check=True)
-            small(Path(folder, "whole.png"), GALLERY.parent / "pictures" / f"{name}.png")
+            small(Path(folder, "whole.png"), PICTURES / f"{name}.png")
     if not names:
-        photographs(docs.ROOT / "templates" / "pictures" / "sheet1.png", GALLERY.parent / "pictures")
-    for name, text in steps(TUTORIAL.read_text("utf-8")).items() if not names else ():
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder, "my.toml")
-            file.write_text(text, encoding="utf-8")
-            run(["check", str(file), "--scheme", str(TUTORIAL.parent / "pictures" / f"{name}.svg")])
+        photographs(docs.ROOT / "templates" / "pictures" / "sheet1.png", PICTURES)
+    if schemes or not names:
+        for name, text in (steps(TUTORIAL.read_text("utf-8")) | kinds()).items():
+            scheme(text, PICTURES / f"{name}.svg")
 
 
 if __name__ == "__main__":

@@ -205,7 +205,8 @@ def test_python_in_docs_runs(p, tmp_path, monkeypatch, pandas, capsys):
     p.save("my.toml")
     filled(p, ".")
     names = {}
-    blocks = re.findall(r"^```python\n(.*?)^```$", (ROOT / "docs/python.md").read_text("utf-8"), re.MULTILINE | re.DOTALL)
+    text = "".join((ROOT / "docs" / paper).read_text("utf-8") for paper in ("python.md", "cookbook.md"))
+    blocks = re.findall(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
     assert len(blocks) > 5
     for block in blocks:
         exec(block, names)

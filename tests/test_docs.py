@@ -204,11 +204,18 @@ def test_the_tutorial_is_drawn_as_it_stands(tmp_path, monkeypatch):
         assert Path(f"{name}.svg").read_bytes() == (ROOT / f"docs/pictures/{name}.svg").read_bytes(), "run: make pictures"
 
 
+@pytest.mark.parametrize("name", few([*pictures.GROUPS, "class3"], "assur5"))
+def test_the_kinds_of_groups_are_drawn_as_they_are(name, tmp_path):
+    pictures.scheme(pictures.kinds()[name], tmp_path / "my.svg")
+    assert (tmp_path / "my.svg").read_bytes() == (ROOT / f"docs/pictures/{name}.svg").read_bytes(), "run: make pictures"
+
+
 def test_the_tutorial_is_the_same_in_three_languages():
-    """Blocks to be typed, and the pictures."""
-    said = [FENCED.findall(text) + re.findall(r"^    tmm.*|pictures/\w+\.svg", text, re.MULTILINE)
-            for text in (TEXTS[f"docs/{folder}tutorial.md"] for folder in ("", "ru/", "uk/"))]
-    assert said[0] == said[1] == said[2]
+    """Blocks to be typed, and the pictures; so is the page of the kinds of groups."""
+    for page in ("tutorial.md", "assur.md"):
+        said = [FENCED.findall(text) + re.findall(r"^    tmm.*|pictures/\w+\.svg", text, re.MULTILINE)
+                for text in (TEXTS[f"docs/{folder}{page}"] for folder in ("", "ru/", "uk/"))]
+        assert said[0] == said[1] == said[2]
 
 
 @pytest.mark.parametrize("language", ["ru", "uk"])
@@ -250,7 +257,7 @@ NOT_RUN = {
 LONG = ("note", "--lang uk", "page my.toml --sheet", "--list", "roster", "optimise", "family check", "tests/projects", "--dxf",
         "lugansk/shaper press my.toml", "bench", "stress", "--image", "build --all", "--group works")
 """Commands of docs/ that are run in a trial only, by what they have in them."""
-SHORTER = {"stress": ("--cases", "3"), "bench": ("--quick",), "build --all": ("--sheet", "2", "--format", "svg"),
+SHORTER = {"stress": ("--cases", "3"), "--summary": ("--quick",), "build --all": ("--sheet", "2", "--format", "svg"),
            **dict.fromkeys(("plot ", "png", "--paper", "--portrait"), ("--sheet", "4"))}
 """Options with which a command is run that takes long as it stands, by what it has in it."""
 FILLED = "id;measured\nvelocities/2/pb;30.2\nvelocities/2/pd;46\n"
@@ -299,12 +306,13 @@ def test_other_commands_work(every, tmp_path, monkeypatch, capsys):
         for template in Path().rglob("measured.csv"):
             template.unlink()
         asked = shlex.split(command)
-        for table in [Path(asked[k + 1]) for k, word in enumerate(asked) if word == "--measured"] + [Path("works/One/measured.csv")]:
+        told = [asked[k + 1] for k, word in enumerate(asked) if word == "--measured"]
+        for table in map(Path, (*told, "works/One/measured.csv")):
             table.parent.mkdir(parents=True, exist_ok=True)
             table.write_text(FILLED, encoding="utf-8")
         asked += next((more for word, more in SHORTER.items() if word in command and more[0] not in command), ())
-        own = Path("my.toml")
-        kept = own.rename("kept.toml") if asked[:2] == ["new", "my"] else None
+        own = Path(f"{asked[1]}.toml")
+        kept = own.rename("kept.toml") if asked[0] == "new" and own.is_file() else None
         monkeypatch.setattr("sys.stdin", io.StringIO("lugansk/cam_flat\nПетренко О. О.\nТМ-21\n"))
         assert __main__.run(asked) == __main__.DONE, (command, capsys.readouterr().err)
         capsys.readouterr()
@@ -344,7 +352,7 @@ def test_the_option_of_all_commands_is_told_once():
 
 def test_no_option_is_named_that_no_command_has():
     known = {o for command in cli.commands.every().values() for p in command.params for o in p.opts} | {"--help"}
-    text = re.sub(r"^.*(?:python -m|pip install).*$", "", EVERYWHERE, flags=re.MULTILINE)
+    text = re.sub(r"^.*(?:python -m|pip install|dask worker).*$", "", EVERYWHERE, flags=re.MULTILINE)
     assert set(re.findall(r"(?<![\w-])--[a-z]+(?:-[a-z]+)*", text)) <= known
 
 

@@ -1,8 +1,8 @@
 """Students on a dask cluster of this machine: ``python -m tests.bench.cluster [--students 50,100,200] [--workers 1,2] [--works]``.
 
-Each student gets a sheet as SVG, composed anew; with ``--works`` all that ``roster`` gives. First how many a minute, and the memory of
-the workers before and after; then a worker is killed when a third is there, and the command itself, which is repeated. Workers are
-processes of their own, one thread each.
+Each student gets a sheet as SVG, composed anew; with ``--works`` all that ``roster`` gives. First how many a minute, and the memory
+of the workers before and after; then a worker is killed when a third is there, and the command itself, which is repeated. Workers
+are processes of their own, one thread each.
 """
 
 from __future__ import annotations
@@ -132,8 +132,8 @@ def killed_command(students: int, works: bool) -> str:
         command = batch.start(address)
         told, problems = command.communicate()
         again = sum(batch.done[path] != when for path, when in there.items())
-        said = f"{len(there)} of {students} there; repeated: status {command.returncode}, {len(batch.done)} there, {again} made again"
-    return f"command killed, {said}; {_last(told, problems)}"
+        ended = f"repeated: status {command.returncode}, {len(batch.done)} there, {again} made again"
+    return f"command killed, {len(there)} of {students} there; {ended}; {_last(told, problems)}"
 
 
 def _last(said: str, problems: str) -> str:
