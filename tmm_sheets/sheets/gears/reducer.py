@@ -49,6 +49,8 @@ STRETCHED = 1.8
 """So many times wider the axial view may be drawn where there is room: only its heights are to scale."""
 BETWEEN = 12.0, 34.0
 """Distance of the views of a scheme from the picture of velocities between them: least and greatest, mm."""
+UNDER = 14.0
+"""The wheels stand no farther under their title, mm: what is left of a high place is in one piece under them."""
 OFFERED = 90.0
 """Width from which room beside them is of use to other views, mm."""
 NARROWEST, WIDEST = 75.0, 100.0
@@ -107,7 +109,7 @@ class SchemeViews:
         self.mu = canvas.scales[key] = self.fitted(box.width, box.height)
         self.box = self.canvas.title(box, title, ratio(self.mu))
         spare = self.box.height - (self.top + self.bottom) / self.mu.mu
-        self.axis = self.box.y0 + spare / 2 + self.bottom / self.mu.mu
+        self.axis = self.box.y0 + max(spare / 2, spare - UNDER) + self.bottom / self.mu.mu
         self.front = complex(self.box.x1 - 6 - self.side / self.mu.mu, self.axis)
         room = self.front.real - self.side / self.mu.mu - self.box.x0
         self.stretch((room - self.pictured() - 2 * BETWEEN[0]) / self.width)
