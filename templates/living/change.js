@@ -38,7 +38,7 @@ function* assembles(given) {
 
 // The first place of the mechanism that there is none of, if there is one.
 function notThere(values) {
-  notThere.places ??= Object.entries(record.motion.all.results).filter(([id]) => id.startsWith("positions/") && record.steps?.[id]?.kind !== "direction");
+  notThere.places ??= Object.entries(record.motion.all.results).filter(([id]) => /^positions\/\S+$/.test(id) && record.steps?.[id]?.kind !== "direction");
   return notThere.places.find(([, [place]]) => Number.isNaN(values[place]));
 }
 
@@ -165,6 +165,18 @@ function tellLost(first, values) {
   place.textContent = `${say("does not assemble at this angle")}: ${stepOf(first[0]).name}${gap ? `, ${say("gap")} ${told(gap, "m")}` : ""}`;
 }
 
+// By how much the third leg of a group of class III misses what the other two let its corner reach, m; 0 where it does not.
+function gapOfCourses() {
+  const now = found(), { searches, watched } = record.motion, values = run(watched, machine.phi, now);
+  const lost = searches.courses.findIndex((_, n) => Number.isNaN(onCourse(machine.phi, now.courses[n].angles, now.courses[n].places)[0]));
+  if (lost < 0) return 0;
+  const legs = pointed(searches.courses[lost].legs.map((arg) => argumentOf(arg, values, now.given)));
+  if (modesOn(legs).length) return 0; // it can be put together, in another way
+  const missed = Array.from({ length: SCAN }, (_, i) => cis(TURN / SCAN * i)).flatMap((u) => placesOn(u, 0, 1, legs).map((k) => Math.abs(conditions(k, u, legs)[2].f)));
+  const there = missed.filter(Number.isFinite);
+  return there.length ? Math.min(...there) : 0;
+}
+
 // By how much two arcs, or an arc and a line, miss each other, m.
 function gapOf(id, values) {
   const s = stepOf(id), own = (arg) => {
@@ -174,7 +186,7 @@ function gapOf(id, values) {
   const args = s.args.map(own);
   if (s.rule.startsWith("arc cuts arc")) { const d = size(sub(args[2], args[0])); return Math.max(d - args[1] - args[3], Math.abs(args[1] - args[3]) - d); }
   if (s.rule.startsWith("arc cuts line")) return Math.abs(cross(args[3], sub(args[2], args[0]))) - args[1];
-  return 0;
+  return gapOfCourses();
 }
 
 function changePanel() {
