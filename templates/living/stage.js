@@ -246,15 +246,15 @@ const LEAST = 23, SHAPE = 19 / 23; // width of a card at least, rem, and the hei
 function fitCards() {
   const place = $("stage"), rem = parseFloat(getComputedStyle(document.documentElement).fontSize), gap = 0.8 * rem, above = 2 * rem;
   const width = place.clientWidth - gap, most = Math.max(Math.floor(width / (LEAST * rem + gap)), 1);
+  let best = null;
   for (let columns = 1; columns <= most; columns++) {
-    const wide = width / columns - gap, rows = Math.ceil((stage.cards.length + 1) / columns);
-    if (rows * (wide * SHAPE + above + gap) + gap > place.clientHeight) continue;
-    place.style.setProperty("--columns", `repeat(${columns}, 1fr)`);
-    place.style.setProperty("--high", `${wide * SHAPE}px`);
-    return;
+    const rows = Math.ceil((stage.cards.length + 1) / columns), room = (place.clientHeight - gap) / rows - above - gap;
+    const wide = Math.min(width / columns - gap, room / SHAPE);
+    if (wide >= LEAST * rem && !(best?.wide >= wide)) best = { columns, wide };
   }
-  place.style.removeProperty("--columns");
-  place.style.removeProperty("--high");
+  for (const [name, value] of [["--columns", `repeat(${best?.columns}, 1fr)`], ["--high", `${best?.wide * SHAPE}px`]]) {
+    if (best) place.style.setProperty(name, value); else place.style.removeProperty(name);
+  }
 }
 
 function openStage() {
