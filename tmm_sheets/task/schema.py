@@ -698,17 +698,22 @@ class SynthesisTable(Table):
     """``[synthesis]``: conditions from which lengths are found.
 
     Where one is used, ``"synthesis l_AB"`` or ``"0.5 synthesis l_CD"`` stands instead of a length.
-    ``"quick return"`` finds l_AB and l_CD, ``"engine"`` H, l_AB and l_BC; with ``centre_ratio`` also l_CS or l_BS.
+    ``"quick return"`` finds l_AB and l_CD, ``"engine"`` H, l_AB and l_BC; with ``centre_ratio`` also l_CS or l_BS. ``"geneva"``
+    finds l_AB and l_BC, the radius of the cross.
     """
 
-    kind: Literal["quick return", "engine"] = Field(description=marked('"quick return" or "engine"'))
-    """crank and rocker, or crank and slider"""
+    kind: Literal["quick return", "engine", "geneva"] = Field(description=marked('"quick return", "engine" or "geneva"'))
+    """crank and rocker, crank and slider, or crank and cross with slots"""
     coefficient: Annotated[float, si(units.NUMBER), in_range(marked("expected K greater than 1"), lambda x: x > 1)] | None = None
     """quick return: coefficient of travel time K, the ratio of the mean velocities"""
     stroke: Length | None = None
     """quick return: of the rocker's end, across the line of the pivots"""
     centre_distance: Length | None = None
-    """quick return: between the pivots of crank and rocker"""
+    """quick return and geneva: between the pivots of crank and rocker, or cross"""
+    slots: Annotated[int, whole(3, 24)] | None = None
+    """geneva: number of the slots of the cross"""
+    roller: Length | None = None
+    """geneva: radius of the roller on the crank pin"""
     mean_velocity: Annotated[float, positive(units.VELOCITY, marked("expected a velocity greater than zero"))] | None = None
     """engine: of the piston"""
     rod_ratio: Annotated[float, si(units.NUMBER), in_range(marked("expected a ratio greater than 1"), lambda x: x > 1)] | None = (
@@ -722,17 +727,14 @@ class SynthesisTable(Table):
 
     @model_validator(mode="after")
     def _conditions_of_the_kind(self) -> Self:
-        own = {"quick return": ("coefficient", "stroke", "centre_distance"), "engine": ("mean_velocity", "rod_ratio")}
-        for kind, keys in own.items():
-            absent = [k for k in keys if getattr(self, k) is None]
-            if kind == self.kind and absent:
-                raise ValueError(tell('kind = "{kind}" needs {absent} as well').format(kind=kind, absent=", ".join(absent)))
-            if kind != self.kind and len(absent) < len(keys):
-                raise ValueError(
-                    tell('kind = "{kind}" has no {names}').format(
-                        kind=self.kind, names=", ".join(k for k in keys if k not in absent)
-                    )
-                )
+        own = {"quick return": ("coefficient", "stroke", "centre_distance"), "engine": ("mean_velocity", "rod_ratio"),
+               "geneva": ("slots", "centre_distance", "roller")}
+        has = {key for keys in own.values() for key in keys if getattr(self, key) is not None}
+        has |= {"centre_ratio"} if self.centre_ratio is not None and self.kind == "geneva" else set()
+        if absent := [key for key in own[self.kind] if key not in has]:
+            raise ValueError(tell('kind = "{kind}" needs {absent} as well').format(kind=self.kind, absent=", ".join(absent)))
+        if extra := sorted(has - set(own[self.kind])):
+            raise ValueError(tell('kind = "{kind}" has no {names}').format(kind=self.kind, names=", ".join(extra)))
         return self
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import degrees, floor, inf, isfinite, nan, pi
+from math import acos, asin, degrees, floor, inf, isfinite, nan, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -73,12 +73,14 @@ class Synthesis:
     @cached_property
     def plan(self) -> Plan:
         """The construction, m."""
+        if self.conditions.kind == "geneva":
+            return _geneva(self.conditions)
         return _quick_return(self.conditions) if self.conditions.kind == "quick return" else _engine(self.conditions, self.speed)
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the lengths found."""
-        return tuple(name for name in ("l_AC", "H", "l_AB", "l_BC", "l_CD", "l_CS", "l_BS") if name in self.plan)
+        return tuple(name for name in ("l_AC", "H", "l_AB", "l_BC", "l_CD", "l_CS", "l_BS", "h", "r_f") if name in self.plan)
 
     @cached_property
     def exact(self) -> dict[str, float]:
@@ -95,6 +97,12 @@ class Synthesis:
             when no length follows from the conditions, or one is rounded to nothing.
         """
         found = {}
+        c = self.conditions
+        if c.kind == "geneva" and self.exact["r_f"] > 0:
+            mouth = asin(min(float(c.roller or 0.0) / self.exact["l_BC"], 1.0))
+            if not 0 < self.horn < pi / (c.slots or 1) - mouth:
+                raise CannotBuild(tell("synthesis: the roller leaves no horns of the cross beside its slots"),
+                                  tell("take a smaller roller"))
         for name, exact in self.exact.items():
             found[name] = float(self.plan[f"{name}′"].value) if f"{name}′" in self.plan else exact
             if not 0 < exact < inf:
@@ -116,6 +124,12 @@ class Synthesis:
         return self.plan.auxiliary(place, AS_WRITTEN, GivenNumber(share, place), used, symbol=symbol)
 
     @property
+    def horn(self) -> float:
+        """Angle at a Geneva cross from the middle of a locking arc to where it cuts the circle of the cross, rad."""
+        distance, radius, lock = (self.exact[name] for name in ("l_AC", "l_BC", "r_f"))
+        return acos(min(max((distance**2 + radius**2 - lock**2) / (2 * distance * radius), -1.0), 1.0))
+
+    @property
     def derivation(self) -> list[str]:
         """Formulas with their numbers in lettering markup, one a line."""
         c, x = self.conditions, self.exact
@@ -131,6 +145,15 @@ class Synthesis:
                 assert c.centre_ratio is not None
                 lines.append(f"l_CS = {number(c.centre_ratio)}·l_CD = {self._said('l_CS')}")
             return lines
+        if c.kind == "geneva":
+            assert c.slots is not None
+            z, beta, roller = c.slots, f"{number(180 / c.slots, 5)}°", number(float(c.roller or 0.0))
+            return [f"β = 180°/z = 180°/{z} = {beta};  φ_m = 180° − 2β = {number(180 - 360 / z, 5)}°",
+                    f"l_AB = l_AC·sin β = {number(x['l_AC'])}·sin {beta} = {self._said('l_AB')}",
+                    f"l_BC = l_AC·cos β = {number(x['l_AC'])}·cos {beta} = {self._said('l_BC')}",
+                    f"r_p = {roller} {tr('m')};  h = l_AB + l_BC + r_p − l_AC = {self._said('h')}",
+                    f"{tr('r_{l}')} = l_AB − 2r_p = {self._said('r_f')}",
+                    f"k = φ_m/360° = (z − 2)/2z = {number((z - 2) / (2 * z), 4)}"]
         assert c.mean_velocity is not None
         assert c.rod_ratio is not None
         period = float(self.plan["T"].value)
@@ -212,3 +235,28 @@ def _engine(c: SynthesisTable, speed: float) -> Plan:
 DEAD = Rule("dead position of the crank", lambda p, u, length, sign: p + sign * length * u, ("point", "direction", "length"),
             "point", marked("On the line {1} lay off the crank {2} from {0}: extreme position {name}."),
             lambda a, v: (Helper("line", a[0], v),))
+
+
+HALF_PITCH = Rule("half the angle between slots", lambda z: pi / z, ("number",), "angle",
+                  marked("Half the angle between the slots {name} = 180°/{0} = {value}."), unit="rad")
+BESIDE = Rule("point beside the origin", lambda distance: distance + 0j, ("length",), "point", marked("Mark point {name}."))
+DEPTH = Rule("depth of a slot", lambda r, radius, roller, distance: r + radius + roller - distance, ("length",) * 4, "length",
+             marked("Depth of a slot {name} = {0} + {1} + {2} − {3} = {value}."))
+LOCKING = Rule("radius of the locking disc", lambda r, roller: r - 2 * roller, ("length", "length"), "length",
+               marked("Radius of the locking disc, with a horn as thick as the roller's radius: {name} = {0} − 2·{1} = {value}."))
+
+
+def _geneva(c: SynthesisTable) -> Plan:
+    """The pin enters a slot along it, square to the crank: no blow. B is where it enters."""
+    plan = Plan("synthesis", tr("Geometric synthesis of the Geneva mechanism"), "m")
+    a = plan.add("A", rules.GIVEN, 0j)
+    pivot = plan.add("C", BESIDE, _given(c, "centre_distance", "l_{AC}", "m"))
+    plan.add("l_AC", rules.DISTANCE, a, pivot)
+    roller = _given(c, "roller", "r_{p}", "m")
+    slot = plan.add("CB", UNDER, plan.add("CA", rules.RAY, pivot, a), plan.add("β", HALF_PITCH, _given(c, "slots", "z")))
+    b = plan.add("B", rules.FOOT, a, pivot, slot)
+    crank, radius = plan.add("l_AB", rules.DISTANCE, a, b), plan.add("l_BC", rules.DISTANCE, pivot, b)
+    _rounded(plan, "l_AB", c)
+    plan.add("h", DEPTH, crank, radius, roller, plan["l_AC"])
+    plan.add("r_f", LOCKING, crank, roller, symbol=tr("r_{l}"))
+    return plan

@@ -13,6 +13,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import size_for
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.sheets.frame import PlanFrame, fit_frame
+from tmm_sheets.sheets.linkage import geneva
 from tmm_sheets.sheets.player import PlayerStage, stage
 from tmm_sheets.words import tr
 
@@ -30,12 +31,12 @@ def sizes(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     """
     if project.variant.synthesis is None:
         return
-    share = float(options.get("figure", 0.4))
+    share = float(options.get("figure", 0.55 if project.variant.synthesis.kind == "geneva" else 0.4))
     lines = project.synthesis.derivation
     canvas.of = "synthesis"
     left = Box(box.x0, box.y0, box.x0 + share * box.width, box.y1)
     right = Box(left.x1 + 4.0, box.y0, box.x1, box.y1)
-    draw = _quick_return if project.variant.synthesis.kind == "quick return" else _engine
+    draw = {"quick return": _quick_return, "engine": _engine, "geneva": geneva.figure}[project.variant.synthesis.kind]
     draw(project, canvas, left)
     inside = canvas.title(right, tr("Geometric synthesis"))
     step = min(LINE, inside.height / len(lines))
@@ -48,7 +49,10 @@ def sizes_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> li
     if project.variant.synthesis is None:
         return []
     high = 12.0 + LINE * len(project.synthesis.derivation)
-    return [(width, max(high, tall)) for width, tall in ((200.0, 90.0), (180.0, 70.0), (170.0, 60.0))]
+    places = ((200.0, 90.0), (180.0, 70.0), (170.0, 60.0))
+    if project.variant.synthesis.kind == "geneva":
+        places = ((260.0, 130.0), (220.0, 105.0), (190.0, 85.0))
+    return [(width, max(high, tall)) for width, tall in places]
 
 
 def _frame(project: Project, canvas: Canvas, box: Box, points: list[complex], around: tuple[complex, ...]) -> PlanFrame:
