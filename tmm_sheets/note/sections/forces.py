@@ -12,7 +12,6 @@ import numpy as np
 
 from tmm_sheets.construction import expression
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.methods.linkage.forces import GearForce
 from tmm_sheets.note.document import NumberInText, Symbol, Text
 from tmm_sheets.note.formula import FormulaRow, Node, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Scope, ShownFormula, bare, words
@@ -413,7 +412,7 @@ def _crank(r: Reader) -> list[dict[str, Any]]:
     total = balancing.args[0]
     item: dict[str, Any] = {"pivot": Symbol(letters(letters_of(m.crank.pivot)))}
     length = made = None
-    if isinstance(study.driver, GearForce):
+    if study.driver is not None and study.driver.wheel is not None:
         pivot, at = (complex(value_at(x, r.k)) for x in balancing.args[1:3])
         u = complex(value_at(balancing.args[3], r.k))
         arm = abs(float((np.conj(at - pivot) * u).imag))
