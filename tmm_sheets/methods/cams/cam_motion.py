@@ -132,8 +132,7 @@ def motion_scales(law: PositionFunction, width: float, height: float, equal: boo
     share what the phases leave at their left. With ``equal`` all three diagrams have one scale factor: both pole distances are
     1/mu_phi (manual 000, 7 ex. 3), unless its auxiliary circle would leave much of the height bare, or a curve is too low.
     """
-    x = np.linspace(0, 1, 65)
-    spans = [float(np.ptp(np.concatenate(([0.0], f(law.rise, x), f(law.fall, x))))) for f in (Phase.dds, Phase.ds, Phase.s)]
+    spans = extents(law)
     place = _Place(law, spans, width, height)
     finest = handy(degrees(law.fall.end) / (width - (BESIDE if has_circle(law) else BARE) - POLE))
     across = [radians(degree) for degree in _coarser(finest)]
@@ -142,6 +141,17 @@ def motion_scales(law: PositionFunction, width: float, height: float, equal: boo
         if sum(highs) >= FILLED * height and highs[2] >= CURVE:
             return found
     return place.best(across, *(_coarser(span / ((1.0 - LEFT) * height)) for span in spans))[0]
+
+
+def extents(law: PositionFunction) -> list[float]:
+    """What S'', S' and S of a law extend over, the axis with them, SI."""
+    x = np.linspace(0, 1, 65)
+    return [float(np.ptp(np.concatenate(([0.0], f(law.rise, x), f(law.fall, x))))) for f in (Phase.dds, Phase.ds, Phase.s)]
+
+
+def circle_radius(law: PositionFunction) -> float:
+    """Greatest ordinate of S'' that an auxiliary circle gives, SI; nothing for a law without one."""
+    return max((p.amplitude for p in (law.rise, law.fall) if p.law.division), default=0.0)
 
 
 LEFT = 0.3
@@ -165,7 +175,7 @@ class _Place:
         phi, dds, ds, s = np.meshgrid(across, *of, indexing="ij")
         high = [span / mu for span, mu in zip(self.spans, (dds, ds, s), strict=True)]
         h1, h2, long = ds / (dds * phi), s / (ds * phi), self.law.fall.end / phi
-        circle = 2 * max((p.amplitude for p in (self.law.rise, self.law.fall) if p.law.division), default=0.0)
+        circle = 2 * circle_radius(self.law)
         taken = np.maximum(h1 + circle / dds, h2) + (BESIDE if circle else BARE) + long
         over = np.maximum(taken / self.width - 1, 0) + np.maximum(sum(high) / self.height - 1, 0)
         least = (h1 / POLE, h2 / POLE, high[0] / CURVE, high[1] / CURVE, high[2] / MAIN)
