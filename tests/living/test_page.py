@@ -199,6 +199,26 @@ def test_other_lengths_give_what_solve_gives(name, sets, tmp_path):
     assert compared > 8 * sets
 
 
+UNEVEN = [
+    ("lugansk/shaper", "0 rad/s2", "flywheel"), ("lugansk/engine", "0 rad/s2", "flywheel"),
+    ("press", "delta = 0.04 ", 'inertia = "200 kg m2" '),
+    ("press", "accepted = true", 'accepted = true\nrotor_inertia = "0.18 kg m2"'),
+    ("press", 'title = "кривошип"', 'title = "кривошип"\nmass = "20 kg"\ncentre = "A"\ninertia = "0.1 kg m2"'),
+    (FEEDER, "[crank]", '[crank]\nangular_acceleration = "flywheel"'),
+]
+"""Projects whose crank the flywheel lets run unevenly: what is put in the place of what in their files."""
+
+
+@javascript.needed
+@pytest.mark.trial
+@pytest.mark.parametrize(("name", "old", "new"), UNEVEN)
+def test_other_lengths_of_uneven_cranks(name, old, new, tmp_path):
+    """By both methods, of one and of two turns, with strokes and pressures, a given flywheel, a rotor, a crank that has a mass."""
+    path = tmp_path / "uneven.toml"
+    path.write_text(catalogue.read(name).text.replace(old, new, 1), encoding="utf-8")
+    test_other_lengths_give_what_solve_gives(str(path), 5, tmp_path)
+
+
 LIMITS = javascript.modules(*NUMBERS, "stage", "change") + """
 const result = ({ motion, name }) => {
   record = { motion };
