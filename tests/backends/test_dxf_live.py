@@ -74,7 +74,9 @@ def test_handles_are_unique_and_below_the_next_free_one():
 
 
 def test_first_sheet_is_small():
-    assert len(dxf.render(drawing_of(1))) <= 400_000
+    """By what is drawn on it: a detail more is 40 marks more."""
+    drawing = drawing_of(1)
+    assert len(dxf.render(drawing)) <= 225 * len(drawing.marks)
 
 
 def test_all_lettering_can_be_found(sheet):
@@ -95,6 +97,7 @@ def test_lettering_is_as_long_as_in_the_font(sheet):
     assert style.get_extended_font_data() == (font["name"].getDebugName(1), True, False)
     fitted = [e for e in everywhere(doc) if e.dxftype() == "TEXT" and len(e.dxf.text) > 1 and not e.dxf.invisible]
     assert len(fitted) > 100
+    wide = {m.text.strip(): m.wide for m in drawing.marks if isinstance(m, Text)}  # condensed where there is little room
     for e in fitted:
         kind, first, last = e.get_placement()
         assert kind.name == "FIT"
@@ -102,7 +105,7 @@ def test_lettering_is_as_long_as_in_the_font(sheet):
         letters = sum(widths[names[ord(c)]][0] for c in e.dxf.text) / em * size
         ink = glyph(e.dxf.text[0])
         gap = widths[names[ord(e.dxf.text[0])]][0] / em * size - (ink.right - ink.left - 0.1) * e.dxf.height
-        assert abs(z(last) - z(first)) == pytest.approx(letters - gap, abs=3e-4)  # without the gap round one letter
+        assert abs(z(last) - z(first)) == pytest.approx((letters - gap) * wide.get(e.dxf.text, 1.0), abs=3e-4)  # without the gap round one letter
         assert degrees(np.angle(z(last) - z(first))) % 360 == pytest.approx(e.dxf.rotation % 360, abs=0.01)
     forms = {k for form in drawing.forms for f in form.fields for k in range(f.first, f.end)}
     starts = np.array([m.at for k, m in enumerate(drawing.marks) if isinstance(m, Text) and k not in forms and m.text[0] != " "

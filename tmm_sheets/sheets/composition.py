@@ -42,17 +42,18 @@ def arranged(project: Project, n: int) -> Arrangement:
 
         return enlarged.apart(project, flywheel.apart(project, plan))
     # Whoever sets scale factors by hand has the boxes as they are written; an indicator diagram only makes its mechanism larger.
+    as_written = replace(plan, views=tuple(view for view in plan.views if _meant(project, view)))
     if project.variant.scales.keys() - {"indicator"}:
-        return plan
+        return as_written
     if not any(view.kind.place for view in plan.views):
-        return plan
+        return as_written
     if any(view.needs in ("positions", "forces") for view in plan.views) and len(project.cycle.drawn) > kinematic_frames.MOST:
-        return plan  # as many positions fit on no sheet
+        return as_written  # as many positions fit on no sheet
     ways = [_Way.of(project, way) for way in plan.ways()]
     for way in ways[1:]:
         way.means(ways[0])
     found = [solved for way in ways if (solved := way.solved()) is not None]
-    return min(found, key=lambda solved: round(solved[0], 3))[1] if found else plan
+    return min(found, key=lambda solved: round(solved[0], 3))[1] if found else as_written
 
 
 def _with_all_groups(project: Project, plan: Arrangement) -> Arrangement:

@@ -14,6 +14,7 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given, GivenNumber
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.plan import Plan
@@ -35,7 +36,9 @@ EQUAL_STROKE = Rule("equal parts of a stroke", lambda start, end, parts, number:
                     exact=True)
 
 
+@primitive("angle turned to the crank pin", "real")
 def _turned(centre: Any, first: Any, pin: Any, sense: Any) -> Any:
+    """Angle from one place of the crank pin about a centre to another, in the sense of rotation; it may be a little less than 0."""
     r, begin = pin - centre, first - centre
     return np.mod(sense * np.arctan2(ar.cross(begin, r), ar.dot(begin, r)) + 1.0, 2 * np.pi) - 1.0
 
