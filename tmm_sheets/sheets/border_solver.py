@@ -25,6 +25,8 @@ STEPS = ((60.0, 35.0, 20.0, 11.0, 6.0), (4.0, 2.0, 1.0)), ((20.0, 11.0, 6.0), (4
 
 A far move may end where no other leads on: of several beginnings the best end is taken.
 """
+JUST = 0.01
+"""What a place that is too small lacks besides, of its size: no view is left just outside its place for a larger one elsewhere."""
 LESS = 1e-3
 """Places that cost less by no more than this are none the better, mm^2."""
 ROUNDS = 3
@@ -92,7 +94,8 @@ class Need:
 
     def short(self, width: float, height: float) -> float:
         """How much a place is too small, in its own size."""
-        return max(self.least[0] - width, 0.0) / self.least[0] + max(self.least[1] + self.covered - height, 0.0) / self.least[1]
+        found = max(self.least[0] - width, 0.0) / self.least[0] + max(self.least[1] + self.covered - height, 0.0) / self.least[1]
+        return found + JUST if found else 0.0
 
     def below(self, width: float, height: float) -> float:
         """How far what is drawn in a place is below its floors: the part of them that it lacks."""
@@ -100,7 +103,7 @@ class Need:
         return small + max(1.0 - self.ink(width, height) / (width * height * self.filled), 0.0) if self.filled else small
 
 
-TOO_SMALL, BELOW = 1e9, 1e7
+TOO_SMALL, BELOW = 1e8, 1e7
 """Price of a place that is too small by its own size, mm^2: more than that of any sheet; and of what is not seen at all in it."""
 
 
