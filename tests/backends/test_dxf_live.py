@@ -105,7 +105,8 @@ def test_lettering_is_as_long_as_in_the_font(sheet):
         letters = sum(widths[names[ord(c)]][0] for c in e.dxf.text) / em * size
         ink = glyph(e.dxf.text[0])
         gap = widths[names[ord(e.dxf.text[0])]][0] / em * size - (ink.right - ink.left - 0.1) * e.dxf.height
-        assert abs(z(last) - z(first)) == pytest.approx((letters - gap) * wide.get(e.dxf.text, 1.0), abs=3e-4)  # without the gap round one letter
+        length = (letters - gap) * wide.get(e.dxf.text, 1.0)  # without the gap round one letter
+        assert abs(z(last) - z(first)) == pytest.approx(length, abs=3e-4)
         assert degrees(np.angle(z(last) - z(first))) % 360 == pytest.approx(e.dxf.rotation % 360, abs=0.01)
     forms = {k for form in drawing.forms for f in form.fields for k in range(f.first, f.end)}
     starts = np.array([m.at for k, m in enumerate(drawing.marks) if isinstance(m, Text) and k not in forms and m.text[0] != " "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cmath import rect
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable
 from functools import cached_property
 from itertools import chain
 from typing import Any
@@ -53,12 +53,12 @@ class InkIndex:
         self.half, self.sides = np.empty(0), np.empty((4, 0))
         self.written, self._corners, self.texts = np.empty((0, 4)), np.empty((0, 4), complex), list[int]()
         self._filled, self._steps = np.empty((0, 4)), dict[tuple[str | int, ...], list[int]]()
+        self._made = dict[str, tuple[Cells, tuple[int, int, int]]]()
         self.set_leaders(np.empty(0), np.empty(0))
         self.add(marks)
 
     def add(self, marks: Iterable[Mark]) -> None:
         """Something more is drawn."""
-        before = self._counts
         first, starts, ends, lines = len(self.marks), list[Any](), list[Any](), list[tuple[int, bool, bool, bool, float]]()
         texts, filled = dict[int, Text](), list[tuple[float, float, float, float]]()
         self.marks.extend(marks)
@@ -98,9 +98,6 @@ class InkIndex:
         if filled:
             self._filled = np.vstack((self._filled, filled))
         vars(self).pop("_outlines", None)
-        for known, cells in (("heavy", self._heavy_cells), ("light", self._light_cells)):
-            if known in vars(self):
-                vars(self)[known].include(cells(*before))
 
     def move_text(self, number: int, text: Text | None) -> None:
         """Lettering of a mark stands elsewhere now, or is taken off."""
@@ -176,22 +173,30 @@ class InkIndex:
         return a, b, sides(a, b), np.append(np.where(self.strong, WORSE, 1), np.full(self._corners.size, WORSE))
 
     @property
-    def _counts(self) -> tuple[int, int, int]:
-        """How many segments, rectangles of lettering, and of fills there are."""
-        return len(self.a), len(self.written), len(self._filled)
-
-    @cached_property
     def heavy(self) -> Cells:
         """Cells that lettering must not touch: main lines, curves, axes, fills, other lettering, and the neighbours of these.
 
         Main lines are up to a millimetre wide: their neighbours count as inked too.
         """
-        return self._heavy_cells()
+        return self._current(self._heavy_cells)
 
-    @cached_property
+    @property
     def light(self) -> Cells:
         """Cells of thin lines, which it had better avoid."""
-        return self._light_cells()
+        return self._current(self._light_cells)
+
+    def _current(self, make: Callable[..., Cells]) -> Cells:
+        """Cells as they were made, with what was drawn since then."""
+        counts = len(self.a), len(self.written), len(self._filled)
+        if (known := self._made.get(make.__name__)) is None:
+            cells = make()
+        elif known[1] == counts:
+            return known[0]
+        else:
+            cells = known[0]
+            cells.include(make(*known[1]))
+        self._made[make.__name__] = cells, counts
+        return cells
 
     def _heavy_cells(self, lines: int = 0, texts: int = 0, fills: int = 0) -> Cells:
         """Those of what is drawn from these numbers on."""
