@@ -224,6 +224,17 @@ class FollowerMotion:
     s: list[Step]
     exact: ExactMotion
 
+    @property
+    def heights(self) -> tuple[float, ...]:
+        """How high the diagrams S'', S' and S are, their axes with them, mm."""
+        scales = self.scales.dds, self.scales.ds, self.scales.s
+        return tuple(scale.mm(extent) for scale, extent in zip(scales, extents(self.law), strict=True))
+
+    @property
+    def circle_end(self) -> float:
+        """How far the auxiliary circle reaches to the left of the origin of S'', mm; 0 for a law without one."""
+        return self.scales.h1 + GAP + 2 * self.scales.dds.mm(circle_radius(self.law)) if has_circle(self.law) else 0.0
+
     def measured(self, steps: list[Step], scale: Scale) -> Reals:
         """Ordinates of a diagram at the numbered positions in SI."""
         return np.asarray(scale.real(ordinates(steps)))

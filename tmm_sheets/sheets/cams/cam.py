@@ -18,7 +18,6 @@ from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
 from tmm_sheets.drawing.lettering import fitted, letter, size_for
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.tables import needs, parted, widened
-from tmm_sheets.methods.cams.cam_motion import GAP, circle_radius, has_circle
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.frame import OVER
 from tmm_sheets.sheets.player import PlayerStage, placed, play
@@ -111,9 +110,7 @@ def in_degrees(symbol: str) -> str:
 
 def reach_of_motion(m: FollowerMotion) -> tuple[float, float]:
     """How far the diagrams reach to the left and to the right of their origins, mm."""
-    left = max(m.scales.h1, m.scales.h2) + 6.0
-    if has_circle(m.law):
-        left = max(left, m.scales.h1 + GAP + 2 * m.scales.dds.mm(circle_radius(m.law)) + BEYOND)
+    left = max(max(m.scales.h1, m.scales.h2) + 6.0, m.circle_end + BEYOND)
     return left, float(m.scales.phi.mm(m.law.fall.end)) + BEHIND
 
 

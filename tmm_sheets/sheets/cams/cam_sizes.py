@@ -12,7 +12,6 @@ import numpy as np
 from tmm_sheets.construction.readable import CURVE
 from tmm_sheets.construction.scale import STANDARD, fitting
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.cams.cam_motion import extents
 from tmm_sheets.sheets.border_solver import Need
 from tmm_sheets.sheets.cams import cam as cam_views
 from tmm_sheets.sheets.cams import cam_profile, cam_zone
@@ -47,8 +46,7 @@ def motion(project: Project, view: ViewPlace) -> BorderNode:
     m = project.cam.motion
     left, right = cam_views.reach_of_motion(m)
     width = left + max(right, cam_views.heads_width(m))
-    scales = m.scales.dds, m.scales.ds, m.scales.s
-    high = sum(scale.mm(extent) for scale, extent in zip(scales, extents(m.law), strict=True)) + cam_views.TITLE + cam_views.HEADS
+    high = sum(m.heights) + cam_views.TITLE + cam_views.HEADS
     return leaf(view.box, Need(least=(width, high), most=(width, view.box.height), drawn=lambda w, h: w * h))
 
 
