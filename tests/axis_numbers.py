@@ -17,6 +17,7 @@ import numpy as np
 from tests.gallery import names
 from tmm_sheets import catalogue
 from tmm_sheets.drawing import ink_index
+from tmm_sheets.drawing.dashes import interrupted
 from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.project import Project
@@ -41,7 +42,7 @@ class Number(NamedTuple):
 def of_sheet(composed):
     """All numbers at the axes of the graphs of a finished sheet."""
     drawing = composed.drawing
-    ink = ink_index.InkIndex(drawing.marks)
+    ink = ink_index.InkIndex(m for mark in drawing.marks for m in interrupted(mark))  # as they are drawn: lines yield to lettering
     found = []
     for n in sorted({n for view in drawing.views for a, b in view.spans for n in range(a, b)}):
         mark = drawing.marks[n]

@@ -106,7 +106,7 @@ TOLD_OTHERWISE = {
     "cycle.extra", "forces.gravity", "title_block.first_sheet", "group.at", "group.direction", "group.side", "guide.direction",
     "guide.through", "force.direction", "force.first", "force.from", "force.to", "moment.first", "balancing.mate", "scales",
     "points", "synthesis.round", "gear.driver", "gear.addenda", "reducer.simple_ratio", "reducer.least_teeth", "reducer.most_teeth",
-    "flywheel.motor.ratio", "cam.parts", "cam.table", "cam.fall_table", "cam.displacements", "group.kind",
+    "flywheel.motor.ratio", "input.side", "cam.parts", "cam.table", "cam.fall_table", "cam.displacements", "group.kind",
 }  # fmt: skip
 """Numbers of a project file that the note tells elsewhere: in its drawings and sentences, or as a choice of the drawing."""
 
@@ -131,8 +131,8 @@ def _types(annotation):
         yield annotation
 
 
-PARTS = ("crank", "group", "point", "synthesis", "link", "force", "moment", "balancing", "friction", "flywheel", "reducer", "gear",
-         "cam", "cycle")  # fmt: skip
+PARTS = ("crank", "input", "group", "point", "synthesis", "link", "force", "moment", "balancing", "friction", "flywheel", "reducer",
+         "gear", "cam", "cycle")  # fmt: skip
 
 
 @pytest.mark.parametrize("language", words.LANGUAGES)

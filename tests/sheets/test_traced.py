@@ -13,7 +13,7 @@ from tests.sheets import traced
 from tmm_sheets.catalogue import read
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import GIVEN
-from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame, Text
+from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame, Polyline, Text
 from tmm_sheets.project import Project
 
 
@@ -73,10 +73,12 @@ def test_a_mark_that_tells_a_wrong_step_is_found(press, role):
 
 @pytest.mark.parametrize(("mark", "off"), [
     (Line(90 + 60j, 110 + 60j, "vector"), 0.0), (Line(90 + 61j, 110 + 61j, "vector"), 1.0),
-    (Arc(100 + 60j, 2.0, 0.0, 1.0, "thin"), np.inf),
+    (Arc(100 + 60j, 2.0, 0.0, 1.0, "thin"), 0.0), (Arc(103 + 60j, 2.0, 0.0, 1.0, "thin"), 3.0),
+    (Polyline(np.array([100 + 60j, 101 + 60j]), "thin"), np.inf),
     (Fill(np.array([100 + 61j, 100 + 59j, 101 + 60j, 99 + 60j]), "vector"), 0.0),
-    (Fill(np.array([104 + 61j, 104 + 59j, 105 + 60j, 103 + 60j]), "vector"), 4.0)])
+    (Fill(np.array([103 + 60j, 104 + 60j, 104 + 61j, 103 + 61j]), "thin"), 3.0),
+    (Fill(np.array([104 + 60j, 104 + 62j, 106 + 62j, 106 + 60j]), "vector"), 4.0)])
 def test_what_a_detail_shows_lies_where_its_step_says(mark, off):
     plan = Plan("plan", "", "mm")
     step = plan.add("b", GIVEN, 20 + 10j)
-    assert traced.enlarged(mark, step, complex(step.value), PlacedFrame(0, "plan", "", 0j, (0.2, 1 / 6))) == pytest.approx(off)
+    assert traced.enlarged(mark, step, 0, PlacedFrame(0, "plan", "", 0j, (0.2, 1 / 6)), {}) == pytest.approx(off)

@@ -131,7 +131,7 @@ def untrue(project: Project, sheets: dict[int, Composed]) -> tuple[Counter[str],
                 continue
             if m.by.role == "symbol" and sheet.parts[sheet.frames[m.by.frame].view].title.split(" ")[0] in NAMES:
                 frame, step = sheet.frames[m.by.frame], known[m.by.step]
-                off = min(enlarged(m, step, complex(step.at(k)), frame) for k in places(m.by.position, of[step.plan]))
+                off = min(enlarged(m, step, k, frame, known) for k in places(m.by.position, of[step.plan]))
                 checked["detail"] += 1
                 if not off <= EXACT:
                     wrong.append(f"sheet {n}: {m.by.step} in a detail: off by {off:.4f} mm")
@@ -154,15 +154,23 @@ def untrue(project: Project, sheets: dict[int, Composed]) -> tuple[Counter[str],
     return checked, wrong
 
 
-def enlarged(m: Mark, step: Step, value: complex, frame: PlacedFrame) -> float:
-    """How far what an enlarged detail shows lies from where its step says, mm: dots at the point, lines towards it."""
+def enlarged(m: Mark, step: Step, k: int, frame: PlacedFrame, known: dict[str, Step]) -> float:
+    """How far what an enlarged detail shows lies from where its step says, mm.
+
+    Dots, hinges and centres of mass at the point, lines towards it, arrows of forces along them, those of couples about a point.
+    """
+    value = complex(step.at(k))
     if isinstance(m, Fill):
-        return abs(_middle(m) - frame(value)) if _is_point(step) and len(m.points) > 3 else 0.0
+        return min(abs(z - frame(value)) for z in (_middle(m), m.points[0])) if _is_point(step) and len(m.points) > 3 else 0.0
+    if isinstance(m, Arc):
+        of = [step] if _is_point(step) else [s for s in known.values() if s.plan == frame.plan and _is_point(s)]
+        return min(abs(m.centre - frame(complex(s.at(k)))) for s in of)
     if not isinstance(m, Line):
         return np.inf
     along = (m.b - m.a) / abs(m.b - m.a)
     if step.rule.gives == "force":
-        return abs((value * np.conj(along)).imag / abs(value)) * abs(m.b - m.a)
+        force = _split(step, m.by.name, value, k, known)
+        return abs((force * np.conj(along)).imag / abs(force)) * abs(m.b - m.a)
     return abs(((frame(value) - m.a) * np.conj(along)).imag) if _is_point(step) else 0.0
 
 
