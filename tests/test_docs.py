@@ -255,10 +255,12 @@ NOT_RUN = {
 }
 """Commands of docs/ that the next test leaves out, by what they have in them, and why."""
 LONG = ("note", "--lang uk", "page my.toml --sheet", "--list", "roster", "optimise", "family check", "tests/projects", "--dxf",
-        "lugansk/shaper press my.toml", "bench", "stress", "--image", "build --all", "--group works")
+        "lugansk/shaper press my.toml", "bench", "stress", "--image", "build --all", "--group works", "--report mine.html",
+        "--json record.json")
 """Commands of docs/ that are run in a trial only, by what they have in them."""
 SHORTER = {"stress": ("--cases", "3"), "--summary": ("--quick",), "build --all": ("--sheet", "2", "--format", "svg"),
-           **dict.fromkeys(("plot ", "png", "--paper", "--portrait"), ("--sheet", "4"))}
+           "--supervisor": ("--sheet", "1"), **dict.fromkeys(
+               ("plot ", "png", "--paper", "--portrait", "--one-file", "--text strokes", "--explain"), ("--sheet", "4"))}
 """Options with which a command is run that takes long as it stands, by what it has in it."""
 FILLED = "id;measured\nvelocities/2/pb;30.2\nvelocities/2/pd;46\n"
 """A table of numbers measured, for a command that compares one."""
