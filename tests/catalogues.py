@@ -147,8 +147,7 @@ def updated(language: str, template: Catalog) -> Catalog:
     for message in template:
         if message.id:
             kept = old.get(message.id[0] if message.pluralizable else message.id, message.context)
-            new.add(message.id, kept.string if kept is not None else None, sorted({(f, None) for f, _ in message.locations}),
-                    context=message.context)
+            new.add(message.id, kept.string if kept is not None else None, context=message.context)
     if template.domain == CLICK:  # other versions of click say other things
         for message in old:
             if message.id and message.string and message.id not in new:
@@ -158,7 +157,7 @@ def updated(language: str, template: Catalog) -> Catalog:
 
 def as_po(catalogue: Catalog) -> bytes:
     out = BytesIO()
-    write_po(out, catalogue, width=132, sort_by_file=True, include_lineno=False)
+    write_po(out, catalogue, width=132, sort_output=True, no_location=True)
     return out.getvalue()
 
 
