@@ -21,6 +21,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from shapely import GeometryCollection, LineString, Point, Polygon, box
+from shapely.ops import nearest_points
 
 from tests.gallery import names
 from tmm_sheets import catalogue
@@ -29,9 +31,9 @@ from tmm_sheets.drawing import evenness, ink_index, lettering, owners
 from tmm_sheets.drawing import labels as placing
 from tmm_sheets.drawing.canvas import Label
 from tmm_sheets.drawing.dashes import strokes
-from tmm_sheets.drawing.marks import Box, Line, Text
+from tmm_sheets.drawing.marks import Box, Fill, Line, Text
 from tmm_sheets.drawing.styles import line_type
-from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.text_boxes import run_corners, text_box
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import sheet
 from tmm_sheets.words import LANGUAGES, set_paper
@@ -93,7 +95,7 @@ def judged(project, n):
         over = near[ink_index.enters(ink.a[near], ink.b[near] - ink.a[near], *p.box)]
         if any(widths[ink.of[k]] > THICK for k in over):
             what = f"{what} covers".strip()
-        what = f"{what} {_badly_led(p, kept, written)}".strip()
+        what = f"{what} {_badly_led(p, kept, written)} {_of_another(p, ink)}".strip()
         if what:
             faults.append(Fault(f"{project.variant.project.name} {n}", p.label.of, p.label.text, p.label.anchor, what))
     run_on = sum(_runs_on(p, kept, written) for p in kept)
@@ -166,6 +168,52 @@ def _badly_led(p, kept, written):
         if len(a) and ink_index.crosses(a, b, line.a, line.b).any():
             return LED[1]
     return ""
+
+
+SPAN, TIE, ONE, LED_TO, APART = 0.3, 0.1, 0.4, 0.6, 1.0
+"""A name's anchor lies on its line, mm; distances alike; vectors whose ink is one; a leader this near to a foreign one may be
+its; vectors are seen apart."""
+
+
+def _vectors(ink, view):
+    """Vectors of a view, each with its head, and the steps they come from."""
+    marks = [m for m in ink.marks if not isinstance(m, Text) and m.by is not None and m.by.role == "vector" and m.of == view]
+    heads = [(Polygon([(z.real, z.imag) for z in m.points]), m.by[1:4]) for m in marks if isinstance(m, Fill)]
+    for m in marks:
+        if isinstance(m, Line):
+            line, by = LineString([(m.a.real, m.a.imag), (m.b.real, m.b.imag)]), m.by[1:4]
+            own = [head for head, of in heads if of == by and head.distance(line.boundary) < TIE]
+            yield line, GeometryCollection([line, *own]), by
+
+
+def _of_another(p, ink):
+    """Whether the name of a vector reads as another vector's: by the record, and by shapely, which knows nothing of the placing."""
+    by, at = p.label.by, Point(p.label.anchor.real, p.label.anchor.imag)
+    if by is None or not by.step:
+        return ""
+    vectors = list(_vectors(ink, p.label.of))
+    same = [(line, whole) for line, whole, of in vectors if of == by[1:4]]
+    line, own = min(same, key=lambda v: v[0].distance(at), default=(None, None))
+    if own is None or line.distance(at) > SPAN or min(at.distance(end) for end in line.boundary.geoms) < 2 * SPAN:
+        return ""
+    foreign = [whole for other, whole, _ in vectors if other is not line]
+    apart = [whole for whole in foreign if whole.distance(at) > ONE]
+    if len(apart) < len(foreign):  # vectors whose ink is one here, and all along
+        along = [line.interpolate(share, normalized=True) for share in np.linspace(0.1, 0.9, 9)]
+        if max(min(whole.distance(z) for whole in foreign) for z in along) > APART:
+            return TOGETHER
+    if p.leader:
+        return LED_ASTRAY if any(whole.distance(at) < LED_TO for whole in apart) else ""
+    corner = complex(p.box.x0, p.box.y0)
+    runs = GeometryCollection([box(*Box.around(run + corner)) for run in run_corners(p.label.text, p.label.height)])
+    gap, way = own.distance(runs), LineString(nearest_points(runs, own))
+    if any(whole.distance(runs) < gap - TIE for whole in apart):
+        return NEARER
+    return BETWEEN if gap and any(part.crosses(way) for whole in apart for part in whole.geoms) else ""
+
+
+NEARER, BETWEEN, LED_ASTRAY, TOGETHER = (
+    "another vector is nearer", "another vector is between", "led to several vectors", "where vectors run together")
 
 
 def _runs_on(p, kept, written):

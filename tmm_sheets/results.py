@@ -47,7 +47,7 @@ def told(
     project
         the project.
     parts
-        names of its parts (see :attr:`Project.parts`); None for all it has.
+        names of its parts (see :attr:`Project.parts`), or "scales" of its plans; None for all it has.
     phi
         crank angles in the world frame, rad; by default the project's numbered positions.
     positions
@@ -73,8 +73,8 @@ def told(
     linkage = [name for name in LINKAGE if name in asked]
     if linkage:
         _put_linkage(project, tree, linkage, _study(project, phi, positions, linkage, lost), lost)
-    plans = set(linkage) - {"forces", *lost}
-    if plans:
+    plans = set(linkage or project.parts) & set(LINKAGE) - {"forces", *lost}
+    if plans and (parts is None or "scales" in asked):  # a sheet is arranged for them
         with _losing(lost, "scales"):
             scales |= _drawn_scales(project, plans, by_angle=phi is not None or positions is not None)
     for name in ("flywheel", "gear", "reducer", "train", "cam"):
@@ -96,7 +96,7 @@ def _asked(project: Project, parts: Iterable[str] | None) -> tuple[str, ...]:
     there = project.parts
     asked = there if parts is None else tuple(parts)
     for part in asked:
-        if part not in there:
+        if part not in (*there, "scales"):
             raise BadInput(
                 tell('{project} has no part "{part}"').format(project=project.variant.called, part=part),
                 hint=tell("it has {parts}").format(parts=", ".join(there)),

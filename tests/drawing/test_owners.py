@@ -74,7 +74,7 @@ def test_ink_half_way_between_two_vectors_is_vague_however_near_a_corner_of_its_
     here = owners.Surroundings(ink_index.InkIndex(LINES), Label(30 + 0j, "F_{21}", 3.5, by=A), 60.0)
     wide, high = size("F_{21}", 3.5)
     for low, vague in ((0.6, False), (5.0 - high / 2, True), (9.4 - high, True), (-0.6 - high, False)):
-        assert here.is_vague(Box(28.0, low, 28.0 + wide, low + high)) is vague
+        assert (here.judge(np.array([[28.0], [low], [28.0 + wide], [low + high]]))[1][0] > 0) == vague
 
 
 def test_names_of_two_vectors_that_cross_stand_at_their_own():
@@ -107,17 +107,17 @@ def test_no_lines_at_all_and_a_leader_that_is_added():
 
 def test_a_leader_runs_along_no_line_and_crosses_no_strong_one():
     here = owners.Surroundings(ink_index.InkIndex(LINES), Label(30 + 0j, "x", 3.5, by=A), 60.0)
-    assert here.count_crossed(30 + 0j, 34 - 8j) == 0
-    assert here.count_crossed(30 + 0j, 40 + 0.5j) == 1
-    assert here.count_crossed(30 + 0j, 32 + 12j) == 1
+    assert here.count_crossed(np.array([30 + 0j]), np.array([34 - 8j]))[0] == 0
+    assert here.count_crossed(np.array([30 + 0j]), np.array([40 + 0.5j]))[0] == 1
+    assert here.count_crossed(np.array([30 + 0j]), np.array([32 + 12j]))[0] == 1
 
 
 def test_a_leader_crosses_no_other_leader():
     ink = ink_index.InkIndex(LINES)
     ink.set_leaders([28 - 3j, 28 + 3j], [36 - 3j, 26 + 3j])
     here = owners.Surroundings(ink, Label(30 + 0j, "x", 3.5, by=A), 60.0)
-    assert here.count_crossed(30 + 0j, 34 - 8j) == owners.LED
-    assert here.count_crossed(30 + 0j, 24 - 8j) == 0
+    assert here.count_crossed(np.array([30 + 0j]), np.array([34 - 8j]))[0] == owners.LED
+    assert here.count_crossed(np.array([30 + 0j]), np.array([24 - 8j]))[0] == 0
 
 
 def hemmed(texts):

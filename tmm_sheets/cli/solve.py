@@ -35,7 +35,8 @@ def _degrees(context: click.Context, parameter: click.Parameter, value: str | No
 @option("--phi", callback=_degrees, metavar="DEG,DEG", help="Crank angles, counter-clockwise from the x axis.")
 @option("--positions", type=click.IntRange(1, MOST_POSITIONS), metavar="N",
               help="N equal parts of the turn from position 0 on, in the sense of rotation.")
-@option("--part", "parts", callback=among(PARTS), metavar="P,P", help=f"Only these parts: {', '.join(PARTS)}.")  # fmt: skip
+@option("--part", "parts", callback=among((*PARTS, "scales")), metavar="P,P",
+        help=f"Only these parts: {', '.join(PARTS)}, scales.")  # fmt: skip
 def run(
     project: str, corrected: bool, target: str | None, arrays: Path | None, table: Path | None, phi: tuple[float, ...] | None,
     positions: int | None, parts: tuple[str, ...] | None,

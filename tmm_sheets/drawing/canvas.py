@@ -12,6 +12,7 @@ from math import ceil, cos, pi, sin
 from typing import Any, Literal, NamedTuple, TypeVar, cast
 
 import numpy as np
+import numpy.typing as npt
 
 from tmm_sheets.drawing.headings import LEADING, TOGETHER, heading
 from tmm_sheets.drawing.lettering import Lettering, fitted, letter, size_for
@@ -180,6 +181,7 @@ class Canvas:
     ``dimensions`` and ``forms`` which are dimensions and forms to be filled in, for programs that know such things;
     ``shortened`` are texts that were too long for their cell of a form, with what stands there. ``windows`` are the numbers of
     circles through which what is inside is read. ``numbers`` are those at axes, which make way for lines when all are drawn.
+    ``inked`` are cells of ink of its parts, kept while views are added: nothing changes what was drawn before.
     """
 
     marks: list[Mark] = field(default_factory=list)
@@ -197,6 +199,7 @@ class Canvas:
     shortened: dict[str, str] = field(default_factory=dict)
     windows: set[int] = field(default_factory=set)
     numbers: list[AxisNumber] = field(default_factory=list)
+    inked: dict[Any, npt.NDArray[np.bool_]] = field(default_factory=dict)
 
     def begin(self, box: Box, title: str = "", draw: str = "") -> None:
         """Begin a view, or a part of the present one when ``draw`` is left out: something that has a place of its own."""

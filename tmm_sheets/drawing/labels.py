@@ -35,7 +35,7 @@ BESIDE = 1.2
 """Clear distance, mm, between a symbol, such as a hinge, and its letter."""
 WORD = 0.6
 """Lettering on one level that stands nearer than this, in heights of its capitals, is read on as one word."""
-RUN_ON = 5.0
+RUN_ON = 10.0
 """Cost of such a place, in millimetres of distance."""
 COVERING = 30.0
 """Cost of a place over the leader of another label, in millimetres of distance."""
@@ -57,6 +57,8 @@ Around = tuple[npt.NDArray[np.float64], Points]
 USUAL: Around = np.array([0.0, 0.6, 1.4, 2.5, 4.0, 6.0, 8.5, 11.0, 14.0, 18.0, 23.0]), np.exp(2j * pi * np.arange(24) / 24)
 CLOSER: Around = np.concatenate(([0.0, 0.6, 1.4, 2.5], np.arange(4.0, 40.0))), np.exp(2j * pi * np.arange(96) / 96)
 """Many more, for the few labels whose leader meets something wherever it is led from the usual places."""
+SOME, MANY = 8, 48
+"""So many places of a label that does not stand well at its first one are judged in one go: at first, and then."""
 _MARGIN = CLEAR * np.array([-1.0, -1.0, 1.0, 1.0])[:, None]
 
 
@@ -179,8 +181,25 @@ class PlacedLabels:
         """Set labels one after another."""
         for begin in range(0, len(self.labels), TOGETHER):
             some = self.labels[begin:begin + TOGETHER]
-            for k, (label, candidates) in enumerate(zip(some, _candidates(self, some), strict=True), begin):
-                self.put(k, _place(self, label, candidates, USUAL))
+            tried = _candidates(self, some)
+            first = _first_places(self, some, tried)
+            for k, (label, candidates, box) in enumerate(zip(some, tried, first, strict=True), begin):
+                if box is not None and self._is_left_alone(box, label, begin, k):
+                    self.put(k, (label, box, True))
+                else:
+                    self.put(k, _place(self, label, candidates, USUAL))
+
+    def _is_left_alone(self, box: Box, label: Label, begin: int, end: int) -> bool:
+        """Whether no label from one number up to another, and no leader, is near enough to change what was found of a place.
+
+        What is set only makes places dearer or takes them: one that is not touched stays the cheapest.
+        """
+        gap = max(CLEAR, WORD * label.height)
+        since = self.boxes[begin:end].T
+        if len(ink_index.find_near(since, box, gap)):
+            return False
+        reach = abs(box.nearest(label.anchor) - label.anchor) + CLEAR
+        return not self._led or not len(ink_index.find_near(self._led_sides, box, reach))
 
     def improve(self, k: int, around: Around) -> None:
         """Give label ``k`` a better place if something is wrong with it, and what it meets another one if need be."""
@@ -255,7 +274,7 @@ class _Candidates(NamedTuple):
     around: Box
 
 
-def _candidates(placed: PlacedLabels, labels: Sequence[Label], around: Around = USUAL) -> Iterator[_Candidates]:
+def _candidates(placed: PlacedLabels, labels: Sequence[Label], around: Around = USUAL) -> list[_Candidates]:
     """Places about the anchors of some labels, judged together."""
     away, directions = around
     turned = TURNING * np.abs(np.angle(directions)) / pi
@@ -270,6 +289,7 @@ def _candidates(placed: PlacedLabels, labels: Sequence[Label], around: Around = 
     light = placed.ink.light.count_under(flat_).reshape(sides.shape[1:])
     clear = placed.are_clear(flat_).reshape(sides.shape[1:])
     edges = [*sides[:2].min(axis=2), *sides[2:].max(axis=2)]
+    found = list[_Candidates]()
     for k, label in enumerate(labels):
         # A label that should do without a leader line gets one only when nothing near is free.
         cost = distances[k] * 1.2 + (0.0 if label.leader else FAR * (away > NEAR)[:, None])
@@ -278,7 +298,31 @@ def _candidates(placed: PlacedLabels, labels: Sequence[Label], around: Around = 
         if 0 <= label.part < len(placed.views) and (view := placed.views[label.part]).contains(label.anchor):
             x0, y0, x1, y1 = sides[:, k] + _MARGIN
             beyond = np.maximum.reduce([view.x0 - x0, view.y0 - y0, x1 - view.x1, y1 - view.y1])
-        yield _Candidates(sides[:, k], cost + label.thin * LIGHT * light[k], beyond, clear[k], Box(*(edge[k] for edge in edges)))
+        cost += label.thin * LIGHT * light[k]
+        found.append(_Candidates(sides[:, k], cost, beyond, clear[k], Box(*(edge[k] for edge in edges))))
+    return found
+
+
+def _first_places(placed: PlacedLabels, labels: Sequence[Label], tried: Sequence[_Candidates]) -> list[Box | None]:
+    """The cheapest place of each label if nothing is wrong with it, leaders aside, judged together; None where it needs thought."""
+    found: list[Box | None] = [None] * len(labels)
+    cost = np.array([np.where(each.clear, each.cost if each.beyond is None else each.cost + OUTSIDE * (each.beyond > 0), np.inf)
+                     for each in tried])
+    best = np.argmin(cost, axis=1)
+    there = np.array([each.sides[:, k] for each, k in zip(tried, best.tolist(), strict=True)]).T
+    p, gap, heights = (np.array(v) for v in zip(*((label.anchor, label.gap, label.height) for label in labels), strict=True))
+    x0, y0, x1, y1 = there
+    way = np.abs(owners.nearest(p, there) - p)
+    sure = np.isfinite(cost[np.arange(len(labels)), best]) & (way <= NEAR + gap) & np.array([not label.shelf for label in labels])
+    sure &= np.array([each.beyond is None or not each.beyond[k] > AWAY for each, k in zip(tried, best.tolist(), strict=True)])
+    apart = np.maximum(CLEAR, WORD * heights)
+    sure &= ~_overlap(np.array([x0 - apart, y0 - CLEAR, x1 + apart, y1 + CLEAR]), placed.written)
+    some = sure.nonzero()[0]
+    if len(some):
+        right = owners.read_well(placed.ink, [labels[k] for k in some.tolist()], there[:, some])
+        for k in some[right].tolist():
+            found[k] = Box(*there[:, k].tolist())
+    return found
 
 
 class _Places:
@@ -321,12 +365,16 @@ class _Places:
         the leader run over lettering. Without ``leaders`` none of those but such as are only vague.
         """
         best, least, worst, enough = None, np.inf, np.inf, np.inf
-        for k in map(int, self.free):
+        found = dict[int, float]()
+        for rank, k in enumerate(self.free.tolist()):
             if self.cost[k] >= enough:
                 break
             if not leaders and _needs_leader(self.label, self.box(k)):
                 continue
-            fault = self.fault(here, k)
+            if k not in found:
+                some = self.free[rank:rank + (MANY if found else SOME)].tolist()
+                found |= zip(some, self.faults(here, some), strict=True)
+            fault = found[k]
             if not fault:
                 return k, 0.0
             if self.cost[k] + fault < least and (leaders or fault <= VAGUE):
@@ -339,14 +387,22 @@ class _Places:
         """A place."""
         return Box(*self.sides[:, k].tolist())
 
-    def fault(self, here: owners.Surroundings, k: int) -> float:
-        """Cost of what is wrong with the label at a place, 0 for nothing."""
-        box = self.box(k)
-        far = STRAYED * bool(self._strayed is not None and self._strayed[k])
-        if not _needs_leader(self.label, box):
-            return far + (MISREAD if here.misreading(box) else VAGUE * here.is_vague(box))
-        over = _count_crossed(self._placed.written, *_leader_ends(self.label, box))
-        return far + (OVER * over if over else CROSSING * here.count_crossed(*_leader_ends(self.label, box)))
+    def faults(self, here: owners.Surroundings, some: Sequence[int]) -> list[float]:
+        """Costs of what is wrong with the label at some places, 0 for nothing."""
+        label, sides = self.label, self.sides[:, some]
+        found = np.zeros(len(some)) if self._strayed is None else STRAYED * self._strayed[some]
+        far_off = (np.abs(owners.nearest(label.anchor, sides) - label.anchor) > NEAR + label.gap) | bool(label.shelf)
+        led, alone = far_off.nonzero()[0], (~far_off).nonzero()[0]
+        if len(alone):
+            bad, vague = here.judge(sides[:, alone])
+            found[alone] += np.where(bad, MISREAD, VAGUE * vague)
+        if len(led):
+            p, q = np.array([_leader_ends(label, self.box(some[k])) for k in led.tolist()]).T
+            written = self._placed.written
+            wx0, wy0, wx1, wy1 = written[ink_index.find_near(written.T, Box.around(np.append(p, q)), 0.0)].T
+            over = ink_index.enters(p[:, None], (q - p)[:, None], wx0, wy0, wx1, wy1).sum(axis=1)
+            found[led] += np.where(over > 0, OVER * over, CROSSING * here.count_crossed(p, q))
+        return found.tolist()
 
     def well_apart(self, here: owners.Surroundings) -> Iterator[int]:
         """Free places whose leader runs over no lettering, the cheapest first, none near one before it."""
@@ -354,7 +410,7 @@ class _Places:
         left = self.free
         while len(left):
             k, left = int(left[0]), left[1:]
-            if self.fault(here, k) < OVER:
+            if self.faults(here, [k])[0] < OVER:
                 yield k
                 left = left[np.abs(centres[left] - centres[k]) > NEAR]
 
@@ -400,10 +456,11 @@ def _place(placed: PlacedLabels, label: Label, candidates: _Candidates, around: 
     k, fault = places.choose(here)
     found, vague = (label, places.box(places.cheapest() if k is None else k), bool(len(places.free))), 0 < fault <= VAGUE
     cost = fault if k is None else float(places.cost[k]) + fault
-    if k is None or places.run_on[k] or vague or _needs_leader(*found[:2]):
+    unread = k is None or fault > VAGUE
+    if unread or places.run_on[k] or vague or _needs_leader(*found[:2]):
         for moved in (replace(label, anchor=anchor) for anchor in here.places_along()):
             others = _Places(placed, moved, *_candidates(placed, [moved], around))
-            there, fault = others.choose(_surroundings(placed.ink, moved), leaders=False)
+            there, fault = others.choose(_surroundings(placed.ink, moved), leaders=unread)
             # Lettering that keeps off thin lines had better have a leader than stand over some.
             if there is not None and not others.run_on[there] and (
                     others.cost[there] + fault < cost or not (fault or vague or label.thin > 1.0)):

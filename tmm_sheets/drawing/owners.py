@@ -6,15 +6,15 @@ nearer than any other, and the shortest way there must cross none. Where there i
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from math import inf
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tmm_sheets.drawing.canvas import Label
-from tmm_sheets.drawing.ink_index import LEADER, ROUNDING, Flags, Floats, InkIndex, crosses, distance, enters, find_near, sides
-from tmm_sheets.drawing.marks import Box, Line, flat
+from tmm_sheets.drawing.ink_index import LEADER, ROUNDING, Flags, Floats, InkIndex, Numbers, crosses, distance, enters, sides
+from tmm_sheets.drawing.marks import Box, Fill, Line, Points, flat
 from tmm_sheets.drawing.text_boxes import run_corners
 
 AT = 0.3
@@ -22,8 +22,8 @@ AT = 0.3
 SLACK = 0.1
 """By so much another line may be nearer before anybody takes the label for its letter, mm."""
 
-CLEARLY, SEEN = 1.0, 6.0
-"""By so much its own vector is nearer to a letter that nobody takes for another's, of all that is within so many mm."""
+CLEARLY, HARDLY, SEEN = 1.0, 0.4, 6.0
+"""By so much its own vector is nearer to a letter that nobody, or hardly anybody, takes for another's, of all within so many mm."""
 SYMBOL = 0.6
 """By so much a symbol about the anchor may reach beyond the distance its letter keeps, mm."""
 
@@ -31,7 +31,11 @@ PARALLEL, BESIDE = 0.15, 1.5
 """A leader runs along a line when it turns from it by less than this (sine of the angle) and is nearer than so many mm."""
 LED = 10
 """Crossing another leader, which GOST 2.316 forbids, is as bad as crossing so many strong lines."""
-SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
+EVEN = 1e-9
+"""Distances that differ by less, mm, are one: what ends on the line that is named does not part it from its letter."""
+UNSURE = 0.7
+"""A leader that ends so near to a foreign strong line, mm, may be its: as bad as crossing three."""
+SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88, 0.05, 0.95)
 LONG = 12.0
 """Places along a vector where its letter may stand, when it is longer than so many mm."""
 
@@ -45,66 +49,56 @@ class Surroundings:
         self.a, self.b, self.of, self.strong = ink.parting(p, reach)
         self.sides = sides(self.a, self.b)
         self.leaders = self.of == LEADER
-        self.own = _own(ink, self, label)
-        self._vector = _vector(ink, self, label)
+        self.own, self.twin = _own(ink, self, label), np.zeros(len(self.of), bool)
+        self._vector = _vector(ink, label)
         if self._vector is not None:
-            self._runs = np.array([Box.around(run) for run in run_corners(label.text, label.height)]).T
+            self._runs = _runs(label)
             # What lies on the vector is named together with it.
-            self.own |= np.maximum(_to_line(self.a, *self._vector), _to_line(self.b, *self._vector)) <= AT
+            along = np.maximum(_to_line(self.a, *self._vector), _to_line(self.b, *self._vector)) <= AT
+            self.twin = _are_others(ink, self.of, along & ~self.own)
+            self.own |= along
 
     def misreading(self, box: Box) -> str:
         """What is wrong with lettering in a rectangle: "crossed", "nearer", or "" for nothing."""
-        margin = self.margin(box)
+        boxes = np.array(box)[:, None]
+        margin = self._pairs(boxes).margins(boxes, np.array([self.anchor]))[0]
         return "crossed" if margin == -inf else "nearer" if margin < -SLACK else ""
 
-    def is_vague(self, box: Box) -> bool:
-        """Whether the letter of a vector has its ink there about as near to another strong line as to its own."""
-        if self._vector is None:
-            return False
-        near = find_near(self.sides, box, SEEN)
-        near = near[self.own[near] | self.strong[near]]
-        own = self.own[near]
-        if own.all() or not own.any():
-            return False
-        count = self._runs.shape[1]  # each segment and each run, all at once
-        runs = np.repeat(self._runs + np.array([box.x0, box.y0] * 2)[:, None], len(near), axis=1)
-        gaps = _to_box(np.tile(self.a[near], count), np.tile(self.b[near], count), runs)[0]
-        own = np.tile(own, count)
-        return bool(gaps[~own].min() < gaps[own].min() + CLEARLY)
+    def judge(self, boxes: Floats) -> tuple[Flags, Floats]:
+        """Where lettering in rectangles, shape (4, m), is read as another line's, and how vague it is."""
+        m = boxes.shape[1]
+        return self._pairs(boxes).judge(boxes, np.full(m, self.anchor), [None if self._vector is None else self._runs] * m)
 
-    def margin(self, box: Box) -> float:
-        """How much nearer to lettering in a rectangle its own line or point is than any other, mm; -inf where a line is between."""
-        start, end = box.nearest(self.anchor), self.anchor
-        near = find_near(self.sides, box, abs(start - end) + ROUNDING)  # nothing beyond the anchor is nearer
-        if not len(near):
-            return inf
-        a, b, own = self.a[near], self.b[near], self.own[near]
-        gaps, starts, ends = _to_box(a, b, box)
-        if own.any():
-            k = int(np.argmin(np.where(own, gaps, np.inf)))
-            if gaps[k] < abs(start - end):
-                start, end = complex(starts[k]), complex(ends[k])
-        gap = abs(start - end)
-        if own.all():
-            return inf
-        between = ~own & (gaps <= gap)
-        if gap > SLACK and between.any() and crosses(a[between], b[between], start, end).any():
-            return -inf
-        return float(gaps[~own].min() - gap)
+    def _pairs(self, boxes: Floats) -> Pairs:
+        """Segments no farther from each rectangle than the anchor is: nothing beyond it is nearer."""
+        x0, y0, x1, y1 = (v[:, None] for v in boxes)
+        gap = np.abs(nearest(self.anchor, boxes) - self.anchor)[:, None]
+        reach = np.maximum(gap + ROUNDING, 0.0 if self._vector is None else SEEN)
+        e0, f0, e1, f1 = self.sides
+        which, near = ((e0 <= x1 + reach) & (e1 >= x0 - reach) & (f0 <= y1 + reach) & (f1 >= y0 - reach)).nonzero()
+        return Pairs(which, self.a[near], self.b[near], self.of[near], self.own[near], self.twin[near], self.strong[near])
 
-    def count_crossed(self, start: complex, end: complex) -> int:
-        """How many strong lines but its own a leader from the anchor crosses, and lines it runs along; other leaders count more."""
-        near = find_near(self.sides, Box(*sides(np.array([start]), np.array([end]))[:, 0]), BESIDE + ROUNDING)
-        if not len(near):
-            return 0
-        a, b, along = self.a[near], self.b[near], end - start
-        d = b - a
-        parallel = np.abs((d * np.conj(along)).imag) < PARALLEL * np.abs(d) * abs(along)
+    def count_crossed(self, starts: Points, ends: Points) -> Numbers:
+        """How many strong lines but its own each leader crosses, and lines it runs along or ends at.
+
+        Other leaders count more. ``starts``, at what is named, and ``ends``: shape (m,).
+        """
+        if not len(self.a):
+            return np.zeros(len(ends), int)
+        x0, y0, x1, y1 = (v[:, None] for v in sides(starts, ends))
+        e0, f0, e1, f1 = self.sides
+        reach = BESIDE + ROUNDING
+        which, near = ((e0 <= x1 + reach) & (e1 >= x0 - reach) & (f0 <= y1 + reach) & (f1 >= y0 - reach)).nonzero()
+        a, b, start, end = self.a[near], self.b[near], starts[which], ends[which]
+        along, d = end - start, b - a
+        parallel = np.abs((d * np.conj(along)).imag) < PARALLEL * np.abs(d) * np.abs(along)
         apart = np.minimum(_to_line(a, start, end), _to_line(b, start, end))
         beside = np.minimum(apart, np.minimum(distance(a, b, start + 0.5 * along), distance(a, b, end)))
-        foreign = near[(self.strong[near] | self.leaders[near]) & ~self.own[near]]
-        crossed = crosses(self.a[foreign], self.b[foreign], start, end)
-        return int((parallel & (beside < BESIDE)).sum() + crossed.sum() + (LED - 1) * (crossed & self.leaders[foreign]).sum())
+        strong = self.strong[near] & ~self.own[near]
+        crossed = (strong | self.leaders[near] & ~self.own[near]) & crosses(a, b, start, end)
+        count = (parallel & (beside < BESIDE)).astype(int) + crossed + (LED - 1) * (crossed & self.leaders[near])
+        count += 3 * (strong & (distance(a, b, start) < UNSURE))
+        return np.bincount(which, count, len(ends)).astype(int)
 
     def places_along(self) -> list[complex]:
         """Other places on the vector that the label names, the nearer the middle the sooner; none where it names no vector."""
@@ -114,18 +108,188 @@ class Surroundings:
         return [a + share * (b - a) for share in SHARES if abs(a + share * (b - a) - self.anchor) > SYMBOL]
 
 
-def _vector(ink: InkIndex, here: Surroundings, label: Label) -> tuple[complex, complex] | None:
-    """Ends of the vector, or of the construction line or line of a detail named by its own letter, beside which a label stands."""
+class Pairs(NamedTuple):
+    """Segments ``a`` .. ``b`` of the marks ``of`` that may be near rectangles: ``which`` of them, in ascending order.
+
+    ``own`` are those that the rectangle's lettering names, ``twin`` those of them that are other vectors on one line with it,
+    ``strong`` such as are no thin lines.
+    """
+
+    which: Numbers
+    a: Points
+    b: Points
+    of: Numbers
+    own: Flags
+    twin: Flags
+    strong: Flags
+
+    def judge(self, boxes: Floats, anchors: Points, runs: Sequence[Floats | None]) -> tuple[Flags, Floats]:
+        """Where lettering in rectangles, shape (4, m), is read as another line's, and how vague it is: see :meth:`clearances`."""
+        margins, (clear, hardly) = self.margins(boxes, anchors), self.clearances(boxes, runs)
+        return (margins < -SLACK) | (clear < -EVEN), (clear < CLEARLY - EVEN) + 3.0 * hardly
+
+    def margins(self, boxes: Floats, anchors: Points) -> Floats:
+        """How much nearer to lettering in each rectangle, shape (4, m), its own line or its anchor is than any other line, mm.
+
+        -inf where a line is between, inf where there is none but its own.
+        """
+        m, (which, a, b, _, own, *_) = boxes.shape[1], self
+        margins = np.full(m, inf)
+        if not len(which):
+            return margins
+        gaps, starts, ends = _to_box(a, b, boxes[:, which])
+        begin, end, first = nearest(anchors, boxes), anchors.copy(), (np.diff(which, prepend=-1)).nonzero()[0]
+        rows, gap = which[first], np.abs(begin - end)
+        least = np.full(m, inf)
+        own_gaps = np.where(own, gaps, inf)
+        least[rows] = np.minimum.reduceat(own_gaps, first)
+        margins[rows] = np.minimum.reduceat(np.where(own, inf, gaps), first)
+        at = np.full(m, -1)  # the first of its own that is nearest
+        hits = (own & (own_gaps == least[which])).nonzero()[0][::-1]
+        at[which[hits]] = hits
+        nearer = (least < gap).nonzero()[0]
+        begin[nearer], end[nearer] = starts[at[nearer]], ends[at[nearer]]
+        gap[nearer] = np.abs(begin[nearer] - end[nearer])
+        margins -= gap
+        way = gap[which]
+        between = (~own & (gaps < way - EVEN) & (way > SLACK)).nonzero()[0]
+        if len(between):
+            row = which[between]
+            margins[row[crosses(a[between], b[between], begin[row], end[row])]] = -inf
+        return margins
+
+    def clearances(self, boxes: Floats, runs: Sequence[Floats | None]) -> tuple[Floats, Numbers]:
+        """How much nearer the ink of a vector's letter is to its own line than to another strong one, mm; inf where none is seen.
+
+        And how many other lines are as near as its own: of vectors on one line each has its name where it lies with the fewest.
+
+        ``runs`` are the rectangles of the lettering's parts from its lower left corner, (4, k) each; None where it names no vector.
+        """
+        m = boxes.shape[1]
+        x0, y0, x1, y1 = boxes[:, self.which]
+        e0, f0, e1, f1 = sides(self.a, self.b)
+        counts = np.array([0 if run is None else run.shape[1] for run in runs])
+        near = (e0 <= x1 + SEEN) & (e1 >= x0 - SEEN) & (f0 <= y1 + SEEN) & (f1 >= y0 - SEEN)
+        # Of its own the vector alone, not the thin line on which it was laid off and which goes on beyond it.
+        drawn = np.bincount(self.which[self.own & self.strong], minlength=m)[self.which] > 0
+        asked = (near & (self.strong | self.own & ~drawn) & (counts[self.which] > 0)).nonzero()[0]
+        alone = self.own & ~self.twin
+        both = (np.bincount(self.which[asked][alone[asked]], minlength=m) > 0) & (
+            np.bincount(self.which[asked][~alone[asked]], minlength=m) > 0)
+        asked = asked[both[self.which[asked]]]
+        found, hardly = np.full(m, inf), np.zeros(m, int)
+        if not len(asked):
+            return found, hardly
+        count = counts[self.which[asked]]
+        pair = np.repeat(asked, count)  # each segment and each run
+        which, own, twin = self.which[pair], alone[pair], self.twin[pair]
+        known = [run for run in runs if run is not None]
+        begins = np.cumsum(counts) - counts
+        run = begins[which] + np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
+        x, y = boxes[:2, which]
+        gaps = _to_box(self.a[pair], self.b[pair], np.hstack(known)[:, run] + np.array([x, y, x, y]))[0]
+        first = np.diff(which, prepend=-1).nonzero()[0]
+        foreign, near = (np.minimum.reduceat(np.where(of, gaps, inf), first) for of in (~own & ~twin, own))
+        found[which[first]] = foreign - near
+        least = np.repeat(near, np.diff(first, append=len(which)))
+        lines = {*zip(*(v[~own & (gaps < least + HARDLY - EVEN)].tolist() for v in (which, self.of[pair])), strict=True)}
+        np.add.at(hardly, [row for row, _ in lines], 1)
+        return found, hardly
+
+
+def read_well(ink: InkIndex, labels: Sequence[Label], boxes: Floats) -> Flags:
+    """Which of some labels read as what they name, and clearly, in rectangles of shape (4, n); no leader is looked at.
+
+    As :meth:`Surroundings.judge`, of all labels in one go.
+    """
+    p = np.array([label.anchor for label in labels])
+    x0, y0, x1, y1 = boxes
+    way = np.abs(nearest(p, boxes) - p)
+    vectors = [_vector(ink, label) for label in labels]
+    reach = np.maximum(way + 2 * AT + ROUNDING, [0.0 if v is None else SEEN for v in vectors])
+    e0, f0, e1, f1 = ink.sides
+    which, near = (ink.parts & (e0 <= (x1 + reach)[:, None]) & (e1 >= (x0 - reach)[:, None]) & (f0 <= (y1 + reach)[:, None])
+                   & (f1 >= (y0 - reach)[:, None])).nonzero()
+    a, b, of, at = ink.a[near], ink.b[near], ink.of[near], p[which]
+    steps = [k * len(ink.marks) + number for k, label in enumerate(labels) for number in _named(ink, label)]
+    found = np.isin(which * len(ink.marks) + of, steps)
+    apart = distance(a, b, at)
+    # Whether the anchor is where one of these lines ends, or on none of them.
+    alone = np.bincount(which[found], minlength=len(labels)) > 0
+    on = np.zeros(len(labels), bool)
+    for k, number in dict.fromkeys(zip(*(v[found & (apart <= 2 * AT)].tolist() for v in (which, of)), strict=True)):
+        on[k] = True
+        alone[k] &= min(abs(z - labels[k].anchor) for z in _ends(ink, number)) > 2 * AT
+    alone &= on
+    gaps = np.array([label.gap + SYMBOL for label in labels])[which]
+    twin = np.zeros(len(which), bool)
+    own = found | ~alone[which] & ((np.maximum(np.abs(a - at), np.abs(b - at)) <= gaps) | (apart <= AT))
+    runs = [None if v is None else _runs(label) for v, label in zip(vectors, labels, strict=True)]
+    if any(v is not None for v in vectors):
+        ends = np.array([v or (inf, inf) for v in vectors])
+        of_vector = np.array([v is not None for v in vectors])[which].nonzero()[0]
+        u, v = ends[which[of_vector]].T
+        along = np.maximum(_to_line(a[of_vector], u, v), _to_line(b[of_vector], u, v)) <= AT
+        twin[of_vector] = _are_others(ink, of[of_vector], along & ~own[of_vector])
+        own[of_vector] |= along
+    pairs = Pairs(which, a, b, of, own, twin, ink.strong[near])
+    misread, vague = pairs.judge(boxes, p, runs)
+    return np.asarray(~misread & (vague == 0))
+
+
+def _runs(label: Label) -> Floats:
+    return np.array([Box.around(run) for run in run_corners(label.text, label.height)]).T
+
+
+def nearest(p: Any, boxes: Floats) -> Points:
+    """The point of each rectangle, shape (4, m), nearest to a point, or each to its own."""
+    x0, y0, x1, y1 = boxes
+    return np.asarray(np.minimum(np.maximum(p.real, x0), x1) + 1j * np.minimum(np.maximum(p.imag, y0), y1))
+
+
+def _ends(ink: InkIndex, number: int) -> Sequence[complex]:
+    """Where the line of a mark begins and ends."""
+    mark = ink.marks[number]
+    return (mark.a, mark.b) if isinstance(mark, Line) else flat(mark)[[0, -1]].tolist()
+
+
+def _named(ink: InkIndex, label: Label) -> list[int]:
+    """Numbers of the marks of the step that a label names; of its vectors only the one on which its anchor lies.
+
+    Several forces of a plan end at one of its points, and so in one step: a letter at the point itself names them all.
+    """
     if label.by is None or not label.by.step:
+        return []
+    found = ink.of_step(label.by)
+    vectors = {n: m for n in found if isinstance(m := ink.marks[n], Line) and m.by is not None and m.by.role == "vector"}
+    apart = {n: _apart(line, label.anchor) for n, line in vectors.items()}
+    least = min(apart.values(), default=inf)
+    foreign = {n for n in apart if apart[n] > least + 1e-3}
+    if least > AT or not foreign:
+        return found
+    tips = np.array([z for n, line in vectors.items() if n not in foreign for z in (line.a, line.b)])
+    return [n for n in found if n not in foreign and (
+        not isinstance(m := ink.marks[n], Fill) or np.abs(np.array(m.points)[:, None] - tips).min() <= AT)]
+
+
+def _vector(ink: InkIndex, label: Label) -> tuple[complex, complex] | None:
+    """Ends of the vector, or of the construction line or line of a detail named by its own letter, beside which a label stands."""
+    if label.by is None:
         return None
     roles = {"vector"} | {"construction", "symbol"} & {label.by.role}
-    for number in ink.of_step(label.by):
+    for number in _named(ink, label):
         mark = ink.marks[number]
         if (isinstance(mark, Line) and mark.by is not None and mark.by.role in roles and abs(mark.b - mark.a) > LONG
-                and min(abs(mark.a - label.anchor), abs(mark.b - label.anchor)) > 2 * AT
-                and distance(np.array([mark.a]), np.array([mark.b]), label.anchor)[0] <= 2 * AT):
+                and min(abs(mark.a - label.anchor), abs(mark.b - label.anchor)) > 2 * AT and _apart(mark, label.anchor) <= 2 * AT):
             return mark.a, mark.b
     return None
+
+
+def _apart(line: Line, p: complex) -> float:
+    """Distance of a point to a line, without an array."""
+    d = line.b - line.a
+    t = ((p - line.a) * d.conjugate()).real / max(d.real * d.real + d.imag * d.imag, 1e-18)
+    return abs(line.a + (0.0 if t < 0.0 else 1.0 if t > 1.0 else t) * d - p)
 
 
 def _own(ink: InkIndex, here: Surroundings, label: Label) -> Flags:
@@ -133,10 +297,7 @@ def _own(ink: InkIndex, here: Surroundings, label: Label) -> Flags:
 
     The letter of a vector or a curve stands beside it: there lines that only pass by the anchor are foreign.
     """
-    found = np.zeros(len(here.of), bool)
-    if label.by is not None and label.by.step:
-        for number in ink.of_step(label.by):
-            found |= here.of == number
+    found = np.isin(here.of, _named(ink, label))
     if found.any() and not _at_end(ink, here, found, label.anchor):
         return found
     about = np.maximum(np.abs(here.a - label.anchor), np.abs(here.b - label.anchor)) <= label.gap + SYMBOL
@@ -151,9 +312,17 @@ def _at_end(ink: InkIndex, here: Surroundings, lines: Flags, anchor: complex) ->
     return not ends or bool(np.abs(np.array(ends) - anchor).min() <= 2 * AT)
 
 
-def _to_line(p: Any, a: complex, b: complex) -> Floats:
-    """Distances of points to one segment."""
-    t = np.minimum(np.maximum(((p - a) * np.conj(b - a)).real / abs(b - a) ** 2, 0.0), 1.0)
+def _are_others(ink: InkIndex, of: Numbers, along: Flags) -> Flags:
+    """Which segments of those that lie ``along`` a vector are other vectors."""
+    found = np.zeros(len(of), bool)
+    for k in along.nonzero()[0].tolist():
+        found[k] = of[k] != LEADER and (by := ink.marks[of[k]].by) is not None and by.role == "vector"
+    return found
+
+
+def _to_line(p: Any, a: Any, b: Any) -> Floats:
+    """Distances of points to one segment, or each to its own."""
+    t = np.minimum(np.maximum(((p - a) * np.conj(b - a)).real / np.abs(b - a) ** 2, 0.0), 1.0)
     return np.asarray(np.abs(a + t * (b - a) - p))
 
 

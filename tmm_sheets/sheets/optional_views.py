@@ -43,7 +43,7 @@ LARGE = (160.0, 120.0), (150.0, 112.0), (216.0, 76.0)
 a long one."""
 SAME = 1e-3
 """Sizes of boxes that differ by less are one, mm."""
-FAR = 10**6
+FAR = np.int16(2**15 - 1)
 """More cells than a sheet has."""
 APART = (12.0, 9.0, 6.0)
 """Distances from all else with which a place is looked for, mm: the widest first."""
@@ -121,10 +121,13 @@ def _gaps(canvas: Canvas, inside: Box, closed: Sequence[Box], sides: tuple[float
         nx, ny = (int(np.ceil(length / CELL)) for length in size)
         begins = _windows(table, nx, ny) == 0
         # How many of them have a corner here, with its sign: summed up, how many lie over a cell.
-        count = np.zeros(np.add(inked.shape, 1), np.int64)
+        count = np.zeros(np.add(inked.shape, 1), np.int32)
         for (i, j), sign in {(0, 0): 1, (nx, 0): -1, (0, ny): -1, (nx, ny): 1}.items():
             count[i:i + begins.shape[0], j:j + begins.shape[1]] += sign * begins
-        gaps |= count.cumsum(axis=0).cumsum(axis=1)[:-1, :-1] > 0
+        np.cumsum(count, axis=1, out=count)
+        for i in range(1, len(count)):
+            count[i] += count[i - 1]
+        gaps |= count[:-1, :-1] > 0
     return gaps
 
 
@@ -135,14 +138,24 @@ def _windows(table: Counts, nx: int, ny: int) -> Counts:
 
 def _free(table: Counts, sizes: Sequence[tuple[float, float]]) -> Iterator[tuple[tuple[float, float], float, Taken]]:
     """The sizes with distances from all else, the widest first, and the lowest left cells of all places that have them."""
-    for size in sizes:
-        for apart in APART:
-            nx, ny = (int(np.ceil((length + 2 * apart) / CELL)) for length in size)
-            if nx >= table.shape[0] or ny >= table.shape[1]:
-                continue
-            free = np.argwhere(_windows(table, nx, ny) == 0)
-            if len(free):
-                yield size, apart, free
+    steps = {((w, h), apart): (int(np.ceil((w + 2 * apart) / CELL)), int(np.ceil((h + 2 * apart) / CELL)))
+             for w, h in sizes for apart in APART}
+    steps = {key: (nx, ny) for key, (nx, ny) in steps.items() if nx < table.shape[0] and ny < table.shape[1]}
+    if not steps:
+        return
+    # Where the least of all is not free nothing is: the whole sheet is looked at once, for each size only what is left of it.
+    least = min(nx for nx, _ in steps.values()), min(ny for _, ny in steps.values())
+    i, j = (_windows(table, *least) == 0).nonzero()
+    if not len(i):
+        return
+    flat, wide = table.ravel(), table.shape[1]
+    for (size, apart), (nx, ny) in steps.items():
+        inside = (i + nx < table.shape[0]) & (j + ny < wide)
+        x, y = i[inside], j[inside]
+        at = x * wide + y
+        free = flat[at + (nx * wide + ny)] - flat[at + ny] == flat[at + nx * wide] - flat[at]
+        if free.any():
+            yield size, apart, np.array([x[free], y[free]]).T
 
 
 def _place(taken: Taken, sizes: Sequence[tuple[float, float]], inside: Box, left: float | None = None) -> Box | None:
@@ -157,25 +170,40 @@ def _place(taken: Taken, sizes: Sequence[tuple[float, float]], inside: Box, left
                 free = free[free[:, 0] == round((edge - apart - inside.x0) / CELL)]
             if len(free):
                 # In the middle of the room there is, if it is one; else at its beginning.
-                i, j = free[np.argmin(np.abs(free - np.median(free, axis=0)).sum(axis=1))]
+                i, j = free[np.argmin(np.abs(free - _middle(free)).sum(axis=1))]
                 x, y = edge if edge is not None else inside.x0 + i * CELL + apart, inside.y0 + j * CELL + apart
                 return Box(x, y, x + width, y + height)
     return None
 
 
+def _middle(cells: Taken) -> NDArray[np.float64]:
+    """Median of each coordinate; NumPy's own loads all of numpy.ma to ask whether there is a mask."""
+    n, ordered = len(cells), np.sort(cells, axis=0)
+    return np.asarray((ordered[(n - 1) // 2] + ordered[n // 2]) / 2)
+
+
 def _near(taken: Taken, sizes: Sequence[tuple[float, float]], inside: Box, spot: complex, pictures: Sequence[Box]) -> Box | None:
     """The place nearest to a spot of the first picture, no nearer to the others, of the first size that has one in reach."""
-    table = sum_area(taken)
-    for reach in CLOSE:
-        for (width, height), apart, free in _free(table, sizes):
-            corners = complex(inside.x0 + apart, inside.y0 + apart) + CELL * (free[:, 0] + 1j * free[:, 1])
-            middles = corners + complex(width, height) / 2
-            off = np.array([_off(middles, picture) for picture in pictures])
-            far = np.where(off[0] <= off.min(axis=0), np.abs(middles - spot), np.inf)
-            if far.min() <= reach:
-                at = complex(corners[np.argmin(far)])
-                return Box(at.real, at.imag, at.real + width, at.imag + height)
-    return None
+    wanted, allowed = CLOSE
+    second = None
+    for (width, height), apart, free in _free(sum_area(taken), sizes):
+        corners = complex(inside.x0 + apart, inside.y0 + apart) + CELL * (free[:, 0] + 1j * free[:, 1])
+        middles = corners + complex(width, height) / 2
+        near = (np.abs(middles - spot) <= (wanted if second is not None else allowed)).nonzero()[0]
+        if not len(near):
+            continue
+        middles = middles[near]
+        off = np.array([_off(middles, picture) for picture in pictures])
+        far = np.where(off[0] <= off.min(axis=0), np.abs(middles - spot), np.inf)
+        k = int(np.argmin(far))
+        if far[k] > allowed:
+            continue
+        at = complex(corners[near[k]])
+        found = Box(at.real, at.imag, at.real + width, at.imag + height)
+        if far[k] <= wanted:
+            return found
+        second = second or found
+    return second
 
 
 def _off(z: Points, box: Box) -> NDArray[np.float64]:
@@ -246,12 +274,21 @@ def _of_part(canvas: Canvas, k: int, inside: Box) -> NDArray[np.bool_]:
 
 def _cells(canvas: Canvas, parts: range, inside: Box, lettering: bool = True) -> NDArray[np.bool_]:
     """Cells with ink of parts that follow each other, or under their labels not set yet; without ``lettering`` lines alone."""
-    marks = canvas.marks[canvas.span(parts.start)[0]:canvas.span(parts.stop - 1)[1]]
-    z = np.concatenate((dense(marks, CELL), *(_about(label) for label in canvas.labels if label.part in parts))) if lettering \
-        else dense((mark for mark in marks if mark.by is None or mark.by.role != "text"), CELL)
-    cells = Cells(inside, CELL)
-    cells.add_points(z)
-    return cells.taken
+    taken = np.zeros((int(inside.width / CELL), int(inside.height / CELL)), bool)
+    for k in parts:
+        span = canvas.span(k)
+        labels = [label for label in canvas.labels if label.part == k] if lettering else []
+        key = k, lettering, span, len(labels), inside
+        known = canvas.inked.get(key)
+        if known is None:
+            marks = canvas.marks[span[0]:span[1]]
+            z = np.concatenate((dense(marks, CELL), *map(_about, labels))) if lettering \
+                else dense((mark for mark in marks if mark.by is None or mark.by.role != "text"), CELL)
+            cells = Cells(inside, CELL)
+            cells.add_points(z)
+            known = canvas.inked[key] = cells.taken
+        taken |= known
+    return taken
 
 
 def _under_title(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -279,9 +316,9 @@ def _between(cells: NDArray[np.bool_], axis: int) -> tuple[NDArray[np.bool_], ND
         # A part is small on the sheet: nothing lies between its ink beyond it.
         reach = np.ix_(*(np.arange(n[0], n[-1] + 1) for n in (np.flatnonzero(cells.any(axis=1 - k)) for k in (0, 1))))
         own = cells[reach]
-        n = np.arange(own.shape[axis]).reshape((-1, 1) if axis == 0 else (1, -1))
-        before = np.maximum.accumulate(np.where(own, n, -1), axis=axis)
+        n = np.arange(own.shape[axis], dtype=np.int16).reshape((-1, 1) if axis == 0 else (1, -1))
+        before = np.maximum.accumulate(np.where(own, n, np.int16(-1)), axis=axis)
         behind = np.flip(np.minimum.accumulate(np.flip(np.where(own, n, FAR), axis), axis=axis), axis)
         between[reach] = inside = (before >= 0) & (behind < FAR)
-        close[reach] = inside & ((behind - before) * CELL < OPEN)
+        close[reach] = inside & (behind - before < int(OPEN / CELL))
     return close, between

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -28,4 +29,11 @@ def heading(folder: Path, project: str) -> dict[str, Any]:
 
 
 def _rules(folder: Path) -> dict[str, Any]:
-    return tomllib.loads((folder / "family.toml").read_text(encoding="utf-8-sig"))
+    path = folder / "family.toml"
+    return _parsed(path, path.stat().st_mtime_ns)
+
+
+@lru_cache(maxsize=64)
+def _parsed(path: Path, changed: int) -> dict[str, Any]:
+    """A family's rules, read once however many of its projects are listed."""
+    return tomllib.loads(path.read_text(encoding="utf-8-sig"))
