@@ -140,15 +140,12 @@ def handy(least: float) -> float:
     """
     if not least > 0:
         raise ValueError(f"a scale factor must be positive, not {least}")
-    for candidate in _series(least):
-        if candidate > least or isclose(candidate, least, rel_tol=1e-9):
-            return candidate
-    raise AssertionError("unreachable: the series covers every decade")
+    return next(candidate for candidate in _series(least) if candidate >= least * (1 - 1e-9))
 
 
 def _largest(most: float) -> float:
     """Largest number of the series that is not greater than ``most``."""
-    return max(c for c in _series(most) if c < most or isclose(c, most, rel_tol=1e-9))
+    return max(c for c in _series(most) if c <= most * (1 + 1e-9))
 
 
 def _series(about: float) -> tuple[float, ...]:

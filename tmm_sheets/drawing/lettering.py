@@ -14,6 +14,7 @@ import json
 import re
 from collections.abc import Iterable
 from functools import cache, lru_cache
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -198,7 +199,7 @@ class _Setter:
                 i += 1
                 continue
             text += c
-            pen += advance(c, height)
+            pen += height * glyph(c).advance
             i += 1
         self.flush(text, start, height)
         return pen
@@ -257,6 +258,17 @@ class _Setter:
 
 
 @lru_cache(maxsize=8192)
+def _extents(text: str) -> tuple[float, float, float]:
+    """Right, upper and lower end of the ink of a run of letters 1 mm high, from the left end of its baseline."""
+    right, top, bottom, x = -inf, -inf, inf, 0.0
+    for g in map(glyph, text):
+        if g.strokes:
+            right, top, bottom = max(right, x + g.right), max(top, g.top), min(bottom, g.bottom)
+        x += g.advance
+    return right, top, bottom
+
+
+@lru_cache(maxsize=8192)
 def letter(markup: str, height: float) -> Lettering:
     """Lay out ``markup`` with capital letters ``height`` mm high.
 
@@ -269,14 +281,9 @@ def letter(markup: str, height: float) -> Lettering:
     setter.set(markup, 0j, height)
     right = top = bottom = 0.0
     for at, text, size in setter.runs:
-        x = at.real
-        for char in text:
-            g = glyph(char)
-            if g.strokes:
-                right = max(right, x + size * g.right)
-                top = max(top, at.imag + size * g.top)
-                bottom = min(bottom, at.imag + size * g.bottom)
-            x += size * g.advance
+        width, above, below = _extents(text)
+        right, top = max(right, at.real + size * width), max(top, at.imag + size * above)
+        bottom = min(bottom, at.imag + size * below)
     for bar in setter.bars:
         right = max(right, bar.b.real)
         top = max(top, bar.b.imag + 0.05 * height)
