@@ -2,7 +2,7 @@
 
 import json
 
-from tmm_sheets.backends import dxf_frame_file, dxf_frame_making
+from tmm_sheets.backends import dxf, dxf_frame_making
 from tmm_sheets.resources import template
 from tmm_sheets.sheets.composing import HEIGHT, WIDTH
 
@@ -12,7 +12,7 @@ FILE = template("dxf_frame.json")
 def text():
     """What stands there."""
     frame = dxf_frame_making.made(WIDTH, HEIGHT)
-    tree = {"made of": dxf_frame_file.made_of(WIDTH, HEIGHT), "frame": frame._asdict()}
+    tree = {"made of": dxf.made_of(WIDTH, HEIGHT), "frame": frame._asdict()}
     return json.dumps(tree, ensure_ascii=False, indent=1) + "\n"
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tmm_sheets.drawing import axis_heights, axis_numbers
+from tmm_sheets.drawing import axis_numbers, placing
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink_index import InkIndex, enters
 from tmm_sheets.drawing.marks import Box, Text
@@ -126,7 +126,7 @@ def test_numbers_of_one_axis_are_of_one_height():
     for mark in (n.mark for n in canvas.numbers[1:2]):
         canvas.marks[mark] = canvas.marks[mark]._replace(height=2.5)
     before = [m for m in canvas.marks if isinstance(m, Text)]
-    axis_heights.even(canvas, canvas.numbers)
+    placing.even(canvas, canvas.numbers)
     after = [m for m in canvas.marks if isinstance(m, Text)]
     assert [m.height for m in after] == [2.5] * 4 + [3.5] * 4
     for old, new in zip(before, after, strict=True):

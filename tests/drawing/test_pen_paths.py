@@ -9,8 +9,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tmm_sheets.drawing.passes import of_area, of_line
-from tmm_sheets.drawing.pen_paths import _travel, joined, ordered, without_doubles
+from tmm_sheets.drawing.pen_paths import _travel, joined, of_area, of_line, ordered, without_doubles
 
 place = st.tuples(st.integers(0, 6), st.integers(0, 6))
 path = st.lists(place, min_size=1, max_size=6).map(lambda p: (p[0], *(b for a, b in pairwise(p) if a != b)))
@@ -100,9 +99,9 @@ def test_passes_cover_a_thick_bent_line(corners, pen):
 
 
 def test_areas_that_are_alike_are_filled_once():
-    from tmm_sheets.drawing import passes
+    from tmm_sheets.drawing import pen_paths
 
-    passes._filled.cache_clear()
+    pen_paths._filled.cache_clear()
     head = np.array([0, -4 + 0.7j, -4 - 0.7j])
     first = list(of_area(head, 0.2))
     for place, turn in ((30 + 20j, 1j), (7 - 3j, np.exp(0.3j)), (0, -1)):
@@ -110,7 +109,7 @@ def test_areas_that_are_alike_are_filled_once():
         assert len(found) == len(first) > 2
         for way, own in zip(found, first, strict=True):
             np.testing.assert_allclose(way, place + turn * own, atol=1e-5)
-    assert passes._filled.cache_info().misses == 1
+    assert pen_paths._filled.cache_info().misses == 1
 
 
 def test_passes_fill_an_area_but_for_its_acute_tips():

@@ -10,8 +10,8 @@ from tmm_sheets import catalogue
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.dashes import interrupted, strokes
 from tmm_sheets.drawing.marks import Arc, Drawing, Line, Polyline, Provenance, Text
+from tmm_sheets.drawing.placing import interrupt
 from tmm_sheets.drawing.text_boxes import CLEAR
-from tmm_sheets.drawing.yielding import interrupt
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 

@@ -17,7 +17,7 @@ from tmm_sheets.__main__ import run
 from tmm_sheets.output.building import BACKENDS
 from tmm_sheets.project import Project
 from tmm_sheets.remarks import Remark
-from tmm_sheets.sheets import composing, sheet, sheet_storage
+from tmm_sheets.sheets import composing, sheet
 from tmm_sheets.task.variant import parse
 
 SHEETS = [(name, n) for name, count in (("lugansk/shaper", 4), ("press", 4), ("sixbar/8:3", 2), ("transport/press@07-ЭПС-718", 3))
@@ -59,7 +59,7 @@ def same(a, b):
 def test_it_is_the_sheet_itself(name, n):
     with kept.unused():
         made = sheet.composed(opened(name), n)
-    found = sheet_storage.loaded(sheet_storage.stored(made))
+    found = sheet.loaded(sheet.stored(made))
     assert same(made, found)
     for form in ("dxf", "pdf", "svg"):
         writer = import_module(BACKENDS[form])
@@ -79,7 +79,7 @@ def test_remarks_are_kept_as_they_are():
     inner = Remark("group {name}", {"name": "2–3"})
     several = Remark(("{count} plan", "{count} plans"), {"count": 3, "size": 1.5}, 3)
     for remark in (inner, several, Remark("{what}!", {"what": inner})):
-        told = sheet_storage._remark(json.loads(json.dumps(sheet_storage._told(remark))))
+        told = sheet._remark(json.loads(json.dumps(sheet._told(remark))))
         assert told == remark
         assert str(told) == str(remark)
 
@@ -139,16 +139,16 @@ def test_what_is_warned_of_is_kept(place, tmp_path, capsys):
 
 @pytest.mark.parametrize("data", [b"", b"\0\0\0\2{}", b"\0\0\0\4null", b"\0\0\0\2[]", b"\xff" * 40, b"\0\0\0\1{" + bytes(64)])
 def test_other_bytes_are_no_sheet(data):
-    assert sheet_storage.loaded(data) is None
+    assert sheet.loaded(data) is None
 
 
 def test_a_sheet_cut_short_is_none():
     with kept.unused():
-        data = sheet_storage.stored(sheet.composed(opened("sixbar/8:3"), 1))
-    assert sheet_storage.loaded(data) is not None
+        data = sheet.stored(sheet.composed(opened("sixbar/8:3"), 1))
+    assert sheet.loaded(data) is not None
     for end in (10, len(data) // 3, len(data) // 2, len(data) - 16, len(data) - 8, len(data) - 1):
-        assert sheet_storage.loaded(data[:end]) is None
-    assert sheet_storage.loaded(data + bytes(16)) is None
+        assert sheet.loaded(data[:end]) is None
+    assert sheet.loaded(data + bytes(16)) is None
 
 
 def test_what_a_sheet_is_made_of_names_it(monkeypatch):
@@ -204,4 +204,4 @@ def test_loading_imports_nothing_that_draws(place, tmp_path):
     modules = told.stderr.splitlines()[-1].split()
     assert not [m for m in modules if m.startswith(("shapely", "scipy", "tmm_sheets.methods.", "tmm_sheets.mechanism."))]
     assert {m for m in modules if m.startswith("tmm_sheets.sheets.")} == {
-        f"tmm_sheets.sheets.{name}" for name in ("sheet", "sheet_storage", "composed")}  # fmt: skip
+        f"tmm_sheets.sheets.{name}" for name in ("sheet", "composed")}  # fmt: skip

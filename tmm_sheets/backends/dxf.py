@@ -9,26 +9,305 @@ Header, tables, objects and the layout are as ezdxf writes them (``dxf_frame.py`
 
 from __future__ import annotations
 
+import json
+import re
 import struct
 import zlib
+from cmath import phase
 from collections.abc import Iterable, Iterator
+from functools import cache
 from io import StringIO
-from itertools import count
+from itertools import count, islice
+from math import cos, degrees, pi, sin
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
-from tmm_sheets.backends.dxf_entities import entity, extents, letter_strokes, short
-from tmm_sheets.backends.dxf_frame import COMMON, FONT_FILE, OWN, DxfFrame, SheetParts
+from tmm_sheets.backends.dxf_entities import entity, extents, flat, head, letter_strokes, place, short
+from tmm_sheets.backends.dxf_frame import COMMON, DIMENSION_STYLE, FONT_FILE, LETTERS, OWN, DxfFrame, SheetParts
 from tmm_sheets.backends.dxf_frame import weight as weight
-from tmm_sheets.backends.dxf_frame_file import frame
-from tmm_sheets.backends.dxf_live import LiveSheet, clean
-from tmm_sheets.drawing.dashes import strokes
+from tmm_sheets.drawing.dashes import interrupted, strokes
 from tmm_sheets.drawing.ink import check
 from tmm_sheets.drawing.layers import layer
-from tmm_sheets.drawing.marks import Drawing, Mark, Text, View
-from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.drawing.lettering import BAR, PEN, advance, glyph, lacking, letter
+from tmm_sheets.drawing.marks import Dimension, Drawing, Form, FormField, Mark, Text, View
+from tmm_sheets.drawing.styles import line_type, line_types
 from tmm_sheets.files import put
 from tmm_sheets.resources import template
+
+TEXT_LAYER = "TEXT"
+WHOLE = re.compile(r"\S(?:.*\S)?")
+"""Pattern of a text without spaces at its ends."""
+HIDDEN = "60\n1\n"
+"""Tags of what is not shown."""
+OWN_BLOCK = 32
+"""Flag of a dimension whose block is its own."""
+LEVEL = 1e-6
+"""Ends of a dimension no farther from one level, mm, have its lettering level."""
+FACTOR = 144
+"""Number of the variable DIMLFAC: what a dimension measures per unit of the drawing."""
+
+
+class LiveSheet:
+    """Entities, blocks and groups of a drawing with lettering of a text style; handles are taken from ``handles``."""
+
+    def __init__(self, drawing: Drawing, frame: DxfFrame, style: str, handles: Iterator[int]) -> None:
+        self.marks, self.frame, self.style, self.handles = drawing.marks, frame, style, handles
+        self.parts = SheetParts()
+        self.found: dict[int, list[int]] = {}  # handles in model space by the first mark they stand for
+        self.places: dict[int, int] = {}  # of the entities with these handles
+        # Two lines make no angle of more than half a turn, and LibreCAD knows no other dimensions of angles.
+        dimensions = [d for d in drawing.dimensions if (d.kind != "angle" or _turned(d) < pi) and (style == COMMON or _along(d))]
+        wholes: dict[int, Form | Dimension] = {d.first: d for d in dimensions}
+        wholes.update({form.first: form for form in drawing.forms})
+        lettered = {k for d in dimensions for k in range(*d.label)}
+        i = 0
+        while i < len(self.marks):
+            whole = wholes.get(i)
+            if whole is None:
+                if i not in lettered:
+                    self._add(i, self._marks(self.marks[i : i + 1], frame.owner))
+                i += 1
+                continue
+            if isinstance(whole, Form):
+                self._form(whole)
+            else:
+                self._dimension(whole)
+            i = max(whole.end, i + 1)
+        for view in drawing.views:
+            self._group(view.name, [h for a, b in view.spans for k in range(a, b) for h in self.found.get(k, ())])
+
+    def _add(self, mark: int, made: list[tuple[int, str]]) -> None:
+        """Put entities with their handles into model space."""
+        self.found.setdefault(mark, []).extend(handle for handle, _ in made)
+        for handle, text in made:
+            self.places[handle] = len(self.parts.entities)
+            self.parts.entities.append(text)
+
+    def _marks(self, marks: tuple[Mark, ...], owner: str) -> list[tuple[int, str]]:
+        """Entities of some marks."""
+        made: list[tuple[int, str]] = []
+        for mark in marks:
+            on = layer(mark)
+            self.parts.layers.add(on.name)
+            if isinstance(mark, Text):
+                made += self._text(mark, owner, on.name)
+            else:
+                for piece in interrupted(mark):
+                    assert not isinstance(piece, Text)
+                    handle = next(self.handles)
+                    made.append((handle, entity(piece, handle, owner, on.name, dashed=bool(line_type(mark.style).pattern))))
+        return made
+
+    def _text(self, mark: Text, owner: str, on: str, more: str = "") -> Iterator[tuple[int, str]]:
+        """A run of letters as TEXT; those that the font of the style has not are drawn."""
+        for part in (lacking_in_common() if self.style == COMMON else WHOLE).finditer(mark.text):
+            at = mark.at + _direction(mark.angle) * advance(mark.text[: part.start()], mark.height) * mark.wide
+            run = mark._replace(at=at, text=part[0])
+            handle = next(self.handles)
+            if part.lastgroup != "drawn":
+                yield handle, _text(handle, owner, on, run, self.style, more)
+            else:
+                taken = [handle, *islice(self.handles, len(glyph(run.text).strokes) - 1)]
+                drawn = letter_strokes([run], owner, on, iter(taken)).split("0\nLWPOLYLINE\n")[1:]
+                yield from zip(taken, (f"0\nLWPOLYLINE\n{stroke}" for stroke in drawn), strict=True)
+
+    def _block(self, name: str, flags: int) -> str:
+        """Begin a block; returns the handle of its record."""
+        record = f"{next(self.handles):X}"
+        self.parts.records.append(f"0\nBLOCK_RECORD\n5\n{record}\n330\n{self.frame.records}\n100\nAcDbSymbolTableRecord\n"
+                                  f"100\nAcDbBlockTableRecord\n2\n{name}\n340\n0\n70\n0\n280\n1\n281\n0\n")
+        self.parts.blocks.append(f"0\nBLOCK\n5\n{next(self.handles):X}\n{head('AcDbBlockBegin', record, '0')}"
+                                 f"2\n{name}\n70\n{flags}\n{place(10, 0j)}3\n{name}\n1\n\n")
+        return record
+
+    def _end_block(self, record: str) -> None:
+        self.parts.blocks.append(f"0\nENDBLK\n5\n{next(self.handles):X}\n{head('AcDbBlockEnd', record, '0')}")
+
+    def _dimension(self, d: Dimension) -> None:
+        """A dimension with the picture of it that was drawn: programs show that until somebody changes the dimension."""
+        name = f"*D{len(self.parts.records) + 1}"
+        record = self._block(name, 1)
+        marks = (*self.marks[d.first : d.end], *self.marks[slice(*d.label)])
+        self.parts.blocks += (text for _, text in self._marks(marks, record))
+        self._end_block(record)
+        handle = next(self.handles)
+        kind, at, measured, points = _measuring(d)
+        self._add(d.first, [(handle, (
+            f"0\nDIMENSION\n5\n{handle:X}\n{head('AcDbDimension', self.frame.owner, 'DIMENSION')}280\n0\n2\n{name}\n"
+            f"3\n{DIMENSION_STYLE}\n{place(10, at)}{place(11, d.middle)}70\n{kind + OWN_BLOCK}\n71\n5\n42\n{short(measured)}\n"
+            f"1\n{_stacked(d.text)}\n{points}{_factor(d.factor)}"))])
+
+    def _form(self, form: Form) -> None:
+        """A block with attributes.
+
+        LibreCAD does not know attributes, and shows what other programs take for invisible: it gets the same words as TEXT so.
+        """
+        name = form.name.upper()
+        record = self._block(name, 2)
+        filled = {k for f in form.fields for k in range(f.first, f.end)}
+        rest = tuple(self.marks[k] for k in range(form.first, form.end) if k not in filled)
+        self.parts.blocks += (text for _, text in self._marks(rest, record))
+        for f in form.fields:
+            self.parts.blocks.append(self._attribute("ATTDEF", f, record))
+        self._end_block(record)
+        insert = next(self.handles)
+        owner = self.frame.owner
+        text = (f"0\nINSERT\n5\n{insert:X}\n{head('AcDbBlockReference', owner, 'FRAME')}66\n1\n2\n{name}\n{place(10, 0j)}"
+                + "".join(self._attribute("ATTRIB", f, f"{insert:X}") for f in form.fields)
+                + f"0\nSEQEND\n5\n{next(self.handles):X}\n330\n{insert:X}\n100\nAcDbEntity\n8\nFRAME\n")
+        self._add(form.first, [(insert, text)])
+        for f in form.fields:
+            if value := self._value(f):
+                wide = self._wide(f)
+                left = f.at - _direction(f.angle) * _length(value, f.height) * wide / 2
+                run = Text(left, value, f.height, f.angle, wide=wide)
+                self._add(form.first, list(self._text(run, owner, TEXT_LAYER, HIDDEN)))
+
+    def _value(self, f: FormField) -> str:
+        """What stands in a field."""
+        return "".join(mark.text for mark in self.marks[f.first : f.end] if isinstance(mark, Text))
+
+    def _wide(self, f: FormField) -> float:
+        """How wide the letters in a field are."""
+        return next((mark.wide for mark in self.marks[f.first : f.end] if isinstance(mark, Text)), 1.0)
+
+    def _attribute(self, kind: str, f: FormField, owner: str) -> str:
+        tag, value = f.name.upper(), self._value(f)
+        prompt = f"3\n{f.name.replace('_', ' ')}\n" if kind == "ATTDEF" else ""
+        letters = _centred(f, value, self.style, self._wide(f))
+        return (f"0\n{kind}\n5\n{next(self.handles):X}\n{head('AcDbText', owner, TEXT_LAYER)}{letters}"
+                f"100\nAcDb{'AttributeDefinition' if prompt else 'Attribute'}\n280\n0\n{prompt}2\n{tag}\n70\n0\n74\n0\n280\n1\n")
+
+    def _group(self, name: str, handles: list[int]) -> None:
+        if not handles:
+            return
+        group = f"{next(self.handles):X}"
+        name = clean(name)
+        self.parts.grouped.append(f"3\n{name}\n350\n{group}\n")
+        members = "".join(f"340\n{handle:X}\n" for handle in handles)
+        for handle in handles:
+            n, own = self.places[handle], f"5\n{handle:X}\n"
+            told = f"{own}102\n{{ACAD_REACTORS\n330\n{group}\n102\n}}\n"
+            self.parts.entities[n] = self.parts.entities[n].replace(own, told, 1)
+        # Not selectable: a click takes one line, not the view; by its name the group takes all of it.
+        self.parts.groups.append(f"0\nGROUP\n5\n{group}\n330\n{self.frame.groups}\n100\nAcDbGroup\n300\n{name}\n70\n0\n71\n0\n{members}")
+
+
+@cache
+def lacking_in_common() -> re.Pattern[str]:
+    """Pattern of the runs of a text between spaces at its ends, each letter that the common font has not as one "drawn"."""
+    text = template(f"fonts/{COMMON}.lff").read_text(encoding="utf-8")
+    known = "".join(re.escape(chr(int(code, 16))) for code in re.findall(r"^\[#?([0-9a-fA-F]+)\]", text, re.M)) + BAR
+    return re.compile(rf"(?P<drawn>[^\s{known}])|[{known}](?:[\s{known}]*[{known}])?")
+
+
+def clean(name: str) -> str:
+    """A name that tables of a DXF file take."""
+    return " ".join(re.sub(r'[<>/\\":;?*|,=`]', " ", name).split()) or "_"
+
+
+def _direction(angle: float) -> complex:
+    return complex(cos(angle), sin(angle))
+
+
+def _along(d: Dimension) -> bool:
+    """Whether LibreCAD, which draws dimensions anew, leaves the lettering where it is: it turns it along the line, on to the arc.
+
+    In a drawing made for it all others are lines and letters.
+    """
+    return d.label[0] == d.label[1] or (d.kind == "linear" and abs((d.b - d.a).imag) < LEVEL)
+
+
+def _turned(d: Dimension) -> float:
+    """Angle of a dimension, rad."""
+    return phase((d.b - d.vertex) / (d.a - d.vertex)) % (2 * pi)
+
+
+def _measuring(d: Dimension) -> tuple[int, complex, float, str]:
+    """Kind of a dimension, its definition point, what it measures (mm, rad), and the tags of its class with its places."""
+    if d.kind == "angle":
+        sides = f"{place(13, d.vertex)}{place(14, d.a)}{place(15, d.vertex)}{place(16, d.line)}"
+        return 2, d.b, _turned(d), f"100\nAcDb2LineAngularDimension\n{sides}"
+    length = abs(d.b - d.a) * d.factor
+    if d.kind == "radius":
+        return 4, d.a, length, f"100\nAcDbRadialDimension\n{place(15, d.b)}40\n0\n"
+    return 1, d.line + (d.b - d.a), length, f"100\nAcDbAlignedDimension\n{place(13, d.a)}{place(14, d.b)}"
+
+
+def _factor(value: float) -> str:
+    """Tags of a dimension that measures otherwise than its style."""
+    return "" if value == 1.0 else f"1001\nACAD\n1000\nDSTYLE\n1002\n{{\n1070\n{FACTOR}\n1040\n{value:.9g}\n1002\n}}\n"
+
+
+def _stacked(markup: str) -> str:
+    """Lettering as MTEXT has it, an index as the lower or upper half of a fraction without its line."""
+    said = ""
+    for run in letter(markup, LETTERS).runs:
+        text = re.sub(r"([\\{}])", r"\\\1", run.text.replace(BAR, "").replace("\u00a0", " "))
+        if not run.at.imag:
+            said += text.replace("^", "^ ")
+        else:
+            upper, lower = (text, "") if run.at.imag > 0 else ("", text)
+            said += rf"\S{upper}^ {lower};"
+    return said
+
+
+def _escaped(text: str) -> str:
+    """Text as it is: a caret and two per cent signs mean something to programs, LibreCAD has no letter for a no-break space."""
+    return text.replace("%%", "%%%%%%").replace("^", "^ ").replace(BAR, "").replace("\u00a0", " ")
+
+
+def _look(mark_height: float) -> str:
+    pen = weight(PEN * mark_height)
+    return "" if pen == weight(line_type("text").width) else f"370\n{pen}\n"
+
+
+def _text(handle: int, owner: str, on: str, mark: Text, style: str, more: str = "") -> str:
+    """A run as TEXT from its left end; two letters and more are fitted to their length, whatever the font."""
+    if missing := lacking(mark.text):
+        raise ValueError(f"the drawing font has no character '{missing[0]}' (U+{ord(missing[0]):04X})")
+    end = mark.at + _direction(mark.angle) * _length(mark.text, mark.height) * mark.wide
+    fit = f"72\n5\n{flat(11, end)}" if len(mark.text) > 1 else ""
+    angle = f"50\n{short(degrees(mark.angle) % 360)}\n" if mark.angle else ""
+    return (f"0\nTEXT\n5\n{handle:X}\n{head('AcDbText', owner, on, more + _look(mark.height))}{flat(10, mark.at)}"
+            f"40\n{mark.height:g}\n1\n{_escaped(mark.text)}\n{angle}{_width(mark.wide)}7\n{style}\n{fit}100\nAcDbText\n")
+
+
+def _length(text: str, height: float) -> float:
+    """Length of a run, mm: to LibreCAD, which has no advances, a letter ends one pen before the next (``fonts/build.py``)."""
+    if not text:
+        return 0.0
+    first = glyph(text[0])
+    return height * (first.right - first.left - PEN) + advance(text[1:], height)
+
+
+def _width(wide: float) -> str:
+    return "" if wide == 1.0 else f"41\n{short(wide)}\n"
+
+
+def _centred(f: FormField, value: str, style: str, wide: float) -> str:
+    """Tags of lettering about the middle of its baseline; its left end is told too, as a matter of form."""
+    left = f.at - _direction(f.angle) * _length(value, f.height) * wide / 2
+    angle = f"50\n{short(degrees(f.angle) % 360)}\n" if f.angle else ""
+    return f"{place(10, left)}40\n{f.height:g}\n1\n{_escaped(value)}\n{angle}{_width(wide)}7\n{style}\n72\n1\n{place(11, f.at)}"
+
+
+def made_of(width: float, height: float) -> dict[str, Any]:
+    """What a frame follows from besides the program: the paper's size, mm, and the line types."""
+    return {"size": [width, height],
+            "line types": [f"{style.linetype} {style.name} {list(style.pattern)}" for style in line_types().values()]}
+
+
+@cache
+def frame(width: float, height: float) -> DxfFrame:
+    """The frame for paper of that size, mm."""
+    kept = json.loads(template("dxf_frame.json").read_text(encoding="utf-8"))
+    if kept["made of"] == made_of(width, height):
+        return DxfFrame(**kept["frame"])
+    from tmm_sheets.backends import dxf_frame_making
+
+    return dxf_frame_making.made(width, height)
+
 
 Lettering = Literal["live", "librecad", "strokes"]
 

@@ -4,7 +4,7 @@ The record's rules are data already: each is an expression, or a primitive by it
 wanted ones puts the expressions together to one list without a branch or a loop: points and directions become pairs of real
 numbers, what is computed once is not computed again, what follows from constants alone is a constant. Primitives that have a
 plain formula are written out, the others are called by name. A :class:`Language` then writes each operation down
-(:mod:`~tmm_sheets.construction.numpy_language`).
+(:mod:`~tmm_sheets.construction.function`).
 
 What a program is a function of: rows of numbers that differ from position to position (crank angles above all), and chosen givens
 by their names in the project file (``crank.length``).

@@ -14,13 +14,133 @@ from tmm_sheets.construction.curve import Curve
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Step, value_at, value_of
 from tmm_sheets.errors import CannotBuild, together
-from tmm_sheets.record import formulas, sheets, values
+from tmm_sheets.record import sheets
 from tmm_sheets.record.results_map import leaves
 from tmm_sheets.record.step_index import StepIndex
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
     from tmm_sheets.project import Project
+import re
+from math import isfinite
+
+from tmm_sheets.construction import expression
+from tmm_sheets.construction.given import Given, Over
+
+
+def written(value: Any) -> Any:
+    """A value for JSON."""
+    if isinstance(value, complex) and isfinite(value.real) and isfinite(value.imag):  # ends of helper lines: most of all values
+        return [value.real, value.imag]
+    if isinstance(value, Curve):
+        return {name: written(getattr(value, name)) for name in ("x", "y", "left", "right")} | {"law": value.law}
+    if isinstance(value, tuple | list):
+        return [written(v) for v in value]
+    if isinstance(value, str | bool) or value is None:
+        return value
+    array = np.asarray(value)
+    if array.dtype.kind not in "biufc":
+        return None  # nothing that a record could hold
+    if array.dtype.kind == "c":
+        array = np.ascontiguousarray(array, complex).view(float).reshape(*array.shape, 2)
+    found = array.tolist()
+    return found if array.dtype.kind in "biu" or np.isfinite(array).all() else _defined(found)
+
+
+def _defined(found: Any) -> Any:
+    if isinstance(found, list):
+        return [_defined(x) for x in found]
+    return found if isfinite(found) else None
+
+
+def shape(value: Any, positions: int) -> dict[str, Any]:
+    """What a value is: "over" none, positions or curve, and the "type" of its numbers."""
+    if isinstance(value, Curve):
+        return {"over": "curve", "type": "real"}
+    if isinstance(value, str):
+        return {"over": "none", "type": "choice"}
+    array = np.asarray(value)
+    over: Over = "none" if not array.ndim else "positions" if array.ndim == 1 and 1 < positions == len(array) else "curve"
+    return {"over": over, "type": {"c": "complex", "i": "integer", "u": "integer", "b": "integer"}.get(array.dtype.kind, "real")}
+
+
+def given(x: Any, positions: int) -> dict[str, Any]:
+    """A given number, point or row; a number of the program itself is a constant."""
+    if isinstance(x, Given):
+        found = {"given": written(x.value), **shape(x.value, positions), **_origin(x)}
+        if x.over != "positions":  # what the row itself says of nodes and tables goes before its length
+            found["over"] = x.over
+        if not x.choice:
+            return found
+        # Whole numbers and words that a search found; of an angle or a point its own type says how to read it.
+        return found | {"criterion": x.choice} | ({"type": "choice"} if found["type"] in ("integer", "choice") else {})
+    return {"given": written(x), **shape(x, positions), **_origin(x)}
+
+
+def _origin(x: Any) -> Mapping[str, str]:
+    told = {key: found for key in ("symbol", "unit", "source") if (found := getattr(x, key, ""))}
+    return {"name": getattr(x, "name", "constant"), **told}
+
+
+_LETTERS = {
+    "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "varepsilon", "ζ": "zeta", "η": "eta", "θ": "theta", "λ": "lambda",
+    "μ": "mu", "ν": "nu", "ξ": "xi", "π": "pi", "ρ": "rho", "σ": "sigma", "τ": "tau", "φ": "varphi", "χ": "chi", "ψ": "psi",
+    "ω": "omega", "Γ": "Gamma", "Δ": "Delta", "Θ": "Theta", "Λ": "Lambda", "Σ": "Sigma", "Φ": "Phi", "Ψ": "Psi", "Ω": "Omega",
+    "⟂": "perp",
+}  # fmt: skip
+_BARRED = re.compile("(.)\u0305")
+_CYRILLIC = re.compile(r"[А-Яа-яЁёІіЇїЄє][А-Яа-яЁёІіЇїЄє .]*")
+_NUMBERED = re.compile(r"([^\W\d_]+)([\d,]+)([′″]*)")
+TOLD = ("number", "length", "ordinate", "angle", "inclination")
+"""Kinds of results whose formulas are told; a point is told by its sentence."""
+
+
+def letters(markup: str) -> str:
+    """Lettering markup, or the name of a step, in LaTeX."""
+    if "_" not in markup and (numbered := _NUMBERED.fullmatch(markup)):
+        markup = f"{numbered[1]}_{{{numbered[2]}}}{numbered[3]}"
+    text = markup.replace("\\", "").replace("%", r"\%").replace("#", r"\#").replace("&", r"\&")
+    text = _BARRED.sub(r"\\overline{\1}", text)
+    text = _CYRILLIC.sub(lambda m: rf"\text{{{m[0]}}}", text)
+    text = re.sub(r"_([^{\\])", r"_{\1}", text)
+    text = text.replace("·", r"\cdot ").replace("′", "'").replace("″", "''").replace("−", "-").replace("–", r"\text{–}")
+    return "".join(f"\\{_LETTERS[c]} " if c in _LETTERS else c for c in text).strip()
+
+
+def tree_of(step: Step) -> expression.Expression | None:
+    """The formula of a step that is told by one; None for a move of ruler and compass and for a number handed on."""
+    if step.rule.gives not in TOLD:
+        return None
+    tree = step.rule.tree(len(step.args))
+    return None if isinstance(tree, expression.Argument) or (isinstance(tree, expression.Operation) and tree.function) else tree
+
+
+def symbols(step: Step, tree: expression.Expression) -> str:
+    """The formula with letters."""
+    return f"{letters(step.symbol or step.name)} = {expression.latex(tree, [_letter(a) for a in step.args])}"
+
+
+def numbers(step: Step, tree: expression.Expression, k: int) -> str:
+    """The formula with the numbers of a position; empty where one of them has none."""
+    values = [value_at(a, k) for a in (*step.args, step)]
+    if any(np.ndim(v) or isinstance(v, str) or not isinstance(v, int | float | complex | np.number) for v in values):
+        return ""
+    *texts, value = map(_number, values)
+    return f"{expression.latex(tree, texts)} = {value}"
+
+
+def _letter(a: Any) -> str:
+    named = getattr(a, "symbol", "") or getattr(a, "name", "")
+    return letters(named) if named else _number(a) if np.ndim(a) == 0 else "\\ldots"
+
+
+def _number(x: Any) -> str:
+    if isinstance(x, complex | np.complexfloating):
+        return f"\\left({_number(x.real)};\\, {_number(x.imag)}\\right)"
+    text = f"{float(x):.6g}"
+    mantissa, _, power = text.partition("e")
+    return f"{mantissa} \\cdot 10^{{{int(power)}}}" if power else text
+
 
 _encoded = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode
 MOST = 72
@@ -98,7 +218,7 @@ def _plan(project: Project, book: StepIndex, name: str) -> dict[str, Any]:
         found["pole"] = book.id(plan[plan.pole])
     found["positions"] = list(labels)
     if cycle is not None and labels == cycle.labels:
-        found |= {"phi": values.written(cycle.phi), "closes": labels[0]}
+        found |= {"phi": written(cycle.phi), "closes": labels[0]}
     return found | {"steps": book.of[name]}
 
 
@@ -112,15 +232,15 @@ def _step(book: StepIndex, telling: _Telling, key: str, step: Step) -> dict[str,
     n = len(plan.labels)
     found: dict[str, Any] = {
         "plan": book.plan(step), "name": step.name, **({"symbol": step.symbol} if step.symbol else {}), "rule": book.rule(step),
-        "kind": step.rule.gives, "unit": unit(step, plan), **values.shape(value, n),
-        "args": [_argument(book, a, n) for a in step.args], "value": values.written(value),
+        "kind": step.rule.gives, "unit": unit(step, plan), **shape(value, n),
+        "args": [_argument(book, a, n) for a in step.args], "value": written(value),
     }  # fmt: skip
     return found | telling.told(step)
 
 
 def _argument(book: StepIndex, a: Any, n: int) -> dict[str, Any]:
     step: Step | None = a if isinstance(a, Step) else getattr(a, "step", None)
-    return values.given(a, n) if step is None else {"step": book.id(step)}
+    return given(a, n) if step is None else {"step": book.id(step)}
 
 
 def unit(step: Step, plan: Plan) -> str:
@@ -152,18 +272,18 @@ class _Telling:
         lengths = {np.shape(value_of(a))[0] for a in (*step.args, step) if _is_row(value_of(a))}
         if lengths - {len(self.plan.labels)}:
             labels = ("",)
-        tree = formulas.tree_of(step)
+        tree = tree_of(step)
         sentence, shown, lines = {}, {}, {}
         with np.errstate(invalid="ignore", divide="ignore"):
             for k, label in enumerate(labels):
                 sentence[label] = protocol.sentence(step, k, self.to_mm, self.unit, self.sizes)
-                if tree is not None and (text := formulas.numbers(step, tree, k)):
+                if tree is not None and (text := numbers(step, tree, k)):
                     shown[label] = text
                 if found := _helpers(step, k):
                     lines[label] = found
         told: dict[str, Any] = {"sentence": sentence}
         if tree is not None:
-            told["formula"] = {"symbols": formulas.symbols(step, tree), "numbers": shown}
+            told["formula"] = {"symbols": symbols(step, tree), "numbers": shown}
         return told | ({"helpers": lines} if lines else {})
 
 
@@ -181,10 +301,10 @@ def _helpers(step: Step, k: int) -> list[dict[str, Any]]:
 
 
 def _helper(h: Helper) -> dict[str, Any]:
-    found = {"kind": h.kind, "a": values.written(complex(h.a))}
+    found = {"kind": h.kind, "a": written(complex(h.a))}
     if h.kind != "circle":
-        found["b"] = values.written(complex(h.b))
-    return found if h.kind == "line" else found | {"radius": values.written(float(h.radius))}
+        found["b"] = written(complex(h.b))
+    return found if h.kind == "line" else found | {"radius": written(float(h.radius))}
 
 
 def _results(behind: Mapping[str, Any], book: StepIndex) -> Iterable[tuple[str, dict[str, Any]]]:

@@ -18,7 +18,7 @@ from tmm_sheets import catalogue, protocols, results
 from tmm_sheets.__main__ import run
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.drawing.marks import Arc, Line, Polyline, Text, flat
-from tmm_sheets.methods.flywheel.intervals import lettered
+from tmm_sheets.methods.flywheel.diagram_scales import lettered
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.sheet import composed
