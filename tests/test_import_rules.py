@@ -74,7 +74,7 @@ RULES = {
     "compare.photo": ("compare drawing sheets", "project"),
     "lab": ("", ""),
     "lab.bench": (f"backends catalogue construction drawing explain mechanism {METHODS} output project results sheets task", ""),
-    "lab.stress": ("construction mechanism methods.linkage", ""),
+    "lab.stress": ("construction mechanism methods.linkage project task", ""),
     "localized_cli": ("completion", ""),
     "completion": ("catalogue drawing note output project protocols record results task.edited_text", ""),
     "cli": ("api askers backends catalogue compare drawing explain lab living note output page project protocols record "

@@ -208,7 +208,9 @@ SPOILT = {
     "half of the Coriolis acceleration": (accelerations, "CORIOLIS", lambda a, w, v, u: a + 1j * w * (u - v), TURNED),
     "half of it, seen by the forces": (
         accelerations, "CORIOLIS", lambda a, w, v, u: a + 1j * w * (u - v), "power = change of energy"),
-    "half of it, seen over the turn": (accelerations, "CORIOLIS", lambda a, w, v, u: a + 1j * w * (u - v), "energy over the turn"),
+    "half of it, seen by a project": (
+        accelerations, "CORIOLIS", lambda a, w, v, u: a + 1j * w * (u - v), "power of a project = change of its energy"),
+    "mass of the crank twice": (forces, "BESIDE_MASS", lambda j, m, s, o: j, "moment of an uneven crank is constant"),
     "Coriolis acceleration the other way": (accelerations, "CORIOLIS", lambda a, w, v, u: a - 2j * w * (u - v), TURNED),
     "normal acceleration from the centre": (accelerations, "NORMAL", lambda a, w, q, b: a + w * w * (b - q), TURNED),
     "arcsine instead of atan2": (rules, "RAY", arcsine, "velocity closure"),

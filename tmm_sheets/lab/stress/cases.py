@@ -13,6 +13,7 @@ from tmm_sheets.errors import CannotBuild
 from tmm_sheets.lab.stress import truth
 from tmm_sheets.lab.stress.change_points import folding, in_a_row, scene
 from tmm_sheets.lab.stress.draw import chain, crank_of, loaded
+from tmm_sheets.lab.stress.features import features
 from tmm_sheets.lab.stress.invariants import (
     OneFunction,
     Residual,
@@ -47,7 +48,9 @@ BOUNDS = {
     "equilibrium of every link": (5e-15, "of the largest force"),
     "moments on every link": (1e-14, "of the largest moment about the crank pivot"),
     "lever = kinetostatics": (5e-15, "of the largest moment, times the condition"),
-    "energy over the turn": (1e-9, "of the work done to and fro"),
+    "power of a project = change of its energy": (1e-8, "of all powers, friction and drive among them"),
+    "moment of an uneven crank is constant": (1e-12, "of the same, where the flywheel tells its acceleration"),
+    "energy over the turn": (1e-9, "of the work of the load over strokes that formulas tell"),
     "velocity at a dead position": (2e-14, "of itself or of the pin's, against 60 digits"),
     "acceleration at a dead position": (2e-14, "of itself or of the pin's, against 60 digits"),
     "velocity at a change point": (2e-15, "of itself or of the pin's, times the condition, against 60 digits"),
@@ -124,23 +127,6 @@ def _turns(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     for invariants in (geometry, rigidity, assembled):
         yield from invariants(s)
     yield from statics(s, _gravity(rng, m))
-
-
-def _round(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
-    """Mechanisms that turn all the way: what weights and inertia forces ask of the crank adds up to nothing over a turn."""
-    phi = np.linspace(0, 2 * pi, 2048, endpoint=False)
-    for _ in range(200):
-        m, _ = chain(rng)
-        s = State(m, phi)
-        # Where links are nearly in line in one place the sum over equal parts has not converged yet.
-        if s.built.all() and float(s.condition.max()) < 30:
-            break
-    else:
-        return
-    m = loaded(rng, replace(m, crank=replace(m.crank, acceleration=0.0)), 0.3, 0.0)
-    s = make(m, phi)
-    moment = balancing(s, _gravity(rng, m))
-    yield "energy over the turn", np.abs([moment.sum() / np.abs(moment).sum()])
 
 
 def _limited(rng: np.random.Generator) -> tuple[Mechanism, float]:
@@ -336,7 +322,7 @@ def _share(x: Any, of: Any) -> Any:
 
 SCENES: dict[str, Scene] = {
     "chain": _chain(""),
-    "turns all the way": _round,
+    "mixed features": features,
     "dead position": _dead,
     "narrow crossing": _chain("narrow"),
     "collinear": _chain("collinear"),

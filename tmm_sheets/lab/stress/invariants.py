@@ -318,6 +318,18 @@ TELLING = 100.0
 """Condition up to which differences of positions can tell anything about velocities."""
 
 
+def slopes(s: State, k: Any, h: Any) -> tuple[State, Callable[[Any], Any]]:
+    """The mechanism beside positions ``k``, by steps ``h``, rad, and how to differentiate its values over the crank angle."""
+    around = s.phi[k] + np.multiply.outer([n * sign for n, _ in STENCIL for sign in (1, -1)], h + 0 * s.phi[k])
+    step = (around[0::2] - around[1::2]) / (2 * np.array([[n] for n, _ in STENCIL]))  # as it is after rounding
+
+    def slope(values: Any) -> Any:
+        values = values.reshape(around.shape)
+        return sum(weight * (values[2 * i] - values[2 * i + 1]) / step[i] for i, (_, weight) in enumerate(STENCIL))
+
+    return s.others(around.ravel()), slope
+
+
 def derivatives(s: State, gravity: float) -> Iterator[Residual]:
     """Differences of positions against velocities, of velocities against accelerations, of energy against the crank's power."""
     condition = np.where(s.built, s.condition, np.inf)
@@ -326,33 +338,25 @@ def derivatives(s: State, gravity: float) -> Iterator[Residual]:
         return
     # Lines that cross under a sine are parallel about so far away, links in line its square: the steps stay well within.
     h = 0.02 / condition[k] * np.minimum(1.0, s.m.crank.speed / np.sqrt((s.largest(s.omega) ** 2 + s.largest(s.epsilon))[k]))
-    around = s.phi[k] + np.multiply.outer([n * sign for n, _ in STENCIL for sign in (1, -1)], h)
-    step = (around[0::2] - around[1::2]) / (2 * np.array([[n] for n, _ in STENCIL]))  # as it is after rounding
-    other = s.others(around.ravel())
+    other, slope = slopes(s, k, h)
     w = s.m.crank.omega
     e = s.m.crank.sense * s.m.crank.acceleration
-
-    def slope(values: Any) -> Any:
-        """Derivative over the crank angle."""
-        values = values.reshape(around.shape)
-        return sum(weight * (values[2 * i] - values[2 * i + 1]) / step[i] for i, (_, weight) in enumerate(STENCIL))
-
     for name in s.z:
         yield "derivative of position = velocity", np.abs(slope(other.z[name]) * w - s.v[name][k]) / s.fastest[k]
         # The plan's velocities belong to one speed of the crank.
         rate = slope(other.v[name]) * w + s.v[name][k] * e / w
         yield "derivative of velocity = acceleration", np.abs(rate - s.a[name][k]) / s.sharpest[k]
-    beside = _energy(other, gravity)
-    change = slope(sum(beside)) * w + 2 * _energy(s, gravity)[0][k] * e / w
+    beside = energy(other, gravity)
+    change = slope(sum(beside)) * w + 2 * energy(s, gravity)[0][k] * e / w
     # The kinetic energy beside the position: in it everything may stand still. Heights are rounded to a share of the reach.
-    kinetic = beside[0].reshape(around.shape).max(axis=0)
+    kinetic = beside[0].reshape(-1, len(k)).max(axis=0)
     weight = gravity * sum(link.mass for link in s.m.links.values())
     rate = (s.largest(s.omega) + np.sqrt(s.largest(s.epsilon)))[k]
     scale = (kinetic * rate + powers(s, gravity)[k]) * (s.reach / s.size)[k] + weight * s.reach[k] * rate
     yield "power = change of energy", np.where(scale > 0, np.abs(balancing(s, gravity)[k] * w - change) / scale, 0.0)
 
 
-def _energy(s: State, gravity: float) -> tuple[Any, Any]:
+def energy(s: State, gravity: float) -> tuple[Any, Any]:
     """Kinetic energy of all links, J, and potential energy about the crank pivot."""
     kinetic, potential = np.zeros(s.phi.shape), np.zeros(s.phi.shape)
     for link in s.m.links.values():

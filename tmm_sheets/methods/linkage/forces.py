@@ -40,6 +40,10 @@ INERTIA = Rule("inertia force", lambda m, a: -m * a, ("number", "point"), "force
                marked("Force of inertia {name} = m·a = {0}·a_{1} = {value}, against the acceleration of {1}."))
 COUPLE = Rule("inertia couple", lambda j, e: -j * e, ("number", "number"), "number",
               marked("Moment of the inertia forces {name} = −J·ε = {value} N·m, against ε."), unit="N*m")
+BESIDE_MASS = Rule("what turns with the crank beside its mass", lambda j, m, s, o: j - m * np.abs(s - o) ** 2,
+                   ("number", "number", "point", "point"), "number",
+                   marked("The force of inertia of the input link itself stands for {1}·|{3}{2}|²: {name} = {0} − {1}·|{3}{2}|² = "
+                          "{value} kg·m²."), unit="kg*m2")
 GIVEN_FORCE = Rule("given force vector", lambda f: f, ("force",), "force", marked("Force {name} = {value}."), unit="N")
 OPPOSITE = Rule("reaction", lambda f: -f, ("force",), "force", "{name} = −{0}.", unit="N")
 NEGATIVE = Rule("opposite number", lambda x: -x, ("number",), "number", "{name} = {value}.", beyond_paper=True, unit="1")
@@ -433,7 +437,12 @@ def external_loads(pos: Positions, acc: Accelerations, gravity: float, applied: 
                 fi = plan.add(f"Fи{link.name}", INERTIA, link.mass, acc.points[link.centre],
                               symbol=tr("Fi{link}").format(link=link.name))
                 loads[link.name].append(Load(tr("F̅_{{i{link}}}").format(link=link.name), link.name, at, fi, "inertia"))
-        inertia = link.inertia if carried is None or link.name != m.crank.link else carried
+        inertia: Any = link.inertia
+        if carried is not None and link.name == m.crank.link:
+            # A mass off the axis is among what turns with the crank, and its force of inertia has a moment about the axis already.
+            off = any(load.role == "inertia" for load in loads[link.name])
+            inertia = plan.add(plan.named(f"J_{link.name}"), BESIDE_MASS, carried, link.mass, pos.points[str(link.centre)],
+                               pos.points[m.crank.pivot]) if off else carried
         if inertia:
             couple = plan.add(f"Mи{link.name}", COUPLE, inertia, acc.epsilon[link.name],
                               symbol=tr("Mi{link}").format(link=link.name))
