@@ -231,9 +231,17 @@ class Project:
         return self.study_at(self.cycle.turned, self.cycle.labels, "")
 
     def study_at(self, turned: Any, labels: tuple[str, ...], purpose: str = marked("curves between the positions")) -> Study:
-        """Kinematics and forces at any crank angles (rad turned from position 0); ``purpose`` is empty for what is told itself."""
+        """Kinematics and forces at any crank angles (rad turned from position 0); ``purpose`` is empty for what is told itself.
+
+        Raises
+        ------
+        CannotBuild
+            when the angle does not tell how the links stand.
+        """
+        from tmm_sheets.methods.linkage.checks import check_followed
         from tmm_sheets.methods.linkage.study import Study
 
+        check_followed(self.mechanism, self.cycle)
         crank = self.variant.crank
         uneven = crank is not None and crank.angular_acceleration == "flywheel"
         return Study(self.mechanism, self.cycle, turned, labels, self.gravity, lambda: self.applied, self.driver,

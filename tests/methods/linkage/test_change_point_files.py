@@ -126,8 +126,13 @@ def test_what_the_file_may_say(solved):
                             ('lengths = ["120 mm", "60 mm"]\n', ""))
     assert status == 2
     assert "a group of kind 3 has none" in err
-    _, err, status = solved(FOLLOW, ('["120 mm", "60 mm"]', '["100 mm", "80 mm"]'))
+
+
+@pytest.mark.parametrize("options", [(), ("--phi", "280.7"), ("--positions", "5000")])
+def test_a_group_that_comes_back_to_the_other_side_is_refused_at_any_angle(solved, options):
+    found, err, status = solved(FOLLOW, ('["120 mm", "60 mm"]', '["100 mm", "80 mm"]'), options=options)
     assert status == 1
+    assert found is None
     assert "after a turn of the crank it stands on the other side" in err
 
 

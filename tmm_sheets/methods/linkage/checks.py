@@ -98,7 +98,6 @@ def check_assembly(mechanism: Mechanism, cycle: Cycle) -> tuple[DeadPosition, ..
     if missing:
         name, labels = missing
         raise CannotBuild(tell("{point} cannot be constructed at positions {labels}").format(point=name, labels=", ".join(labels)))
-    _check_followed(mechanism, cycle)
     passed: dict[tuple[str, bool], list[float]] = {}
     for i, (g, limit) in enumerate(limits):
         changes = np.degrees(passages(mechanism).angles(g))
@@ -114,8 +113,14 @@ CHANGE = 0.1
 """Degrees within which the search for the narrowest places finds a change point."""
 
 
-def _check_followed(mechanism: Mechanism, cycle: Cycle) -> None:
-    """A group that follows has to come back to its side after a turn of the crank: it passes an even number of change points."""
+def check_followed(mechanism: Mechanism, cycle: Cycle) -> None:
+    """See that a group that follows comes back to its side after a turn: else no angle of the crank tells how it stands.
+
+    Raises
+    ------
+    CannotBuild
+        when a group passes an odd number of change points.
+    """
     for g in mechanism.groups:
         angles = passages(mechanism).angles(g) if g.follow and not cycle.swings else ()
         if len(angles) % 2:
