@@ -7,7 +7,7 @@ curve as an argument, so an error of a point goes on through it.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -52,3 +52,14 @@ class Curve:
             return s * self.y[k] + t * self.y[k + 1]
         return (s * s * (self.y[k] * (1 + 2 * t) + h * t * self.left[k])
                 + t * t * (self.y[k + 1] * (1 + 2 * s) - h * s * self.right[k]))
+
+
+def inner_slopes(h: Any, chord: Any) -> Any:
+    """Slopes in the inner points of a curve that rises and falls only where its points do, from chords of the widths ``h``.
+
+    Weighted harmonic means of the slopes of the neighbouring chords, zero where these differ in sign (F. N. Fritsch, J. Butland,
+    SIAM J. Sci. Stat. Comput. 5, 1984, 300-304).
+    """
+    w1, w2 = 2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(chord[:-1] * chord[1:] > 0, (w1 + w2) / (w1 / chord[:-1] + w2 / chord[1:]), 0.0)

@@ -341,7 +341,7 @@ def test_a_way_that_does_not_come_back_is_refused():
     m = four_bar(0.05, 0.1, 0.07, 0.12, follow=True, at=0.3)
     said = r'group 2-3 with branch = "follow" passes a change point at crank angle 180\.0 deg'
     with pytest.raises(CannotBuild, match=said) as told:
-        check_assembly(m, cycle_of(m))
+        check_followed(m, cycle_of(m))
     assert "end in [cycle]" in told.value.hint
 
 

@@ -198,6 +198,14 @@ def test_smooth_diagram_over_the_way():
     assert (np.diff(rising) > 0).all()
 
 
+def test_a_smooth_diagram_is_that_of_the_docs():
+    """Chords of slopes 400 and 800 over 1/4 and 3/4 of the way: 3/(1.75/400 + 1.25/800) = 9600/19 in the middle point."""
+    f = force(stroke="working", sense="+x", curve="smooth", table=[[0, "0 N"], [0.25, "100 N"], [1, "700 N"]])
+    at = np.array([2 * pi - angle_of(x) for x in (0.125, 0.625)])
+    m = 9600 / 19
+    np.testing.assert_allclose(f.magnitude(at), [50 + (400 - m) * 0.25 / 8, 400 + (m - 800) * 0.75 / 8], rtol=1e-12)
+
+
 # --- limits of the action --------------------------------------------------------------------------------------------
 
 

@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.construction.arithmetic import by_pieces
+from tmm_sheets.construction.curve import inner_slopes
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.quantities import Points, Reals
@@ -135,8 +136,8 @@ READING = 0.15
 class _Pieces:
     """A diagram of straight and smoothly curved pieces with its two integrals, all of them polynomials.
 
-    Between two corners the points are joined by monotone cubics (F. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5,
-    1984): no overshoot, straight lines stay straight. The diagram is multiplied by ``1 + slant (1/2 - x)``.
+    Between two corners the points are joined by monotone cubics: no overshoot, straight lines stay straight. The diagram is
+    multiplied by ``1 + slant (1/2 - x)``.
     """
 
     def __init__(self, x: Sequence[float], y: Sequence[float]) -> None:
@@ -194,10 +195,7 @@ def _slopes(x: Floats, y: Floats) -> Floats:
     if len(d) == 1:
         return np.array([d[0], d[0]])
     slopes = np.zeros(len(x))
-    same = d[:-1] * d[1:] > 0
-    w1, w2 = 2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        slopes[1:-1] = np.where(same, (w1 + w2) / (w1 / d[:-1] + w2 / d[1:]), 0.0)
+    slopes[1:-1] = inner_slopes(h, d)
     for end, (h0, h1), (d0, d1) in ((0, h[:2], d[:2]), (-1, h[:-3:-1], d[:-3:-1])):
         # The parabola through three points, kept monotone.
         slope = ((2 * h0 + h1) * d0 - h0 * d1) / (h0 + h1)

@@ -17,7 +17,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.curve import Curve, inner_slopes
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
@@ -454,9 +454,8 @@ def diagram(x: Reals, y: Reals, smooth: Any, turns: Reals) -> Curve:
 def _curve(x: Reals, y: Reals, smooth: bool, period: float | None) -> Curve:
     """The curve with its end where it begins again; arguments given twice are jumps.
 
-    Straight lines, or a cubic in every interval: the slope in a point is the weighted harmonic mean of its neighbours', and zero
-    where they differ in sign, so the curve rises and falls only where the points do (F. N. Fritsch, J. Butland, SIAM J. Sci.
-    Stat. Comput. 5, 1984). At the ends and at jumps the slope is that of the only neighbour.
+    Straight lines, or a cubic in every interval with :func:`~tmm_sheets.construction.curve.inner_slopes`. At the ends and at jumps
+    the slope is that of the only neighbour.
     """
     x, y = (np.asarray(v, dtype=float) for v in (x, y))
     if period is not None and x[-1] - x[0] < period - NEAR:
@@ -516,8 +515,7 @@ def _slopes(x: Reals, y: Reals, closed: bool) -> tuple[Any, Any]:
     h = np.diff(x)
     with np.errstate(divide="ignore", invalid="ignore"):
         chord = np.diff(y) / h
-        w1, w2 = 2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]
-        inner = np.where(chord[:-1] * chord[1:] > 0, (w1 + w2) / (w1 / chord[:-1] + w2 / chord[1:]), 0.0)
+    inner = inner_slopes(h, chord)
     left, right = np.append(chord[:1], inner), np.append(inner, chord[-1:])
     left[1:] = np.where(h[:-1] > 0, left[1:], chord[1:])
     right[:-1] = np.where(h[1:] > 0, right[:-1], chord[:-1])
