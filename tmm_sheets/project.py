@@ -140,9 +140,11 @@ class Project:
             when there is no [synthesis].
         """
         from tmm_sheets.methods.linkage.synthesis import Synthesis
+        from tmm_sheets.task.assembly import points_of_synthesis
 
         crank = self.variant.crank
-        return Synthesis(self._section("synthesis"), (crank.speed or 0.0) if crank is not None else 0.0)
+        return Synthesis(self._section("synthesis"), (crank.speed or 0.0) if crank is not None else 0.0,
+                         points_of_synthesis(self.variant))
 
     @cached_property
     def cycle(self) -> Cycle:

@@ -100,6 +100,23 @@ def _drive(of: Givens, given: InputTable, groups: Iterable[StructuralGroup]) -> 
                  of.number(given.side, "", "", "input", "side"))
 
 
+def points_of_synthesis(variant: Variant) -> dict[str, str]:
+    """Names of the file for the points that the formulas of the synthesis call A, B, C, D and S, where they differ."""
+    crank = variant.crank
+    if crank is None:
+        return {}
+    found = {"A": crank.pivot, "B": crank.pin}
+    for group in variant.group:
+        if group.kind == 3 and crank.pin in group.outer:
+            found.setdefault("C", next(name for name in group.outer if name != crank.pin))
+    for (table, *more), match in synthesis_refs.uses(tomllib.loads(variant.text)):
+        if table in ("point", "group") and synthesis_refs.share(match) == 1:
+            i = int(more[0])
+            name = variant.point[i].name if table == "point" else str(variant.group[i].inner)
+            found.setdefault((match["name"] or synthesis_refs.PLACES.get((table, more[-1]), ""))[-1:], name)
+    return {letter: name for letter, name in found.items() if name != letter}
+
+
 class Givens:
     """Numbers of a project file with their places in it: "group[1].lengths[0]", tables and lists counted from 0."""
 

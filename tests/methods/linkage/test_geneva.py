@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tmm_sheets.drawing.marks import Arc
+from tmm_sheets.drawing.marks import Arc, Text
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
@@ -44,6 +44,18 @@ def test_radii_of_the_cross():
     found = opened().synthesis.exact
     r = 0.1 / 2**0.5
     assert [found[name] for name in ("l_BC", "h", "r_f")] == pytest.approx([r, 2 * r + 0.008 - 0.1, r - 0.016])
+
+
+def test_points_have_the_names_of_the_file():
+    """The formulas call the pivot of the cross C, the file may call it anything: E, and the crank's O."""
+    renamed = (("D = [", "E = ["), ('outer = ["B", "D"]', 'outer = ["B", "E"]'), ('centre = "D"', 'centre = "E"'),
+               ("A = [", "O = ["), ('pivot = "A"', 'pivot = "O"'))
+    project = opened(4, *renamed)
+    assert project.synthesis.derivation[1].startswith("l_{OB} = l_{OE}·sin β = ")
+    assert project.synthesis.derivation[2].startswith("l_{BE} = l_{OE}·cos β = ")
+    texts = [m.text for m in composed(project, 1).drawing.marks if isinstance(m, Text)]
+    assert {"A", "C", "D"}.isdisjoint(texts)
+    assert min(texts.count("E"), texts.count("O")) >= 2  # plan of positions and figure
 
 
 def test_figure_shows_slots_and_locking_arcs():

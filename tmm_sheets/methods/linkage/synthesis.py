@@ -7,7 +7,9 @@ and the ratio of rod and crank. Source: manual 000, section 2.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from math import acos, asin, degrees, floor, inf, isfinite, nan, pi
 from typing import TYPE_CHECKING, Any
@@ -60,22 +62,39 @@ AS_WRITTEN = Rule("length as it is used", lambda share, x: _digits(share * x), (
                   "{name} = {0}·{1} = {value}.")
 
 
+POINTS = re.compile(r"(?<![A-Za-z_{])(l_\{?)?([A-DS]{1,2})(?![A-Za-z_])\}?")
+"""Points of the formulas, lines and lengths between two of them."""
+
+
 @dataclass(frozen=True, eq=False)
 class Synthesis:
     """Lengths from conditions: ``plan`` has the steps, the found lengths under their names and rounded with a prime.
+
+    ``points`` are the names that the project file has for the points A, B, C, D, S of the formulas, as far as it has others.
 
     Raises :class:`CannotBuild` when a length is rounded to nothing.
     """
 
     conditions: SynthesisTable
     speed: float
+    points: Mapping[str, str] = field(default_factory=dict)
 
     @cached_property
     def plan(self) -> Plan:
         """The construction, m."""
-        if self.conditions.kind == "geneva":
-            return _geneva(self.conditions)
-        return _quick_return(self.conditions) if self.conditions.kind == "quick return" else _engine(self.conditions, self.speed)
+        plan = {"geneva": _geneva, "quick return": _quick_return, "engine": _engine}[self.conditions.kind](self)
+        for step in plan if self.points else ():
+            if POINTS.fullmatch(step.name.rstrip("′″")):
+                plan.lettered(step, self.called(step.name))
+        return plan
+
+    def called(self, text: str) -> str:
+        """A text in the letters of the formulas with the names of the project file, in lettering markup."""
+        def names(found: re.Match[str]) -> str:
+            called = "".join(self.points.get(letter, letter) for letter in found[2])
+            return f"l_{{{called}}}" if found[1] else called
+
+        return POINTS.sub(names, text) if self.points else text
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -132,6 +151,9 @@ class Synthesis:
     @property
     def derivation(self) -> list[str]:
         """Formulas with their numbers in lettering markup, one a line."""
+        return [self.called(line) for line in self._derivation()]
+
+    def _derivation(self) -> list[str]:
         c, x = self.conditions, self.exact
         if c.kind == "quick return":
             theta = degrees(float(self.plan["θ"].value))
@@ -190,10 +212,11 @@ HALF_OFF = Rule("lay off half a length", lambda p, length: p + length / 2, ("poi
                 v: (Helper("line", a[0], v),))
 
 
-def _quick_return(c: SynthesisTable) -> Plan:
+def _quick_return(of: Synthesis) -> Plan:
+    c = of.conditions
     plan = Plan("synthesis", tr("Geometric synthesis of the slotted-link mechanism"), "m")
     a = plan.add("A", rules.GIVEN, 0j)
-    pivot = plan.add("C", BELOW, _given(c, "centre_distance", "l_{AC}", "m"))
+    pivot = plan.add("C", BELOW, _given(c, "centre_distance", of.called("l_{AC}"), "m"))
     plan.add("l_AC", rules.DISTANCE, a, pivot)
     theta = plan.add("θ", SWING, _given(c, "coefficient", "K"))
     half = plan.add("θ/2", HALF, theta)
@@ -213,10 +236,11 @@ def _quick_return(c: SynthesisTable) -> Plan:
     return plan
 
 
-def _engine(c: SynthesisTable, speed: float) -> Plan:
+def _engine(of: Synthesis) -> Plan:
+    c = of.conditions
     plan = Plan("synthesis", tr("Geometric synthesis of the slider-crank mechanism"), "m")
     a = plan.add("A", rules.GIVEN, 0j)
-    period = plan.add("T", PERIOD, GivenNumber(speed, "crank.speed", "ω_1", "rad/s"))
+    period = plan.add("T", PERIOD, GivenNumber(of.speed, "crank.speed", "ω_1", "rad/s"))
     stroke = plan.add("H", STROKE, _given(c, "mean_velocity", tr("V_{m}"), "m/s"), period)
     plan.add("l_AB", CRANK, stroke)
     crank = _rounded(plan, "l_AB", c)
@@ -246,11 +270,12 @@ LOCKING = Rule("radius of the locking disc", lambda r, roller: r - 2 * roller, (
                marked("Radius of the locking disc, with a horn as thick as the roller's radius: {name} = {0} − 2·{1} = {value}."))
 
 
-def _geneva(c: SynthesisTable) -> Plan:
+def _geneva(of: Synthesis) -> Plan:
     """The pin enters a slot along it, square to the crank: no blow. B is where it enters."""
+    c = of.conditions
     plan = Plan("synthesis", tr("Geometric synthesis of the Geneva mechanism"), "m")
     a = plan.add("A", rules.GIVEN, 0j)
-    pivot = plan.add("C", BESIDE, _given(c, "centre_distance", "l_{AC}", "m"))
+    pivot = plan.add("C", BESIDE, _given(c, "centre_distance", of.called("l_{AC}"), "m"))
     plan.add("l_AC", rules.DISTANCE, a, pivot)
     roller = _given(c, "roller", "r_{p}", "m")
     slot = plan.add("CB", UNDER, plan.add("CA", rules.RAY, pivot, a), plan.add("β", HALF_PITCH, _given(c, "slots", "z")))

@@ -80,7 +80,8 @@ def _of_synthesis(r: Reader, path: str, match: Any, symbol: str, item: Item) -> 
         return None
     share = synthesis_refs.share(match)
     symbol = f"l_{{{item['from']}{item['name']}}}"
-    value: Text = (*((_exact(r, share, path), " ") if share != 1 else ()), Symbol(letters(match["name"] or "")))
+    called = Symbol(letters(r.project.synthesis.called(match["name"] or "")))
+    value: Text = (*((_exact(r, share, path), " ") if share != 1 else ()), called)
     return tuple(phrases.set_text(phrases.meaning_of(symbol, r.language))), (Symbol(letters(symbol)),), ("–",), value
 
 

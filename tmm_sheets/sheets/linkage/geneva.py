@@ -51,8 +51,8 @@ def figure(project: Project, canvas: Canvas, box: Box) -> None:
     s.pen("A", "construction", "way of the pin").circle(frame(0j), first, "thin")
     for name in "AC":
         symbols.hinge(s.pen(name, "symbol"), s.at(name), "main", 1.6)
-        s.letters(name, name, -1 - 0.8j if name == "A" else 1 - 0.8j, gap=2.4)
-    s.letters("B", "B", b / abs(b) * 1j, gap=width + 1.0)
+        s.letters(name, found.called(name), -1 - 0.8j if name == "A" else 1 - 0.8j, gap=2.4)
+    s.letters("B", found.called("B"), b / abs(b) * 1j, gap=width + 1.0)
     s.pen("CA", "axis").line(frame(-reach + 0j) - 3.0, centre + outer + 3.0, "centre")
 
 

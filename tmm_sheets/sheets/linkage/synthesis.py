@@ -76,13 +76,13 @@ def _quick_return(project: Project, canvas: Canvas, box: Box) -> None:
         for link in ("CD", "AB"):
             symbols.bar(s.pen(link[1], "link", f"{link[0]}–{link[1]}{prime}"), map(s.at, link), map(s.at, "ABCD"), "main", 1.0)
         for name, away in (("B", s.at("B") - s.at("A")), ("D", 1j)):
-            _hinge(s, name, name + prime, away, 1.4)
+            _hinge(s, name, found.called(name) + prime, away, 1.4)
         u, v = (2.5 * (s.at(end) - s.at("B")) / abs(s.at(end) - s.at("B")) for end in "CA")  # a right angle
         s.pen("B", "symbol").polyline((s.at("B") + u, s.at("B") + u + v, s.at("B") + v), "thin")
     symbols.pivot(canvas, frame(c))
     symbols.hinge(canvas, frame(a), "main", 1.0)
     for name in "AC":
-        canvas.label(right.at(name), name, -1 + 0.5j, 3.5, 2.8)
+        canvas.label(right.at(name), found.called(name), -1 + 0.5j, 3.5, 2.8)
     half, radius = float(found.plan["θ"].value) / 2, min(0.45 * frame.scale.mm(found.exact["l_AC"]), 22.0)
     canvas.angle_mark(frame(c), pi / 2 - half, pi / 2 + half, radius, "θ")
     canvas.dimension(left.at("D"), right.at("D"), 5.0, "H", factor=1e3 * frame.scale.mu)
@@ -112,7 +112,7 @@ def _engine(project: Project, canvas: Canvas, box: Box) -> None:
             symbols.bar(s.pen(link[1], "link", "–".join(link)), map(s.at, link), map(s.at, hinges), "main", 1.0)
         symbols.block(s.pen(f"C{prime}", "symbol"), s.at(f"C{prime}"), axis, "main", (7.0, 4.2))
         for name in (f"B{prime}", f"C{prime}"):
-            _hinge(s, name, name, axis * -1j, 2.8)
+            _hinge(s, name, found.called(name), axis * -1j, 2.8)
     symbols.pivot(canvas, frame(0j))
-    canvas.label(frame(0j), "A", -1 + 1j, 3.5, 2.8)
+    canvas.label(frame(0j), found.called("A"), -1 + 1j, 3.5, 2.8)
     canvas.dimension(s.at("C″"), s.at("C′"), 8.0 if turn == -1j else -8.0, "H", factor=1e3 * frame.scale.mu)
