@@ -7,7 +7,8 @@ there is a fault.
 Content (``content_faults``), judged by the document tree alone: no field, cell or name of a row is empty, no brace or sign of
 markup is left, every unit is one of the language, a number has the form of the word that goes with it, every formula gives what
 stands behind its sign of equality (``printed_formulas``), "where" stands right behind its formula, every letter of a formula is
-explained with its unit, every number of the task that a formula uses stands in the task.
+explained with its unit, every number of the task that a formula uses stands in the task, the conclusion has a result, and some
+section speaks of every sheet.
 
 Where all of it comes to stand on pages is judged by ``check_pages``.
 """
@@ -36,6 +37,7 @@ from tmm_sheets.note.document import (
     NumberedTable,
     NumberInText,
     Paragraph,
+    Sheet,
     Symbol,
     Text,
     Where,
@@ -311,6 +313,19 @@ def misnumbered(blocks: list[Any]) -> Iterator[str]:
                 yield f"{type(block).__name__} {block.number} in section {section or 'without number'}"
 
 
+def inconclusive(note: Note) -> Iterator[str]:
+    """Conclusions without a result, and sheets that no section speaks of."""
+    own = phrases.text_of(note.language, "conclusion").splitlines()[0].removeprefix("=! ")
+    blocks = list(note.body)
+    at = next(i for i, b in enumerate(blocks) if isinstance(b, Heading) and b.text == own)
+    if not (isinstance(blocks[at + 2], Paragraph) and blocks[at + 2].look == "item"):
+        yield f"{own}: no result"
+    told = " ".join(said(text) for b in blocks[:at] for text in texts(b))
+    for sheet in (b for b in blocks if isinstance(b, Sheet)):
+        if not re.search(rf"(?:лист|аркуш|sheet)\w*\s+(?:\d+\D{{1,5}})*{sheet.number}\b", told):
+            yield f"sheet {sheet.number} is spoken of nowhere"
+
+
 _EXPRESSION = re.compile(
     r"(?<![\w|/·.,)′^])([\d(−][\d,.°′″·+−()/ ×]*) = (−?[\d,.]++(?:°(?:[\d,.]+′)?(?:[\d,.]+″)?)?+)(?!\s?[·/²³(])")
 
@@ -345,6 +360,7 @@ def content_faults(note: Note) -> Iterator[Fault]:
     yield from (Fault("unexplained", "", text) for text in unexplained(blocks))
     yield from (Fault("not in the task", "", text) for text in untold(note))
     yield from (Fault("numbering", "", text) for text in misnumbered(blocks))
+    yield from (Fault("conclusion", "", text) for text in inconclusive(note))
     yield from (Fault("problem", "", text) for text in note.problems)
 
 

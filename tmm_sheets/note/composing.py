@@ -222,6 +222,13 @@ def general(r: Reader) -> Scope:
     fields["way_text"] = said["phrases"]["way_forces" if "forces" in parts else "way_positions"] if "positions" in parts else ""
     moment = v.balancing is None or v.balancing.kind == "moment"
     fields |= said["balancing"]["moment" if moment else "force"]
+    fields["driven"] = v.input is not None
+    if v.crank is not None:
+        fields |= {"crank": v.crank.link, "given": v.crank.link}
+    if v.input is not None:
+        drive = r.project.mechanism.drive
+        by = "input_by_place" if drive is not None and drive.slides else "input_by_length"
+        fields |= {"input": v.input.link, "given": v.input.link, "by": said["phrases"][by]}
     if "positions" in parts:
         fields["label"] = r.label
     return Scope(fields, letters=_letters(r))

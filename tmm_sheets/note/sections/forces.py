@@ -33,8 +33,6 @@ def scope(r: Reader) -> Scope:
         {
             "label": r.label,
             "count": len(m.groups),
-            "crank": m.crank.link,
-            "driven": m.drive is not None,
             "friction": study.forces.friction is not None,
             "approximations": "" if study.forces.friction is None else str(study.forces.friction.approximations),
             "balancing": Symbol(letters(letters_of(r.project.balancing))),

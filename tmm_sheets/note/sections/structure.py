@@ -51,7 +51,6 @@ def scope(r: Reader) -> Scope:
         "grade_to": said["grades_to"][m.grade - 1],
         "third": m.grade == 3,
         "W": NumberInText(str(m.mobility), "structure.W", m.mobility),
-        "crank": m.crank.link,
         "count": len(groups),
         "several": len(groups) > 1,
     }

@@ -65,12 +65,15 @@ def _data(r: Reader) -> Iterator[Row]:
                 row = _of_synthesis(r, path, found[path], letter, item)
             else:
                 words = meaning.replace("*", name).format_map({k: v for k, v in item.items() if isinstance(v, str)})
+                if path == "crank.length" and r.project.variant.input is not None:
+                    words = ""  # what an input swings is no crank
                 row = _row(r, path, _greatest(value), letter, words or phrases.meaning_of(letter, r.language))
             if row is not None:
                 yield row
 
 
-OWN_LETTERS = ("crank.speed", "reducer.input_speed", "reducer.output_speed", "cam.arm")
+OWN_LETTERS = ("crank.speed", "reducer.input_speed", "reducer.output_speed", "cam.arm",
+               "train.speeds.*")
 """Inputs that the note calls otherwise than the steps that take them: as they are written, or as its formulas call them."""
 
 
