@@ -383,6 +383,13 @@ class Mechanism:
     recorded: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
     """plans that all searches share, which do them again at other crank angles"""
 
+    def shown_sense(self, link: str) -> float:
+        """Sign that the turning of a link has on sheets and in notes beside its own, which is counter-clockwise positive.
+
+        A crank whose turning is given is told in its sense of rotation, as its angle, its running and the moment on it are.
+        """
+        return self.crank.sense if link == self.crank.link and self.drive is None else 1.0
+
     def search(self, purpose: str) -> SearchCount | None:
         """Count of the plans that search for something; None without a purpose, for a plan to be drawn or told."""
         return self.searches.setdefault(purpose, SearchCount(purpose)) if purpose else None

@@ -72,6 +72,11 @@ class Pictures:
         found = self._drawn.get(name) or self._views.get(name)
         return found[0][0] if found else None
 
+    def others(self, rooms: tuple[str, ...], told: str) -> list[dict[str, str]]:
+        """Numbers of the sheets beside the one ``told`` that show views of some rooms, for %each."""
+        found = {n for name, views in self._drawn.items() if name.startswith(rooms) for n, *_ in views}
+        return [{"number": str(n)} for n in sorted(found) if str(n) != told]
+
     def figure(self, name: str, focus: Sequence[str] = (), own: bool = False) -> Figure | None:
         """The view of that name as a figure; None when no sheet shows it.
 

@@ -283,9 +283,9 @@ class Reader:
         in_letters = [Operand(letters(q.symbol), None, bool(_SUM.search(q.symbol))) for q in quantities]
         head = letters(symbol)
         used = list(dict.fromkeys(arguments(simplified(tree))))
-        explained = [(symbol, self.unit(result.unit) if result is not None else "")]
+        explained = [(_of_magnitude(symbol), self.unit(result.unit) if result is not None else "")]
         explained += [
-            (quantities[i].symbol, self.unit(quantities[i].unit))
+            (_of_magnitude(quantities[i].symbol), self.unit(quantities[i].unit))
             for i in used
             if not _plain(quantities[i].symbol) and not _TERM.search(quantities[i].symbol)
         ]
@@ -414,6 +414,11 @@ class Reader:
         """Head of a column: letters, unit."""
         node = letters(symbol)
         return (Symbol(node), *((f", {self.unit(unit_)}",) if unit_ else ()))
+
+
+def _of_magnitude(symbol: str) -> str:
+    """Letter whose magnitude stands between bars; a segment between two points is what it is."""
+    return symbol if "–" in symbol else symbol.strip("|")
 
 
 _SUM = re.compile(r"(?<!^)[+−](?![^{]*\})")

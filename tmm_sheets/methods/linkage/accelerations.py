@@ -39,7 +39,7 @@ CORIOLIS = Rule(
     lambda a, v: (Helper("line", a[0], v),), laid_off=True,
 )
 OF_CRANK = Rule("angular acceleration of the crank", lambda sense, e: sense * e, ("number", "number"), "number",
-                "{name} = {value}.", unit="rad/s2")
+                marked("In its sense of rotation {name} = {1} rad/s²."), unit="rad/s2")
 SAME = Rule("the same acceleration", lambda e: e, ("number",), "number", "{name} = {value}.", unit="rad/s2")
 RIGID = Rule(
     "acceleration on a turning link", lambda a, w, e, big_q, big_m: a + (1j * e - w * w) * (big_m - big_q),

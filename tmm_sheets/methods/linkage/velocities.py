@@ -50,8 +50,8 @@ ANGULAR_VELOCITY = Rule(
     "angular velocity", turning, ("point", "point", "point", "point"), "number",
     marked("Angular velocity |{name}| = |{2}{3}|·μ_V / {0}{1}, with its sign {name} = {value} rad/s."), unit="rad/s",
 )
-OF_CRANK = Rule("angular velocity of the crank", lambda sense, w: sense * w, ("number", "number"), "number", "{name} = {value}.",
-                unit="rad/s")
+OF_CRANK = Rule("angular velocity of the crank", lambda sense, w: sense * w, ("number", "number"), "number",
+                marked("In its sense of rotation {name} = {1} rad/s."), unit="rad/s")
 SAME = Rule("the same", lambda w: w, ("number",), "number", "{name} = {value}.", unit="rad/s")
 
 

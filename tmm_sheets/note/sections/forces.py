@@ -58,6 +58,7 @@ def scope(r: Reader) -> Scope:
             found.figures[name] = figure
     n = r.pictures.sheet_of("kinetics.crank") or r.pictures.sheet_of("kinetics.lever")
     found.fields["sheet"] = str(n) if n is not None else ""
+    found.fields["also"] = r.pictures.others(("kinetics.", "friction."), found.fields["sheet"])
     return found
 
 
@@ -92,7 +93,10 @@ def _loads(r: Reader, found: Scope) -> None:
         ]
         if couples:
             of = _inertia(r, name, f"link[{i}].inertia", couples[0])
-            row += [(r.number(of.value, "", of.step),), (r.of(acc.epsilon[name], None, ""),), (r.of(couples[0], None, ""),)]
+            couple, epsilon = r.of(couples[0], None, ""), r.of(acc.epsilon[name], None, "")
+            epsilon = r.number(m.shown_sense(name) * epsilon.value, "", epsilon.step, epsilon.position)
+            couple = r.number(abs(couple.value), "", couple.step, couple.position)
+            row += [(r.number(of.value, "", of.step),), (epsilon,), (couple,)]
             _couple_formula(r, found, name, of, couples[0])
         else:
             row += [("–",)] * 3
@@ -119,7 +123,7 @@ def _couple_formula(r: Reader, found: Scope, name: str, inertia: NoteQuantity, c
     epsilon = r.project.study.accelerations.epsilon[name]
     value = abs(float(value_at(epsilon, r.k)))
     if not is_zero(value, 1.0):
-        turned = NoteQuantity(f"ε_{{{name}}}", value, "rad/s2", r.id(epsilon), r.label)
+        turned = NoteQuantity(f"|ε_{{{name}}}|", value, "rad/s2", r.id(epsilon), r.label)
         found.formulas["couple"] = r.checked(f"M_{{и{name}}}", lambda x, y: x * y, [inertia, turned], couple)
 
 

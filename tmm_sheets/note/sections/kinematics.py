@@ -28,6 +28,7 @@ MOST_COLUMNS = 9
 def scope(r: Reader) -> Scope:
     """Positions, velocities at all of them, accelerations at one in words and at all in a table."""
     study, cycle = r.project.study, r.project.cycle
+    crank = study.mechanism.crank.link
     v, a = study.velocities, study.accelerations
     scales = {name: r.scales.get(name) for name in ("positions", "velocities", "accelerations")}
     fields: dict[str, Any] = {
@@ -35,6 +36,7 @@ def scope(r: Reader) -> Scope:
         "count": len(cycle.drawn),
         "positions": len(cycle.labels),
         "uneven": study.running is not None,
+        "of_crank": words(r.language)["phrases"]["of_crank"].format(link=crank) if study.mechanism.shown_sense(crank) < 0 else "",
         "position_steps": r.sentences(study.positions.plan),
         "velocity_steps": r.sentences(v.plan, _plain),
         "acceleration_steps": r.sentences(a.plan, _plain),
@@ -77,6 +79,7 @@ def scope(r: Reader) -> Scope:
         n = r.pictures.sheet_of(picture)
         if n is not None:
             found.fields[f"sheet_{name}"] = str(n)
+    found.fields["also"] = r.pictures.others(("kinematics.",), found.fields.get("sheet_positions", ""))
     found.fields["diagrams"] = [{"diagram": f, "nth": str(i)} for i, f in enumerate(_diagrams(r), 1)]
     return found
 
@@ -387,7 +390,7 @@ def _angular(r: Reader, plan: Plan, steps: dict[str, Step]) -> Iterator[dict[str
             NoteQuantity(r.length(b.name, a.name), float(length), "m", r.id(b), r.label),
         ]
         letter = "ε" if second else "ω"
-        said = r.checked(f"{letter}_{{{link}}}", lambda x, length: x / length, quantities, step)
+        said = r.checked(f"|{letter}_{{{link}}}|", lambda x, length: x / length, quantities, step)
         yield {"angular": said, "link": link, "positive": float(value) >= 0, "zero": is_zero(float(value), 1.0)}
 
 
@@ -409,7 +412,7 @@ def _over_positions(r: Reader, of: Any, key: str) -> tuple[tuple[Text, ...], ...
     for link, step in of.rates.items():
         if link != m.frame and np.ndim(step.value) and len(step.args) == 4 and step not in seen:
             seen.append(step)
-            columns.append((f"{letter}_{{{link}}}", np.real(step.value), step, unit))
+            columns.append((f"{letter}_{{{link}}}", m.shown_sense(link) * np.real(step.value), step, unit))
     columns = [c for c in (*columns, *under) if np.ndim(c[1]) and np.nanmax(np.abs(c[1])) > 0][:MOST_COLUMNS]
     if not columns:
         return ()

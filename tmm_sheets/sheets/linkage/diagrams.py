@@ -20,7 +20,7 @@ from tmm_sheets.sheets.components import cycle_graphs, graphs, upright_tables
 from tmm_sheets.sheets.components.cycle_graphs import Column, Curve, Quantity
 from tmm_sheets.sheets.components.graphs import Floats
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
-from tmm_sheets.sheets.linkage.link_marks import indexed, shapes
+from tmm_sheets.sheets.linkage.link_marks import indexed, shapes, tell_signs
 from tmm_sheets.sheets.view_sizes import leaf
 from tmm_sheets.words import both, marked, marked_n, tell, tr, tr_in
 
@@ -51,6 +51,8 @@ def motion(project: Project, canvas: Canvas, box: Box, options: Options) -> None
     """
     if columns := _moving(project, options):
         cycle_graphs.draw(project, canvas, box, tr("Kinematic diagrams"), columns)
+        if any(name in project.mechanism.links for name in options.get("of") or project.diagrams):
+            tell_signs(project, canvas, box)
 
 
 def _moving(project: Project, options: Options) -> list[Column]:
@@ -101,6 +103,8 @@ def motion_table(project: Project, canvas: Canvas, box: Box, options: Options) -
     beside = _of_bars(project, {symbol for symbol, _, _ in every}) if options.get("links") else []
     title = tr("Motion of the links") if beside else _of_outputs(len(every))
     every = [*beside, *every]
+    if any(symbol[0] == "ω" for symbol, _, _ in every):
+        tell_signs(project, canvas, box)
     left = canvas.title(box, title, spare=box.height - 11.0 - ROW * (len(_rows_of(project)) + 1 + bool(beside)))
     for digits in (4, 3):
         rows = _motion_rows(_rows_of(project), every, digits, two=bool(beside))

@@ -11,7 +11,7 @@ from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.tables import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number, size
-from tmm_sheets.sheets.linkage.link_marks import indexed
+from tmm_sheets.sheets.linkage.link_marks import indexed, tell_signs
 from tmm_sheets.words import tell, tr, tr_in
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ def values(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
         raise CannotBuild(tell("the tables of the given position need more room: {row:.1f} mm for a row").format(row=row),
                           tell("make the place of given_position.values higher in templates/sheets"))
     height = size_in(row)
+    tell_signs(project, canvas, box)
     y = box.y1
     for text, rows in tables:
         canvas.text(complex(box.centre.real, y - 5.5), text, 3.5, "centre")
@@ -79,7 +80,8 @@ def _links(project: Project) -> list[list[str]]:
     for name, link in m.links.items():
         inertia = next((load.vector for load in loads.get(name, ()) if load.role == "inertia"), None)
         couple = next((c for c in couples.get(name, ()) if link.inertia), None)
-        rows.append([name, _signed(omega.get(name), k, of_omega), _signed(epsilon.get(name), k, of_epsilon),
+        sense = m.shown_sense(name)
+        rows.append([name, _signed(omega.get(name), k, of_omega, sense), _signed(epsilon.get(name), k, of_epsilon, sense),
                      _size(inertia, k, forces.force_size(k)), _size(couple, k, forces.moment_size(k))])
     return rows
 
@@ -102,6 +104,6 @@ def _size(step: Step | None, k: int, kind: float) -> str:
     return "−" if step is None else number(float(abs(step.at(k))), kind=kind)
 
 
-def _signed(step: Step | None, k: int, kind: float) -> str:
-    """A number with its sign, counter-clockwise positive."""
-    return "−" if step is None else number(float(np.real(step.at(k))), kind=kind)
+def _signed(step: Step | None, k: int, kind: float, sense: float) -> str:
+    """A number with its sign."""
+    return "−" if step is None else number(sense * float(np.real(step.at(k))), kind=kind)

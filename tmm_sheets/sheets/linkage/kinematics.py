@@ -773,7 +773,8 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
     linear: dict[str, Any] = {}
     for seg, value in varying:
         linear.setdefault(seg.symbol.replace("\u0305", ""), value)
-    turning = [(f"ω_{link}", w.value) for link, w in vel.omega.items()
+    m = project.mechanism
+    turning = [(f"ω_{link}", m.shown_sense(link) * w.value) for link, w in vel.omega.items()
                if np.ndim(w.value) and link in vel.reference]
     speeds = [*linear.items(), *turning]
     stacked = bool(options.get("stacked"))
@@ -790,6 +791,8 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
         _table_over_positions(project, canvas, left, title, lengths, 1, lying=lying, folds=folds)
     if speeds:
         title = tr("Linear, m/s, and angular, rad/s, velocities") if turning else tr("Linear velocities, m/s")
+        if turning:
+            link_marks.tell_signs(project, canvas, box)
         _table_over_positions(project, canvas, right, title, speeds, 3, lying=lying, folds=folds)
 
 

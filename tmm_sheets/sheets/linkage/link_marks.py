@@ -12,13 +12,15 @@ from numpy.typing import NDArray
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.marks import Points
+from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.sheets.player import PlayerStage
+from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.groups.hints import Outline
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.methods.linkage.positions import Positions
+    from tmm_sheets.project import Project
 
 
 @dataclass(frozen=True)
@@ -134,6 +136,16 @@ def indexed(name: str) -> str:
     name = name.translate(_PLAIN)
     plain = name.rstrip("′″")
     return f"{plain[0]}_{{{plain[1:]}}}{name[len(plain):]}" if plain[1:] else name
+
+
+def tell_signs(project: Project, canvas: Canvas, box: Box) -> None:
+    """Ask once a sheet for the words by which the signs of angular velocities and accelerations are to be read."""
+    m = project.mechanism
+    said = tr("ω, ε: “+” is counter-clockwise")
+    if m.shown_sense(m.crank.link) < 0:
+        said = tr("{said}, of link {link} its sense of rotation").format(said=said, link=m.crank.link)
+    if all(note.said != said for note in canvas.notes):
+        canvas.note(box, said)
 
 
 def crank_pins(pos: Positions) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import is_zero
 from tmm_sheets.sheets.components import graphs, upright_tables
-from tmm_sheets.sheets.linkage.link_marks import indexed
+from tmm_sheets.sheets.linkage.link_marks import indexed, tell_signs
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -29,7 +29,10 @@ def accelerations_sizes(project: Project, canvas: Canvas, options: dict[str, Any
 
 def accelerations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Accelerations of the moving points, m/s^2, and angular ones of the links, s^-2, at all positions."""
-    _table(project, canvas, box, *_accelerations(project))
+    title, columns = _accelerations(project)
+    _table(project, canvas, box, title, columns)
+    if any(name.startswith("ε") for name, _ in columns):
+        tell_signs(project, canvas, box)
 
 
 def reactions_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
