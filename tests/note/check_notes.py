@@ -8,7 +8,7 @@ Content (``content_faults``), judged by the document tree alone: no field, cell 
 markup is left, every unit is one of the language, a number has the form of the word that goes with it, every formula gives what
 stands behind its sign of equality (``printed_formulas``), "where" stands right behind its formula, every letter of a formula is
 explained with its unit, every number of the task that a formula uses stands in the task, the conclusion has a result, and some
-section speaks of every sheet.
+section speaks of every sheet, no angular velocity has two signs.
 
 Where all of it comes to stand on pages is judged by ``check_pages``.
 """
@@ -322,8 +322,23 @@ def inconclusive(note: Note) -> Iterator[str]:
         yield f"{own}: no result"
     told = " ".join(said(text) for b in blocks[:at] for text in texts(b))
     for sheet in (b for b in blocks if isinstance(b, Sheet)):
-        if not re.search(rf"(?:лист|аркуш|sheet)\w*\s+(?:\d+\D{{1,5}})*{sheet.number}\b", told):
+        if not re.search(rf"(?:лист|аркуш|sheet)\w*\s+(?:\d+\D{{1,5}})*{sheet.number}\b", told, re.IGNORECASE):
             yield f"sheet {sheet.number} is spoken of nowhere"
+
+
+def two_signs(note: Note) -> Iterator[str]:
+    """Angular velocities and accelerations that have one sign in a table and the other in a formula, bars left out."""
+    found: dict[tuple[str, str], set[bool]] = {}
+    for block in note.blocks():
+        numbers: Iterable[NumberInText] = ()
+        if isinstance(block, Formula) and "|" not in lines(block):
+            numbers = (x for of in block.lines for x in of.numbers())
+        elif isinstance(block, NumberedTable):
+            numbers = (x for row in block.rows for cell in row for x in cell if isinstance(x, NumberInText))
+        for x in numbers:
+            if x.value and re.fullmatch(r"(velocities/ω|accelerations/ε)\w+", x.step):
+                found.setdefault((x.step, x.position), set()).add(x.value > 0)
+    yield from (f"{step} in position {position}" for (step, position), signs in found.items() if len(signs) > 1)
 
 
 _EXPRESSION = re.compile(
@@ -360,6 +375,7 @@ def content_faults(note: Note) -> Iterator[Fault]:
     yield from (Fault("unexplained", "", text) for text in unexplained(blocks))
     yield from (Fault("not in the task", "", text) for text in untold(note))
     yield from (Fault("numbering", "", text) for text in misnumbered(blocks))
+    yield from (Fault("sign", "", text) for text in two_signs(note))
     yield from (Fault("conclusion", "", text) for text in inconclusive(note))
     yield from (Fault("problem", "", text) for text in note.problems)
 

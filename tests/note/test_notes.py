@@ -24,7 +24,7 @@ def test_a_note_has_no_fault(name, language):
     assert check_notes.counted(note) > 30
 
 
-@pytest.mark.parametrize("project", [seldom("feeder"), "pump", seldom("conveyor"), "boom"])
+@pytest.mark.parametrize("project", [seldom("feeder"), "pump", seldom("conveyor"), "boom", "hoist", seldom("geneva")])
 def test_the_note_of_an_own_project_has_no_fault(project):
     assert list(check_notes.content_faults(composed(opened(f"tests/projects/{project}.toml")))) == []
 
@@ -73,6 +73,31 @@ def note():
 def test_a_planted_fault_is_found(note, kind, block):
     planted = replace(note, body=(*note.body, Heading(1, "", "Пример"), block))
     assert kind in {fault.kind for fault in check_notes.content_faults(planted)}
+
+
+def test_an_empty_conclusion_and_a_sheet_without_words_are_found(note):
+    at = next(i for i, b in enumerate(note.body) if isinstance(b, Heading) and b.text == "Заключение")
+    bare = replace(note, body=tuple(b for b in note.body[at:] if not (isinstance(b, Paragraph) and b.look == "item")))
+    assert list(check_notes.inconclusive(bare)) == ["Заключение: no result", "sheet 1 is spoken of nowhere"]
+
+
+def test_an_angular_velocity_of_two_signs_is_found(note):
+    """In a table as it is, in a formula as a magnitude: its letter needs bars there."""
+    def of(*begin):
+        line = FormulaRow((*begin, Sign("="), Figures("2,3", NumberInText("2,3", "velocities/ω3", 2.3, "1"))))
+        table = NumberedTable("1", "", (((Symbol(letters("ω_3")),),), ((NumberInText("−2,3", "velocities/ω3", -2.3, "1"),),)))
+        return list(check_notes.two_signs(replace(note, body=(*note.body, table, Formula((line,), "(9)")))))
+
+    assert of(Letters("ω")) == ["velocities/ω3 in position 1"]
+    assert of(Sign("|"), Letters("ω"), Sign("|")) == []
+
+
+def test_the_note_of_a_train_tells_the_speeds_of_all_links():
+    """Wheel 5 by Willis: 24(-400 + 320) = -84(n5 + 320)."""
+    note = composed(opened("tests/projects/hoist.toml"))
+    table = next(b for b in note.blocks() if isinstance(b, NumberedTable) and b.title == "Частоты вращения звеньев")
+    found = {check_notes.said(row[0]): row[2][0].value for row in table.rows[1:]}
+    assert found == pytest.approx({"1": 960, "2": -320, "3": -400, "4": -256, "5": -320 + 80 * 24 / 84, "H": -320})
 
 
 def test_a_letter_without_words_is_found(note):
