@@ -237,7 +237,7 @@ def test_a_wrong_formula_is_caught(monkeypatch, what):
 
 def test_lines_that_fall_together_are_caught(monkeypatch):
     """The arithmetic of before: what lines tell that fall together is rounding times a condition of 8e15."""
-    folding = [case for case in range(0, MANY, 3) if list(SCENES)[case % len(SCENES)] in FOLDING]
+    folding = [case for case in range(0, MANY, 2) if list(SCENES)[case % len(SCENES)] in FOLDING]
 
     def exceeded(*invariants):
         cases = [dict(run_case(11, case)[1]) for case in folding]

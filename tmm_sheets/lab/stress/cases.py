@@ -23,7 +23,6 @@ from tmm_sheets.lab.stress.invariants import (
     balancing,
     derivatives,
     geometry,
-    powers,
     rigidity,
     statics,
 )
@@ -61,7 +60,6 @@ BOUNDS = {
     "velocity through a change point in a row": (1e-9, "of the pin's, against formulas, whatever the condition"),
     "acceleration through a change point in a row": (1e-7, "of the pin's, against formulas, whatever the condition"),
     "standstill at the ends of the stroke": (2e-14, "of the pin's velocity"),
-    "one sense and the other": (2e-15, "of the fastest point, of the greatest acceleration"),
     "picture in a mirror": (2e-15, "of reach times condition; of the fastest point, the greatest acceleration, times its square"),
     "memory of a million positions, MB": (64.0, "plans drawn in chunks"),
 }
@@ -262,20 +260,6 @@ def _tangent(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
         yield name.replace("dead position", "change point"), residual / s.condition[:-1]
 
 
-def _senses(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
-    """Any speed, one sense and the other: the same accelerations, opposite velocities, the same forces."""
-    m, phi = chain(rng)
-    crank = replace(m.crank, speed=10.0 ** float(rng.choice((rng.uniform(-5, -1), rng.uniform(3, 5)))), acceleration=0.0)
-    m = loaded(rng, replace(m, crank=crank))
-    around, gravity = _around(rng, phi), _gravity(rng, m)
-    yield from _everything(m, around, gravity, make)
-    s, back = make(m, around), make(replace(m, crank=replace(crank, sense=-crank.sense)), around)
-    for name in s.v:
-        yield "one sense and the other", np.abs(s.v[name] + back.v[name]) / s.fastest
-        yield "one sense and the other", np.abs(s.a[name] - back.a[name]) / s.sharpest
-    yield "one sense and the other", _share(balancing(s, gravity) - balancing(back, gravity), powers(s, gravity) / crank.speed)
-
-
 def _mirrored(m: Mechanism) -> Mechanism:
     """The mechanism as its picture in a mirror is: x stays, y and every sense of turning change their sign."""
     guides = {name: replace(g, through=g.through if isinstance(g.through, str) else g.through.conjugate(), direction=-g.direction)
@@ -335,7 +319,6 @@ SCENES: dict[str, Scene] = {
     "no forces": _chain("", 0.0, 1.0),
     "end of the stroke": _stroke_ends,
     "rod just long enough": _tangent,
-    "any speed, either sense": _senses,
     "mirror": _mirror,
     "tiny crank": _chain("tiny crank"),
     "offset next to nothing": _chain("offset"),
