@@ -331,7 +331,7 @@ def two_signs(note: Note) -> Iterator[str]:
     found: dict[tuple[str, str], set[bool]] = {}
     for block in note.blocks():
         numbers: Iterable[NumberInText] = ()
-        if isinstance(block, Formula) and "|" not in lines(block):
+        if isinstance(block, Formula) and "abs(" not in lines(block):
             numbers = (x for of in block.lines for x in of.numbers())
         elif isinstance(block, NumberedTable):
             numbers = (x for row in block.rows for cell in row for x in cell if isinstance(x, NumberInText))

@@ -83,13 +83,13 @@ def test_an_empty_conclusion_and_a_sheet_without_words_are_found(note):
 
 def test_an_angular_velocity_of_two_signs_is_found(note):
     """In a table as it is, in a formula as a magnitude: its letter needs bars there."""
-    def of(*begin):
-        line = FormulaRow((*begin, Sign("="), Figures("2,3", NumberInText("2,3", "velocities/ω3", 2.3, "1"))))
+    def of(head):
+        line = FormulaRow((head, Sign("="), Figures("2,3", NumberInText("2,3", "velocities/ω3", 2.3, "1"))))
         table = NumberedTable("1", "", (((Symbol(letters("ω_3")),),), ((NumberInText("−2,3", "velocities/ω3", -2.3, "1"),),)))
         return list(check_notes.two_signs(replace(note, body=(*note.body, table, Formula((line,), "(9)")))))
 
-    assert of(Letters("ω")) == ["velocities/ω3 in position 1"]
-    assert of(Sign("|"), Letters("ω"), Sign("|")) == []
+    assert of(letters("ω_3")) == ["velocities/ω3 in position 1"]
+    assert of(letters("|ω_3|")) == []
 
 
 def test_the_note_of_a_train_tells_the_speeds_of_all_links():

@@ -162,6 +162,8 @@ def letters(markup: str) -> Node:
         return Words(markup)
     if markup.startswith("inv "):
         return FormulaRow((Words("inv "), letters(markup[4:])))
+    if markup.startswith("|") and markup.endswith("|"):
+        return Fenced("|", letters(markup[1:-1]), "|")
     found: list[Node] = []
     for m in _TOKEN.finditer(_INDEX.sub(r"_{\1}", markup.replace("²", "^2"))):
         below, above = (

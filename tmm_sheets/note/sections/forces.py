@@ -116,7 +116,8 @@ def _inertia(r: Reader, name: str, place: str, couple: Step) -> NoteQuantity:
     """Moment of inertia that a couple was computed with, given in that ``place``: of the crank with a flywheel that of both."""
     of = couple.args[0]
     step = r.id(of) if isinstance(of, Step) else place
-    return NoteQuantity(f"J_{{S{name}}}", abs(float(value_at(of, r.k))), "kg*m2", step)
+    letter = r.letters_of(of) if isinstance(of, Step) else f"J_{{S{name}}}"
+    return NoteQuantity(letter, abs(float(value_at(of, r.k))), "kg*m2", step)
 
 
 def _couple_formula(r: Reader, found: Scope, name: str, inertia: NoteQuantity, couple: Step) -> None:
