@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets import quoting, resources, spelling
+from tmm_sheets import files, quoting, resources, spelling
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.task import families, family_listing, headings
 from tmm_sheets.words import either, every, tell
@@ -48,7 +48,7 @@ def entries() -> tuple[ShippedProject, ...]:
 
 def _entries() -> Iterator[ShippedProject]:
     for name in shipped():
-        with suppress(OSError, ValueError, LookupError, TypeError, AttributeError):  # of a family that somebody has not finished
+        with suppress(BadInput, OSError, ValueError, LookupError, TypeError, AttributeError):  # a family is not finished yet
             table = _heading(name)
             yield ShippedProject(name, table["title"], table.get("variant", ""), tuple(table.get("sheets", ())))
 
@@ -91,9 +91,9 @@ def located(project: str) -> Path:
     Raises
     ------
     BadInput
-        when there is none, with the nearest shipped names and project files.
+        when there is none, with the nearest shipped names and project files; when this process is confined to another folder.
     """
-    path = Path(project)
+    path = files.named(project)
     if os.path.lexists(path):
         return path
     near = spelling.near(project, (*map(str, files_beside(path)), *shipped()), 3) or [e.name for e in found(project)[:3]]

@@ -13,7 +13,8 @@ import re
 import stat
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from pathlib import Path
+from contextvars import ContextVar
+from pathlib import Path, PureWindowsPath
 from threading import Lock
 from time import gmtime, time
 from typing import IO
@@ -29,11 +30,39 @@ LARGEST = 500_000_000
 """Bytes of the largest file that is read."""
 URL = re.compile(r"([a-z][a-z0-9+.-]+):/+")
 """How a place in an object store begins; one letter is a drive of Windows."""
+_root: ContextVar[Path | None] = ContextVar("root", default=None)
 _SPECIAL = (
     (stat.S_ISFIFO, marked("expected a file, this is a pipe")), (stat.S_ISSOCK, marked("expected a file, this is a socket")),
     (stat.S_ISCHR, marked("expected a file, this is a device")), (stat.S_ISBLK, marked("expected a file, this is a device")),
 )  # fmt: skip
 """What a name may stand for that is no file, and no folder either."""
+
+
+def confine(root: Path) -> None:
+    """From here on take names for files below a folder alone: data of strangers name them."""
+    _root.set(root.resolve())
+
+
+def confined() -> bool:
+    """Whether :func:`confine` was called."""
+    return _root.get() is not None
+
+
+def named(name: str, folder: Path = Path(), inside: Path | None = None) -> Path:
+    """Path of a file that data, or a command, call by a name seen from a folder; whether there is one is not looked at.
+
+    Raises
+    ------
+    BadInput
+        when it is not below ``inside``, or below the folder that this process is confined to: always with the same words.
+    """
+    root, path, sort = inside or _root.get(), folder / name, PureWindowsPath(name)
+    if root is None:
+        return path
+    with suppress(OSError, ValueError, RuntimeError):  # names that no file can have, links that lead round
+        if not sort.anchor and ".." not in sort.parts and path.resolve().is_relative_to(root.resolve()):
+            return path
+    raise BadInput(Problem(tell("expected the name of a file below the folder that names it"), name.replace("\0", " ")))
 
 
 def content(path: Path, most: int = LARGEST) -> bytes:

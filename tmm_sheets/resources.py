@@ -5,15 +5,15 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-_PACKAGE = Path(__file__).resolve().parent
+PACKAGE = Path(__file__).resolve().parent
 
 
 @cache
 def _folder(name: str) -> Path:
-    for folder in (_PACKAGE / f"_{name}", _PACKAGE.parent / name):
+    for folder in (PACKAGE / f"_{name}", PACKAGE.parent / name):
         if folder.is_dir():
             return folder
-    raise FileNotFoundError(f"data folder '{name}' is missing beside and inside {_PACKAGE}")
+    raise FileNotFoundError(f"data folder '{name}' is missing beside and inside {PACKAGE}")
 
 
 def template(path: str) -> Path:

@@ -1,8 +1,11 @@
 """The page in the browser: what each door gives, who is not let in, and hostile files, which end in a message."""
 
 import asyncio
+import ctypes
 import json
 import re
+import socket
+import sys
 from base64 import b64decode
 from io import BytesIO
 from pathlib import Path
@@ -65,6 +68,13 @@ def test_every_shipped_project_can_be_chosen(client):
     assert {task["machine"] for task in tasks if task["machine"]} == {f"transport/{m}" for m in
                                                                      ("diesel", "press", "compressor", "crusher")}
     assert len(tasks) == sum(len(manual["tasks"]) for manual in choice.manuals()) < 30
+
+
+def test_families_that_work_cannot_open_are_not_offered(client, monkeypatch):
+    monkeypatch.setenv("TMM_SHEETS_PATH", "docs/examples")
+    assert "department/pump@27" in catalogue.shipped()
+    assert "department/" not in client.get("tasks").text
+    assert "problem" in asked(client, "project", project="department/pump@27")[1]
 
 
 def test_a_cipher_of_ones_own(client):
@@ -197,6 +207,86 @@ def test_a_server_for_others_knows_its_own_names():
 def test_no_path_of_the_client_is_opened(client, project):
     for door in ("project", "scheme"):
         assert "problem" in asked(client, door, project=project)[1]
+
+
+@pytest.mark.parametrize("place", ["{}", "../../../../..{}", "C:{}", "\\\\host{}"])
+def test_a_group_names_no_files_of_the_server(client, tmp_path, place):
+    """One and the same refusal, whether there is such a file or not: in ``projects.toml``, and through a family of tasks."""
+    def refused(file):
+        """What is told of a student whose project is a file, and of one whose family has it for a scheme."""
+        name = json.dumps(place.format(file))
+        family = f'cipher = "ab"\nexample = "27"\n[machine.p]\nscheme = [{name}]\ntables = [{name}]\n'
+        files = {"g/projects.toml": f'A = {name}\nB = "group/p@27"\n', "g/A/a.csv": "x", "g/B/a.csv": "x", "g/family.toml": family}
+        _, told = asked(client, "group", [("file", (name, text.encode())) for name, text in files.items()], text=CAM)
+        return [s["files"][0]["refused"].replace(place.format(file), "FILE") for s in told["group"]["students"]]
+
+    secret = tmp_path / "secret.toml"
+    secret.write_text("password = 1234567\n", encoding="utf-8")
+    told = refused(str(secret))
+    assert told == refused(str(tmp_path / "nothing.toml"))
+    assert "below the folder" in told[0]
+    assert "password" not in str(told)
+
+
+def test_a_project_of_the_group_itself_is_taken(client):
+    table = b64decode(asked(client, "take", text=CAM, wanted="table")[1]["data"]).decode("utf-8-sig").splitlines()
+    filled = "\n".join(line + "10" * (n > 9) for n, line in enumerate(table) if not line.startswith("#"))
+    files = {"g/projects.toml": 'A = "A/own.toml"\nB = "lugansk/cam_flat"\n', "g/A/own.toml": CAM, "g/A/a.csv": filled,
+             "g/B/a.csv": filled}
+    _, told = asked(client, "group", [("file", (name, text.encode())) for name, text in files.items()], text=NEAR)
+    assert [s["project"] for s in told["group"]["students"]] == ["group/A/own.toml", "lugansk/cam_flat"]
+    assert [f["refused"] for s in told["group"]["students"] for f in s["files"] if f["file"] == "a.csv"] == [None, None]
+
+
+def test_a_measured_table_tells_of_no_file(client, tmp_path):
+    def told(file):
+        table = f"# project: {file}\nid;measured\ns;1\n".encode()
+        return asked(client, "compare", {"file": ("a.csv", table)}, text=CAM)[1]["problem"].replace(str(file), "FILE")
+
+    (tmp_path / "own.toml").touch()
+    assert told(tmp_path / "own.toml") == told(tmp_path / "no.toml")
+
+
+def test_two_files_of_one_name_are_refused(client):
+    for names in (("g/A", "g/A/x.csv"), ("g/A:1/x.csv", "g/A-1/x.csv")):
+        told = client.post("group", data={"text": CAM}, files=[("file", (name, b"0")) for name in names])
+        assert told.status_code == 422
+
+
+def test_a_project_may_be_called_as_the_settings_are(client):
+    assert asked(client, "take", text=CAM, name="tmm-sheets", wanted="svg")[1]["name"] == "sheet1.svg"
+
+
+def reaching(asked, say):
+    """Which of the doors of the system are open to a process that does work."""
+    def tried(act):
+        try:
+            act()
+        except OSError as e:
+            return type(e).__name__
+        return ""
+
+    listening = int(asked["port"])
+    return {"read": tried(Path(asked["file"]).read_bytes), "linked": tried(lambda: (Path("link").symlink_to(asked["file"]),
+                                                                                    Path("link").read_bytes())),
+            "list": tried(lambda: list(Path(asked["file"]).parent.iterdir())), "write": tried(Path(asked["file"] + "2").touch),
+            "own": tried(lambda: Path("own").write_bytes(b"")), "memory": tried(Path("/proc/self/environ").read_bytes),
+            "net": tried(socket.create_connection(("127.0.0.1", listening), 5).close) if listening else "",
+            "program": tried(Path(catalogue.__file__).read_bytes)}
+
+
+def test_the_system_gives_work_no_other_files(tmp_path):
+    """Where it can: Linux since 5.13."""
+    version = ctypes.CDLL(None).syscall(444, None, 0, 1) if sys.platform == "linux" else 0
+    if version < 1:
+        pytest.skip("this system has no Landlock")
+    (tmp_path / "secret").write_bytes(b"1")
+    told = work(reaching, Limits(20), file=str(tmp_path / "secret"), port="0")["done"]
+    assert told == {**dict.fromkeys(("read", "linked", "list", "write", "memory"), "PermissionError"),
+                    **dict.fromkeys(("own", "program", "net"), "")}
+    if version >= 4:
+        with socket.create_server(("127.0.0.1", 0)) as listening:
+            assert "denied" in work(reaching, Limits(20), file="x", port=str(listening.getsockname()[1]))["problem"]
 
 
 def test_names_of_the_client_are_names():

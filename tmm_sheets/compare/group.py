@@ -13,6 +13,7 @@ import re
 import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -216,8 +217,10 @@ def _projects(path: Path, works: Mapping[str, object]) -> dict[str, str]:
 
 def _seen_from(folder: Path, project: str) -> str:
     """A project as commands call it: the path of a file may be told as it is seen from the folder."""
-    path = folder / project
-    return str(path) if project.endswith(".toml") and not Path(project).is_absolute() and path.is_file() else project
+    with suppress(BadInput):
+        path = files.named(project, folder)
+        return str(path) if project.endswith(".toml") and not Path(project).is_absolute() and path.is_file() else project
+    return project
 
 
 def _within(folder: Path, path: Path) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from typing import TypedDict
 
 from tmm_sheets import catalogue, words
@@ -34,7 +35,7 @@ class Manual(TypedDict):
 
 def manuals() -> list[Manual]:
     """Manuals with their tasks."""
-    found: dict[str, dict[str, ListedTask]] = {manual: {} for manual in MANUALS}
+    found = defaultdict[str, dict[str, ListedTask]](dict, {manual: {} for manual in MANUALS})
     for entry in catalogue.entries():
         manual = entry.name.partition("/")[0] if "/" in entry.name else ""
         machine, cipher, _ = entry.name.partition(CIPHER)
@@ -42,4 +43,4 @@ def manuals() -> list[Manual]:
         task = found[manual].setdefault(f"{entry.name.partition(':')[0]} {title}", {
             "title": title, "machine": machine if cipher else "", "scheme": entry.name, "variants": []})  # fmt: skip
         task["variants"].append({"name": entry.name, "said": words.of_file(entry.variant, tell)})
-    return [{"title": tell(MANUALS[manual]), "tasks": list(tasks.values())} for manual, tasks in found.items()]
+    return [{"title": tell(MANUALS.get(manual, manual)), "tasks": list(tasks.values())} for manual, tasks in found.items()]

@@ -20,6 +20,7 @@ from starlette.routing import Route
 
 from tmm_sheets import words
 from tmm_sheets.compare.group import COMPARED
+from tmm_sheets.files import confine
 from tmm_sheets.output import batch
 from tmm_sheets.page import choice, compared, jobs, served_words
 from tmm_sheets.page.guard import Guard
@@ -62,6 +63,7 @@ def app(token: str, host: str, shown: Shown, processes: int | None = None) -> Gu
 
     async def tasks(request: Request) -> Response:
         _languages(request.query_params).speak_here()
+        confine(Path())  # in what comes of this request: the work can open no other tasks
         return JSONResponse(choice.manuals())
 
     async def keys_of(request: Request) -> Response:
@@ -135,7 +137,11 @@ async def _asked(request: Request) -> tuple[dict[str, str], TemporaryDirectory[s
                     with path.open("wb") as file:
                         while piece := await value.read(1 << 20):
                             file.write(piece)
-                    files[_place(str(value.filename or ""), request.path_params.get("job") == "group")] = path
+                    place = _place(str(value.filename or ""), request.path_params.get("job") == "group")
+                    here = f"{place}/".casefold()
+                    if any(here.startswith(other) or other.startswith(here) for other in (f"{name}/".casefold() for name in files)):
+                        raise HTTPException(422, tell("two files of one name: {name}").format(name=place))
+                    files[place] = path
                 else:
                     asked[key] = value
         return asked, folder, files

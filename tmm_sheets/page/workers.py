@@ -20,8 +20,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Literal, get_args
 
-from tmm_sheets import words
+from tmm_sheets import files, words
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
+from tmm_sheets.page import confinement
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -89,7 +90,7 @@ def _carry_out(end: Connection, job: Job, asked: Mapping[str, str], folder: str,
             end.send_bytes(json.dumps(message, ensure_ascii=False, allow_nan=False).encode())
 
     try:
-        os.chdir(folder)  # which is gone where whoever asked has gone away
+        confinement.confine(Path(folder))  # which is gone where whoever asked has gone away
         say(done=job(asked, say))
     except BadInput as e:
         say(problem=str(e), mistakes=[told(p) for p in e.problems])
@@ -171,11 +172,11 @@ class Workers:
         self.free = {lane: asyncio.Semaphore(many) for lane in get_args(Lane)}
 
     async def messages(self, job: Job, asked: Mapping[str, str], languages: Languages, limits: Limits,
-                       files: Mapping[str, Path] | None = None) -> AsyncIterator[Message]:
+                       brought: Mapping[str, Path] | None = None) -> AsyncIterator[Message]:
         """What a piece of work says, the last with ``done`` or ``problem``; who stops listening ends it.
 
-        ``files`` are put into its folder by their names there, which are no client's. Who listens slowly to what comes last keeps
-        nobody waiting.
+        Files that were ``brought`` are put into its folder by their names there, which are no client's. Who listens slowly to what
+        comes last keeps nobody waiting.
         """
         last: Message = {}
         free = self.free[limits.lane]
@@ -183,8 +184,8 @@ class Workers:
             yield {"say": tell("waiting for its turn ...")}
         async with free:
             with TemporaryDirectory(prefix="tmm-sheets-page-", ignore_cleanup_errors=True) as folder:
-                for name, path in (files or {}).items():
-                    place = Path(folder) / name
+                for name, path in (brought or {}).items():
+                    place = files.named(name, Path(folder), Path(folder))
                     place.parent.mkdir(parents=True, exist_ok=True)
                     path.replace(place)
                 process, connection = await asyncio.to_thread(_begin, job, asked, folder, languages, limits)

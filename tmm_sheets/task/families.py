@@ -2,7 +2,8 @@
 
 A family answers for all project names ``FOLDER/...``. Those of the program are folders of ``variants/``; others are in the working
 folder, in ``families`` of the user's folder of configuration, in a folder that TMM_SHEETS_PATH names, or where a package says by an
-entry point of the group ``tmm_sheets.families``; they are looked for in this order.
+entry point of the group ``tmm_sheets.families``; they are looked for in this order. A process that is confined to the data of
+strangers knows the program's and those of packages.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tmm_sheets import resources
+from tmm_sheets import files, resources
 from tmm_sheets.task import family_listing, user_folder
 
 if TYPE_CHECKING:
@@ -76,6 +77,8 @@ def _folder(name: str) -> Path | None:
 
 def _places() -> Iterator[Path]:
     """Folders that may have families in them."""
+    if files.confined():
+        return
     yield Path()
     user = user_folder.folder()
     if user is not None:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field, ValidationError
 
-from tmm_sheets import spelling
+from tmm_sheets import files, spelling
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.task import family_listing, family_tables, formulas, toml_file
 from tmm_sheets.task.cipher_form import Cipher, CipherForm, CipherTable, of_signs
@@ -229,7 +229,7 @@ class FolderFamily:
         """The same in pieces, each with the file it comes from: a line of a scheme makes a line of it."""
         called, cipher = self._parts(name)
         machine = self.rules.machine[called]
-        rows = {row.key: row for table in machine.tables for row in family_tables.read(self.folder / table, self.form.letters)}
+        rows = {row.key: row for table in machine.tables for row in family_tables.read(self._file(table), self.form.letters)}
         doubts = tuple(self._doubts(machine, rows, cipher, corrected))
         doubtful = {doubt.key: doubt for doubt in doubts}
         values = {key: self._choice(called, row, cipher, doubtful.get(key)) for key, row in rows.items()}
@@ -303,8 +303,11 @@ class FolderFamily:
             why = tell("{formula} cannot be computed: {why}").format(formula=formula, why=e)
             raise BadInput(Problem(why, str(self.folder / FILE), None, field)) from None
 
+    def _file(self, name: str) -> Path:
+        return files.named(name, self.folder, self.folder)
+
     def _filled(self, scheme: str, values: Mapping[str, Choice]) -> str:
-        path = self.folder / scheme
+        path = self._file(scheme)
         try:
             text, _ = toml_file.text_of(path, LARGEST)
         except FileNotFoundError:

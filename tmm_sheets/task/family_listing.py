@@ -8,6 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from tmm_sheets import files
 from tmm_sheets.task import headings
 
 
@@ -25,7 +26,7 @@ def heading(folder: Path, project: str) -> dict[str, Any]:
     called, _, cipher = project.partition("/")[2].partition(rules.get("separator", "@"))
     machine = rules["machine"][called]
     about = {"name": project, "machine": called, "cipher": cipher, "title": machine.get("title") or called}
-    return headings.of((folder / machine["scheme"][0]).read_text(encoding="utf-8-sig"), about)
+    return headings.of(files.named(machine["scheme"][0], folder, folder).read_text(encoding="utf-8-sig"), about)
 
 
 def _rules(folder: Path) -> dict[str, Any]:

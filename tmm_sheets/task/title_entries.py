@@ -66,7 +66,7 @@ class Names:
         BadInput
             when the settings beside the project cannot be read.
         """
-        block, beside = variant.title_block, of_file(beside_of(variant))
+        block, beside = variant.title_block, _beside(variant)
         found = {}
         for name in FIELDS:
             written = TitleEntry(getattr(block, name), _place(variant, name))
@@ -84,7 +84,7 @@ class Names:
         BadInput
             when the settings beside the project cannot be read.
         """
-        written, beside = variant.paper, of_file(beside_of(variant))
+        written, beside = variant.paper, _beside(variant)
         told = {name: self.options.get(name) or ((entry := beside.get(name) or self.user.get(name)) and entry.text)
                 for name in PAPER if name in self.options or name not in written.model_fields_set}
         return written.model_copy(update={name: text for name, text in told.items() if text})
@@ -114,6 +114,12 @@ def _place(variant: Variant, name: str) -> str:
 def beside_of(variant: Variant) -> Path:
     """Where the settings beside a project are, if there are any."""
     return Path(FILE) if variant.shipped else Path(variant.file).parent / FILE
+
+
+def _beside(variant: Variant) -> dict[str, TitleEntry]:
+    """What the settings beside a project say; a project file may have their name itself."""
+    path = beside_of(variant)
+    return {} if path == Path(variant.file) else of_file(path)
 
 
 def user_file() -> Path | None:

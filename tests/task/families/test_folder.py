@@ -115,6 +115,8 @@ def test_a_family_that_is_not_finished_costs_no_other(folder, capsys):
     ("family.toml", '"0.35 * l_AB"', '"0.35 * l_BA"', r"derived\.l_AS2: 0\.35 \* l_BA cannot be computed: l_BA"),
     ("family.toml", '"table.csv"]\n\n[machine.pump', '"tables.csv"]\n\n[machine.pump', r"tables\.csv: no such file"),
     ("family.toml", 'scheme = ["head.toml", "pump.toml"]', 'scheme = ["pump.toml", "dead.toml"]', r"dead\.toml: no such file"),
+    ("family.toml", 'scheme = ["head.toml", "pump.toml"]', 'scheme = ["../x.toml"]', r"x\.toml: expected .* below the folder"),
+    ("family.toml", '"table.csv"]\n\n[machine.pump', '"/etc/passwd"]\n\n[machine.pump', r"passwd: expected .* below the folder"),
     ("family.toml", "[machine.pump]", "[machine.pump]\nsheme = 1", r"family\.toml:\d+: machine\.pump\.sheme: unknown key"),
     ("family.toml", "tables", "tables = ", "not valid TOML"), ("table.csv", None, "", "the table is empty"),
     ("pump.toml", 'inner = "B"', 'inner = "B$"', r"pump\.toml:12: a \$ before no name"),

@@ -12,6 +12,7 @@ import csv
 import io
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import groupby
 from math import isfinite
@@ -213,7 +214,9 @@ def _check_project(text: str, name: str, project: Project) -> None:
                 heading=f"# {tell(OF_PROJECT).format(project=called)}")
             from tmm_sheets import catalogue
 
-            known = catalogue.is_shipped(other) or Path(other).is_file()
+            known = catalogue.is_shipped(other)
+            with suppress(BadInput):
+                known = known or files.named(other).is_file()
             hints = ([quoting.command("compare", other, "--measured", name)] if known else []) + [own]
             raise BadInput(Problem(said, name, number, hint="\n    ".join(hints)))
 

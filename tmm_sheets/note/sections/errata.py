@@ -33,11 +33,9 @@ def _known() -> dict[str, list[dict[str, str]]]:
 def of(project: Project) -> list[dict[str, str]]:
     """Places of the manual that are known to be wrong, of the project worked out there; none for one that was changed."""
     name = project.variant.project.name
+    found = [*_known().get(name, []), *(e for part, names in SHARED.items() if name in names for e in _known()[part])]
     shipped = variants() / f"{name}.toml"
-    if not shipped.is_file() or shipped.read_text(encoding="utf-8") != project.variant.text:
-        return []
-    shared = [e for part, names in SHARED.items() if name in names for e in _known()[part]]
-    return [*_known().get(name, []), *shared]
+    return found if found and shipped.is_file() and shipped.read_text(encoding="utf-8") == project.variant.text else []
 
 
 def scope(r: Reader) -> Scope:
