@@ -20,21 +20,26 @@ function dim() {
   $("hand").replaceChildren();
 }
 
-function ask(id, label = asked.label) {
+function ask(id, when = asked.label) {
   if (!stepOf(id)) return;
   pause();
+  const moving = !$("stage").hidden;
+  if (moving) when = machine.phi; else showAsked(id, when);
+  $("panel").replaceChildren(node("button", { type: "button", class: "chip", onclick: () => (moving ? openTab("turn") : unask()) }, say("back")), ...tellStep(id, when), tellWhy(id, when));
+  $("panel").scrollTop = 0;
+}
+
+function showAsked(id, label) {
   Object.assign(asked, { id, label });
   const shows = (sheet) => sheet.marks.some((mark) => mark.step === id);
   const other = !shows(leaf.sheet) && record.sheets.find(shows);
-  if (other && !$("paper").hidden) openSheet(other.sheet, true);
+  if (other) openSheet(other.sheet, true);
   $("sheet").classList.remove("film");
   $("sheet").classList.add("asked");
   $("hand").replaceChildren();
   light(id, label);
   const own = leaf.sheet.marks.filter((m) => m.step === id && (!m.position || !label || m.position === label));
   if (other && own.length) fitBox(boundsOf(own), 60);
-  $("panel").replaceChildren(node("button", { type: "button", class: "chip", onclick: unask }, say("back")), ...tellStep(id, label), tellWhy(id, label));
-  $("panel").scrollTop = 0;
 }
 
 function unask() {

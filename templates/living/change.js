@@ -180,7 +180,7 @@ function gapOfCourses() {
 // By how much two arcs, or an arc and a line, miss each other, m.
 function gapOf(id, values) {
   const s = stepOf(id), own = (arg) => {
-    if (arg.step !== undefined) { const r = record.motion.all.results[arg.step]; return r ? (r[1] === 2 ? [values[r[0]], values[r[0] + 1]] : values[r[0]]) : stepOf(arg.step).value; }
+    if (arg.step !== undefined) { const place = record.motion.all.results[arg.step]; return place ? taken(place, values) : stepOf(arg.step).value; }
     return machine.given[arg.name] ?? arg.given;
   };
   const args = s.args.map(own);

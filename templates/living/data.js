@@ -32,11 +32,14 @@ function at(told, label) {
   return told[label] ?? told[""] ?? Object.values(told)[0];
 }
 
-function valueAt(id, label) {
-  const step = stepOf(id);
-  if (step.over !== "positions") return step.value;
-  const k = Math.max(planOf(step.plan).positions.indexOf(label), 0);
-  return step.value?.[k];
+// A step's value in a numbered position, by its label, or at a crank angle of the linkage as it is now, rad.
+function valueOf(id, when) {
+  const one = stepOf(id);
+  if (typeof when === "number") {
+    const place = record.motion.all.results[id];
+    return place ? taken(place, parts(when)) : one.over === "none" && isMade(machine.given) ? one.value : undefined;
+  }
+  return one.over === "positions" ? one.value?.[Math.max(planOf(one.plan).positions.indexOf(when), 0)] : one.value;
 }
 
 const decimal = () => (record.lang === "en" ? "." : ",");

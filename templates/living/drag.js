@@ -24,7 +24,7 @@ function makeGrip() {
 }
 
 function pinAngle() {
-  const values = valuesAt(machine.phi), d = sub(values[record.motion.crank[1]], values[record.motion.crank[0]]);
+  const [pivot, pin] = record.motion.crank.map((id) => valueOf(id, machine.phi)), d = sub(pin, pivot);
   return Math.atan2(d[1], d[0]);
 }
 

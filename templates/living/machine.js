@@ -63,16 +63,19 @@ function settled(phi, now) {
   return run(all, phi, now, pairs.map(() => NaN));
 }
 
-// Parts of all results at a crank angle, rad, counter-clockwise from the x axis.
-const parts = (phi) => (record.motion.searches.friction.length ? settled(phi, found()) : run(record.motion.all, phi, found()));
-
-function valuesAt(phi) {
-  const values = parts(phi), named = {};
-  for (const [id, [place, count]] of Object.entries(record.motion.all.results)) {
-    named[id] = count === 2 ? [values[place], values[place + 1]] : values[place];
-  }
-  return named;
+// Parts of all results at a crank angle, rad, counter-clockwise from the x axis; made once for all who ask at one angle.
+function parts(phi) {
+  const { given, now } = machine;
+  if (now?.phi === phi && now.given === given) return now.values;
+  const values = record.motion.searches.friction.length ? settled(phi, found()) : run(record.motion.all, phi, found());
+  machine.now = { phi, given, values };
+  return values;
 }
+
+// A result by its place among the parts.
+const taken = ([place, count], values) => (count === 2 ? [values[place], values[place + 1]] : values[place]);
+
+const valuesAt = (phi) => Object.fromEntries(Object.entries(record.motion.all.results).map(([id, place]) => [id, taken(place, parts(phi))]));
 
 function turn(phi) {
   machine.phi = phi;

@@ -30,8 +30,7 @@ function coursesOf(given) {
 function argumentOf(arg, values, given, of = record.motion.watched) {
   if (arg.given !== undefined) return given[arg.given];
   if (arg.step === undefined) return arg.value;
-  const [place, count] = of.results[arg.step];
-  return count === 2 ? [values[place], values[place + 1]] : values[place];
+  return taken(of.results[arg.step], values);
 }
 
 // World angle of the crank where the working stroke of the output begins, or of the stroke that K asks for, and its width.

@@ -91,13 +91,18 @@ function markAt(p, reach) {
   return best;
 }
 
-function boundsOf(marks) {
+const pointsOf = (g) => (g.text ? [g.text.at] : g.circle || g.arc ? [(g.circle ?? g.arc).centre] : g.line ?? g.polyline ?? g.fill);
+
+const boundsOf = (marks) => extentOf(marks.flatMap(({ geometry: g }) => {
+  const pad = (g.circle ?? g.arc)?.radius ?? g.text?.height ?? 0;
+  return pointsOf(g).flatMap(([x, y]) => [[x - pad, y - pad], [x + pad, y + pad]]);
+}));
+
+function extentOf(points) {
   const box = [Infinity, Infinity, -Infinity, -Infinity];
-  for (const { geometry: g } of marks) {
-    const round = g.circle ?? g.arc, pad = round ? round.radius : g.text ? g.text.height : 0;
-    for (const [x, y] of round ? [round.centre] : g.text ? [g.text.at] : g.line ?? g.polyline ?? g.fill) {
-      box[0] = Math.min(box[0], x - pad); box[1] = Math.min(box[1], y - pad);
-      box[2] = Math.max(box[2], x + pad); box[3] = Math.max(box[3], y + pad);
+  for (const [x, y] of points) {
+    if (Number.isFinite(x) && Number.isFinite(y)) {
+      box[0] = Math.min(box[0], x); box[1] = Math.min(box[1], y); box[2] = Math.max(box[2], x); box[3] = Math.max(box[3], y);
     }
   }
   return box;

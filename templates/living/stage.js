@@ -17,7 +17,7 @@ function liveViews() {
 
 // Anchors of a mark and its direction on the sheet, mm, y upwards; distances are so many times smaller than there.
 function placer(values, shrunk = 1) {
-  const number = (id) => { const [place, count] = record.motion.all.results[id]; return count === 2 ? [values[place], values[place + 1]] : values[place]; };
+  const number = (id) => taken(record.motion.all.results[id], values);
   const turnedBy = (mark, [x, y]) => {
     const w = [x / mark.mu[0] / shrunk, (mark.mirror ? -1 : 1) * y / mark.mu[1] / shrunk];
     return mark.turn ? mul(cis(mark.turn), w) : w;
@@ -29,15 +29,15 @@ function placer(values, shrunk = 1) {
   };
   const known = new Map(); // many marks hang on one point
   const point = (mark, id) => {
-    const key = `${mark.group} ${id}`;
-    if (!known.has(key)) known.set(key, add(mark.origin, turnedBy(mark, number(id))));
-    return known.get(key);
+    if (!known.has(id)) known.set(id, add(mark.origin, turnedBy(mark, number(id))));
+    return known.get(id);
   };
   const place = (mark, id, other, share) => {
     const a = point(mark, id);
     return other ? step(a, share, sub(point(mark, other), a)) : a;
   };
-  const at = (mark, [id, x, y, other, share, dx = 0, dy = 0], u) => add(add(place(mark, id, other, share), mul([x, y], u)), [dx, dy]);
+  const at = (mark, [id, x, y, other, share, dx = 0, dy = 0], u) => (other === true // a length of the mechanism
+    ? add(point(mark, id), mul([x / shrunk, y / shrunk], u)) : add(add(place(mark, id, other, share), mul([x, y], u)), [dx, dy]));
   return { direction, point, at };
 }
 
@@ -50,10 +50,7 @@ function geometryOf(mark, placed) {
   return { [mark.kind]: points, closed: mark.closed };
 }
 
-const defined = (g) => {
-  const points = g.text ? [g.text.at] : g.circle ? [g.circle.centre] : g.arc ? [g.arc.centre] : g.line ?? g.polyline ?? g.fill;
-  return points.every((z) => Number.isFinite(z[0]) && Number.isFinite(z[1]));
-};
+const defined = (g) => pointsOf(g).every((z) => Number.isFinite(z[0]) && Number.isFinite(z[1]));
 
 function makeCard(live) {
   const svg = svgNode("svg", { role: "img", "aria-label": live.view }), marks = live.marks.filter((m) => m.kind !== "path"), paths = live.marks.filter((m) => m.kind === "path");
@@ -61,23 +58,13 @@ function makeCard(live) {
   // What is said of the position that it is drawn for on the sheet does not hold in motion.
   const position = say("position {label}", { label: live.position }), from = live.view.toLowerCase().indexOf(position.toLowerCase());
   const name = from < 0 ? live.view : live.view.slice(0, from).replace(/[\s,(]+$/, "");
-  const frames = [];
-  for (const mark of live.marks) { // marks of one frame are told by its number
-    const key = `${mark.origin} ${mark.mu} ${mark.turn} ${mark.mirror}`;
-    if (!frames.includes(key)) frames.push(key);
-    mark.group = frames.indexOf(key);
-  }
   const caption = node("figcaption", {}, name), card = { live, name, svg, marks, paths, caption, hidden: marks.map(() => false), drawn: marks.map(() => ""), seen: false, figure: node("figure", { class: "card" }, caption, svg) };
-  const seen = new Set();
-  card.ends = marks.filter((m) => m.kind !== "text" && m.role !== "text").flatMap((m) => m.at.map(([id]) => [m, id])).filter(([m, id]) => {
-    const key = `${id} ${m.origin} ${m.mu}`;
-    return !seen.has(key) && seen.add(key);
-  });
+  card.ends = [...new Map(marks.filter((m) => m.kind !== "text" && m.role !== "text").flatMap((m) => m.at.map(([id]) => [id, m])))].map(([id, m]) => [m, id]);
   card.elements = marks.map((mark) => {
     const element = svgNode(mark.kind === "text" ? "text" : "path", { class: mark.kind === "fill" ? "mark fill" : "mark" });
     if (mark.kind === "text") { element.setAttribute("font-size", mark.height / CAPITAL); element.textContent = mark.string.replace(`(${live.position})`, ""); }
     else if (mark.kind !== "fill") { const s = record.styles[mark.style]; element.setAttribute("stroke-width", s.width); if (s.pattern.length) element.setAttribute("stroke-dasharray", s.pattern.join(" ")); }
-    element.addEventListener("click", () => { const id = live.sheet.marks.find((m) => m.id === mark.id)?.step; if (id) tellAsked(id); });
+    element.addEventListener("click", () => { const id = live.sheet.marks.find((m) => m.id === mark.id)?.step; if (id) ask(id); });
     svg.querySelector(".marks").append(element);
     return element;
   });
@@ -97,12 +84,6 @@ function tellScale(card) {
   if (card.told !== text) card.caption.textContent = card.told = text;
 }
 
-function tellAsked(id) {
-  const told = tellStep(id, ""), values = valuesAt(machine.phi);
-  told[0].innerHTML = `${titled(id)} <small>${plain(shown(values[id] ?? valueAt(id, ""), stepOf(id).unit))}</small>`;
-  $("panel").replaceChildren(node("button", { type: "button", class: "chip", onclick: () => openTab("turn") }, say("back")), ...told, tellWhy(id, ""));
-}
-
 // Angles of the whole turn, world, rad.
 const round = (many) => Array.from({ length: many }, (_, i) => record.motion.start + record.motion.sense * record.motion.period * i / many);
 
@@ -119,16 +100,6 @@ function shrinking(card, all) {
 
 // A polygon or a group of links keeps to the middle of its card, a plan with a pole keeps its pole.
 const isCentred = (card) => card.live.plan !== "positions" && planOf(card.live.plan).pole === undefined;
-
-function extentOf(points) {
-  const box = [Infinity, Infinity, -Infinity, -Infinity];
-  for (const [x, y] of points) {
-    if (Number.isFinite(x) && Number.isFinite(y)) {
-      box[0] = Math.min(box[0], x); box[1] = Math.min(box[1], y); box[2] = Math.max(box[2], x); box[3] = Math.max(box[3], y);
-    }
-  }
-  return box;
-}
 
 // What all views are in the course of a turn; taken anew when a given number is another, for the cards that are seen.
 function takeTurn() {
@@ -150,7 +121,7 @@ function chooseLetters(card) {
   const all = [...letterings.values()].map((signs) => ({ signs, boxes: moments.map((placed) => extentOf(signs.flatMap((n) => {
     const mark = card.marks[n], g = geometryOf(mark, placed);
     if (g.text) { const [x, y] = g.text.at; return [[x, y], [x + 0.55 * mark.height * mark.string.length, y + mark.height]]; }
-    return g.line ?? g.polyline ?? g.fill ?? [];
+    return pointsOf(g);
   }))) }));
   const apart = (a, b) => a[0] > b[2] || b[0] > a[2] || a[1] > b[3] || b[1] > a[3], kept = [];
   card.left = new Set();
@@ -169,17 +140,8 @@ function frameCard(card) {
   card.centred = isCentred(card);
   card.shrunk = (card.centred ? Math.max(...stage.turn.map((one) => shrinking(card, [one]))) : shrinking(card, stage.turn)) || 1;
   chooseLetters(card);
-  const seen = [], moving = card.marks.filter((mark) => mark.role !== "construction" && mark.role !== "text");
-  for (const values of card.centred ? [] : stage.turn) {
-    const placed = placer(values, card.shrunk);
-    for (const mark of moving) {
-      const g = geometryOf(mark, placed), circle = g.circle ?? g.arc;
-      if (!defined(g)) continue;
-      if (!circle) seen.push(...(g.line ?? g.polyline ?? g.fill));
-      else for (const s of [-1, 1]) seen.push([circle.centre[0] + s * circle.radius, circle.centre[1] + s * circle.radius]);
-    }
-  }
-  const [x0, y0, x1, y1] = extentOf(seen);
+  const moving = card.marks.filter((mark) => mark.role !== "construction" && mark.role !== "text"), placers = (card.centred ? [] : stage.turn).map((values) => placer(values, card.shrunk));
+  const [x0, y0, x1, y1] = boundsOf(placers.flatMap((placed) => moving.map((mark) => ({ geometry: geometryOf(mark, placed) }))).filter(({ geometry }) => defined(geometry)));
   if (x0 < x1) card.svg.setAttribute("viewBox", `${x0 - 11} ${-y1 - 9} ${x1 - x0 + 22} ${y1 - y0 + 18}`);
   card.svg.querySelector(".paths").innerHTML = card.paths.map((path) => {
     const points = stage.fine.map((one) => placer(one, card.shrunk).point(path, path.of)), there = points.filter((z) => Number.isFinite(z[0]));
@@ -216,7 +178,8 @@ function drawStage() {
   placeGrip(first);
   drawVanes(first, values);
   $("angle").value = mod(record.motion.sense * (machine.phi - record.motion.start), record.motion.period) * 180 / Math.PI;
-  $("degrees").textContent = `φ = ${mod(machine.phi * 180 / Math.PI, 360).toFixed(1).replace(".", decimal())}°`;
+  $("degrees").textContent = momentOf(machine.phi);
+  tellNow();
 }
 
 const VANE = 0.45; // length of a velocity on the mechanism beside that in its plan
@@ -228,12 +191,12 @@ function drawVanes(placed, values) {
   stage.vaned = stage.vanes;
   const scaled = stage.cards.find((card) => card.live.plan === "velocities");
   if (!stage.vanes || !scaled) return;
-  const mark = first.marks[0], mu = scaled.marks[0].mu[0], result = (id) => { const [p] = record.motion.all.results[id]; return [values[p], values[p + 1]]; };
+  const mark = first.marks[0], mu = scaled.marks[0].mu[0];
   for (const id of Object.keys(record.motion.all.results)) {
     if (!id.startsWith("velocities/") || record.motion.all.results[id][1] !== 2) continue;
     const point = `positions/${id.slice(11, 12).toUpperCase()}${id.slice(12)}`;
     if (!(point in record.motion.all.results) || !["point", "vector"].includes(stepOf(id).kind)) continue;
-    const a = placed.point(mark, point), v = scale(VANE / mu / scaled.shrunk, result(id)), long = size(v), b = add(a, v), u = straight(v);
+    const a = placed.point(mark, point), v = scale(VANE / mu / scaled.shrunk, taken(record.motion.all.results[id], values)), long = size(v), b = add(a, v), u = straight(v);
     if (!(long > 3)) continue;
     over.append(svgNode("path", { class: "vane", d: polyPath([a, b], 0) }),
       svgNode("path", { class: "vanehead", d: polyPath([b, add(b, mul(u, [-4, 1])), add(b, mul(u, [-4, -1]))], 0, true) }));

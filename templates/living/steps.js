@@ -2,49 +2,65 @@
 
 const titled = (id) => { const s = stepOf(id); return lettered(s.symbol ?? s.name); };
 
-function chip(id, label) {
-  const s = stepOf(id);
-  return node("button", { type: "button", class: "chip", onclick: () => ask(id, label),
-    html: `${titled(id)} <small>${plain(shown(valueAt(id, label), s.unit))}</small>` });
+const momentOf = (when) => (typeof when === "number" ? `φ = ${mod(when * 180 / Math.PI, 360).toFixed(1).replace(".", decimal())}°` : when && say("position {label}", { label: when }));
+const valued = (id, when) => `${titled(id)} <small data-step="${plain(id)}">${plain(shown(valueOf(id, when), stepOf(id).unit))}</small>`;
+const chip = (id, when) => node("button", { type: "button", class: "chip", onclick: () => ask(id, when), html: valued(id, when) });
+
+// What is told of a step in a position; in motion what is told of all alike, as long as the numbers are the project's.
+function toldIn(told, when) {
+  if (typeof when !== "number") return at(told, when) ?? "";
+  const all = new Set(Object.values(told ?? {}));
+  return all.size === 1 && isMade(machine.given) ? [...all][0] : "";
 }
 
-function argumentChip(arg, label) {
-  if (arg.step !== undefined) return chip(arg.step, label);
-  const value = arg.over === "positions" && Array.isArray(arg.given) ? arg.given[0] : arg.given;
+// Values in the panel follow the crank.
+function tellNow() {
+  for (const one of document.querySelectorAll("#panel [data-step]")) one.textContent = shown(valueOf(one.dataset.step, machine.phi), stepOf(one.dataset.step).unit);
+  for (const one of document.querySelectorAll("#panel [data-moment]")) one.textContent = momentOf(machine.phi);
+}
+
+function givenOf(arg, when, plan) {
+  const angle = typeof when === "number";
+  if (arg.over !== "positions") return angle && arg.over === "none" ? machine.given[arg.name] ?? arg.given : arg.given;
+  return angle ? undefined : arg.given?.[Math.max(plan.positions.indexOf(when), 0)];
+}
+
+function argumentChip(arg, when, plan) {
+  if (arg.step !== undefined) return chip(arg.step, when);
+  const text = arg.name === "crank angles" && typeof when === "number" ? `<small data-moment>${momentOf(when)}</small>` : `<small>${plain(shown(givenOf(arg, when, plan), arg.unit))}</small>`;
   const name = arg.symbol ? lettered(arg.symbol) : plain(arg.name === "constant" ? "" : arg.name);
-  return node("span", { class: "chip given", title: arg.source ?? arg.name, html: `${name} <small>${plain(shown(value, arg.unit))}</small>` });
+  return node("span", { class: "chip given", title: arg.source ?? arg.name, html: `${name} ${text}` });
 }
 
-function tellStep(id, label) {
-  const s = stepOf(id), plan = planOf(s.plan), formula = s.formula;
-  const where = [plan.title, label ? say("position {label}", { label }) : ""].filter(Boolean).join(", ");
-  const found = [node("h2", { html: `${titled(id)} <small>${plain(shown(valueAt(id, label), s.unit))}</small>` }), node("p", { class: "where" }, where),
-    node("p", { class: "sentence", html: lettered(at(s.sentence, label) ?? "") })];
+function tellStep(id, when) {
+  const s = stepOf(id), plan = planOf(s.plan), formula = s.formula, moment = momentOf(when);
+  const found = [node("h2", { html: valued(id, when) }), node("p", { class: "where" }, plan.title, ...(moment ? [", ", node("span", { "data-moment": true }, moment)] : [])),
+    node("p", { class: "sentence", html: lettered(toldIn(s.sentence, when)) })];
   if (formula) {
-    const numbers = at(formula.numbers, label);
+    const numbers = toldIn(formula.numbers, when);
     found.push(node("div", { class: "formula", html: mathml(formula.symbols) + (numbers ? mathml(`= ${numbers}`) : "") }));
   }
   const args = s.args.filter((a) => a.name !== "constant" || a.step !== undefined);
-  if (args.length) found.push(node("h3", {}, say("made of")), node("div", { class: "chips" }, ...args.map((a) => argumentChip(a, label))));
+  if (args.length) found.push(node("h3", {}, say("made of")), node("div", { class: "chips" }, ...args.map((a) => argumentChip(a, when, plan))));
   const next = [...new Set(children.get(id) ?? [])];
   if (next.length) {
-    found.push(node("h3", {}, say("from it follow")), node("div", { class: "chips" }, ...next.slice(0, 12).map((one) => chip(one, label))));
+    found.push(node("h3", {}, say("from it follow")), node("div", { class: "chips" }, ...next.slice(0, 12).map((one) => chip(one, when))));
     if (next.length > 12) found.push(node("p", { class: "hint" }, say("and {n} more", { n: next.length - 12 })));
   }
   return found;
 }
 
 // The whole way from the given numbers to a step.
-function tellWhy(id, label) {
+function tellWhy(id, when) {
   const list = node("ol", { class: "why" }), told = new Set();
   for (const one of chain(id)) {
     for (const arg of stepOf(one).args) {
       if (arg.step === undefined && arg.name !== "constant" && !told.has(arg.name)) {
         told.add(arg.name);
-        list.append(node("li", {}, argumentChip(arg, label), ` ${arg.source ?? say("given")}`));
+        list.append(node("li", {}, argumentChip(arg, when, planOf(stepOf(one).plan)), ` ${arg.source ?? say("given")}`));
       }
     }
-    list.append(node("li", {}, chip(one, label), node("span", { html: ` ${lettered(at(stepOf(one).sentence, label) ?? "")}` })));
+    list.append(node("li", {}, chip(one, when), node("span", { html: ` ${lettered(toldIn(stepOf(one).sentence, when))}` })));
   }
   return node("details", {}, node("summary", {}, say("why: back to the givens")), list);
 }

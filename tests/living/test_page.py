@@ -12,7 +12,9 @@ import pytest
 from tests.few import few, seldom
 from tests.film import film
 from tests.living import javascript
+from tests.page.chromium import browser
 from tmm_sheets import catalogue, results
+from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput
 from tmm_sheets.living import page as living
 from tmm_sheets.living.page import MODULES, page
@@ -25,6 +27,16 @@ each = pytest.mark.parametrize("name", few(NAMES, "lugansk/shaper", "sixbar/3:2"
 CHOSEN = ("positions.special.", "forces.friction.approximations")
 """Chosen by the very angles that are asked: the legs whose normals meet best, how many approximations."""
 LARGEST = 3_000_000
+PARALLELOGRAM = """
+schema = 1
+project = { name = "own/pg", title = "t", sheets = ["kinematics_forces"] }
+crank = { link = "1", pivot = "A", pin = "B", length = "60 mm", speed = "60 rpm", sense = "counter-clockwise" }
+points = { A = ["0 mm", "0 mm"], D = ["120 mm", "0 mm"] }
+group = [{ kind = 1, links = ["2", "3"], outer = ["B", "D"], inner = "C", lengths = ["120 mm", "60 mm"], side = 1 }]
+link = [{ name = "2", mass = "2 kg", centre = "B", inertia = "0.01 kg m2" }, { name = "3", mass = "3 kg", centre = "C" }]
+cycle = { start = "0 deg", force_position = "4", positions = 8 }
+balancing = { kind = "moment", name = "Mb" }
+"""
 
 
 @cache
@@ -333,3 +345,83 @@ def test_every_film_runs_to_its_end(name, sheets, tmp_path):
     assert found["steps"] > 40
     assert found["loaded"] == 0
     assert found["scales"] == 0, "a plan keeps its scale factor during a turn"
+
+
+# --- in motion --------------------------------------------------------------------------------------------------------------
+
+
+SAID = "[...document.querySelectorAll('#panel [data-step]')].map(one => [one.dataset.step, one.textContent])"
+"""Steps in the panel, the head first, each with its value as it is written."""
+PLACED = """stage.cards.map(card => { const values = parts(machine.phi);
+  drawCard(card, values);
+  const placed = placer(values, card.shrunk);
+  return { plan: card.live.plan, frames: card.marks.map(mark => `${mark.origin} ${mark.mu}`), shrunk: card.shrunk,
+    pivot: card.live.plan === 'positions' && placed.point(card.marks[0], 'positions/D'),
+    marks: Object.fromEntries(card.marks.map(mark => [mark.id, geometryOf(mark, placed)])) }; })"""
+"""Cards at the present angle: plan, frames of the sheet, by how much it is shrunk, marks as they are drawn, mm."""
+
+
+@javascript.browser
+def test_what_is_clicked_in_motion_has_its_values_at_this_angle(tmp_path):
+    """The head and what it is made of, while the crank turns, too: by the numbers of `solve`."""
+    path, text, angles = tmp_path / "page.html", made("lugansk/shaper", (1,)), (2.5, 1.0)
+    path.write_text(text, encoding="utf-8")
+    points = results.told(Project(catalogue.read("lugansk/shaper")), ["velocities"], phi=angles)["velocities"]["points"]
+    with browser(tmp_path / "profile") as page:
+        page.open(path.as_uri())
+        page.until("!!document.querySelector('html[data-ready]')")
+        page.now("tmm.open('turn'); tmm.ask('velocities/d')")
+        for n, phi in enumerate(angles):
+            page.now(f"tmm.turn({phi})")
+            said = dict(page.now(SAID))
+            for step, name in (("velocities/d", "D"), ("velocities/b3", "B3"), ("velocities/b", "B")):
+                if name in points and step in said:
+                    x, y = (float(x.replace(",", ".").replace("−", "-")) for x in re.findall(r"−?\d+(?:,\d+)?", said[step])[:2])
+                    assert complex(x, y) == pytest.approx(complex(getattr(points[name], "value", points[name])[n]), abs=1e-4)
+            assert f"{np.degrees(phi):.1f}".replace(".", ",") in page.now("document.querySelector('#panel .where').textContent")
+        step = page.now("(() => { const one = document.querySelector('#panel .chips button'); one.click(); "
+                        "return one.querySelector('small').dataset.step; })()")  # an argument of it
+        assert page.now(SAID)[0] == [step, said[step]]
+        page.now("tmm.open('draw', 1); tmm.ask('velocities/d', '3')")
+        own = record_of(text)["steps"]["velocities/d"]["value"][3]
+        assert f"{own[0]:.5g}".replace(".", ",").replace("-", "−") in page.now(SAID)[0][1]
+    assert {"D", "B"} <= points.keys()
+
+
+@javascript.browser
+@pytest.mark.parametrize(("name", "arm", "welds"), [(FEEDER, "D–E", 1), ("tests/projects/geneva.toml", "D–B", 0)])
+def test_arms_are_as_long_as_the_mechanism_is(name, arm, welds, tmp_path):
+    """The free end of a slotted link is as far from its pivot D as on the sheet, in the scale of the card; a card has one plan."""
+    path = tmp_path / "page.html"
+    path.write_text(made(name, (1,)), encoding="utf-8")
+    record = record_of(made(name, (1,)))
+    own = [m for m in record["sheets"][0]["marks"] if m["role"] == "symbol" and m["style"] == "main" and m.get("frame") == 0]
+    (free,) = [m for m in own if m.get("name") == arm and "line" in m["geometry"]]
+    corners = [m["id"] for m in own if "fill" in m["geometry"]]
+    frame = record["sheets"][0]["frames"][0]
+    pivot = complex(*frame["origin"]) + complex(*record["steps"]["positions/D"]["value"]) / frame["mu"][0]
+    long = abs(complex(*free["geometry"]["line"][1]) - pivot)
+    with browser(tmp_path / "profile") as page:
+        page.open(path.as_uri())
+        page.until("!!document.querySelector('html[data-ready]')")
+        page.now("tmm.open('turn')")
+        for turned in (0.1, 0.3, 0.5):
+            page.now(f"turnTo({turned})")
+            cards = page.now(PLACED)
+            assert [len(set(card["frames"])) for card in cards] == [1] * len(cards)
+            card = next(card for card in cards if card["plan"] == "positions")
+            assert card["shrunk"] > 1.2
+            end = complex(*card["marks"][str(free["id"])]["line"][1])
+            assert card["shrunk"] * abs(end - complex(*card["pivot"])) == pytest.approx(long, abs=1e-3)
+            for corner in corners:
+                assert max(abs(complex(*z) - complex(*card["pivot"])) for z in card["marks"][str(corner)]["fill"]) < 8
+    assert len(corners) == welds
+
+
+def test_a_page_that_would_be_empty_is_not_written(tmp_path, monkeypatch, capsys):
+    """No force plan can be drawn in a position where a parallelogram lies in one line, and there is no other sheet."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "pg.toml").write_text(PARALLELOGRAM, encoding="utf-8")
+    assert run(["page", "pg.toml", "-o", "pg.html", "--lang", "en"]) == 1
+    assert "reactions grow beyond all bounds" in capsys.readouterr().err
+    assert [p.name for p in tmp_path.iterdir()] == ["pg.toml"]

@@ -18,18 +18,20 @@ BESIDE = 2.5
 """Gap of a bar at a hinge, at most, mm."""
 BAR, NEAR, FAR = 2.6, 5.0, 9.0
 """Bar over a letter, at most; a letter farther off than FAR, at the end of a leader, comes as near as NEAR, mm."""
+LENGTH = True
+"""Behind a place beside a point: it is a length of the mechanism, as large on the screen as that is."""
 ALIKE = 1e-5
 """Sine of the angle between an edge and a direction that are parallel: coordinates are told to a micrometre."""
 
 
 def hung(record: Mapping[str, Any], sheet: Mapping[str, Any], known: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Views of a sheet that follow the crank, each with its marks and what they hang on.
+    """Views of a sheet that follow the crank, each with its marks and what they hang on; details, which have symbols only, do not.
 
     ``known`` are the ids of the steps that the page computes. A view is told once, at the position it is drawn for with most
-    marks: the highlighted one.
+    marks: the highlighted one; one with several plans beside each other once for each.
     """
     plans = {plan["id"]: plan for plan in record["plans"]}
-    found: dict[str, list[_Frame]] = {}
+    found: dict[tuple[str, str], list[_Frame]] = {}
     for frame in sheet["frames"]:
         plan = plans.get(frame["plan"])
         if plan is None or not plan["positions"] or not any(key in known for key in plan["steps"]):
@@ -37,11 +39,12 @@ def hung(record: Mapping[str, Any], sheet: Mapping[str, Any], known: Mapping[str
         marks = [m for m in sheet["marks"] if m.get("frame") == frame["id"]]
         label = frame["position"] or _highlighted(marks)
         if label in plan["positions"]:
-            found.setdefault(frame["view"], []).append(_Frame(record, plan, frame, label, marks, known))
+            place = str([frame[name] for name in ("origin", "mu", "turn", "mirror")])
+            found.setdefault((frame["view"], place), []).append(_Frame(record, plan, frame, label, marks, known))
     views = []
-    for view, frames in found.items():
+    for (view, _), frames in found.items():
         marks = [told for f in frames for told in f.marks()]
-        if sum(m["kind"] != "text" for m in marks) > 2:
+        if sum(m["kind"] != "text" for m in marks) > 2 and any(m["role"] in ("link", "vector", "point") for m in marks):
             views.append({"view": view, "plan": frames[0].plan["id"], "position": frames[0].label, "marks": marks})
     return views
 
@@ -120,7 +123,8 @@ class _Frame:
             if kind == "line" and abs(points[1] - points[0]) > BAR:
                 return None  # a leader: the letter comes to its place without
             return self._letter(mark, key, kind, points)
-        along = pair or self._along(key, points, mark["role"])
+        of_point = bool(pair) and key in self.points  # such as a wall of its slot: from one that is named to the other
+        along = (pair if of_point or mark["role"] != "symbol" else None) or self._along(key, points, mark["role"]) or pair
         anchor = key if key in self.points else self.anchors.get(key)
         if anchor is None and not pair and kind == "line":
             anchor = next((name for z in points for name in self.points if abs(self.points[name] - z) < HERE), None)
@@ -129,19 +133,19 @@ class _Frame:
         if not pair and mark["role"] == "construction" and kind == "line":
             return None
         self.anchors.setdefault(key, anchor or (pair or [""])[-1])
+        more = {name: shape[kind][name] for name in ("radius", "from", "to") if name in shape.get(kind, {})}
+        if pair and more and abs(abs(self.points[pair[1]] - self.points[pair[0]]) - more["radius"]) < HERE:
+            points, along, more["reach"] = [self.points[pair[0]]], [], pair
         u = self.direction(along)
         if u is None:
             u, along = 1 + 0j, []
-        at = []
-        for z in points:
-            of = self._nearest(z, pair, mark["role"]) if pair else str(anchor)
-            at.append([of, *_mm((z - self.points[of]) / u)])
-        more = {name: shape[kind][name] for name in ("radius", "from", "to") if name in shape.get(kind, {})}
+        main = bool(pair) and kind == "line" and mark["style"] == "main"
+        ends = pair if main and of_point else [self._nearest(z, pair, mark["role"]) if pair else str(anchor) for z in points]
+        at: list[list[Any]] = [[of, *_mm((z - self.points[of]) / u)] for of, z in zip(ends, points, strict=True)]
+        if main and mark["role"] == "symbol" and not of_point:  # its free end is a place of the link, not of the paper
+            at[-1] = [pair[0], *_mm((points[-1] - self.points[pair[0]]) / u), LENGTH]
         if kind == "arc":
             more |= {"from": more["from"] - phase(u), "to": more["to"] - phase(u)}
-        if kind == "circle" and pair and abs(abs(self.points[pair[1]] - self.points[pair[0]]) - more["radius"]) < HERE:
-            at[0] = [pair[0], 0.0, 0.0]
-            more["reach"] = pair
         if kind == "polyline" and shape.get("closed"):
             more["closed"] = True
         return {"kind": kind, "at": at, "along": along, **more}

@@ -43,10 +43,12 @@ def page(project: Project, numbers: Iterable[int] = (), plan: str = "") -> tuple
     BadInput
         when there is no such plan on the sheets.
     CannotBuild
-        when nothing of the project can be computed.
+        when nothing of the project can be computed, or none of these sheets drawn.
     """
     moving = _moves(project)
     record, problem = recording.record(project, numbers)
+    if problem is not None and not record["sheets"]:
+        raise problem
     made = motion(project, recording.book_of(project)) if moving else None
     if made is not None:
         lines = scan(project.variant.text).lines

@@ -337,7 +337,10 @@ def _draw_bar(s: PlayerStage, pos: Positions, shape: Shape, hinges: list[complex
             free = complex(s.frame(complex(end.at[s.k or 0])))
             nearest = min(points, key=lambda z: abs(z - free))
             gap = symbols.HINGE if any(abs(nearest - hinge) < symbols.HINGE for hinge in hinges) else 0.0
-            s.line(pos.directions[shape.link], nearest + gap * (free - nearest) / abs(free - nearest), free, style, "symbol")
+            # Its last point keeps its place beside the first that is named.
+            base = (end.arm or line)[0] if end.arm or not shape.bar else shape.bar[0]
+            pen = s.pen(pos.directions[shape.link], "symbol", f"{base}–{next(name for name in line if name != base)}")
+            pen.line(nearest + gap * (free - nearest) / abs(free - nearest), free, style)
 
 
 def _corners(s: PlayerStage, pos: Positions, shape: Shape) -> None:
@@ -354,7 +357,7 @@ def _corners(s: PlayerStage, pos: Positions, shape: Shape) -> None:
             line, v = min(ways, key=lambda way: round(abs(float(np.angle(way[1] / u))), 9))
             if frozenset((arm, line)) not in done:
                 done.add(frozenset((arm, line)))
-                symbols.rigid_corner(s.pen(pos.directions[shape.link], "symbol"), z, u, v)
+                symbols.rigid_corner(s.pen(pos.directions[shape.link], "symbol", f"{end}–{far}"), z, u, v)
 
 
 def _draw_block(s: PlayerStage, pos: Positions, shape: Shape, style: str) -> None:
@@ -452,8 +455,9 @@ def _ram(canvas: Canvas, s: PlayerStage, pos: Positions, shape: Shape, style: st
         line(z - half * u, z + half * u, style)
         line(z, z + reach * v, style)
         return
+    walls = s.pen(pos.points[str(shape.block)], "symbol", f"{shape.block}–{g.outer[0]}")
     for side in (1, -1):
-        line(z + side * wall * u + thick * v, z + side * wall * u + reach * v, style)
+        walls.line(z + side * wall * u + thick * v, z + side * wall * u + reach * v, style)
         line(z + side * wall * u + thick * v, z + side * half * u + thick * v, style)
         line(z + side * half * u + thick * v, z + side * half * u - thick * v, style)
     line(z - half * u - thick * v, z + half * u - thick * v, style)
