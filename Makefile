@@ -66,7 +66,7 @@ pictures: $(VENV)/.tested  ## the pictures of the gallery and the tutorial in do
 	$(BIN)/python -m tests.pictures
 
 site: $(VENV)/.installed $(SITE)/.made  ## docs/ as a site in out/site (mkdocs-material, in an environment of its own)
-	NO_MKDOCS_2_WARNING=1 PYTHONPATH=. TMM_SHEETS_PYTHON=$(BIN)/python $(SITE)/bin/mkdocs build --quiet
+	NO_MKDOCS_2_WARNING=1 PYTHONPATH=. TMM_SHEETS_PYTHON=$(BIN)/python $(SITE)/bin/mkdocs build --strict --quiet
 
 $(SITE)/.made:
 	$(PYTHON) -m venv $(SITE)

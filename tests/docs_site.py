@@ -37,10 +37,25 @@ def moved(text: str, page: str) -> str:
     return re.sub(r"(!?\[[^\]]*\])\(([^)\s]+)\)", link, text)
 
 
+LINK = re.compile(r"(\]\()([^)\s#:]+)(?=[)#])")
+
+
+def beside(place: str, page: str) -> str:
+    """Place in the site of a file of the repository that a page links to; empty where it is none, or a page of docs/ itself."""
+    target = (ROOT / "docs" / page).parent.joinpath(place).resolve()
+    own = target.relative_to(ROOT) if target.is_file() and target.is_relative_to(ROOT) else Path("docs")
+    return f"files/{own.as_posix()}" if own.parts[0] != "docs" or own.parts[1:2] == ("examples",) else ""
+
+
 def on_files(files: Any, config: Any) -> Any:
-    """Add the pages that are not in docs/."""
+    """Add the pages that are not in docs/, and the files that those in it link to."""
     from mkdocs.structure.files import File
 
+    docs = ROOT / "docs"
+    pages = {path.relative_to(docs).as_posix(): path.read_text("utf-8") for path in docs.rglob("*.md")}
+    linked = {beside(place, page) for page, text in pages.items() for _, place in LINK.findall(text)}
+    for place in sorted(linked - {""}):
+        files.append(File.generated(config, place, abs_src_path=str(ROOT / place.removeprefix("files/"))))
     for page, paper in FIRST.items():
         files.append(File.generated(config, page, content=moved((ROOT / paper).read_text("utf-8"), page)))
     files.append(File.generated(config, "api.md", content="# API\n\n" + "\n".join(f"::: {name}\n" for name in MODULES)))
@@ -50,7 +65,10 @@ def on_files(files: Any, config: Any) -> Any:
 
 
 def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
-    """The living sheet itself on its page."""
+    """A page with its links to files of the repository; the living sheet itself on its page."""
+    up, own = "../" * page.file.src_uri.count("/"), page.file.src_uri
+    if own not in FIRST:
+        markdown = LINK.sub(lambda m: f"{m[1]}{up}{found}" if (found := beside(m[2], own)) else m[0], markdown)
     return markdown.replace("\n## ", f"{LIVING}\n## ", 1) if page.file.src_uri == "page.md" else markdown
 
 

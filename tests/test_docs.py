@@ -248,6 +248,19 @@ def test_pages_of_the_site():
         "[a](../page.md#b) ![c](../pictures/d.png) e [f](../index.md) [g](https://h)")
 
 
+def test_no_link_of_the_site_is_dead():
+    """Files of the repository that pages link to are put into the site, whose making fails on a link to nothing."""
+    papers = {paper.removeprefix("docs/"): text for paper, text in TEXTS.items() if paper.startswith("docs/")}
+    linked = {(page, place) for page, text in papers.items() for _, place in docs_site.LINK.findall(text)}
+    lost = [(page, place) for page, place in linked if not docs_site.beside(place, page)
+            and not (ROOT / "docs" / page).parent.joinpath(place).resolve().is_relative_to(ROOT / "docs")]
+    assert lost == []
+    assert docs_site.beside("../variants/lugansk/shaper.toml", "project-file.md") == "files/variants/lugansk/shaper.toml"
+    assert {docs_site.beside(place, "a.md") for place in ("../pyproject", "page.md", "/etc/passwd")} == {""}
+    assert "mkdocs build --strict" in (ROOT / "Makefile").read_text("utf-8")
+    assert "not_found: warn, anchors: warn, unrecognized_links: warn" in (ROOT / "mkdocs.yml").read_text("utf-8")
+
+
 NOT_RUN = {
     "bench --peers": "needs other packages", "--views": "needs a drawing laid out so; tests/compare/test_image_views.py has some",
     "watch": "goes on until Ctrl-C", "serve": "goes on until Ctrl-C; tests/page asks it",

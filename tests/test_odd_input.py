@@ -9,8 +9,10 @@ import pytest
 from tests.few import few
 from tests.project_files import from_file, toml
 from tmm_sheets import catalogue
+from tmm_sheets.__main__ import run
+from tmm_sheets.compare import group, marking, view_places
 from tmm_sheets.errors import BadInput
-from tmm_sheets.task import variant
+from tmm_sheets.task import family_tables, title_entries, toml_file, variant
 
 DATA = from_file("lugansk/shaper")
 ODD = [0, -1, 0.5, True, "", "x", "1 m", [], ["A", "A"], [[]], {}, [{"name": []}]]
@@ -58,9 +60,31 @@ def test_anything_may_be_missing():
         assert all(p.message for p in answer(changed(path, delitem)))
 
 
-def test_a_number_of_thousands_of_digits():
-    with pytest.raises(BadInput, match=r"^big\.toml:2: the number has too many digits$"):
-        variant.parse("[project]\nschema = " + "9" * 5000, "big.toml")
+@pytest.mark.parametrize("number", [str(2**63), "-" + "1" * 320, "0x" + "1" * 320, "9" * 5000], ids=len)
+@pytest.mark.parametrize("door", ["project", "settings", "marks", "views", "group", "table"])
+def test_a_number_of_hundreds_of_digits(door, number, tmp_path):
+    """TOML has whole numbers of 64 bits: what is longer is refused at its line, whichever file it stands in."""
+    path = tmp_path / "big.toml"
+    path.write_text(f"[project]\nschema = {number}\n", encoding="utf-8")
+    doors = {"project": lambda: variant.read(path), "settings": lambda: title_entries.of_file(path),
+             "marks": lambda: marking.read(path), "views": lambda: view_places.read(path, ()),
+             "table": lambda: family_tables.read(path, ""),
+             "group": lambda: group.compare(tmp_path, "press", None, None, None, None)}
+    if door == "group":
+        path = path.rename(tmp_path / "projects.toml")
+        (tmp_path / "A.csv").touch()
+    with pytest.raises(BadInput, match=rf"^{path}:2: (project\.schema: )?the number has too many digits$"):
+        doors[door]()
+
+
+def test_the_longest_number_is_read():
+    assert toml_file.parsed(f"a = {2**63 - 1}\nb = [-{2**63 - 1}]", "x.toml")[0] == {"a": 2**63 - 1, "b": [1 - 2**63]}
+
+
+def test_a_range_without_end_is_refused(capsys):
+    for text in ("crank.length=0.05.." + "1" * 320 + "m", "crank.length=1..1e999 mm"):
+        assert run(["optimise", "press", "--vary", text, "--least", "flywheel.J_flywheel", "--lang", "en"]) == 2
+        assert "expected a name and a range" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("text", [

@@ -86,7 +86,7 @@ def _carried_out(arguments: list[str]) -> int:
     import click
 
     from tmm_sheets.cli import commands
-    from tmm_sheets.errors import BadInput, CannotBuild, Stopped, reason_of
+    from tmm_sheets.errors import BadInput, CannotBuild, Stopped, reason_of, told_of
     from tmm_sheets.words import tell
 
     asked = os.environ.get("_TMM_SHEETS_COMPLETE")
@@ -121,10 +121,8 @@ def _carried_out(arguments: list[str]) -> int:
     except MemoryError:
         return _say(tell("not enough memory; ask for fewer positions"), CANNOT_BUILD)
     except Exception as e:
-        if os.environ.get("TMM_SHEETS_TRACEBACK"):
-            raise
         hint = tell("this is a defect of the program; TMM_SHEETS_TRACEBACK=1 shows where it happened")
-        return _say(tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}\n    {hint}"), CANNOT_BUILD)
+        return _say(f"{told_of(e)}\n    {hint}", CANNOT_BUILD)
 
 
 def _say(message: str, status: int) -> int:

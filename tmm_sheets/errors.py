@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -33,6 +34,19 @@ LONGEST = {"message": 500, "field": 500, "hint": 4000}
 def reason_of(e: OSError) -> str:
     """Why the system refused, in the reader's words where there are any."""
     return tell((e.strerror or str(e)).lower())
+
+
+def told_of(e: Exception) -> str:
+    """What is said of an error by what goes on after it; a defect of the program is raised where its place is asked for."""
+    if isinstance(e, BadInput | CannotBuild):
+        return str(e)
+    if isinstance(e, OSError):
+        return f"{e.filename or tell('output')}: {reason_of(e)}"
+    if isinstance(e, MemoryError):
+        return tell("not enough memory")
+    if os.environ.get("TMM_SHEETS_TRACEBACK"):
+        raise e
+    return tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}")
 
 
 @dataclass(frozen=True)

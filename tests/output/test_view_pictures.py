@@ -6,6 +6,8 @@ import pytest
 
 from tests.project_files import EVEN, SLIDER, write
 from tmm_sheets.__main__ import run
+from tmm_sheets.cli import watch
+from tmm_sheets.errors import BadInput
 from tmm_sheets.output import watching
 
 
@@ -31,6 +33,25 @@ def test_what_cannot_be_asked(arguments, status, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert run(arguments) == status
     assert not [*tmp_path.iterdir()]
+
+
+@pytest.mark.parametrize("error", [OverflowError("int too large to convert"), OSError(28, "No space left on device"), MemoryError(),
+                                   RecursionError("too deep"), BadInput("wrong")], ids=lambda e: type(e).__name__)
+def test_a_watch_outlives_any_error(error, tmp_path, monkeypatch, capsys):
+    """What one state of the file shows is told, and the next one is drawn."""
+    built, states = [], iter([error, None])
+
+    def build(project, order, output):
+        if (wrong := next(states)) is not None:
+            raise wrong
+        built.append(project)
+
+    file = write(tmp_path, SLIDER, EVEN)
+    monkeypatch.setattr(watching, "saved", lambda paths: iter((None, None)))
+    monkeypatch.setattr(watch, "build_one", build)
+    assert run(["watch", file, "--lang", "en"]) == 0
+    assert built == [file]
+    assert len(capsys.readouterr().err.splitlines()) == 2
 
 
 def test_each_time_a_file_is_saved(tmp_path):

@@ -10,7 +10,7 @@ from tmm_sheets import kept, quoting, words
 from tmm_sheets.cli import opening
 from tmm_sheets.cli.build import build_one
 from tmm_sheets.cli.options import CORRECTED, PROJECT, SHEETS, formats_of, titled
-from tmm_sheets.errors import BadInput, CannotBuild
+from tmm_sheets.errors import told_of
 from tmm_sheets.localized_cli import command, option
 from tmm_sheets.words import tell
 
@@ -39,5 +39,7 @@ def run(project: str, corrected: bool, sheets: tuple[int, ...], formats: tuple[s
             order = Order(sheets, formats, {}, corrected, language=words.asked(), reader=words.reader(), kept=kept.used(),
                           names=opening.names())
             build_one(project, order, output)
-        except (BadInput, CannotBuild) as e:
-            click.echo(e, err=True)
+        except BrokenPipeError:
+            raise  # nobody listens
+        except Exception as e:
+            click.echo(told_of(e), err=True)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import os
 import re
-import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -19,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from unicodedata import normalize
 
-from tmm_sheets import encodings, files
+from tmm_sheets import files
 from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.finding_records import FindingRecord
 from tmm_sheets.compare.known_sheet import sheet_numbers
@@ -30,6 +29,7 @@ from tmm_sheets.compare.story import Story, StoryTable
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.numbers import told
 from tmm_sheets.output.build_store import untouched
+from tmm_sheets.task import toml_file
 from tmm_sheets.words import tell, tell_n
 
 if TYPE_CHECKING:
@@ -197,11 +197,7 @@ def _projects(path: Path, works: Mapping[str, object]) -> dict[str, str]:
     """Projects of students that have another one."""
     if not path.is_file():
         return {}
-    try:
-        text = encodings.cleaned(encodings.decoded(files.content(path)).text)
-        data = tomllib.loads(text)
-    except (OSError, tomllib.TOMLDecodeError, encodings.NotText) as e:
-        raise BadInput(Problem(str(e), str(path), hint=tell('a line for each student: "Petrenko" = "sixbar/3:2"'))) from None
+    text, data, _ = toml_file.read(path)
     lines = text.splitlines()
     problems = []
     for name, project in data.items():

@@ -24,16 +24,16 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from tmm_sheets import encodings, files, spelling
+from tmm_sheets import spelling
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.numbers import told
+from tmm_sheets.task import toml_file
 from tmm_sheets.words import tell
 
 KINDS = ("mistake", "red", "amber", "missing_view", "missing_table", "unjudged", "unfilled", "missing_sheet")
@@ -77,13 +77,7 @@ def read(path: Path) -> MarkingScheme:
     BadInput
         If it cannot be read, or something in it is unknown, missing or no number; every problem with its line and field.
     """
-    try:
-        text = encodings.cleaned(encodings.decoded(files.content(path)).text)
-        data = tomllib.loads(text)
-    except OSError as e:
-        raise BadInput(Problem(tell("cannot be read: {why}").format(why=e.strerror or e), str(path))) from None
-    except (tomllib.TOMLDecodeError, encodings.NotText) as e:
-        raise BadInput(Problem(str(e), str(path), hint=tell("a scheme of marks is a TOML file: see docs/comparing.md"))) from None
+    text, data, _ = toml_file.read(path)
     reading = _Reading(str(path), text.splitlines(), [])
     scheme = reading.scheme(data)
     if reading.problems:

@@ -14,7 +14,6 @@ With ``mu`` one point is enough; a second one then only tells how the view is tu
 
 from __future__ import annotations
 
-import tomllib
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,10 +21,11 @@ from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
-from tmm_sheets import encodings, files, spelling
+from tmm_sheets import spelling
 from tmm_sheets.compare.elements import ElementView
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.task import toml_file
 from tmm_sheets.words import tell, tell_n
 
 
@@ -63,12 +63,7 @@ def read(path: Path, views: Sequence[ElementView]) -> tuple[StatedViewPlace, ...
     BadInput
         If it cannot be read, names a view the sheet does not have, or lacks points; it tells every problem.
     """
-    try:
-        data = tomllib.loads(encodings.cleaned(encodings.decoded(files.content(path)).text))
-    except OSError as e:
-        raise BadInput(Problem(tell("cannot be read: {why}").format(why=e.strerror or e), str(path))) from None
-    except (tomllib.TOMLDecodeError, encodings.NotText) as e:
-        raise BadInput(Problem(str(e), str(path), hint=tell("it is a TOML file with a [[view]] table for each view"))) from None
+    _, data, _ = toml_file.read(path)
     tables = data.get("view")
     if not isinstance(tables, list) or not tables or not all(isinstance(t, dict) for t in tables):
         raise BadInput(Problem(tell("has no [[view]] table"), str(path), field="view",

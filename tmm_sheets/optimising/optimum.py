@@ -145,10 +145,10 @@ def varied(text: str, data: Mapping[str, Any]) -> Varied:
     low, dots, high = spread.partition("..")
     first, unit_of_low = units.split(low)
     last, unit = units.split(high)
-    if not (name and sign and dots and first and last) or unit_of_low not in ("", unit):
+    a, b = float(first or "nan"), float(last or "nan")
+    if not (name and sign and dots and isfinite(b - a)) or unit_of_low not in ("", unit):
         raise BadInput(tell("{text}: expected a name and a range").format(text=text),
                        tell("for example {wish}").format(wish='"crank.length=70..90 mm"'))
-    a, b = float(first), float(last)
     if not a < b:
         raise BadInput(tell("{text}: the range is empty").format(text=text), tell("write the less of both first"))
     own = edited_text.at(data, name)

@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from tmm_sheets import catalogue, files, kept, quoting, spelling, words
-from tmm_sheets.errors import BadInput, CannotBuild, Stopped, reason_of
+from tmm_sheets.errors import BadInput, Stopped, told_of
 from tmm_sheets.output import handouts
 from tmm_sheets.output.building import Order, build, folder_name
 from tmm_sheets.task.title_entries import Names
@@ -87,17 +87,8 @@ def _one(task: Task, order: Order, parent: Path) -> Outcome:
         if task.student:
             handed, said = handouts.write(built.opened, folder, order.force)
             warnings += said
-    except (BadInput, CannotBuild) as e:
-        return Outcome(project, str(e), warnings=warnings)
-    except MemoryError:
-        return Outcome(project, tell("not enough memory"), warnings=warnings)
-    except OSError as e:
-        output = tell("output")
-        return Outcome(project, f"{e.filename or output}: {reason_of(e)}", warnings=warnings)
     except Exception as e:
-        if os.environ.get("TMM_SHEETS_TRACEBACK"):
-            raise
-        return Outcome(project, tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}"), warnings=warnings)
+        return Outcome(project, told_of(e), warnings=warnings)
     made = len(built.sizes)
     problem = "" if built.refused is None else str(built.refused)
     return Outcome(project, problem, made, len(built.paths) - made, sum(built.sizes.values()), warnings + built.warnings,

@@ -21,7 +21,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Literal, get_args
 
 from tmm_sheets import files, words
-from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
+from tmm_sheets.errors import BadInput, Problem, reason_of, told_of
 from tmm_sheets.page import confinement
 from tmm_sheets.words import tell
 
@@ -94,16 +94,12 @@ def _carry_out(end: Connection, job: Job, asked: Mapping[str, str], folder: str,
         say(done=job(asked, say))
     except BadInput as e:
         say(problem=str(e), mistakes=[told(p) for p in e.problems])
-    except CannotBuild as e:
-        say(problem=str(e))
     except MemoryError:
         say(problem=tell("this takes more memory than the page gives one piece of work"))
     except OSError as e:
         say(problem=reason_of(e))
     except Exception as e:
-        if os.environ.get("TMM_SHEETS_TRACEBACK"):
-            raise
-        say(problem=tell("internal error: {error}").format(error=f"{type(e).__name__}: {e}"))
+        say(problem=told_of(e))
 
 
 def _limit(limits: Limits) -> None:

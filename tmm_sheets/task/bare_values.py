@@ -10,6 +10,8 @@ import tomllib
 from decimal import Decimal
 from typing import NamedTuple
 
+from tmm_sheets.task.toml_lines import check_keys
+
 _PAIR = re.compile(r"""(\s*[\w."'-]+\s*=\s*)(["']?[^"'\[\]{}#=]*?["']?)(\s*(?:#.*)?)""")
 _NUMBER = re.compile(r"([+-]?)(\d+(?:[ \u00a0]\d{3})*[.,]?\d*|[.,]\d+)")
 MOST = 20
@@ -49,6 +51,7 @@ def quoted(text: str) -> tuple[str, dict[int, BareValue]]:
     found: dict[int, BareValue] = {}
     while len(found) < MOST and len(text) < LONGEST:
         try:
+            check_keys(text)
             tomllib.loads(text)
         except tomllib.TOMLDecodeError as e:
             match = re.search(r"\(at line (\d+),", str(e))
@@ -58,7 +61,7 @@ def quoted(text: str) -> tuple[str, dict[int, BareValue]]:
                 break
             found[line] = bare
             text = bare.put(text, f'"{bare.value}"')
-        except RecursionError:
+        except (ValueError, RecursionError):  # told by who reads it
             break
         else:
             break
@@ -78,6 +81,6 @@ def _reads(value: str) -> bool:
     """Whether TOML reads a value: what is wrong with its line is something else."""
     try:
         tomllib.loads(f"x = {value}")
-    except tomllib.TOMLDecodeError:
+    except ValueError:
         return False
     return True

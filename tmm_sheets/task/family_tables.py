@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import csv
 import io
-import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -142,10 +141,7 @@ def _of_csv(text: str, file: str) -> Iterator[Row]:
 
 
 def _of_toml(text: str, file: str) -> Iterator[Row]:
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as e:
-        raise BadInput(toml_file.syntax(str(e), text, file)) from None
+    data, _ = toml_file.parsed(text, file)
     values = data.get("values", {})
     lines = text.splitlines()
     for key, cells in values.items() if isinstance(values, dict) else ():

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from tmm_sheets import encodings, files
 from tmm_sheets.errors import BadInput, Problem, reason_of
 from tmm_sheets.task.messages import of_parser
-from tmm_sheets.task.toml_lines import KeyPath, TomlLines, scan
+from tmm_sheets.task.toml_lines import KeyPath, TomlLines, check_keys, scan
 from tmm_sheets.words import tell
+
+DIGITS, BITS = 4301, 63
+"""Digits of the shortest whole number that Python does not read; bits of the longest one that TOML has, beside its sign."""
 
 
 def text_of(path: Path, most: int) -> tuple[str, str]:
@@ -40,18 +44,55 @@ def text_of(path: Path, most: int) -> tuple[str, str]:
     return encodings.cleaned(text), note
 
 
+def read(path: Path, most: int = 1_000_000) -> tuple[str, dict[str, Any], TomlLines]:
+    """Text of a file, its tables and where its keys stand, as :func:`text_of` and :func:`parsed` give them.
+
+    Raises
+    ------
+    BadInput
+        also when there is no such file.
+    """
+    try:
+        text, _ = text_of(path, most)
+    except FileNotFoundError:
+        raise BadInput(Problem(tell("no such file"), str(path))) from None
+    return text, *parsed(text, str(path))
+
+
 def parsed(text: str, file: str) -> tuple[dict[str, Any], TomlLines]:
     """The tables of a text and where its keys stand.
 
     Raises
     ------
     BadInput
-        when it is not valid TOML.
+        when it is not valid TOML, has a whole number of more than 64 bits or is nested too deeply.
     """
     try:
-        return tomllib.loads(text), scan(text)
+        check_keys(text)
+        data, lines = tomllib.loads(text), scan(text)
     except tomllib.TOMLDecodeError as e:
         raise BadInput(syntax(str(e), text, file)) from None
+    except RecursionError:
+        raise BadInput(Problem(tell("lists or tables are nested too deeply"), file)) from None
+    except ValueError:  # Python reads no whole number of more than 4300 digits
+        line = next((n for n, row in enumerate(text.split("\n"), 1) if re.search(rf"[0-9_]{{{DIGITS}}}", row)), None)
+        raise BadInput(Problem(tell("the number has too many digits"), file, line)) from None
+    long = [path for path, value in _values(data) if isinstance(value, int) and value.bit_length() > BITS]
+    if long:
+        raise BadInput(problem(file, lines, path, tell("the number has too many digits")) for path in long)
+    return data, lines
+
+
+def _values(data: dict[str, Any]) -> Iterator[tuple[KeyPath, Any]]:
+    """What stands in tables and lists, each with its path."""
+    pending: list[tuple[KeyPath, Any]] = [((), data)]
+    while pending:
+        path, value = pending.pop()
+        inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else None
+        if inner is None:
+            yield path, value
+        else:
+            pending += [((*path, key), one) for key, one in inner]
 
 
 def syntax(message: str, text: str, file: str) -> Problem:

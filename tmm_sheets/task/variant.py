@@ -7,8 +7,6 @@ turn) is judged where the geometry is.
 
 from __future__ import annotations
 
-import re
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal, Self
@@ -17,7 +15,7 @@ from pydantic import Field, PrivateAttr, ValidationError
 
 from tmm_sheets import quoting, words
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
-from tmm_sheets.task import synthesis_refs, toml_file, toml_lines, units
+from tmm_sheets.task import synthesis_refs, toml_file, units
 from tmm_sheets.task.bare_values import BareValue, quoted
 from tmm_sheets.task.cam_keys import check_cam
 from tmm_sheets.task.letters import check_letters, freed
@@ -57,8 +55,6 @@ LINKAGE = ("positions", "velocities", "accelerations", "forces")
 """Parts of the results that the linkage has."""
 PARTS = (*LINKAGE, "flywheel", "gear", "reducer", "train", "cam")
 """All parts of the results."""
-DIGITS = 4301
-"""Digits of the shortest whole number that Python does not read."""
 MOST = 50
 """Mistakes of a file that are told one by one."""
 
@@ -317,18 +313,11 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
     if len(text) > LARGEST:
         raise BadInput(Problem(tell("{n} characters are no project file: expected {most} at most").format(
             n=len(text), most=LARGEST), file))
+    readable, bare = quoted(text)
     try:
-        toml_lines.check_keys(text)
-        readable, bare = quoted(text)
-        data = tomllib.loads(readable)
-        lines = toml_lines.scan(readable)
-    except tomllib.TOMLDecodeError as e:
-        raise BadInput([*(_of_bare(one, file) for one in bare.values()), toml_file.syntax(str(e), readable, file)]) from None
-    except ValueError:  # Python reads no whole number of more than 4300 digits
-        line = next((n for n, row in enumerate(text.split("\n"), 1) if re.search(rf"[0-9_]{{{DIGITS}}}", row)), None)
-        raise BadInput(Problem(tell("the number has too many digits"), file, line)) from None
-    except RecursionError:
-        raise BadInput(Problem(tell("lists or tables are nested too deeply"), file)) from None
+        data, lines = toml_file.parsed(readable, file)
+    except BadInput as e:
+        raise BadInput([*(_of_bare(one, file) for one in bare.values()), *e.problems]) from None
     data, found = _with_synthesis(_with_cycle(freed(data)), file)
     problems = [toml_file.problem(file, lines, *one) for one in found]
     variant = None
