@@ -41,7 +41,8 @@ def told_of(e: Exception) -> str:
     if isinstance(e, BadInput | CannotBuild):
         return str(e)
     if isinstance(e, OSError):
-        return f"{e.filename or tell('output')}: {reason_of(e)}"
+        output = tell("output")
+        return f"{e.filename or output}: {reason_of(e)}"
     if isinstance(e, MemoryError):
         return tell("not enough memory")
     if os.environ.get("TMM_SHEETS_TRACEBACK"):
