@@ -35,7 +35,7 @@ NEVER = datetime(2026, 1, 1, tzinfo=UTC)
 CLICK = "messages"
 """Domain of click's own words: gettext's default one, which click asks. English needs none."""
 READ = {
-    "project": ("title", "variant"), "title_block": ("institution", "group", "letter"), "link": ("title",),
+    "project": ("title", "variant"), "title_block": ("institution", "group"), "link": ("title",),
     "misprint": ("reason",), "remark": ("say",),
 }  # fmt: skip
 """Keys of shipped files that a person reads, by table."""

@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1] / "tmm_sheets"
 MODULES = {".".join(p.relative_to(ROOT).with_suffix("").parts): p for p in ROOT.rglob("*.py")}
-NEUTRAL = "box encodings errors files kept numbers program quoting remarks resources progress spelling version words"
+NEUTRAL = "box csv_tables encodings errors files kept numbers program quoting remarks resources progress spelling version words"
 METHODS = "methods.linkage methods.flywheel methods.gears methods.cams methods.integration"
 
 RULES = {
@@ -26,7 +26,7 @@ RULES = {
     "methods.flywheel": ("construction mechanism methods.integration methods.linkage", "task.schema"),
     "methods.gears": ("construction", "task.schema"),
     "methods.cams": ("construction methods.integration", "task.schema"),
-    "task": ("", ""),
+    "task": ("task.letters", ""),
     "task.assembly": ("construction mechanism methods.linkage task", ""),
     "task.variant": ("methods.linkage.synthesis task", ""),
     "task.names": ("construction.indices task", ""),
@@ -58,7 +58,7 @@ RULES = {
     "output": ("backends catalogue drawing explain project sheets task.title_entries", "task"),
     "output.family_check": ("project task.family_folder", ""),
     "output.batch": ("catalogue output task.title_entries", ""),
-    "output.roster": ("catalogue output task.families", ""),
+    "output.roster": ("catalogue output task.families task.letters", ""),
     "output.handouts": ("compare.measured living note output project", ""),
     "page": ("backends catalogue compare drawing living output project sheets task", ""),
     "note": ("backends construction drawing project record results sheets task.synthesis_refs task.units", "task"),
@@ -93,7 +93,7 @@ LIBRARIES = {
     "pydantic_core": "task.messages task.keys", "cv2": "compare.photo", "pypdfium2": "compare.photo",
     "shapely": "drawing sheets methods lab.bench compare",
     "typst": "note.typst_writer", "docx": "note.docx_writer",
-    "starlette": "page", "uvicorn": "page.serving",
+    "starlette": "page", "uvicorn": "page.serving", "openpyxl": "csv_tables",
 }  # fmt: skip
 """Large libraries and the modules or rooms they belong to."""
 

@@ -96,9 +96,11 @@ def located(project: str) -> Path:
     path = files.named(project)
     if os.path.lexists(path):
         return path
-    near = spelling.near(project, (*map(str, files_beside(path)), *shipped()), 3) or [e.name for e in found(project)[:3]]
-    listing = tell("{command} shows the shipped projects").format(command=quoting.command("list"))
-    hint = tell("did you mean {near}?").format(near=either(near)) if near else listing
+    hint = spelling.hint(project, (*map(str, files_beside(path)), *shipped()), 3)
+    if not hint:
+        listing = tell("{command} shows the shipped projects").format(command=quoting.command("list"))
+        near = [e.name for e in found(project)[:3]]
+        hint = tell("did you mean {near}?").format(near=either(near)) if near else listing
     if project.endswith(SUFFIX):
         raise BadInput(Problem(tell("no such file"), project, hint=hint))
     raise BadInput(tell('unknown project "{project}": neither a shipped name nor a file').format(project=project), hint=hint)

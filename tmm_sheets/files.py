@@ -11,6 +11,7 @@ import os
 import platform
 import re
 import stat
+import unicodedata
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from contextvars import ContextVar
@@ -263,6 +264,27 @@ def _unwritable(path: Path, e: OSError) -> Problem:
         str(path),
         hint=tell("choose another place with -o, or make room; nothing was written"),
     )
+
+
+_RESERVED = re.compile(r"(con|prn|aux|nul|com[0-9¹²³]|lpt[0-9¹²³]|conin\$|conout\$) *(\..*)?", re.IGNORECASE)
+LONGEST_NAME = 200
+"""Bytes of the longest name that is made of a text: systems take 255."""
+
+
+def name_of(text: str, spaced: bool = False) -> str:
+    """Name of a file or a folder for what is called so, which any system takes; empty where nothing is left of it.
+
+    Signs that are not for names become hyphens, and where it is not ``spaced``, as names of people are, all that a shell would
+    take for something else; what Windows keeps for devices (CON, COM1) has an underscore behind it.
+    """
+    signs, ends = (r'[\\/:*?"<>|\x00-\x1f]+', " .-_") if spaced else (r"[^\w@.+=-]+", "-.")
+    name = re.sub(signs, "-", text).strip(ends).encode()[:LONGEST_NAME].decode(errors="ignore").strip(ends)
+    return re.sub(r"^([^.]*)", r"\1_", name) if _RESERVED.fullmatch(name) else name
+
+
+def alike(name: str) -> str:
+    """What names have in common that some systems take for the same."""
+    return unicodedata.normalize("NFC", name).casefold()
 
 
 def seen_from(path: Path, folder: Path) -> str:

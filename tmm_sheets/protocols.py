@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from tmm_sheets import spelling
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.words import either, tell, tr
+from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -61,12 +61,10 @@ def _internal(name: str) -> bool:
 def _unknown(project: Project, name: str, found: Collection[str], shown: Mapping[int, Sequence[str]], everything: bool) -> BadInput:
     """That there is no such plan, with those that may be meant, or those that are drawn, sheet by sheet."""
     drawn = [plan for of_sheet in shown.values() for plan in of_sheet]
-    near = spelling.near(name, found if everything or _internal(name) else drawn, 6) or spelling.near(name, found, 6)
-    if near:
-        hint = tell("did you mean {near}?").format(near=either(near))
-    elif everything:
+    hint = spelling.hint(name, found if everything or _internal(name) else drawn, 6) or spelling.hint(name, found, 6)
+    if not hint and everything:
         hint = tell("its plans are {plans}").format(plans=", ".join(found))
-    else:
+    elif not hint:
         of_sheet = tell("sheet {n}: {what}")
         lines = [of_sheet.format(n=n, what=", ".join(plans)) for n, plans in shown.items()]
         every = tell("plans that nobody draws, too: {command}").format(command=project.variant.command("protocol", "--all"))

@@ -8,7 +8,7 @@ from typing import Any
 from tmm_sheets import spelling
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.result_files import columns, leaves, plain_numbers, row
-from tmm_sheets.words import either, tell
+from tmm_sheets.words import tell
 
 
 class Numbers(dict[str, Any]):
@@ -43,9 +43,7 @@ class Numbers(dict[str, Any]):
         part = path.partition(".")[0]
         if part in self.refused:
             raise self.refused[part]
-        near = spelling.near(path, [*self], 6, 0.5)
-        raise BadInput(tell('there is no result "{result}"').format(result=path),
-                       hint=tell("did you mean {near}?").format(near=either(near)) if near else "")
+        raise BadInput(tell('there is no result "{result}"').format(result=path), spelling.hint(path, self, 6, 0.5))
 
     @property
     def tree(self) -> dict[str, Any]:

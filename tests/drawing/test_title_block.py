@@ -4,14 +4,16 @@ from math import pi
 import numpy as np
 import pytest
 
-from tmm_sheets import words
+from tmm_sheets import catalogue, words
 from tmm_sheets.__main__ import run
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter, plain
 from tmm_sheets.drawing.marks import Line, Polyline, Text
 from tmm_sheets.drawing.paper import A1
 from tmm_sheets.drawing.title_block import FIELDS, block, draw_frame
+from tmm_sheets.project import Project
 from tmm_sheets.resources import template
+from tmm_sheets.sheets import composing
 
 FORMS = json.loads(template("title_blocks.json").read_text(encoding="utf-8"))
 FILLED = {
@@ -155,21 +157,17 @@ def test_only_letter_heights_of_the_standard_and_none_unreadable(form, changes, 
     ("Иванов Иван Иванович", "Иванов И.И."),
     ("Mykhailo Kovalenko", "M. Kovalenko"), ("Гончаренко В. О.", "Гончаренко В. О."), ("", ""),
     ("Гончаренко Валентин Олегович", "Гончаренко В.О."), ('Гончаренко Валентин "Валя" (О.)', "Гончаренко В.В.О."),
-    ("Константинопольский-Задунайский В. О.", "Константинопольский-Задунайский"),
+    ("Преображенская А. В.", "Преображенская А. В."), ("Константинопольский-Задунайский В. О.", "Константинопольский... В.О."),
 ])
-def test_a_long_name_keeps_its_initials_or_tells_that_it_does_not(name, short):
+def test_a_long_name_keeps_its_initials_and_tells_what_its_surname_lacks(name, short):
     canvas = Canvas()
     draw_frame(canvas, FILLED | {"developed": name}, "1", 1, 4)
     written = {m.text for m in canvas.marks if isinstance(m, Text)}
-    if "." not in short and name:  # the surname alone, with dots where even that is too long
-        assert any(m.startswith("Константинополь") and m.endswith("...") for m in written)
-        assert set(canvas.shortened) == {name, short}
-        return
     assert (short in written) == bool(short)
-    assert not canvas.shortened
+    assert canvas.shortened == ({name: short} if "..." in short else {})
     (mark,) = [m for m in canvas.marks if isinstance(m, Text) and m.text == short] or [None]
     width = letter(plain(short), 2.5).width
-    assert not name or 0.7 <= mark.wide <= min(1.0, 21.6 / width + 1e-9)
+    assert not name or 0.5 <= mark.wide <= min(1.0, 21.6 / width + 1e-9)
     assert not name or mark.wide > min(1.0, 21.6 / width) - 0.05  # no narrower than it has to be
 
 
@@ -180,7 +178,7 @@ def test_check_tells_what_the_title_block_leaves_out(tmp_path, capsys):
 name = "own"
 title = "Own"
 [title_block]
-student = "Преображенский Ж. Щ."
+student = "Преображенский-Задунайский Ж. Щ."
 supervisor = "Ли И. И."
 [gear]
 teeth = [14, 28]
@@ -190,4 +188,14 @@ shift = "rule"
 ''', encoding="utf-8")
     assert run(["--lang", "en", "check", str(file)]) == 0
     assert capsys.readouterr().err == (
-        f'{file}: the title block has no room for all of "Преображенский Ж. Щ.": "Преображенский" stands there\n')
+        f'{file}: the title block has no room for all of "Преображенский-Задунайский Ж. Щ.": '
+        '"Преображенский-Зад... Ж.Щ." stands there\n')
+
+
+def test_a_designation_is_whole_or_not_there_and_the_letter_is_as_written():
+    """Д1 alone is no designation; У in Ukrainian is no Н."""
+    whole, none = catalogue.read("lugansk/shaper"), catalogue.read("tests/projects/pump.toml")
+    with words.on_paper("uk"):
+        assert composing.entries(Project(whole), 1) | {"designation": "ТММ.КП.01.00.000 Д1", "letter": "У"} == composing.entries(
+            Project(whole), 1)
+        assert composing.entries(Project(none), 1)["designation"] == ""

@@ -1,11 +1,15 @@
 """A whole group from a table: who has which task, what each student gets, what of it is handed in."""
 
+import csv
 import shutil
+import sys
+from datetime import time
 from pathlib import Path
 
+import openpyxl
 import pytest
 
-from tmm_sheets import catalogue
+from tmm_sheets import catalogue, csv_tables
 from tmm_sheets.__main__ import run
 from tmm_sheets.compare import group
 from tmm_sheets.compare.measured import measured_lengths
@@ -22,7 +26,9 @@ def read(folder, text, task=""):
 @pytest.mark.parametrize("text", [
     "student,group,task,variant\nA,G,3,2\n", "\ufeffВариант;ФИО;№;Группа;Задание\r\n2;A;1;G;3\r\n;;;;\r\n",
     "Прізвище\tГрупа\tЗавдання\nA\tG\tsixbar/3:2\n", "\n\nПІБ;група;варіант\n A ;G;3:2\n", "student,group,task\nA,G,3:2\n",
-    "студент;группа;задание\nA;G;sixbar/3:2".encode("cp1251"),
+    "студент;группа;задание\nA;G;sixbar/3:2".encode("cp1251"), "ПІБ студента;Номер группы;№ завдання;№ варіанта\nA;G;3;2\n",
+    "Студент;Группа студента;Задание;Вариант\nA;G;sixbar/3;2\n", "cтyдeнт;group;task;variant\nA;G;sixbar;3:2\n",
+    "student;group;task;variant\nA;G;sixbar/3:1;2\n",
 ])
 def test_tables_as_people_write_them(text, tmp_path):
     assert read(tmp_path, text) == [roster.Enrolled("A", "G", "sixbar/3:2", "A")]
@@ -32,7 +38,13 @@ def test_ciphers_and_files(tmp_path):
     (tmp_path / "own.toml").write_text("", encoding="utf-8")
     (one,) = read(tmp_path, "student;шифр\nЮ/Я;01-Т-27", "transport/diesel")
     assert (one.project, one.folder) == ("transport/diesel@01-Т-27", "Ю-Я")
-    assert read(tmp_path, "student;задание;вариант\nЮ/Я;diesel;01-Т-27") == [one]
+    for machine in ("diesel", "дизель", "Дизель", "transport/diesel"):
+        assert read(tmp_path, f"student;задание;вариант\nЮ/Я;{machine};01-Т-27") == [one]
+    assert one.renamed == "Ю/Я: the folder is called Ю-Я"
+    with pytest.raises(BadInput, match=r"task: lugansk/shaper has no variants"):
+        read(tmp_path, "student;task;variant\nA;lugansk/shaper;2")
+    with pytest.raises(BadInput, match=r'"куліса" may be several\n +sixbar/1, .* or sixbar/10'):
+        read(tmp_path, "student;task\nA;куліса")
     with pytest.raises(BadInput, match=r"group.csv:2: task: .*own.toml:1"):
         read(tmp_path, "student;task\nA;own.toml")
 
@@ -108,3 +120,33 @@ def test_families_of_a_department(tmp_path, monkeypatch):
     family = tmp_path / "department/family.toml"
     family.write_text(f'separator = ":"\n{family.read_text("utf-8")}', encoding="utf-8")
     assert read(tmp_path, "student;variant\nA;27", "department/pump")[0].project == "department/pump:27"
+
+
+def test_namesakes_and_names_that_windows_keeps(tmp_path):
+    found = read(tmp_path, "student;group;task\nA;G1;press\na;G2;press\nCON;G1;press\ncom1.x;G1;press\nConrad I.;G1;press\n")
+    assert [s.folder for s in found] == ["A (G1)", "a (G2)", "CON_", "com1_.x", "Conrad I"]
+    assert [s.renamed for s in found if s.renamed] == [f"{name}: the folder is called {folder}" for name, folder in (
+        ("CON", "CON_"), ("com1.x", "com1_.x"))]
+
+
+def test_a_spreadsheet_computes_nothing_of_what_is_written():
+    """DDE, sums and numbers of names: an apostrophe makes them texts; dashes and words stay."""
+    cells = ["=cmd|' /C calc'!A0", "+1", "@SUM(1)", "-2", " =1", "\t=1", "＝1", "–", "ТМ-21", "A+1"]
+    (row,) = csv.reader(csv_tables.written([cells]).decode("utf-8-sig").splitlines(), delimiter=";")
+    assert row == [*(f"'{cell}" for cell in cells[:7]), *cells[7:]]
+
+
+def test_a_workbook_is_read_as_the_table_that_it_shows(tmp_path, monkeypatch):
+    """Spreadsheets take 3:2 for a time of the day and 3 for 3.0."""
+    book = openpyxl.Workbook()
+    for row in (["ПІБ студента", "Група", "Завдання", "Варіант"], [], ["A", "G", 3.0, 2], ["B", None, time(3, 2), None]):
+        book.active.append(row)
+    path = tmp_path / "group.xlsx"
+    book.save(path)
+    assert [(s.student, s.group, s.project) for s in roster.read(path)] == [("A", "G", "sixbar/3:2"), ("B", "", "sixbar/3:2")]
+    path.write_bytes(path.read_bytes()[:300])
+    with pytest.raises(BadInput, match=r"group.xlsx: cannot be read as a workbook"):
+        roster.read(path)
+    monkeypatch.setitem(sys.modules, "openpyxl", None)
+    with pytest.raises(BadInput, match=r"(?s)openpyxl, which is not installed.*pip.* install "):
+        roster.read(path)

@@ -3,9 +3,10 @@
 import pytest
 
 from tests.project_files import EVEN, SLIDER, write
-from tmm_sheets import catalogue
+from tmm_sheets import api, catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput
+from tmm_sheets.output import roster
 from tmm_sheets.task import title_entries, user_folder
 from tmm_sheets.task.title_entries import Names, TitleEntry, given
 
@@ -62,6 +63,7 @@ def test_without_names_the_project_stays_itself(folder):
     ("[title_block]\n\nform = '2a'", "tmm-sheets.toml:3: title_block.form: only project files have it"),
     ("[title_block]\nstudnt = 'A'", 'did you mean "student"'),
     ("[title_block\n", "tmm-sheets.toml:1: not valid TOML"),
+    ("[title_block]\nstudent = 'Ким 😀'", "tmm-sheets.toml:2: title_block.student: the drawing font has no"),
 ])
 def test_bad_settings(folder, text, said):
     settings(folder, text)
@@ -81,5 +83,25 @@ def test_option_fills_the_title_block(folder, capsys):
     named = (folder / "out/lugansk-cam_flat/sheet1.svg").read_text("utf-8")
     assert run(["build", "lugansk/cam_flat", "--format", "svg"]) == 0
     assert (folder / "out/lugansk-cam_flat/sheet1.svg").read_text("utf-8") != named
-    assert run(["build", "lugansk/cam_flat", "--student", "\x1b"]) == 2
-    assert "control characters" in capsys.readouterr().err
+    capsys.readouterr()
+    for told, said in (("\x1b", "--student: the drawing font has no (U+001B)"), ("Я" * 8000, "200 characters at most, not of 8000")):
+        assert run(["build", "lugansk/cam_flat", "--student", told]) == 2
+        assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("door", ["option", "settings", "project", "roster", "python"])
+def test_every_door_composes_the_letters_of_a_name(folder, door):
+    """``Йванов``, И with a breve, as a Mac writes it; nothing of what cannot be seen is left."""
+    written, right = "И\u0306ванов\u200b\u00a0 И.", "Йванов И."
+    if door == "roster":
+        (folder / "group.csv").write_text(f"student;task\n{written};lugansk/cam_flat\n", encoding="utf-8")
+        assert roster.read(folder / "group.csv")[0].student == right
+        return
+    if door == "settings":
+        settings(folder, f"[title_block]\nstudent = '{written}'\n")
+    variant = catalogue.read(write(folder, SLIDER, EVEN, {"title_block": {"student": written}})) if door == "project" else catalogue.read(
+        "lugansk/cam_flat")
+    options = {"student": written} if door in ("option", "python") else {}
+    found = api.open("lugansk/cam_flat", **options).project.variant.title_block.student if door == "python" else of(
+        variant, options)["student"]
+    assert found == right

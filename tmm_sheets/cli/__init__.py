@@ -12,7 +12,6 @@ import click
 from tmm_sheets import spelling
 from tmm_sheets.localized_cli import Group, Option
 from tmm_sheets.version import __version__
-from tmm_sheets.words import tell
 
 NAMES = ("bench", "build", "check", "compare", "family", "list", "new", "note", "optimise", "page", "plot", "protocol", "record",
          "roster", "serve", "show", "solve", "stress", "watch", "why")  # fmt: skip
@@ -42,10 +41,10 @@ class Commands(Group):
         try:
             return super().resolve_command(ctx, args)
         except click.UsageError as e:
-            near = spelling.near(args[0], NAMES)
-            if not near:
+            hint = spelling.hint(args[0], NAMES)
+            if not hint:
                 raise
-            raise click.UsageError(f"{e.message.rstrip('.')}; " + tell("did you mean {near}?").format(near=near[0]), ctx) from None
+            raise click.UsageError(f"{e.message.rstrip('.')}; {hint}", ctx) from None
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})

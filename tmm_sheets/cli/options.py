@@ -37,8 +37,7 @@ def among(known: tuple[str, ...]) -> Callable[[click.Context, click.Parameter, s
         for part in parts:
             if part not in known:
                 said = tell("'{part}' is not one of {known}").format(part=part, known=', '.join(known))
-                near = spelling.near(part, known)
-                raise click.BadParameter(f"{said}; " + tell("did you mean {near}?").format(near=near[0]) if near else said)
+                raise click.BadParameter("; ".join(filter(None, (said, spelling.hint(part, known)))))
         return parts
 
     return split
@@ -67,8 +66,6 @@ TITLE = "tmm_sheets.title"
 
 def _enter(context: click.Context, parameter: click.Parameter, value: str | None) -> None:
     if value is not None:
-        if any(not (sign.isprintable() or sign.isspace()) for sign in value):
-            raise click.BadParameter(tell("expected a text for the title block, without control characters"))
         context.meta.setdefault(TITLE, {})[parameter.name] = value
 
 

@@ -47,6 +47,8 @@ def run(table: Path, task: str, corrected: bool, formats: tuple[str, ...], outpu
     done = {outcome.folder: outcome for outcome in came}
     written, hand = opening.put(output, rosters.lists(students, done, output), force)
     for s in students:
+        if s.renamed:
+            click.echo(s.renamed, err=True)
         for warning in done[s.folder].warnings if s.folder in done else ():
             click.echo(f"{s.student}: {warning}", err=True)
     for line in hand:

@@ -130,9 +130,7 @@ class _Reading:
 
     def _known(self, table: Mapping[str, Any], keys: tuple[str, ...], where: str) -> None:
         for key in table.keys() - set(keys):
-            near = spelling.near(key, keys)
-            hint = (tell('did you mean "{key}"?').format(key=near[0]) if near else
-                    tell("known are {keys}").format(keys=", ".join(keys)))
+            hint = spelling.hint(key, keys, written='"{}"') or tell("known are {keys}").format(keys=", ".join(keys))
             self._wrong(f"{where}{key}", tell("is not known here"), hint)
 
     def _number(self, table: Mapping[str, Any], key: str, where: str) -> float | None:

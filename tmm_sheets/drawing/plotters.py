@@ -78,8 +78,7 @@ def plotter(name: str = DEFAULT) -> Plotter:
     path = template(f"plotters/{name}.toml") if name in names() else Path(name)
     if not path.is_file():
         said = tell("no plotter '{name}': neither a file nor one of {names}").format(name=name, names=', '.join(names()))
-        near = spelling.near(name, names())
-        raise ValueError(f"{said}; " + tell("did you mean {near}?").format(near=near[0]) if near else said)
+        raise ValueError("; ".join(filter(None, (said, spelling.hint(name, names())))))
     try:
         return _plotter(path.stem, tomllib.loads(encodings.cleaned(encodings.decoded(files.content(path)).text)))
     except ValueError as e:

@@ -34,6 +34,8 @@ SIDE, ENDS = 1.0, 1.25  # least distance of lettering to the lines at its sides,
 BESIDE = 0.5  # the same of the printed words, whose cells are as wide as the standard wants them
 NAME_SIDE = 0.7  # of names, which are long for their cell
 NAME_WIDTH, NAME_HEIGHT = 23 - 2 * NAME_SIDE, 4.5
+NAME_NARROWER = (*NARROWER, 0.65, 0.6, 0.55, 0.5)
+"""The same of names: narrow letters are better than a person without initials."""
 
 FIELDS = frozenset({
     "designation", "title", "project", "letter", "mass", "scale", "developed", "checked", "technical_control", "supervisor",
@@ -134,8 +136,8 @@ def _fill(canvas: Canvas, place: Box, cells: list[Any], fields: Mapping[str, str
             _left(canvas, cell, _word(word or ("Head" if fields.get("supervisor") else "")))
         elif number == "11":
             name = fields.get(ROLES[role], "")
-            found += _lines(canvas, cell, {ROLES[role]: (short := short_name(name))}, names, side=NAME_SIDE)
-            if short == _surname(name.split()) != name:  # its initials are left out
+            found += _lines(canvas, cell, {ROLES[role]: (short := short_name(name))}, names, side=NAME_SIDE, narrower=NAME_NARROWER)
+            if DOTS in short and short != name:  # part of the surname is left out
                 canvas.shortened[name] = short
         elif number == "13":
             found += _lines(canvas, cell, {f"{ROLES[role]}_date": ""}, (CAPTION,))
@@ -155,18 +157,21 @@ PATRONYMIC = re.compile(r"(ич|вна|чна)$")
 
 
 def short_name(name: str) -> str:
-    """A name as long as its cell has room for with the least letters.
+    """A name as long as its cell has room for with the least letters; its initials always stay.
 
-    Where it is too long first with first names as initials and without spaces between these, then in narrower letters; only what
-    is too long even so has what GOST 2.104 asks for there, the surname alone.
+    Where it is too long first with first names as initials and without spaces between these, then in narrower letters, as narrow
+    ones as names may have at last; what is too long even so has dots in its surname.
     """
     words = name.split()
     surname = _surname(words)
     lettered = (re.sub(r"^\W+", "", word) for word in words if word != surname)  # "Pat" is P.
     initials = "".join(word if word.endswith(".") else f"{word[0]}." for word in lettered if word)
-    short = f"{surname} {initials}" if words[:1] == [surname] else f"{initials} {surname}"
-    ways = ((way, room) for room in (NAME_WIDTH, NAME_WIDTH / NARROWEST) for way in (name, short))
-    return next((way for way, room in ways if letter(plain(way), CAPTION).width <= room), surname)
+    kept = (surname, *(f"{surname[:k]}{DOTS}" for k in range(len(surname) - 1, 0, -1)))
+    shorter = [f"{part} {initials}".strip() if words[:1] == [surname] else f"{initials} {part}".strip() for part in kept]
+    widest = NAME_WIDTH / NAME_NARROWER[-1]
+    ways = (*((way, room) for room in (NAME_WIDTH, NAME_WIDTH / NARROWEST, widest) for way in (name, shorter[0])),
+            *((way, widest) for way in shorter))
+    return next((way for way, room in ways if letter(plain(way), CAPTION).width <= room), shorter[-1])
 
 
 def _surname(words: list[str]) -> str:
@@ -226,13 +231,13 @@ def _rise(laid: Lettering, size: float) -> float:
     return laid.ascent - size if laid.ascent > 1.1 * size + 1e-9 else 0.0
 
 
-def _fitted(parts: Mapping[str, str], sizes: tuple[float, ...], width: float, height: float) -> tuple[
+def _fitted(parts: Mapping[str, str], sizes: tuple[float, ...], width: float, height: float, narrower: tuple[float, ...]) -> tuple[
         float, float, dict[str, list[str]]]:
     """Letter height, how wide the letters are, and lines of each part: the largest size at which they fit, in up to four lines.
 
     What is too long for the smallest size, which must stay readable, has narrower letters, and ends in dots if that is not enough.
     """
-    for size, wide in (*((size, 1.0) for size in sizes), *((sizes[-1], wide) for wide in NARROWER)):
+    for size, wide in (*((size, 1.0) for size in sizes), *((sizes[-1], wide) for wide in narrower)):
         room = int((height / size - 1) / PITCH + 1 + 1e-9)  # lines
         wrapped = {name: _wrap(part, size, width / wide) if room > 1 else [part] if part else [] for name, part in parts.items()}
         laid = [letter(plain(line), size) for lines in wrapped.values() for line in lines]
@@ -264,13 +269,13 @@ def _cut(line: str, size: float, width: float, whole: bool) -> str:
 
 
 def _lines(canvas: Canvas, cell: Box, parts: Mapping[str, str], sizes: tuple[float, ...], angle: float = 0.0,
-           side: float = SIDE) -> list[FormField]:
+           side: float = SIDE, narrower: tuple[float, ...] = NARROWER) -> list[FormField]:
     """Lettering in the middle of a cell.
 
     ``parts`` are texts by name, each begins a line. Returns the lines; a part without text has an empty one below the others.
     """
     along, across = (cell.height, cell.width) if angle == pi / 2 else (cell.width, cell.height)
-    size, wide, wrapped = _fitted(parts, sizes, along - 2 * side, across - (2 * ENDS if across > 5 else 0.5))
+    size, wide, wrapped = _fitted(parts, sizes, along - 2 * side, across - (2 * ENDS if across > 5 else 0.5), narrower)
     canvas.shortened |= {parts[name]: " ".join(lines) for name, lines in wrapped.items()
                          if " ".join(lines) != " ".join(parts[name].split())}
     up = 1j * TURNS[angle]

@@ -81,10 +81,8 @@ def _moves(project: Project) -> bool:
 def _check_plan(record: Mapping[str, Any], plan: str) -> None:
     drawn = list(dict.fromkeys(frame["plan"] for sheet in record["sheets"] for frame in sheet["frames"]))
     if plan and plan not in drawn:
-        near = spelling.near(plan, drawn)
         raise BadInput(tell('no plan "{plan}" is drawn on these sheets').format(plan=plan),
-                       hint=tell("did you mean {near}?").format(near=near[0]) if near else
-                       tell("there are {names}").format(names=", ".join(drawn)))
+                       spelling.hint(plan, drawn) or tell("there are {names}").format(names=", ".join(drawn)))
 
 
 def _units(record: Mapping[str, Any]) -> dict[str, str]:

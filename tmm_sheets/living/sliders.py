@@ -45,7 +45,7 @@ def slider(variant: Variant, lines: Mapping[KeyPath, int], name: str) -> dict[st
     told |= {"shown": [unit, factor]} if unit else {}
     if isinstance(written, list):
         return told
-    own = float(number)
+    own = units.si(number)
 
     def taken(x: float) -> bool:
         """Whether the schema takes a number."""

@@ -268,7 +268,7 @@ def _title_page(r: Reader) -> dict[str, Any]:
         "kind": page["kind"],
         "course": page["course"],
         "theme": page["theme"].format(name=catalogues.of_file(r.project.variant.project.title)),
-        "designation": f"{catalogues.of_file(block.designation or '')} {page['code']}".strip(),
+        "designation": block.designated(page["code"]),
         "people": [page["student"], page["supervisor"], page["checker"]],
         "names": [block.student or "", block.supervisor or "", block.checker or ""],
         "place": page["place"],
@@ -284,7 +284,7 @@ def _frame(r: Reader) -> Frame:
     said = phrases.words(r.language)
     block = r.project.variant.title_block
     fields = {
-        "designation": f"{catalogues.of_file(block.designation or '')} {said['title_page']['code']}".strip(),
+        "designation": block.designated(said["title_page"]["code"]),
         "student": block.student or "",
         "checker": block.checker or "",
         "supervisor": block.supervisor or "",

@@ -255,7 +255,8 @@ class _Writer:
             for p in merged.paragraphs[1:]:
                 p._p.getparent().remove(p._p)
             merged.paragraphs[0].clear()
-            self._cell(merged, text, 14 if text == w.get("designation") else 8, sum(widths[c0:c1 + 1]), sum(heights[r0:r1 + 1]))
+            size = 14 if text and text == w.get("designation") else 8
+            self._cell(merged, text, size, sum(widths[c0:c1 + 1]), sum(heights[r0:r1 + 1]))
         empty = footer.paragraphs[0]
         empty._p.getparent().remove(empty._p)
         last = footer.add_paragraph()

@@ -6,10 +6,11 @@ that is written gives the very numbers that are told.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import floor, inf, isfinite, log10
+from math import floor, inf, isfinite, log10, nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -145,7 +146,7 @@ def varied(text: str, data: Mapping[str, Any]) -> Varied:
     low, dots, high = spread.partition("..")
     first, unit_of_low = units.split(low)
     last, unit = units.split(high)
-    a, b = float(first or "nan"), float(last or "nan")
+    a, b = (units.si(number) if number else nan for number in (first, last))
     if not (name and sign and dots and isfinite(b - a)) or unit_of_low not in ("", unit):
         raise BadInput(tell("{text}: expected a name and a range").format(text=text),
                        tell("for example {wish}").format(wish='"crank.length=70..90 mm"'))
@@ -191,6 +192,9 @@ def optimum(project: Project, changed: Callable[[Mapping[str, Any]], Project], v
         when nothing that was tried can be built and keeps the bounds.
     """
     some = tuple(varied(text, project.variant.data) for text in vary)
+    count = Counter(edited_text.key_path(v.name) for v in some)
+    if twice := [v.name for v in some if count[edited_text.key_path(v.name)] > 1]:
+        raise BadInput(tell("{name} is varied twice").format(name=twice[0]), tell("give one range for each number"))
     if not some:
         raise BadInput(tell("nothing is varied"), tell("for example {wish}").format(wish='--vary "crank.length=70..90 mm"'))
     known = _Known(project, positions)

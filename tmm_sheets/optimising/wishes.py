@@ -223,9 +223,7 @@ class _Reader:
                 return _over(part, lambda values: values[found])
         found = self._named(name)
         if not found:
-            near = spelling.near(name, [*self.known], 6, 0.5)
-            raise BadInput(tell('there is no result "{result}"').format(result=written),
-                           hint=tell("did you mean {near}?").format(near=either(near)) if near else "")
+            raise BadInput(tell('there is no result "{result}"').format(result=written), spelling.hint(name, self.known, 6, 0.5))
         self.names[found] = None
         return lambda values: values[found]
 

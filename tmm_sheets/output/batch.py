@@ -10,7 +10,6 @@ import multiprocessing
 import os
 import signal
 import threading
-import unicodedata
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -257,8 +256,7 @@ def chosen(projects: Sequence[str], families: Sequence[str], lists: Sequence[Ite
             found = [name for name in shipped if family == "all" or name == family or name.startswith(f"{family}/")]
             if not found:
                 known = dict.fromkeys(name.partition("/")[0] for name in shipped)
-                near = spelling.near(family, known)
-                hint = tell('did you mean "{near}"?').format(near=near[0]) if near else tell(
+                hint = spelling.hint(family, known, written='"{}"') or tell(
                     "shipped are {known}; all takes every project").format(known=", ".join(known))
                 raise BadInput(tell('no family "{family}"').format(family=family), hint=hint)
             names += found
@@ -275,31 +273,26 @@ def folders(names: Iterable[str]) -> dict[str, str]:
 
     Files whose paths do not tell them apart get numbers, in the order given. Shipped projects are called after themselves.
     """
-    files = [name for name in names if not catalogue.is_shipped(name)]
-    parts = {name: (*Path(os.path.abspath(name)).parts[1:-1], Path(name).stem) for name in files}
-    taken = Counter(_alike(folder_name(name)) for name in names if name not in parts)
-    depth = dict.fromkeys(files, 1)
+    own = [name for name in names if not catalogue.is_shipped(name)]
+    parts = {name: (*Path(os.path.abspath(name)).parts[1:-1], Path(name).stem) for name in own}
+    taken = Counter(files.alike(folder_name(name)) for name in names if name not in parts)
+    depth = dict.fromkeys(own, 1)
     while True:
-        found = {name: folder_name("-".join(parts[name][-depth[name]:])) for name in files}
-        count = taken + Counter(map(_alike, found.values()))
-        longer = [name for name in files if count[_alike(found[name])] > 1 and depth[name] < len(parts[name])]
+        found = {name: folder_name("-".join(parts[name][-depth[name]:])) for name in own}
+        count = taken + Counter(map(files.alike, found.values()))
+        longer = [name for name in own if count[files.alike(found[name])] > 1 and depth[name] < len(parts[name])]
         if not longer:
             break
         for name in longer:
             depth[name] += 1
-    alike = [name for name in files if count[_alike(found[name])] > 1]
+    alike = [name for name in own if count[files.alike(found[name])] > 1]
     found |= {name: folder_name(parts[name][-1]) for name in alike}
-    used = {*taken, *(_alike(found[name]) for name in files if name not in alike)}
+    used = {*taken, *(files.alike(found[name]) for name in own if name not in alike)}
     for name in alike:
         numbered = (found[name] + (f"-{n}" if n > 1 else "") for n in count_up(1))
-        found[name] = next(folder for folder in numbered if _alike(folder) not in used)
-        used.add(_alike(found[name]))
+        found[name] = next(folder for folder in numbered if files.alike(folder) not in used)
+        used.add(files.alike(found[name]))
     return found
-
-
-def _alike(folder: str) -> str:
-    """What names of folders have in common that some systems take for the same."""
-    return unicodedata.normalize("NFC", folder).casefold()
 
 
 def tasks(projects: Sequence[str]) -> list[Task]:

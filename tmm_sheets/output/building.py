@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
@@ -10,7 +9,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from tmm_sheets import words
+from tmm_sheets import files, words
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.explain import Stopwatch
 from tmm_sheets.output.build_store import (
@@ -110,7 +109,7 @@ class Built:
 
 def folder_name(stem: str) -> str:
     """Name of a folder for what is called so, see :attr:`~tmm_sheets.task.variant.Variant.stem`."""
-    return re.sub(r"[^\w@.+=-]+", "-", stem).strip("-.") or "project"
+    return files.name_of(stem) or "project"
 
 
 def _quiet(what: str) -> None:

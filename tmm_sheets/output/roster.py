@@ -1,44 +1,41 @@
-"""A table of students, CSV: who has which task; a header in any of the languages, columns in any order, ; or , or tabs between.
+"""A table of students, CSV or a workbook: who has which task; a header in any of the languages, columns in any order.
 
 A task is told as the manual tells it: a project (shipped, or a file), the task with a variant (``3`` and ``2``: ``sixbar/3:2``), a
-machine with a cipher (``diesel`` and ``01-Т-27``).
+machine with a cipher (``diesel`` or ``дизель`` and ``01-Т-27``).
 """
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
-from unicodedata import normalize
 
-from tmm_sheets import catalogue, encodings, files
-from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
+from tmm_sheets import catalogue, csv_tables, files, spelling
+from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.output.handouts import KINDS
 from tmm_sheets.task import families
-from tmm_sheets.words import both, tell
+from tmm_sheets.task.letters import title_text
+from tmm_sheets.words import both, either, every, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.output.batch import Outcome
 
 COLUMNS = {
-    "student": ("student", "name", "surname", "студент", "студентка", "фамилия", "прізвище", "фио", "ф.и.о.", "піб", "п.і.б."),
-    "group": ("group", "группа", "група"),
-    "task": ("task", "project", "machine", "задание", "завдання", "задача", "тема", "проект", "проєкт", "машина"),
+    "student": ("student", "name", "surname", "студент", "фамили", "прізвищ", "фио", "піб"),
+    "group": ("group", "груп"),
+    "task": ("task", "project", "machine", "задани", "завданн", "задач", "тема", "проект", "проєкт", "машин"),
     "variant": ("variant", "вариант", "варіант"),
     "cipher": ("cipher", "шифр"),
 }
-"""What the columns may be called."""
+"""How the first word begins by which the headings of the columns are known."""
 TABLE, PROJECTS = "made.csv", "projects.toml"
 """Files beside the folders of the students: what was made, and whose project is which."""
-LARGEST = 10_000_000
-"""Bytes of the largest table that is read."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +47,13 @@ class Enrolled:
     project: str
     folder: str
 
+    @property
+    def renamed(self) -> str:
+        """That the folder has another name than the student; empty where it has not."""
+        if files.alike(self.folder).startswith(files.alike(self.student.strip(" .-_"))) and not self.folder.endswith("_"):
+            return ""
+        return tell("{student}: the folder is called {folder}").format(student=self.student, folder=self.folder)
+
 
 def read(path: Path, task: str = "") -> list[Enrolled]:
     """The students of a table, those without a task with ``task``.
@@ -60,22 +64,15 @@ def read(path: Path, task: str = "") -> list[Enrolled]:
         with every problem of the file.
     """
     file = str(path)
-    try:
-        text = encodings.decoded(files.content(path, LARGEST)).text
-    except OSError as e:
-        raise BadInput(Problem(tell("cannot be read: {why}").format(why=reason_of(e)), file,
-                               hint=tell("expected a table of students, CSV"))) from None
-    except encodings.NotText as e:
-        raise BadInput(Problem(str(e), file, e.line, hint=tell("save the table as CSV in UTF-8"))) from None
-    rows = _rows(text)
+    rows = csv_tables.rows(csv_tables.text_of(path, tell("expected a table of students, CSV")), file)
     first, head = next(rows, (1, []))
     columns = _columns(head, first, file, task)
-    found, problems, lines = list[Enrolled](), list[Problem](), dict[str, int]()
+    found, problems, lines = list[Enrolled](), list[Problem](), dict[tuple[str, str], int]()
     for line, cells in rows:
         row = {name: cells[at] if at < len(cells) else "" for name, at in columns.items()}
         try:
             one = _enrolled(row, path.parent, task)
-            key = normalize("NFC", one.folder).casefold()
+            key = files.alike(one.folder), files.alike(one.group)
             if key in lines:
                 raise _Wrong("student", tell("{name} stands in line {line} already").format(name=one.student, line=lines[key]),
                              tell("tell them apart by initials"))
@@ -87,7 +84,16 @@ def read(path: Path, task: str = "") -> list[Enrolled]:
         raise BadInput(problems)
     if not found:
         raise BadInput(Problem(tell("has no students"), file, first, hint=_example()))
-    return found
+    return _told_apart(found)
+
+
+def _told_apart(students: Sequence[Enrolled]) -> list[Enrolled]:
+    """Students of one name in several groups have the group in the names of their folders."""
+    groups = defaultdict[str, set[str]](set)
+    for s in students:
+        groups[files.alike(s.folder)].add(s.group)
+    return [replace(s, folder=files.name_of(f"{s.folder} ({s.group})", spaced=True)) if s.group and len(
+        groups[files.alike(s.folder)]) > 1 else s for s in students]
 
 
 class _Wrong(Exception):
@@ -96,23 +102,14 @@ class _Wrong(Exception):
         self.column, self.message, self.hint = column, message, hint
 
 
-def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
-    """Lines that say something, with their numbers."""
-    head = next((line for line in text.splitlines() if line.strip(" \t;,")), "")
-    sign = max(";\t,", key=head.count)
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=sign)
-    for cells in reader:
-        told = [" ".join(cell.split()) for cell in cells]
-        if any(told):
-            yield reader.line_num, told
-
-
 def _columns(head: list[str], line: int, file: str, task: str) -> dict[str, int]:
-    """Place of each column that the table has."""
-    named = [re.sub(r"[\s_]+", " ", cell).strip(" :").casefold() for cell in head]
+    """Place of each column that the table has; a heading of one word goes before one of several, as in "Группа студента"."""
+    named = [re.findall(r"[^\W\d_]+", cell.casefold().replace(".", "")) for cell in head]
+    kinds = [next(filter(None, map(_kind, words)), "") for words in named]
     found = {}
-    for name, words in COLUMNS.items():
-        places = [at for at, cell in enumerate(named) if cell in words]
+    for name in COLUMNS:
+        known = [at for at, kind in enumerate(kinds) if kind == name]
+        places = [at for at in known if len(named[at]) == 1] or known
         if len(places) > 1:
             said = tell("two columns for the same: {columns}").format(columns=both([head[at] for at in places]))
             raise BadInput(Problem(said, file, line, name))
@@ -127,13 +124,24 @@ def _columns(head: list[str], line: int, file: str, task: str) -> dict[str, int]
     return found
 
 
+def _kind(word: str) -> str:
+    """The column that a word is a heading of."""
+    word = spelling.latin(word)
+    return next((name for name, begins in COLUMNS.items() if word.startswith(tuple(map(spelling.latin, begins)))), "")
+
+
 def _example() -> str:
     return tell("for example: student;group;task, below it {row}").format(row="Шевченко Т. Г.;ТМ-21;sixbar/3:2")
 
 
 def _enrolled(row: Mapping[str, str], beside: Path, task: str) -> Enrolled:
-    name = row["student"]
-    folder = re.sub(r'[\\/:*?"<>|\x00-\x1f]+', "-", name).strip(" .-_")
+    texts = {}
+    for column in ("student", "group"):
+        try:
+            texts[column] = title_text(row.get(column, ""))
+        except ValueError as e:
+            raise _Wrong(column, str(e)) from None
+    folder = files.name_of(texts["student"], spaced=True)
     if not folder:
         raise _Wrong("student", tell("expected a name"))
     told = {key: row.get(key, "") for key in ("task", "variant", "cipher")}
@@ -144,26 +152,28 @@ def _enrolled(row: Mapping[str, str], beside: Path, task: str) -> Enrolled:
     except (BadInput, CannotBuild) as e:
         said, _, hint = str(e).partition("\n")
         raise _Wrong(column, said, hint.strip()) from None
-    return Enrolled(name, row.get("group", ""), project, folder)
+    return Enrolled(texts["student"], texts["group"], project, folder)
 
 
 def _project(told: Mapping[str, str], beside: Path, common: str) -> str:
-    """The project that a row means."""
-    task, variant, cipher = told["task"] or common, told["variant"], told["cipher"]
-    if not cipher and task and re.fullmatch(r"(?=.*\d)\d*-.*", variant) and not catalogue.is_shipped(variant):
-        variant, cipher = "", variant  # 01-Т-27: what a machine is chosen by, whatever the column is called
-    if cipher:
-        machine, sign, rest = cipher.rpartition("@")
-        machine = machine if sign else task.partition("@")[0]
-        if not machine:
-            raise _Wrong("cipher", tell("expected a machine beside the cipher: diesel, press, compressor or crusher"),
+    """The project that a row means: a task, a variant or cipher of one, or a variant that tells its task (``3:2``)."""
+    task, column = told["task"] or common, "cipher" if told["cipher"] else "variant"
+    machine, sign, own = ("", "", told["variant"]) if column == "variant" else told["cipher"].rpartition("@")
+    if own and ("/" in own or re.fullmatch(r"\d+:\d+", own)):
+        return own if "/" in own else f"sixbar/{own}"
+    if own:
+        called = machine if sign else re.split("[:@]", task)[0]
+        if not called and own.isdecimal():
+            raise _Wrong("variant", tell("expected a task beside the variant, such as 3"),
+                         tell("or one task for all: --task PROJECT"))
+        if not called:
+            raise _Wrong(column, tell("expected a machine beside the cipher: diesel, press, compressor or crusher"),
                          tell("in a column task, or for all --task transport/diesel"))
-        return _of_family(machine if "/" in machine else f"transport/{machine}", rest)
-    if variant and (not task or catalogue.is_shipped(variant)):
-        return variant if "/" in variant else f"sixbar/{variant}"
-    if variant:
-        machine = re.split("[:@]", task)[0]
-        return _of_family(machine if "/" in machine else f"sixbar/{machine}", variant)
+        machine = _machine(called, varied=True)
+        family = families.of(machine)
+        if family is None:
+            raise _Wrong("task", tell("{machine} has no variants").format(machine=called))
+        return f"{machine}{family.rules.separator}{own}"
     if not task:
         raise _Wrong("task", tell("expected a task, such as sixbar/3:2"))
     if re.fullmatch(r"\d+:\d+", task):
@@ -171,13 +181,34 @@ def _project(told: Mapping[str, str], beside: Path, common: str) -> str:
     with suppress(OSError, ValueError):
         if not catalogue.is_shipped(task) and (beside / task).is_file():
             return str(beside / task)
-    return task
+    return _machine(task, varied=False)
 
 
-def _of_family(machine: str, cipher: str) -> str:
-    """The project of a machine and a cipher, or of a task and a variant, as its family writes it."""
-    family = families.of(machine)
-    return f"{machine}{'@' if family is None else family.rules.separator}{cipher}"
+def _machine(called: str, varied: bool) -> str:
+    """The project, or the machine of a family that has variants (``varied``), of what a table calls it; itself where none is.
+
+    It is called by its name, with or without its family, or by a word of its title in any language.
+    """
+    if called.endswith(catalogue.SUFFIX) or (catalogue.is_shipped(called) if not varied else families.of(called) is not None):
+        return called
+    word = called.casefold()
+    by_name, by_title = dict[str, None](), dict[str, None]()
+    for e in catalogue.entries():
+        machine = _of_family(e.name)
+        if machine or not varied:
+            name, titles = machine or e.name, [title.casefold() for title in every(e.title)]
+            by_name |= {name: None} if word == name.rpartition("/")[2].casefold() else {}
+            by_title |= {name: None} if any(word in (title, *re.split(r"[^\w-]+", title)) for title in titles) else {}
+    meant = list(by_name or by_title)
+    if len(meant) > 1:
+        raise _Wrong("task", tell('"{task}" may be several').format(task=called), either(meant))
+    return meant[0] if meant else called
+
+
+def _of_family(name: str) -> str:
+    """The machine of a project's name, without its variant or cipher; empty where it is of no family."""
+    family = families.of(name)
+    return "" if family is None else name.partition(family.rules.separator)[0]
 
 
 # --- what was made ----------------------------------------------------------------------------------------------------------
@@ -207,11 +238,9 @@ def lists(students: Sequence[Enrolled], done: Mapping[str, Outcome], folder: Pat
 
     Paths of project files are as seen from the folder of both: it may be moved, or put on another machine, with what it is about.
     """
-    out = io.StringIO()
-    csv.writer(out, delimiter=";", lineterminator="\r\n").writerows(_table(students, done))
     lines = [f"{_quoted(s.folder)} = {_quoted(s.project if catalogue.is_shipped(s.project) else _from(folder, s.project))}\n"
              for s in students]
-    return {TABLE: ("\ufeff" + out.getvalue()).encode(), PROJECTS: "".join(lines).encode()}
+    return {TABLE: csv_tables.written(_table(students, done)), PROJECTS: "".join(lines).encode()}
 
 
 def _from(folder: Path, project: str) -> str:

@@ -17,7 +17,7 @@ from tmm_sheets.project import LINKAGE
 from tmm_sheets.record.recording import book_of, unit
 from tmm_sheets.record.results_map import leaves
 from tmm_sheets.record.step_index import StepIndex, chain
-from tmm_sheets.words import either, marked, tell, tell_n
+from tmm_sheets.words import marked, tell, tell_n
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -73,16 +73,13 @@ def _no_part(project: Project, result: str, part: str) -> BadInput:
         known = [name for name, _ in leaves(results.told(project, None, refused={}))]
     except CannotBuild:
         known = []
-    near = spelling.near(result, (*known, *project.parts), 6)
-    hint = tell("did you mean {near}?").format(near=either(near)) if near else tell("it has {parts}").format(
-        parts=", ".join(project.parts))
+    hint = spelling.hint(result, (*known, *project.parts), 6) or tell("it has {parts}").format(parts=", ".join(project.parts))
     return BadInput(tell('{project} has no part "{part}"').format(project=project.variant.called, part=part), hint=hint)
 
 
 def _unknown(project: Project, result: str, known: Any) -> BadInput:
     name, names = project.variant.called, list(known)
-    near = spelling.near(result, names, 6, 0.5)
-    hint = tell("did you mean {near}?").format(near=either(near)) if near else tell("there are {names}").format(
+    hint = spelling.hint(result, names, 6, 0.5) or tell("there are {names}").format(
         names=", ".join(names[:12]) + (" ..." if len(names) > 12 else ""))
     return BadInput(tell('{project} has no result "{result}"').format(project=name, result=result), hint=hint)
 

@@ -14,7 +14,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.resources import template
 from tmm_sheets.sheets.views import VIEWS, ViewKind
-from tmm_sheets.spelling import near
+from tmm_sheets.spelling import hint
 from tmm_sheets.words import marked, tell
 
 
@@ -135,7 +135,7 @@ def _read(path: Path, name: str) -> Arrangement:
     for view in (*views, *offers):
         if view.draw not in VIEWS:
             raise BadInput(Problem(tell('there is no view "{draw}"').format(draw=view.draw), str(path), field="view.draw",
-                                   hint=tell('did you mean "{near}"?').format(near=near(view.draw, VIEWS, alike=0.0)[0])))
+                                   hint=hint(view.draw, VIEWS, alike=0.0, written='"{}"')))
     return found
 
 

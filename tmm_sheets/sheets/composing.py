@@ -115,10 +115,10 @@ def entries(project: Project, n: int) -> dict[str, str]:
     """What the title block of sheet ``n`` is filled in with, by the names of its fields."""
     written = project.variant.title_block
     return {
-        "designation": f"{of_file(written.designation)} {_code(project, n)}".strip(),
+        "designation": written.designated(_code(project, n)),
         "title": tr(arrangement(project.sheets[n - 1]).fitted(project.parts).title),
         "project": of_file(project.variant.project.title),
-        "letter": of_file(written.letter),
+        "letter": written.letter,
         "developed": written.student,
         "checked": written.checker,
         "supervisor": written.supervisor,

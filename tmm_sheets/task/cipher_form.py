@@ -11,11 +11,10 @@ from string import Template
 
 from pydantic import Field, field_validator
 
+from tmm_sheets.spelling import latin
 from tmm_sheets.task.schema import Table
 from tmm_sheets.words import marked
 
-ALIKE = str.maketrans("ABCEHKMOPTXY", "АВСЕНКМОРТХУ")
-"""Latin capitals that stand for the Cyrillic letters of the same shape."""
 MOST = 1000
 """Most ciphers that are gone through."""
 
@@ -57,8 +56,7 @@ def of_signs(signs: str) -> CipherTable:
 
 def _either(sign: str) -> str:
     """A letter of a cipher in either alphabet."""
-    same = "".join(latin for latin in "ABCEHKMOPTXY" if latin.translate(ALIKE) == sign)
-    return f"[{sign}{same}]" if same else re.escape(sign)
+    return f"[{sign}{latin(sign)}]" if latin(sign) != sign else re.escape(sign)
 
 
 @dataclass(frozen=True)
@@ -80,7 +78,7 @@ class CipherForm:
     @cached_property
     def _words(self) -> dict[str, str]:
         spelling = self.table.spelling
-        return {word.upper().translate(ALIKE): own for own in spelling.values() for word in (own, *spelling)
+        return {latin(word.upper()): own for own in spelling.values() for word in (own, *spelling)
                 if spelling.get(word, own) == own}
 
     def read(self, text: str) -> Cipher | None:
@@ -89,7 +87,7 @@ class CipherForm:
         return None if match is None else self._of(text.strip(), match.groupdict(default=""))
 
     def _of(self, text: str, found: Mapping[str, str]) -> Cipher:
-        parts = {name: self._words.get(part.upper().translate(ALIKE), part) for name, part in found.items()}
+        parts = {name: self._words.get(latin(part.upper()), part) for name, part in found.items()}
         figures = "".join(parts[name][-n:].ljust(n, self.table.padding) for name, n in self.table.digits)
         written = Template(self.table.written).substitute(parts) if self.table.written else text
         return Cipher(written, parts, dict(zip(self.letters, figures, strict=True)))

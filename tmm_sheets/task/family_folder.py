@@ -192,10 +192,9 @@ class FolderFamily:
         """The machine and the cipher of a name."""
         called, at, text = name.partition("/")[2].partition(self.rules.separator)
         if called not in self.rules.machine:
-            near = spelling.near(called, self.rules.machine)
+            hint = spelling.hint(called, self.rules.machine, written=f"{self.name}/{{}}")
             raise BadInput(tell('{family} has no machine "{machine}"').format(family=self.name, machine=called),
-                           hint=tell("did you mean {near}?").format(near=f"{self.name}/{near[0]}") if near else
-                           tell("known are {known}").format(known=", ".join(self.rules.machine)))
+                           hint or tell("known are {known}").format(known=", ".join(self.rules.machine)))
         if not at:
             raise BadInput(tell("{machine} needs a cipher").format(machine=name), hint=tell("write for example {name}").format(
                 name=self._named(called, self._example(called))))
@@ -321,9 +320,7 @@ class FolderFamily:
         except KeyError as e:
             key = str(e.args[0])
             line = next((n for n, one in enumerate(text.splitlines(), 1) if key in Template(one).get_identifiers()), None)
-            near = spelling.near(key, values)
-            known = tell("did you mean {near}?").format(near=near[0]) if near else tell("known are {known}").format(
-                known=", ".join(values))
+            known = spelling.hint(key, values) or tell("known are {known}").format(known=", ".join(values))
             raise BadInput(Problem(tell("nothing is called ${name}").format(name=key), str(path), line, hint=known)) from None
 
 

@@ -8,14 +8,13 @@ begins with ``unit`` has their units. A TOML table has ``digit``, ``[unit]`` and
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from string import Template
 
+from tmm_sheets import csv_tables
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.task import toml_file
 from tmm_sheets.words import tell
@@ -118,10 +117,7 @@ def _read(path: Path, digits: str, changed: int) -> tuple[Row, ...]:
 
 
 def _of_csv(text: str, file: str) -> Iterator[Row]:
-    head_line = next((line for line in text.splitlines() if line.strip(" \t;,") and not line.startswith("#")), "")
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(";\t,", key=head_line.count))
-    rows = [(reader.line_num, [cell.strip() for cell in cells]) for cells in reader
-            if any(map(str.strip, cells)) and not cells[0].startswith("#")]
+    rows = [*csv_tables.rows(text, file, "#")]
     if not rows:
         raise BadInput(Problem(tell("the table is empty"), file))
     (first, head), *rows = rows

@@ -10,7 +10,6 @@ from typing import NamedTuple
 from tmm_sheets.task import units
 
 _NAME = re.compile(r"([^\W\d_]+?)_?((?<=_)\w+|\d*)(′*)")
-_FRACTION = re.compile(r"(\d+)/(\d+)")
 
 
 class Printed(NamedTuple):
@@ -27,16 +26,11 @@ def printed(given: Mapping[str, str]) -> Iterator[Printed]:
     """The quantities of a table whose values :func:`split` takes."""
     for name, text in given.items():
         number, unit = split(text)
-        whole = _FRACTION.fullmatch(number)
-        value = int(whole[1]) / int(whole[2]) if whole else units.si(text)
-        yield Printed(name, symbol(name), number, units.common(unit), value)
+        yield Printed(name, symbol(name), number, units.common(unit), units.si(text))
 
 
 def split(text: str) -> tuple[str, str]:
     """Number, which may be a fraction such as 1/80, and unit of a value; both empty where it is none."""
-    whole = _FRACTION.fullmatch(text.strip())
-    if whole:
-        return (text.strip(), "") if int(whole[2]) else ("", "")
     number, unit = units.split(text)
     return (number, unit) if units.quantity_of(unit) else ("", "")
 

@@ -1,4 +1,4 @@
-"""Whether the words of a project file can be lettered; works on its raw tables, beside the reader of values."""
+"""Whether words can be lettered: texts of title blocks wherever they come from, and, in its raw tables, those of a project file."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 
 from tmm_sheets.encodings import cleaned
 from tmm_sheets.task.toml_lines import KeyPath
+from tmm_sheets.task.units import Refused
 from tmm_sheets.words import marked, tell
 
 Found = tuple[KeyPath, str, str]
@@ -16,6 +17,8 @@ Found = tuple[KeyPath, str, str]
 
 _USUAL = re.compile(r"[ -~А-яЁё°–—№«»]*")
 _NOT_DRAWN = {("project", "name"), ("project", "variant")}
+LONGEST = 200
+"""Characters of the longest text of a title block: no cell has room for more."""
 _HINT = marked("it has those of Russian and other Cyrillic alphabets, Latin ones with all accents of Europe, and Greek")
 
 
@@ -28,15 +31,37 @@ def freed(value: Any) -> Any:
     return {k: freed(v) for k, v in value.items()} if isinstance(value, dict) else value
 
 
-def check_letters(data: dict[str, Any]) -> Iterator[Found]:
-    """Every text and key with a letter the drawing font lacks."""
-    for path, text in _texts(data, ()):
-        if path not in _NOT_DRAWN and not _USUAL.fullmatch(text):
-            from tmm_sheets.drawing.lettering import lacking
+def title_text(text: str) -> str:
+    """A text for the title block on one line, its letters composed (NFC), without invisible signs.
 
-            lacks = lacking(text)
-            if lacks:
-                yield path, tell("the drawing font has no {letters}").format(letters=', '.join(map(_told, lacks))), tell(_HINT)
+    Raises
+    ------
+    Refused
+        when it is too long, or has a letter that the drawing font lacks.
+    """
+    found = " ".join(cleaned(text).split())
+    if len(found) > LONGEST:
+        raise Refused(tell("expected a text of {most} characters at most, not of {n}").format(most=LONGEST, n=len(found)))
+    if lacks := _lacking(found):
+        raise Refused(f"{lacks}; {tell(_HINT)}")
+    return found
+
+
+def check_letters(data: dict[str, Any]) -> Iterator[Found]:
+    """Every text and key with a letter the drawing font lacks; texts of title blocks are read by :func:`title_text`."""
+    for path, text in _texts(data, ()):
+        if path not in _NOT_DRAWN and path[:1] != ("title_block",) and path != ("project", "title") and (lacks := _lacking(text)):
+            yield path, lacks, tell(_HINT)
+
+
+def _lacking(text: str) -> str:
+    """That the drawing font lacks some letters of a text; empty where it has them all."""
+    if _USUAL.fullmatch(text):
+        return ""
+    from tmm_sheets.drawing.lettering import lacking
+
+    lacks = lacking(text)
+    return tell("the drawing font has no {letters}").format(letters=", ".join(map(_told, lacks))) if lacks else ""
 
 
 def _told(char: str) -> str:

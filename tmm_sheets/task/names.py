@@ -14,7 +14,7 @@ from tmm_sheets import spelling
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.task.schema import CrankTable
 from tmm_sheets.task.toml_lines import KeyPath
-from tmm_sheets.words import marked, tell, tell_n
+from tmm_sheets.words import both, marked, tell, tell_n
 
 Found = tuple[KeyPath, str, str]
 """Key path, message, hint."""
@@ -110,6 +110,17 @@ class _Names:
         yield from self.input()
         yield from self.links()
         yield from self.uses()
+        yield from self.meshes()
+
+    def meshes(self) -> Iterator[Found]:
+        """Two wheels mesh once."""
+        seen: set[frozenset[str]] = set()
+        for path, mesh in _tables(_table(self.data, "train"), "mesh"):
+            wheels = [name for name in (mesh.get("sun"), mesh.get("ring"), mesh.get("planet")) if isinstance(name, str)]
+            if frozenset(wheels) in seen:
+                yield ("train", *path), tell("wheels {wheels} mesh already").format(wheels=both(wheels)), tell(
+                    "take one of the tables away, or give the other pair its own numbers")
+            seen.add(frozenset(wheels))
 
     @staticmethod
     def spelt(path: KeyPath, name: Any, what: str) -> Iterator[Found]:
@@ -122,8 +133,10 @@ class _Names:
         if not isinstance(name, str):
             return
         yield from self.spelt(path, name, "point")
-        if name in self.points | self.special:
-            yield path, tell('the point "{name}" is there already').format(name=name), tell("give it another name")
+        known = next((point for point in sorted(self.points | self.special) if spelling.latin(point) == spelling.latin(name)), None)
+        if known is not None:
+            yield path, tell('the point "{name}" is there already').format(name=name), (
+                spelling.other_letters(name, known) or tell("give it another name"))
         self.points.add(name)
         for link in links:
             self.on[link].add(name)
@@ -131,9 +144,9 @@ class _Names:
     def known(self, path: KeyPath, name: Any, among: set[str], refusal: str, **where: str) -> Iterator[Found]:
         if not isinstance(name, str) or name in among:
             return
-        near = spelling.near(name, sorted(among))
-        yield (path, tell(refusal).format(name=name, **where), tell('did you mean "{near}"?').format(near=near[0]) if near else
-               tell("known here are {known}").format(known=", ".join(sorted(among))) if among else tell("known here are none"))
+        hint = spelling.hint(name, sorted(among), written='"{}"')
+        yield (path, tell(refusal).format(name=name, **where), hint or (
+               tell("known here are {known}").format(known=", ".join(sorted(among))) if among else tell("known here are none")))
 
     def crank(self) -> Iterator[Found]:
         crank = _table(self.data, "crank")

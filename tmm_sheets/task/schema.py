@@ -47,6 +47,7 @@ from tmm_sheets.task.values import (
     Speed,
     Start,
     Teeth,
+    TitleText,
     Torque,
     TurnParts,
     Turns,
@@ -83,7 +84,7 @@ class HeadingTable(Table):
     """``[project]``: what the project is called and which sheets it has."""
 
     name: Name = Field(description=marked('name of the project, "family/name"'))
-    title: str = Field(description=marked("title as it stands on the sheets"))
+    title: TitleText = Field(description=marked("title as it stands on the sheets"))
     language: Language | None = None
     """language of the sheets; `ru` unless told here or by `--lang`"""
     variant: str = ""
@@ -99,22 +100,26 @@ class TitleBlockTable(Table):
 
     form: Literal["1", "2a"] = "1"
     """form of GOST 2.104: the whole block, or the small one for following sheets"""
-    designation: str = ""
+    designation: TitleText = ""
     """field 2; the code of the sheet is added to it (`Д1`, `Д2` ...)"""
-    institution: str = ""
+    institution: TitleText = ""
     """field 9, upper line"""
-    group: str = ""
+    group: TitleText = ""
     """field 9, lower line"""
-    student: str = ""
+    student: TitleText = ""
     """field 11: who developed it; also the author in the files"""
-    supervisor: str = ""
+    supervisor: TitleText = ""
     """field 11: the head of the project"""
-    checker: str = ""
+    checker: TitleText = ""
     """field 11: who checks it"""
-    letter: str = ""
+    letter: TitleText = ""
     """field 4: `У` for a study project"""
     first_sheet: Count = 1
     """running number of the first sheet"""
+
+    def designated(self, code: str) -> str:
+        """Designation of a sheet or of the note: the project's with their code, nothing where the project has none."""
+        return f"{self.designation} {code}" if self.designation else ""
 
 
 class PaperTable(Table):
@@ -290,7 +295,7 @@ class LinkTable(Table):
     """``[[link]]``: mass and moment of inertia of a link; links that are not listed have none."""
 
     name: Name = Field(description=marked("number of the link"))
-    title: str = ""
+    title: TitleText = ""
     """what the link is: crank, coupler, rocker"""
     mass: Mass = 0.0
     """of the whole link"""

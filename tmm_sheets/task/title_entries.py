@@ -17,6 +17,7 @@ from pydantic import ValidationError
 
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.task import toml_file, user_folder
+from tmm_sheets.task.letters import title_text
 from tmm_sheets.task.messages import said
 from tmm_sheets.task.schema import PaperTable, Table, TitleBlockTable
 from tmm_sheets.words import tell
@@ -134,10 +135,15 @@ def given(options: Mapping[str, str]) -> Names:
     Raises
     ------
     BadInput
-        when these cannot be read.
+        when these cannot be read, or an option is no text for a title block.
     """
-    path = user_file()
-    return Names({name: " ".join(text.split()) for name, text in options.items()}, of_file(path) if path is not None else {})
+    path, found = user_file(), dict[str, str]()
+    for name, text in options.items():
+        try:
+            found[name] = title_text(text)
+        except ValueError as e:
+            raise BadInput(Problem(str(e), field=f"--{name}")) from None
+    return Names(found, of_file(path) if path is not None else {})
 
 
 def of_file(path: Path) -> dict[str, TitleEntry]:
@@ -164,7 +170,7 @@ def of_file(path: Path) -> dict[str, TitleEntry]:
         hint = tell("settings have {known}").format(known=", ".join(FIELDS))
         raise BadInput(toml_file.problem(file, lines, ("title_block", name), tell("only project files have it"), hint)
                        for name in wrong)
-    found = {("title_block", name): " ".join(getattr(block, name).split()) for name in FIELDS}
+    found = {("title_block", name): getattr(block, name) for name in FIELDS}
     found |= {("paper", name): getattr(settings.paper, name) for name in settings.paper.model_fields_set}
     return {path[1]: TitleEntry(text, f"{file}:{lines.line(path)}") for path, text in found.items() if text}
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from tmm_sheets import encodings, files
+from tmm_sheets import encodings, files, spelling
 from tmm_sheets.errors import BadInput, Problem, reason_of
 from tmm_sheets.task.messages import of_parser
 from tmm_sheets.task.toml_lines import KeyPath, TomlLines, check_keys, scan
@@ -102,7 +102,10 @@ def syntax(message: str, text: str, file: str) -> Problem:
     message = re.sub(r" \(at .*\)", "", message)
     lines = text.splitlines()
     written = lines[line - 1].strip() if 0 < line <= len(lines) else ""
-    hint = (tell("the line is: {line}").format(line=written) if written else
+    key = written.strip("[]").partition("=")[0].strip()
+    hint = (tell("write {what}").format(what=f"{spelling.latin(key)} ({spelling.other_letters(key, spelling.latin(key))})")
+            if key and not key.isascii() and re.fullmatch(r"[\w.-]+", spelling.latin(key), re.ASCII) else
+            tell("the line is: {line}").format(line=written) if written else
             tell("the file ends too early: a quote or a bracket is not closed"))
     why = of_parser(message[:1].lower() + message[1:])
     said = (tell("not valid TOML, column {column}: {why}").format(column=match[2], why=why) if match else

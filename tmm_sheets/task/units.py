@@ -18,7 +18,7 @@ from tmm_sheets.words import marked, tell
 
 _NOT_THAT = marked("{expected}, not {given}; write for example {example}")
 _NOT_FINITE = marked("{expected}, not {given}; the number must be finite")
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)(?:[eE][+-]?[0-9]{1,3}(?![0-9]))?")
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+/0*[1-9][0-9]*(?=\s*$)|(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)(?:[eE][+-]?[0-9]{1,3}(?![0-9]))?)")
 _LONGEST = 60  # characters; an exact fraction of a longer text would only burn time
 
 
@@ -34,7 +34,7 @@ class Factor:
     pi: bool = False
 
     def si(self, number: str) -> float:
-        """SI value of a decimal number written in this unit."""
+        """SI value of a decimal number, or a fraction such as 1/20, written in this unit."""
         try:
             value = float(Fraction(number) * self.rational)
         except OverflowError:
@@ -116,7 +116,7 @@ QUANTITIES = (
 
 
 def split(value: Any) -> tuple[str, str]:
-    """Number and unit of a value as it is written; both empty where there is no number."""
+    """Number, which may be a fraction such as 1/80, and unit of a value as it is written; both empty where there is no number."""
     text = str(value).strip().replace("−", "-")
     match = None if isinstance(value, bool) else _NUMBER.match(text)
     return (match.group().replace(",", "."), text[match.end() :].strip()) if match else ("", "")
@@ -187,7 +187,7 @@ def read(value: Any, quantity: Quantity) -> tuple[float, float]:
     result = factor.si(number)
     if not math.isfinite(result):
         raise Refused(tell(_NOT_FINITE).format(expected=expected, given=repr(value)))
-    return result, float(number)
+    return result, NUMBER.units[""].si(number)
 
 
 def _about_unit(plain: str, written: str, quantity: Quantity) -> str:
@@ -199,9 +199,10 @@ def _about_unit(plain: str, written: str, quantity: Quantity) -> str:
     if others:
         return tell("{unit} is a unit of {other}; write for example {example}").format(
             unit=repr(written), other=tell(others[0]), example=_quoted(quantity))
-    near = spelling.near(plain, quantity.units)
+    as_long = [name for name in quantity.units if len(name) == len(plain)]  # half of it may be of another alphabet: мm, rad/с
+    near = spelling.hint(plain, as_long, alike=0.5, written="'{}'") or spelling.hint(plain, quantity.units, written="'{}'")
     if near:
-        return tell("unknown unit {unit}, did you mean {near}?").format(unit=repr(written), near=repr(near[0]))
+        return tell("unknown unit {unit}, {did_you_mean}").format(unit=repr(written), did_you_mean=near)
     known = ", ".join(u for u in quantity.units if u.isascii())
     return tell("unknown unit {unit}, known are {known}").format(unit=repr(written), known=known)
 

@@ -12,6 +12,7 @@ from pydantic import AfterValidator, BeforeValidator, WrapValidator
 
 from tmm_sheets import resources, spelling
 from tmm_sheets.task import given, units
+from tmm_sheets.task.letters import title_text
 from tmm_sheets.words import marked, tell
 
 LEAST, GREATEST = 1e-12, 1e12
@@ -225,6 +226,12 @@ def _through(value: Any) -> str | tuple[float, float]:
     raise ValueError(tell('expected the name of a point or two coordinates, for example ["0 m", "0.33 m"]'))
 
 
+def _title_text(text: str) -> str:
+    """Text."""
+    return title_text(text)
+
+
+TitleText = Annotated[str, AfterValidator(_title_text)]
 Name = Annotated[str, BeforeValidator(_name)]
 MemberName = Annotated[str, AfterValidator(_member), BeforeValidator(_name)]
 WheelName = Annotated[str, AfterValidator(_wheel), BeforeValidator(_name)]
@@ -330,5 +337,4 @@ ManualName = Annotated[str, AfterValidator(_manual)]
 
 def meant(word: str, known: list[str]) -> tuple[str, str]:
     """A hint at the word that was meant, empty when none is near; all words that are known."""
-    near = spelling.near(word, known)
-    return (tell('did you mean "{near}"?').format(near=near[0]) if near else "", ", ".join(known))
+    return spelling.hint(word, known, written='"{}"'), ", ".join(known)

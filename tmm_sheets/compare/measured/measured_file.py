@@ -9,7 +9,6 @@ is said. Ids are ASCII, for no code page to spoil.
 from __future__ import annotations
 
 import csv
-import io
 import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -19,7 +18,7 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from tmm_sheets import encodings, files, quoting, spelling
+from tmm_sheets import csv_tables, encodings, files, quoting, spelling
 from tmm_sheets.compare.measured import measured_units as units
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, plain
 from tmm_sheets.construction.scale import Scale
@@ -96,26 +95,25 @@ def template(project: str, found: Measurables, everything: bool = False) -> byte
     Only the main ones, unless ``everything`` is asked for, plan by plan and position by position. Cells are separated by
     semicolons, as where the comma is in numbers; where that is a point, by commas.
     """
-    out = io.StringIO()
-    rows = csv.writer(out, delimiter=";" if decimal_sign(reader()) == "," else ",", lineterminator="\r\n")
     asked = asked_for(found, everything)
-    rows.writerow([f"# {tell(OF_PROJECT).format(project=project)}"])
-    rows.writerow([tell("# Fill in the column “{column}”; leave empty what you have not measured. Lengths are mm of the drawing.")
+    rows = list[list[str]]()
+    rows.append([f"# {tell(OF_PROJECT).format(project=project)}"])
+    rows.append([tell("# Fill in the column “{column}”; leave empty what you have not measured. Lengths are mm of the drawing.")
                    .format(column=tell(COLUMNS["measured"]))])
-    rows.writerow([tell("# Angles of vectors are counted counter-clockwise from the x axis, 0° to 360°: ∠pb is that of the arrow "
+    rows.append([tell("# Angles of vectors are counted counter-clockwise from the x axis, 0° to 360°: ∠pb is that of the arrow "
                         "from p to b.")])
-    rows.writerow([tell("# Lines {lines}: scale factors of the sheets. If you drew to others, write yours.")
+    rows.append([tell("# Lines {lines}: scale factors of the sheets. If you drew to others, write yours.")
                    .format(lines=f"{FACTOR}/...")])
-    rows.writerow([tell(heading) for heading in COLUMNS.values()])
+    rows.append([tell(heading) for heading in COLUMNS.values()])
     used = {e.scale for e in asked if e.scale}
     for key, scale in found.scales.items():
         if key in used and units.latin(scale.unit) != "mm/mm":
             first = f"{FACTOR}/{plain(key)}"
-            rows.writerow([first, tell("scale factors"), "", scale.symbol, "", scale.unit, told(f"{scale.mu:.10g}")])
+            rows.append([first, tell("scale factors"), "", scale.symbol, "", scale.unit, told(f"{scale.mu:.10g}")])
     for (title, label), entries in groupby(asked, key=lambda e: (e.title, e.label)):
-        rows.writerow([f"# {title}, {tell('position {label}').format(label=label)}" if label else f"# {title}"])
-        rows.writerows([e.id, e.title, e.label, e.quantity, e.steps, units.said(e.unit), ""] for e in entries)
-    return b"\xef\xbb\xbf" + out.getvalue().encode()
+        rows.append([f"# {title}, {tell('position {label}').format(label=label)}" if label else f"# {title}"])
+        rows += [[e.id, e.title, e.label, e.quantity, e.steps, units.said(e.unit), ""] for e in entries]
+    return csv_tables.written(rows, ";" if decimal_sign(reader()) == "," else ",")
 
 
 def asked_for(found: Measurables, everything: bool = False) -> list[Measurable]:
@@ -413,9 +411,8 @@ def _factor(key: str, written: str, found: Measurables, filled: FilledTable, use
     known = {plain(scale): scale for scale in used}
     wanted = plain(key).partition("/")[2]
     if wanted not in known:
-        near = spelling.near(wanted, sorted(known))
         raise _Refused(tell("unknown scale factor {key}").format(key=key),
-                       tell("did you mean {near}?").format(near=f"{FACTOR}/{near[0]}") if near else "", "id")
+                       spelling.hint(wanted, sorted(known), written=f"{FACTOR}/{{}}"), "id")
     filled.factors[known[wanted]] = _like(_positive(written), found.scales[known[wanted]])
 
 
@@ -450,10 +447,7 @@ def _known(key: str, found: Measurables) -> str:
 def _entry(key: str, found: Measurables, filled: FilledTable, name: str, number: int) -> Measurable:
     known = _known(key, found)
     if not known:
-        near = spelling.near(key, found.entries, 2)
-        said = tell("did you mean {near} or {other}?") if len(near) > 1 else tell("did you mean {near}?")
-        hint = said.format(near=near[0], other=near[-1]) if near else ""
-        raise _Refused(tell("unknown quantity {key}").format(key=key), hint, "id")
+        raise _Refused(tell("unknown quantity {key}").format(key=key), spelling.hint(key, found.entries, 2), "id")
     if known != key:
         filled.notes.append(tell("{place}: {key} read as {known}").format(place=f"{name}:{number}", key=key, known=known))
     return found.entries[known]

@@ -114,7 +114,7 @@ def _place(r: Reader, path: str, value: Any, symbol: str, meaning: str) -> Itera
 def _row(r: Reader, path: str, value: Any, symbol: str, meaning: str, zero: bool = False) -> Row | None:
     """A row of the inputs; None for what is no number, for nothing, and for what has no name."""
     text, unit = units.split(value)
-    number = float(text or 0)
+    number = units.si(text)
     if not text or not (number or zero) or not meaning:
         return None
     shown: Text = (Symbol(letters(symbol)),) if symbol else ("–",)
