@@ -176,7 +176,7 @@ def test_a_drawing_is_judged(p, tmp_path):
     assert [f["step"] for f in wrong.start] == ["velocities/d"]
     assert str(wrong) == wrong.report.text
     assert "<iframe" in wrong._repr_html_()
-    with pytest.raises(tmm_sheets.BadInput, match="which sheet"):
+    with pytest.raises(tmm_sheets.BadInput, match="there is no such file"):
         p.compare("sheet.jpg")
 
 

@@ -329,10 +329,12 @@ class Opened:
 
     def compare(self, file: Path | str, sheet: int | None = None, *, kind: Kind | None = None, views: Path | None = None,
                 pencil: float = 0.25, reading: float = 0.5, read_numbers: bool = False) -> Findings:
-        """What a drawing has wrong: a table of measured numbers (.csv), a CAD drawing (.dxf), a photograph of sheet ``sheet``.
+        """What a drawing has wrong: a table of measured numbers (.csv), a CAD drawing (.dxf), a photograph.
 
         Parameters
         ----------
+        sheet
+            number of the sheet that it shows, where it is not to be found out.
         kind
             what the file is, where its name does not tell.
         views
@@ -345,7 +347,7 @@ class Opened:
         Raises
         ------
         BadInput
-            when the file cannot be read, or which sheet a photograph shows is not told.
+            when the file cannot be read.
         CannotBuild
             when the drawing cannot be judged.
         """
@@ -383,7 +385,7 @@ def compared(project: Project, kind: Kind, path: Path, sheet: int | None = None,
     Raises
     ------
     BadInput
-        when the file cannot be read, or which sheet a photograph shows is not told.
+        when the file cannot be read.
     CannotBuild
         when the drawing cannot be judged.
     """
@@ -397,8 +399,6 @@ def compared(project: Project, kind: Kind, path: Path, sheet: int | None = None,
         return cad_drawing.compare(project, sheet, path, views, pencil, say)
     from tmm_sheets.compare.photo import image
 
-    if sheet is None:
-        raise BadInput(tell("which sheet the photograph shows is not told"))
     return image.compare(project, sheet, path, views, pencil, say, read_numbers)
 
 

@@ -54,7 +54,7 @@ def test_a_group(store, tmp_path, capsys):
     roster = ["roster", str(table), "--format", "svg", "-o", "memory://bucket/w"]
     assert run(roster) == 0
     first = {name: store.modified(name) for name in store.find("/bucket/w/Петренко О. О")}
-    names = {build_store.RECORD, "sheet1.svg", "note.pdf", "page.html", "measured.csv"}
+    names = {build_store.RECORD, "tmm-sheets.toml", "sheet1.svg", "note.pdf", "page.html", "measured.csv"}
     assert {name.rpartition("/")[2] for name in first} == names
     store.pipe_file("/bucket/w/Петренко О. О/measured.csv", b"filled in")
     assert run(roster) == 0

@@ -15,6 +15,7 @@ from tmm_sheets.compare import group
 from tmm_sheets.compare.measured import measured_lengths
 from tmm_sheets.errors import BadInput, Stopped
 from tmm_sheets.output import batch, roster
+from tmm_sheets.task import title_entries
 
 
 def read(folder, text, task=""):
@@ -69,11 +70,11 @@ def test_a_group_is_made_and_handed_in(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     table = tmp_path / "group.csv"
     table.write_text("student;group;task\nШевченко;ТМ-21;lugansk/cam_flat\n", encoding="utf-8")
-    assert run(["roster", str(table), "-o", "works", "--format", "svg", "--jobs", "1"]) == 0
-    assert ["Шевченко", "ТМ-21", "lugansk/cam_flat", "1", "+", "+", "+"] in [
+    assert run(["roster", str(table), "-o", "works", "--format", "dxf,svg", "--jobs", "1"]) == 0
+    assert ["Шевченко", "ТМ-21", "lugansk/cam_flat", "2", "+", "+", "+"] in [
         line.split() for line in capsys.readouterr().out.splitlines()]
     folder = tmp_path / "works" / "Шевченко"
-    assert {"sheet1.svg", "note.pdf", "measured.csv", "page.html"} <= {path.name for path in folder.iterdir()}
+    assert {"sheet1.svg", "OFL.txt", "note.pdf", "measured.csv", "page.html"} <= {path.name for path in folder.iterdir()}
     with pytest.raises(BadInput, match="nothing to compare"):
         group._works(tmp_path / "works")  # nobody has filled anything in
     measured = folder / measured_lengths.NAME
@@ -81,11 +82,21 @@ def test_a_group_is_made_and_handed_in(tmp_path, monkeypatch, capsys):
     at = next(k for k, line in enumerate(lines) if line.endswith(","))
     lines[at] += "10"
     measured.write_text("\n".join(lines), encoding="utf-8")
-    assert group._works(tmp_path / "works") == {"Шевченко": [measured]}
+    assert group._works(tmp_path / "works")["Шевченко"].handed_in == [measured]
     assert run(["roster", str(table), "-o", "works", "--format", "svg", "--jobs", "1"]) == 0
     assert measured.read_text("utf-8") == "\n".join(lines)
     assert run(["compare", "press", "--group", "works", "-o", "reports"]) == 0
-    assert "1 of " in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert "1 of " in told
+    assert "not compared" not in told  # fonts, sheets and settings are no work of a student
+    monkeypatch.chdir(folder)
+    shutil.copy("sheet1.dxf", tmp_path / "drawn.dxf")
+    entries = title_entries.given({}).entries(catalogue.read("lugansk/cam_flat"))
+    assert [(entries[key].text, entries[key].where) for key in ("student", "group")] == [
+        ("Шевченко", "tmm-sheets.toml:5"), ("ТМ-21", "tmm-sheets.toml:4")]
+    monkeypatch.chdir(tmp_path)
+    assert run(["compare", "lugansk/cam_flat", "--dxf", "drawn.dxf", "-o", "own"]) == 0
+    assert ", 0 amber, 0 red; 0 extra" in capsys.readouterr().out  # whose sheet it is has no part in it
 
 
 def test_who_is_told_to_stop_says_how_to_go_on(tmp_path, monkeypatch, capsys):

@@ -59,8 +59,6 @@ def run(
         raise click.UsageError(tell("--all goes with --template"))
     if read_numbers and image is None:
         raise click.UsageError(tell("--read-numbers goes with --image FILE"))
-    if sheet is None and image is not None:
-        raise click.UsageError(tell("--image needs --sheet N: which sheet it shows"))
     _check_pages(pages)
     from tmm_sheets import files
     from tmm_sheets.progress import Progress

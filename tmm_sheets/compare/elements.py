@@ -29,6 +29,7 @@ from tmm_sheets.drawing.canvas import MarkGroup
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Provenance, Role, Text, View
 from tmm_sheets.drawing.text_boxes import text_box
+from tmm_sheets.drawing.title_block import who_cells
 from tmm_sheets.sheets.composed import Composed
 
 Kind = Literal["line", "arc", "circle", "curve", "text", "hatch", "fill"]
@@ -148,8 +149,11 @@ def _within(view: View, mark: int) -> bool:
 
 
 def elements(sheet: Composed) -> tuple[Element, ...]:
-    """The elements of a sheet in drawing order, labels last, numbered from 1; every mark belongs to exactly one."""
-    found = views(sheet)
+    """The elements of a sheet in drawing order, labels last, numbered from 1; every mark belongs to one.
+
+    Marks of no element are the texts that tell who drew the sheet: they are everybody's own.
+    """
+    found, own = views(sheet), who_cells(sheet.drawing.forms)
     of_mark = np.zeros(len(sheet.drawing.marks), np.int64)
     for n, view in enumerate(sheet.drawing.views):
         for first, end in view.spans:
@@ -158,6 +162,8 @@ def elements(sheet: Composed) -> tuple[Element, ...]:
     out: list[Element] = []
     for first, end, group in _groups(marks, sheet.groups):
         e = _element(len(out) + 1, found[of_mark[first]], marks[first:end], group)
+        if e.kind == "text" and not e.view.n and any(cell.contains(e.middle) for cell in own):
+            continue
         by = next((m.by for m in e.marks if m.by is not None and (m.by.step or m.by.name)), e.marks[0].by)
         out.append(replace(e, name=e.name or _called(by, sheet), by=by))
     return tuple(out)

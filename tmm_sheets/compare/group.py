@@ -2,8 +2,8 @@
 
 A folder in it, or a file that lies in it alone, is a student's; ``projects.toml`` in it says whose project is another one than that
 of the command: ``"Petrenko" = "sixbar/3:2"``; a path there is seen from the folder. What is compared how follows from the names:
-``.dxf`` drawings, ``.csv`` measured numbers, ``.jpg``, ``.png``, ``.pdf`` photographs, which say their sheet in their names
-(``sheet 2.jpg``). What the program itself put there (``roster``) and nobody has changed is not handed in.
+``.dxf`` drawings, ``.csv`` measured numbers, ``.jpg``, ``.png``, ``.pdf`` photographs; of which sheet they are may stand in their
+names (``sheet 2.jpg``). What the program itself put there (``roster``) and nobody has changed is not handed in, nor are settings.
 """
 
 from __future__ import annotations
@@ -15,13 +15,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 from unicodedata import normalize
 
 from tmm_sheets import files
 from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.finding_records import FindingRecord
-from tmm_sheets.compare.known_sheet import sheet_numbers
 from tmm_sheets.compare.marking import KINDS, MarkingScheme
 from tmm_sheets.compare.report import Kind, Report
 from tmm_sheets.compare.report_pages import page
@@ -30,6 +29,7 @@ from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.numbers import told
 from tmm_sheets.output.build_store import untouched
 from tmm_sheets.task import toml_file
+from tmm_sheets.task.title_entries import FILE as SETTINGS
 from tmm_sheets.words import tell, tell_n
 
 if TYPE_CHECKING:
@@ -60,12 +60,13 @@ class Judgement:
 
 @dataclass(frozen=True)
 class Student:
-    """A student's work: the project, what came of each file, and how many sheets the project has."""
+    """A student's work: the project, what came of each file, how many sheets the project has, and files that were made for it."""
 
     name: str
     project: str
     files: tuple[Judgement, ...]
     of_sheets: int = 0
+    made: tuple[str, ...] = ()
 
     @property
     def faults(self) -> dict[str, int]:
@@ -139,14 +140,14 @@ def compare(folder: Path, project: str, opened: Callable[[str], Project], judged
         return made[name]
 
     students = []
-    for name, paths in works.items():
+    for name, (paths, made_files) in works.items():
         own = _seen_from(folder, projects.get(name, project))
         files = []
         for path in paths:
             say(f"{name}: {path.name}")
             files.append(_judged(path, _within(folder, path), own, project_of, judged))
         count = len(project_of(own).variant.sheets) if any(f.report is not None for f in files) else 0
-        students.append(Student(name, own, tuple(files), count))
+        students.append(Student(name, own, tuple(files), count, tuple(_within(folder, path) for path in made_files)))
     return _report(folder, students, scheme)
 
 
@@ -164,20 +165,30 @@ def marked(report: Report, scheme: MarkingScheme) -> Report:
     return replace(report, text=f"{report.text}\n{line}", tree=tree, story=story)
 
 
-def _works(folder: Path) -> dict[str, list[Path]]:
+class Work(NamedTuple):
+    """Files that a student handed in, and those that were made for it and lie there as they were made."""
+
+    handed_in: list[Path]
+    made: list[Path]
+
+
+def _works(folder: Path) -> dict[str, Work]:
     """Files by student, both in the order of their names; a folder without any is that of a student who handed in nothing."""
     if not folder.is_dir():
         raise BadInput(Problem(tell("is no folder"), str(folder)))
-    found: dict[str, list[Path]] = {}
+    found: dict[str, Work] = {}
     for path in sorted(folder.rglob("*"), key=lambda path: [_alphabetically(part) for part in path.relative_to(folder).parts]):
         inside = path.relative_to(folder)
         if any(part.startswith((".", "__")) for part in inside.parts):
             continue  # what operating systems leave in folders and archives
         if path.is_dir() and len(inside.parts) == 1:
-            found.setdefault(path.name, [])
-        elif path.is_file() and not untouched(path) and (len(inside.parts) > 1 or path.suffix.lower() in COMPARED):
-            found.setdefault(inside.parts[0] if len(inside.parts) > 1 else path.stem, []).append(path)
-    if not any(path.suffix.lower() in COMPARED for paths in found.values() for path in paths):
+            found.setdefault(path.name, Work([], []))
+        elif path.is_file() and path.name != SETTINGS and (len(inside.parts) > 1 or path.suffix.lower() in COMPARED):
+            made = untouched(path)
+            if len(inside.parts) > 1 or not made:
+                work = found.setdefault(inside.parts[0] if len(inside.parts) > 1 else path.stem, Work([], []))
+                (work.made if made else work.handed_in).append(path)
+    if not any(path.suffix.lower() in COMPARED for work in found.values() for path in work.handed_in):
         raise BadInput(Problem(tell("has nothing to compare"), str(folder),
                                hint=tell("put each student's drawings (.dxf), measured numbers (.csv) and photographs (.jpg, .png, "
                                          ".pdf) into a folder of the student's name in it")))
@@ -235,10 +246,6 @@ def _judged(path: Path, file: str, name: str, opened: Callable[[str], Project], 
         if suffix not in COMPARED:
             raise BadInput(tell("such a file is not compared"), tell("save it as .dxf, .csv, .jpg, .png or .pdf"))
         kind: Kind = "dxf" if suffix in DRAWINGS else "measured" if suffix in NUMBERS else "image"
-        if kind == "image" and sheet is None:
-            if len(sheet_numbers(project, None)) > 1:
-                raise BadInput(tell("its name does not say which sheet it shows"), tell("call it, for instance, sheet 2.jpg"))
-            sheet = 1
         report = judge(kind, project, sheet, path)
     except (BadInput, CannotBuild) as e:
         return Judgement(file, {"unjudged": 1}, refused=re.sub(rf"^{re.escape(str(path))}:\s*", "", str(e), flags=re.MULTILINE))
@@ -277,7 +284,8 @@ def _report(folder: Path, students: Sequence[Student], scheme: MarkingScheme | N
     said = tell("{student}, {file}: {why}")
     refused = [said.format(student=s.name, file=f.file, why="; ".join(map(str.strip, f.refused.splitlines())))
                for s in students for f in s.files if f.refused]
-    refused += [tell("{student}: no file").format(student=s.name) for s in students if not s.files]
+    nothing, made = tell("{student}: no file"), tell("{student}: no file but those that were made: {files}")
+    refused += [(made if s.made else nothing).format(student=s.name, files=", ".join(s.made)) for s in students if not s.files]
     title = tell("Group: {folder}").format(folder=folder.resolve().name)
     about = tell_n("{n} student", "{n} students", len(students)).format(n=len(students))
     story = Story(title, (about,), (), tuple(tables), tuple(refused))
@@ -359,7 +367,7 @@ def _tree(students: Sequence[Student], scheme: MarkingScheme | None) -> dict[str
 
     return {
         "students": [{"student": s.name, "project": s.project, "handed_in": s.handed_in, "faults": s.faults,
-                      "mistakes": list(s.mistakes), **marked(s),
+                      "mistakes": list(s.mistakes), "made": list(s.made), **marked(s),
                       "files": [{"file": f.file, "faults": dict(f.faults), "mistakes": [m.told.said() for m in f.mistakes],
                                  "refused": f.refused or None} for f in s.files]} for s in students],
         "most_made": [{"mistake": m, "students": n} for m, n in _most_made(students)],

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
+from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, elements
+from tmm_sheets.drawing.marks import Points
+from tmm_sheets.drawing.title_block import who_cells
 from tmm_sheets.errors import BadInput
 from tmm_sheets.sheets.composed import Composed
 from tmm_sheets.sheets.sheet import ask_again, composed
@@ -16,6 +21,10 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
 
+CLEAR = 0.3
+"""mm off the lines of a cell that lettering in it stands."""
+
+
 @dataclass(frozen=True)
 class KnownSheet:
     """Sheet ``n`` (from 1) with its elements."""
@@ -23,6 +32,16 @@ class KnownSheet:
     n: int
     sheet: Composed = field(repr=False)
     elements: tuple[Element, ...] = field(repr=False)
+
+    @cached_property
+    def who(self) -> tuple[Box, ...]:
+        """Cells in which everybody has texts of their own, which are not compared."""
+        return who_cells(self.sheet.drawing.forms)
+
+    def tells_who(self, points: Sequence[complex] | Points) -> bool:
+        """Whether all points lie in one of them, off the lines round it."""
+        cell = next((cell for cell in self.who if cell.contains(points[0], -CLEAR)), None)
+        return cell is not None and all(cell.contains(point, -CLEAR) for point in points)
 
 
 def known_sheet(project: Project, n: int) -> KnownSheet:

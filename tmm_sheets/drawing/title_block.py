@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from math import pi
 from typing import TYPE_CHECKING, Any
@@ -47,6 +47,8 @@ ROLES = {
     "Approved": "approved",
 }  # fmt: skip
 """Names (field 11) by the role printed in field 10; the row without one is left to the department."""
+WHO = frozenset({"2", "9", "11", "12", "13"})
+"""Fields that tell who drew a sheet and under which designation; with them goes the role of the row that is the department's."""
 
 
 @cache
@@ -68,6 +70,17 @@ def block(form: str, paper: Paper = A1) -> Box:
         raise ValueError(f"title block form '{form}' is not in templates/title_blocks.json (it has {known})")
     w, h = _forms()[form]["size"]
     return Box(paper.frame.x1 - w, paper.frame.y0, paper.frame.x1, paper.frame.y0 + h)
+
+
+def who_cells(forms: Sequence[Form], paper: Paper = A1) -> tuple[Box, ...]:
+    """Cells of a sheet's forms that tell who drew it and under which designation; none where it has no title block."""
+    names = {field.name for form in forms if form.name == "title_block" for field in form.fields}
+    if not names:
+        return ()
+    code = "1" if "developed" in names else "2a"
+    place = block(code, paper)
+    cells = [cell for number, _, word, *cell in _forms()[code]["cells"] if number in WHO or (number, word) == ("10", "")]
+    return (paper.designation, *(Box(place.x0 + x0, place.y0 + y0, place.x0 + x1, place.y0 + y1) for x0, y0, x1, y1 in cells))
 
 
 def draw_frame(canvas: Canvas, fields: Mapping[str, str], form: str, sheet_number: int, sheet_count: int,

@@ -79,12 +79,13 @@ def _one(task: Task, order: Order, parent: Path) -> Outcome:
     try:
         variant = catalogue.read(project, order.corrected)
         warnings = tuple(variant.warnings)
-        variant = _names(task, order).filled(variant)
+        names = _names(task, order)
+        variant = names.filled(variant)
         folder = parent / (task.folder or folder_name(variant.stem))
         built = build(variant, order, order.outlet(folder))
         handed = dict[str, bool]()
         if task.student:
-            handed, said = handouts.write(built.opened, folder, order.force)
+            handed, said = handouts.write(built.opened, folder, order.force, names.options)
             warnings += said
     except Exception as e:
         return Outcome(project, told_of(e), warnings=warnings)

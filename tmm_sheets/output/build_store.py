@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from io import BytesIO
 from itertools import count
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from tmm_sheets import files
@@ -213,8 +214,10 @@ def of_hand(name: str, new: str) -> str:
 
 
 def keep(outlet: Outlet, record: BuildRecord, made: Mapping[str, bytes], made_from: Mapping[str, str], whole: str | None,
-         beside: Mapping[str, bytes] | None = None) -> None:
-    """Write files together with the record of them, and those that lie ``beside`` them without a record."""
-    known: dict[str, Any] = record.files | {name: (made_from[name], fingerprint(data)) for name, data in made.items()}
+         beside: Mapping[str, bytes] = MappingProxyType({})) -> None:
+    """Write files together with the record of them and of those that lie ``beside`` them, which are written where they are not."""
+    both = {**made, **beside}
+    known: dict[str, Any] = record.files | {name: (made_from.get(name, ""), fingerprint(data)) for name, data in both.items()}
     told = BuildRecord(known, record.whole if whole is None else whole)
-    outlet.write({**made, **(beside or {}), RECORD: told.data()})
+    missing = {name: data for name, data in beside.items() if outlet.read(name) is None}
+    outlet.write({**made, **missing, RECORD: told.data()})

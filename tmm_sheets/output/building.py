@@ -238,7 +238,7 @@ def _rendered(drawings: Mapping[int, Sequence[Drawing]], due: Sequence[Target], 
                 made[target.name] = writer.render_all(sheets, **settings) if together else \
                     writer.render(sheets[max(target.page - 1, 0)], **settings)
         if hasattr(writer, "companions"):
-            beside |= {name: data for name, data in writer.companions(**settings).items() if outlet.read(name) is None}
+            beside |= {name: data for name, data in writer.companions(**settings).items() if outlet.read(name) in (None, data)}
     return made, beside
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +10,7 @@ from tmm_sheets import words
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.output.build_store import current, outlet, put, record_of
 from tmm_sheets.program import fingerprint, program
+from tmm_sheets.task import title_entries
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -19,10 +20,15 @@ KINDS = ("note", "measured", "page")
 """What there is beside the sheets."""
 
 
-def write(project: Project, folder: Path, force: bool) -> tuple[dict[str, bool], tuple[str, ...]]:
-    """Write into the student's folder what can be made; which kinds are there now, and what is to be said of the others."""
-    made, said = dict[str, bool](), list[str]()
-    place = outlet(folder)
+def write(project: Project, folder: Path, force: bool, names: Mapping[str, str]) -> tuple[dict[str, bool], tuple[str, ...]]:
+    """Write into the student's folder what can be made; which kinds are there now, and what is to be said of the others.
+
+    ``names`` are those of the title blocks: as settings in the folder they are there for whatever is made in it later.
+    """
+    made, place = dict[str, bool](), outlet(folder)
+    said, table = list[str](), title_entries.table(names)
+    if force or not current(place, record_of(place), title_entries.FILE, fingerprint(table)):
+        said += put(place, {title_entries.FILE: table.encode()}, force, fingerprint(table))[1]
     for kind in KINDS:
         name, make = _MAKERS[kind]
         made_from = fingerprint(program(), words.paper(), words.reader(), project.variant.content, kind)

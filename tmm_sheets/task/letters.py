@@ -32,7 +32,9 @@ def freed(value: Any) -> Any:
 
 
 def title_text(text: str) -> str:
-    """A text for the title block on one line, its letters composed (NFC), without invisible signs.
+    """Text, 200 characters at most.
+
+    It is made one line, its letters composed (NFC), without signs that nobody sees.
 
     Raises
     ------

@@ -24,7 +24,6 @@ TURN = tuple(rect(CRANK, k * pi / 60) for k in range(120))
 PARTS = {"gear": "lugansk/shaper", "cam": "lugansk/shaper", "reducer": "transport/diesel@01-Т-27"}
 """Parts that stand alone, each with the shipped project whose table it has first."""
 KINDS = (1, 2, 3, 4, 5)
-NAMES = ("designation", "institution", "group", "student", "supervisor")
 _POINTS = "BDEFGHKLMNPQRSTUVW"
 """Letters for moving points; fixed ones are O1, O2 ..."""
 
@@ -211,9 +210,11 @@ def of_parts(parts: Iterable[str]) -> str:
 
 def whole(name: str, title: str, tables: str, entries: Mapping[str, str]) -> str:
     """A project file of these tables, with what stands in its title blocks."""
+    from tmm_sheets.task import title_entries
+
     said = tell("as it stands on the sheets")
     head = f'schema = 1\n\n[project]\nname = {_quoted(name)}\ntitle = {_quoted(title)}  # {said}\n'
-    return f"{_begin(name)}{head}\n{_title_block(entries)}\n{tables}"
+    return f"{_begin(name)}{head}\n{title_entries.table(entries)}\n{tables}"
 
 
 def copied(text: str, name: str, entries: Mapping[str, str]) -> str:
@@ -237,12 +238,6 @@ def _begin(name: str) -> str:
     file = f"{name}{catalogue.SUFFIX}"
     said = ((tell("does it assemble?"), "check"), (tell("how is it understood?"), "show"), (tell("the sheets"), "build"))
     return "".join(f"# {quoting.command(command, file)}    {what}\n" for what, command in said) + "\n"
-
-
-def _title_block(entries: Mapping[str, str]) -> str:
-    """The table, with empty keys as comments."""
-    lines = [f"{key} = {_quoted(entries[key])}" if entries.get(key) else f'#{key} = ""' for key in NAMES]
-    return "[title_block]\n" + "\n".join(lines) + "\n"
 
 
 def _quoted(text: str) -> str:

@@ -8,6 +8,7 @@ there stands for nobody and goes last, and so it is where a file was copied from
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,6 +26,8 @@ from tmm_sheets.words import tell
 if TYPE_CHECKING:
     from tmm_sheets.task.variant import Variant
 
+ASKED = ("designation", "institution", "group", "student", "supervisor")
+"""Keys of ``[title_block]`` that a new file or settings have as comments where they are empty."""
 FIELDS = ("student", "group", "supervisor", "checker", "institution", "designation", "letter")
 """Keys of ``[title_block]`` that settings may have."""
 PAPER = ("format", "orientation")
@@ -98,6 +101,12 @@ class Names:
         if (paper := self.paper(variant)) != variant.paper:
             update["paper"] = paper
         return variant.model_copy(update=update) if update else variant
+
+
+def table(entries: Mapping[str, str]) -> str:
+    """The table ``[title_block]`` with these texts, with empty keys as comments."""
+    lines = [f"{key} = {json.dumps(entries[key], ensure_ascii=False)}" if entries.get(key) else f'#{key} = ""' for key in ASKED]
+    return "[title_block]\n" + "\n".join(lines) + "\n"
 
 
 def is_blank(text: str) -> bool:

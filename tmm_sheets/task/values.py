@@ -226,12 +226,7 @@ def _through(value: Any) -> str | tuple[float, float]:
     raise ValueError(tell('expected the name of a point or two coordinates, for example ["0 m", "0.33 m"]'))
 
 
-def _title_text(text: str) -> str:
-    """Text."""
-    return title_text(text)
-
-
-TitleText = Annotated[str, AfterValidator(_title_text)]
+TitleText = Annotated[str, AfterValidator(title_text)]
 Name = Annotated[str, BeforeValidator(_name)]
 MemberName = Annotated[str, AfterValidator(_member), BeforeValidator(_name)]
 WheelName = Annotated[str, AfterValidator(_wheel), BeforeValidator(_name)]

@@ -105,6 +105,8 @@ def _examined(project: Project, sheet: int | None, path: Path, views: Path | Non
     laid = register(known, ink)
     given = view_places.read(views, views_of(laid.known.sheet)) if views is not None else ()
     space = laid.space.placed(laid.placing)
+    space = replace(space, writings=tuple(w for w in space.writings if not laid.known.tells_who([w.at])),
+                    strokes=tuple(s for s in space.strokes if not laid.known.tells_who(s.points)))
     say(tell("placing the views"))
     places = layout.find(laid.known.elements, space, [(p, laid.placing) for p in given], say, laid.views)
     made: list[Hypothesis] = []

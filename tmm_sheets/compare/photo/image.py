@@ -80,13 +80,36 @@ class ExaminedPicture:
 
 
 def compare(
-    project: Project, n: int, path: Path, views: Path | None = None, pencil: float = 0.25,
+    project: Project, n: int | None, path: Path, views: Path | None = None, pencil: float = 0.25,
     say: Callable[[str], None] = lambda _: None, read_numbers: bool = False,
 ) -> Report:
-    """Compare a photograph of sheet ``n`` with the exact sheet; see :func:`examine`."""
+    """Compare a photograph of sheet ``n``, or of the one that it shows, with the exact sheet; see :func:`examine`."""
+    n = sheet_of(project, path, say) if n is None else n
     e = examine(project, n, path, views, pencil, say, read_numbers)
     name = project.variant.project.name
     return image_report(name, n, path, e.found, e.findings, e.extra, pencil, e.notes, e.readings, e.built)
+
+
+def sheet_of(project: Project, path: Path, say: Callable[[str], None] = lambda _: None) -> int:
+    """Number of the sheet that a photograph shows, from 1.
+
+    Raises
+    ------
+    BadInput
+        When the file is missing or useless.
+    CannotBuild
+        When the picture has no frame, or is not plainly one of the sheets.
+    """
+    if len(project.variant.sheets) == 1:
+        return 1
+    picture = read(path)
+    matches = _matches(project, 1, rectify(picture, known_sheet(project, 1).elements, path, say, True), say)
+    second, best = sorted(matches, key=lambda k: matches[k])[-2:]
+    if matches[best] <= max(MATCH, matches[second] + CERTAIN):
+        said = tell("{file}: which sheet it shows cannot be seen: sheet {n} fits best, with {share} % of its lines")
+        raise CannotBuild(said.format(file=path, n=best, share=round(100 * matches[best])),
+                          tell("call it, for instance, sheet 2.jpg, or give --sheet N"))
+    return best
 
 
 def examine(
@@ -164,7 +187,7 @@ def examine(
         built = built_photo.built_otherwise(project, ours, findings, found.ink, found.hidden)
     if built:
         findings, extra = built_photo.as_built(findings, built, found, pencil)
-    extra = [x for x in extra if placed is None or placed.strange(x)]
+    extra = [x for x in extra if (placed is None or placed.strange(x)) and not ours.tells_who([x.middle])]
     readings = None
     if reader is not None:
         say(tell("reading the numbers"))
@@ -182,6 +205,17 @@ def _corrected(picture: Photograph, found: Rectified, known: Sequence[Element]) 
     return replace(found, ink=ink, map=better, level=noise_level(ink), match=match, uncertainty=hypot(PLACED, found.scatter))
 
 
+def _matches(project: Project, n: int, found: Rectified, say: Callable[[str], None]) -> dict[int, float]:
+    """Share of the lines of each sheet that are where they belong in a picture that was laid over sheet ``n``."""
+    matches = {n: found.match}
+    for k in range(1, len(project.variant.sheets) + 1):
+        if k != n:
+            say(tell("trying sheet {n}").format(n=k))
+            lines = as_lines([e for e in known_sheet(project, k).elements if e.length < LONGEST], most=2500)
+            matches[k] = rectification.refine(found.map, found.sides, found.ink, lines, found.level)[2]
+    return matches
+
+
 def _other_sheet(project: Project, n: int, found: Rectified, path: Path, say: Callable[[str], None]) -> None:
     """Refuse a picture that does not match when it shows another sheet of the project, or when its frame fits and its lines do not.
 
@@ -190,15 +224,9 @@ def _other_sheet(project: Project, n: int, found: Rectified, path: Path, say: Ca
     CannotBuild
         When either is so.
     """
-    best, share = n, found.match
-    for k in range(1, len(project.variant.sheets) + 1):
-        if k == n:
-            continue
-        say(tell("trying sheet {n}").format(n=k))
-        lines = as_lines([e for e in known_sheet(project, k).elements if e.length < LONGEST], most=2500)
-        _, _, match = rectification.refine(found.map, found.sides, found.ink, lines, found.level)
-        if match > share:
-            best, share = k, match
+    matches = _matches(project, n, found, say)
+    best = max(matches, key=lambda k: matches[k])
+    share = matches[best]
     project_name, matched = project.variant.called, round(100 * found.match)
     if best != n and share > max(MATCH, found.match + CERTAIN):
         said = tell("{file} does not show sheet {n} but sheet {best} of {project}: only {matched} % of the lines of sheet {n} "
