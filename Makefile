@@ -7,10 +7,11 @@ BIN := $(VENV)/bin
 OUT := out/$(subst /,-,$(PROJECT))
 PYTEST = $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
 SITE := .venv-site
+OLDEST := .venv-oldest
 SOURCES := $(shell find tmm_sheets templates variants -type f -not -name '*.pyc' 2>/dev/null)
 
 .DEFAULT_GOAL := sheets
-.PHONY: help sheets test trials lint types wheel-test gallery gallery-check note-check gold messages docs figures picture pictures film site clean distclean
+.PHONY: help sheets test trials lint types oldest note wheel-test gallery gallery-check note-check gold messages docs figures picture pictures film site clean distclean
 
 sheets: $(OUT)/sheet1.pdf  ## the sheets of PROJECT (default lugansk/shaper) in out/; this is what plain "make" does
 
@@ -28,6 +29,13 @@ lint: $(VENV)/.tested  ## style of the code (ruff)
 
 types: $(VENV)/.tested  ## types of the code (mypy)
 	$(BIN)/mypy
+
+oldest: $(OLDEST)/.made  ## the oldest versions that pyproject.toml allows, in an environment of their own, and the tests of what stands on them
+	$(OLDEST)/bin/python -m pytest -W ignore tests/backends tests/note/test_pages.py tests/page/test_serve.py tests/task \
+	    tests/output/test_roster.py tests/compare/test_cad_file.py tests/compare/test_photograph.py tests/test_cli.py
+
+note: $(VENV)/.installed  ## what the explanatory note needs (extra note), into the environment that is there
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[note]'
 
 wheel-test: $(VENV)/.tested  ## build the wheel, install it elsewhere, draw a project with it
 	PYTHON=$(PYTHON) bash tests/wheel_test.sh
@@ -73,11 +81,17 @@ $(SITE)/.made:
 	$(SITE)/bin/python -m pip install --quiet --disable-pip-version-check "mkdocs-material>=9.5,<10" "mkdocstrings-python>=1.10"
 	@touch $@
 
+$(OLDEST)/.made: pyproject.toml tests/oldest.py
+	$(PYTHON) -m venv --clear $(OLDEST)
+	$(PYTHON) -m tests.oldest > $(OLDEST)/oldest.txt
+	$(OLDEST)/bin/python -m pip install --quiet --disable-pip-version-check --constraint $(OLDEST)/oldest.txt --editable '.[test,frame]'
+	@touch $@
+
 clean:  ## remove what was made, keep the virtual environment
 	rm -rf out dist build .mypy_cache .ruff_cache .pytest_cache .hypothesis
 
 distclean: clean  ## remove the virtual environment as well
-	rm -rf $(VENV) $(SITE)
+	rm -rf $(VENV) $(SITE) $(OLDEST)
 
 help:  ## this list
 	@grep -hE '^[a-z-]+:.*  ## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## /\1\t/' | expand -t 14

@@ -182,3 +182,13 @@ def test_binary_rubbish(tmp_path):
     file.write_bytes(bytes(range(128)) * 3)
     with pytest.raises(BadInput, match="not a text file"):
         variant.read(file)
+
+
+def test_what_is_there_twice_is_told():
+    """Two wheels mesh once, on whichever side and carrier they are named; two points that look the same are one."""
+    train = (resources.variants().parent / "tests/projects/ferguson.toml").read_text(encoding="utf-8")
+    for again in ('sun = "3"\nplanet = "2"\ncarrier = "H"', 'sun = "2"\nplanet = "3"\n'):
+        (problem,) = problems(f"{train}\n[[train.mesh]]\n{again}\n")
+        assert (problem.field, "mesh already" in problem.message) == ("train.mesh[4]", True)
+    (problem, *_) = problems(edited('pin = "B"', 'pin = "А"'))
+    assert (problem.field, problem.hint) == ("crank.pin", "A: Latin there, Cyrillic here")

@@ -6,7 +6,9 @@ from tests.few import seldom
 from tests.project_files import SLIDER, write
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
+from tmm_sheets.errors import BadInput
 from tmm_sheets.spelling import near
+from tmm_sheets.task import variant
 
 RESULTS = ["flywheel.v", "flywheel.m", "flywheel.H", "flywheel.J_reduced", "flywheel.J_flywheel", "gear.z1"]
 
@@ -24,6 +26,23 @@ RESULTS = ["flywheel.v", "flywheel.m", "flywheel.H", "flywheel.J_reduced", "flyw
 ])  # fmt: skip
 def test_near(word, known, found):
     assert near(word, known, 3) == found
+
+
+@pytest.mark.parametrize(("old", "new", "said"), [
+    ('pivot = "A"', 'pivot = "А"', 'crank.pivot: unknown fixed point "А"\n    did you mean "A"? A: Latin there, Cyrillic here'),
+    ("[crank]", "[сrank]", ":23: not valid TOML, column 2: invalid initial character for a key part\n    write crank (c: Latin there"),
+    ('"0.08 m"', '"80 мm"', "unknown unit 'мm', did you mean 'мм'?"),
+    ('"1.2 1/s"', '"7.5 рад/c"', "did you mean 'рад/с'? с: Cyrillic there, Latin here"),
+    ('"clockwise"', '"сlockwise"', 'did you mean "clockwise"? c: Latin there, Cyrillic here'),
+    ('A = ["0', 'А = ["0', "write A (A: Latin there, Cyrillic here)"),
+])
+def test_letters_that_look_the_same(old, new, said):
+    """What cannot be seen is told by the alphabets."""
+    text = catalogue.read("lugansk/shaper").text
+    assert old in text
+    with pytest.raises(BadInput) as e:
+        variant.parse(text.replace(old, new, 1), "my.toml")
+    assert said in str(e.value)
 
 
 @pytest.mark.parametrize(("arguments", "hint"), [

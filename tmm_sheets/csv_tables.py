@@ -87,8 +87,8 @@ def _of_workbook(data: bytes, file: str) -> str:
     try:
         import openpyxl
     except ImportError:
-        raise BadInput(Problem(tell("a workbook is read by openpyxl, which is not installed"), file,
-                               hint=f"{quoting.install('xlsx')}; {tell('or save the table as CSV')}")) from None
+        hint = tell("{install}; or save the table as CSV").format(install=quoting.install("xlsx"))
+        raise BadInput(Problem(tell("a workbook is read by openpyxl, which is not installed"), file, hint=hint)) from None
     out = io.StringIO()
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as packed:

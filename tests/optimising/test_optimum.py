@@ -110,6 +110,7 @@ def test_what_is_no_range(text):
 
 @pytest.mark.parametrize(("vary", "wish", "most", "said"), [
     (["crank.length=70..90 mm"], "gear.eps_alpha", "x", "either"), ([], "gear.eps_alpha", "", "nothing is varied"),
+    (["crank.length=70..90 mm", "crank.length=1..2 m"], "gear.eps_alpha", "", "crank.length is varied twice"),
     (["crank.lenght=70..90 mm"], "gear.eps_alpha", "", "did you mean"),
     (["gear.module=70..90 kg"], "gear.eps_alpha", "", "such as that of 3.5 mm"),
     (["crank.length=70..90"], "gear.eps_alpha", "", "such as that of 0.08 m"),

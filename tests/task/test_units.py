@@ -173,3 +173,14 @@ def test_where_nothing_is_no_answer(key, value, said):
     with pytest.raises(BadInput) as e:
         read(SLIDER, EVEN, {key: value})
     assert said in str(e.value)
+
+
+@pytest.mark.parametrize(("text", "value"), [("1/20", 0.05), ("-3/4", -0.75), ("+1/8", 0.125), (" 1/3 ", 1 / 3)])
+def test_a_pure_number_may_be_a_fraction(text, value):
+    assert units.parse(text, units.NUMBER) == value
+
+
+@pytest.mark.parametrize("text", ["1/0", "1/20/2", "1/2 %", "1/"])
+def test_what_is_no_fraction(text):
+    with pytest.raises(units.Refused):
+        units.parse(text, units.NUMBER)
