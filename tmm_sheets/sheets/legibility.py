@@ -59,7 +59,7 @@ def velocities(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
     """The velocity plans are too small: the analysed one may be shown once more, enlarged, the others are not."""
     def longest(project: Project, view: ViewPlace) -> float:
         layout = kinematic_frames.velocities(project, _book(), view.box, view.options)
-        return float(layout.scale.mm(kinematic_frames.longest(project.study.velocities.plan, [i for i, _ in layout.shown])))
+        return layout.longest(project.study.velocities.plan)
 
     yield from below(project, n, view, Remark(VECTOR.what), VECTOR.least, longest, marked("number fewer positions"))
 

@@ -9,15 +9,17 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tmm_sheets.box import Box
-from tmm_sheets.construction.scale import Scale
+from tmm_sheets.construction.scale import Scale, coarser, finer, handy, reach
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
+from tmm_sheets.sheets.floors import LETTERED
 from tmm_sheets.sheets.frame import SHORTEST, PlanFrame, ScaleBook, extent, fit_frame, pick, raised, together
 from tmm_sheets.sheets.linkage import indicator, link_marks
-from tmm_sheets.words import marked, marked_n, tell, tell_n, tr
+from tmm_sheets.words import marked_n, tell, tell_n, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
@@ -30,14 +32,14 @@ MARGIN = 25.0
 """Room for letters beside a velocity plan, mm."""
 HEAD = 16.0
 """Room for its number and letters over and below it, mm."""
+FACTOR = 5.5
+"""The same for a scale factor of its own under its number, mm."""
 SMALLEST = 10.0
 """Size from which on the largest of the velocity plans can be read, mm."""
 LONGEST = 100.0
 """Longest vector of a velocity plan that is of use, mm: what room is left is for others."""
 SPARE = 20.0
 """Largest height between rows of velocity plans beside what they need, mm."""
-BEYOND = 10.0
-"""A velocity plan so many times as large as usual would leave nothing to see of the others."""
 SWING_ARROW = 20.0
 """Greatest radius of the arrow of angular velocity behind the pivot of a crank that only swings, without a circle round it, mm."""
 ACCELERATIONS = 9.0, 8.0, 9.0, 24.0
@@ -148,80 +150,129 @@ def plan_extent(plan: Plan, i: int) -> Box:
 
 @dataclass(frozen=True)
 class VelocityLayout:
-    """Velocity plans in rows: index and label of each, its extent, the common scale.
+    """Velocity plans in rows: index and label of each, its scale factor, (m/s)/mm, and its extent on paper, mm.
 
-    ``beyond`` are the positions whose plans can't be drawn beside the others, with how many times as large as usual they are;
-    ``every`` is 2, 3 ... where only every second, third ... of too many positions is shown.
+    ``scale`` is that of the analysed one; ``every`` is 2, 3 ... where only every second, third ... of too many positions is shown.
     """
 
     shown: list[tuple[int, str]]
+    mus: list[float]
     spans: list[Box]
     rows: int
     per_row: int
     inside: Box
     scale: Scale
-    beyond: list[tuple[int, float]]
     every: int
+
+    @property
+    def head(self) -> float:
+        """Room over and below each plan, mm."""
+        return _head(self.mus)
 
     def places(self) -> Iterator[tuple[tuple[int, str], Box, Box, float]]:
         """Index and label of each plan, its extent, its place, and the height left over there, mm; not all that is left."""
         rows = [slice(i, i + self.per_row) for i in range(0, len(self.shown), self.per_row)]
-        heights = [max(s.height for s in self.spans[row]) / self.scale.mu + HEAD for row in rows]
+        heights = [max(s.height for s in self.spans[row]) + self.head for row in rows]
         spare = min((self.inside.height - sum(heights)) / self.rows, SPARE)
         y = self.inside.y1
         for row, height in zip(rows, heights, strict=True):
-            widths = [s.width / self.scale.mu + MARGIN for s in self.spans[row]]
+            widths = [s.width + MARGIN for s in self.spans[row]]
             gap, x = (self.inside.width - sum(widths)) / len(widths), self.inside.x0
             for at, span, width in zip(self.shown[row], self.spans[row], widths, strict=True):
                 yield at, span, Box(x, y - height - spare, x + width + gap, y), spare
                 x += width + gap
             y -= height + spare
 
+    def others(self) -> dict[float, Scale]:
+        """Scale factors beside that of the analysed plan, each with a prime more: μ′_V, μ″_V."""
+        rest = [mu for mu in dict.fromkeys(self.mus) if mu != self.scale.mu]
+        return {mu: Scale(f"μ{'′' * n}_V", mu, self.scale.unit) for n, mu in enumerate(rest, 1)}
+
+    def longest(self, plan: Plan) -> float:
+        """The longest vector of all, mm."""
+        return max(longest(plan, [i]) / mu for (i, _), mu in zip(self.shown, self.mus, strict=True))
+
 
 def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str, Any]) -> VelocityLayout:
-    """Rows of velocity plans with one scale factor that fill the place; ``only`` = "force" shows the analysed one alone.
+    """Rows of velocity plans that fill the place; ``only`` = "force" shows the analysed one alone.
 
-    They stand in as many rows as make them largest.
+    They stand in as many rows as make them largest, with one scale factor as long as none comes out too small for its letters.
     """
-    cycle, k = project.cycle, project.force_index
+    k, plan = project.force_index, project.study.velocities.plan
     inside = box.inset(0, 2.0, 0, 20.0)
-    drawn, beyond = [(k, cycle.labels[k])], []
-    if options.get("only") != "force":
-        beyond = beyond_drawing(project)
-        drawn = [(i, label) for i, label in cycle.drawn if i not in dict(beyond)]
+    drawn = [(k, project.cycle.labels[k])] if options.get("only") == "force" else project.cycle.drawn
     wanted = project.variant.scales.get("velocities")
     for every in range(1, len(drawn) + 1):
         shown = [at for n, at in enumerate(drawn) if n % every == 0 or at[0] == k]
-        spans = [plan_extent(project.study.velocities.plan, i) for i, _ in shown]
-        readable = max(max(s.width, s.height) for s in spans) / SMALLEST
-        need, rows = RowChoice(spans).most_room(inside.width, inside.height)
-        if need <= readable or (wanted is not None and need < inf):
+        real = [plan_extent(plan, i) for i, _ in shown]
+        need, _ = RowChoice(real).most_room(inside.width, inside.height)
+        mus = list[float]()
+        if wanted is None:
+            need = max(need, longest(plan, [i for i, _ in shown]) / LONGEST)
+            mus = _factors(real, inside, need)
+        if mus or need <= _sizes(real).max() / SMALLEST or (wanted is not None and need < inf):
             break
     if not need < inf:
         raise CannotBuild(tell("the velocity plans have no room for their lettering"),
                           tell("make their place larger in templates/sheets"))
-    if wanted is None:
-        need = max(need, longest(project.study.velocities.plan, [i for i, _ in shown]) / LONGEST)
+    need = dict(zip([i for i, _ in shown], mus, strict=False)).get(k, need)
     scale = pick(project, canvas, "velocities", "μ_V", tr("(m/s)/mm"), need)
-    per_row = -(-len(shown) // rows)
-    return VelocityLayout(shown, spans, -(-len(shown) // per_row), per_row, inside, scale, beyond, every)
+    mus = mus or [scale.mu] * len(shown)
+    spans = _on_paper(real, mus)
+    per_row = -(-len(shown) // RowChoice(spans, _head(mus)).most_room(inside.width, inside.height)[1])
+    return VelocityLayout(shown, mus, spans, -(-len(shown) // per_row), per_row, inside, scale, every)
 
 
-def beyond_drawing(project: Project) -> list[tuple[int, float]]:
-    """Positions next to a dead point: their velocity plans are more than ``BEYOND`` times as large as usual, and how many times.
+def _factors(real: Sequence[Box], inside: Box, need: float) -> list[float]:
+    """Scale factors of plans of such extents, the coarsest of which is ``need`` or more, with which all can be lettered there.
 
-    Were the scale factor theirs, nothing would be seen of the others. What is usual is the median.
+    None where there are no such factors.
     """
-    plan = project.study.velocities.plan
-    sizes = {i: max(s.width, s.height) for i, s in ((i, plan_extent(plan, i)) for i, _ in project.cycle.drawn)}
-    usual = float(np.median(list(sizes.values())))
-    return [(i, size / usual) for i, size in sizes.items() if size > BEYOND * usual]
+    sizes, mu = _sizes(real), handy(need) if 0 < need < inf else inf
+    while sizes.max() / mu >= LETTERED.least:
+        mus = own_factors(sizes, mu)
+        if RowChoice(_on_paper(real, mus), _head(mus)).most_room(inside.width, inside.height)[0] <= 1 + 1e-9:
+            return mus if (sizes / mus)[sizes > 0].min() >= LETTERED.least * (1 - 1e-9) else []
+        mu = coarser(mu)
+    return []
+
+
+def own_factors(sizes: NDArray[np.float64], mu: float) -> list[float]:
+    """``mu``, and for plans of ``sizes`` too small for their letters with it a finer one in common, as often as there are any.
+
+    With it the smallest of them can be lettered, as long as the largest gets no larger than the largest of all.
+    """
+    mus = np.full(len(sizes), mu)
+    while (small := (sizes > NOTHING * sizes.max()) & (sizes / mus < LETTERED.least * (1 - 1e-9))).any():
+        now, own = mus[small].min(), sizes[small]
+        finer_one = max(reach("", "", own.min(), LETTERED.least).mu, handy(own.max() / sizes.max() * mu))
+        mus[small] = finer_one if finer_one < now else finer(now)
+    return [float(one) for one in mus]
+
+
+NOTHING = 1e-9
+"""Share of the largest plan below which one is nothing but rounding."""
+
+
+def _sizes(real: Sequence[Box]) -> NDArray[np.float64]:
+    """Larger sides of some rectangles."""
+    return np.array([max(s.width, s.height) for s in real])
+
+
+def _on_paper(real: Sequence[Box], mus: Sequence[float]) -> list[Box]:
+    return [Box(*(x / mu for x in s)) for s, mu in zip(real, mus, strict=True)]
+
+
+def _head(mus: Sequence[float]) -> float:
+    """Room over and below each plan with such scale factors, mm."""
+    return HEAD + (FACTOR if len(set(mus)) > 1 else 0.0)
 
 
 class RowChoice:
     """In how many rows plans of some extents may stand; what does not depend on the place is summed once."""
 
-    def __init__(self, spans: Sequence[Box]) -> None:
+    def __init__(self, spans: Sequence[Box], head: float = HEAD) -> None:
+        self._head = head
         self._ways = dict[int, tuple[int, dict[int, float], float, int]]()
         """By plans in a row: the rows asked for, the greatest width of rows by their plans, all heights, the rows there are."""
         for rows in range(1, len(spans) + 1):
@@ -235,16 +286,21 @@ class RowChoice:
 
     def most_room(self, width: float, height: float) -> tuple[float, int]:
         """Rows with which the plans come out largest, and the scale factor they need; infinite where lettering takes the place."""
-        return min((max(_ratio(high, height - HEAD * count), *(_ratio(real, width - MARGIN * n) for n, real in wide.items())), rows)
-                   for rows, wide, high, count in self._ways.values())
+        return min((max(_ratio(high, height - self._head * n), *(_ratio(real, width - MARGIN * k) for k, real in wide.items())),
+                    rows) for rows, wide, high, n in self._ways.values())
 
 
 def velocity_spans(project: Project, options: dict[str, Any]) -> tuple[list[Box], float]:
-    """Extents of the velocity plans to be drawn and their longest vector, in their unit; ``only`` = "force": the analysed one."""
-    beyond = [] if options.get("only") == "force" else [i for i, _ in beyond_drawing(project)]
-    shown = [project.force_index] if options.get("only") == "force" else [i for i, _ in project.cycle.drawn if i not in beyond]
+    """Extents of the velocity plans to be drawn and their longest vector, in the unit of the largest of them.
+
+    Those too small for their letters, were that as large as is of use, are enlarged; ``only`` = "force": the analysed one.
+    """
+    shown = [project.force_index] if options.get("only") == "force" else [i for i, _ in project.cycle.drawn]
     plan = project.study.velocities.plan
-    return [plan_extent(plan, i) for i in shown], longest(plan, shown)
+    real = [plan_extent(plan, i) for i in shown]
+    mu = longest(plan, shown) / LONGEST
+    shares = [one / mu for one in own_factors(_sizes(real), mu)]
+    return _on_paper(real, shares), max(longest(plan, [i]) / share for i, share in zip(shown, shares, strict=True))
 
 
 COLUMN = 12.5
@@ -305,9 +361,6 @@ def crowd(plan: Plan, i: int, mu: float) -> int:
 def left_out(project: Project, view: ViewPlace) -> Iterator[Remark]:
     """What a view leaves out of the velocity plans, and why, for the command line."""
     layout = velocities(project, SimpleNamespace(scales={}, chosen=set()), view.box, view.options)
-    for i, times in layout.beyond:
-        yield Remark(marked("position {label} is next to a dead point: its velocity plan is not drawn, it is {times:.3g} times "
-                            "as large as usual"), {"label": project.cycle.labels[i], "times": times})
     if layout.every > 1:
         count = len(project.cycle.drawn)
         yield Remark(marked_n("there is no room for {count} velocity plan: one in {every} is drawn",

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterator, Sequence
 from itertools import pairwise
-from math import ceil, degrees, inf, pi
+from math import ceil, degrees, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.scale import Scale, handy, times
@@ -30,7 +31,7 @@ from tmm_sheets.sheets.player import PlayerStage, play, stage
 from tmm_sheets.words import tr, tr_in
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Segment
+    from tmm_sheets.construction.plan import Plan, Segment
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.methods.linkage.cycle import Cycle
@@ -545,19 +546,24 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     many = len(layout.shown) > 1
     canvas.title(box, tr("Velocity polygons") if many else tr("Velocity polygon"), str(layout.scale))
     flat_crossings.warn(project, canvas, box, plan, (i for i, _ in layout.shown))
-    _left_out(project, canvas, box, layout)
+    if layout.every > 1:
+        canvas.note(box, tr("One velocity polygon of every {count} positions is drawn").format(count=layout.every))
+    others = layout.others()
+    canvas.scales |= {f"velocities{scale.symbol[1:-2]}": scale for scale in others.values()}
     tiny: dict[str, list[str]] = {}
     caption = tr("Position {label}")
     height = min(size_for([caption.format(label=label)], place.width, 3.5) for (_, label), _, place, _ in layout.places())
-    for (index, label), span, place, spare in layout.places():
-        middle = place.centre + 4.0j
+    for ((index, label), span, place, spare), mu in zip(layout.places(), layout.mus, strict=True):
+        foot, scale = place.y0 + spare / 2 + layout.head - kinematic_frames.HEAD + 2.0, others.get(mu, layout.scale)
+        middle = complex(place.centre.real, foot + 2.0 + (place.y1 - foot - spare / 2) / 2)
         canvas.of = f"velocity plan {label}"
         if many:
             canvas.begin(place, tr("Velocity polygon, position {label}").format(label=label))
-        s = stage(canvas, plan, index, PlanFrame(layout.scale, middle - layout.scale.mm(span.centre)))
+        s = stage(canvas, plan, index, PlanFrame(scale, middle - span.centre))
         for name in _draw_plan(s, "p", symbols_at=not many):
             tiny.setdefault(name, []).append(label)
-        canvas.text(complex(middle.real, place.y0 + spare / 2 + 2.0), caption.format(label=label), height, "centre")
+        said = [caption.format(label=label), *([str(scale)] if scale is not layout.scale else [])]
+        canvas.lines(complex(middle.real, foot), said, kinematic_frames.FACTOR, height, "centre")
     canvas.of = "kinematics.velocity_plans"
     if tiny:
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(
@@ -572,15 +578,6 @@ def _with_positions(tiny: dict[str, list[str]]) -> str:
     one, several = tr("{vectors} (position {at})"), tr("{vectors} (positions {at})")
     return "; ".join((several if len(at) > 1 else one).format(vectors=", ".join(names), at=", ".join(at))
                      for at, names in there.items())
-
-
-def _left_out(project: Project, canvas: Canvas, box: Box, layout: kinematic_frames.VelocityLayout) -> None:
-    """Notes on the plans that are not drawn."""
-    for i, ratio in layout.beyond:
-        said = tr("The velocity polygon of position {label} (next to a dead one) is not drawn: it is {times} the usual size")
-        canvas.note(box, said.format(label=project.cycle.labels[i], times=times(round(ratio))))
-    if layout.every > 1:
-        canvas.note(box, tr("One velocity polygon of every {count} positions is drawn").format(count=layout.every))
 
 
 def _draw_plan(s: PlayerStage, pole: str, symbols_at: bool = False) -> list[str]:
@@ -696,6 +693,12 @@ def second_accelerations(project: Project, canvas: Canvas, box: Box, options: di
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
 
 
+def factors_of(canvas: Canvas, plan: Plan) -> dict[int, float]:
+    """Scale factors of a plan by the positions it is drawn at, those it has first."""
+    return {plan.labels.index(frame.position) if frame.position else 0: frame.mu[1]
+            for frame in reversed(canvas.frames) if frame.plan == plan.name}
+
+
 SMALL = 30.0
 """Size of the analysed velocity plan among the others, mm, below which it is shown once more, enlarged."""
 ENLARGED = (2.0, 2.5, 4.0, 5.0, 10.0)
@@ -709,12 +712,10 @@ def enlarged_velocities_sizes(project: Project, canvas: Canvas, options: dict[st
     """
     plan, k = project.study.velocities.plan, project.force_index
     real = kinematic_frames.plan_extent(plan, k)
-    mu = canvas.scales["velocities"].mu if "velocities" in canvas.scales else inf
-    drawn = max(real.width, real.height) / mu
-    shown = [i for i, label in project.cycle.drawn if any(mark.of == f"velocity plan {label}" for mark in canvas.marks)]
-    if k not in shown or drawn < SHORTEST:
+    drawn_with = factors_of(canvas, plan)
+    if (mu := drawn_with.get(k)) is None or (drawn := max(real.width, real.height) / mu) < SHORTEST:
         return []
-    if drawn >= SMALL and kinematic_frames.longest(plan, shown) / mu >= VECTOR.least:
+    if drawn >= SMALL and max(kinematic_frames.longest(plan, [i]) / own for i, own in drawn_with.items()) >= VECTOR.least:
         return []
     around = kinematic_frames.MARGIN, kinematic_frames.HEAD + TITLED
     longest, sizes = max(real.width, real.height), list[tuple[float, float]]()
@@ -778,6 +779,9 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
                if np.ndim(w.value) and link in vel.reference]
     speeds = [*linear.items(), *turning]
     stacked = bool(options.get("stacked"))
+    mu = _factors(project, canvas)
+    if np.ptp(mu):  # what is constant is not so on paper
+        varying, constant = [*constant, *varying], []
     lengths = _measured_lengths(project, canvas, varying, [link.removeprefix("ω_") for link, _ in turning])
     width = box.width - 30.0
     lying = kinematic_frames.COLUMN * (max(len(lengths), len(speeds)) if stacked else len(lengths) + len(speeds)) > width
@@ -785,8 +789,7 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
     # Tables that lie down have the same columns.
     left, right = _table_places(box, len(speeds) if lying and lengths else len(lengths), len(speeds), stacked=stacked, folds=folds)
     if lengths:
-        mu = canvas.scales["velocities"].mu
-        said = [f"{_segment(seg.tail, seg.head)} = {fixed(float(value[0]) / mu, 1)}" for seg, value in constant]
+        said = [f"{_segment(seg.tail, seg.head)} = {fixed(float(value[0] / mu[0]), 1)}" for seg, value in constant]
         title = "; ".join([tr("Lengths of the segments, mm"), *said])
         _table_over_positions(project, canvas, left, title, lengths, 1, lying=lying, folds=folds)
     if speeds:
@@ -798,20 +801,24 @@ def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[st
 
 def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segment, Any]],
                       turning: list[str]) -> list[tuple[str, Any]]:
-    """Captions and lengths, mm, of the segments to be measured; none (NaN) of a plan that is not drawn.
+    """Captions and lengths, mm, of the segments to be measured.
 
     They are what the speeds come from: the vectors of the plans, and the segments that the links ``turning`` have there.
     """
     lengths = _lengths_on_rockers(project, canvas)
-    mu, vel = canvas.scales["velocities"].mu, project.study.velocities
+    mu, vel = _factors(project, canvas), project.study.velocities
     drawn = {_segment(seg.tail, seg.head): value / mu for seg, value in varying}
     for q, b in (vel.reference[link][2:] for link in turning):
         if _segment(q, b) not in drawn and _segment(b, q) not in drawn:
             drawn[_segment(q, b)] = np.abs(np.asarray(b.value) - np.asarray(q.value)) / mu
     lengths += [(name, v) for name, v in drawn.items() if not any(np.allclose(v, w) for _, w in lengths)]
-    for i, _ in kinematic_frames.beyond_drawing(project):
-        lengths = [(name, np.where((np.arange(len(v)) == i) & name.startswith("|"), np.nan, v)) for name, v in lengths]
     return lengths
+
+
+def _factors(project: Project, canvas: Canvas) -> NDArray[np.float64]:
+    """Scale factor of the velocity plan of each position of the cycle."""
+    drawn = factors_of(canvas, project.study.velocities.plan)
+    return np.array([drawn.get(i, canvas.scales["velocities"].mu) for i in range(len(project.cycle.labels))])
 
 
 def _segment(tail: Step, head: Step) -> str:
@@ -822,7 +829,7 @@ def _lengths_on_rockers(project: Project, canvas: Canvas) -> list[tuple[str, Any
     """Segments of rockers with a slot: the coincident point's velocity, the way to the block, velocities of carried hinges."""
     vel = project.study.velocities
     pos = vel.positions
-    mu_v, mu_l = canvas.scales["velocities"], canvas.scales["positions"]
+    mu_v, mu_l = _factors(project, canvas), canvas.scales["positions"]
     pole = vel.plan[str(vel.plan.pole)]
     lengths: list[tuple[str, Any]] = []
     hinges = {name for g in pos.mechanism.groups for name in g.outer}
@@ -830,10 +837,10 @@ def _lengths_on_rockers(project: Project, canvas: Canvas) -> list[tuple[str, Any
         if (j := g.kind.rocker(g)) is not None:
             p, q = g.outer
             coincident = vel.plan.length(pole, vel.coincident[on_link(p, j)])
-            lengths.append((f"|p{link_marks.indexed(on_link(p.lower(), j))}|", coincident.value / mu_v.mu))
+            lengths.append((f"|p{link_marks.indexed(on_link(p.lower(), j))}|", coincident.value / mu_v))
             lengths.append((f"{q}{p}", pos.plan.length(pos.points[q], pos.points[p]).value / mu_l.mu))
             carried = [x.name for x in pos.mechanism.points if x.link == j and x.name in hinges]
-            lengths += [(f"|{q.lower()}{link_marks.indexed(x.lower())}|", vel.plan.length(pole, vel.points[x]).value / mu_v.mu)
+            lengths += [(f"|{q.lower()}{link_marks.indexed(x.lower())}|", vel.plan.length(pole, vel.points[x]).value / mu_v)
                         for x in carried]
     return lengths
 
@@ -879,7 +886,7 @@ def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: s
     places = {name: decimals_for([size], decimals) if size > NOTHING * max(greatest.values()) else decimals
               for name, size in greatest.items()}
     cells = [[tr("No."), *(name for name, _ in columns)]]
-    cells += [[label, *("–" if np.isnan(v[i]) else fixed(float(v[i]), places[name]) for name, v in columns)]
+    cells += [[label, *(fixed(float(v[i]), places[name]) for name, v in columns)]
               for i, label in cycle.drawn]
     if lying:
         cells = [list(row) for row in zip(*cells, strict=True)]
