@@ -7,8 +7,10 @@ of a scheme its own lines enlarged, with the letters asked for there, which leav
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections import Counter
+from collections.abc import Callable, Collection, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -33,7 +35,9 @@ if TYPE_CHECKING:
 VIEW = "details.dense"
 NEAR = 2.0
 """Corners closer than this, mm, are shown enlarged."""
-MOST = 6
+WIDE, SEVERAL = 7.0, 3
+"""So many corners in a circle of this diameter, mm, have no room for their letters beside each other."""
+MOST = 8
 """So many vectors can be told apart in a detail."""
 ONE = 0.02
 """Corners closer than this are one, mm."""
@@ -49,7 +53,7 @@ HEAD = 16.0
 """Height of a detail's title and scale factor, mm."""
 LETTERS = 3.5
 """Least height of its letters, mm."""
-NAMES = ("I", "II", "III", "IV", "V", "VI")
+NAMES = ("I", "II", "III", "IV", "V", "VI", "VII", "VIII")
 ROLES = ("vector", "construction", "point", "link", "symbol")
 
 
@@ -135,8 +139,8 @@ def _nth(project: Project, canvas: Canvas, options: dict[str, Any]) -> Dense | N
     drawn = sum(part.draw == VIEW and bool(part.title) for part in canvas.parts)
     circles = [mark.centre for n in canvas.windows if isinstance(mark := canvas.marks[n], Arc)]
     plans = _polygons(project) if canvas.frames else {}
-    parts = {frame.view for frame in canvas.frames if frame.plan in plans}
-    left = [place for place in (*_crowds(canvas, parts), *_corners(canvas, plans, project.force_index if plans else 0))
+    whole = _whole(canvas, plans)
+    left = [place for place in (*_crowds(canvas, {frame.view for frame in whole}), *_corners(canvas, plans, whole))
             if not any(abs(place.centre - at) < 1e-6 for at in circles)]
     n = int(options.get("nth", 1)) - 1 - drawn
     return left[n] if n < len(left) else None
@@ -169,6 +173,7 @@ class Corner(Dense):
 
     plan: Plan
     frame: PlacedFrame
+    k: int
     vectors: tuple[Vector, ...]
     points: dict[str, complex]
     names: tuple[str, ...]
@@ -179,23 +184,27 @@ class Corner(Dense):
     away = 1 + 1j
 
     @classmethod
-    def of(cls, canvas: Canvas, plan: Plan, frame: PlacedFrame, vectors: tuple[Vector, ...], points: dict[str, complex],
+    def of(cls, canvas: Canvas, plan: Plan, frame: PlacedFrame, k: int, vectors: tuple[Vector, ...], points: dict[str, complex],
            names: tuple[str, ...]) -> Corner:
         """The corners of these names."""
-        z = np.array([points[name] for name in names])
+        z, scale = np.array([points[name] for name in names]), canvas.scales[plan.name]
         centre = complex(z.real.min() + z.real.max(), z.imag.min() + z.imag.max()) / 2
         reach = float(np.abs(z - centre).max())
-        return cls(frame.view, centre, reach, canvas.scales[plan.name], plan, frame, vectors, points, names)
+        return cls(frame.view, centre, reach, replace(scale, mu=frame.mu[1]), plan, frame, k, vectors, points, names)
+
+    @property
+    def crossed(self) -> int:
+        """How many vectors run through it."""
+        return sum(chord(self.centre, 2 * self.reach, self.points[a], self.points[b]) is not None for _, a, b in self.vectors)
 
     def others(self, project: Project, canvas: Canvas) -> list[int]:
-        """The other polygons as they stand on the sheet; what is placed later is a detail."""
-        plans, first = _polygons(project), {(frame.plan, frame.position): frame.view for frame in reversed(canvas.frames)}
-        return [view for (plan, _), view in first.items() if plan in plans and view != self.part]
+        """The other polygons as they stand on the sheet."""
+        return list({frame.view for frame in _whole(canvas, _polygons(project))} - {self.part})
 
     def draw(self, project: Project, canvas: Canvas, middle: complex, half: float) -> float:
         """Vectors and letters of the corners; the polygon keeps none that lies in the circle: it would need a leader out of it."""
         place = _placed(canvas, self.frame, self.centre, middle, self.times(half))
-        self._enlarged(PlayerStage(canvas, self.plan, project.force_index, canvas.frames[place], place), middle, half)
+        self._enlarged(PlayerStage(canvas, self.plan, self.k, canvas.frames[place], place), middle, half)
         radius = self._free_radius(canvas)
         inside = {v.sign for v in self.vectors if all(abs(self.points[name] - self.centre) < radius for name in (v.tail, v.head))}
         canvas.labels[:] = [label for label in canvas.labels if label.part != self.part or label.text not in inside
@@ -242,42 +251,57 @@ def _no_more_zero(canvas: Canvas, it: Corner) -> None:
     canvas.notes[:] = [note for note, was in zip(kept, canvas.notes, strict=True) if note.signs or not was.signs]
 
 
-def _corners(canvas: Canvas, polygons: Mapping[str, Polygon], k: int) -> Iterator[Corner]:
-    """Corners that cannot be read at a position, plan by plan as they stand on the sheet; of one plan the one with most points."""
-    first = {frame.plan: frame for frame in reversed(canvas.frames)}
-    for frame in sorted(first.values(), key=lambda frame: canvas.frames.index(frame)):
-        if frame.plan not in polygons:
-            continue
+def _whole(canvas: Canvas, polygons: Container[str]) -> list[PlacedFrame]:
+    """Polygons as they stand on the sheet, no details; of those of one plan at one position the largest."""
+    found = dict[tuple[str, str], PlacedFrame]()
+    for frame in canvas.frames:
+        if frame.plan in polygons and not frame.turn and canvas.parts[frame.view].draw != VIEW:
+            at = frame.plan, frame.position
+            found[at] = min(found.get(at, frame), frame, key=lambda frame: frame.mu)
+    return list(found.values())
+
+
+def _corners(canvas: Canvas, polygons: Mapping[str, Polygon], whole: Sequence[PlacedFrame]) -> list[Corner]:
+    """Corners that cannot be read, as they stand on the sheet; those of many velocity plans last, where most are together first."""
+    found = []
+    for frame in whole:
         plan, vectors = polygons[frame.plan]
+        k = plan.labels.index(frame.position) if frame.position else 0
         steps: dict[str, Step] = {step.name: step for _, tail, head in vectors for step in (tail, head)}
         points = {name: complex(frame(complex(step.at(k)))) for name, step in steps.items()}
         drawn = tuple(Vector(s, a.name, b.name) for s, a, b in vectors if abs(points[a.name] - points[b.name]) > ONE)
         there = dict.fromkeys(name for _, a, b in drawn for name in (a, b))
-        groups = _together({name: points[name] for name in there}, drawn)
-        if groups:
-            it = Corner.of(canvas, plan, frame, drawn, points, max(groups, key=len))
-            if sum(chord(it.centre, 2 * it.reach, points[a], points[b]) is not None for _, a, b in drawn) <= MOST:
-                yield it
+        of_plan = list[Corner]()
+        for names in _together({name: points[name] for name in there}, drawn):
+            it = Corner.of(canvas, plan, frame, k, drawn, points, names)
+            if it.crossed <= MOST and not any(set(names) & set(other.names) for other in of_plan):
+                of_plan.append(it)
+        found += of_plan
+    many = {plan for plan, count in Counter(frame.plan for frame in whole).items() if count > 2}
+    return sorted(found, key=lambda it: (it.plan.name in many, -len(it.names) if it.plan.name in many else 0))
 
 
 def _polygons(project: Project) -> dict[str, Polygon]:
     """Plans by their names with their vectors."""
     study = project.study
-    acc = study.accelerations.plan
-    found = {acc.name: (acc, [(seg.symbol, seg.tail, seg.head) for seg in acc.segments])}
+    found = {plan.name: (plan, [(seg.symbol, seg.tail, seg.head) for seg in plan.segments])
+             for plan in (study.velocities.plan, study.accelerations.plan)}
     if "forces" in project.parts:
-        found = {fp.plan.name: (fp.plan, [(s, a, b) for s, a, b, *_ in fp.sides]) for fp in study.forces.plans.values()} | found
+        found |= {fp.plan.name: (fp.plan, [(s, a, b) for s, a, b, *_ in fp.sides]) for fp in study.forces.plans.values()}
     return found
 
 
 def _together(points: dict[str, complex], drawn: tuple[Vector, ...]) -> list[tuple[str, ...]]:
-    """Points less than ``NEAR`` apart of which some are joined by a vector: what cannot be told apart on the sheet."""
-    found = []
-    for same in together(list(points.values()), NEAR):
-        names = tuple(list(points)[i] for i in same)
-        if any(tail in names and head in names for _, tail, head in drawn):
-            found.append(names)
-    return found
+    """Points that cannot be told apart on the sheet, the most first.
+
+    ``SEVERAL`` places and more within ``WIDE``, or points less than ``NEAR`` apart of which some are joined by a vector.
+    """
+    names, z = list(points), np.array(list(points.values()))
+    near = [same for same in together(z, NEAR) if any({tail, head} <= {names[i] for i in same} for _, tail, head in drawn)]
+    circles = ((a + b) / 2 for a, b in combinations(z, 2) if abs(b - a) <= WIDE)
+    wide = [np.flatnonzero(np.abs(z - at) <= WIDE / 2 + 1e-9).tolist() for at in circles]
+    wide = [same for same in wide if len(together(z[same], 0.5)) >= SEVERAL]
+    return sorted({tuple(names[i] for i in same) for same in (*wide, *near)}, key=lambda same: (-len(same), same))
 
 
 # --- letters of a scheme ---------------------------------------------------------------------------------------------------
