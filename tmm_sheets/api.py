@@ -54,7 +54,9 @@ def open(project: Path | str, *, corrected: bool = False, language: str = "", **
     BadInput
         with everything that is wrong in the file: line, key, what was expected.
     """
-    return Opened(catalogue.read(str(project), corrected), title_entries.given(title), language)
+    from tmm_sheets.output.building import with_room
+
+    return Opened(with_room(catalogue.read(str(project), corrected)), title_entries.given(title), language)
 
 
 def new(name: str = "mechanism", /, *, language: str = "", **tables: Any) -> Opened:

@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 def read_variant(project: str, corrected: bool, drawn: bool = True) -> Variant:
     """The project's numbers, and names in its title blocks; what is doubtful in them goes to standard error."""
     from tmm_sheets import catalogue
+    from tmm_sheets.output.building import with_room
 
-    variant = catalogue.read(project, corrected)
+    variant = with_room(catalogue.read(project, corrected))
     for warning in variant.warnings:
         click.echo(f"{variant.called}: {warning}", err=True)
     return names().filled(variant) if drawn else variant

@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 from tmm_sheets import catalogue, files, kept, quoting, spelling, words
 from tmm_sheets.errors import BadInput, Stopped, told_of
 from tmm_sheets.output import handouts
-from tmm_sheets.output.building import Order, build, folder_name
+from tmm_sheets.output.building import Order, build, folder_name, with_room
 from tmm_sheets.task.title_entries import Names
 from tmm_sheets.words import tell
 
@@ -77,7 +77,7 @@ def _one(task: Task, order: Order, parent: Path) -> Outcome:
     if not order.kept:
         kept.forgo()
     try:
-        variant = catalogue.read(project, order.corrected)
+        variant = with_room(catalogue.read(project, order.corrected))
         warnings = tuple(variant.warnings)
         names = _names(task, order)
         variant = names.filled(variant)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from tmm_sheets.sheets.composed import Composed
     from tmm_sheets.task.variant import Variant
 
+TOGETHER, APART = "kinematics_forces_wide", ("kinematics", "forces")
+"""Arrangements of what a linkage is and what acts on it, on one sheet and on two."""
 BACKENDS = {form: f"tmm_sheets.backends.{form}" for form in ("dxf", "pdf", "svg", "png", "hpgl")}
 """Formats of drawings and the modules that write them, each imported only when asked for."""
 
@@ -305,6 +307,20 @@ def _refuse_idle_scales(variant: Variant, drawn: Mapping[int, Composed]) -> None
     idle = [name for name in variant.scales if name not in used]
     if idle:
         raise BadInput(variant.problem(tell("no sheet draws a plan of this name"), "scales", name, hint=hint) for name in idle)
+
+
+def with_room(variant: Variant) -> Variant:
+    """The same with two sheets for kinematics and forces where its file names none and one is too small for both."""
+    from tmm_sheets.project import Project
+    from tmm_sheets.sheets import legibility
+
+    if variant.project.sheets is not None or TOGETHER not in variant.sheets:
+        return variant
+    with suppress(BadInput, CannotBuild):  # whoever needs its parts says why they cannot be had
+        if any("names" in remark.values for remark in legibility.crowded(Project(variant), [1])):  # another sheet helps
+            named = [*APART, *(name for name in variant.sheets if name != TOGETHER)]
+            return variant.model_copy(update={"project": variant.project.model_copy(update={"sheets": tuple(named)})})
+    return variant
 
 
 def chosen(variant: Variant, sheets: tuple[int, ...]) -> list[int]:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from tmm_sheets import catalogue, progress, words
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
-from tmm_sheets.output.building import folder_name
+from tmm_sheets.output.building import folder_name, with_room
 from tmm_sheets.page.workers import Message, Say, told
 from tmm_sheets.project import Project
 from tmm_sheets.words import tell
@@ -45,7 +45,7 @@ def opened(asked: Mapping[str, str]) -> Project:
     """The project of a text."""
     from tmm_sheets.task import variant
 
-    found = variant.parse(text_of(asked), file_of(asked.get("name", "")))
+    found = with_room(variant.parse(text_of(asked), file_of(asked.get("name", ""))))
     words.set_paper(words.of_project(found.project.language))
     return Project(found)
 

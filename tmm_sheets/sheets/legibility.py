@@ -12,7 +12,7 @@ from tmm_sheets.construction.readable import CURVE, MAIN, POLE, TOOTH
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.composition import arranged, placed_where
-from tmm_sheets.sheets.floors import CRANK, VECTOR, risen
+from tmm_sheets.sheets.floors import CRANK, LETTERED, VECTOR, risen
 from tmm_sheets.sheets.frame import extent, fit_frame
 from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.linkage.linkage_sizes import LINKS
@@ -56,12 +56,17 @@ def positions(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
 
 
 def velocities(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
-    """The velocity plans are too small: the analysed one may be shown once more, enlarged, the others are not."""
+    """The velocity plans are too small, the largest or the smallest: what is shown once more, enlarged, is but one of them."""
     def longest(project: Project, view: ViewPlace) -> float:
         layout = kinematic_frames.velocities(project, _book(), view.box, view.options)
         return layout.longest(project.study.velocities.plan)
 
+    def smallest(project: Project, view: ViewPlace) -> float:
+        layout = kinematic_frames.velocities(project, _book(), view.box, view.options)
+        return min(layout.sizes(project.study.velocities.plan).values())
+
     yield from below(project, n, view, Remark(VECTOR.what), VECTOR.least, longest, marked("number fewer positions"))
+    yield from below(project, n, view, Remark(LETTERED.what), LETTERED.least, smallest, marked("number fewer positions"))
 
 
 def accelerations(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tmm_sheets.box import Box
-from tmm_sheets.construction.scale import Scale, coarser, finer, handy, reach
+from tmm_sheets.construction.scale import Scale, coarser, handy, reach
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
@@ -33,7 +33,7 @@ MARGIN = 25.0
 HEAD = 16.0
 """Room for its number and letters over and below it, mm."""
 FACTOR = 5.5
-"""The same for a scale factor of its own under its number, mm."""
+"""Room for a scale factor of its own under its number, mm."""
 SMALLEST = 10.0
 """Size from which on the largest of the velocity plans can be read, mm."""
 LONGEST = 100.0
@@ -150,7 +150,7 @@ def plan_extent(plan: Plan, i: int) -> Box:
 
 @dataclass(frozen=True)
 class VelocityLayout:
-    """Velocity plans in rows: index and label of each, its scale factor, (m/s)/mm, and its extent on paper, mm.
+    """Velocity plans in rows: index and label of each, its scale factor, (m/s)/mm, and the room it takes on paper, mm.
 
     ``scale`` is that of the analysed one; ``every`` is 2, 3 ... where only every second, third ... of too many positions is shown.
     """
@@ -164,15 +164,10 @@ class VelocityLayout:
     scale: Scale
     every: int
 
-    @property
-    def head(self) -> float:
-        """Room over and below each plan, mm."""
-        return _head(self.mus)
-
     def places(self) -> Iterator[tuple[tuple[int, str], Box, Box, float]]:
         """Index and label of each plan, its extent, its place, and the height left over there, mm; not all that is left."""
         rows = [slice(i, i + self.per_row) for i in range(0, len(self.shown), self.per_row)]
-        heights = [max(s.height for s in self.spans[row]) + self.head for row in rows]
+        heights = [max(s.height for s in self.spans[row]) + HEAD for row in rows]
         spare = min((self.inside.height - sum(heights)) / self.rows, SPARE)
         y = self.inside.y1
         for row, height in zip(rows, heights, strict=True):
@@ -187,6 +182,12 @@ class VelocityLayout:
         """Scale factors beside that of the analysed plan, each with a prime more: μ′_V, μ″_V."""
         rest = [mu for mu in dict.fromkeys(self.mus) if mu != self.scale.mu]
         return {mu: Scale(f"μ{'′' * n}_V", mu, self.scale.unit) for n, mu in enumerate(rest, 1)}
+
+    def sizes(self, plan: Plan) -> dict[str, float]:
+        """Larger side of each plan that is anything, mm, by its position."""
+        real = _sizes([plan_extent(plan, i) for i, _ in self.shown])
+        return {label: float(size / mu) for (_, label), size, mu in zip(self.shown, real, self.mus, strict=True)
+                if size > NOTHING * real.max()}
 
     def longest(self, plan: Plan) -> float:
         """The longest vector of all, mm."""
@@ -209,7 +210,7 @@ def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str,
         mus = list[float]()
         if wanted is None:
             need = max(need, longest(plan, [i for i, _ in shown]) / LONGEST)
-            mus = _factors(real, inside, need)
+            mus = _factors(real, [i for i, _ in shown].index(k), inside, need)
         if mus or need <= _sizes(real).max() / SMALLEST or (wanted is not None and need < inf):
             break
     if not need < inf:
@@ -218,21 +219,23 @@ def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str,
     need = dict(zip([i for i, _ in shown], mus, strict=False)).get(k, need)
     scale = pick(project, canvas, "velocities", "μ_V", tr("(m/s)/mm"), need)
     mus = mus or [scale.mu] * len(shown)
-    spans = _on_paper(real, mus)
-    per_row = -(-len(shown) // RowChoice(spans, _head(mus)).most_room(inside.width, inside.height)[1])
+    spans = _on_paper(real, mus, scale.mu)
+    per_row = -(-len(shown) // RowChoice(spans).most_room(inside.width, inside.height)[1])
     return VelocityLayout(shown, mus, spans, -(-len(shown) // per_row), per_row, inside, scale, every)
 
 
-def _factors(real: Sequence[Box], inside: Box, need: float) -> list[float]:
+def _factors(real: Sequence[Box], analysed: int, inside: Box, need: float) -> list[float]:
     """Scale factors of plans of such extents, the coarsest of which is ``need`` or more, with which all can be lettered there.
 
     None where there are no such factors.
     """
     sizes, mu = _sizes(real), handy(need) if 0 < need < inf else inf
-    while sizes.max() / mu >= LETTERED.least:
+    while sizes.max() / mu >= UNLIKE * LETTERED.least:
         mus = own_factors(sizes, mu)
-        if RowChoice(_on_paper(real, mus), _head(mus)).most_room(inside.width, inside.height)[0] <= 1 + 1e-9:
-            return mus if (sizes / mus)[sizes > 0].min() >= LETTERED.least * (1 - 1e-9) else []
+        small = min(size / own for size, own in zip(sizes, mus, strict=True) if size) < LETTERED.least * (1 - 1e-9)
+        fits = RowChoice(_on_paper(real, mus, mus[analysed])).most_room(inside.width, inside.height)[0] <= 1 + 1e-9
+        if fits and not small and len(set(mus)) <= FACTORS:
+            return mus
         mu = coarser(mu)
     return []
 
@@ -240,16 +243,22 @@ def _factors(real: Sequence[Box], inside: Box, need: float) -> list[float]:
 def own_factors(sizes: NDArray[np.float64], mu: float) -> list[float]:
     """``mu``, and for plans of ``sizes`` too small for their letters with it a finer one in common, as often as there are any.
 
-    With it the smallest of them can be lettered, as long as the largest gets no larger than the largest of all.
+    With it the smallest of them can be lettered, as long as the largest gets no larger than the largest of all. It is ``UNLIKE``
+    the one before, or there is none.
     """
     mus = np.full(len(sizes), mu)
     while (small := (sizes > NOTHING * sizes.max()) & (sizes / mus < LETTERED.least * (1 - 1e-9))).any():
         now, own = mus[small].min(), sizes[small]
-        finer_one = max(reach("", "", own.min(), LETTERED.least).mu, handy(own.max() / sizes.max() * mu))
-        mus[small] = finer_one if finer_one < now else finer(now)
+        most = min(own.min(), now * LETTERED.least / UNLIKE)
+        finer = max(reach("", "", most, LETTERED.least).mu, handy(own.max() / sizes.max() * mu))
+        if finer > now / UNLIKE * (1 + 1e-9):
+            break
+        mus[small] = finer
     return [float(one) for one in mus]
 
 
+UNLIKE, FACTORS = 1.5, 3
+"""Scale factors of one row differ so many times at least, and there are so many at most."""
 NOTHING = 1e-9
 """Share of the largest plan below which one is nothing but rounding."""
 
@@ -259,20 +268,15 @@ def _sizes(real: Sequence[Box]) -> NDArray[np.float64]:
     return np.array([max(s.width, s.height) for s in real])
 
 
-def _on_paper(real: Sequence[Box], mus: Sequence[float]) -> list[Box]:
-    return [Box(*(x / mu for x in s)) for s, mu in zip(real, mus, strict=True)]
-
-
-def _head(mus: Sequence[float]) -> float:
-    """Room over and below each plan with such scale factors, mm."""
-    return HEAD + (FACTOR if len(set(mus)) > 1 else 0.0)
+def _on_paper(real: Sequence[Box], mus: Sequence[float], plain: float) -> list[Box]:
+    """Room that plans take with such scale factors, mm: one that is not ``plain`` stands under its plan."""
+    return [Box(s.x0 / mu, s.y0 / mu - FACTOR * (mu != plain), s.x1 / mu, s.y1 / mu) for s, mu in zip(real, mus, strict=True)]
 
 
 class RowChoice:
     """In how many rows plans of some extents may stand; what does not depend on the place is summed once."""
 
-    def __init__(self, spans: Sequence[Box], head: float = HEAD) -> None:
-        self._head = head
+    def __init__(self, spans: Sequence[Box]) -> None:
         self._ways = dict[int, tuple[int, dict[int, float], float, int]]()
         """By plans in a row: the rows asked for, the greatest width of rows by their plans, all heights, the rows there are."""
         for rows in range(1, len(spans) + 1):
@@ -286,7 +290,7 @@ class RowChoice:
 
     def most_room(self, width: float, height: float) -> tuple[float, int]:
         """Rows with which the plans come out largest, and the scale factor they need; infinite where lettering takes the place."""
-        return min((max(_ratio(high, height - self._head * n), *(_ratio(real, width - MARGIN * k) for k, real in wide.items())),
+        return min((max(_ratio(high, height - HEAD * n), *(_ratio(real, width - MARGIN * k) for k, real in wide.items())),
                     rows) for rows, wide, high, n in self._ways.values())
 
 
@@ -300,7 +304,8 @@ def velocity_spans(project: Project, options: dict[str, Any]) -> tuple[list[Box]
     real = [plan_extent(plan, i) for i in shown]
     mu = longest(plan, shown) / LONGEST
     shares = [one / mu for one in own_factors(_sizes(real), mu)]
-    return _on_paper(real, shares), max(longest(plan, [i]) / share for i, share in zip(shown, shares, strict=True))
+    enlarged = [Box(*(x / share for x in s)) for s, share in zip(real, shares, strict=True)]
+    return enlarged, max(longest(plan, [i]) / share for i, share in zip(shown, shares, strict=True))
 
 
 COLUMN = 12.5

@@ -548,22 +548,27 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     flat_crossings.warn(project, canvas, box, plan, (i for i, _ in layout.shown))
     if layout.every > 1:
         canvas.note(box, tr("One velocity polygon of every {count} positions is drawn").format(count=layout.every))
+    if small := [label for label, size in layout.sizes(plan).items() if size < LETTERED.least * (1 - 1e-6)]:
+        said = tr("Velocity polygons smaller than {least:.0f}{space}mm: positions {labels}")
+        canvas.note(box, said.format(least=LETTERED.least, space=TOGETHER, labels=", ".join(small)))
     others = layout.others()
     canvas.scales |= {f"velocities{scale.symbol[1:-2]}": scale for scale in others.values()}
     tiny: dict[str, list[str]] = {}
     caption = tr("Position {label}")
     height = min(size_for([caption.format(label=label)], place.width, 3.5) for (_, label), _, place, _ in layout.places())
     for ((index, label), span, place, spare), mu in zip(layout.places(), layout.mus, strict=True):
-        foot, scale = place.y0 + spare / 2 + layout.head - kinematic_frames.HEAD + 2.0, others.get(mu, layout.scale)
-        middle = complex(place.centre.real, foot + 2.0 + (place.y1 - foot - spare / 2) / 2)
+        middle, scale = place.centre + 4.0j, others.get(mu, layout.scale)
         canvas.of = f"velocity plan {label}"
         if many:
             canvas.begin(place, tr("Velocity polygon, position {label}").format(label=label))
         s = stage(canvas, plan, index, PlanFrame(scale, middle - span.centre))
         for name in _draw_plan(s, "p", symbols_at=not many):
             tiny.setdefault(name, []).append(label)
-        said = [caption.format(label=label), *([str(scale)] if scale is not layout.scale else [])]
-        canvas.lines(complex(middle.real, foot), said, kinematic_frames.FACTOR, height, "centre")
+        foot = complex(middle.real, place.y0 + spare / 2 + 2.0)
+        if mu in others:
+            canvas.text(foot, str(scale), size_for([str(scale)], place.width, height), "centre")
+            foot += 1j * kinematic_frames.FACTOR
+        canvas.text(foot, caption.format(label=label), height, "centre")
     canvas.of = "kinematics.velocity_plans"
     if tiny:
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(
