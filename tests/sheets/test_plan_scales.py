@@ -1,4 +1,4 @@
-"""Scale factors of the plans: what is next to a dead point or too short is said, a file's factor is refused by the true need."""
+"""Scale factors of the plans: each plan is lettered, what is too short is said, a file's factor is refused by the true need."""
 
 import re
 from itertools import pairwise
@@ -10,14 +10,16 @@ import pytest
 from tests import project_files as files
 from tests.few import seldom
 from tmm_sheets import catalogue
-from tmm_sheets.__main__ import run
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.output import building
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import composition, sheet
+from tmm_sheets.sheets import composition, legibility, sheet
 from tmm_sheets.sheets.frame import joined, needed
+from tmm_sheets.sheets.linkage.kinematic_frames import own_factors
 
 HERE = Path(__file__).parent
-CLOSE, CONVEYOR = str(HERE / "close.toml"), str(HERE.parent / "projects" / "conveyor.toml")
+CLOSE, CONVEYOR, PLANER = map(str, (HERE / "close.toml", *(HERE.parent / "projects" / f"{name}.toml" for name in
+                                                          ("conveyor", "planer"))))
 
 
 def lettering(composed):
@@ -38,42 +40,43 @@ def plan_sizes(phi):
 
 
 @pytest.fixture(scope="module")
-def close():
-    return files.project(files.from_file(CLOSE))
+def composed():
+    return sheet.composed(files.project(files.from_file(CLOSE)), 1)
 
 
-@pytest.fixture(scope="module")
-def composed(close):
-    return sheet.composed(close, 1)
-
-
-def test_the_scale_serves_the_plans_that_can_be_drawn(close, composed):
+def test_every_plan_can_be_lettered_with_a_factor_of_its_own_if_need_be(composed):
+    """The one next to the dead point is 400 times as large as usual: with one factor the others would be dots."""
     sizes = plan_sizes(np.radians(np.arange(0, 360, 30)))
-    mu = composed.scales["velocities"].mu
     assert sizes[0] / np.median(sizes) > 400
-    assert 20 <= sizes[1:].max() / mu <= 60, "the largest plan that is drawn, mm"
-    titles = [p.title for p in composed.parts if p.title.startswith("План скоростей") and "enlarged" not in p.draw]
-    assert titles == [f"План скоростей, положение {i}" for i in range(1, 12)]
+    frames = [frame for frame in reversed(composed.frames) if frame.plan == "velocities" and not frame.turn]
+    drawn = {int(frame.position): frame.mu[0] for frame in frames}
+    assert sorted(drawn) == [*range(12)]
+    assert all(25 <= sizes[i] / mu <= 100 for i, mu in drawn.items())
+    assert {drawn[i] for i in range(1, 12)} == {composed.scales["velocities"].mu}
+    assert str(composed.scales["velocities-2"]) in lettering(composed)
+
+
+def test_sizes_of_one_kind_have_one_factor():
+    assert len(set(own_factors(np.array([30.0, 60.0, 45.0]), 1.0))) == 1
+    assert len(set(own_factors(np.array([0.0, 60.0, 1e-15]), 1.0))) == 1, "what is nothing is not enlarged"
+    first, *others = own_factors(np.array([100.0, 1.0, 24.0]), 1.0)
+    assert first == 1.0
+    assert 25 <= 24.0 / others[1] <= 100
+    assert 25 <= 1.0 / others[0] <= 100
+
+
+def test_two_sheets_are_taken_where_one_is_too_small():
+    planer = files.read(files.from_file(PLANER), {"project.sheets": None})
+    alone = files.project(files.from_file(PLANER), {"project.sheets": ["kinematics_forces_wide"]})
+    (said,) = legibility.crowded(alone, [1])
+    assert 'sheets = ["kinematics", "forces"]' in str(said)
+    assert building.with_room(planer).sheets == ("kinematics", "forces", "flywheel")
+    assert not list(legibility.crowded(Project(building.with_room(planer)), [1]))
+    assert building.with_room(alone.variant) is alone.variant, "who names one has it"
 
 
 def every_sheet(project):
     return range(1, len(project.sheets) + 1)
-
-
-def test_a_plan_that_is_not_drawn_is_said(close, composed, capsys):
-    sizes = plan_sizes(np.radians(np.arange(0, 360, 30)))
-    times = sizes[0] / np.median(sizes)
-    (line,) = map(str, composition.left_out(close, every_sheet(close)))
-    assert line == f"position 0 is next to a dead point: its velocity plan is not drawn, it is {times:.3g} times as large as usual"
-    note = " ".join(lettering(composed))
-    assert re.search(rf"План скоростей положения 0 .*{round(times)} раз больше обычного", note)
-    assert run(["check", CLOSE]) == 0
-    assert line in capsys.readouterr().err
-
-
-def test_build_says_it(tmp_path, capsys):
-    assert run(["build", CLOSE, "--format", "svg", "-o", str(tmp_path)]) == 0
-    assert "position 0 is next to a dead point" in capsys.readouterr().err
 
 
 def test_the_plans_of_the_dead_point_itself_say_what_is_too_short():

@@ -102,6 +102,18 @@ def test_letters_go_into_the_detail_and_its_lines_are_the_levers_enlarged():
     assert [round(m.radius * f, 6) for m, f in zip(circles, (1, times), strict=True)] == [half, half]
 
 
+@pytest.mark.parametrize(("points", "joined", "found"), [
+    ([], [], []), ([0], [], []), ([0, 3], [], []), ([0, 6.9, 3.5], [], ["abc"]), ([0, 7.1, 3.5], [], []), ([0, 0.1, 0.2], [], []),
+    ([0, 0.1, 6], [], []), ([0, 1], [], []), ([0, 1], ["ab"], ["ab"]), ([0, 2.1], ["ab"], []),
+    ([0, 3, 3j, 1, 60, 63, 66], [], ["abcd", "efg"]),
+], ids=["none", "one", "two", "three", "wider", "coincident", "two places", "near", "near and joined", "not near",
+        "two crowds"])  # fmt: skip
+def test_which_corners_have_no_room_for_their_letters(points, joined, found):
+    named = {chr(ord("a") + k): complex(z) for k, z in enumerate(points)}
+    crowds = details._together(named, tuple(details.Vector("F", *ends) for ends in joined))
+    assert [names for names in map("".join, crowds) if not any(set(names) < set(other) for other in crowds)] == found
+
+
 @pytest.mark.parametrize(("signs", "drawn", "left"), [
     ((), ["a"], None), (("a",), ["a"], []), (("a", "b"), ["a"], ["b"]), (("b",), ["a"], ["b"])])  # fmt: skip
 def test_what_a_detail_draws_is_not_about_zero(signs, drawn, left):
@@ -112,7 +124,7 @@ def test_what_a_detail_draws_is_not_about_zero(signs, drawn, left):
     canvas.note(PLACE, "≈ 0: ", ("a",))
     vectors, points = tuple(details.Vector(sign, "1", "2") for sign in drawn), {"1": 0j, "2": 1 + 0j}
     frame, scale = PlacedFrame(0, "plan", "", 0j, (1.0, 1.0)), Scale("μ_F", 1.0, "N/mm")
-    corner = details.Corner(0, 0.5 + 0j, 0.5, scale, None, frame, vectors, points, ("1", "2"))
+    corner = details.Corner(0, 0.5 + 0j, 0.5, scale, None, frame, 0, vectors, points, ("1", "2"))
     details._no_more_zero(canvas, corner)
     assert [note.said for note in canvas.notes] == [*([] if left == [] else [f"≈ 0: {', '.join(left or [])}"]), "≈ 0: a"]
 

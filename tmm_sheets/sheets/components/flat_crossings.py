@@ -8,9 +8,10 @@ crossing tells, nothing else is computed.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import asin, degrees
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from tmm_sheets.box import Box
     from tmm_sheets.construction.error import Errors
     from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.construction.scale import Scale
     from tmm_sheets.construction.step import Step
     from tmm_sheets.drawing.canvas import Canvas
     from tmm_sheets.project import Project
@@ -66,23 +68,30 @@ class Flat:
         return np.allclose(self.sines, other.sines, atol=1e-6)
 
 
-def find(project: Project, plan: Plan, drawn: Iterable[int], scales: dict[str, Any]) -> list[Flat]:
-    """Crossings of a plan that cannot be drawn at the positions ``drawn``; ``scales`` are those of the plans on the sheet."""
+def find(project: Project, plan: Plan, drawn: Iterable[int], scales: dict[str, Any],
+         own: Mapping[int, Scale] = MappingProxyType({})) -> list[Flat]:
+    """Crossings of a plan that cannot be drawn at the positions ``drawn``; ``scales`` are those of the plans on the sheet.
+
+    ``own`` are those of the plan at positions that have another.
+    """
     places = list(drawn)
-    errors: Errors | None = None
+    errors: dict[float, Errors] = {}
     found = []
     for name, number in condition.crossings(plan).items():
         steep = np.broadcast_to(number, (len(project.study.labels),))
         if not (steep[places] > FLAT).any():
             continue
-        errors = errors or _errors(project, plan, scales)
-        mm = np.broadcast_to(errors.in_mm(plan[name]), steep.shape)
+        errors = errors or {scale.mu: _errors(project, plan, scales | {plan.name: scale})
+                            for scale in (scales[plan.name], *own.values())}
+        of = [own.get(i, scales[plan.name]) for i in range(len(steep))]
+        with_factor = {mu: np.broadcast_to(some.in_mm(plan[name]), steep.shape) for mu, some in errors.items()}
+        mm = np.array([with_factor[scale.mu][i] for i, scale in enumerate(of)])
         bad = tuple(i for i in places if steep[i] > FLAT and not mm[i] <= COARSE)
         if bad:
             sizes = np.nan_to_num(mm, nan=np.inf).tolist()
             worst = max(bad, key=lambda i: (_analysed(project, i), sizes[i]))
             size = kinematic_frames.plan_extent(plan, worst)
-            hopeless = not scales[plan.name].real(mm[worst]) < 0.5 * max(size.width, size.height)
+            hopeless = not of[worst].real(mm[worst]) < 0.5 * max(size.width, size.height)
             # Lines that meet steeper, but are longer, may gain nothing.
             better = _better(project, worst, [k for k in range(len(mm)) if hopeless or mm[k] < GAIN * mm[worst]])
             found.append(Flat(plan, plan[name], bad, worst, None if hopeless else float(mm[worst]), asin(1 / float(steep[worst])),
@@ -137,12 +146,15 @@ def _better(project: Project, i: int, among: Collection[int]) -> int | None:
 # --- in words ---------------------------------------------------------------------------------------------------------
 
 
-def warn(project: Project, canvas: Canvas, box: Box, plan: Plan, drawn: Iterable[int] | None = None) -> None:
+def warn(project: Project, canvas: Canvas, box: Box, plan: Plan, drawn: Iterable[int] | None = None,
+         own: Mapping[int, Scale] = MappingProxyType({})) -> None:
     """Ask for a note beside a view for every crossing of its plan that cannot be drawn; by default at the analysed position.
+
+    ``own`` are the scale factors of the plan at positions that have another than the usual one.
 
     The same two links meet in all plans under one angle: the note of the first of them names the others.
     """
-    for flat in find(project, plan, [project.force_index] if drawn is None else drawn, canvas.scales):
+    for flat in find(project, plan, [project.force_index] if drawn is None else drawn, canvas.scales, own):
         n = next((n for n, note in enumerate(canvas.notes) if note.about is not None and flat.same_lines(note.about)), None)
         if n is None:
             canvas.note(box, said(project, flat), about=flat)

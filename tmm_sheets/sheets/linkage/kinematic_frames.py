@@ -204,20 +204,21 @@ def velocities(project: Project, canvas: ScaleBook, box: Box, options: dict[str,
     drawn = [(k, project.cycle.labels[k])] if options.get("only") == "force" else project.cycle.drawn
     wanted = project.variant.scales.get("velocities")
     for every in range(1, len(drawn) + 1):
-        shown = [at for n, at in enumerate(drawn) if n % every == 0 or at[0] == k]
+        shown = [one for n, one in enumerate(drawn) if n % every == 0 or one[0] == k]
         real = [plan_extent(plan, i) for i, _ in shown]
+        away = [project.cycle.turned[i] - project.cycle.turned[k] for i, _ in shown]
+        at = int(np.argmax(np.cos(away)))  # in whichever turn
         need, _ = RowChoice(real).most_room(inside.width, inside.height)
         mus = list[float]()
         if wanted is None:
             need = max(need, longest(plan, [i for i, _ in shown]) / LONGEST)
-            mus = _factors(real, [i for i, _ in shown].index(k), inside, need)
+            mus = _factors(real, at, inside, need)
         if mus or need <= _sizes(real).max() / SMALLEST or (wanted is not None and need < inf):
             break
     if not need < inf:
         raise CannotBuild(tell("the velocity plans have no room for their lettering"),
                           tell("make their place larger in templates/sheets"))
-    need = dict(zip([i for i, _ in shown], mus, strict=False)).get(k, need)
-    scale = pick(project, canvas, "velocities", "μ_V", tr("(m/s)/mm"), need)
+    scale = pick(project, canvas, "velocities", "μ_V", tr("(m/s)/mm"), mus[at] if mus else need)
     mus = mus or [scale.mu] * len(shown)
     spans = _on_paper(real, mus, scale.mu)
     per_row = -(-len(shown) // RowChoice(spans).most_room(inside.width, inside.height)[1])

@@ -19,7 +19,7 @@ from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.headings import TOGETHER
 from tmm_sheets.drawing.ink_index import STRONG, distance
 from tmm_sheets.drawing.lettering import letter, size_for
-from tmm_sheets.drawing.marks import Box, Points, Text
+from tmm_sheets.drawing.marks import Box, PlacedFrame, Points, Text
 from tmm_sheets.drawing.tables import needs, size_in, widened
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import decimals_for, fixed, is_zero, number
@@ -545,14 +545,15 @@ def velocity_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     layout = kinematic_frames.velocities(project, canvas, box, options)
     many = len(layout.shown) > 1
     canvas.title(box, tr("Velocity polygons") if many else tr("Velocity polygon"), str(layout.scale))
-    flat_crossings.warn(project, canvas, box, plan, (i for i, _ in layout.shown))
+    others = layout.others()
+    own = {i: others[mu] for (i, _), mu in zip(layout.shown, layout.mus, strict=True) if mu in others}
+    flat_crossings.warn(project, canvas, box, plan, (i for i, _ in layout.shown), own)
     if layout.every > 1:
         canvas.note(box, tr("One velocity polygon of every {count} positions is drawn").format(count=layout.every))
     if small := [label for label, size in layout.sizes(plan).items() if size < LETTERED.least * (1 - 1e-6)]:
         said = tr("Velocity polygons smaller than {least:.0f}{space}mm: positions {labels}")
         canvas.note(box, said.format(least=LETTERED.least, space=TOGETHER, labels=", ".join(small)))
-    others = layout.others()
-    canvas.scales |= {f"velocities{scale.symbol[1:-2]}": scale for scale in others.values()}
+    canvas.scales |= {f"{plan.name}-{n}": scale for n, scale in enumerate(others.values(), 2)}
     tiny: dict[str, list[str]] = {}
     caption = tr("Position {label}")
     height = min(size_for([caption.format(label=label)], place.width, 3.5) for (_, label), _, place, _ in layout.places())
@@ -698,10 +699,10 @@ def second_accelerations(project: Project, canvas: Canvas, box: Box, options: di
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
 
 
-def factors_of(canvas: Canvas, plan: Plan) -> dict[int, float]:
+def factors_of(frames: Sequence[PlacedFrame], plan: Plan) -> dict[int, float]:
     """Scale factors of a plan by the positions it is drawn at, those it has first."""
     return {plan.labels.index(frame.position) if frame.position else 0: frame.mu[1]
-            for frame in reversed(canvas.frames) if frame.plan == plan.name}
+            for frame in reversed(frames) if frame.plan == plan.name and not frame.turn}
 
 
 SMALL = 30.0
@@ -717,7 +718,7 @@ def enlarged_velocities_sizes(project: Project, canvas: Canvas, options: dict[st
     """
     plan, k = project.study.velocities.plan, project.force_index
     real = kinematic_frames.plan_extent(plan, k)
-    drawn_with = factors_of(canvas, plan)
+    drawn_with = factors_of(canvas.frames, plan)
     if (mu := drawn_with.get(k)) is None or (drawn := max(real.width, real.height) / mu) < SHORTEST:
         return []
     if drawn >= SMALL and max(kinematic_frames.longest(plan, [i]) / own for i, own in drawn_with.items()) >= VECTOR.least:
@@ -822,7 +823,7 @@ def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segm
 
 def _factors(project: Project, canvas: Canvas) -> NDArray[np.float64]:
     """Scale factor of the velocity plan of each position of the cycle."""
-    drawn = factors_of(canvas, project.study.velocities.plan)
+    drawn = factors_of(canvas.frames, project.study.velocities.plan)
     return np.array([drawn.get(i, canvas.scales["velocities"].mu) for i in range(len(project.cycle.labels))])
 
 
