@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -262,7 +263,11 @@ def _whole(canvas: Canvas, polygons: Container[str]) -> list[PlacedFrame]:
 
 
 def _corners(canvas: Canvas, polygons: Mapping[str, Polygon], whole: Sequence[PlacedFrame]) -> list[Corner]:
-    """Corners that cannot be read, as they stand on the sheet; those of many velocity plans last, where most are together first."""
+    """Corners that cannot be read, as they stand on the sheet: the worst of each plan, then others.
+
+    Those of many velocity plans come last, where most are together first.
+    """
+    many = {plan for plan, count in Counter(frame.plan for frame in whole).items() if count > 2}
     found = []
     for frame in whole:
         plan, vectors = polygons[frame.plan]
@@ -276,9 +281,8 @@ def _corners(canvas: Canvas, polygons: Mapping[str, Polygon], whole: Sequence[Pl
             it = Corner.of(canvas, plan, frame, k, drawn, points, names)
             if it.crossed <= MOST and not any(set(names) & set(other.names) for other in of_plan):
                 of_plan.append(it)
-        found += of_plan
-    many = {plan for plan, count in Counter(frame.plan for frame in whole).items() if count > 2}
-    return sorted(found, key=lambda it: (it.plan.name in many, -len(it.names) if it.plan.name in many else 0))
+        found += [((plan.name in many, rank, -len(it.names) * (plan.name in many)), it) for rank, it in enumerate(of_plan)]
+    return [it for _, it in sorted(found, key=itemgetter(0))]
 
 
 def _polygons(project: Project) -> dict[str, Polygon]:
