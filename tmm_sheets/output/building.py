@@ -311,11 +311,11 @@ def _refuse_idle_scales(variant: Variant, drawn: Mapping[int, Composed]) -> None
 
 def with_room(variant: Variant) -> Variant:
     """The same with two sheets for kinematics and forces where its file names none and one is too small for both."""
+    if variant.project.sheets is not None or TOGETHER not in variant.sheets:
+        return variant
     from tmm_sheets.project import Project
     from tmm_sheets.sheets import legibility
 
-    if variant.project.sheets is not None or TOGETHER not in variant.sheets:
-        return variant
     with suppress(BadInput, CannotBuild):  # whoever needs its parts says why they cannot be had
         if any("names" in remark.values for remark in legibility.crowded(Project(variant), [1])):  # another sheet helps
             named = [*APART, *(name for name in variant.sheets if name != TOGETHER)]
