@@ -170,9 +170,9 @@ def _badly_led(p, kept, written):
     return ""
 
 
-SPAN, TIE, ONE, LED_TO, APART = 0.3, 0.1, 0.4, 0.6, 1.0
+SPAN, TIE, ONE, LED_TO, APART, BESIDE = 0.3, 0.1, 0.4, 0.6, 1.0, 3.0
 """A name's anchor lies on its line, mm; distances alike; vectors whose ink is one; a leader this near to a foreign one may be
-its; vectors are seen apart."""
+its; vectors are seen apart; and so far to both sides of a crossing, mm."""
 
 
 def _vectors(ink, view):
@@ -198,7 +198,9 @@ def _of_another(p, ink):
         return ""
     foreign = [whole for other, whole, _ in vectors if other is not line]
     apart = [whole for whole in foreign if whole.distance(at) > ONE]
-    if len(apart) < len(foreign):  # vectors whose ink is one here, and all along
+    here = line.project(at)
+    beside = [line.interpolate(here + way) for way in (-BESIDE, 0.0, BESIDE)]
+    if any(max(map(whole.distance, beside)) <= ONE for whole in foreign):  # their ink is one here: is it all along?
         along = [line.interpolate(share, normalized=True) for share in np.linspace(0.1, 0.9, 9)]
         if max(min(whole.distance(z) for whole in foreign) for z in along) > APART:
             return TOGETHER
