@@ -6,7 +6,7 @@ import re
 from cmath import rect
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from math import ceil, floor, pi
+from math import ceil, floor, inf, pi
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from tmm_sheets.drawing.clipping import polyline_inside
 from tmm_sheets.drawing.marks import Arc, Line, Mark, Points, Text, flat
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.sheets.composed import Leaving
+from tmm_sheets.sheets.views import VIEWS
 from tmm_sheets.words import marked
 
 TOUCH = 2.0
@@ -43,7 +44,9 @@ def leaving(canvas: Canvas, frame: Box, title_block: Box) -> list[Leaving]:
         beside = [other.box for other, v in zip(canvas.parts, views, strict=True)
                   if v is views[k] and other.title and _apart(other.box, part.box)]
         bounds = _Bounds(part.box, views[k], frame, title_block)
-        out = [*bounds.left_by(lines, TOUCH, beside), *bounds.left_by(labels, BESIDE, [])]
+        # What stands anywhere has free paper about it: its letters are led from there.
+        anywhere = part.draw in VIEWS and VIEWS[part.draw].stands == "anywhere"
+        out = [*bounds.left_by(lines, TOUCH, beside), *bounds.left_by(labels, inf if anywhere else BESIDE, [])]
         if out:
             # What is drawn later in the place of a titled part is one view with it.
             it = Leaving(_plain(part.title or titles.get(part.box) or part.draw), *max(out), _scales(canvas, k))

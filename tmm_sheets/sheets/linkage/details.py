@@ -38,7 +38,7 @@ NEAR = 2.0
 """Corners closer than this, mm, are shown enlarged."""
 WIDE, SEVERAL = 7.0, 3
 """So many corners in a circle of this diameter, mm, have no room for their letters beside each other."""
-MOST = 10
+MOST = 8
 """So many vectors can be told apart in a detail."""
 ONE = 0.02
 """Corners closer than this are one, mm."""
