@@ -80,7 +80,7 @@ def test_reducer_without_a_simple_stage(changes, ratio):
     tree = made.results()
     assert "ratio_simple" not in tree
     assert tree["speeds_rpm"]["nH"].value == pytest.approx(1450 / tree["ratio"].value, rel=1e-12)
-    assert [w.number for w in made.wheels] == ["1", "2", "3"]
+    assert made.names == ("1", "2", "3", "H")
     assert made.speeds(0.05)["nH"].value == pytest.approx(tree["speeds_rpm"]["nH"].value, rel=1e-9)
 
 

@@ -36,7 +36,7 @@ def test_a_careful_hand_is_accused_of_nothing(hoist):
 
 def test_a_velocity_drawn_off_is_where_it_starts(hoist):
     """The line of the ring goes through it, and its speed is read off by that."""
-    hand = Hand(hoist, np.random.default_rng(3), (Plant("train-velocities", "", "d", 8 + 0j),))
+    hand = Hand(hoist, np.random.default_rng(3), (Plant("train-velocities", "", "d", 10 + 0j),))
     judged = judge(hand.filled(), hoist, PENCIL, READING)
     start, = (j for j in judged if j.starts)
     assert start.entry.id == "train-velocities/Dd"

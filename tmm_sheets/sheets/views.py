@@ -81,7 +81,7 @@ ROOMS = {module: room for room, modules in {
     "flywheel": "crank_speed enlarged flywheel mertsalov",
     "linkage": "details diagrams false_positions friction friction_sizes given_position hodograph "
                "kinematic_frames kinematics kinetics linkage_sizes load_diagram moments path_marks synthesis",
-    "gears": "gear gear_equations gear_sizes plan_checks planet_motion rack reducer reducer_equations train wheel_sizes",
+    "gears": "gear gear_equations gear_sizes plan_checks planet_motion rack reducer train wheel_sizes",
     "tables": "given_data position_tables",
     "components": "upright_tables",
 }.items() for module in modules.split()}
@@ -189,7 +189,7 @@ VIEWS = {view.draw: view for view in (
     ViewKind("reducer.points", "reducer", place="gear_sizes.points_of_reducer", sizes="reducer.points.sizes"),
     ViewKind("reducer.scheme", "reducer", place="gear_sizes.scheme_of_reducer", picture="wheels"),
     ViewKind("reducer.speeds", "reducer", place="gear_sizes.speeds"),
-    ViewKind("reducer_equations.of_stage", "reducer", sizes="reducer_equations.of_stage.sizes"),
+    ViewKind("reducer.of_stage", "reducer", sizes="reducer.of_stage.sizes"),
     # gear trains
     ViewKind("plan_checks.of_train", "train", sizes="plan_checks.of_train.sizes", stands="anywhere"),
     ViewKind("plan_checks.pairs", "train", sizes="plan_checks.pairs.sizes", stands="anywhere"),

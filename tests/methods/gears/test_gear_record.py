@@ -12,12 +12,22 @@ from tmm_sheets.construction.given import Given, GivenNumber
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.step import Reported, Step, value_of
-from tmm_sheets.methods.gears import fillets, gear_engagement, gear_formulas, gear_teeth, planetary, rack, reducer_formulas
+from tmm_sheets.methods.gears import (
+    fillets,
+    gear_engagement,
+    gear_formulas,
+    gear_teeth,
+    planetary,
+    rack,
+    reducer_formulas,
+    train_steps,
+)
 from tmm_sheets.methods.gears.gear_pair import gear_pair, settled
 from tmm_sheets.methods.gears.reducer import reducer
 from tmm_sheets.task.schema import GearTable
 
-KNOWN = expression.primitives(arithmetic, fillets, gear_engagement, gear_formulas, gear_teeth, planetary, rack, reducer_formulas)
+KNOWN = expression.primitives(arithmetic, fillets, gear_engagement, gear_formulas, gear_teeth, planetary, rack, reducer_formulas,
+                               train_steps)
 CASES = ["fillet", "no shift", "rack", "undercut", "rule", "reduced", *cases.MACHINES, "two internal", "ring"]
 
 

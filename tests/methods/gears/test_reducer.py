@@ -29,8 +29,8 @@ COLUMNS += [("compressor", c, {"driver": "ring"}) for c in range(10)]
 
 def exact(r):
     """Speeds of all links as fractions of the input's, by Willis's formula; wheels by number, carriers by name."""
-    d, speeds = r.data, {}
-    z = {w.number: Fraction(w.teeth) for w in r.wheels}
+    d, speeds = r.table, {}
+    z = {name: Fraction(teeth) for name, teeth in r.data.teeth.items()}
     numbers = iter(sorted(z, key=int))
     speed = Fraction(1)
 
@@ -71,24 +71,23 @@ def exact(r):
 @pytest.mark.parametrize(("machine", "c", "over"), COLUMNS)
 def test_speeds_of_the_graphs_are_exact(machine, c, over):
     r = reducer(cases.column(machine, c, **over))
-    truth, n = exact(r), rpm(r.data.input_speed)
-    assert set(r.links) == set(truth)
+    truth, n = exact(r), rpm(r.table.input_speed)
+    assert set(r.names) == set(truth)
     for link, speed in truth.items():
-        assert r.links[link].value == pytest.approx(float(speed) * n, rel=1e-12, abs=1e-9)
+        assert r.kinematics[f"n{link}"].value == pytest.approx(float(speed) * n, rel=1e-12, abs=1e-9)
     for distance in (0.02, 0.05):
         plan = r.speeds(distance)
         read = {name[1:]: float(step.value) for name, step in plan.steps.items() if name.startswith("n")}
         # every turning link, links in one piece once
-        assert {float(truth[name.split("-")[0]]) for name in read} == {float(v) for v in truth.values() if v}
+        assert {float(truth[name]) for name in read} == {float(v) for v in truth.values() if v}
         for name, value in read.items():
-            assert value == pytest.approx(float(truth[name.split("-")[0]]) * n, rel=1e-11)
-    last = (r.stages[-1].carrier if r.driver != "carrier" else "1") if r.data.simple == "before" else r.simple[1].number
-    assert n / abs(r.links[last].value) == pytest.approx(r.chosen.ratio, rel=1e-13)
+            assert value == pytest.approx(float(truth[name]) * n, rel=1e-11)
+    assert n / abs(r.kinematics[f"n{r.exit}"].value) == pytest.approx(r.chosen.ratio, rel=1e-13)
     assert abs(r.told("u_planetary")) * r.told("u_simple") == pytest.approx(r.chosen.ratio, rel=1e-13)
     # the ratio of the planetary part is that of its shafts' speeds, with their sign
-    one, four = (r.stages[k].wheels[n].number for k, n in ((0, 0), (0, 3)))
-    enters = {"sun": one, "ring": four, "carrier": r.stages[0].carrier}[r.driver]
-    leaves = one if r.driver == "carrier" else r.stages[-1].carrier
+    one, *_, four = r.stage_wheels[0]
+    first, *_, last = (m.carrier for m in r.meshes if m.carrier)
+    enters, leaves = {"sun": (one, last), "ring": (four, last), "carrier": (first, one)}[r.driver]
     assert r.told("u_planetary") == pytest.approx(float(truth[enters] / truth[leaves]), rel=1e-13)
 
 
@@ -120,10 +119,10 @@ def test_conditions_and_results(machine, c, over):
     assert got["efficiency"] == pytest.approx(got["efficiency_planetary"] * 0.98, rel=1e-14)
     assert abs(got["deviation"]) <= 0.05
     assert list(got["teeth"]) == [f"z{i + 1}" for i in range(len(got["teeth"]))]
-    m, plain = r.data.module, r.data.simple_module
-    pair = {w.number for w in r.simple}
-    for w in r.wheels:
-        assert got["diameters_w"][f"d{w.number}"] == pytest.approx(w.teeth * 1e3 * (plain if w.number in pair else m), rel=1e-14)
+    m, plain = r.table.module, r.table.simple_module
+    pair = [name for mesh in r.meshes if not mesh.carrier for name in (mesh.central, mesh.planet)]
+    for name, teeth in r.data.teeth.items():
+        assert got["diameters_w"][f"d{name}"] == pytest.approx(teeth * 1e3 * (plain if name in pair else m), rel=1e-14)
     for runner in got["runners_up"]:
         assert set(runner["teeth"]) <= set(got["teeth"])
         assert abs(runner["deviation"]) <= 0.05

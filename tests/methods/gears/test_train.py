@@ -98,7 +98,8 @@ def test_speeds_of_all_links(case):
     assert found == pytest.approx(exact, rel=1e-10, abs=1e-9)
     drawn = made.speeds(0.05)
     for link, step in made.links.items():
-        assert drawn[f"n{link}"].value == pytest.approx(exact[link], rel=1e-9, abs=1e-8), link
+        if not made.stands(link):
+            assert drawn[f"n{link}"].value == pytest.approx(exact[link], rel=1e-9, abs=1e-8), link
         assert step.rule.tree(len(step.args)) is not None
 
 

@@ -100,11 +100,13 @@ def test_front_view_shows_all_pitch_circles_to_scale(data):
     canvas, parts = sheet(data)
     mm = canvas.scales["reducer-scheme"].mm
     radii = [m.radius for m in parts["reducer.scheme"][0] if isinstance(m, Arc)]
-    stage, count = data.reducer.stages[0], data.reducer.data.satellites
-    for wheel in {w.number: w for w in (*stage.wheels, *data.reducer.simple)}.values():
-        same = sum(abs(r - mm(wheel.diameter / 2)) < 1e-9 for r in radii)
-        assert same >= (count if wheel in (stage.wheels[1], stage.wheels[2]) else 1)
-    spokes = [m for m in parts["reducer.scheme"][0] if isinstance(m, Line) and abs(abs(m.b - m.a) - mm(stage.axis)) < 1e-9]
+    train, count = data.reducer, data.reducer.table.satellites
+    for mesh in train.meshes:
+        for name in (mesh.central, mesh.planet):
+            same = sum(abs(r - mm(train.radius(name, mesh))) < 1e-9 for r in radii)
+            assert same >= (count if mesh.carrier and name == mesh.planet else 1)
+    arm = mm(train.distance(next(m for m in train.meshes if m.carrier)))
+    spokes = [m for m in parts["reducer.scheme"][0] if isinstance(m, Line) and abs(abs(m.b - m.a) - arm) < 1e-9]
     directions = {round(float(np.angle(m.b - m.a)) % (2 * np.pi), 6) for m in spokes if m.style == "main"}
     assert len(directions) >= count
 
@@ -127,8 +129,8 @@ def test_rays_are_parallel_to_the_lines_of_the_picture(data):
         drawn = complex(speed.mm(u.real), height.mm(u.imag))
         assert min(abs(((m.b - m.a) * drawn.conjugate()).imag) / abs(m.b - m.a) / abs(drawn) for m in rays) < 1e-9
     read = sorted((m.b.real - origin) * mu for m in rays)
-    links = data.reducer.links
-    assert read == pytest.approx(sorted(links[s.name.split("-")[0]].value for s in lines), rel=1e-4, abs=1e-3)
+    links = data.reducer.kinematics
+    assert read == pytest.approx(sorted(links[f"n{s.name}"].value for s in lines), rel=1e-4, abs=1e-3)
 
 
 @ALL

@@ -7,10 +7,11 @@ import pytest
 from tests.evenness import gap
 from tests.few import few, seldom
 from tests.project_files import project
+from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.evenness import empty_cells
-from tmm_sheets.drawing.marks import Line, Text
-from tmm_sheets.sheets.gears import plan_checks, reducer, wheel_sizes
-from tmm_sheets.sheets.gears import train as trains
+from tmm_sheets.drawing.marks import Box, Line, Text
+from tmm_sheets.sheets.gears import plan_checks, wheel_sizes
+from tmm_sheets.sheets.gears.train_scheme import TrainScheme
 from tmm_sheets.sheets.sheet import composed
 
 REDUCER = {"simple": "none", "input_speed": "1450 rpm", "module": "3 mm", "satellites": 3}
@@ -58,13 +59,14 @@ def test_views_keep_their_places(name):
 @pytest.mark.parametrize("name", ["sun drives", "two rings", "planetary train"])
 def test_a_standing_ring_is_held_at_both_sides_of_the_axis_and_meshes_there(name):
     own, _ = drawn(name)
-    canvas = reducer.Canvas()
-    is_train = "train" in PROJECTS[name]
-    views = trains.SchemeOfTrain(own.train) if is_train else reducer.SchemeOfReducer(own.reducer)
-    views.place(canvas, reducer.Box(24, 178, 642, 572), "scheme", "")
+    canvas = Canvas()
+    train = own.train if "train" in PROJECTS[name] else own.reducer
+    views = TrainScheme(train)
+    views.place(canvas, Box(24, 178, 642, 572), "scheme", "")
     views.axial()
     level = {round(m.a.imag - views.axis, 6) for m in canvas.marks if isinstance(m, Line) and abs((m.b - m.a).imag) < 1e-9}
-    ring = own.train.radius("3", own.train.meshes[1]) if is_train else own.reducer.stages[0].wheels[3].diameter / 2
+    held = next(m for m in train.meshes if m.sign < 0 and train.stands(m.central))
+    ring = train.radius(held.central, held)
     assert {round(views.mu.mm(side * ring), 6) for side in (1, -1)} <= level  # rims of the ring and of the satellites
     assert {round(views.mu.mm(side * ring) + 6 * side, 6) for side in (1, -1)} <= level  # where it is held
 
@@ -72,21 +74,21 @@ def test_a_standing_ring_is_held_at_both_sides_of_the_axis_and_meshes_there(name
 def test_a_planet_alone_on_its_carrier_is_drawn_once():
     own = project({"train": {"module": "2 mm", "teeth": {"1": 100, "2": 20, "3": 101}, "speeds": {"1": "0 rpm", "H": "60 rpm"},
                              "mesh": [{"sun": "1", "planet": "2", "carrier": "H"}, {"sun": "3", "planet": "2", "carrier": "H"}]}})
-    assert trains.SchemeOfTrain(own.train).sides("2") == (1,)
+    assert TrainScheme(own.train).sides("2") == (1,)
 
 
 def test_wheels_as_wide_as_the_end_view_needs():
     """A wheel beside the main axis that is the largest stood out of the view's place, over the tables."""
     own, _ = drawn("shafts")
-    assert trains.SchemeOfTrain(own.train).side == pytest.approx(0.08)
+    assert TrainScheme(own.train).side == pytest.approx(0.08)
 
 
 def test_sizes_of_wheels_without_shift():
     own, _ = drawn("sun drives")
-    rows = [wheel_sizes._row(wheel) for wheel in wheel_sizes._wheels(own)]
-    sun, planet, ring = (int(w.teeth) for w in (own.reducer.stages[0].wheels[k] for k in (0, 1, 3)))
-    assert rows == [[name, str(z), *(f"{3 * (z + over):g}".replace(".", ",") for over in (0, tip, root))]
-                    for name, z, tip, root in (("1", sun, 2, -2.5), ("2", planet, 2, -2.5), ("3", ring, -2, 2.5))]
+    sun, planet, ring = own.reducer.data.teeth.values()
+    assert wheel_sizes.rows(own.reducer)[1:] == [
+        [name, str(z), *(f"{3 * (z + over):g}".replace(".", ",") for over in (0, tip, root))]
+        for name, z, tip, root in (("1", sun, 2, -2.5), ("2", planet, 2, -2.5), ("3", ring, -2, 2.5))]
 
 
 def test_ratios_of_pairs_and_of_their_chain():

@@ -23,7 +23,7 @@ def train(meshes, teeth, speeds, satellites=3):
     plan = {f"n{name}": SimpleNamespace(value=n) for name, n in speeds.items()}
     made = Train.__new__(Train)
     together = {m.planet: meshes[0].planet for m in meshes if m.carrier}
-    made.__dict__.update(meshes=tuple(meshes), data=SimpleNamespace(teeth=teeth, satellites=satellites, module=0.002),
+    made.__dict__.update(meshes=tuple(meshes), data=SimpleNamespace(teeth=teeth, satellites=satellites, module=0.002, addendum=1.0),
                          shafts=together, kinematics=plan)
     return made
 
@@ -43,7 +43,8 @@ TEETH = {"1": 24, "2": 45, "3": 114}
      ["24 + 45 = 89 − 20 = 69", "(24·20 + 45·89)/(3·НОД(45; 20)) = 299", "> 47"]),
 ])  # fmt: skip
 def test_conditions_of_planets(meshes, teeth, satellites, said):
-    lines = list(planet_motion._checks(train(meshes, teeth, {}, satellites)))
+    made = train(meshes, teeth, {}, satellites)
+    lines = list(planet_motion.checks_of(made, *made.stages))
     assert all(any(part in line for line in lines) for part in said), lines
     assert bool(lines) is bool(said)
 
@@ -88,12 +89,9 @@ def test_relative_speeds_are_as_the_teeth_demand(name, rows):
     project = Project(read(name))
     found = {name: n - h for _, name, n, h in planet_motion._inverted(project)}
     assert len(found) == rows
-    if project.variant.train is not None:
-        teeth, meshes = project.train.data.teeth, [(m.central, m.planet) for m in project.train.meshes if m.carrier]
-    else:
-        one, two, _, four = project.reducer.stages[0].wheels
-        teeth, meshes = {w.number: w.teeth for w in (one, two, four)}, [(one.number, two.number), (four.number, two.number)]
-    for central, planet in meshes:
+    own = project.train if project.variant.train is not None else project.reducer
+    teeth = own.data.teeth
+    for central, planet in [(m.central, m.planet) for m in own.meshes if m.carrier]:
         assert np.isclose(abs(found[central] * teeth[central]), abs(found[planet] * teeth[planet]), rtol=1e-9)
-    for line in planet_motion._ratios(project.train) if project.variant.train is not None else ():
+    for line in planet_motion._ratios(own):
         assert re.search(r"= −?[\d,]+$", line)

@@ -8,7 +8,7 @@ import pytest
 
 from tmm_sheets import catalogue
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.gears.reducer_equations import _lines
+from tmm_sheets.sheets.gears.reducer import _lines
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import variant
 
@@ -56,7 +56,7 @@ def test_a_row_alone(tmp_path, driver):
     lines = list(_lines(project.reducer))
     entry = {"sun": "1", "ring": "3"}[driver]
     assert lines[1].startswith(f"u_{{{entry}H}} = ")
-    assert f"n_{{{entry}}}/u" in lines[-2]
+    assert f"n_{{{entry}}}/u" in lines[-3]
 
 
 def test_a_sheet_with_room_has_them():

@@ -25,7 +25,6 @@ from tmm_sheets.construction.protocol import spoken
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.methods.cams.cam_motion import ACROSS, ORDINATE
 from tmm_sheets.methods.gears.rack import TAKEN
-from tmm_sheets.methods.gears.train_steps import CENTRAL_PITCH
 from tmm_sheets.methods.integration import CHORD
 from tmm_sheets.words import tell
 
@@ -120,9 +119,8 @@ def train(project: Project, found: Measurables) -> None:
     results: Mapping[str, Any] = train.results()
     for name, told in results["distances"].items():
         scalar(found, tell("Train of gears"), f"train-{name}", told.value, MILLIMETRES)
-    for step in train.kinematics:
-        if step.rule is CENTRAL_PITCH:
-            scalar(found, tell("Train of gears"), f"train-{step.name}", float(step.value), MILLIMETRES)
+    for m in train.meshes:
+        scalar(found, tell("Train of gears"), f"train-d{m.central}-{m.planet}", float(train.pitch(m).value), MILLIMETRES)
     for name, told in results["speeds_rpm"].items():
         if name.removeprefix("n") not in train.given:
             scalar(found, tell("Train of gears"), f"train-{name}", told.value, TURNS)

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets.construction.given import GivenNumber
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Reported, Step
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.gears import reducer_speeds
 from tmm_sheets.methods.gears.planetary import SCHEMES, Driver
-from tmm_sheets.methods.gears.reducer_formulas import carrier_of, conditions_plan, internal_pairs, kinematics_plan, ratio_plan
-from tmm_sheets.methods.gears.reducer_stages import ReducerWheel, Stage
+from tmm_sheets.methods.gears.reducer_formulas import conditions_plan, internal_pairs, ratio_plan
 from tmm_sheets.methods.gears.tooth_search import (
     TIERS,
     ToothSet,
@@ -22,6 +21,8 @@ from tmm_sheets.methods.gears.tooth_search import (
     simple_numbers,
     stage_numbers,
 )
+from tmm_sheets.methods.gears.train import Train
+from tmm_sheets.methods.gears.train_steps import FRAME, Mesh, TrainData
 from tmm_sheets.numbers import number
 from tmm_sheets.words import tell, tr
 
@@ -54,74 +55,80 @@ class Interference(NamedTuple):
     least: int
 
 
-class Reducer:
-    """A planetary reducer with its simple stage: the chosen tooth numbers, the runners-up, and what follows from them.
+class Reducer(Train):
+    """A planetary reducer with its simple stage: a train of the tooth numbers that were chosen, and the runners-up.
 
-    Plans: ``reducer-ratio`` and ``reducer-set-2`` .. of the runners-up, ``reducer-kinematics``, ``reducer-conditions``,
-    ``reducer-velocities``, ``reducer-speeds``.
+    Plans: ``reducer-ratio`` and ``reducer-set-2`` .. of the runners-up, ``reducer-conditions``, and those of a train.
     """
 
-    def __init__(self, data: ReducerTable, sets: Sequence[ToothSet]) -> None:
-        self.data = data
-        self.scheme = SCHEMES[data.scheme]
-        self.driver: Driver = data.driver or self.scheme.drivers[0]
+    def __init__(self, table: ReducerTable, sets: Sequence[ToothSet]) -> None:
+        self.table = table
+        self.scheme = SCHEMES[table.scheme]
+        self.driver: Driver = table.driver or self.scheme.drivers[0]
         self.chosen, *rest = sets
         self.runners_up = tuple(rest)
+        self.stage_wheels = [stage_numbers(table, k) for k in range(table.stages)]
+        self.simple = simple_numbers(table)
+        super().__init__(self._train())
+
+    def _train(self) -> TrainData:
+        """The stages one behind the other: the link that leaves one turns with that which enters the next."""
+        table, signs = self.table, self.scheme.signs
+        links: list[tuple[str, str]] = []
+        meshes, shafts, held, known = list[Mesh](), list[tuple[str, ...]](), list[str](), dict[str, Step]()
+        first = self.stage_wheels[0]
+        for k, wheels in enumerate(self.stage_wheels):
+            one, two, three, four = wheels
+            carrier = f"H{k + 1}" if table.stages > 1 else "H"
+            pair = Mesh(one, two, carrier, signs[0]), Mesh(four, three, carrier, signs[1])
+            # the driving wheel comes first
+            meshes += pair[::-1] if self.driver == "ring" else pair
+            shafts += [(two, three)] if two != three else []
+            entry, fixed, leaves = {
+                "sun": (one, four, carrier), "ring": (four, one, carrier), "carrier": (carrier, four, one)}[self.driver]
+            links.append((entry, leaves))
+            held.append(fixed)
+            known |= {f"z{n}": self.sets[0][f"z{of}"] for n, of in zip(wheels, first, strict=True)}
+            known[f"i{one},{four}"] = self.sets[0]["i14"]
+        if table.simple_module is not None:
+            pinion, wheel = self.simple
+            known |= {name: self.sets[0][name] for name in (f"z{pinion}", f"z{wheel}")}
+            module = GivenNumber(table.simple_module, "reducer.simple_module", "m", "m")
+            before = table.simple == "before"
+            links.insert(0 if before else len(links), (pinion, wheel))
+            meshes.insert(0 if before else len(meshes), Mesh(*((wheel, pinion) if before else (pinion, wheel)), FRAME, 1, module))
+        shafts += [(one[1], two[0]) for one, two in pairwise(links)]
+        self.entry, self.exit = links[0][0], links[-1][1]
+        speeds = {self.entry: GivenNumber(table.input_speed, "reducer.input_speed", "ω", "rad/s")} | dict.fromkeys(held)
+        teeth = {name.removeprefix("z"): int(step.value) for name, step in known.items() if name.startswith("z")}
+        return TrainData("reducer", tuple(meshes), teeth, table.module, speeds, tuple(shafts), table.satellites,
+                         table.addendum, table.clearance, known)
 
     @property
     def tiers(self) -> tuple[float, ...]:
         """Steps of the deviation of the ratio by which the tooth numbers were chosen, as shares."""
-        return tiers_of(self.data)
+        return tiers_of(self.table)
 
     @property
     def plans(self) -> dict[str, Plan]:
         """Plans by name in the order of construction; that of the speeds as far as it was drawn."""
-        found = (*self.sets, self.kinematics, self.conditions, self.velocities, *self._speed_plans.values())
-        return {plan.name: plan for plan in found}
+        return {plan.name: plan for plan in (*self.sets, self.conditions)} | super().plans
 
     @cached_property
     def sets(self) -> tuple[Plan, ...]:
         """Tooth numbers, ratio and efficiency of the chosen set and of the runners-up."""
-        criterion = criterion_of(self.data, (self.chosen, *self.runners_up))
-        chosen = ratio_plan(self.data, self.chosen, 0, criterion)
-        return chosen, *(ratio_plan(self.data, t, k, criterion, chosen) for k, t in enumerate(self.runners_up, 1))
-
-    @cached_property
-    def kinematics(self) -> Plan:
-        """Diameters and speeds by the formulas."""
-        return kinematics_plan(self.data, self.sets[0])
+        criterion = criterion_of(self.table, (self.chosen, *self.runners_up))
+        chosen = ratio_plan(self.table, self.chosen, 0, criterion)
+        return chosen, *(ratio_plan(self.table, t, k, criterion, chosen) for k, t in enumerate(self.runners_up, 1))
 
     @cached_property
     def conditions(self) -> Plan:
         """Coaxiality, assembly, neighbourhood."""
-        return conditions_plan(self.data, self.sets[0])
+        return conditions_plan(self.table, self.sets[0])
 
     def told(self, name: str) -> float:
         """A number of the chosen set: its ratios ``u`` .., efficiencies ``eta`` .."""
         return float(self.sets[0][name].value)
-
-    @cached_property
-    def stages(self) -> tuple[Stage, ...]:
-        """Planetary stages in the order of the power."""
-        return tuple(self._stage(k) for k in range(self.data.stages))
-
-    def _stage(self, k: int) -> Stage:
-        numbers = stage_numbers(self.data, k)
-        wheels = [self._wheel(n, z) for n, z in zip(numbers, self.chosen.stage, strict=True)]
-        if self.scheme.single:
-            wheels[2] = wheels[1]
-        name = carrier_of(self.data, k)
-        return Stage(self.scheme.signs, self.driver, (wheels[0], wheels[1], wheels[2], wheels[3]), name, self.kinematics["a_H"],
-                     self.kinematics[f"n{name}"])
-
-    def _wheel(self, number: str, teeth: int) -> ReducerWheel:
-        return ReducerWheel(number, teeth, self.kinematics[f"d{number}"], self.kinematics[f"n{number}"])
-
-    @cached_property
-    def simple(self) -> tuple[ReducerWheel, ...]:
-        """Pinion and wheel of the simple stage; none without one."""
-        teeth = self.chosen.pinion, self.chosen.wheel
-        return tuple(self._wheel(n, z) for n, z in zip(simple_numbers(self.data), teeth, strict=False))
 
     @property
     def simple_pair(self) -> tuple[tuple[Step, Step], GivenNumber, GivenNumber, GivenNumber]:
@@ -132,7 +139,7 @@ class Reducer:
         CannotBuild
             when there is none.
         """
-        d, names = self.data, simple_numbers(self.data)
+        d, names = self.table, self.simple
         if d.simple_module is None:
             raise CannotBuild(tell('gear.teeth: the reducer has no simple stage, "reducer" means its wheels'),
                               tell("give tooth numbers and a module in [gear]"))
@@ -140,39 +147,12 @@ class Reducer:
                 GivenNumber(d.simple_module, "reducer.simple_module", "m", "m"),
                 GivenNumber(d.addendum, "reducer.addendum", "h_a^{*}"), GivenNumber(d.clearance, "reducer.clearance", "c^{*}"))
 
-    @cached_property
-    def wheels(self) -> tuple[ReducerWheel, ...]:
-        """All wheels by their numbers."""
-        found = {w.number: w for w in (*self.simple, *(w for stage in self.stages for w in stage.wheels))}
-        return tuple(found[str(n)] for n in range(1, len(found) + 1))
-
     @property
     def teeth_names(self) -> tuple[str, ...]:
         """Names of the tooth numbers, "z1" ..; equal stages are named once."""
-        return tuple(named_teeth(self.data, self.chosen))
-
-    @cached_property
-    def velocities(self) -> Plan:
-        """Picture of velocities."""
-        apart = self.kinematics["a_simple"] if self.simple else None
-        return reducer_speeds.picture(self.simple, self.stages, apart, self.data.simple == "before")
-
-    def speeds(self, distance: float) -> Plan:
-        """Plan of the speeds of rotation with its pole ``distance`` m over the line on which they are read."""
-        if distance not in self._speed_plans:
-            self._speed_plans[distance] = reducer_speeds.speeds(self.velocities, distance)
-        return self._speed_plans[distance]
-
-    @cached_property
-    def _speed_plans(self) -> dict[float, Plan]:
-        return {}
+        return tuple(named_teeth(self.table, self.chosen))
 
     @property
-    def links(self) -> dict[str, Step]:
-        """Speed of every turning link, 1/min: wheels by number, carriers by name."""
-        return {w.number: w.n for w in self.wheels} | {stage.carrier: stage.n_H for stage in self.stages}
-
-    @cached_property
     def warnings(self) -> tuple[str, ...]:
         """Remarks for the sheet."""
         out = []
@@ -192,7 +172,7 @@ class Reducer:
     @cached_property
     def interferences(self) -> tuple[Interference, ...]:
         """The internal pairs of the first stage that interfere without shifts."""
-        z, numbers = self.chosen.stage, stage_numbers(self.data, 0)
+        z, numbers = self.chosen.stage, self.stage_wheels[0]
         found = []
         for satellite, ring, sign in internal_pairs(self.scheme.signs):
             if sign < 0:
@@ -209,18 +189,16 @@ class Reducer:
         ``conditions``: difference of the sides of coaxiality, quotient of assembly, margin of neighbourhood in modules.
         """
         chosen, conditions = self.sets[0], self.conditions
-        first = {n: of for k in range(self.data.stages)
-                 for n, of in zip(stage_numbers(self.data, k), stage_numbers(self.data, 0), strict=True)}
         return {
             "ratio_asked": Reported(chosen["u_asked"]), "ratio": Reported(chosen["u"]),
             "deviation": Reported(chosen["u_deviation"]),
             "ratio_planetary": Reported(chosen["u_planetary"]),
-            **({"ratio_simple": Reported(chosen["u_simple"])} if self.simple else {}),
-            "teeth": {f"z{w.number}": Reported(chosen[f"z{first.get(w.number, w.number)}"]) for w in self.wheels},
+            **({"ratio_simple": Reported(chosen["u_simple"])} if "u_simple" in chosen else {}),
+            "teeth": {f"z{n}": Reported(self.data.known[f"z{n}"]) for n in self.wheels},
             "q": Reported(conditions["q"]),
             "efficiency": Reported(chosen["eta"]), "efficiency_planetary": Reported(chosen["eta_planetary"]),
-            "diameters_w": {f"d{w.number}": Reported(w.d) for w in self.wheels},
-            "speeds_rpm": {f"n{link}": Reported(n) for link, n in self.links.items()},
+            "diameters_w": {f"d{n}": Reported(self.kinematics[f"d{n}"]) for n in self.wheels},
+            "speeds_rpm": {f"n{n}": Reported(self.kinematics[f"n{n}"]) for n in self.names},
             "conditions": {name: Reported(conditions[name]) for name in ("coaxiality", "assembly", "neighbourhood")},
             "runners_up": [
                 {"teeth": {name: Reported(plan[name]) for name in self.teeth_names}, "ratio": Reported(plan["u"]),

@@ -7,7 +7,7 @@ steps are those of ``solve --json``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from math import gcd, pi
 from typing import TYPE_CHECKING, Any
 
@@ -16,10 +16,10 @@ import numpy as np
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given, GivenNumber
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Kind, Rule, Step
+from tmm_sheets.construction.step import Kind, Rule
 from tmm_sheets.methods.gears import planetary
-from tmm_sheets.methods.gears.gear_formulas import MODULE
 from tmm_sheets.methods.gears.tooth_search import ToothSet, named_teeth, simple_numbers, stage_numbers
+from tmm_sheets.methods.gears.train_steps import INNER_RATIO, TEETH, said_with_sign
 from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
@@ -42,12 +42,8 @@ def common_divisor(a: float, b: float) -> int:
 ASKED = _formula("ratio asked for", lambda u: u, 1, marked("Ratio asked for {name} = {value}."))
 ASKED_BY_SPEEDS = _formula("ratio of the speeds asked for", lambda one, two: one / two, 2,
                            marked("Ratio asked for ω_in/ω_out: {name} = {0}/{1} = {value}."))
-TEETH = _formula("number of teeth", lambda z: z, 1, marked("Number of teeth {name} = {value}."))
 SIMPLE_RATIO = _formula("ratio of the simple stage", lambda wheel, pinion: wheel / pinion, 2,
                         marked("Ratio of the simple stage: {name} = {0}/{1} = {value}."))
-INNER_RATIO = _formula(
-    "ratio with the carrier stopped", lambda s, z1, z2, z3, z4: planetary.inner_ratio((s, 1), (z1, z2, z3, z4)), 5,
-    marked("Ratio of the train with the carrier held ±z_2z_4/(z_1z_3): {name} = ±{2} × {4}/({1} × {3}) = {value}."))
 STAGE_RATIO = {
     "sun": _formula("ratio of a stage driven by the sun", lambda i: planetary.stage_ratio(i, "sun"), 1,
                     marked("Ratio from the sun to the carrier, 1 − i: {name} = 1 − {0} = {value}.")),
@@ -87,27 +83,6 @@ EFFICIENCY = _formula("efficiency of the reducer", lambda planetary, pair: plane
                       marked("Efficiency of the reducer: {name} = {0} × {1} = {value}."))
 SAME_EFFICIENCY = _formula("efficiency without a simple stage", lambda eta: eta, 1,
                            marked("There is no simple stage; efficiency of the reducer: {name} = {0} = {value}."))
-DIAMETER = _formula("pitch diameter", lambda z, m: z * m, 2,
-                    marked("Pitch diameter (there are no shifts) d = mz: {name} = {1} × {0} = {value} mm."), "mm")
-CARRIER_RADIUS = _formula("distance of the satellites' axes", lambda d1, sign, d2: (d1 + sign * d2) / 2, 3,
-                          marked("Radius of the carrier: {name} = ({0} ± {2})/2 = {value} mm."), "mm")
-AXES = _formula("centre distance of the simple stage", lambda d1, d2: (d1 + d2) / 2, 2,
-                marked("Centre distance of the simple stage: {name} = ({0} + {1})/2 = {value} mm."), "mm")
-INPUT = _formula("speed of the input", lambda w: w * 30 / pi, 1,
-                 marked("Speed of rotation of the input 30ω/π: {name} = 30 × {0}/π = {value} rpm."),
-                 "1/min")
-SAME_SHAFT = _formula("speed on the same shaft", lambda n: n, 1, marked("On the same shaft: {name} = {value} rpm."), "1/min")
-STANDS = _formula("a wheel that stands still", lambda: 0.0, 0, marked("The wheel stands still: {name} = 0."), "1/min")
-DRIVEN = _formula("speed behind an external pair", lambda n, z1, z2: -n * z1 / z2, 3,
-                  marked("External meshing reverses the rotation: {name} = −{0} × {1}/{2} = {value} rpm."), "1/min")
-CARRIER = _formula("speed of the carrier", lambda n, u: n / u, 2,
-                   marked("Speed of rotation of the carrier: {name} = {0}/{1} = {value} rpm."),
-                   "1/min")
-CENTRAL = _formula("speed of the driven central wheel", lambda n, i: n * (1 - i), 2,
-                   marked("Speed of rotation of the central wheel n_H(1 − i): {name} = {0} × (1 − {1}) = {value} rpm."), "1/min")
-BLOCK = _formula("speed of the satellites", lambda h, s, n, z1, z2: h - s * (n - h) * z1 / z2, 5,
-                 marked("Speed of rotation of the planets by the Willis formula n_H ∓ (n_1 − n_H)z_1/z_2: {name} = {0} ∓ ({2} − "
-                        "{0}) × {3}/{4} = {value} rpm."), "1/min")
 SATELLITES = _formula("number of satellites", lambda q: q, 1, marked("Number of planets {name} = {value}."))
 ADDENDUM = _formula("addendum coefficient", lambda h: h, 1, marked("Addendum coefficient {name} = {value}."))
 SIDE_OF_COAXIALITY = _formula("side of the coaxiality condition", lambda s, z1, z2: z1 + s * z2, 3,
@@ -129,11 +104,6 @@ NEIGHBOURHOOD = _formula("neighbourhood", lambda between, width: between - width
 LEAST_RING = _formula("least ring without interference", planetary.least_ring, 2,
                       marked("Least number of teeth of a ring without interference with the planet z = {0} (0: there is none): "
                              "{name} = {value}."))
-
-
-def said_with_sign(rule: Rule, sign: int) -> str:
-    """The rule's sentence with the sign of its pairs."""
-    return tr(rule.wording).replace("±", "+" if sign > 0 else "−").replace("∓", "−" if sign > 0 else "+")
 
 
 class SpeedNames:
@@ -195,75 +165,6 @@ def ratio_plan(data: ReducerTable, teeth: ToothSet, k: int, criterion: str, chos
     part = plan.add("eta_planetary", PLANETARY_EFFICIENCY, one, stages, symbol=tr("η_{pl}"))
     plan.add("eta", *((EFFICIENCY, part, pair) if names.simple else (SAME_EFFICIENCY, part)), symbol="η")
     return plan
-
-
-def kinematics_plan(data: ReducerTable, ratio: Plan) -> Plan:
-    """Diameters and speeds of all wheels and carriers: steps ``d1`` .., ``n1`` .., ``nH``, ``a_H`` and ``a_simple``."""
-    plan = Plan("reducer-kinematics", tr("Diameters of the wheels and speeds of rotation of the links"), "mm")
-    first = stage_numbers(data, 0)
-    teeth = [{n: ratio[f"z{of}"] for n, of in zip(stage_numbers(data, k), first, strict=True)} for k in range(data.stages)]
-    simple = {n: ratio[f"z{n}"] for n in simple_numbers(data)}
-    modules = [plan.add(name, MODULE, GivenNumber(value, f"reducer.{k}", "m", "m"), symbol=symbol)
-               for name, k, symbol in (("m", "module", "m"), ("m_simple", "simple_module", tr("m_{s}")))
-               if (value := getattr(data, k)) is not None]
-    for wheels, m in (*((z, modules[0]) for z in teeth), (simple, modules[-1])):
-        for n, z in wheels.items():
-            plan.add(f"d{n}", DIAMETER, z, m, symbol=f"d_{{{n}}}")
-    scheme = planetary.SCHEMES[data.scheme]
-    plan.add("a_H", CARRIER_RADIUS, plan[f"d{first[0]}"], scheme.signs[0], plan[f"d{first[1]}"], symbol="r_H",
-             say=said_with_sign(CARRIER_RADIUS, scheme.signs[0]))
-    if simple:
-        plan.add("a_simple", AXES, *(plan[f"d{n}"] for n in simple), symbol="a")
-    speed: Step | None = None
-    if data.simple == "before":
-        speed = _simple_speeds(plan, data, simple, None)
-    for k, of_stage in enumerate(teeth):
-        speed = _stage_speeds(plan, data, ratio, of_stage, k, speed)
-    if data.simple == "after":
-        _simple_speeds(plan, data, simple, speed)
-    return plan
-
-
-def _entry(plan: Plan, data: ReducerTable, link: str, before: Step | None) -> Step:
-    """Speed of a driving link: the input's, or that of the shaft it sits on."""
-    if before is None:
-        given = GivenNumber(data.input_speed, "reducer.input_speed", "ω", "rad/s")
-        return plan.add(f"n{link}", INPUT, given, symbol=f"n_{{{link}}}")
-    return plan.add(f"n{link}", SAME_SHAFT, before, symbol=f"n_{{{link}}}")
-
-
-def _simple_speeds(plan: Plan, data: ReducerTable, z: Mapping[str, Step], before: Step | None) -> Step:
-    one, two = z
-    speed = _entry(plan, data, one, before)
-    return plan.add(f"n{two}", DRIVEN, speed, z[one], z[two], symbol=f"n_{{{two}}}")
-
-
-def carrier_of(data: ReducerTable, k: int) -> str:
-    """Name of the carrier of stage ``k``."""
-    return f"H{k + 1}" if data.stages > 1 else "H"
-
-
-def _stage_speeds(plan: Plan, data: ReducerTable, ratio: Plan, z: Mapping[str, Step], k: int, before: Step | None) -> Step:
-    """Speeds of one planetary stage; gives that of the driven link."""
-    scheme = planetary.SCHEMES[data.scheme]
-    driver = data.driver or scheme.drivers[0]
-    one, two, three, four = stage_numbers(data, k)
-    name = carrier_of(data, k)
-    if driver == "carrier":
-        carrier = _entry(plan, data, name, before)
-        sun = plan.add(f"n{one}", CENTRAL, carrier, ratio["i14"], symbol=f"n_{{{one}}}")
-        plan.add(f"n{four}", STANDS, symbol=f"n_{{{four}}}")
-    else:
-        entry, fixed = (one, four) if driver == "sun" else (four, one)
-        speed = _entry(plan, data, entry, before)
-        plan.add(f"n{fixed}", STANDS, symbol=f"n_{{{fixed}}}")
-        carrier = plan.add(f"n{name}", CARRIER, speed, ratio["u_stage"], symbol=f"n_{{{name}}}")
-        sun = plan[f"n{one}"]
-    block = plan.add(f"n{two}", BLOCK, carrier, scheme.signs[0], sun, z[one], z[two], symbol=f"n_{{{two}}}",
-                     say=said_with_sign(BLOCK, scheme.signs[0]))
-    if three != two:
-        plan.add(f"n{three}", SAME_SHAFT, block, symbol=f"n_{{{three}}}")
-    return sun if driver == "carrier" else carrier
 
 
 def conditions_plan(data: ReducerTable, ratio: Plan) -> Plan:

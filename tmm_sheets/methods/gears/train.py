@@ -17,11 +17,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.construction.given import GivenNumber
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Reported, Step
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.gears import reducer_speeds
-from tmm_sheets.methods.gears.train_steps import DISTANCE, FRAME, Kinematics, Mesh, TrainSpeedPicture, distance_of, is_wheel
+from tmm_sheets.methods.gears import speed_picture
+from tmm_sheets.methods.gears.train_steps import DISTANCE, FRAME, Kinematics, Mesh, TrainData, distance_of, is_wheel
 from tmm_sheets.numbers import number
 from tmm_sheets.words import tell, tr
 
@@ -35,12 +36,15 @@ FARTHEST = 2.0
 class Train:
     """A train of gears: its meshes, the speeds of all links, the picture of velocities.
 
-    Plans: ``train-kinematics``, ``train-velocities``, ``train-speeds``.
+    Plans: ``train-kinematics``, ``train-velocities``, ``train-speeds``, with another word where the train is another part.
     """
 
-    def __init__(self, data: TrainTable) -> None:
+    entry = exit = ""
+    """Links whose shafts lead in and out, where the part has one way through."""
+
+    def __init__(self, data: TrainData) -> None:
         self.data = data
-        self.meshes = tuple(Mesh(m.sun or m.ring or "", m.planet, m.carrier or FRAME, 1 if m.sun else -1) for m in data.mesh)
+        self.meshes = data.meshes
         self.shafts = {name: shaft[0] for shaft in data.shafts for name in shaft}
         _check_speeds(self)
         _check_distances(self)
@@ -71,6 +75,11 @@ class Train:
         found = dict.fromkeys(name for m in self.meshes for name in (m.central, m.planet, m.carrier) if name)
         return tuple(sorted(found, key=lambda name: (not is_wheel(name), int(name.rstrip("′")) if is_wheel(name) else 0, name)))
 
+    @property
+    def wheels(self) -> tuple[str, ...]:
+        """Wheels by number."""
+        return tuple(filter(is_wheel, self.names))
+
     @cached_property
     def equations(self) -> tuple[list[str], npt.NDArray[np.float64]]:
         """Links, and the equations of Willis, one row for each mesh."""
@@ -91,12 +100,12 @@ class Train:
     @cached_property
     def velocities(self) -> Plan:
         """Picture of velocities: points ``A`` .. with their velocities ``a`` .., and a line named after each link."""
-        return TrainSpeedPicture(self).plan
+        return speed_picture.SpeedPicture(self).plan
 
     def speeds(self, distance: float) -> Plan:
         """Plan of the speeds of rotation with its pole ``distance`` m over the line on which they are read."""
         if distance not in self._speed_plans:
-            self._speed_plans[distance] = reducer_speeds.speeds(self.velocities, distance, "train")
+            self._speed_plans[distance] = speed_picture.speeds(self.velocities, distance, self.data.part)
         return self._speed_plans[distance]
 
     @cached_property
@@ -119,12 +128,18 @@ class Train:
         return tuple(self.data.speeds)
 
     def stands(self, name: str) -> bool:
-        """True for what is held in the frame."""
-        return float(self.kinematics[f"n{name}"].value) == 0 and self.link(name) in map(self.link, self.given)
+        """True for what is held in the frame; a planet on a carrier that does not turn moves along with it."""
+        held = {self.link(k) for k, speed in self.data.speeds.items() if not speed}
+        return self.link(name) in held & self.axes.keys()
+
+    def pitch(self, mesh: Mesh) -> Step:
+        """Diameter of the central wheel's pitch circle in a mesh, mm."""
+        working = f"d{mesh.central}-{mesh.planet}"
+        return self.kinematics[working if working in self.kinematics else f"d{mesh.central}"]
 
     def radius(self, name: str, mesh: Mesh) -> float:
         """Pitch radius of a wheel in a mesh, m."""
-        central = float(self.kinematics[f"d{mesh.central}-{mesh.planet}"].value) / 2e3
+        central = float(self.pitch(mesh).value) / 2e3
         return central if name == mesh.central else abs(self.distance(mesh) - central)
 
     def distance(self, mesh: Mesh) -> float:
@@ -158,7 +173,7 @@ class Train:
     def results(self) -> dict[str, Any]:
         """The ``train`` section of ``solve --json``: speeds in 1/min, distances in millimetres."""
         plan = self.kinematics
-        return {"teeth": {name: Reported(plan[f"z{name}"]) for name in self.names if is_wheel(name)},
+        return {"teeth": {name: Reported(plan[f"z{name}"]) for name in self.wheels},
                 "distances": {step.name: Reported(step) for step in plan if step.rule is DISTANCE},
                 "speeds_rpm": {f"n{name}": Reported(plan[f"n{name}"]) for name in self.names}}
 
@@ -280,4 +295,6 @@ def _to_main_axis(m: Mesh) -> str:
 
 def train(data: TrainTable) -> Train:
     """Train of a project; raises :class:`CannotBuild` with what its speeds or tooth numbers lack."""
-    return Train(data)
+    meshes = tuple(Mesh(m.sun or m.ring or "", m.planet, m.carrier or FRAME, 1 if m.sun else -1) for m in data.mesh)
+    speeds = {name: GivenNumber(speed, f"train.speeds.{name}", "ω", "rad/s") for name, speed in data.speeds.items()}
+    return Train(TrainData("train", meshes, data.teeth, data.module, speeds, data.shafts, data.satellites))

@@ -1,12 +1,12 @@
-"""Speeds of a train of gears by the equations of Willis, and its picture of velocities, as steps of plans.
+"""Speeds of a train of gears by the equations of Willis as steps of a plan.
 
 Diameters and distances in millimetres, speeds in 1/min.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from math import pi
 from typing import Any
 
@@ -16,16 +16,24 @@ from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given, GivenNumber
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Kind, Rule, Step
-from tmm_sheets.methods.gears import reducer_speeds
+from tmm_sheets.methods.gears import planetary
 from tmm_sheets.methods.gears.gear_formulas import MODULE
-from tmm_sheets.methods.gears.reducer_formulas import BLOCK, INNER_RATIO, SAME_SHAFT, TEETH, said_with_sign
-from tmm_sheets.methods.gears.reducer_speeds import SpeedPicture
 from tmm_sheets.words import marked, tr
 
 FRAME = ""
 """The carrier of a pair whose axes stand still."""
 
 N: Kind = "number"
+TEETH = Rule("number of teeth", lambda z: z, (N,), N, marked("Number of teeth {name} = {value}."), source="003, 2.1–2.4")
+INNER_RATIO = Rule(
+    "ratio with the carrier stopped", lambda s, z1, z2, z3, z4: planetary.inner_ratio((s, 1), (z1, z2, z3, z4)), (N,) * 5, N,
+    marked("Ratio of the train with the carrier held ±z_2z_4/(z_1z_3): {name} = ±{2} × {4}/({1} × {3}) = {value}."),
+    source="003, 2.1–2.4")
+STANDS = Rule("a wheel that stands still", lambda: 0.0, (), N, marked("The wheel stands still: {name} = 0."), unit="1/min")
+SAME_SHAFT = Rule("speed on the same shaft", lambda n: n, (N,), N, marked("On the same shaft: {name} = {value} rpm."), unit="1/min")
+BLOCK = Rule("speed of the satellites", lambda h, s, n, z1, z2: h - s * (n - h) * z1 / z2, (N,) * 5, N,
+             marked("Speed of rotation by the Willis formula n_H ∓ (n_1 − n_H)z_1/z_2: {name} = {0} ∓ ({2} − {0}) × {3}/{4} = "
+                    "{value} rpm."), unit="1/min")
 GIVEN_SPEED = Rule("given speed", lambda w: w * 30 / pi, (N,), N, marked("Given speed of rotation {name} = {value} "
                                                                          "rpm."), unit="1/min")
 PAIR = Rule("speed behind a pair", lambda s, n, z1, z2: -s * n * z1 / z2, (N,) * 4, N,
@@ -36,6 +44,11 @@ CARRIER = Rule("speed of a carrier from its mesh", lambda s, nc, zc, np_, zp: (z
 DIFFERENTIAL = Rule("speed of a carrier between two central wheels", lambda one, two, i: (one - i * two) / (1 - i), (N,) * 3, N,
                     marked("Speed of rotation of the carrier by the Willis formula (n_1 − i·n_2)/(1 − i): {name} = ({0} − {2} × "
                            "{1})/(1 − {2}) = {value} rpm."), unit="1/min")
+ACROSS = Rule("speed of a central wheel across its carrier", lambda h, two, i: h * (1 - i) + i * two, (N,) * 3, N,
+              marked("Speed of rotation of the central wheel by the Willis formula n_H(1 − i) + i·n_2: {name} = {0} × (1 − {2}) + "
+                     "{2} × {1} = {value} rpm."), unit="1/min")
+DIAMETER = Rule("pitch diameter", lambda z, m: z * m, (N, N), N,
+                marked("Pitch diameter (there are no shifts) d = mz: {name} = {1} × {0} = {value} mm."), unit="mm")
 DISTANCE = Rule("distance of a stage's axes", lambda m, s, zc, zp: m * (zc + s * zp) / 2, (N,) * 4, N,
                 marked("Distance of the axes m(z_c ± z_p)/2: {name} = {0} × ({2} ± {3})/2 = {value} mm."), unit="mm")
 CENTRAL_PITCH = Rule("pitch diameter of a central wheel", lambda a, s, zc, zp: 2 * a * zc / (zc + s * zp), (N,) * 4, N,
@@ -65,12 +78,37 @@ def together(k: Any, structure: Any, *values: Any) -> Any:
 
 @dataclass(frozen=True)
 class Mesh:
-    """Two wheels in mesh: a central one and a planet on a carrier (FRAME for none), ``sign`` -1 where the central one is a ring."""
+    """Two wheels in mesh: a central one and a planet on a carrier (FRAME for none), ``sign`` -1 where the central one is a ring.
+
+    ``module``: its own, m, where it is not that of the train.
+    """
 
     central: str
     planet: str
     carrier: str
     sign: int
+    module: GivenNumber | None = None
+
+
+@dataclass(frozen=True)
+class TrainData:
+    """What a train is made of.
+
+    ``part`` begins the names of its plans. ``speeds``: rad/s, None for what stands without being said. ``addendum``, ``clearance``:
+    coefficients of the basic rack, unless given those of GOST 13755. ``known``: tooth numbers ``z1`` .. and ratios of stages
+    ``i1,4`` .. that are steps of other plans.
+    """
+
+    part: str
+    meshes: tuple[Mesh, ...]
+    teeth: dict[str, int]
+    module: float
+    speeds: Mapping[str, GivenNumber | None]
+    shafts: tuple[tuple[str, ...], ...]
+    satellites: int
+    addendum: float = 1.0
+    clearance: float = 0.25
+    known: Mapping[str, Step] = field(default_factory=dict)
 
 
 # --- speeds ---------------------------------------------------------------------------------------------------------------
@@ -78,7 +116,7 @@ class Mesh:
 
 @dataclass(frozen=True)
 class Found:
-    """How a speed was found: from ``meshes``: one, two for a carrier between central wheels, none if given or by all together.
+    """How a speed was found: from ``meshes``: one, two of a carrier and two central wheels, none if given or by all together.
 
     ``shaft``: the wheel or carrier on the same shaft.
     """
@@ -103,15 +141,16 @@ def _next(train: Any, known: set[str]) -> Found:
         other = next((k for k in train.names if k in known and train.link(k) == train.link(name)), None)
         if name not in known and other is not None:
             return Found(name, shaft=other)
+    for one in train.meshes:
+        for two in train.meshes:
+            unknown = [name for name in (one.central, one.carrier, two.central) if name not in known]
+            if (one is not two and one.carrier and one.carrier == two.carrier and train.link(one.planet) == train.link(two.planet)
+                    and not {one.planet, two.planet} & known and len(unknown) == 1 and unknown != [two.central]):
+                return Found(unknown[0], (one, two))
     for m in train.meshes:
         unknown = [name for name in (m.central, m.planet, m.carrier) if name and name not in known]
         if len(unknown) == 1:
             return Found(unknown[0], (m,))
-    for one in train.meshes:
-        for two in train.meshes:
-            if (one is not two and one.carrier and one.carrier not in known and one.carrier == two.carrier
-                    and train.link(one.planet) == train.link(two.planet) and {one.central, two.central} <= known):
-                return Found(one.carrier, (one, two))
     return Found(next(name for name in train.names if name not in known))
 
 
@@ -127,15 +166,20 @@ def distance_of(train: Any, mesh: Mesh) -> str:
     return f"a_{mesh.carrier}" if alone else f"a_{first.central}-{first.planet}"
 
 
+def said_with_sign(rule: Rule, sign: int) -> str:
+    """The rule's sentence with the sign of its pairs."""
+    return tr(rule.wording).replace("±", "+" if sign > 0 else "−").replace("∓", "−" if sign > 0 else "+")
+
+
 class Kinematics:
     """Records the plan of a train's numbers."""
 
     def __init__(self, train: Any) -> None:
-        self.train = train
-        self.plan = Plan("train-kinematics", tr("Diameters of the wheels and speeds of rotation of the links"), "mm")
-        for name in train.names:
-            if is_wheel(name):
-                self.plan.add(f"z{name}", TEETH, Given(train.data.teeth[name], f"train.teeth.{name}", over="none"),
+        self.train, self.data = train, train.data
+        self.plan = Plan(f"{self.data.part}-kinematics", tr("Diameters of the wheels and speeds of rotation of the links"), "mm")
+        for name in train.wheels:
+            if f"z{name}" not in self.data.known:
+                self.plan.add(f"z{name}", TEETH, Given(self.data.teeth[name], f"{self.data.part}.teeth.{name}", over="none"),
                               symbol=f"z_{{{name}}}")
         self.diameters()
         for found in order(train):
@@ -143,30 +187,37 @@ class Kinematics:
 
     def teeth(self, mesh: Mesh) -> tuple[Step, Step]:
         """Tooth numbers of central wheel and planet."""
-        return self.plan[f"z{mesh.central}"], self.plan[f"z{mesh.planet}"]
+        one, two = (self.data.known.get(f"z{name}") or self.plan[f"z{name}"] for name in (mesh.central, mesh.planet))
+        return one, two
 
     def diameters(self) -> None:
-        """Distances of the axes and pitch diameters of the central wheels."""
-        module = self.plan.add("m", MODULE, GivenNumber(self.train.data.module, "train.module", "m", "m"))
+        """Distances of the axes and pitch diameters: of both wheels, or with shifts of the central one in the mesh."""
+        plan = self.plan
+        plan.add("m", MODULE, GivenNumber(self.data.module, f"{self.data.part}.module", "m", "m"))
         for m in self.train.meshes:
+            module = plan["m"] if m.module is None else plan.once("m_simple", MODULE, m.module, symbol=tr("m_{s}"))
             name = distance_of(self.train, m)
-            if name not in self.plan:
-                self.plan.add(name, DISTANCE, module, float(m.sign), *self.teeth(m), say=said_with_sign(DISTANCE, m.sign),
-                              symbol=f"a_{{{name.removeprefix('a_')}}}")
-            self.plan.add(f"d{m.central}-{m.planet}", CENTRAL_PITCH, self.plan[name], float(m.sign), *self.teeth(m),
-                          say=said_with_sign(CENTRAL_PITCH, m.sign), symbol=f"d_{{{m.central}}}")
+            if name not in plan:
+                plan.add(name, DISTANCE, module, float(m.sign), *self.teeth(m), say=said_with_sign(DISTANCE, m.sign),
+                         symbol=f"a_{{{name.removeprefix('a_')}}}")
+            if self.train.teeth(m) != self.train.teeth(self.train.stage(m)[0]):
+                plan.add(f"d{m.central}-{m.planet}", CENTRAL_PITCH, plan[name], float(m.sign), *self.teeth(m),
+                         say=said_with_sign(CENTRAL_PITCH, m.sign), symbol=f"d_{{{m.central}}}")
+                continue
+            for wheel, z in zip((m.central, m.planet), self.teeth(m), strict=True):
+                plan.once(f"d{wheel}", DIAMETER, z, module, symbol=f"d_{{{wheel}}}")
 
     def speed(self, found: Found) -> None:
         """Speed of a wheel or carrier as it is found."""
-        name, plan = found.name, self.plan
+        name, plan, data = found.name, self.plan, self.data
         rule: Rule = SAME_SHAFT
         args: tuple[Any, ...] = (plan[f"n{found.shaft}"],) if found.shaft else ()
         say: str | None = None
-        if name in self.train.data.speeds:
-            given = GivenNumber(self.train.data.speeds[name], f"train.speeds.{name}", "ω", "rad/s")
-            rule, args = GIVEN_SPEED, (given,)
+        if name in data.speeds:
+            given = data.speeds[name]
+            rule, args = (STANDS, ()) if given is None else (GIVEN_SPEED, (given,))
         elif len(found.meshes) == 2:
-            rule, args = DIFFERENTIAL, self.differential(*found.meshes)
+            rule, args = self.across(name, *found.meshes)
         elif found.meshes:
             rule, args, say = self.willis(name, found.meshes[0])
         elif not found.shaft:
@@ -179,20 +230,17 @@ class Kinematics:
         if name == m.carrier:
             return CARRIER, (float(m.sign), plan[f"n{m.central}"], zc, plan[f"n{m.planet}"], zp), said_with_sign(CARRIER, m.sign)
         other, z = (m.planet, (zp, zc)) if name == m.central else (m.central, (zc, zp))
-        if m.carrier:
-            return BLOCK, (plan[f"n{m.carrier}"], float(m.sign), plan[f"n{other}"], *z), tr(
-                "Speed of rotation by the Willis formula n_H ∓ (n_1 − n_H)z_1/z_2: {name} = {0} ∓ ({2} − {0}) × {3}/{4} = {value} "
-                "rpm."
-                ).replace("∓", "−" if m.sign > 0 else "+")
-        return PAIR, (float(m.sign), plan[f"n{other}"], *z), said_with_sign(PAIR, m.sign)
+        rule, args = (BLOCK, (plan[f"n{m.carrier}"],)) if m.carrier else (PAIR, ())
+        return rule, (*args, float(m.sign), plan[f"n{other}"], *z), said_with_sign(rule, m.sign)
 
-    def differential(self, one: Mesh, two: Mesh) -> tuple[Any, ...]:
-        """What the speed of a carrier between two central wheels follows from."""
+    def across(self, name: str, one: Mesh, two: Mesh) -> tuple[Rule, tuple[Any, ...]]:
+        """Rule and arguments for a carrier between two central wheels, or for the first of these."""
         (z1, p1), (z2, p2), sign = self.teeth(one), self.teeth(two), one.sign * two.sign
-        name = f"i{one.central},{two.central}"
-        ratio = self.plan.add(name, INNER_RATIO, float(sign), z1, p1, p2, z2, say=said_with_sign(INNER_RATIO, sign),
-                              symbol=f"i_{{{one.central},{two.central}}}^{{{one.carrier}}}")
-        return self.plan[f"n{one.central}"], self.plan[f"n{two.central}"], ratio
+        ratio = self.data.known.get(key := f"i{one.central},{two.central}") or self.plan.add(
+            key, INNER_RATIO, float(sign), z1, p1, p2, z2, say=said_with_sign(INNER_RATIO, sign),
+            symbol=f"i_{{{one.central},{two.central}}}^{{{one.carrier}}}")
+        rule, other = (DIFFERENTIAL, one.central) if name == one.carrier else (ACROSS, one.carrier)
+        return rule, (self.plan[f"n{other}"], self.plan[f"n{two.central}"], ratio)
 
     def all(self, name: str) -> tuple[Any, ...]:
         """What the speed of a link follows from by the equations of all meshes."""
@@ -202,139 +250,11 @@ class Kinematics:
         row = [len(links), len(known), *(place[k] for k in known)]
         for m in train.meshes:
             row += [place[m.central], place[m.planet], place[m.carrier], m.sign]
-        structure = Given(np.array(row, dtype=float), "train.mesh", over="curve")
+        structure = Given(np.array(row, dtype=float), f"{self.data.part}.mesh", over="curve")
         return (float(place[name]), structure, *(z for m in train.meshes for z in self.teeth(m)),
                 *(self.plan[f"n{k}"] for k in known))
 
 
-LAID_BESIDE = Rule(
-    "velocity of another point of a link", lambda end, n, p, q: end + (1j + n * pi / 30) * np.imag(q - p),
-    ("point", "number", "point", "point"), "point",
-    marked("At the height of {3} lay off from {0} the difference of the velocities πn/30·{2}{3} at {1} rpm: end {name}."))
-FROM_AXIS = Rule("axis at a distance from another", lambda o, side, a: o + side * 1j * (a / 1e3), ("point", "number", "number"),
-                 "point", marked("At the distance {2} mm from {0} mark the axis {name}."), unit="m")
-ON_PITCH_CIRCLE = Rule("point on a pitch circle about an axis", lambda o, side, d: o + side * 1j * (d / 2e3),
-                       ("point", "number", "number"), "point",
-                       marked("At the pitch radius {2}/2 mm from {0} mark point {name}."), unit="m")
 TOGETHER = Rule("speed by all equations of Willis", together, (N, N), N,
                 marked("The train is closed; the Willis equations of all its meshes together give {name} = {value} "
                        "rpm."), unit="1/min")
-
-
-# --- picture of velocities ------------------------------------------------------------------------------------------------
-
-
-class TrainSpeedPicture(SpeedPicture):
-    """Adds the links in the order in which their speeds are found; each line goes through two velocities that are there."""
-
-    def __init__(self, train: Any) -> None:
-        super().__init__("train")
-        self.train = train
-        self.axes = train.axes
-        self.points: dict[tuple[str, str, str], Step] = {}
-        self.ends: dict[str, Step] = {}
-        waiting = list(order(train))
-        while waiting:
-            ready = next(found for found in waiting if self.can(found))
-            waiting.remove(ready)
-            self.add(ready)
-
-    def centre(self, link: str) -> Step:
-        """Point of the axis a link turns about."""
-        axis = self.axes[self.train.link(link)]
-        if axis.mesh is None:
-            return self.axis
-        name = f"O{self.train.link(link)}"
-        if name not in self.plan:
-            side, distance = 1.0 if axis.height > 0 else -1.0, self.train.kinematics[distance_of(self.train, axis.mesh)]
-            if (base := self.centre(axis.base)) is self.axis:
-                self.plan.add(name, reducer_speeds.AT_DISTANCE, side, distance)
-            else:
-                self.plan.add(name, FROM_AXIS, base, side, distance)
-        return self.plan[name]
-
-    def contact(self, m: Mesh) -> Step:
-        """Pitch point of a mesh, over the main axis."""
-        key = (m.central, m.planet, "contact")
-        if key not in self.points:
-            diameter, centre = self.train.kinematics[f"d{m.central}-{m.planet}"], self.centre(m.central)
-            side = 1 if m.carrier or self.train.height(m.planet) > self.train.height(m.central) else -1
-            self.points[key] = self.point(reducer_speeds.AT_RADIUS, diameter, side) if centre is self.axis else self.plan.add(
-                next(self.letters), ON_PITCH_CIRCLE, centre, side, diameter)
-        return self.points[key]
-
-    def planet_axis(self, m: Mesh) -> Step:
-        """Point of the planet's axis, over the main one."""
-        key = (distance_of(self.train, m), "", "axis")
-        if key not in self.points:
-            self.points[key] = self.point(reducer_speeds.AT_DISTANCE, self.train.kinematics[distance_of(self.train, m)])
-        return self.points[key]
-
-    def velocity_of(self, point: Step, link: str) -> Step:
-        """End of the velocity of a point of a link whose line is there."""
-        if point.name.lower() in self.plan:
-            return self.plan[point.name.lower()]
-        line = self.plan[self.train.link(link)]
-        return self.velocity(point, line.args[0], line)
-
-    def mesh_of(self, name: str) -> Mesh:
-        """A mesh that a wheel or carrier takes part in, one where it is no planet if there is one."""
-        of = [m for m in self.train.meshes if self.train.link(name) in (self.train.link(m.central), m.carrier and self.train.link(
-            m.carrier), self.train.link(m.planet))]
-        found: Mesh = min(of, key=lambda m: self.train.link(m.planet) == self.train.link(name))
-        return found
-
-    def is_planet(self, found: Found) -> bool:
-        """True for a planet on a carrier whose speed is no result of its mesh: its line needs a velocity of another link first."""
-        mesh = self.mesh_of(found.name)
-        return not found.meshes and bool(mesh.carrier) and self.train.link(mesh.planet) == self.train.link(found.name)
-
-    def beside(self, mesh: Mesh) -> tuple[Step, str, Step] | None:
-        """A point of a planet with the link whose line has its velocity, and another point of it; None while there is no line."""
-        for link, here, there in ((mesh.central, self.contact, self.planet_axis), (mesh.carrier, self.planet_axis, self.contact)):
-            if self.train.link(link) in self.plan:
-                return here(mesh), link, there(mesh)
-        return None
-
-    def can(self, found: Found) -> bool:
-        """True when the velocities that a line needs are there."""
-        if self.train.link(found.name) in self.plan or not self.is_planet(found):
-            return all(self.train.link(name) in self.plan for m in found.meshes for name in (m.central, m.planet, m.carrier)
-                       if name and name != found.name and not (len(found.meshes) == 2 and name == m.planet))
-        return self.beside(self.mesh_of(found.name)) is not None
-
-    def add(self, found: Found) -> None:
-        """Line of a link, through two velocities that are there."""
-        link = self.train.link(found.name)
-        if link in self.plan:
-            return
-        mesh = found.meshes[0] if found.meshes else self.mesh_of(found.name)
-        if len(found.meshes) == 2:  # a planet's line through both pitch points carries its axis
-            one, two = (self.velocity_of(self.contact(m), m.central) for m in found.meshes)
-            planet = self.train.link(mesh.planet)
-            if planet not in self.plan:
-                self.line(planet, one, two)
-            self.line(link, self.axis, self.velocity_of(self.planet_axis(mesh), planet))
-        elif not found.meshes:
-            self.laid_off(link, found.name, mesh)
-        elif found.name == mesh.carrier:
-            self.line(link, self.axis, self.velocity_of(self.planet_axis(mesh), mesh.planet))
-        elif found.name == mesh.planet:
-            end = self.velocity_of(self.contact(mesh), mesh.central)
-            start = self.velocity_of(self.planet_axis(mesh), mesh.carrier) if mesh.carrier else self.centre(found.name)
-            self.line(link, start, end)
-        else:
-            self.line(link, self.centre(found.name), self.velocity_of(self.contact(mesh), mesh.planet))
-
-    def laid_off(self, link: str, name: str, mesh: Mesh) -> None:
-        """Line of a link whose speed is known: through its axis, or of a planet on a carrier through a velocity of its own."""
-        n = self.train.kinematics[f"n{name}"]
-        beside = self.beside(mesh) if mesh.carrier and self.train.link(mesh.planet) == link else None
-        if beside is not None:
-            here, other, there = beside
-            end = self.velocity_of(here, other)
-            self.line(link, end, self.plan.add(f"{there.name.lower()}′", LAID_BESIDE, end, n, here, there))
-            return
-        point = self.planet_axis(mesh) if self.train.link(mesh.carrier or "-") == link else self.contact(mesh)
-        centre = self.centre(name)
-        self.line(link, centre, point if float(n.value) == 0 else self.laid(point, n, centre))

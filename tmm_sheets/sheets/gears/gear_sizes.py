@@ -11,10 +11,11 @@ from tmm_sheets.construction.readable import TOOTH
 from tmm_sheets.sheets.border_solver import BorderNode, Need
 from tmm_sheets.sheets.components import listed
 from tmm_sheets.sheets.frame import standard
-from tmm_sheets.sheets.gears import gear, gear_picture, rack, reducer, train
+from tmm_sheets.sheets.gears import gear, gear_picture, rack, speed_plan, train, train_scheme
 from tmm_sheets.sheets.view_sizes import reached
 
 if TYPE_CHECKING:
+    from tmm_sheets.methods.gears.train import Train
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.arrangement import ViewPlace
 
@@ -78,21 +79,23 @@ def mesh(project: Project, view: ViewPlace) -> BorderNode:
 
 def scheme_of_reducer(project: Project, view: ViewPlace) -> BorderNode:
     """Axial view, picture of velocities and end view of a reducer."""
-    return _scheme(reducer.SchemeOfReducer(project.reducer), view)
+    return _scheme(project.reducer, view)
 
 
 def scheme_of_train(project: Project, view: ViewPlace) -> BorderNode:
     """The same of a train."""
-    return _scheme(train.SchemeOfTrain(project.train), view)
+    return _scheme(project.train, view)
 
 
-def _scheme(views: reducer.SchemeViews, view: ViewPlace) -> BorderNode:
+def _scheme(train: Train, view: ViewPlace) -> BorderNode:
+    views = train_scheme.TrainScheme(train)
+
     def drawn(width: int, height: int) -> float:
         mu = views.fitted(width, height).mu
-        whole = 2 * views.side / mu + views.beside(reducer.WIDEST + 24.0)
-        return min(width, whole) * min(height, (views.top + views.bottom) / mu + reducer.OVER + views.above)
+        whole = 2 * views.side / mu + views.beside(train_scheme.WIDEST + 24.0)
+        return min(width, whole) * min(height, (views.top + views.bottom) / mu + train_scheme.OVER)
 
-    return _node(view, (views.beside(reducer.NARROWEST) + 60.0, 130.0), drawn)
+    return _node(view, (views.beside(train_scheme.NARROWEST) + 60.0, 130.0), drawn)
 
 
 def speeds(project: Project, view: ViewPlace) -> BorderNode:
@@ -118,12 +121,12 @@ def conditions(project: Project, view: ViewPlace) -> BorderNode:
 
 def points_of_reducer(project: Project, view: ViewPlace) -> BorderNode:
     """Velocities of the points of a reducer's picture."""
-    return _table(view, len(reducer.moving_points(project.reducer)) + 1)
+    return _table(view, len(speed_plan.moving_points(project.reducer)) + 1)
 
 
 def points_of_train(project: Project, view: ViewPlace) -> BorderNode:
     """The same of a train's."""
-    return _table(view, len(reducer.moving_points(project.train)) + 1)
+    return _table(view, len(speed_plan.moving_points(project.train)) + 1)
 
 
 def links_of_train(project: Project, view: ViewPlace) -> BorderNode:

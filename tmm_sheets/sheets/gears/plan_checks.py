@@ -4,49 +4,35 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
-from math import pi
 from typing import TYPE_CHECKING
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.components.listed import Lines
-from tmm_sheets.sheets.gears.reducer import ends_of_rays, link_name
-from tmm_sheets.words import marked, tr
+from tmm_sheets.sheets.gears.speed_plan import ends_of_rays
+from tmm_sheets.sheets.gears.train import mobility_lines
+from tmm_sheets.sheets.gears.train_scheme import link_name
+from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.gears.reducer import Reducer
     from tmm_sheets.methods.gears.train import Train
 
 MEASURED = 5.0
 """Segment below which no ratio is to be measured, mm."""
 
 
-def _measured(of: Reducer | Train, canvas: Canvas, part: str) -> Iterator[str]:
+def _measured(of: Train, canvas: Canvas) -> Iterator[str]:
     """Ratios from the segments that the sheet has, as they are measured, and from the speeds; of segments that can be measured."""
-    plan = of.plans[f"{part}-speeds"]
+    plan = of.plans[f"{of.data.part}-speeds"]
     mu = canvas.scales[plan.name]
     ends = [(link_name(step.name), round(float(mu.mm(complex(step.value).real)), 1), float(plan[f"n{step.name}"].value))
             for step in ends_of_rays(plan)]
     (one, length, n), *others = [end for end in ends if abs(end[1]) >= MEASURED] or [("", 0.0, 0.0)]
     for two, other, speed in others:
         sign = "" if length * other > 0 else "−"
-        yield (f"i_{{{one},{two}}} = {sign}|0–{_bracketed(one)}|/|0–{_bracketed(two)}| = "
+        yield (f"i_{{{one},{two}}} = {sign}|0–{one}|/|0–{two}| = "
                f"{sign}{fixed(abs(length), 1)}/{fixed(abs(other), 1)} = {number(length / other)}; "
                f"n_{{{one}}}/n_{{{two}}} = {number(n / speed)}")
-
-
-def _mobility(reducer: Reducer) -> Iterator[str]:
-    """Each stage has two meshes and two moving links besides the one that leads in; a simple pair one of both."""
-    meshes = 2 * len(reducer.stages) + bool(reducer.simple)
-    yield f"W = 3n − 2p_5 − p_4 = 3·{meshes + 1} − 2·{meshes + 1} − {meshes} = 1"
-    plan = reducer.plans["reducer-speeds"]
-    for end in ends_of_rays(plan):
-        of, n = link_name(end.name), float(plan[f"n{end.name}"].value)
-        yield f"ω_{{{of}}} = π·n_{{{of}}}/30 = {number(n * pi / 30, 5)} {tr('rad/s')}"
-
-
-def _bracketed(name: str) -> str:
-    return f"({name})" if "–" in name else name
 
 
 def _pairs(train: Train) -> Iterator[str]:
@@ -74,11 +60,11 @@ def _pairs(train: Train) -> Iterator[str]:
         yield f"i_{{{a}{b}}} = {letters} = {sign}{driven}/({driving}) = {number(ratio)}"
 
 
-of_reducer = Lines(marked("Ratios by the plan of speeds"), lambda project, canvas: _measured(project.reducer, canvas, "reducer"))
+of_reducer = Lines(marked("Ratios by the plan of speeds"), lambda project, canvas: _measured(project.reducer, canvas))
 """Ratios of the driving link of a reducer to the others, from the segments of the plan and from the speeds."""
-of_train = Lines(marked("Ratios by the plan of speeds"), lambda project, canvas: _measured(project.train, canvas, "train"))
+of_train = Lines(marked("Ratios by the plan of speeds"), lambda project, canvas: _measured(project.train, canvas))
 """The same of a train."""
-mobility = Lines(marked("Mobility and speeds of the links"), lambda project, canvas: _mobility(project.reducer))
-"""Degree of freedom of a reducer by Chebyshev's formula, one satellite counted; angular velocities of its links."""
+mobility = Lines(marked("Mobility and speeds of the links"), lambda project, canvas: mobility_lines(project.reducer, ratios=False))
+"""Degree of freedom of a reducer by Chebyshev's formula, angular velocities of its links."""
 pairs = Lines(marked("Ratios of the pairs"), lambda project, canvas: _pairs(project.train))
 """Ratio of every pair whose axes stand still, by its speeds and by its teeth; of a train of such pairs that of the whole."""

@@ -33,16 +33,10 @@ inverted = Table(marked("Inverted motion (carrier held)"), _motions, (0.25,) * 4
 
 def _inverted(project: Project) -> Iterator[tuple[str, str, float, float]]:
     """Carrier, wheel, its speed and that of the carrier, rpm."""
-    if project.variant.train is not None:
-        train, plan = project.train, project.train.kinematics
-        for carrier in dict.fromkeys(m.carrier for m in train.meshes if m.carrier):
-            names = dict.fromkeys(name for m in train.meshes if m.carrier == carrier for name in (m.central, m.planet))
-            for name in names:
-                yield carrier, name, float(plan[f"n{name}"].value), float(plan[f"n{carrier}"].value)
-        return
-    for stage in project.reducer.stages:
-        for wheel in dict.fromkeys(stage.wheels):
-            yield stage.carrier, wheel.number, float(wheel.n.value), float(stage.n_H.value)
+    train = project.train if project.variant.train is not None else project.reducer
+    for carrier in dict.fromkeys(m.carrier for m in train.meshes if m.carrier):
+        for name in dict.fromkeys(name for m in train.meshes if m.carrier == carrier for name in (m.central, m.planet)):
+            yield carrier, name, float(train.kinematics[f"n{name}"].value), float(train.kinematics[f"n{carrier}"].value)
 
 
 def _ratios(train: Train) -> Iterator[str]:
@@ -63,9 +57,11 @@ def _ratios(train: Train) -> Iterator[str]:
         yield f"{ratio} = {sign}{letters} = {sign}{numbers} = {number(by_teeth)}"
 
 
-def _checks(train: Train) -> Iterator[str]:
-    teeth, q = train.data.teeth, train.data.satellites
-    for meshes in (stage for stage in train.stages if stage[0].carrier):
+def checks_of(train: Train, *stages: tuple[Mesh, ...]) -> Iterator[str]:
+    """Lines of the conditions of the planets of some stages."""
+    teeth, q, over = train.data.teeth, train.data.satellites, 2 * train.data.addendum
+    head = "2" if over == 2 else "2h_a^{*}"
+    for meshes in (stage for stage in stages if stage[0].carrier):
         signs = ["+" if m.sign > 0 else "−" for m in meshes]
         sums = [train.teeth(m) for m in meshes]
         letters = [f"z_{{{m.central}}} {sign} z_{{{m.planet}}}" for m, sign in zip(meshes, signs, strict=True)]
@@ -80,11 +76,11 @@ def _checks(train: Train) -> Iterator[str]:
         for other in meshes[1:]:
             yield tr("Assembly: {letters} = {numbers}").format(**_assembly(teeth, q, meshes[0], other))
         largest = max(range(len(meshes)), key=lambda k: teeth[meshes[k].planet])
-        between, width = sums[largest] * sin(pi / q), teeth[meshes[largest].planet] + 2
+        between, width = sums[largest] * sin(pi / q), teeth[meshes[largest].planet] + over
         sign = ">" if between > width else "<"
         yield tr("Neighbourhood: {letters}").format(
-            letters=f"({letters[largest]})·sin(180°/q) > z_{{{meshes[largest].planet}}} + 2")
-        yield f"{sums[largest]}·sin(180°/{q}) = {fixed(between, 2)} {sign} {width}"
+            letters=f"({letters[largest]})·sin(180°/q) > z_{{{meshes[largest].planet}}} + {head}")
+        yield f"{sums[largest]}·sin(180°/{q}) = {fixed(between, 2)} {sign} {number(width)}"
 
 
 def at_equal_angles(train: Train, stage: tuple[Mesh, ...]) -> int:
@@ -117,7 +113,7 @@ def _assembly(teeth: dict[str, int], q: int, one: Mesh, other: Mesh) -> dict[str
     return {"letters": letters, "numbers": said}
 
 
-checks = Lines(marked("Conditions of the planets"), lambda project, canvas: _checks(project.train))
+checks = Lines(marked("Conditions of the planets"), lambda project, canvas: checks_of(project.train, *project.train.stages))
 """Common axis, assembly and neighbourhood of the planets of every carrier, in letters and in numbers."""
 ratios = Lines(marked("Ratios of the inverted motion"), lambda project, canvas: _ratios(project.train))
 """Ratios of central wheels with their carrier held, from the speeds and from the teeth."""
