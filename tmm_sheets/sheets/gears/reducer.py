@@ -16,7 +16,7 @@ from tmm_sheets.sheets.components.listed import LARGE, Lines, Table, letters_in
 from tmm_sheets.sheets.gears.gear_marks import ruled_table
 from tmm_sheets.sheets.gears.planet_motion import checks_of
 from tmm_sheets.sheets.gears.speed_plan import LINKS, POINTS, plan_of_speeds, rows_of_links, rows_of_points
-from tmm_sheets.sheets.gears.train import equation
+from tmm_sheets.sheets.gears.train import willis_lines
 from tmm_sheets.sheets.gears.train_scheme import draw_scheme, link_name
 from tmm_sheets.words import marked, tr
 
@@ -143,7 +143,7 @@ def _lines(r: Reducer) -> Iterator[str]:
     else:
         u = fixed(chosen["u_stage"], 3)
         yield f"n_{{{link_name(carrier)}}} = n_{{{enters}}}/{ratio} = {n[enters]}/{u} = {n[carrier]} " + tr("rpm")
-    yield from equation(r, mesh)
+    yield from willis_lines(r, mesh)
 
 
 of_stage = Lines(marked("The reducer in numbers"), lambda project, canvas: _lines(project.reducer))

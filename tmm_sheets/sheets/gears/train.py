@@ -101,14 +101,14 @@ def mobility_lines(train: Train, ratios: bool = True) -> list[str]:
 def willis(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The equation of Willis of every mesh, in letters and in numbers; multiplied out, for a planet may rest on its carrier."""
     train = project.train
-    lines = [line for m in train.meshes for line in equation(train, m)]
+    lines = [line for m in train.meshes for line in willis_lines(train, m)]
     left = canvas.title(box, tr("Willis equations of the meshes (n in rpm)"))
     step = min(left.height / len(lines), LARGE)
     height = size_for(lines, box.width, 5.0 if step >= 9.0 else 3.5)
     canvas.lines(complex(box.x0, left.y1 - step), lines, step, height)
 
 
-def equation(train: Train, m: Mesh) -> tuple[str, str]:
+def willis_lines(train: Train, m: Mesh) -> tuple[str, str]:
     """z_c(n_c - n_H) = -+z_p(n_p - n_H) of a mesh, outer or inner; without a carrier n_H is none."""
     plan = train.kinematics
     c, p, h = m.central, m.planet, m.carrier
