@@ -16,17 +16,19 @@ from tmm_sheets.methods.gears import (
     fillets,
     gear_engagement,
     gear_formulas,
-    gear_teeth,
     planetary,
     rack,
     train_steps,
+)
+from tmm_sheets.methods.gears import (
+    gear_pair as pairs,
 )
 from tmm_sheets.methods.gears import reducer as reducers
 from tmm_sheets.methods.gears.gear_pair import gear_pair, settled
 from tmm_sheets.methods.gears.reducer import reducer
 from tmm_sheets.task.schema import GearTable
 
-KNOWN = expression.primitives(arithmetic, fillets, gear_engagement, gear_formulas, gear_teeth, planetary, rack, reducers,
+KNOWN = expression.primitives(arithmetic, fillets, gear_engagement, gear_formulas, pairs, planetary, rack, reducers,
                                train_steps)
 CASES = ["fillet", "no shift", "rack", "undercut", "rule", "reduced", *cases.MACHINES, "two internal", "ring"]
 

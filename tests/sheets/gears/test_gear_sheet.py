@@ -18,7 +18,7 @@ from tmm_sheets.methods.gears.gear_pair import gear_pair
 from tmm_sheets.numbers import fixed
 from tmm_sheets.project import Project
 from tmm_sheets.resources import template
-from tmm_sheets.sheets.gears import gear_picture, gear_radii
+from tmm_sheets.sheets.gears import gear_marks, gear_picture
 from tmm_sheets.sheets.views import function
 
 TITLE_BLOCK = Box(651, 5, 836, 60)
@@ -200,8 +200,8 @@ def test_radii_stand_apart_where_they_are_named_and_end_inside_the_picture(size)
     gear = Project(read("lugansk/shaper")).gear
     picture = gear_picture.GearPicture(gear, Canvas(), Box(20, 20, 20 + size[0], 20 + size[1]))
     for wheel in gear.wheels:
-        found = [(key, a) for key, (a, begin) in gear_radii._Radii(picture, wheel).directions().items() if begin == 2.0]
+        found = [(key, a) for key, (a, begin) in gear_marks.Radii(picture, wheel).directions().items() if begin == 2.0]
         apart = [abs(a - b) * 0.7 * picture.mm(wheel.rf) for (_, a), (_, b) in combinations(found, 2)]
-        assert all(by >= gear_radii.APART - 1e-9 for by in apart)
+        assert all(by >= gear_marks.RADII_APART_MM - 1e-9 for by in apart)
         tips = [picture.of(f"O{wheel.number}") + rect(picture.mm(getattr(wheel, key)), a) for key, a in found]
         assert all(picture.box.contains(z) for z in tips)

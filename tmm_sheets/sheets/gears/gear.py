@@ -15,9 +15,9 @@ from tmm_sheets.drawing.lettering import fitted
 from tmm_sheets.drawing.marks import Box, Dimension
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
 from tmm_sheets.sheets.frame import PlanFrame, proportion, ratio, standard
-from tmm_sheets.sheets.gears import gear_picture, gear_radii
+from tmm_sheets.sheets.gears import gear_picture
 from tmm_sheets.sheets.gears.gear_equations import digits_of
-from tmm_sheets.sheets.gears.gear_marks import Window, gap, ruled_table
+from tmm_sheets.sheets.gears.gear_marks import Window, draw_radii, gap, ruled_table
 from tmm_sheets.sheets.player import PlayerStage, placed, stage
 from tmm_sheets.words import tr
 
@@ -47,7 +47,7 @@ def engagement(project: Project, canvas: Canvas, box: Box, options: dict[str, An
     for wheel in picture.gear.wheels:
         picture.dimensions(wheel)
     picture.pole_letter()
-    gear_radii.draw(picture)
+    draw_radii(picture)
 
 
 
