@@ -5,9 +5,11 @@ Source: manual 003, sheet 2, items 12 and 13.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -20,7 +22,7 @@ from tmm_sheets.construction.step import Helper, Rule, Step
 from tmm_sheets.methods.cams.cam_displacement import ExactMotion, in_phase
 from tmm_sheets.methods.cams.cam_inversion import Inversion
 from tmm_sheets.methods.cams.cam_laws import Phase
-from tmm_sheets.methods.cams.cam_zone import TURNED, found_share
+from tmm_sheets.methods.cams.cam_zone import TURNED, found_share, greatest
 from tmm_sheets.words import marked, tr
 
 Floats = npt.NDArray[np.float64]
@@ -162,7 +164,14 @@ def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: fl
     way = plan.add("l", ARM, length)
     turning = plan.add("ω", SPEED, speed)
     pieces = [(p, a + 1e-12, b - 1e-12) for p in (law.rise, law.fall) for a, b in pairwise((0.0, *p.law.jumps, 1.0))]
-    _, x, p = min(((*_least(lambda x, p=p: p.dds(x), a, b), p) for p, a, b in pieces), key=lambda found: found[0])
+    def extreme(f: Callable[[Floats, Phase], Any]) -> tuple[float, float, Phase]:
+        """Greatest value of a function of share and phase, its share and phase."""
+        def of(p: Phase) -> Callable[[Floats], Any]:
+            return lambda x: f(x, p)
+
+        return max(((*greatest(of(p), (513, 33, 33, 33, 33), (a, b)), p) for p, a, b in pieces), key=itemgetter(0))
+
+    _, x, p = extreme(lambda x, p: -p.dds(x))
     share = found_share(plan, exact.phases, p, x, "Q", tr("{symbol}'' is least").format(symbol=law.symbol))
     (dds,) = in_phase(plan, law, exact.phases, p, share, "Q", (2,))
     largest = plan.add("Q_max", LARGEST, dds, moved, turning, way)
@@ -177,22 +186,12 @@ def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: fl
         inertia = -unit * p.dds(x)
         return np.asarray(np.divide(force, inertia, out=np.full_like(force, np.inf), where=inertia > 1e-12 * biggest))
 
-    _, x, p = min(((*_least(lambda x, p=p: ratio(x, p), a, b), p) for p, a, b in pieces), key=lambda found: found[0])
+    _, x, p = extreme(lambda x, p: -ratio(x, p))
     share = found_share(plan, exact.phases, p, x, "k", tr("the ratio F/Q where {symbol}'' < 0 is least").format(symbol=law.symbol))
     s, dds = in_phase(plan, law, exact.phases, p, share, "k", (0, 2))
     least = plan.add("k_min", RATIO, s, dds, law.stroke, largest, factor, preload, moved, turning, way)
     plan.add("k_F", NEEDED, factor, least)
     return Spring(exact, plan, factor, preload, speed)
-
-
-def _least(f: Any, lo: float, hi: float) -> tuple[float, float]:
-    """Least value of a smooth function and its place: a grid, then finer ones round its lowest point."""
-    for n in (513, 33, 33, 33, 33):
-        x = np.linspace(lo, hi, n)
-        y = f(x)
-        k = int(np.argmin(y))
-        lo, hi = float(x[max(k - 1, 0)]), float(x[min(k + 1, n - 1)])
-    return float(y[k]), float(x[k])
 
 
 # --- second disc ------------------------------------------------------------------------------------------------------

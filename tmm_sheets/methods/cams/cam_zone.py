@@ -10,10 +10,12 @@ velocity of B, its axis points against that velocity and its half angle is the p
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
+from itertools import pairwise
 from math import ceil, cos, degrees, pi, sin, tan
+from operator import itemgetter
 from typing import Any, Literal
 
 import numpy as np
@@ -68,6 +70,19 @@ def _tip(b: Any, up: Any, right: Any, arm: Any, ds: Any) -> Points:
 def _ray_direction(up: Any, alpha: Reals, side: Signs) -> Directions:
     """Direction of a border of the cone."""
     return -up * (np.cos(alpha) - 1j * side * np.sin(alpha))
+
+
+def greatest(f: Callable[[Any], Any], counts: Iterable[int], ends: tuple[float, float] = (0.0, 1.0)) -> tuple[float, float]:
+    """Greatest value of a function of an array between ``ends``, and its place.
+
+    Found on grids of ``counts`` points, the first over all, each other one about the best point of the last.
+    """
+    for n in counts:
+        x = np.linspace(*ends, n)
+        y = f(x)
+        k = int(np.argmax(y))
+        ends = float(x[max(k - 1, 0)]), float(x[min(k + 1, n - 1)])
+    return float(y[k]), float(x[k])
 
 
 # --- cones ------------------------------------------------------------------------------------------------------------
@@ -133,19 +148,12 @@ class Cones:
 
     def worst(self, o: complex, side: float) -> Ray:
         """The border on one side (+1 limits positive pressure angles) that leaves ``o`` outside furthest."""
-        found = []
-        for p in self.phases:
-            outwards = complex(sin(self.alpha), side * self.right * cos(self.alpha))
+        outwards = complex(sin(self.alpha), side * self.right * cos(self.alpha))
 
-            def beyond(x: Floats, p: Phase = p, outwards: complex = outwards) -> Floats:
-                return np.asarray(((o - self.tips(p, x)) * np.conjugate(self.ups(p, x) * outwards)).real)
+        def beyond(x: Floats, p: Phase) -> Any:
+            return ((o - self.tips(p, x)) * np.conjugate(self.ups(p, x) * outwards)).real
 
-            lo, hi, at = 0.0, 1.0, 0.0
-            for n in (129, 33, 33, 33, 33, 33):
-                x = np.linspace(lo, hi, n)
-                k = int(np.argmax(beyond(x)))
-                lo, hi, at = float(x[max(k - 1, 0)]), float(x[min(k + 1, n - 1)]), float(x[k])
-            found.append(self._ray(p, at, side))
+        found = [self._ray(p, greatest(partial(beyond, p=p), (129, 33, 33, 33, 33, 33))[1], side) for p in self.phases]
         return max(found, key=lambda ray: ray.beyond(o))
 
     @cached_property
@@ -667,16 +675,12 @@ def steepest(z: Zone) -> Plan:
     law, apex = z.exact.law, complex(z.apex.value)
     for k, phase in enumerate((law.rise, law.fall), 1):
 
-        def angle(x: Reals, p: Phase = phase) -> Any:
+        def angle(x: Floats, p: Phase = phase) -> Any:
             return np.abs(np.angle((z.cones.tips(p, x) - apex) / z.cones.ups(p, x)))
 
-        lo, hi = 0.0, 1.0
-        for _ in range(9):
-            x = np.linspace(lo, hi, 65)
-            at = int(np.argmax(angle(x)))
-            lo, hi = float(x[max(at - 1, 0)]), float(x[min(at + 1, 64)])
         tag = f"α{k}"
-        share = found_share(plan, z.exact.phases, phase, float(x[at]), tag, tr("the pressure angle is greatest"))
+        share = found_share(plan, z.exact.phases, phase, greatest(angle, (65,) * 9)[1], tag,
+                            tr("the pressure angle is greatest"))
         s, ds = in_phase(plan, law, z.exact.phases, phase, share, tag, (0, 1))
         if z.cones.pivot is None:
             up: Any = 1j
@@ -759,18 +763,12 @@ class Plate:
 
 def lowest_sum(law: PositionFunction) -> tuple[float, Phase, float]:
     """Least S + S'' over a turn, m, with the phase and the share where it is; both values of S'' count where it jumps."""
-    best = (float("inf"), law.rise, 0.0)
-    for p in law.phases:
-        for a, b in zip((0.0, *p.law.jumps), (*p.law.jumps, 1.0), strict=True):
-            lo, hi = a + 1e-14, b - 1e-14
-            for n in (257, 33, 33, 33, 33):
-                x = np.linspace(lo, hi, n)
-                total = p.s(x) + p.dds(x)
-                k = int(np.argmin(total))
-                lo, hi = float(x[max(k - 1, 0)]), float(x[min(k + 1, n - 1)])
-            if total[k] < best[0]:
-                best = (float(total[k]), p, float(x[k]))
-    return best
+    def fallen(x: Floats, p: Phase) -> Any:
+        return -(p.s(x) + p.dds(x))
+
+    most, x, phase = max(((*greatest(partial(fallen, p=p), (257, 33, 33, 33, 33), (a + 1e-14, b - 1e-14)), p)
+                          for p in law.phases for a, b in pairwise((0.0, *p.law.jumps, 1.0))), key=itemgetter(0))
+    return -most, phase, x
 
 
 def plate(law: PositionFunction, s: Any, dds: Any, base_radius: float | None, exact: ExactMotion | None = None) -> Plate:
