@@ -77,18 +77,15 @@ def mesh(project: Project, view: ViewPlace) -> BorderNode:
     return _node(view, (120.0, 90.0), drawn)
 
 
-def scheme_of_reducer(project: Project, view: ViewPlace) -> BorderNode:
-    """Axial view, picture of velocities and end view of a reducer."""
-    return _scheme(project.reducer, view)
+def _train(project: Project, view: ViewPlace) -> Train:
+    """The train or reducer that a view shows."""
+    train: Train = getattr(project, view.draw.partition(".")[0])
+    return train
 
 
-def scheme_of_train(project: Project, view: ViewPlace) -> BorderNode:
-    """The same of a train."""
-    return _scheme(project.train, view)
-
-
-def _scheme(train: Train, view: ViewPlace) -> BorderNode:
-    views = train_scheme.TrainScheme(train)
+def scheme(project: Project, view: ViewPlace) -> BorderNode:
+    """Axial view, picture of velocities and end view of a train or a reducer."""
+    views = train_scheme.TrainScheme(_train(project, view))
 
     def drawn(width: int, height: int) -> float:
         mu = views.fitted(width, height).mu
@@ -119,14 +116,9 @@ def conditions(project: Project, view: ViewPlace) -> BorderNode:
     return _table(view, 9 + 2 * bool(project.reducer.simple) + len(project.reducer.warnings))
 
 
-def points_of_reducer(project: Project, view: ViewPlace) -> BorderNode:
-    """Velocities of the points of a reducer's picture."""
-    return _table(view, len(speed_plan.moving_points(project.reducer)) + 1)
-
-
-def points_of_train(project: Project, view: ViewPlace) -> BorderNode:
-    """The same of a train's."""
-    return _table(view, len(speed_plan.moving_points(project.train)) + 1)
+def points(project: Project, view: ViewPlace) -> BorderNode:
+    """Velocities of the points of a picture of velocities."""
+    return _table(view, len(speed_plan.moving_points(_train(project, view))) + 1)
 
 
 def links_of_train(project: Project, view: ViewPlace) -> BorderNode:
