@@ -24,7 +24,6 @@ from tmm_sheets.sheets.player import PlayerStage
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.gears.gear_geometry import GearWheel
-    from tmm_sheets.sheets.gears.gear_picture import GearPicture
 
 CIRCLES = (("ra", "r_{a%d}", "thin"), ("rw", "r_{w%d}", "thin"), ("r", "r_%d", "centre"), ("rb", "r_{b%d}", "thin"),
            ("rf", "r_{f%d}", "thin"))
@@ -183,7 +182,7 @@ ENGAGED_PITCHES = 1.2
 """So many pitches from the line of centres there are no radii: the teeth in mesh are there."""
 
 
-def draw_radii(picture: GearPicture) -> None:
+def draw_radii(picture: Any) -> None:
     """Draw the radii of both wheels, when all else is on the picture."""
     for wheel in picture.gear.wheels:
         Radii(picture, wheel).draw()
@@ -195,7 +194,7 @@ class Radii:
     ``tips`` are where they end, mm from its ``centre``, and ``texts`` their names, both by attribute of the wheel.
     """
 
-    def __init__(self, picture: GearPicture, wheel: GearWheel) -> None:
+    def __init__(self, picture: Any, wheel: GearWheel) -> None:
         self.picture, self.wheel, self.canvas = picture, wheel, picture.canvas
         self.centre: complex = picture.of(f"O{wheel.number}")
         self.tips = {key: float(picture.mm(getattr(wheel, key))) for key, _, _ in CIRCLES}
