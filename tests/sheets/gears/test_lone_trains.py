@@ -11,7 +11,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.evenness import empty_cells
 from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.sheets.gears import plan_checks, wheel_sizes
-from tmm_sheets.sheets.gears.train_scheme import TrainScheme
+from tmm_sheets.sheets.gears.train_scheme import TrainScheme, columns_of
 from tmm_sheets.sheets.sheet import composed
 
 REDUCER = {"simple": "none", "input_speed": "1450 rpm", "module": "3 mm", "satellites": 3}
@@ -69,6 +69,17 @@ def test_a_standing_ring_is_held_at_both_sides_of_the_axis_and_meshes_there(name
     ring = train.radius(held.central, held)
     assert {round(views.mu.mm(side * ring), 6) for side in (1, -1)} <= level  # rims of the ring and of the satellites
     assert {round(views.mu.mm(side * ring) + 6 * side, 6) for side in (1, -1)} <= level  # where it is held
+
+
+@pytest.mark.parametrize(("name", "columns"), [
+    ("sun drives", "1-2 3-2, H"), ("ring drives", "3-2 1-2, H"), ("blocks", "1-2, 4-3, H"), ("two suns", "H, 4-3, 1-2"),
+    ("two stages", "1-2 3-2, H1, 4-5 6-5, H2"), ("pair before", "2-1, 3-4 5-4, H"), ("shafts", "1-2, 4-3"),
+])
+def test_columns_follow_the_power(name, columns):
+    """No shaft passes through a wheel: the carrier stands where its shaft leads to, what is held in the frame beside it."""
+    own = project(PROJECTS[name])
+    found, _ = columns_of(own.train if "train" in PROJECTS[name] else own.reducer)
+    assert ", ".join(edge.carrier or " ".join(f"{m.central}-{m.planet}" for m in edge.meshes) for edge in found) == columns
 
 
 def test_a_planet_alone_on_its_carrier_is_drawn_once():
