@@ -249,17 +249,21 @@ class Cam:
 
     @cached_property
     def dense(self) -> Inversion:
-        """The same inversion in many positions of a whole turn, for smooth curves and for results."""
-        return self._bare(self._divided)
+        """Inversion with the profile in many positions of a whole turn, for smooth curves and for results."""
+        return self._contact(self._course)
 
-    @property
-    def _divided(self) -> Floats:
+    @cached_property
+    def _course(self) -> Inversion:
         parts = self.law.parts
-        return self.law.divided(parts * -(-DENSE // parts))
+        return self._bare(self.law.divided(parts * -(-DENSE // parts)))
 
     def at(self, phi: Floats) -> Inversion:
-        """The same inversion at any cam angles, rad."""
-        return self._bare(phi, choice=tr(ASKED))
+        """Inversion with the profile at cam angles ``phi``, rad."""
+        return self._contact(self._bare(phi, choice=tr(ASKED)))
+
+    def _contact(self, inv: Inversion) -> Inversion:
+        """Record the profile where the inversion alone does not give it."""
+        return inv
 
     def _bare(self, phi: Floats, name: str = "between",
               choice: str = marked("the phases are divided into equal parts")) -> Inversion:
@@ -548,19 +552,6 @@ class RollerCam(Cam):
         centre = inv.plan.add("M", THREE_POINT_CENTRE, e, d, g)
         inv.plan.add("ρ_min", rules.DISTANCE, centre, d)
         return self._contact(inv)
-
-    @cached_property
-    def _course(self) -> Inversion:
-        return self._bare(self._divided)
-
-    @cached_property
-    def dense(self) -> Inversion:
-        """The same inversion in many positions of a whole turn, for smooth curves and for results."""
-        return self._contact(self._course)
-
-    def at(self, phi: Floats) -> Inversion:
-        """The same inversion at any cam angles, rad."""
-        return self._contact(self._bare(phi, choice=tr(ASKED)))
 
     def _contact(self, inv: Inversion) -> Inversion:
         _ = self.roller

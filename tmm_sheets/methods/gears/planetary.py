@@ -72,17 +72,17 @@ def efficiency_from_sun(inner: Reals, both: Reals) -> Reals:
 
 
 def efficiency_from_ring(inner: Reals, both: Reals) -> Reals:
-    """The same when the ring drives."""
+    """Efficiency of a stage driven by its ring; arguments as in :func:`efficiency_from_sun`."""
     return (1 + both * (1 / np.abs(inner))) / (1 + 1 / np.abs(inner))
 
 
 def efficiency_from_carrier_below(inner: Reals, both: Reals) -> Any:
-    """The same when the carrier drives, for an inner ratio below 1."""
+    """Efficiency of a stage driven by its carrier, for an inner ratio below 1; arguments as in :func:`efficiency_from_sun`."""
     return (1 - inner) / (1 - inner * both)
 
 
 def efficiency_from_carrier_above(inner: Reals, both: Reals) -> Reals:
-    """The same for an inner ratio above 1."""
+    """Efficiency of a stage driven by its carrier, for an inner ratio above 1; arguments as in :func:`efficiency_from_sun`."""
     return both * (inner - 1) / (inner - both)
 
 
