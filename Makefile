@@ -47,10 +47,11 @@ gallery-check: gallery  ## the same; fails when a sheet cannot be drawn, a label
 	for language in ru uk en; do $(BIN)/python -m tests.labels --ciphers 60 --lang $$language || exit 1; done
 	$(BIN)/python -m tests.evenness
 
-note-check: $(VENV)/.tested  ## the notes of every shipped project in three languages, read as a strict teacher reads them
+note-check: $(VENV)/.tested  ## the notes of every shipped project in three languages, read as a strict teacher reads them; formulas on sheets
 	$(BIN)/python -m tests.note.check_notes
 	$(BIN)/python -m tests.note.check_notes --lang ru tests/projects/*.toml
 	$(BIN)/python -m tests.note.check_pages
+	$(BIN)/python -m tests.sheets.equations
 
 gold: $(VENV)/.tested  ## accept the display lists as they are drawn now (look at the sheets first)
 	$(BIN)/python -m tests.sheets.gold

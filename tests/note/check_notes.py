@@ -27,6 +27,7 @@ from typing import Any, NamedTuple
 
 from tests.note.printed_formulas import equalities, line_of
 from tmm_sheets import catalogue, words
+from tmm_sheets.construction.formula import Barred, Figures, FormulaRow, Letters, Node, Scripts
 from tmm_sheets.note import composing, phrases
 from tmm_sheets.note.alphabets import equation
 from tmm_sheets.note.document import (
@@ -42,7 +43,6 @@ from tmm_sheets.note.document import (
     Text,
     Where,
 )
-from tmm_sheets.note.formula import Barred, Figures, FormulaRow, Letters, Node, Scripts
 from tmm_sheets.project import Project
 
 SHARE = ("lugansk/shaper", "lugansk/engine", "transport/crusher@12-СДМ-1908", "sixbar/3:2", "screen")

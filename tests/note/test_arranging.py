@@ -6,9 +6,9 @@ from itertools import pairwise
 
 import pytest
 
+from tmm_sheets.construction.formula import letters
 from tmm_sheets.note.arranging import PAGE, Measured, arranged, tied
 from tmm_sheets.note.document import Figure, Formula, Heading, NumberedTable, Paragraph, Reference, Where
-from tmm_sheets.note.formula import letters
 
 ROOM = {"section": (4.0, 7.0), "heading": (7.0, 4.0), "paragraph": (2.0, 2.0), "formula": (2.0, 2.0), "where": (1.3, 2.3),
         "table": (3.5, 4.0), "figure": (4.0, 4.0)}  # fmt: skip

@@ -11,6 +11,7 @@ import pytest
 from tests.few import seldom
 from tests.note.opened import composed, opened
 from tmm_sheets import results, words
+from tmm_sheets.construction.formula import Letters, Words
 from tmm_sheets.drawing.styles import line_types
 from tmm_sheets.note import composing, phrases
 from tmm_sheets.note.document import (
@@ -26,7 +27,6 @@ from tmm_sheets.note.document import (
     Where,
     numbers,
 )
-from tmm_sheets.note.formula import Letters, Words
 from tmm_sheets.note.phrases import plain_text
 from tmm_sheets.note.pictures import LETTERS, READABLE, Pictures
 from tmm_sheets.note.reader import Reader

@@ -5,8 +5,7 @@ import xml.etree.ElementTree as ET
 import pytest
 
 from tmm_sheets.construction import expression as e
-from tmm_sheets.note.alphabets import TYPST, equation, spelt, string
-from tmm_sheets.note.formula import (
+from tmm_sheets.construction.formula import (
     Fenced,
     Figures,
     FormulaRow,
@@ -21,6 +20,7 @@ from tmm_sheets.note.formula import (
     letters_of,
     of_tree,
 )
+from tmm_sheets.note.alphabets import TYPST, equation, spelt, string
 
 
 @pytest.mark.parametrize(("name", "markup"), [

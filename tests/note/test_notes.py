@@ -9,9 +9,9 @@ from tests.few import few, seldom
 from tests.note import check_notes
 from tests.note.opened import composed, opened
 from tmm_sheets import words
+from tmm_sheets.construction.formula import Figures, FormulaRow, Letters, Sign, Words, letters
 from tmm_sheets.note import phrases
 from tmm_sheets.note.document import Explained, Formula, Heading, NumberedTable, NumberInText, Paragraph, Symbol, Where
-from tmm_sheets.note.formula import Figures, FormulaRow, Letters, Sign, Words, letters
 from tmm_sheets.task.variant import Variant
 
 READ = [(name, "ru") for name in check_notes.SHARE] + [("lugansk/engine", "uk"), ("transport/crusher@12-СДМ-1908", "en")]

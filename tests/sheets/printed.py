@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tests.sheets import equations
 from tests.sheets.traced import ROOMS, views
 from tmm_sheets import results
 from tmm_sheets.catalogue import read
@@ -123,8 +124,11 @@ def room_of(draw: str) -> str | None:
     return next((room for room, modules in ROOMS.items() if module in modules), None)
 
 
-def check(project: Project) -> tuple[int, list[Printed], float]:
-    """How many numbers a project's sheets have, those that no step has, and the share of false numbers that some step has."""
+def check(project: Project) -> tuple[int, list[Printed], float, list[str]]:
+    """How many numbers a project's sheets have, those that no step has, and the share of false numbers that some step has.
+
+    Last come the formulas that do not give what stands behind their sign of equality.
+    """
     _ = results.assemble(project, None, refused={})
     sheets = every(project, steps=True).drawn
     known = {room: Values(project, room, sheets) for room in ROOMS}
@@ -140,15 +144,18 @@ def check(project: Project) -> tuple[int, list[Printed], float]:
         off = p.value + int(chance.integers(3, 40)) * 10.0**-p.decimals
         tried += 1
         false += known[room].have(off, p.decimals)
-    return total, lost, false / max(tried, 1)
+    wrong = [f"sheet {n}: {e.left} = {e.right}" for n, sheet in sheets.items() for e in equations.judged(sheet)[0] if not e.holds]
+    return total, lost, false / max(tried, 1), wrong
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("projects", nargs="*", default=PROJECTS)
     for name in parser.parse_args().projects:
-        total, lost, false = check(Project(read(name)))
+        total, lost, false, wrong = check(Project(read(name)))
         print(f"{name}: {total} numbers, {len(lost)} are of no step; of false ones {false:.0%} would be found")
+        for text in wrong:
+            print(f"   {text}")
         for p in lost:
             print(f"   sheet {p.sheet} {p.draw:32} {p.value:g} in {p.text!r}")
 

@@ -1,4 +1,4 @@
-"""Numbers printed on the sheets are values of steps."""
+"""Numbers printed on the sheets are values of steps, and formulas give what stands behind their sign of equality."""
 
 import pytest
 
@@ -12,8 +12,9 @@ VISOR = next(name for name in OWN if "visor" in name)
 
 
 @pytest.mark.parametrize("name", few([*SHIPPED, VISOR], "lugansk/shaper", VISOR))
-def test_every_printed_number_is_that_of_a_step(name):
-    total, lost, false = check(Project(read(name)))
+def test_every_printed_number_is_that_of_a_step_and_every_formula_comes_out(name):
+    total, lost, false, wrong = check(Project(read(name)))
     assert total > 200
     assert false < 0.8  # most of the false ones are small numbers with few digits
     assert lost == []
+    assert wrong == []

@@ -11,14 +11,15 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.equation import UNITS, Quantity, digits_for, of_step
+from tmm_sheets.construction.formula import letters_of
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import LINE_LINE, take
 from tmm_sheets.construction.step import Kind, Step, value_at, value_of
-from tmm_sheets.numbers import Sizes, degrees_and_minutes, fixed, number, rounded_angle
-from tmm_sheets.words import marked, tr, tr_n
-
-UNITS = {"mm": marked("mm"), "m": marked("m"), "m/s": marked("m/s"), "m/s2": marked("m/s²"), "N": marked("N"), "rad": marked("rad")}
-"""Units of plans as they are said."""
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.meanings import meaning_of
+from tmm_sheets.numbers import Sizes, clean, degrees_and_minutes, fixed, number, rounded_angle
+from tmm_sheets.words import marked, paper, tr, tr_n
 
 _PERPENDICULAR = {
     (1,): marked("Through {0} perpendicular to {1} and through {2} parallel to {3} draw lines; they meet at point {name}."),
@@ -128,21 +129,21 @@ _OPERAND = re.compile(r"(?<=[·/×+−])( ?)(\{\d\})|(\{\d\})(?=²)")
 """An argument behind an arithmetic sign or squared: a negative one stands in parentheses there."""
 
 
-def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "mm",
-             sizes: SortSizes | None = None, digits: Callable[[Step], str] = lambda step: "") -> str:
-    """One step as a sentence; ``sizes`` are those of each sort in its plan.
-
-    ``digits`` gives a step's number as it is written elsewhere on the sheet, or nothing.
-    """
+def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "mm", sizes: SortSizes | None = None) -> str:
+    """One step as a sentence; ``sizes`` are those of each sort in its plan."""
     if sizes is None:
         sizes = SortSizes([step])
+    told = step.rule.wording if step.say is None else step.say
+    if not told:
+        meaning = _meaning(step.symbol or letters_of(step.name), paper(), step.plan.partition("-")[0])
+        return f"{meaning[:1].upper()}{meaning[1:]}{': ' if meaning else ''}{_of_formula(step, k, to_mm, unit, sizes)}."
+    formula = _of_formula(step, k, to_mm, unit, sizes) if "{formula}" in told else ""
     # What is taken from another plan has other positions there. A protractor knows no minutes: they are said in formulas, not
     # where an angle is laid off.
     args, drawn = () if step.rule.compute is take else step.args, step.rule.gives in ("point", "direction")
-    shown = [(digits(a) if isinstance(a, Step) else "") or _show(a, kind, k, to_mm, unit, sizes, drawn)
-             for a, kind in zip(args, step.rule.takes, strict=False)]
-    value = digits(step) or _exact_angle(step, k)
-    if value and args and not digits(step):
+    shown = [_show(a, kind, k, to_mm, unit, sizes, drawn) for a, kind in zip(args, step.rule.takes, strict=False)]
+    value = _exact_angle(step, k)
+    if value and args:
         value = _with_seconds(step, k, shown)
     if not value and step.rule.gives in _MEASURED:
         of_sort = 100.0 if step.rule.unit == "%" else sizes.at(step, k)
@@ -155,7 +156,47 @@ def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "m
     wording = _wording(step, shown)
     if any(said.startswith("−") for said in shown):
         wording = _OPERAND.sub(operand, wording)
-    return wording.format(*shown, name=letter_of(step), value=value)
+    return wording.format(*shown, name=letter_of(step), value=value, formula=formula)
+
+
+_SECTIONS = {"train": "reducer", "rack": "gear",
+             **dict.fromkeys(("drive", "rotor", "motor", "crank", "energy", "reduction"), "flywheel")}
+"""Parts of the note whose letters those of other plans are, by the first word of a plan's name."""
+_POWERS = str.maketrans("0123456789−", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+
+
+def _of_formula(step: Step, k: int, to_mm: Callable[[float], float], unit: str, sizes: SortSizes) -> str:
+    """The formula of a step in letters and in numbers, with what it gives."""
+    kinds = {id(a): kind for a, kind in zip((*step.args, step), (*step.rule.takes, step.rule.gives), strict=False)}
+
+    def quantity(symbol: str, value: float, of_unit: str, of: Any) -> Quantity:
+        value = clean(value, sizes.of_argument(of, k))
+        kind = kinds[id(of)]
+        if kind in ("length", "ordinate"):
+            value, of_unit = to_mm(value), unit
+            if unit == "mm":
+                return Quantity(symbol, value, unit, digits_for(value, 1), 1)
+        return Quantity(symbol, value, "rad" if kind in ("angle", "inclination") else of_unit)
+
+    said = of_step(step, k, quantity=quantity)
+    if not said:
+        value = number(float(np.real(value_at(step, k))), kind=sizes.at(step, k))
+        said = f"{letter_of(step)} = {value} {tr(UNITS.get(step.rule.unit, step.rule.unit))}".rstrip()
+    for name in {a.name for a in (*step.args, step) if isinstance(a, Step) and not a.symbol}:
+        said = said.replace(letters_of(name), spoken(name))  # without markup as everywhere
+    said = re.sub(r"\^\{(−?\d+)\}", lambda m: m[1].translate(_POWERS), said)
+    said = re.sub(r"\^\{([^{}*]+/[^{}]+)\}", r"^(\1)", said)
+    return _unmarked(said)
+
+
+@lru_cache(4096)
+def _meaning(letters: str, language: str, section: str) -> str:
+    """What letters mean; nothing in a language that has no words for them."""
+    try:
+        said = meaning_of(letters.replace("∞", ""), language, _SECTIONS.get(section, section))
+    except CannotBuild:
+        return ""
+    return re.sub(r"\$([^$]*)\$", lambda m: _unmarked(m[1]), said).replace("…", "")
 
 
 def _wording(step: Step, shown: list[str]) -> str:

@@ -57,7 +57,8 @@ class Rule:
     gives
         kind of the result.
     wording
-        sentence with ``{0}``, ``{1}`` ... for the arguments, ``{name}`` and ``{value}`` for the result; looked up when it is said.
+        sentence with ``{0}``, ``{1}`` ... for the arguments, ``{name}`` and ``{value}`` for the result, or ``{formula}`` for all of
+        them; looked up when it is said. Empty for a formula that says all itself.
     helpers
         ``helpers(args, value)`` at one position gives the helper lines; None when the move leaves none.
     beyond_paper
@@ -72,6 +73,8 @@ class Rule:
         of a crossing: ``sine(value, *args)`` is that of the angle at which the lines cross; None for those every plan knows.
     exact
         True for a number that is computed, not drawn: the error analysis takes it as a given one.
+    textbook
+        the formula as books have it, where ``compute`` spares rounding.
 
     The arithmetic of a rule is read off ``compute`` itself, see :mod:`~tmm_sheets.construction.expression`.
     """
@@ -88,6 +91,11 @@ class Rule:
     exact: bool = False
     laid_off: bool = False
     sine: Callable[..., Any] | None = None
+    textbook: Callable[..., Any] | None = None
+
+    def formula(self, count: int) -> Expression | None:
+        """The formula as books have it on ``count`` arguments; None for a move of the construction."""
+        return trace(self.textbook or self.compute, count)
 
     def tree(self, count: int) -> Expression | None:
         """The rule's arithmetic on ``count`` arguments as an expression."""

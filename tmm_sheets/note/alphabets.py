@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 from xml.sax.saxutils import escape
 
-from tmm_sheets.note.formula import (
+from tmm_sheets.construction.formula import (
     Barred,
     Fenced,
     Figures,

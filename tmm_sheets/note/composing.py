@@ -9,6 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import words as catalogues
+from tmm_sheets.construction.formula import letters_of, reworded
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.note import phrases
 from tmm_sheets.note.document import (
@@ -27,7 +28,6 @@ from tmm_sheets.note.document import (
     Text,
     Where,
 )
-from tmm_sheets.note.formula import letters_of, reworded
 from tmm_sheets.note.phrases import Numbering, Scope, Writer
 from tmm_sheets.note.pictures import Pictures
 from tmm_sheets.note.reader import Reader

@@ -1,7 +1,8 @@
 """The document tree of a note: what stands in it, without a word of how it is set.
 
 Text is a tuple of :data:`Inline`; numbers are nodes that know the step they come from, formulas are trees (see
-:mod:`~tmm_sheets.note.formula`). Sections, formulas, figures and tables have their numbers already: both writers print the same.
+:mod:`~tmm_sheets.construction.formula`). Sections, formulas, figures and tables have their numbers already: both writers print the
+same.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from tmm_sheets.note.formula import Node
+from tmm_sheets.construction.formula import Node
 
 
 @dataclass(frozen=True)

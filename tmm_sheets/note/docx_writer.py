@@ -11,6 +11,7 @@ from itertools import accumulate, count, pairwise
 from typing import Any
 from xml.sax.saxutils import escape
 
+from tmm_sheets.construction.formula import Node
 from tmm_sheets.note.alphabets import characters, equation
 from tmm_sheets.note.arranging import sticky
 from tmm_sheets.note.document import (
@@ -29,7 +30,6 @@ from tmm_sheets.note.document import (
     Text,
     Where,
 )
-from tmm_sheets.note.formula import Node
 from tmm_sheets.note.typst_writer import rasters
 
 DPI = 220

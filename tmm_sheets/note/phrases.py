@@ -7,14 +7,17 @@ holds no number: numbers come from the record through the fields.
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
-from pathlib import Path
 from typing import Any
 
-from tmm_sheets.errors import BadInput, CannotBuild, Problem
+from tmm_sheets.construction.formula import Fenced, FormulaRow, Fraction, Node, Sign, letters, letters_of
+from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.meanings import bare as bare
+from tmm_sheets.meanings import folder as folder
+from tmm_sheets.meanings import meaning_of as meaning_of
+from tmm_sheets.meanings import words as words
 from tmm_sheets.note.alphabets import characters
 from tmm_sheets.note.document import (
     Block,
@@ -33,39 +36,8 @@ from tmm_sheets.note.document import (
     Text,
     Where,
 )
-from tmm_sheets.note.formula import Fenced, FormulaRow, Fraction, Node, Sign, letters, letters_of
-from tmm_sheets.resources import template
 from tmm_sheets.task import units
 from tmm_sheets.words import plural_form, tell
-
-
-def folder(language: str) -> Path:
-    """Folder of the templates of a language.
-
-    Raises
-    ------
-    CannotBuild
-        when there are none of it yet; it says of which there are.
-    """
-    found = template(f"note/{language}")
-    if not found.is_dir():
-        there = ", ".join(sorted(p.name for p in template("note").iterdir() if (p / "words.toml").is_file()))
-        raise CannotBuild(
-            tell('there are no templates of the note in the language "{language}"').format(language=language),
-            tell("there are templates in {there}: --lang {first}; others can be added as templates/note/{language}").format(
-                there=there, first=there.split(", ")[0], language=language),
-        )
-    return found
-
-
-@cache
-def words(language: str) -> dict[str, Any]:
-    """Single words, units and meanings of letters: ``words.toml`` of a language."""
-    path = folder(language) / "words.toml"
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except tomllib.TOMLDecodeError as e:
-        raise BadInput(Problem(str(e), str(path))) from None
 
 
 def text_of(language: str, name: str) -> str:
@@ -437,46 +409,6 @@ def _count(value: Any) -> float:
 
 
 @cache
-def meaning_of(markup: str, language: str, section: str = "") -> str:
-    """What a letter means, by the tables ``letters-<section>`` and ``letters`` of words.toml.
-
-    Its own entry, or the pattern with the longest beginning.
-    """
-    own = _meaning(markup, words(language).get(f"letters-{section}", {}))
-    return own or _meaning(markup, words(language).get("letters", {}))
-
-
-def _meaning(markup: str, table: Mapping[str, str]) -> str:
-    plain = bare(markup)
-    for key, meaning in table.items():
-        if key.startswith("~"):
-            if m := re.fullmatch(key[1:], plain):
-                return m.expand(meaning)
-        elif bare(key) == plain:
-            return meaning
-    found = ""
-    longest = -1
-    for key, meaning in table.items():
-        head, star, tail = bare(key).partition("*")
-        if (
-            star
-            and not key.startswith("~")
-            and plain.startswith(head)
-            and plain.endswith(tail)
-            and len(plain) > len(head) + len(tail)
-            and len(head) > longest
-        ):
-            longest = len(head)
-            found = meaning.replace("*", plain[len(head) : len(plain) - len(tail)])
-    return found
-
-
-@cache
-def bare(markup: str) -> str:
-    """Letters without markup."""
-    return re.sub(r"[\\_{}^ ]", "", markup)
-
-
 def unit(name: str, language: str) -> str:
     """A unit of the record or of a project file in words; one that the language has no word for as it stands."""
     return "" if name == "1" else _units(language).get(units.common(name), name)

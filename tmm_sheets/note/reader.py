@@ -11,15 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction import expression, protocol
-from tmm_sheets.construction.given import FoundNumber, Given, GivenNumber
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.errors import CannotBuild
-from tmm_sheets.note import digits, phrases
-from tmm_sheets.note.digits import DIGITS, Digits, shown
-from tmm_sheets.note.document import Inline, NumberInText, Symbol, Text
-from tmm_sheets.note.formula import (
+from tmm_sheets.construction import digits, expression, protocol
+from tmm_sheets.construction.digits import DIGITS, Digits, shown
+from tmm_sheets.construction.formula import (
     Figures,
     FormulaRow,
     Node,
@@ -36,6 +30,12 @@ from tmm_sheets.note.formula import (
     simplified,
     with_numbers,
 )
+from tmm_sheets.construction.given import FoundNumber, Given, GivenNumber
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.note import phrases
+from tmm_sheets.note.document import Inline, NumberInText, Symbol, Text
 from tmm_sheets.note.phrases import ShownFormula
 from tmm_sheets.numbers import degrees_and_minutes, fixed, is_zero, number
 from tmm_sheets.record.recording import book_of, unit
@@ -227,7 +227,7 @@ class Reader:
         as_unit: str | None = None,
     ) -> ShownFormula | None:
         """The formula of a step by its own expression; None when it has none that can be written."""
-        tree = step.rule.tree(len(step.args))
+        tree = step.rule.formula(len(step.args))
         if tree is None or isinstance(tree, expression.Argument) or not can_be_written(tree):
             return None
         quantities = []

@@ -158,8 +158,8 @@ def test_formulas_are_said_as_the_manual_writes_them():
     plan = gear_pair(data((10, 20), (0.5, 0.5), 0.01)).geometry
     said = dict(zip(plan.steps, sentences(plan, 0, float), strict=True))
     assert said["alpha_w"] == "По эвольвентному углу 0,03917 найдём угол зацепления α_w = 27°12′."
-    assert said["r1"] == "Делительный радиус r = mz/2: r_1 = 10 × 10/2 = 50 мм."
-    assert said["rf2"] == "Радиус впадин r_f = m(z/2 − h_a* − c* + x): r_f2 = 10 × (20/2 − 1 − 0,25 + 0,5) = 92,5 мм."
+    assert said["r1"] == "Делительный радиус колеса 1: r_1 = m·z_1/2 = 10·10/2 = 50 мм."
+    assert said["rf2"] == "Радиус впадин колеса 2: r_f2 = m·(z_2/2 − h_a* − c* + x_2) = 10·(20/2 − 1 − 0,25 + 0,5) = 92,5 мм."
 
 
 def test_given_numbers_are_named_by_their_place():

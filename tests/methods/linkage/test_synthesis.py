@@ -90,7 +90,7 @@ def test_both_ways_of_the_engine_are_one():
 def test_steps_speak():
     s = quick_return(1.5, 0.35, 0.26, round=0.001)
     told = " ".join(sentences(s.plan, 0, lambda x: x * 1000))
-    assert "θ = 180°·(K − 1)/(K + 1) = 36,0°" in told
+    assert "θ = 180°·(K − 1)/(K + 1) = 180°·(1,5 − 1)/(1,5 + 1) = 36°." in told
     assert "Округлим до 1,0 мм: l_AB′ = 80,0 мм." in told
     assert s.derivation[1] == "l_AB = l_AC·sin(θ/2) = 0,26·sin 18° = 0,080344 м;  принято 0,08 м"
 

@@ -46,7 +46,7 @@ def _force(s: Any, preload: Any, rate: Any, length: Reals) -> Reals:
 MASS = Rule("moved mass", lambda mass: mass, ("number",), "number", marked("Given mass of the follower {name} = {value} kg."),
             unit="kg")
 REDUCED_MASS = Rule("mass reduced to the roller", lambda inertia, arm: inertia / arm**2, ("number", "length"), "number",
-                    marked("Mass of the rocker reduced to the axis of the roller: {name} = J/AB² = {value} kg."), unit="kg",
+                    "", unit="kg",
                     source=SOURCE)
 SPEED = Rule("speed of the cam", lambda speed: speed, ("number",), "number",
              marked("Given angular velocity of the cam {name} = {value} rad/s."),
@@ -60,11 +60,11 @@ LARGEST = Rule("largest force of inertia", lambda *of: np.maximum(_inertia(*of),
                marked("Greatest force of inertia that lifts the follower off the cam: {name} = {value} N."), unit="N",
                source=SOURCE)
 PRODUCT = Rule("force by a factor", lambda factor, force: factor * force, ("number", "number"), "number",
-               marked("Force of the spring {name} = {0}·{1} = {value} N."), unit="N", source=SOURCE)
+               "", unit="N", source=SOURCE)
 WAY = Rule("way of the spring", lambda length, stroke: length * stroke, ("number", "length"), "number",
            marked("Travel of the spring {name} = {value} m."), unit="m", source=SOURCE)
 RATE = Rule("stiffness", lambda most, first, way: (most - first) / way, ("number", "number", "number"), "number",
-            marked("Stiffness of the spring {name} = ({0} − {1})/{2} = {value} N/m."), unit="N/m", source=SOURCE)
+            "", unit="N/m", source=SOURCE)
 FORCE = Rule("force of the spring", _force, ("ordinate", "number", "number", "number"), "number",
              marked("Force of the spring at this position {name} = {value} N."), unit="N", source=SOURCE)
 RATIO = Rule("force by force of inertia", lambda s, dds, stroke, largest, factor, preload, mass, speed, length: factor * largest * (
@@ -73,7 +73,7 @@ RATIO = Rule("force by force of inertia", lambda s, dds, stroke, largest, factor
     "number", marked("Least ratio of the force of the spring to the force of inertia {name} = {value}."), unit="1", source=SOURCE)
 
 NEEDED = Rule("factor of the spring needed", lambda factor, least: factor / least, ("number", "number"), "number",
-              marked("The pair stays closed with F_max greater than {name} = {0}/{1} = {value} of Q_max."), unit="1", source=SOURCE)
+              marked("Least factor of the greatest force with which the pair stays closed: {formula}."), unit="1", source=SOURCE)
 
 
 def _number(step: str, doc: str) -> property:

@@ -69,7 +69,7 @@ CIRCLE_CENTRE = Rule("centre of the auxiliary circle", lambda pole, radius: -(po
 FACTOR = Rule("scale factor", lambda mu: mu, ("number",), "number", marked("Take the scale factor {name} = {value}."), unit="1/mm")
 POLE_DISTANCE = Rule("pole distance", lambda integral, integrand, across: integral / (integrand * across), ("number",) * 3,
                      "length",
-                     marked("Pole distance {name} = {0}/({1}·{2}) = {value}."), source=SOURCE)
+                     "", source=SOURCE)
 LARGEST = Rule("largest ordinate of the law", lambda travel, peak, angle, mu: np.abs(travel) * peak / angle**2 / mu,
                ("number", "number", "angle", "number"), "length",
                marked("Greatest ordinate of the graph of the second derivative {name} = {value}."), source=SOURCE)

@@ -323,7 +323,7 @@ def rounded_up(radius: Reals) -> Reals:
 ROUNDED = Rule("rounded radius", rounded_up, ("length",), "length", marked("Round to a whole millimetre: {name} = {value}."))
 CHOSEN = Rule("given radius", lambda radius: radius, ("length",), "length", marked("Given by the task: {name} = {value}."))
 RESERVE = Rule("reserve", lambda radius, least: radius - least, ("length", "length"), "length",
-               marked("Margin {name} = {0} − {1} = {value}."))
+               "")
 RESERVED = Rule("add a reserve", lambda least, reserve: least + reserve, ("length", "length"), "length",
                 marked("To the radius {0} add the margin Δr = {1}: {name} = {value}."))
 LARGEST = Rule("largest ordinate", np.abs, ("ordinate",), "length",

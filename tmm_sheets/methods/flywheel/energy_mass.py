@@ -77,11 +77,11 @@ SEGMENT = Rule("segment of the energy axis", lambda a, b: np.imag(a) - np.imag(b
                marked("On the axis ΔE measure the segment from {1} to {0}, positive upwards: {name} = {value}."))
 UPPER_ANGLE = Rule(
     "angle of the upper tangent", lambda mu_j, mu_e, omega, delta: np.arctan(mu_j / (2 * mu_e) * (omega * (1 + delta / 2)) ** 2),
-    ("number",) * 4, "angle", marked("Compute the slope angle of the tangent {name} = arctan[μ_J/(2μ_E)·ω1²(1 + δ/2)²] = {value}."),
+    ("number",) * 4, "angle", marked("Compute the slope angle of the tangent: {formula}."),
     source="000, 5.5")
 LOWER_ANGLE = Rule(
     "angle of the lower tangent", lambda mu_j, mu_e, omega, delta: np.arctan(mu_j / (2 * mu_e) * (omega * (1 - delta / 2)) ** 2),
-    ("number",) * 4, "angle", marked("Compute the slope angle of the tangent {name} = arctan[μ_J/(2μ_E)·ω1²(1 − δ/2)²] = {value}."),
+    ("number",) * 4, "angle", marked("Compute the slope angle of the tangent: {formula}."),
     source="000, 5.5")
 SLOPE_OF_ANGLE = Rule("slope of an angle", np.tan, ("angle",), "number", "{name} = {value}.", exact=True)
 UNDER_ANGLE = Rule("direction under an angle", lambda angle: np.cos(angle) + 1j * np.sin(angle), ("angle",), "direction",

@@ -36,58 +36,57 @@ COARSE = 0.05
 """The ordinates in the middles are too few when they tell the work of the cycle wrongly by more, share of the work."""
 OF_SEGMENT = Rule("moment of inertia from the segment", lambda ab, mu, delta, omega: ab * mu / (delta * omega**2),
                   ("number",) * 4, "number",
-                  marked("From the segment ab, mm: {name} = ab·μ_E/(δ·ω1²) = {0}·{1}/({2}·{3}²) = {value} kg·m²."), unit="kg*m2",
+                  "", unit="kg*m2",
                   source="000, 5.6")
 OF_EXCESS = Rule("moment of inertia from the excess of energy", lambda excess, delta, omega: excess / (delta * omega**2),
-                 ("number",) * 3, "number", marked("{name} = {0}/({1}·{2}²) = {value} kg·m²."), beyond_paper=True, unit="kg*m2",
+                 ("number",) * 3, "number", "", beyond_paper=True, unit="kg*m2",
                  source="000, 5.6")
 TOGETHER = Rule("moments of inertia together", lambda a, b: a + b, ("number", "number"), "number",
-                marked("All that turns with the input link: {name} = {0} + {1} = {value} kg·m²."), unit="kg*m2")
+                "", unit="kg*m2")
 WITH_ROTOR = Rule("flywheel and rotor", lambda a, b: a + b, ("number", "number"), "number",
-                  marked("Flywheel and rotor together: {name} = {0} + {1} = {value} kg·m²."), unit="kg*m2")
+                  "", unit="kg*m2")
 DELTA_OF_SEGMENT = Rule("coefficient of non-uniformity from the segment", lambda ab, mu, j, omega: ab * mu / (j * omega**2),
                         ("number",) * 4, "number",
-                        marked("From the segment ab, mm: {name} = ab·μ_E/(J·ω1²) = {0}·{1}/({2}·{3}²) = {value}."),
+                        "",
                         source="000, 5.6")
 DELTA_OF_EXCESS = Rule("coefficient of non-uniformity from the excess of energy", lambda excess, j, omega: excess / (j * omega**2),
-                       ("number",) * 3, "number", marked("{name} = {0}/({1}·{2}²) = {value}."), beyond_paper=True,
+                       ("number",) * 3, "number", "", beyond_paper=True,
                        source="000, 5.6")
 MEAN_POWER = Rule("mean power of the drive", lambda m, omega: m * omega, ("number", "number"), "number",
-                  marked("Mean power of the drive by the work of the cycle: {name} = M·ω1 = {0}·{1} = {value} W."), unit="W")
+                  "", unit="W")
 POWER_GIVEN_OFF = Rule("mean power of an engine", lambda m, omega: -m * omega, ("number", "number"), "number",
-                       marked("Mean power that the engine gives off, by the work of the cycle: {name} = −M·ω1 = {value} W."),
+                       "",
                        unit="W")
 POWER_BEFORE = Rule("power before an efficiency", lambda power, eta: power / eta, ("number", "number"), "number",
-                    marked("Power needed of the motor {name} = P/η = {0}/{1} = {value} W."), unit="W", source="002, 1.13")
+                    "", unit="W", source="002, 1.13")
 POWER_BEHIND = Rule("power behind an efficiency", lambda power, eta: power * eta, ("number", "number"), "number",
-                    marked("Power behind the drive {name} = P·η = {0}·{1} = {value} W."), unit="W")
+                    "", unit="W")
 BARE = Rule("moment of inertia of the flywheel", lambda first, crank: first - crank, ("number", "number"), "number",
-            marked("Moment of inertia of the flywheel {name} = {0} − {1} = {value} kg·m²."), unit="kg*m2")
+            "", unit="kg*m2")
 BARE_OF_ROTOR = Rule("moment of inertia of the flywheel beside a rotor", lambda first, crank, rotor: first - crank - rotor,
                      ("number",) * 3, "number",
-                     marked("Moment of inertia of the flywheel {name} = {0} − {1} − {2} = {value} kg·m²."), unit="kg*m2")
+                     "", unit="kg*m2")
 WITHOUT_CRANK = Rule("without the crank", lambda j, crank: j - crank, ("number", "number"), "number",
-                     marked("Without the input link {name} = {0} − {1} = {value} kg·m²."), unit="kg*m2", source="002, 1.7")
+                     "", unit="kg*m2", source="002, 1.7")
 RATIO = Rule("ratio of angular velocities", lambda rotor, crank: rotor / crank, ("number", "number"), "number",
-             marked("Ratio from the motor {name} = {0}/{1} = {value}."))
+             "")
 ROTOR = Rule("moment of inertia reduced by a ratio", lambda j, u: j * u**2, ("number", "number"), "number",
-             marked("Moment of inertia of the rotor reduced to the input link: {name} = {0}·{1}² = {value} kg·m²."), unit="kg*m2")
+             "", unit="kg*m2")
 RUNNING = Rule("what turns with the crank", lambda first, wheel: first + np.maximum(-wheel, 0.0), ("number", "number"), "number",
                marked("All that turns in the finished machine, the input link included: {name} = {value} kg·m²."), unit="kg*m2")
 TOGETHER_LIMIT, BARE_LIMIT, BARE_OF_ROTOR_LIMIT = (replace(rule, beyond_paper=True) for rule in (TOGETHER, BARE, BARE_OF_ROTOR))
 APART = Rule("difference of moments of inertia", lambda drawn, exact: drawn - exact, ("number", "number"), "number",
-             marked("The construction against the limit: {name} = {0} − {1} = {value} kg·m²."), beyond_paper=True, unit="kg*m2")
+             "", beyond_paper=True, unit="kg*m2")
 TANGENT = Rule("tangent of a graph", lambda slope, mu_phi, mu_j: np.arctan(slope * (mu_phi / mu_j)), ("number",) * 3, "inclination",
                marked("At the point of the graph J(φ1) draw the tangent; its slope angle is {name} = {value}."))
 SLOPE = Rule("slope of a graph", lambda angle, mu_phi, mu_j: np.tan(angle) * (mu_j / mu_phi), ("inclination", "number", "number"),
-             "number", marked("{name} = tan ψ·μ_J/μ_φ = {value} kg·m²."), unit="kg*m2", source="002, 1.12")
+             "number", "", unit="kg*m2", source="002, 1.12")
 SUM_OF_MOMENTS = Rule("add moments", lambda a, b: a + b, ("number", "number"), "number",
-                      marked("Add the reduced moments {0} and {1} with their signs: {name} = {value} N·m."), unit="N*m")
+                      "", unit="N*m")
 ALL_INERTIA = Rule("add moments of inertia", lambda a, b: a + b, ("number", "number"), "number",
-                   marked("Moment of inertia of all links {name} = {0} + {1} = {value} kg·m²."), unit="kg*m2")
+                   "", unit="kg*m2")
 ACCELERATION = Rule("acceleration of the crank", lambda m, slope, j, omega: (m - omega * omega / 2 * slope) / j,
-                    ("number", "number", "number", "number"), "number",
-                    marked("{name} = (M − ω²/2·dJ/dφ)/J = ({0} − {3}²/2·{1})/{2} = {value} rad/s²."))
+                    ("number", "number", "number", "number"), "number", "", unit="rad/s2")
 
 
 @dataclass(frozen=True, eq=False)

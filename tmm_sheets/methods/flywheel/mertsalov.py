@@ -50,7 +50,7 @@ MIDDLE = Rule("middle", lambda a, b: (a + b) / 2, ("point", "point"), "point",
 FROM_AXIS = Rule("ordinate from an axis", lambda y, axis: y - np.imag(axis), ("ordinate", "point"), "ordinate",
                  marked("From the axis of the mean angular velocity measure the ordinate {name} = {value}."))
 SPEED_SCALE = Rule("scale factor of the angular velocity", lambda mu, j, omega: mu / (j * omega), ("number",) * 3, "number",
-                   marked("Scale factor of the angular velocity {name} = μ_E/(J_I·ω1) = {0}/({1}·{2}) = {value} rad/(s·mm)."),
+                   "",
                    unit="rad/s/mm",
                    source="002, 1.11")
 ANGULAR_SPEED = Rule("angular velocity from its graph", lambda y, mu, mean: mean + mu * y, ("ordinate", "number", "number"),
@@ -61,15 +61,15 @@ EXTREME_SPEED = Rule("angular velocity at an extreme", lambda at, axis, mu, mean
 FOUND = Rule("found by the exact running", lambda w: w, ("number",), "number",
              marked("Exact running by the law of energy gives {name} = {value} rad/s."), unit="rad/s", beyond_paper=True)
 NON_UNIFORMITY = Rule("non-uniformity of a running", lambda fast, slow: (fast - slow) / ((fast + slow) / 2), ("number", "number"),
-                      "number", marked("{name} = (ω_max − ω_min)/ω_m = {value}."), beyond_paper=True)
+                      "number", "", beyond_paper=True)
 EXCESS = Rule("mean of two moments of inertia", lambda a, b: (a + b) / 2, ("number", "number"), "number",
-              marked("By theory the method gives too much by {name} = ({0} + {1})/2 = {value} kg·m²."), unit="kg*m2",
+              marked("By theory the method gives too much: {formula}."), unit="kg*m2",
               beyond_paper=True)
 ENERGY_SCALE = Rule("scale factor of an energy", lambda mu_j, omega: mu_j * omega**2 / 2, ("number", "number"), "number",
-                    marked("Scale factor of the kinetic energy on the graph J {name} = μ_J·ω_1²/2 = {value} J/mm."), unit="J/mm",
+                    marked("Scale factor of the kinetic energy on the graph J: {formula}."), unit="J/mm",
                     exact=True)
 BETWEEN_LIMITS = Rule("difference of two moments of inertia", lambda a, b: a - b, ("number", "number"), "number",
-                      marked("In the limit the methods differ by {name} = {0} − {1} = {value} kg·m²."), unit="kg*m2",
+                      marked("In the limit the methods differ: {formula}."), unit="kg*m2",
                       beyond_paper=True)
 
 
@@ -153,9 +153,9 @@ class Mertsalov(Flywheel):
             plan.add(f"ω_{name}", EXTREME_SPEED, energy[f"M_{name}"], axis, mu, self.omega1)
         if not self.given:
             plan.add("[ω_max]", FASTEST, self.omega1, self.permitted,
-                     say=tr("Permitted: {name} = ω1·(1 + δ/2) = {0}·(1 + {1}/2) = {value} rad/s."))
+                     say=tr("Permitted: {formula}."))
             plan.add("[ω_min]", SLOWEST, self.omega1, self.permitted,
-                     say=tr("Permitted: {name} = ω1·(1 − δ/2) = {0}·(1 − {1}/2) = {value} rad/s."))
+                     say=tr("Permitted: {formula}."))
         return plan
 
     @property

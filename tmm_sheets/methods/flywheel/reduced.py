@@ -35,7 +35,7 @@ POWER = Rule("power of a force", lambda f, v: (f * np.conj(v)).real, ("force", "
              marked("Power of the force {0} by the velocity polygon, segment p{1}: {name} = F·V·cos(F̅, V̅) = {value} W."),
              unit="W", source=_SOURCE)
 MOMENT_POWER = Rule("power of a moment", lambda m, w: m * w, ("number", "number"), "number",
-                    marked("Power of the moment: {name} = M·ω = {0}·{1} = {value} W."), unit="W", source=_SOURCE)
+                    marked("Power of the moment: {formula}."), unit="W", source=_SOURCE)
 WEIGHT_POWER = Rule("power of a weight", lambda m, g, v: -(m * g * np.imag(v)), ("number", "number", "point"), "number",
                     marked("Power of the weight {0}·{1} N by the velocity polygon, segment p{2}: {name} = {value} W."), unit="W",
                     source="002, 1.5")
@@ -44,11 +44,11 @@ REDUCED_MOMENT = Rule("reduced moment", lambda omega, *powers: reduce(add, power
 TRANSLATION = Rule("twice the energy of a centre of mass", lambda m, v: m * (v * np.conj(v)).real, ("number", "point"), "number",
                    marked("{name} = {0}·V² = {value} J, V from the segment p{1}."), unit="J", source=_SOURCE)
 ROTATION = Rule("twice the energy of rotation", lambda j, w: j * w * w, ("number", "number"), "number",
-                marked("{name} = {0}·{1}² = {value} J."), unit="J", source=_SOURCE)
+                marked("{formula}."), unit="J", source=_SOURCE, textbook=lambda j, w: j * w**2)
 REDUCED_INERTIA = Rule("reduced moment of inertia", lambda omega, *terms: reduce(add, terms) / omega**2, ("number",) * 20, "number",
                        marked("Reduced moment of inertia {name} = Σ/ω1² = {value} kg·m²."), unit="kg*m2", source=_SOURCE)
 TURNING_SLOPE = Rule("power of the inertia of rotation", lambda j, w, e: j * w * e, ("number",) * 3, "number",
-                     marked("For the derivative: {name} = {0}·{1}·{2} = {value} W."), unit="W")
+                     marked("For the derivative: {formula}."), unit="W")
 MOVING_SLOPE = Rule("power of the inertia of a centre of mass", lambda m, a, v: m * (a * np.conj(v)).real,
                     ("number", "point", "point"), "number",
                     marked("For the derivative, from the segments π{1} and p{2}: {name} = {0}·a·V·cos(a̅, V̅) = {value} W."),

@@ -9,7 +9,7 @@ from typing import Any, Literal
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step, value_of
 from tmm_sheets.numbers import number
-from tmm_sheets.words import marked, tr
+from tmm_sheets.words import tr
 
 RIM_SPEED = 30.0
 """Speed of the rim up to which a rim with spokes is used, m/s (manual 000, 5.7)."""
@@ -18,29 +18,28 @@ STEEL = 7600.0
 _SOURCE = "000, 5.7"
 
 RIM_INERTIA = Rule("share of the rim", lambda share, j: share * j, ("number", "number"), "number",
-                   marked("The rim has {name} = {0}·J_f = {value} kg·m²."), unit="kg*m2", source="001")
+                   "", unit="kg*m2", source="001")
 RIM_DIAMETER = Rule(
     "diameter of a rim", lambda j, density, width, thickness: (4 * j / (pi * density * width * thickness)) ** 0.2,
-    ("number",) * 4, "number", marked("Mean diameter of the rim {name} = [4·{0}/(π·{1}·{2}·{3})]^(1/5) = {value} m."), unit="m",
+    ("number",) * 4, "number", "", unit="m",
     source=_SOURCE)
 DISC_DIAMETER = Rule(
     "diameter of a disc", lambda j, density, width: (32 * j / (pi * density * width)) ** 0.2,
-    ("number",) * 3, "number", marked("Diameter of the disc {name} = [32·{0}/(π·{1}·{2})]^(1/5) = {value} m."), unit="m",
+    ("number",) * 3, "number", "", unit="m",
     source=_SOURCE)
 RIM_VELOCITY = Rule("speed of a rim", lambda omega, d: omega * d / 2, ("number", "number"), "number",
-                    marked("Peripheral speed {name} = ω1·D/2 = {0}·{1}/2 = {value} m/s."), unit="m/s", source=_SOURCE)
+                    "", unit="m/s", source=_SOURCE)
 WIDTH = Rule("share of a diameter", lambda ratio, d: ratio * d, ("number", "number"), "number",
-             marked("{name} = {0}·D = {value} m."), unit="m", source=_SOURCE)
+             "", unit="m", source=_SOURCE)
 RIM_MASS = Rule("mass of a rim", lambda j, d: 4 * j / d**2, ("number", "number"), "number",
-                marked("Mass of the rim {name} = 4·{0}/{1}² = {value} kg."), unit="kg", source=_SOURCE)
+                "", unit="kg", source=_SOURCE)
 DISC_MASS = Rule("mass of a disc", lambda j, d: 8 * j / d**2, ("number", "number"), "number",
-                 marked("Mass of the disc {name} = 8·{0}/{1}² = {value} kg."), unit="kg", source=_SOURCE)
+                 "", unit="kg", source=_SOURCE)
 MOTOR_POWER = Rule("power of the motor", lambda m, omega, efficiency: m * omega / efficiency, ("number",) * 3, "number",
-                   marked("Power needed of the motor {name} = M·ω1/η = {0}·{1}/{2} = {value} W."), unit="W", source="002, 1.13")
+                   "", unit="W", source="002, 1.13")
 PERMITTED = Rule("non-uniformity that the slip permits", lambda synchronous, rated: 2 * (synchronous - rated) / rated,
                  ("number", "number"), "number",
-                 marked("The motor stays a motor all through the cycle as long as δ is not greater than {name} = 2(ω_s − ω_r)/ω_r "
-                        "= {value}."),
+                 "",
                  source="002, 1.13")
 
 
@@ -110,15 +109,13 @@ def _rim(plan: Plan, inertia: Step | float, omega: float, density: float, width_
     if too_fast:
         d = plan.add("D_об", RIM_DIAMETER, *of, symbol=tr("D_rim"))
         plan.add("V_об", RIM_VELOCITY, omega, d, symbol=tr("V_rim"),
-                 say=tr("Peripheral speed of the rim {name} = ω1·D/2 = {0}·{1}/2 = {value} m/s ≥ 30 m/s: we take a disc instead "
-                        "of a rim."))
+                 say=tr("Peripheral speed of the rim: {formula} ≥ 30 m/s; we take a disc instead."))
     else:
         d = plan.add("D", RIM_DIAMETER, *of)
         plan.add("V", RIM_VELOCITY, omega, d,
-                 say=tr("Peripheral speed of the rim {name} = ω1·D/2 = {0}·{1}/2 = {value} m/s < 30 m/s: a rim with spokes is "
-                        "permitted."))
-        plan.add("B", WIDTH, width_ratio, d, say=tr("Width of the rim {name} = κ·D = {0}·{1} = {value} m."))
-        plan.add("H", WIDTH, thickness_ratio, d, say=tr("Thickness of the rim {name} = c·D = {0}·{1} = {value} m."))
+                 say=tr("Peripheral speed of the rim: {formula} < 30 m/s; a rim with spokes is permitted."))
+        plan.add("B", WIDTH, width_ratio, d)
+        plan.add("H", WIDTH, thickness_ratio, d)
         plan.add("m", RIM_MASS, rim, d)
     return not too_fast
 
@@ -161,14 +158,11 @@ def motor_check(moment: Step | float, omega: float, efficiency: float, synchrono
     """Check of a motor that drives the crank through a gear train against the constant ``moment``, N m (manual 002, 1.13)."""
     plan = Plan(f"motor-check{where}", tr("Check of the motor"), "")
     needed = float(MOTOR_POWER.compute(value_of(moment), omega, efficiency))
-    enough = tr("Power needed of the motor {{name}} = M·ω1/η = {{0}}·{{1}}/{{2}} = {{value}} W ≤ {power} W: the motor is strong "
-                "enough.")
-    weak = tr("Power needed of the motor {{name}} = M·ω1/η = {{0}}·{{1}}/{{2}} = {{value}} W > {power} W: the motor is too weak.")
-    plan.add("P", MOTOR_POWER, moment, omega, efficiency, say=(enough if needed <= power else weak).format(power=number(power)))
+    said = tr("Power needed of the motor: {{formula}} ≤ {power} W; it is strong enough.") if needed <= power else \
+        tr("Power needed of the motor: {{formula}} > {power} W; it is too weak.")
+    plan.add("P", MOTOR_POWER, moment, omega, efficiency, say=said.format(power=number(power)))
     permitted = PERMITTED.compute(synchronous, rated)
-    steady = tr("The motor stays a motor all through the cycle as long as δ is not greater than {{name}} = 2(ω_s − ω_r)/ω_r = "
-                "{{value}} ≥ {delta}: it never runs as a generator.")
-    driven = tr("The motor stays a motor all through the cycle as long as δ is not greater than {{name}} = 2(ω_s − ω_r)/ω_r = "
-                "{{value}} < {delta}: it runs as a generator at times.")
+    steady = tr("δ that the slip of the motor permits: {{formula}} ≥ {delta}; it never runs as a generator.")
+    driven = tr("δ that the slip of the motor permits: {{formula}} < {delta}; it runs as a generator at times.")
     plan.add("[δ]", PERMITTED, synchronous, rated, say=(steady if delta <= permitted else driven).format(delta=number(delta)))
     return MotorCheck(plan, power, delta)

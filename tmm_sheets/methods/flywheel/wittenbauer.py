@@ -32,10 +32,10 @@ from tmm_sheets.words import marked, tr
 TURN = 2 * pi
 """One turn of the crank, rad."""
 FASTEST = Rule("angular velocity at the upper tangent", lambda omega, delta: omega * (1 + delta / 2), ("number",) * 2, "number",
-               marked("At the upper tangent the angular velocity is {name} = ω1·(1 + δ/2) = {0}·(1 + {1}/2) = {value} rad/s."),
+               "",
                unit="rad/s", source="000, 5.5")
 SLOWEST = Rule("angular velocity at the lower tangent", lambda omega, delta: omega * (1 - delta / 2), ("number",) * 2, "number",
-               marked("At the lower tangent the angular velocity is {name} = ω1·(1 − δ/2) = {0}·(1 − {1}/2) = {value} rad/s."),
+               "",
                unit="rad/s", source="000, 5.5")
 SPEED = Rule(
     "angular velocity from the energy-mass diagram",

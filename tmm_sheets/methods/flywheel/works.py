@@ -67,7 +67,7 @@ SLOPE_OF_CHORD = taken("slope at the border of an interval", "",
                        marked("Slope of the curve at the border of the interval {name} = {value}."))
 WORK_AT = taken("work of the cycle", "J", marked("Work of the cycle {name} = {value} J."))
 TO_PAPER = Rule("to scale", lambda value, mu: value / mu, ("number", "number"), "number",
-                marked("Ordinate on the drawing {name} = {0}/{1} = {value} mm."), unit="mm")
+                marked("Ordinate on the drawing: {formula}."), unit="mm")
 FROM_PAPER = Rule("from scale", lambda y, mu: y * mu, ("ordinate", "number"), "number",
                   marked("{name} = {0}·{1} J/mm = {value} J."), unit="J")
 TO_SLOPE = Rule("slope on paper", lambda value, mu, pole: value / (mu * pole), ("number",) * 3, "number",

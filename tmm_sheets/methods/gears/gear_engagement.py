@@ -191,7 +191,7 @@ SPEED = Rule(
     unit="mm", source="000, 6.3",
 )
 SLIDING = Rule("specific sliding", _sliding, ("number", "number"), "number",
-               marked("Specific sliding {name} = ({0} − {1})/{0} = {value}."), source="000, 6.3")
+               "", source="000, 6.3")
 
 
 def side_of(pair: PairGeometry, wheel: GearWheel) -> int:
@@ -227,7 +227,7 @@ def engagement_plan(pair: PairGeometry) -> Plan:
     for w in pair.wheels:
         plan.add(f"N{w.number}", TANGENT, pole, plan[f"O{w.number}"], plan[f"rb{w.number}"], side, symbol=f"N_{w.number}")
     feet = (plan["N2"], plan["N1"]) if pair.internal else (plan["N1"], plan["N2"])
-    line = plan.add("N1N2", RAY, *feet, symbol="N_1N_2")
+    line = plan.add("N1N2", RAY, *feet, symbol="N_{1}N_{2}")
     ends = ((plan["O2"], plan["ra2"], 1 if pair.internal else -1), (plan["O1"], plan["ra1"], 1))
     for name, (centre, radius, way) in zip("AB", ends if pair.driver == 1 else ends[::-1], strict=True):
         plan.add(name, ARC_LINE, centre, radius, pole, line, way)

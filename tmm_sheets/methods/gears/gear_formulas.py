@@ -82,9 +82,10 @@ def involute_from(m: float, alpha: float, addendum: float, clearance: float, tee
 
 
 def formula(name: str, compute: Any, takes: tuple[Any, ...], wording: str, unit: str = "mm", source: str = "000, 6.2",
-             gives: Kind = "number") -> Rule:
+             gives: Kind = "number", textbook: Any = None) -> Rule:
     """A formula; what has the unit rad is told in degrees."""
-    return Rule(name, compute, takes, "angle" if unit == "rad" and gives == "number" else gives, wording, unit=unit, source=source)
+    return Rule(name, compute, takes, "angle" if unit == "rad" and gives == "number" else gives, wording, unit=unit, source=source,
+                textbook=textbook)
 
 
 N, A = "number", "angle"
@@ -107,96 +108,87 @@ LEAST_TEETH = formula("least teeth without undercut", least_teeth, (N, A),
                        marked("Least number of teeth without undercut, the whole part of 2h_a*/sin²α: {name} = {value}."), "",
                        "000, 6.1")
 LEAST_SHIFT = formula("least shift coefficient", lambda h, least, z: h * (least - z) / least, (N, N, N),
-                       marked("Least profile shift coefficient h_a*(z_min − z)/z_min: {name} = {0} × ({1} − {2})/{1} = {value}."),
+                       "",
                        "",
                      "000, 6.1")
-INVOLUTE = formula("involute function", involute, (A,), marked("Involute function {name} = tan {0} − {0} = {value}."), "")
+INVOLUTE = formula("involute function", involute, (A,), "", "")
 WORKING_INVOLUTE = formula(
     "involute function of the working pressure angle",
     lambda inv, x1, x2, a, z1, z2: inv + 2 * (x1 + x2) * np.tan(a) / (z1 + z2), (N, N, N, A, N, N),
-    marked("Involute function of the working pressure angle inv α_w = inv α + 2(x_1 + x_2)·tan α/(z_1 + z_2): {name} = {0} + 2 × "
-           "({1} + {2}) × tan {3}/({4} + {5}) = {value}."), "")
+    "", "")
 WORKING_ANGLE = formula("working pressure angle", inverse_involute, (N,),
                          marked("From the involute function {0} find the working pressure angle {name} = {value}."), "rad")
 SAME_ANGLE = formula("working pressure angle without shift", lambda a: a, (A,),
                       marked("The sum of the shifts is zero: working pressure angle {name} = α = {value}."), "rad")
 DISTANCE = formula("reference centre distance", lambda m, z1, z2: m * (z1 + z2) / 2, (N, N, N),
-                    marked("Reference centre distance a = m(z_1 + z_2)/2: {name} = {0} × ({1} + {2})/2 = {value} mm."))
+                    "")
 WORKING_DISTANCE = formula("centre distance", lambda a, alpha, w: a * np.cos(alpha) / np.cos(w), (N, A, A),
-                            marked("Centre distance a_w = a·cos α/cos α_w: {name} = {0} × cos {1}/cos {2} = {value} mm."))
+                            "")
 # (cos a - cos a_w)/cos a_w without cancellation
 Y = formula("centre distance modification coefficient",
              lambda z1, z2, a, w: (z1 + z2) * np.sin((a + w) / 2) * np.sin((w - a) / 2) / np.cos(w), (N, N, A, A),
-             marked("Centre distance modification coefficient y = (z_1 + z_2)(cos α/cos α_w − 1)/2: {name} = ({0} + {1}) × (cos "
-                    "{2}/cos {3} − 1)/2 = {value}."), "")
+             "", "",
+             textbook=lambda z1, z2, a, w: (z1 + z2) * (np.cos(a) / np.cos(w) - 1) / 2)
 BETWEEN_PITCH = formula("distance of the pitch circles", lambda y, m: y * m, (N, N),
-                        marked("Distance between the pitch circles on the line of centres y·m: {name} = {0} × {1} = {value} mm."))
+                        "")
 DY = formula("addendum shortening coefficient", lambda x1, x2, y: x1 + x2 - y, (N, N, N),
-              marked("Addendum shortening coefficient Δy = x_1 + x_2 − y: {name} = {0} + {1} − {2} = {value}."), "")
+              "", "")
 PITCH_RADIUS = formula("pitch radius", lambda m, z: m * z / 2, (N, N),
-                        marked("Reference radius r = mz/2: {name} = {0} × {1}/2 = {value} mm."))
+                        "")
 BASE_RADIUS = formula("base radius", lambda r, a: r * np.cos(a), (N, A),
-                       marked("Base radius r_b = r·cos α: {name} = {0} × cos {1} = {value} mm."))
+                       "")
 WORKING_RADIUS = formula("working pitch radius", lambda rb, w: rb / np.cos(w), (N, A),
-                          marked("Pitch radius r_w = r_b/cos α_w: {name} = {0}/cos {1} = {value} mm."))
+                          "")
 TIP_RADIUS = formula("tip radius", lambda m, z, h, x, dy: m * (z / 2 + h + x - dy), (N, N, N, N, N),
-                      marked("Tip radius r_a = m(z/2 + h_a* + x − Δy): {name} = {0} × ({1}/2 + {2} + {3} − {4}) = {value} mm."))
+                      "")
 ROOT_RADIUS = formula("root radius", lambda m, z, h, c, x: m * (z / 2 - h - c + x), (N, N, N, N, N),
-                       marked("Root radius r_f = m(z/2 − h_a* − c* + x): {name} = {0} × ({1}/2 − {2} − {3} + {4}) = {value} mm."))
+                       "")
 THICKNESS = formula("tooth thickness", lambda m, x, a: m * (pi / 2 + 2 * x * np.tan(a)), (N, N, A),
-                     marked("Tooth thickness on the reference circle s = m(π/2 + 2x·tan α): {name} = {0} × (π/2 + 2 × {1} × tan "
-                            "{2}) = {value} mm."))
+                     "")
 CHORD = formula("chord of an arc", lambda r, arc: 2 * r * np.sin(arc / (2 * r)), (N, N),
                  marked("2r·sin(arc/2r): {name} = 2 × {0} × sin({1}/(2 × {0})) = {value} mm."))
-PITCH = formula("pitch", lambda m: pi * m, (N,), marked("Pitch on the reference circle p = πm: {name} = π × {0} = {value} mm."))
+PITCH = formula("pitch", lambda m: pi * m, (N,), "")
 BASE_PITCH = formula("base pitch", lambda m, a: pi * m * np.cos(a), (N, A),
-                      marked("Base pitch p_b = πm·cos α: {name} = π × {0} × cos {1} = {value} mm."), source=marked("GOST 16532-70"))
+                      "", source=marked("GOST 16532-70"))
 TIP_TANGENT = formula("radius of curvature at the tip", lambda ra, rb: np.sqrt((ra - rb) * (ra + rb)), (N, N),
-                       marked("Radius of curvature of the involute at the tip ρ_a = √(r_a² − r_b²): {name} = √({0}² − {1}²) = "
-                              "{value} mm."),
+                       "", textbook=lambda ra, rb: np.sqrt(ra**2 - rb**2),
                        source=marked("GOST 16532-70"))
 TIP_ANGLE = formula("pressure angle at the tip", lambda t, rb: np.arctan2(t, rb), (N, N),
-                     marked("Profile angle at the tip tan α_a = ρ_a/r_b: {name} = arctan({0}/{1}) = {value}."), "rad",
+                     "", "rad",
                      marked("GOST 16532-70"))
 TIP_THICKNESS = formula(
     "tooth thickness at the tip", lambda ra, s, r, inv, a: 2 * ra * (s / (2 * r) + inv - involute(a)), (N, N, N, N, A),
-    marked("Tooth thickness at the tip s_a = 2r_a(s/2r + inv α − inv α_a): {name} = 2 × {0} × ({1}/(2 × {2}) + {3} − inv {4}) = "
-           "{value} mm."), source=marked("GOST 16532-70"))
+    "", source=marked("GOST 16532-70"))
 TIP_SHARE = formula("relative tooth thickness at the tip", lambda sa, m: sa / m, (N, N),
-                     marked("Relative thickness at the tip (the tooth is not pointed if s_a/m ≥ 0.2): {name} = {0}/{1} = {value}."),
+                     "",
                      "",
                      marked("GOST 16532-70"))
 ANGULAR_PITCH = formula("angular pitch", lambda z: 2 * pi / z, (N,),
-                         marked("Angular pitch τ = 360°/z: {name} = 360°/{0} = {value}."),
+                         "",
                          "rad", "000, 6.3")
 LINE = formula("length of the line of action", lambda a, w: a * np.sin(w), (N, A),
-                marked("Line of action N_1N_2 = a_w·sin α_w: {name} = {0} × sin {1} = {value} mm."), source=marked("GOST 16532-70"))
+                "", source=marked("GOST 16532-70"))
 ACTIVE = formula("active line of action", lambda one, two, line: one + two - line, (N, N, N),
-                  marked("Length of the path of contact g_α = ρ_a1 + ρ_a2 − N_1N_2: {name} = {0} + {1} − {2} = {value} mm."),
+                  "",
                   source=marked("GOST 16532-70"))
 CONTACT_RATIO = formula("contact ratio", lambda g, pb: g / pb, (N, N),
-                         marked("Contact ratio ε_α = g_α/p_b (not less than 1): {name} = {0}/{1} = {value}."), "", "000, 6.3")
+                         "", "", "000, 6.3")
 OVERLAP = formula("overlap angle", lambda g, rb: g / rb, (N, N),
-                   marked("Angle of contact φ_α = g_α/r_b: {name} = {0}/{1} = {value}."),
+                   "",
                    "rad", "000, 6.3")
 POLE_TANGENT = formula("radius of curvature at the pole", lambda rb, w: rb * np.tan(w), (N, A),
-                        marked("Radius of curvature of the involute at the pitch point ρ_w = r_b·tan α_w: {name} = {0} × tan {1} "
-                               "= {value} mm."),
+                        "",
                         source=marked("GOST 16532-70"))
 LOW_TANGENT = formula("radius of curvature at the lowest contact", lambda line, other: line - other, (N, N),
-                       marked("Radius of curvature at the lowest point of the active profile ρ_p = N_1N_2 − ρ_a of the other "
-                              "wheel: {name} = {0} − {1} = {value} mm."), source=marked("GOST 16532-70"))
+                       "", source=marked("GOST 16532-70"))
 LOW_RADIUS = formula("radius of the lowest contact", np.hypot, (N, N),
-                      marked("Radius of the lowest point of the active profile r_p = √(r_b² + ρ_p²): {name} = √({0}² + {1}²) = "
-                             "{value} mm."),
+                      "",
                       source=marked("GOST 16532-70"))
 LIMIT_TANGENT = formula(
     "radius of curvature at the limit", lambda h, z, a, x, m: (x - (h - z * np.sin(a) ** 2 / 2)) * m / np.sin(a), (N, N, A, N, N),
-    marked("Radius of curvature at the end of the involute ρ_l = m(x − h_a* + z·sin²α/2)/sin α (no undercut if ρ_l ≥ 0): {name} = "
-           "{4} × ({3} − {0} + {1} × sin²{2}/2)/sin {2} = {value} mm."), source=marked("GOST 16532-70"))
+    "", textbook=lambda h, z, a, x, m: m * (x - h + z * np.sin(a) ** 2 / 2) / np.sin(a), source=marked("GOST 16532-70"))
 HALF_TOOTH = formula("half of the tooth at the base circle", lambda s, r, inv: s / (2 * r) + inv, (N, N, N),
-                      marked("Half the angular thickness of the tooth on the base circle ψ_b = s/2r + inv α: {name} = {0}/(2 × "
-                             "{1}) + {2} = {value}."), "rad", marked("GOST 16532-70"))
+                      "", "rad", marked("GOST 16532-70"))
 FILLET_RADIUS = formula(
     "fillet radius", lambda m, rb, rf, half, z, low: fillets.radius(FILLET * m, rb, rf, half, pi / z, low), (N, N, N, N, N, N),
     marked("Radius of the fillet 0.38m if there is room for it in the tooth space, else the greatest possible: {name} = {value} "
@@ -207,7 +199,7 @@ FILLET_START = formula("beginning of the involute over the fillet",
                         marked("Radius of curvature of the involute where the fillet takes over (0 on the base circle): {name} = "
                                "{value} mm."), source="000, 6.4")
 RACK_FILLET = formula("tip radius of the rack", lambda c, m, a: c * m / (1 - np.sin(a)), (N, N, A),
-                       marked("Fillet radius of the rack ρ_f = c*m/(1 − sin α): {name} = {0} × {1}/(1 − sin {2}) = {value} mm."),
+                       "",
                        source=marked("GOST 13755-81"))
 RACK_START = formula("beginning of the involute cut by the rack", involute_from, (N, A, N, N, N, N),
                       marked("Radius of curvature of the involute where the fillet cut by the rack takes over: {name} = {value} "
@@ -216,7 +208,7 @@ RACK_START = formula("beginning of the involute cut by the rack", involute_from,
 
 
 RACK_SHIFT = formula("shift of the rack", lambda x, m: x * m, (N, N),
-                      marked("Shift of the rack xm: {name} = {0} × {1} = {value} mm."),
+                      "",
                       source="003, 4")
 RACK_HALF = formula("half of a rack's tooth", lambda m: pi * m / 4, (N,),
                      marked("Half the thickness of the rack tooth on the reference line πm/4: {name} = {value} mm."),
@@ -244,13 +236,12 @@ LAST_ROLL = formula(
 
 SUM_OF_SHIFTS = formula(
     "sum of the shifts", lambda z1, z2, inv, inv_w, a: (z1 + z2) * (inv_w - inv) / (2 * np.tan(a)), (N, N, N, N, A),
-    marked("Sum of the shifts from the centre distance x_Σ = (z_1 + z_2)(inv α_w − inv α)/(2tan α): {name} = ({0} + {1}) × ({3} − "
-           "{2})/(2 × tan {4}) = {value}."), "", marked("GOST 16532-70"))
+    "", "", marked("GOST 16532-70"))
 GIVEN_DISTANCE = formula("given centre distance", lambda a: a * 1e3, (N,), marked("Given centre distance {name} = {value} mm."),
                          source=GIVEN_BY)
 ANGLE_OF_DISTANCE = formula(
     "working pressure angle of a centre distance", lambda a, alpha, w: np.arccos(a * np.cos(alpha) / w), (N, A, N),
-    marked("Working pressure angle cos α_w = a·cos α/a_w: {name} = arccos({0} × cos {1}/{2}) = {value}."), "rad",
+    "", "rad",
     marked("GOST 16532-70"))
 FREE_SHIFT = formula(
     "shift of the first wheel from the sum", lambda total, z1, z2, least1, least2: np.maximum(
@@ -258,7 +249,7 @@ FREE_SHIFT = formula(
     marked("The sum of the shifts is divided inversely as the numbers of teeth, x_1 = x_Σz_2/(z_1 + z_2), as far as neither wheel "
            "becomes undercut (least shifts {3} and {4}): {name} = {value}."), "", GIVEN_BY)
 REST_SHIFT = formula("rest of the sum of the shifts", lambda total, x1: total - x1, (N, N),
-                     marked("What is left of the sum of the shifts x_2 = x_Σ − x_1: {name} = {0} − {1} = {value}."), "",
+                     "", "",
                      GIVEN_BY)
 
 

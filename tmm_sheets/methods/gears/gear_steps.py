@@ -87,8 +87,7 @@ LIKE_PINION = _formula("shift of the ring like the pinion's", lambda x1: x1, (N,
                        marked("The ring is shifted like its pinion (the centre distance stays the reference one): {name} = {0} = "
                               "{value}."), "")
 HALF_SPACE = _formula("half of the ring's space at the base circle", lambda s, r, inv, z: pi / z - s / (2 * r) + inv, (N, N, N, N),
-                      marked("Half the angular width of the ring's space on the base circle ψ_b = π/z − s/2r + inv α: {name} = "
-                             "π/{3} − {0}/(2 × {1}) + {2} = {value}."), "rad")
+                      "", "rad")
 RING_FILLET = _formula(
     "fillet radius of a ring", lambda m, rb, rf, half, low: fillets.ring_radius(gf.FILLET * m, rb, rf, half, low), (N, N, N, N, N),
     marked("Radius of the ring's fillet 0.38m if there is room for it in the tooth space, else the greatest possible: {name} = "
@@ -243,7 +242,7 @@ def _quality(plan: Plan, first: Rules, second: Rules) -> None:
     for i in "12":
         plan.add(f"rho_a{i}", gf.TIP_TANGENT, plan[f"ra{i}"], plan[f"rb{i}"], symbol=f"ρ_{{a{i}}}")
     plan.add("ym", gf.BETWEEN_PITCH, plan["y"], m)
-    line = plan.add("N1N2", gf.LINE, plan["a_w"], w, symbol="N_1N_2")
+    line = plan.add("N1N2", gf.LINE, plan["a_w"], w, symbol="N_{1}N_{2}")
     g = plan.add("g_alpha", first.get(gf.ACTIVE, gf.ACTIVE), plan["rho_a1"], plan["rho_a2"], line, symbol="g_α")
     plan.add("eps_alpha", gf.CONTACT_RATIO, g, pb, symbol="ε_α")
     for i, other, of in (("1", "2", first), ("2", "1", second)):

@@ -41,7 +41,7 @@ TOUCH = Rule("reaction that touches the circle of friction", _touch, ("point", "
                     "{name}."),
              _touch_lines, unit="m")
 POWER_OF_MOMENT = Rule("power of a moment of friction", lambda m, w: m * w, ("number", "number"), "number",
-                       marked("Power of friction {name} = M·ω = {0}·{1} = {value} W."), unit="W")
+                       "", unit="W")
 POWER_OF_SLIDING = Rule("power of a reaction on sliding", lambda f, v: (f * np.conj(v)).real, ("force", "vector"), "number",
                         marked("Power of friction {name} = F·V·cos(F̅, V̅) = {value} W."), unit="W")
 
@@ -56,7 +56,7 @@ def _sum(*powers: Any) -> Any:
 ALL_POWER = Rule("power of all friction", _sum, ("number",), "number", marked("Power of friction in all pairs {name} = {value} W."),
                  unit="W")
 ON_CRANK = Rule("moment of friction reduced to the crank", lambda power, omega: power / omega, ("number", "number"), "number",
-                marked("Friction in all pairs, reduced to the input link by its power: {name} = {0}/{1} = {value} N·m."),
+                marked("Friction in all pairs, reduced to the input link by its power: {formula}."),
                 unit="N*m")
 MOST, DAMPED = 400, 60
 """So many approximations at most; from the second number on by half steps."""

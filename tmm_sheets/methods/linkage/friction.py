@@ -28,11 +28,11 @@ from tmm_sheets.words import marked, tr
 
 _SOURCE = "000, 4"
 CIRCLE = Rule("circle of friction", lambda f, r: f * r, ("number", "length"), "length",
-              marked("Radius of the circle of friction {name} = f·r = {0}·{1} = {value}."), unit="m", source=_SOURCE, exact=True)
-ANGLE = Rule("angle of friction", np.arctan, ("number",), "angle", marked("Angle of friction {name} = arctan {0} = {value}."),
+              "", unit="m", source=_SOURCE, exact=True)
+ANGLE = Rule("angle of friction", np.arctan, ("number",), "angle", "",
              unit="rad", source=_SOURCE, exact=True)
 RELATIVE_TURNING = Rule("relative angular velocity", lambda a, b: a - b, ("number", "number"), "number",
-                        marked("Relative angular velocity {name} = {0} − {1} = {value} rad/s."), unit="rad/s")
+                        "", unit="rad/s")
 STILL = 1e-9
 """Share of the crank's own motion below which the links of a pair do not move on each other."""
 

@@ -200,9 +200,9 @@ class Study:
 ALONG_LINE = Rule("size along a line", lambda force, u: (force * np.conjugate(u)).real, ("force", "direction"), "number",
                   marked("Projection of the force {0} on the line of action: {value} N."), unit="N")
 POWER_OF_DRIVE = Rule("power of the drive", lambda m, omega: m * omega, ("number", "number"), "number",
-                      marked("Power of the drive {name} = {0}·{1} = {value} W."), unit="W")
+                      "", unit="W")
 WITHOUT_FRICTION = Rule("power of the drive without friction", lambda power, loss: power + loss, ("number", "number"), "number",
-                        marked("Power of the drive without friction {name} = {0} + {1} = {value} W."), unit="W")
+                        "", unit="W")
 MEAN = Rule("mean moment", weighted, ("number", "number"), "number",
             marked("Mean moment over the cycle {name} = {value} N·m."), unit="N*m")
 IN_SENSE = Rule("in the sense of rotation", lambda moment, sense: sense * moment, ("number", "number"), "number",

@@ -29,17 +29,17 @@ if TYPE_CHECKING:
     from tmm_sheets.task.schema import SynthesisTable
 
 SWING = Rule("swing of the rocker", lambda k: pi * (k - 1) / (k + 1), ("number",), "angle",
-             marked("Angle between the extreme positions of the rocker {name} = 180°·(K − 1)/(K + 1) = {value}."))
+             "")
 HALF = Rule("half", lambda x: x / 2, ("angle",), "angle", marked("Half the angle: {name} = {value}."))
 UNDER = Rule("direction under an angle", lambda u, angle: u * (np.cos(angle) - 1j * np.sin(angle)), ("direction", "angle"),
              "direction", marked("At the angle {1} to {0} draw the direction {name}."))
-PERIOD = Rule("time of a turn", lambda w: 2 * pi / w, ("number",), "number", marked("Time of a turn {name} = 2π/ω = {value} s."),
+PERIOD = Rule("time of a turn", lambda w: 2 * pi / w, ("number",), "number", "",
               unit="s")
 STROKE = Rule("stroke of the piston", lambda v, t: v * t / 2, ("number", "number"), "length",
-              marked("Stroke of the piston {name} = V·T/2 = {value}."))
-CRANK = Rule("crank from the stroke", lambda h: h / 2, ("length",), "length", marked("Radius of the crank {name} = H/2 = {value}."))
+              "")
+CRANK = Rule("crank from the stroke", lambda h: h / 2, ("length",), "length", "")
 TIMES = Rule("part or multiple of a length", lambda ratio, x: ratio * x, ("number", "length"), "length",
-             marked("Length {name} = {0}·{1} = {value}."))
+             "")
 
 
 @primitive("round to a step", "real")
@@ -262,10 +262,10 @@ DEAD = Rule("dead position of the crank", lambda p, u, length, sign: p + sign * 
 
 
 HALF_PITCH = Rule("half the angle between slots", lambda z: pi / z, ("number",), "angle",
-                  marked("Half the angle between the slots {name} = 180°/{0} = {value}."), unit="rad")
+                  "", unit="rad")
 BESIDE = Rule("point beside the origin", lambda distance: distance + 0j, ("length",), "point", marked("Mark point {name}."))
 DEPTH = Rule("depth of a slot", lambda r, radius, roller, distance: r + radius + roller - distance, ("length",) * 4, "length",
-             marked("Depth of a slot {name} = {0} + {1} + {2} − {3} = {value}."))
+             "")
 LOCKING = Rule("radius of the locking disc", lambda r, roller: r - 2 * roller, ("length", "length"), "length",
                marked("Radius of the locking disc, with a horn as thick as the roller's radius: {name} = {0} − 2·{1} = {value}."))
 

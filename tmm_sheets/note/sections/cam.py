@@ -95,8 +95,8 @@ def scope(r: Reader) -> Scope:
 
 def _phases(r: Reader) -> Any:
     plan = r.plan("cam-phases")
+    from tmm_sheets.construction.formula import letters
     from tmm_sheets.note.document import Symbol
-    from tmm_sheets.note.formula import letters
     from tmm_sheets.note.reader import symbol_of
 
     for step in plan or ():

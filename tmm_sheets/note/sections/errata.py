@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from tmm_sheets.construction.formula import letters, letters_of
 from tmm_sheets.note import phrases
 from tmm_sheets.note.document import NumberInText, Symbol, Text
-from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Scope
 from tmm_sheets.note.reader import Reader, marked
 from tmm_sheets.numbers import written

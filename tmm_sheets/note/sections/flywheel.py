@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.formula import letters, letters_of
 from tmm_sheets.construction.step import value_at
 from tmm_sheets.note.document import Symbol, Text
-from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Scope, words
 from tmm_sheets.note.reader import NoteQuantity, Reader
 from tmm_sheets.note.sections.forces import scale_text

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction import expression
+from tmm_sheets.construction.formula import FormulaRow, Node, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.note.document import NumberInText, Symbol, Text
-from tmm_sheets.note.formula import FormulaRow, Node, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Scope, ShownFormula, bare, words
 from tmm_sheets.note.reader import Differs, NoteQuantity, Reader
 from tmm_sheets.note.sections.task import pressure_of

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from tmm_sheets.construction.formula import letters
 from tmm_sheets.construction.step import Step
 from tmm_sheets.note.document import Symbol, Text
-from tmm_sheets.note.formula import letters
 from tmm_sheets.note.phrases import Scope, words
 from tmm_sheets.note.reader import Reader, symbol_of
 from tmm_sheets.note.sections.forces import scale_text

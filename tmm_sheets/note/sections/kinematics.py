@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction import expression
+from tmm_sheets.construction.digits import shown
+from tmm_sheets.construction.formula import FormulaRow, Node, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.plan import Plan, Segment
 from tmm_sheets.construction.rules import GIVEN, LINE_LINE, TURN
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.note.digits import shown
 from tmm_sheets.note.document import Figure, Symbol, Text
-from tmm_sheets.note.formula import FormulaRow, Node, Sign, Underlined, Words, letters, letters_of
 from tmm_sheets.note.phrases import Scope, ShownFormula, listed, words
 from tmm_sheets.note.reader import NoteQuantity, Reader, named
 from tmm_sheets.numbers import is_zero, number

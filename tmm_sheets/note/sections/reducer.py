@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from tmm_sheets.construction.formula import letters
 from tmm_sheets.note.document import Symbol, Text
-from tmm_sheets.note.formula import letters
 from tmm_sheets.note.phrases import Scope, words
 from tmm_sheets.note.reader import NoteQuantity, Reader
 from tmm_sheets.numbers import number

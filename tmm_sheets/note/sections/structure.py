@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from tmm_sheets.construction import expression
+from tmm_sheets.construction.formula import letters, letters_of
 from tmm_sheets.note import phrases
 from tmm_sheets.note.document import NumberInText, Symbol, Text
-from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Scope
 from tmm_sheets.note.reader import NoteQuantity, Reader
 from tmm_sheets.words import of_file, tr

@@ -6,8 +6,8 @@ from math import pi
 from typing import Any
 
 from tmm_sheets.construction import expression
+from tmm_sheets.construction.formula import letters, letters_of
 from tmm_sheets.note.document import Symbol, Text
-from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Scope, words
 from tmm_sheets.note.reader import NoteQuantity, Reader, symbol_of
 

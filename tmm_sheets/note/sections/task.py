@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from math import degrees, isclose
 from typing import Any
 
+from tmm_sheets.construction.digits import read
+from tmm_sheets.construction.formula import letters, letters_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.note import phrases
-from tmm_sheets.note.digits import read
 from tmm_sheets.note.document import NumberInText, Symbol, Text
-from tmm_sheets.note.formula import letters, letters_of
 from tmm_sheets.note.phrases import Scope
 from tmm_sheets.note.reader import Reader
 from tmm_sheets.task import synthesis_refs, units

@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import pi
 
 from tmm_sheets.construction import expression
+from tmm_sheets.construction.formula import letters
 from tmm_sheets.construction.step import Step
 from tmm_sheets.note.document import Symbol, Text
-from tmm_sheets.note.formula import letters
 from tmm_sheets.note.phrases import Scope, ShownFormula, words
 from tmm_sheets.note.reader import Reader
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from tmm_sheets.construction.equation import Quantity, of_step
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
 from tmm_sheets.drawing.lettering import fitted, letter, size_for
@@ -533,17 +534,16 @@ def spring_height(cam: Cam, width: float, height: float) -> float:
 
 def _spring_lines(spring: Spring, straight: bool) -> list[str]:
     """The spring in formulas and numbers; of a rocker the forces are those at the centre of the roller."""
-    moved, way = ("m", "S_{max}") if straight else ("J/AB^2", "(AB·ψ_{max})")
+    plan = spring.plan
+    way = {id(plan["s"]): Quantity("S_{max}" if straight else "AB·ψ_{max}", spring.way)}
     held = tr("(F/Q)_{{min}} > 1: it stays on the cam") if spring.closed else tr(
         "(F/Q)_{{min}} ≤ 1: it leaves the cam! F_{{max}} ≥ {factor}·Q_{{max}} is needed")
     return [
         "Q = −m·ω^2·S''" if straight else tr("Q = −J/AB^2·ω^2·AB·ψ'' (at point B)"),
-        tr("{moved} = {mass} kg,  ω = {speed} rad/s").format(moved=moved, mass=number(spring.mass), speed=number(spring.speed)),
+        f"{of_step(plan['m']) or f'm = {number(spring.mass)} ' + tr('kg')},  ω = {number(spring.speed)} {tr('rad/s')}",
         tr("Q_{{max}} = {force} N (lifts off where {symbol}'' < 0)").format(
             force=number(spring.largest_inertia), symbol="S" if straight else "ψ"),
-        tr("F_{{max}} = {factor}·Q_{{max}} = {force} N").format(factor=number(spring.factor), force=number(spring.f_max)),
-        tr("F_0 = {share}·F_{{max}} = {force} N").format(share=number(spring.preload), force=number(spring.f_0)),
-        tr("c = (F_{{max}} − F_0)/{way} = {rate} N/mm").format(way=way, rate=number(spring.rate * 1e-3)),
+        *(of_step(plan[name], own=way) for name in ("F_max", "F_0", "c")),
         tr("(F/Q)_{{min}} = {ratio} at φ = {angle}°").format(
             ratio=fixed(spring.worst, 3), angle=fixed(degrees(spring.worst_phi), 1)),
         held.format(factor=fixed(spring.needed_factor, 2)),

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction.arithmetic import BY_PIECES
+from tmm_sheets.construction.equation import Quantity, equation
 from tmm_sheets.construction.expression import Expression, Operation, lettered, trace
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken, letter
@@ -83,9 +84,9 @@ def _formulas(symbol: str, phase: Phase, head: str) -> list[str]:
         lines += [f"{where}:"] if where else []
         lines += [f"{symbol} = {most}·[1 − {s}]" if back else f"{symbol} = {most}·{s}",
                   f"{symbol}' = {minus}{most}/{angle}·{ds}", f"{symbol}'' = {minus}{most}/{angle}^2·{dds}"]
-    peak, unit = number(phase.law.peak), tr("m") if symbol == "S" else ""
-    return [*lines, f"|{symbol}''|_{{max}} = {peak}·{most}/{angle}^2 = {peak}·{number(abs(phase.travel))}/"
-            f"{number(phase.angle)}^2 = {number(phase.amplitude)} {unit}".rstrip()]
+    of = Quantity(number(phase.law.peak), phase.law.peak), Quantity(most, abs(phase.travel)), Quantity(angle, phase.angle)
+    result = Quantity(f"|{symbol}''|_{{max}}", phase.amplitude, "m" if symbol == "S" else "")
+    return [*lines, equation(lambda peak, most, angle: peak * most / angle**2, of, result)]
 
 
 def _written(law: Law) -> list[tuple[str, tuple[str, ...]]]:

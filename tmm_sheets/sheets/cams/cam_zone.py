@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from math import pi, tan
+from operator import mul
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from tmm_sheets.construction.equation import Quantity, digits_for, equation
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, hatch_polygon
 from tmm_sheets.drawing.clipping import segment_inside
@@ -143,7 +145,7 @@ def of_tappet(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     if abs(o - c) > 6:
         canvas.label((o + c) / 2, "e", -1j, 3.5, 0.8, thin=KEPT_OFF)
     canvas.label((o + b) / 2, "r_0", z.right * 1 + 0.6j, 3.5, 0.6)
-    measured = [_measured(name, segment, abs(value), "μ_S", mu)
+    measured = [_measured(name, f"|{segment}|", abs(value), "μ_S", mu)
                 for name, segment, value in (("S_0", "CB", z.s0), ("e", "CO", z.e), ("r_0", "OB", z.r0))]
     if cam.data.base_radius is not None:
         measured[2] = tr("r_0 = {length} mm (given)").format(length=number(z.r0 * 1e3))
@@ -183,8 +185,8 @@ def _rays(s: PlayerStage, z: Zone, letter_of: str, axis: float | None = None) ->
 
 def _measured(name: str, segment: str, value: float, scale: str, mu: float) -> str:
     """A main dimension, m, from its segment on paper and the scale factor."""
-    return tr("{name} = |{segment}|·{scale} = {length}·{factor} = {value}·10^{{−3}} m").format(
-        name=name, segment=segment, scale=scale, length=fixed(value / mu, 2), factor=number(mu), value=fixed(value * 1e3, 3))
+    length = Quantity(segment, value / mu, "", digits_for(value / mu, 2), 2)
+    return equation(mul, (length, Quantity(scale, mu)), Quantity(name, value, "m"))
 
 
 CLEAR = 4.0
@@ -319,7 +321,7 @@ def _rocker_and_axis(s: PlayerStage, cam: RockerCam, picture: Box, letter_of: st
 def _rocker_lines(cam: RockerCam, scale: Scale | None = None) -> list[str]:
     """Main dimensions in formulas and numbers, and the least cam where it is another one."""
     z, mu = cam.zone, 1e-3 if scale is None else scale.mu
-    lines = [_measured("r_0", "OB_0", z.r0, "μ_l", mu), _measured("l_0", "OA", z.l0, "μ_l", mu)]
+    lines = [_measured("r_0", "|OB_0|", z.r0, "μ_l", mu), _measured("l_0", "|OA|", z.l0, "μ_l", mu)]
     lines.append(tr("x_i = AB·ψ'_i towards the axis A") if cam.data.rotation == "same" else tr("x_i = AB·ψ'_i on AB produced"))
     if cam.data.base_radius is not None:
         lines[0] = tr("r_0 = {length} mm (given)").format(length=number(z.r0 * 1e3))
@@ -372,8 +374,7 @@ def sum_graph(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     radius = tr("r_0 = r_{{min}} + Δr = {radius} mm,  Δr = {margin} mm ≥ 0.1 r_{{min}}") if enough else tr(
         "r_0 = {radius} mm, given (margin less than 0.1 r_{{min}})")
     lines_of_text(canvas, box, [
-        tr("r_{{min}} = a·μ_S = {length}·{factor} = {value}·10^{{−3}} m").format(
-            length=fixed(scale.mm(r_min), 2), factor=number(scale.mu), value=fixed(r_min * 1e3, 3)),
+        _measured("r_{min}", "a", r_min, "μ_S", scale.mu),
         radius.format(radius=number(plate.r0 * 1e3), margin=fixed((plate.r0 - r_min) * 1e3, 2)),
         tr("l_1 = S'_{{max}} = {length} mm (rise)").format(length=fixed(plate.l1 * 1e3, 2)),
         tr("l_2 = |S'|_{{max}} = {length} mm (return)").format(length=fixed(plate.l2 * 1e3, 2)),

@@ -12,11 +12,13 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import degrees, pi
+from operator import mul, truediv
 from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from tmm_sheets.construction.equation import Quantity, digits_for, equation, of_step
 from tmm_sheets.construction.scale import times
 from tmm_sheets.drawing.axis_numbers import PointNumbers
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
@@ -693,13 +695,13 @@ def results(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
         *(tangent.format(name=name, sign=sign, slope=fixed(slope[name], digits), angle=fixed(degrees(a), 2))
           for name, sign, a in zip(("max", "min"), "+−", psi, strict=True)),
         drawn.format(length=_of_segment(fw)),
-        _asked(fw),
-        _converged(fw),
+        *found(fw),
+        converged(fw),
         *disagreement(fw),
         *motor(fw),
         *power(fw),
         *frictionless(project),
-        *_sizes(fw),
+        *sizes(fw),
     ]
     left = canvas.title(box, tr("Flywheel design"))
     step = min(left.height / len(rows), 13.0)
@@ -708,39 +710,30 @@ def results(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
 
 
 def _givens(fw: Flywheel) -> str:
-    """Angular velocity, what is given of δ and of the flywheel, and its density where its sizes are found."""
-    d = fw.data
-    said = tr("ω_1 = {omega} s^{{−1}};  δ = {delta};  ρ = {density} kg/m^3") if not fw.given else \
-        tr("ω_1 = {omega} s^{{−1}};  J_f = {J} kg·m^2 (given)") if d.density is None else \
-        tr("ω_1 = {omega} s^{{−1}};  J_f = {J} kg·m^2 (given);  ρ = {density} kg/m^3")
-    return said.format(omega=fixed(fw.reduced.omega1, 3), delta=number(fw.unevenness), J=number(fw.J_flywheel),
-                       density="" if d.density is None else number(d.density))
+    """Angular velocity, what is given of δ and of the flywheel."""
+    said = tr("ω_1 = {omega} s^{{−1}};  J_f = {J} kg·m^2 (given)") if fw.given else tr("ω_1 = {omega} s^{{−1}};  δ = {delta}")
+    return said.format(omega=fixed(fw.reduced.omega1, 3), delta=number(fw.unevenness), J=number(fw.J_flywheel))
 
 
-def _asked(fw: Wittenbauer) -> str:
-    """Moment of inertia of the flywheel from the segment ab, or δ that a given one leaves."""
-    said = {(False, False): tr("J_f = {segment}·μ_E/(δ·ω_1^2) = {length}·{mu}/({delta}·{omega}^2) = {J} kg·m^2"),
-            (False, True): tr("J_f = {segment}·μ_E/(δ·ω_1^2) − J_r·u^2 = {length}·{mu}/({delta}·{omega}^2) − {rotor} = "
-                              "{J} kg·m^2"),
-            (True, False): tr("δ = {segment}·μ_E/(J_f·ω_1^2) = {length}·{mu}/({J}·{omega}^2) = {delta}"),
-            (True, True): tr("δ = {segment}·μ_E/[(J_f + J_r·u^2)·ω_1^2] = {length}·{mu}/[({J} + {rotor})·{omega}^2] = {delta}"),
-            }[fw.given, bool(fw.J_rotor)]
-    found, _ = _alike(fw)
-    given = number(fw.J_flywheel if fw.given else fw.unevenness)
-    return said.format(segment="|ab|" if fw.ab_mm >= 0 else "ab", length=_of_segment(fw), mu=number(fw.scales.energy.mu),
-                       omega=fixed(fw.reduced.omega1, 3), rotor=number(fw.J_rotor, 4),
-                       J=given if fw.given else found, delta=found if fw.given else given)
+def found(fw: Flywheel) -> list[str]:
+    """From the segment ab to the moment of inertia of the flywheel, or to δ that a given one leaves."""
+    segment = f"|{fw.ab.name}|" if fw.ab_mm >= 0 else fw.ab.name
+    own = {id(fw.ab): Quantity(segment, fw.ab_mm, "", digits_for(fw.ab_mm, 2) if abs(fw.ab_mm) >= 10 else 4, 2)}
+    given = (*(fw.given_plan if fw.method == "mertsalov" or fw.J_rotor else ()), fw.delta_plan["δ"]) if fw.given else ()
+    steps = given or tuple(step for step in fw.first_plan if step.name != "J_вр")
+    if not given and fw.method == "wittenbauer" and not fw.J_rotor:  # what is added is the flywheel alone
+        return [of_step(steps[0], symbol=steps[-1].symbol, own=own)]
+    return [said for step in steps if (said := of_step(step, own=own))]
 
 
 def power(fw: Flywheel) -> list[str]:
     """Mean power by the work of the cycle, where the efficiency of what lies between motor and crank is given."""
     if fw.data.efficiency is None:
         return []
-    takes = fw.reduced.resisting
-    said = tr("P_m = M_{index}·ω_1 = {power} kW;  P_mot = P_m/η = {power}/{efficiency} = {further} kW") if takes else \
-        tr("P_m = M_{index}·ω_1 = {power} kW;  P_out = P_m·η = {power}·{efficiency} = {further} kW")
-    here, further = (number(float(fw.power_plan[name].value) / 1000, 4) for name in ("P", "P_дв"))
-    return [said.format(index=indices(fw)[1], power=here, efficiency=number(fw.data.efficiency), further=further)]
+    takes, kilowatt, efficiency = fw.reduced.resisting, tr("kW"), Quantity("η", fw.data.efficiency)
+    here, further = (Quantity(step.symbol, float(step.value) / 1000) for step in (fw.power_plan["P"], fw.power_plan["P_дв"]))
+    mean = f"{here.symbol} = M_{{{indices(fw)[1]}}}·ω_1 = {number(here.value)} {kilowatt}"
+    return [f"{mean};  {equation(truediv if takes else mul, (here, efficiency), further, unit=kilowatt)}"]
 
 
 def motor(fw: Flywheel) -> list[str]:
@@ -768,10 +761,10 @@ def _alike(fw: Flywheel) -> list[str]:
     """What is asked by the drawn construction and in the limit with the same decimals."""
     if fw.given:
         return graphs.column([fw.unevenness, float(fw.limit_plan["δ∞"].value)], 4)
-    return graphs.column([fw.J_flywheel, fw.J_flywheel_converged], 5)
+    return graphs.column([fw.J_flywheel, fw.J_flywheel_converged], 4)
 
 
-def _converged(fw: Flywheel) -> str:
+def converged(fw: Flywheel) -> str:
     """The converged flywheel and how far the drawn one is from it: in percent, beside a small converged one in kg m2."""
     if fw.given:
         return tr("For n → ∞ positions: δ = {delta} (difference {difference} %)").format(
@@ -783,30 +776,19 @@ def _converged(fw: Flywheel) -> str:
                        apart=number(float(fw.limit_plan["ΔJ_м"].value), 3))
 
 
-def _sizes(fw: Flywheel) -> list[str]:
-    """Sizes and mass of the wheel as formulas, or that none is needed."""
+def sizes(fw: Flywheel) -> list[str]:
+    """Sizes, mass and speed of the wheel as formulas, or that none is needed."""
     w, d = fw.wheel, fw.data
-    if w is None or d.width_ratio is None or d.thickness_ratio is None:
+    if w is None or d.width_ratio is None or d.thickness_ratio is None or d.density is None:
         return [] if fw.given else [tr("J_f ≤ 0: no flywheel is needed")]
-    if w.form != "rim":
-        said = (tr("Disc:  κ = B/D = {width_ratio}"), tr("D = (32J_f/(πρκ))^{{1/5}} = {diameter} m"), tr("B = κD = {width} m"),
-                tr("m = 8J_f/D^2 = {mass} kg"))
-    elif d.rim_share < 1:
-        said = (tr("Rim, it has {share}·J_f:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio}"),
-                tr("D = (4·{share}·J_f/(πρκc))^{{1/5}} = {diameter} m"), tr("B = κD = {width} m;  H = cD = {thickness} m"),
-                tr("m = 4·{share}·J_f/D^2 = {mass} kg"))
-    else:
-        said = (tr("Rim with spokes:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio}"),
-                tr("D = (4J_f/(πρκc))^{{1/5}} = {diameter} m"), tr("B = κD = {width} m;  H = cD = {thickness} m"),
-                tr("m = 4J_f/D^2 = {mass} kg"))
-    numbers = {"share": number(d.rim_share), "width_ratio": number(d.width_ratio), "thickness_ratio": number(d.thickness_ratio),
-               "diameter": number(w.diameter, 5), "width": number(w.width, 4),
-               "thickness": number(w.thickness) if w.form == "rim" else "",
-               "mass": number(w.mass, 4), "speed": fixed(w.speed, 2), "density": number(d.density or 0.0)}
-    speed = tr("V = ω_1·D/2 = {speed} m/s < 30 m/s") if w.speed < 30 else \
-        tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s: too fast for cast iron (ρ = {density} kg/m^3)") if fw.cast_iron else \
-        tr("V = ω_1·D/2 = {speed} m/s ≥ 30 m/s: the wheel is of steel")
-    return [*(line.format(**numbers) for line in said), *(disc_for_rim(w) or [speed.format(**numbers)])]
+    form = (tr("Rim with spokes"), f";  c = H/D = {number(d.thickness_ratio)}") if w.form == "rim" else (tr("Disc"), "")
+    density = tr("ρ = {density} kg/m^3").format(density=number(d.density))
+    head = f"{form[0]}:  κ = B/D = {number(d.width_ratio)}{form[1]};  {density}"
+    speed = "< 30" if w.speed < 30 else "≥ 30"
+    too_fast = "" if w.speed < 30 else tr(": too fast for cast iron") if fw.cast_iron else tr(": the wheel is of steel")
+    rows = [[step for step in w.plan if step.name in names] for names in (("J_об",), ("D",), ("B", "H"), ("m",), ("V",))]
+    *said, last = (";  ".join(map(of_step, steps)) for steps in rows if steps)
+    return [head, *said, *(disc_for_rim(w) or [f"{last} {speed} {tr('m/s')}{too_fast}"])]
 
 
 def disc_for_rim(w: RimWheel) -> list[str]:

@@ -213,7 +213,7 @@ def results(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
     mu = _omega_scale(fw)
     held = _held(fw)
     rows = [
-        _givens(fw), *(_delta(fw) if fw.given else _inertia(fw)),
+        _givens(fw), *flywheel.found(fw), *([flywheel.converged(fw)] if fw.given else []),
         tr("μ_ω = μ_E/({held}·ω_{{1m}}) = {mu} {unit}").format(held=held, mu=number(mu.mu), unit=mu.unit),
         *_extremes(fw),
         tr("Position {label}:  ψ = {psi}°;  d{sign}/dφ = tan ψ·μ_J/μ_φ = {slope} kg·m^2").format(
@@ -224,7 +224,7 @@ def results(project: Project, canvas: Canvas, box: Box, options: Options) -> Non
             inertia=enough(inertia, 2)),
         tr("ε_1 = (M − ω_{{1m}}^2/2·d{sign}/dφ)/({held} + {sign}) = {epsilon} rad/s^2").format(
             sign=sign, held=held, epsilon=enough(epsilon, 3, size([plan["ε1"].value], k))),
-        *flywheel.motor(fw), *flywheel.power(fw), *flywheel.frictionless(project), *flywheel.disagreement(fw), *_size(fw)]
+        *flywheel.motor(fw), *flywheel.power(fw), *flywheel.frictionless(project), *flywheel.disagreement(fw), *flywheel.sizes(fw)]
     left = canvas.title(box, tr("Flywheel design by Mertsalov's method"))
     step = min(left.height / len(rows), 11.0)
     for i, line in enumerate(rows):
@@ -239,29 +239,6 @@ def _givens(fw: Mertsalov) -> str:
         tr("ω_{{1m}} = {omega} rad/s;  δ = {delta};  M_{index} = {moment} N·m")
     return said.format(omega=fixed(fw.reduced.omega1, 4), delta=number(fw.unevenness), flywheel=number(fw.J_flywheel),
                        index=flywheel.indices(fw)[1], moment=flywheel.constant_moment(fw))
-
-
-def _inertia(fw: Mertsalov) -> list[str]:
-    """All that turns with the crank from the segment ab, and what of it is the flywheel."""
-    first = number(fw.J_first, 5)
-    return [tr("J_I = |ab|·μ_E/(δ·ω_1^2) = {length}·{mu}/({delta}·{omega}^2) = {first} kg·m^2").format(
-                length=fixed(fw.ab_mm, 2), mu=number(fw.scales.energy.mu), delta=number(fw.unevenness),
-                omega=fixed(fw.reduced.omega1, 3), first=first),
-            tr("J_f = J_I − (J_{{cr}} + J_r·u^2) = {first} − {bare} = {flywheel} kg·m^2").format(
-                first=first, bare=number(fw.turning, 4, fw.J_first), flywheel=number(fw.J_flywheel, 5))]
-
-
-def _delta(fw: Mertsalov) -> list[str]:
-    """The way back from a given flywheel to δ, and what it is for vanishing intervals."""
-    first = number(fw.J_first, 5)
-    found, limit = graphs.column([fw.unevenness, float(fw.limit_plan["δ∞"].value)], 4)
-    return [tr("J_I = J_f + (J_{{cr}} + J_r·u^2) = {flywheel} + {bare} = {first} kg·m^2").format(
-                flywheel=number(fw.J_flywheel, 5), bare=number(fw.turning, 4, fw.J_first), first=first),
-            tr("δ = |ab|·μ_E/(J_I·ω_1^2) = {length}·{mu}/({first}·{omega}^2) = {delta}").format(
-                length=fixed(fw.ab_mm, 2), mu=number(fw.scales.energy.mu), first=first, omega=fixed(fw.reduced.omega1, 3),
-                delta=found),
-            tr("For n → ∞ positions: δ = {delta} (difference {difference} %)").format(
-                delta=limit, difference=fixed(fw.difference_percent, 2))]
 
 
 def _held(fw: Mertsalov) -> str:
@@ -286,26 +263,6 @@ def _extremes(fw: Mertsalov) -> tuple[str, str]:
     fast, slow = (said.format(found=fixed(found, digits), permitted=fixed(float(fw.speed_plan[f"[ω_{name}]"].value), digits))
                   for said, found, name in zip(texts, fw.extremes, ("max", "min"), strict=True))
     return fast, slow
-
-
-def _size(fw: Mertsalov) -> list[str]:
-    """Ratios, sizes and mass of the wheel, or that none is needed."""
-    w, d = fw.wheel, fw.data
-    if w is None or d.density is None or d.width_ratio is None or d.thickness_ratio is None:
-        return [] if fw.given else [tr("J_f ≤ 0: no flywheel is needed; ω_{max}, ω_{min}, ε_1 are without it")]
-    if w.form != "rim":
-        said = (tr("Disc:  κ = B/D = {width_ratio};  ρ = {density} kg/m^3"),
-                tr("D = (32J_f/(πρκ))^{{1/5}} = {diameter} m;  B = {width} m;  m = {mass} kg"))
-    elif d.rim_share < 1:
-        said = (tr("Rim, it has {share}·J_f:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio};  ρ = {density} kg/m^3"),
-                tr("D = (4·{share}·J_f/(πρκc))^{{1/5}} = {diameter} m;  B = {width} m;  H = {thickness} m;  m = {mass} kg"))
-    else:
-        said = (tr("Rim:  κ = B/D = {width_ratio};  c = H/D = {thickness_ratio};  ρ = {density} kg/m^3"),
-                tr("D = (4·J_f/(πρκc))^{{1/5}} = {diameter} m;  B = {width} m;  H = {thickness} m;  m = {mass} kg"))
-    numbers = {"share": number(d.rim_share), "density": number(d.density), "width_ratio": number(d.width_ratio),
-               "thickness_ratio": number(d.thickness_ratio), "diameter": number(w.diameter, 5), "width": number(w.width),
-               "thickness": number(w.thickness) if w.form == "rim" else "", "mass": number(w.mass)}
-    return [*(line.format(**numbers) for line in said), *flywheel.disc_for_rim(w)]
 
 
 def comparison(project: Project, canvas: Canvas, box: Box, options: Options) -> None:

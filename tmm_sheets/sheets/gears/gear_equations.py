@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.construction.protocol import letter_of, sentence, sizes_of
+from tmm_sheets.construction.equation import Quantity, digits_for, of_step
+from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken, letter
 from tmm_sheets.drawing.marks import Box
@@ -15,7 +15,6 @@ from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
-    from tmm_sheets.construction.step import Step
     from tmm_sheets.project import Project
 
 OF_PAIR = ("inv_alpha", "inv_alpha_w", "alpha_w", "x_sum", "y", "dy", "a", "a_w", "p", "pb", "N1N2", "g_alpha", "eps_alpha")
@@ -61,41 +60,45 @@ def digits_of(plan: Plan) -> Callable[[Step], str]:
     Lengths in mm have two decimals, but the module has those that it is given with; shifts and y as many as give Δy by what is
     written.
     """
+    decimals = _of_shifts(plan)
+
+    def written(step: Step) -> str:
+        if step.name.rstrip("12") in ("x", "y", "dy"):
+            return fixed(step.value, decimals).rstrip("0").rstrip(".,")
+        least = _decimals(step)
+        return fixed(step.value, least) if least else ""
+
+    return written
+
+
+def _of_shifts(plan: Plan) -> int:
+    """Decimals of shifts and y with which they add up to Δy."""
     last = plan["dy"]
 
     def adds_up(decimals: int) -> bool:
         found = last.rule.compute(*(round(float(arg.value), decimals) for arg in last.args))
         return bool(abs(found - round(float(last.value), decimals)) < 0.1 * 10.0**-decimals)
 
-    decimals = next(filter(adds_up, range(*DECIMALS)), DECIMALS[0])
+    return next(filter(adds_up, range(*DECIMALS)), DECIMALS[0])
 
-    def written(step: Step) -> str:
-        name = step.name.rstrip("12")
-        if name in ("x", "y", "dy"):
-            return fixed(step.value, decimals).rstrip("0").rstrip(".,")
-        if step.rule.unit == "mm" and name != "m":
-            return fixed(step.value, 2)
-        return fixed(step.value, {"eps_alpha": 3}.get(name, 5)) if name in ("eps_alpha", "inv_alpha", "inv_alpha_w") else ""
 
-    return written
+def _decimals(step: Step) -> int:
+    """Fixed decimals of a number of the pair, 0 for one that has none."""
+    if step.rule.unit == "mm" and step.name != "m":
+        return 2
+    return {"eps_alpha": 3, "inv_alpha": 5, "inv_alpha_w": 5}.get(step.name, 0)
 
 
 def equations(plan: Plan, names: Iterable[str], letters: bool) -> Iterator[str]:
     """Those steps of a plan that a formula gives: sign, formula in ``letters``, in numbers, value."""
-    sizes, digits = sizes_of(plan), digits_of(plan)
+    shifts = _of_shifts(plan)
+
+    def quantity(symbol: str, value: float, unit: str, of: Any) -> Quantity:
+        if symbol[:1] in "xyΔ":
+            return Quantity(symbol, value, unit, digits_for(value, shifts))
+        least = _decimals(of) if isinstance(of, Step) else 0
+        return Quantity(symbol, value, unit, digits_for(value, least), least) if least else Quantity(symbol, value, unit)
+
     for step in (plan[name] for name in names if name in plan):
-        said, _, counted = sentence(step, 0, float, sizes=sizes, digits=digits).removesuffix(".").rpartition(": ")
-        sign, (_, *numbers) = letter_of(step), (counted or said).split(" = ")
-        of, _, formula = said.partition(" = ")
-        if len(numbers) < 2:
-            continue
-        formula = re.sub(r" \([^()]*\)$", "", formula) if letters else ""
-        before = f"cos {sign} = {formula}; {sign}" if formula and of.endswith(f"cos {sign}") else \
-            f"{sign} = {formula}" if formula else sign
-        yield _written(" = ".join((before, *numbers)))
-
-
-def _written(text: str) -> str:
-    """An equation of a sentence with the marks of lettering: indices, stars and signs of multiplication."""
-    text = text.replace("N_1N_2", "N_{1}N_{2}").replace(" × ", "·")
-    return re.sub(r"(?<=[}c])\*", "^{*}", re.sub(r"_([^\W_]+)", r"_{\1}", text))
+        if said := of_step(step, in_letters=letters, quantity=quantity):
+            yield said

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from functools import reduce
 from itertools import pairwise
+from math import prod
+from operator import mul, truediv
 from typing import TYPE_CHECKING
 
+from tmm_sheets.construction.equation import Quantity, digits_for, equation
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.numbers import fixed, number
+from tmm_sheets.numbers import number
 from tmm_sheets.sheets.components.listed import Lines
 from tmm_sheets.sheets.gears.speed_plan import ends_of_rays
 from tmm_sheets.sheets.gears.train import mobility_lines
@@ -29,10 +34,11 @@ def _measured(of: Train, canvas: Canvas) -> Iterator[str]:
             for step in ends_of_rays(plan)]
     (one, length, n), *others = [end for end in ends if abs(end[1]) >= MEASURED] or [("", 0.0, 0.0)]
     for two, other, speed in others:
-        sign = "" if length * other > 0 else "−"
-        yield (f"i_{{{one},{two}}} = {sign}|0–{one}|/|0–{two}| = "
-               f"{sign}{fixed(abs(length), 1)}/{fixed(abs(other), 1)} = {number(length / other)}; "
-               f"n_{{{one}}}/n_{{{two}}} = {number(n / speed)}")
+        sign, ratio = -1 if length * other < 0 else 1, f"{one},{two}"
+        segments = [Quantity(f"|0–{name}|", abs(mm), "", digits_for(mm, 1), 1)
+                    for name, mm in ((one, length), (two, other))]
+        measured = equation(lambda a, b, sign=sign: sign * a / b, segments, Quantity(f"i_{{{ratio}}}", length / other))
+        yield f"{measured};  n_{{{one}}}/n_{{{two}}} = {number(n / speed)}"
 
 
 def _pairs(train: Train) -> Iterator[str]:
@@ -43,21 +49,19 @@ def _pairs(train: Train) -> Iterator[str]:
         before = {train.link(name) for _, name, *_ in whole[-1:]} or {train.link(name) for name in train.given}
         a, b = (m.planet, m.central) if train.link(m.planet) in before else (m.central, m.planet)
         whole.append((a, b, teeth[a], teeth[b], m.sign))
-        n = [float(plan[f"n{name}"].value) for name in (a, b)]
-        sign = "−" if m.sign > 0 else ""
-        turns = f"{number(n[0])}/{number(n[1]) if n[1] >= 0 else f'({number(n[1])})'}"
-        yield (f"i_{{{a}{b}}} = n_{{{a}}}/n_{{{b}}} = {sign}z_{{{b}}}/z_{{{a}}};  {turns} = {sign}{teeth[b]}/{teeth[a]} = "
-               f"{number(-m.sign * teeth[b] / teeth[a])}")
+        n, z = ([Quantity(f"{of}_{{{name}}}", float(plan[f"{of}{name}"].value)) for name in names]
+                for of, names in (("n", (a, b)), ("z", (b, a))))
+        ratio = Quantity(f"i_{{{a}{b}}}", -m.sign * teeth[b] / teeth[a])
+        by_teeth = equation(lambda one, two, sign=-m.sign: sign * one / two, z, replace(ratio, symbol=""))
+        yield f"{equation(truediv, n, ratio)};  {by_teeth}"
     chained = all(train.link(one[1]) == train.link(two[0]) for one, two in pairwise(whole))
     if len(whole) > 1 and len(alone) == len(train.meshes) and chained:
-        ratio, sign = 1.0, ""
-        for _, _, z, other, way in whole:
-            ratio *= -way * other / z
-        sign = "−" if ratio < 0 else ""
-        a, b = whole[0][0], whole[-1][1]
+        sign = prod(-way for *_, way in whole)
+        driving, driven = [pair[2] for pair in whole], [pair[3] for pair in whole]
         letters = "·".join(f"i_{{{one}{two}}}" for one, two, *_ in whole)
-        driven, driving = ("·".join(str(pair[k]) for pair in whole) for k in (3, 2))
-        yield f"i_{{{a}{b}}} = {letters} = {sign}{driven}/({driving}) = {number(ratio)}"
+        count, result = len(whole), Quantity(f"i_{{{whole[0][0]}{whole[-1][1]}}} = {letters}", sign * prod(driven) / prod(driving))
+        yield equation(lambda *z: sign * reduce(mul, z[:count]) / reduce(mul, z[count:]),
+                       [Quantity("", z) for z in (*driven, *driving)], result, in_letters=False)
 
 
 of_reducer = Lines(marked("Ratios by the plan of speeds"), lambda project, canvas: _measured(project.reducer, canvas))

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import reduce
 from itertools import combinations
-from math import gcd, pi, sin
+from math import gcd, pi, prod, sin
+from operator import mul
 from typing import TYPE_CHECKING
 
+from tmm_sheets.construction.equation import Quantity, equation
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.numbers import fixed, is_zero, number
 from tmm_sheets.sheets.components.listed import Lines, Table
@@ -46,15 +49,14 @@ def _ratios(train: Train) -> Iterator[str]:
         n_a, n_c, h = (float(plan[f"n{name}"].value) for name in (a, c, one.carrier))
         if is_zero(n_c - h, max(abs(n_c), abs(h))):
             continue  # both turn as one
-        sign = "" if one.sign * other.sign > 0 else "−"
-        carrier, held = f"n_{{{one.carrier}}}", number(h) if h >= 0 else f"({number(h)})"
+        sign = one.sign * other.sign
         ratio = f"i_{{{a}{c}}}^{{{one.carrier}}}"
-        yield (f"{ratio} = (n_{{{a}}} − {carrier})/(n_{{{c}}} − {carrier}) = ({number(n_a)} − {held})/({number(n_c)} − {held}) = "
-               f"{number((n_a - h) / (n_c - h))}")
-        letters, numbers = (f"z_{{{c}}}/z_{{{a}}}", f"{teeth[c]}/{teeth[a]}") if b == d else (
-            f"z_{{{b}}}·z_{{{c}}}/(z_{{{a}}}·z_{{{d}}})", f"{teeth[b]}·{teeth[c]}/({teeth[a]}·{teeth[d]})")
-        by_teeth = one.sign * other.sign * teeth[b] * teeth[c] / (teeth[a] * teeth[d])
-        yield f"{ratio} = {sign}{letters} = {sign}{numbers} = {number(by_teeth)}"
+        speeds = [Quantity(f"n_{{{name}}}", n) for name, n in ((a, n_a), (c, n_c), (one.carrier, h))]
+        yield equation(lambda one, other, h: (one - h) / (other - h), speeds, Quantity(ratio, (n_a - h) / (n_c - h)))
+        names = (c, a) if b == d else (b, c, a, d)
+        value = sign * prod(teeth[name] for name in (b, c)) / prod(teeth[name] for name in (a, d))
+        yield equation(lambda *z, sign=sign: sign * reduce(mul, z[:len(z) // 2]) / reduce(mul, z[len(z) // 2:]),
+                       [Quantity(f"z_{{{name}}}", teeth[name]) for name in names], Quantity(ratio, value))
 
 
 def checks_of(train: Train, *stages: tuple[Mesh, ...]) -> Iterator[str]:

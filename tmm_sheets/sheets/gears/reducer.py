@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
+from functools import reduce
 from math import ceil
+from operator import mul, truediv
 from typing import TYPE_CHECKING, Any
 
+from tmm_sheets.construction.equation import Quantity, equation
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import fitted
 from tmm_sheets.drawing.marks import Box
@@ -107,42 +109,27 @@ def unsigned(ratio: float) -> str:
 def _lines(r: Reducer) -> Iterator[str]:
     chosen = {step.name: step.value for step in r.sets[0]}
     first, second = r.scheme.signs
-    one, *_, four = r.stage_wheels[0]
+    one, *_, four = wheels = r.stage_wheels[0]
     mesh = next(m for m in r.meshes if m.central == one)
-    z = [f"z_{{{n}}}" for n in r.stage_wheels[0]]
-    teeth = [str(n) for n in r.chosen.stage]
-    together = "" if first * second > 0 else "−"
-    inner = f"i_{{{one}{four}}}^{{H}}"
-
-    def of(a: int, b: int, over: list[str]) -> str:
-        """A quotient of two of them, or of the products of all where the satellites are of two kinds."""
-        return f"{together}{over[3]}/{over[0]}" if r.scheme.single else f"{together}{over[a]}·{over[3]}/({over[0]}·{over[b]})"
-
+    z = [Quantity(f"z_{{{wheels[k]}}}", r.chosen.stage[k]) for k in ((3, 0) if r.scheme.single else (1, 3, 0, 2))]
     # Where the carrier drives, the ratio is the reciprocal of a small difference.
-    i = number(chosen["i14"], 7 if r.driver == "carrier" else 5)
-    yield f"{inner} = {of(1, 2, z)} = {of(1, 2, teeth)} = {i}"
-    within = f"({i})" if chosen["i14"] < 0 else i
+    inner = Quantity(f"i_{{{one}{four}}}^{{H}}", chosen["i14"], digits=7 if r.driver == "carrier" else 4)
+    yield equation(lambda *z: first * second * reduce(mul, z[:len(z) // 2]) / reduce(mul, z[len(z) // 2:]), z, inner)
     enters, leaves = {"sun": (one, "H"), "ring": (four, "H"), "carrier": ("H", one)}[r.driver]
-    ratio = f"u_{{{enters}{leaves}}}"
-    letters, counted = {"sun": (f"1 − {inner}", f"1 − {within}"), "ring": (f"1 − 1/{inner}", f"1 − 1/{within}"),
-                        "carrier": (f"1/(1 − {inner})", f"1/(1 − {within})")}[r.driver]
-    yield f"{ratio} = {letters} = {counted} = {fixed(chosen['u_stage'], 3)}"
-    count = r.table.stages
-    parts = [f"|{ratio}|" + (f"^{{{count}}}" if count > 1 else "")]
-    values = [unsigned(chosen["u_planetary"])]
-    for pinion, wheel in pairwise(r.simple):
-        parts.append(f"z_{{{wheel}}}/z_{{{pinion}}}")
-        values.append(f"{r.chosen.wheel}/{r.chosen.pinion}")
-    if len(parts) > 1 or count > 1:
-        yield f"u = {'·'.join(parts)} = {'·'.join(values)} = {fixed(chosen['u'], 3)}"
+    ratio = Quantity(f"u_{{{enters}{leaves}}}", chosen["u_stage"])
+    shape: Any = {"sun": lambda i: 1 - i, "ring": lambda i: 1 - 1 / i, "carrier": lambda i: 1 / (1 - i)}[r.driver]
+    yield equation(shape, [inner], ratio)
+    count, simple = r.table.stages, [Quantity(f"z_{{{name}}}", r.data.teeth[name]) for name in reversed(r.simple)]
+    if simple or count > 1:
+        yield equation(lambda u, *z: (abs(u) if count == 1 else abs(u) ** count) * (z[0] / z[1] if z else 1), [ratio, *simple],
+                       Quantity("u", chosen["u"]))
     yield from checks_of(r, r.stage(mesh))
-    carrier = mesh.carrier
-    n = {name: number(float(r.kinematics[f"n{name}"].value), 5) for name in (one, four, carrier)}
+    n = {name: Quantity(f"n_{{{link_name(name)}}}", float(r.kinematics[f"n{name}"].value), "1/min")
+         for name in (one, four, mesh.carrier)}
     if r.driver == "carrier":
-        yield f"n_{{{one}}} = n_{{{carrier}}}·(1 − {inner}) = {n[carrier]}·(1 − {within}) = {n[one]} " + tr("rpm")
+        yield equation(lambda n, i: n * (1 - i), (n[mesh.carrier], inner), n[one])
     else:
-        u = fixed(chosen["u_stage"], 3)
-        yield f"n_{{{link_name(carrier)}}} = n_{{{enters}}}/{ratio} = {n[enters]}/{u} = {n[carrier]} " + tr("rpm")
+        yield equation(truediv, (n[enters], ratio), n[mesh.carrier])
     yield from willis_lines(r, mesh)
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from math import pi
+from operator import mul, truediv
 from typing import TYPE_CHECKING, Any
 
+from tmm_sheets.construction.equation import Quantity, equation
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import fitted, size_for
 from tmm_sheets.drawing.marks import Box
@@ -58,27 +60,32 @@ def dimensions(project: Project) -> list[str]:
     """Distance of the axes of every stage, half the sum or the difference of its diameters, and diameters of the wheels."""
     train = project.train
     plan = train.kinematics
-    m, lines, shown = float(plan["m"].value), list[str](), set[Any]()
+    m, lines, shown = Quantity("m", float(plan["m"].value)), dict[str, None](), set[Any]()
     for mesh in train.meshes:
-        c, p, sign = mesh.central, mesh.planet, "+" if mesh.sign > 0 else "−"
-        z = {name: int(plan[f"z{name}"].value) for name in (c, p)}
-        diameter = train.pitch(mesh)
+        c, p, way = mesh.central, mesh.planet, 1 if mesh.sign > 0 else -1
+        z = {name: Quantity(f"z_{{{name}}}", float(plan[f"z{name}"].value)) for name in (c, p)}
+        distance = 1e3 * train.distance(mesh)
         if (stage := train.stage(mesh)) not in shown:  # planets that turn together run at one distance
             shown.add(stage)
-            lines.append(f"a_{{{c}–{p}}} = m·(z_{{{c}}} {sign} z_{{{p}}})/2 = {number(m)}·({z[c]} {sign} {z[p]})/2 = "
-                         f"{number(1e3 * train.distance(mesh))}")
+            lines[equation(lambda m, one, two, way=way: m * (one + way * two) / 2, (m, z[c], z[p]),
+                           Quantity(f"a_{{{c}–{p}}}", distance))] = None
         # Where wheels of another sum of teeth run at the same distance they roll on other circles than those of the module.
-        rolled = float(diameter.value)
-        for name in (c, p):
-            if abs(rolled - m * z[c]) < 1e-9 * rolled:
-                line = f"d_{{{name}}} = m·z_{{{name}}} = {number(m)}·{z[name]} = {number(m * z[name])}"
+        rolled = float(train.pitch(mesh).value)
+        for name, other in ((c, p), (p, c)):
+            size = rolled * z[name].value / z[c].value
+            if abs(rolled - m.value * z[c].value) < 1e-9 * rolled:
+                said = equation(mul, (m, z[name]), Quantity(f"d_{{{name}}}", size))
             else:
-                other = p if name == c else c
-                twice = number(2e3 * train.distance(mesh))
-                line = (f"d_{{w{name}–{other}}} = 2a·z_{{{name}}}/(z_{{{c}}} {sign} z_{{{p}}}) = "
-                        f"{twice}·{z[name]}/({z[c]} {sign} {z[p]}) = {number(rolled * z[name] / z[c])}")
-            lines += [line] if line not in lines else []
-    return lines
+                said = equation(lambda a, own, one, two, way=way: 2 * a * own / (one + way * two),
+                                (Quantity("a", distance), z[name], z[c], z[p]), Quantity(f"d_{{w{name}–{other}}}", size))
+            lines[said] = None
+    return list(lines)
+
+
+def of_turns(name: str, n: float) -> str:
+    """Angular velocity of a link from its speed, rpm."""
+    return equation(lambda n: pi * n / 30, [Quantity(f"n_{{{name}}}", n)], Quantity(f"ω_{{{name}}}", n * pi / 30, "rad/s"),
+                    in_letters=False)
 
 
 def mobility_lines(train: Train, ratios: bool = True) -> list[str]:
@@ -93,9 +100,9 @@ def mobility_lines(train: Train, ratios: bool = True) -> list[str]:
         one = driving[0]
         for name in (name for name in n if name != one and name not in planets and n[name]):
             both = f"{one},{name}" if len(one + name) > 2 else one + name
-            lines.append(f"i_{{{both}}} = n_{{{one}}}/n_{{{name}}} = {number(n[one])}/{_signed(n[name])} = "
-                         f"{number(n[one] / n[name])}")
-    return lines + [f"ω_{{{name}}} = π·n_{{{name}}}/30 = {number(value * pi / 30, 5)} {tr('rad/s')}" for name, value in n.items()]
+            speeds = [Quantity(f"n_{{{name}}}", n[name]) for name in (one, name)]
+            lines.append(equation(truediv, speeds, Quantity(f"i_{{{both}}}", n[one] / n[name])))
+    return lines + [of_turns(name, value) for name, value in n.items()]
 
 
 def willis(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:

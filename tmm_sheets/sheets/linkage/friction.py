@@ -7,10 +7,13 @@ that deviates from it by the angle of friction; both the motion of the one link 
 from __future__ import annotations
 
 from math import ceil, degrees
+from operator import mul
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.construction.equation import Quantity, equation, of_step
+from tmm_sheets.construction.formula import letters_of
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import size_for
@@ -248,21 +251,16 @@ def _name(of: Friction, index: str) -> str:
 
 def _told(project: Project, of: Friction, index: str, force: complex, k: int) -> list[str]:
     """Numbers of a pair beneath it."""
-    size = number(abs(force), 5, project.study.forces.force_size(k))
+    reaction = f"F_{{{index}}} = {number(abs(force), 5, project.study.forces.force_size(k))} {tr('N')}"
     if of.still(index, k):
-        return [tr("F_{{{index}}} = {force} N").format(index=index, force=size), tr("its links do not move: no friction")]
+        return [reaction, tr("its links do not move: no friction")]
     if index in of.moments:
         hinge = _hinge(of, index)
-        f, radius = (float(given) for given in of.radii[hinge].args)
-        return [tr("ρ_{{{hinge}}} = f·r = {f}·{radius} = {rho} mm;  F_{{{index}}} = {force} N").format(
-                    hinge=hinge, f=number(f), radius=number(1e3 * radius), rho=number(1e3 * float(of.radii[hinge].value)),
-                    index=index, force=size),
-                tr("M_{{f{index}}} = ρ·F = {moment} N·m").format(
-                    index=index, moment=number(abs(float(np.real(of.moments[index].at(k)))), 4))]
+        moment = Quantity(letters_of(of.moments[index].symbol), abs(float(np.real(of.moments[index].at(k)))), "N*m")
+        rho = Quantity(of.radii[hinge].symbol, float(of.radii[hinge].value))
+        return [f"{of_step(of.radii[hinge])};  {reaction}", equation(mul, (rho, Quantity(f"F_{{{index}}}", abs(force))), moment)]
     assert of.angle is not None
-    return [tr("φ = arctan f = arctan {f} = {angle}°").format(
-                f=number(float(of.angle.args[0])), angle=fixed(degrees(float(of.angle.value)), 2)),
-            tr("F_{{{index}}} = {force} N").format(index=index, force=size)]
+    return [of_step(of.angle), reaction]
 
 
 def _said(canvas: Canvas, box: Box, lines: list[str]) -> None:

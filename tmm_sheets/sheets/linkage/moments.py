@@ -2,29 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import reduce
 from itertools import product
 from math import inf
+from operator import mul
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tmm_sheets.construction.equation import Quantity, equation
+from tmm_sheets.construction.expression import Argument, Constant
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import symbol
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken, letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.numbers import is_zero, number
+from tmm_sheets.numbers import clean, is_zero
 from tmm_sheets.sheets.linkage.kinetic_frames import arm_sign, balancing_sign, flat, normal_sign, on_lever
 from tmm_sheets.sheets.linkage.link_marks import indexed
-from tmm_sheets.words import tr
+from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import StructuralGroup
     from tmm_sheets.project import Project
 
 BAR = "\u0305"
+SENSE = marked("(“+”: in the sense of ω_1)")
+"""What is said of a balancing moment's sign."""
 WAYS = ((3.5, 7.0, inf), (3.5, 6.0, inf), *((3.5, 6.0, width) for width in (150.0, 120.0, 95.0, 80.0)), (2.5, 5.0, inf))
 """Heights of the letters, distances of the lines and widths at which equations are broken that are tried, mm."""
 
@@ -93,9 +99,8 @@ def _lines(project: Project, guides: bool = False) -> Iterator[str]:
             centre = indexed(pos.mechanism.crank.pivot)
             yield tr("ΣM_{centre} = {sum} = 0").format(centre=centre, sum=_sum([Term(name, sense, ()), *terms]))
             solved = [term._replace(sign=-sense * term.sign) for term in terms]
-            value = number(float(project.study.balance["M"].at(k)), 5, forces.moment_size(k))
-            yield tr("{moment} = {sum} = {value} N·m (“+”: in the sense of ω_1)").format(
-                moment=name, sum=_sum(solved, numbers=True), value=value)
+            said = _worked_out(solved, Quantity(name, float(project.study.balance["M"].at(k)), "N*m"))
+            yield f"{said} {tr(SENSE)}"
 
 
 def _guided(project: Project, g: StructuralGroup) -> Iterator[str]:
@@ -110,11 +115,13 @@ def _guided(project: Project, g: StructuralGroup) -> Iterator[str]:
         centre, sign = indexed(total.args[0].name), f"M_{{{pair}}}"
         yield from _passed_on(project, total)
         yield tr("ΣM_{centre} = {sum} = 0").format(centre=centre, sum=_sum([Term(sign, 1.0 if value > 0 else -1.0, ()), *terms]))
-        yield tr("{force} = |{sum}| = {value} N·m").format(force=sign, sum=_sum(terms, numbers=True), value=number(abs(value), 5))
+        result = Quantity(sign, abs(value), "N*m")
+        yield _worked_out(terms, result, lambda total, _: abs(total)) if len(terms) > 1 else \
+            _worked_out([terms[0]._replace(sign=1.0)], result)
         force, arm = complex(forces.reactions[f"F{pair}"].at(k)), forces.arms.get(f"h{pair}")
         if arm is not None and np.isfinite(arm.at(k)) and not is_zero(force, forces.force_size(k)):
-            yield tr("h_{{{pair}}} = M_{{{pair}}}/F_{{{pair}}} = {couple}/{force} = {value} m").format(
-                pair=pair, couple=number(abs(value), 5), force=number(abs(force), 5), value=number(abs(float(arm.at(k))), 4))
+            yield equation(lambda m, f: m / f, (Quantity(sign, abs(value)), Quantity(f"F_{{{pair}}}", abs(force))),
+                           Quantity(f"h_{{{pair}}}", abs(float(arm.at(k))), "m"))
 
 
 def _passed_on(project: Project, total: Step) -> Iterator[str]:
@@ -123,9 +130,8 @@ def _passed_on(project: Project, total: Step) -> Iterator[str]:
     for couple in total.args[3::3]:
         if isinstance(couple, Step) and couple.args and id(couple.args[0]) in own and (
                 terms := list(_terms(project, couple.args[0].args[0]))):
-            yield tr("{force} = {sum} = {value} N·m").format(
-                force=symbol(couple.symbol or couple.name).replace(BAR, ""), sum=_sum(terms),
-                value=number(float(couple.at(k)), 5, project.study.forces.moment_size(k)))
+            yield _worked_out(terms, Quantity(f"{symbol(couple.symbol or couple.name).replace(BAR, '')} = {_sum(terms)}",
+                                              float(couple.at(k)), "N*m"))
 
 
 def _solved(project: Project, centre: str, total: Step, own: tuple[str, str, float], found: Step,
@@ -134,15 +140,13 @@ def _solved(project: Project, centre: str, total: Step, own: tuple[str, str, flo
 
     ``own`` are sign, arm and its length, m, of the unknown; ``about`` stands above the arms of the others.
     """
-    k, forces, (sign, arm, length) = project.force_index, project.study.forces, own
+    k, (sign, arm, length) = project.force_index, own
     if not np.isfinite(total.at(k)) or not (terms := list(_terms(project, total, about))):
         return
     # The unknown turns counter-clockwise about the centre where the others together turn clockwise.
     turning = -1.0 if float(total.at(k)) > 0 else 1.0
     yield tr("ΣM_{centre} = {sum} = 0").format(centre=centre, sum=_sum([Term(f"{sign}·{arm}", turning, ()), *terms]))
-    value = number(abs(complex(found.at(k))), 5, forces.force_size(k))
-    yield tr("{force} = |{sum}|/{length} = {value} N").format(
-        force=sign, sum=_sum(terms, numbers=True), length=number(length), value=value)
+    yield _worked_out(terms, Quantity(sign, abs(complex(found.at(k))), "N"), lambda total, arm: abs(total) / arm, length)
 
 
 def lever_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
@@ -193,21 +197,15 @@ def _lever_lines(project: Project, canvas: Canvas, width: float, height: float, 
         return []
     turning = float(np.sign(arm))
     own_term = Term(f"{sign}·h_{{{name}}}", turning, ())
-    h, found = number(float(mm(abs(arm)))), number(value, 5, study.forces.force_size(k))
+    solved = [term._replace(sign=-turning * term.sign) for term in terms]
+    result = Quantity(sign, clean(value, study.forces.force_size(k)), "N")
+    said = [_worked_out(solved, result, lambda total, last: total / last, float(mm(abs(arm))))]
     if options.get("letters", True):
-        solved = [term._replace(sign=-turning * term.sign) for term in terms]
-        said = [tr("ΣM_p = {sum} = 0").format(sum=_sum([own_term, *terms])),
-                tr("{force} = ({sum})/{arm} = {value} N").format(force=sign, sum=_sum(solved, numbers=True), arm=h, value=found)]
-    else:
-        written = (own_term._replace(letters=f"{sign}·{h}"),
-                   *(term._replace(letters="·".join(map(number, term.values))) for term in terms))
-        said = [tr("ΣM_p = {sum} = 0; {force} = {value} N").format(sum=_sum(written), force=sign, value=found)]
-        said = [text.replace(f"; {sign} = ", f"; {sign}\u00a0= ") for text in said]  # a force stands with its value
+        said.insert(0, tr("ΣM_p = {sum} = 0").format(sum=_sum([own_term, *terms])))
     if by_moment:
         m = project.mechanism.crank
-        said.append(tr("{moment} = {force}·l_{{{crank}}} = {value} N·m (“+”: in the sense of ω_1)").format(
-            moment=balancing_sign(project), force=sign, crank=f"{m.pivot}{m.pin}",
-            value=number(moment, 5, study.forces.moment_size(k))))
+        found = Quantity(balancing_sign(project), clean(moment, study.forces.moment_size(k)), "N*m")
+        said.append(f"{equation(mul, (result, Quantity(f'l_{{{m.pivot}{m.pin}}}', m.length)), found)} {tr(SENSE)}")
     return [line for text in said for line in broken(text, width, height)]
 
 
@@ -228,11 +226,22 @@ def _terms(project: Project, total: Step, about: str = "") -> Iterator[Term]:
             yield Term(symbol(couple.symbol or couple.name).replace(BAR, ""), 1.0 if value > 0 else -1.0, (abs(value),))
 
 
-def _sum(terms: Sequence[Term], numbers: bool = False) -> str:
-    """Terms with their signs, in letters or in numbers."""
+def _sum(terms: Sequence[Term]) -> str:
+    """Terms with their signs, in letters."""
     said = ""
     for n, term in enumerate(terms):
         sign = "−" if term.sign < 0 else "+"
-        text = "·".join(number(value) for value in term.values) if numbers else term.letters
-        said += (f" {sign} " if n else "−" if term.sign < 0 else "") + text
+        said += (f" {sign} " if n else "−" if term.sign < 0 else "") + term.letters
     return said
+
+
+def _worked_out(terms: Sequence[Term], result: Quantity, of_sum: Callable[[Any, Any], Any] = lambda total, last: total,
+                last: float = 1.0) -> str:
+    """What a sum gives, in numbers; ``of_sum`` makes the whole formula of it and of a ``last`` number."""
+    values = dict.fromkeys((*(value for term in terms for value in term.values), last))  # what is alike is written alike
+    at = {value: Argument(n) for n, value in enumerate(values)}
+    total: Any = Constant(0.0)
+    for term in terms:
+        product = reduce(mul, map(at.__getitem__, term.values))
+        total = total + product if term.sign > 0 else total - product
+    return equation(of_sum(total, at[last]), [Quantity("", value) for value in values], result, in_letters=False)

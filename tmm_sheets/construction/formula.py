@@ -279,6 +279,8 @@ def simplified(tree: expression.Expression) -> expression.Expression:
         if len(kept) == 1:
             return kept[0]
         parts = kept or parts[:1]
+    if tree.name == "-" and len(parts) == 2 and _is(parts[0], 0.0):
+        return expression.Operation("-", parts[1:])
     if tree.name == "-" and len(parts) == 2 and _negated(parts[1]):
         return expression.Operation("+", (parts[0], parts[1].parts[0]))
     if tree.name in ("*", "/", "+") and len(parts) == 2:

@@ -7,14 +7,15 @@ Where no operand has another digit (a result beside the middle of two roundings)
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from math import floor, isfinite, log10
+from itertools import product
+from math import floor, isfinite, log10, radians
 
 import numpy as np
 
 from tmm_sheets.construction import expression
-from tmm_sheets.note.formula import ANGLES, constant_text, simplified
+from tmm_sheets.construction.formula import ANGLES, constant_text, simplified
 from tmm_sheets.numbers import degrees_and_minutes, rounded, rounded_angle, written
 
 DIGITS = 4
@@ -65,6 +66,15 @@ def read(value: float, digits: int) -> tuple[float, float]:
     return float(f"{mantissa}e{exponent}"), 0.5 * 10.0 ** (exponent - len(mantissa.partition(".")[2]))
 
 
+PLACES = 4
+"""Places of an angle that is found behind its minutes, those of seconds among them, and none."""
+
+
+def _read_angle(value: float, places: int) -> tuple[float, float]:
+    """An angle as it is written, and half a unit of its last digit, rad."""
+    return rounded_angle(value, places), radians(0.5 / (60 if not places else 3600 * 10 ** (places - 1)))
+
+
 @dataclass(frozen=True)
 class _Place:
     """Where a number stands in a formula: the same argument in degrees inside a function, as a number outside."""
@@ -85,7 +95,7 @@ class _Place:
 
 def chosen(
     tree: expression.Expression, values: Sequence[float], angles: Sequence[bool], own: Sequence[int], result: float, of_result: int,
-    in_degrees: bool,
+    in_degrees: bool, filled: int = 0, held: Collection[int] = (),
 ) -> tuple[list[Digits], int]:  # fmt: skip
     """Digits of every operand of a formula and of its result.
 
@@ -97,16 +107,23 @@ def chosen(
     result, of_result
         what the formula gives, and the digits it has everywhere.
     in_degrees
-        whether the result is told in degrees and minutes, too, which must be those of the number as printed.
+        whether the result is told in degrees and minutes, too, which must be those of the number as printed; with ``of_result`` 0
+        it is told in degrees alone: found are the places behind the minutes.
+    filled
+        decimals to which the result is filled up with zeros where it has all its digits.
+    held
+        numbers of the arguments that are written as they are measured, if another digit elsewhere can do it.
     """
     places: list[_Place] = []
     laid_out = _laid_out(simplified(tree), values, angles, own, places, False)
-    for more in OTHERS:
-        digits = max(of_result + more, 1)
-        said, half = read(result, digits)
-        if in_degrees and degrees_and_minutes(said) != degrees_and_minutes(result):
+    others = range(PLACES) if in_degrees and not of_result else OTHERS
+    for fixed, more in product((held, ()) if held else ((),), others):
+        digits = max(of_result + more, 1) if of_result else more
+        said, half = read(result, digits) if of_result else _read_angle(result, digits)
+        half = min(half, 0.5 * 10.0**-filled) if filled and more >= 0 else half
+        if in_degrees and of_result and degrees_and_minutes(said) != degrees_and_minutes(result):
             continue
-        found = _sufficient(laid_out, places, said, half)
+        found = _sufficient(laid_out, places, said, half, fixed)
         if found is not None:
             return _by_argument(found, own), digits
     return _by_argument(places, own), of_result
@@ -133,8 +150,12 @@ def _laid_out(
     return expression.Operation(tree.name, parts, tree.function)
 
 
-def _sufficient(tree: expression.Expression, places: Sequence[_Place], said: float, half: float) -> list[_Place] | None:
-    """The places with as few digits more as make the formula give what is said; None when nothing does."""
+def _sufficient(tree: expression.Expression, places: Sequence[_Place], said: float, half: float,
+                held: Collection[int]) -> list[_Place] | None:
+    """The places with as few digits more as make the formula give what is said; None when nothing does.
+
+    Arguments that are ``held`` get none.
+    """
 
     def gives(at: Sequence[_Place]) -> bool:
         return abs(_worked_out(tree, [p.printed for p in at]) - said) <= half * (1 - SAFE)
@@ -142,7 +163,7 @@ def _sufficient(tree: expression.Expression, places: Sequence[_Place], said: flo
     least = {(p.index, p.angle): p.digits for p in places}
     at = list(places)
     while not gives(at):
-        short = [i for i, p in enumerate(at) if p.digits < least[p.index, p.angle] + MORE and not p.exact]
+        short = [i for i, p in enumerate(at) if p.digits < least[p.index, p.angle] + MORE and not p.exact and p.index not in held]
         if not short:
             return None
         given = _worked_out(tree, [p.printed for p in at])

@@ -1,0 +1,215 @@
+"""Formulas of sheets and sentences, in one line: each written from an expression, with the digits with which it comes out.
+
+The expression is that of a rule, or of a sum that a sheet makes up; the same nodes are set by the writers of the note.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import floor, log10
+from types import MappingProxyType
+from typing import Any
+
+from tmm_sheets.construction import digits
+from tmm_sheets.construction.digits import DIGITS, Digits, shown
+from tmm_sheets.construction.expression import Argument, Constant, Expression, Operation, trace
+from tmm_sheets.construction.formula import (
+    Barred,
+    Fenced,
+    Figures,
+    FormulaRow,
+    Fraction,
+    Letters,
+    Node,
+    Operand,
+    Root,
+    Scripts,
+    Sign,
+    Words,
+    can_be_written,
+    letters,
+    letters_of,
+    of_tree,
+    simplified,
+    with_numbers,
+)
+from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.numbers import degrees_and_minutes, number
+from tmm_sheets.words import decimal_sign, marked, tr
+
+UNITS = {
+    "mm": marked("mm"), "m": marked("m"), "m/s": marked("m/s"), "m/s2": marked("m/s²"), "N": marked("N"), "rad": marked("rad"),
+    "N*m": marked("N·m"), "kg*m2": marked("kg·m²"), "rad/s": marked("rad/s"), "1/min": marked("rpm"), "W": marked("W"),
+    "kg": marked("kg"), "J": marked("J"), "N/m": marked("N/m"), "rad/s2": marked("rad/s²"), "s": marked("s"),
+    "rad/s/mm": marked("rad/(s·mm)"), "J/mm": marked("J/mm"),
+}  # fmt: skip
+"""Units of the record as they are said."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """An operand of a formula, or what it gives: lettering markup, value, unit of the record.
+
+    It has ``digits`` significant digits at least; one that is measured is filled up with zeros to ``decimals`` and gets no more, if
+    that can be. ``of`` is the step or given number.
+    """
+
+    symbol: str
+    value: float
+    unit: str = ""
+    digits: int = DIGITS
+    decimals: int = 0
+    of: Any = None
+
+    def written(self, of: Digits) -> str:
+        """The number with its digits."""
+        text, point = shown(self.value, of.number), decimal_sign()
+        whole, _, fraction = text.partition(point)
+        full = self.decimals and of.number >= self.digits and "·" not in text
+        return f"{whole}{point}{fraction:0<{self.decimals}}" if full else text
+
+
+def equation(of: Expression | Callable[..., Any], quantities: Sequence[Quantity], result: Quantity, in_letters: bool = True,
+             unit: str = "") -> str:
+    """A formula in letters and in numbers with what it gives, as lettering markup: ``p = πm = π·3,5 = 11 mm``.
+
+    ``of`` is the expression, or a function of as many numbers as there are ``quantities``; ``unit`` is said instead of that of
+    the result.
+    """
+    tree = simplified(of if isinstance(of, Expression) else _traced(of, len(quantities)))
+    values, angle = [q.value for q in quantities], result.unit == "rad"
+    found, of_result = digits.chosen(tree, values, [q.unit == "rad" for q in quantities], [q.digits for q in quantities],
+                                     result.value, 0 if angle else result.digits, angle, result.decimals,
+                                     [i for i, q in enumerate(quantities) if q.decimals])  # fmt: skip
+    numbers = [_operand(q, d) for q, d in zip(quantities, found, strict=True)]
+    turned = angle and isinstance(tree, Operation) and tree.name in "*/"  # of a quotient that is an angle, π is half a turn
+
+    def line(operands: Sequence[Operand]) -> str:
+        text = lettered(of_tree(tree, operands))
+        return text.replace("2π", "360°").replace("π", "180°") if turned else text
+
+    said = tr(UNITS[result.unit]) if not unit and result.unit in UNITS and not angle else unit
+    value = degrees_and_minutes(result.value, of_result) if angle else result.written(Digits(of_result))
+    parts = [result.symbol] if result.symbol else []
+    if in_letters:
+        form = line([Operand(letters(q.symbol), None, _is_sum(q.symbol)) for q in quantities])
+        parts += [form] if form != result.symbol else []
+    if not isinstance(tree, Argument):
+        parts.append(line(numbers))
+    return " = ".join([*parts, f"{_raised(value)} {said}".rstrip()])
+
+
+def _traced(function: Callable[..., Any], count: int) -> Expression:
+    tree = trace(function, count)
+    assert tree is not None
+    return tree
+
+
+def _is_sum(symbol: str) -> bool:
+    return " + " in symbol or " − " in symbol or symbol.startswith("−")
+
+
+def _operand(q: Quantity, of: Digits) -> Operand:
+    text = q.written(of)
+    angle = Figures(degrees_and_minutes(q.value, of.angle)) if q.unit == "rad" else None
+    return Operand(Figures(text, q), angle, text.startswith("−"))
+
+
+def digits_for(value: float, decimals: int) -> int:
+    """Significant digits of a number that has so many decimals."""
+    return max(decimals + 1 + (floor(log10(abs(value))) if value else 0), 1)
+
+
+def of_step(step: Step, k: int = 0, symbol: str = "", own: Mapping[int, Quantity] = MappingProxyType({}), in_letters: bool = True,
+            quantity: Callable[..., Quantity] = Quantity) -> str:
+    """The formula of a step at a position, see :func:`equation`; empty where its rule is none.
+
+    ``symbol`` stands instead of its letters. Operands are ``own`` ones by their id(), or made by ``quantity`` from letters, value,
+    unit and the step or given number itself.
+    """
+    tree = step.rule.formula(len(step.args))
+    if tree is None or isinstance(tree, Argument | Constant) or not can_be_written(tree):
+        return ""
+
+    def made(x: Any) -> Quantity:
+        name = getattr(x, "symbol", "") or getattr(x, "name", "")
+        unit = x.rule.unit if isinstance(x, Step) else getattr(x, "unit", "")
+        value = float(value_at(x, k))
+        symbol = letters_of(name) if isinstance(x, Step) or x.symbol else number(value, 6)
+        return own.get(id(x)) or quantity(symbol, value, unit, of=x)
+
+    numbers = {i: float(a) for i, a in enumerate(step.args) if isinstance(a, int | float) and not getattr(a, "name", "")}
+    tree = with_numbers(tree, numbers)
+    result = made(step)
+    return equation(tree, [Quantity("", numbers[i]) if i in numbers else made(a) for i, a in enumerate(step.args)],
+                    replace(result, symbol=symbol or result.symbol), in_letters)
+
+
+# --- one line -----------------------------------------------------------------------------------------------------
+
+
+def lettered(node: Node) -> str:
+    """A formula as lettering markup: fractions by strokes, roots with brackets."""
+    return "".join(_pieces(node)).strip()
+
+
+_FUNCTIONS = {"tg": marked("tan"), "arctg": marked("arctan"), "НОД": marked("gcd")}
+_WIDE = "=+−<>≈≥≤"
+
+
+def _pieces(node: Node) -> Iterator[str]:
+    if isinstance(node, Words):
+        yield node.text.replace(name := node.text.strip(), tr(_FUNCTIONS[name]) if name in _FUNCTIONS else name)
+    elif isinstance(node, Letters):
+        yield node.text
+    elif isinstance(node, Figures):
+        yield _raised(node.text)
+    elif isinstance(node, Sign):
+        yield node.text
+    elif isinstance(node, FormulaRow):
+        for i, part in enumerate(node.items):
+            before = node.items[i - 1] if i else None
+            if isinstance(before, Figures) and decimal_sign() in before.text and isinstance(part, Letters | Scripts | Barred):
+                yield "·"  # a fraction and a letter would be read as one
+            binary = i and isinstance(part, Sign) and part.text in _WIDE
+            yield f" {part.text} " if binary else "".join(_pieces(part))  # type: ignore[attr-defined]
+    elif isinstance(node, Scripts):
+        base = lettered(node.base)
+        yield f"({base})" if "·10^" in base and isinstance(node.base, Figures) else base
+        if node.below is not None:
+            yield f"_{{{lettered(node.below)}}}"
+        if node.above is not None:
+            above = lettered(node.above)
+            yield above if above in ("′", "″") else f"^{{{above}}}"
+    elif isinstance(node, Fraction):
+        over, under = lettered(node.over), lettered(node.under)
+        yield f"{_bracketed(over, node.over, '+−')}/{_bracketed(under, node.under, '+−·/')}"
+    elif isinstance(node, Root):
+        yield f"√({lettered(node.of)})"
+    elif isinstance(node, Fenced):
+        yield node.left + lettered(node.of) + node.right
+    elif isinstance(node, Barred):
+        yield f"{lettered(node.of)}\u0305"
+
+
+def _bracketed(text: str, node: Node, signs: str) -> str:
+    """A part of a fraction in brackets where its own signs would part it."""
+    if isinstance(node, Fraction):
+        return f"({text})" if "/" in signs else text
+    if text[0] == text[-1] == "|" and text.count("|") == 2:
+        return text
+    if "/" in signs and (text[0] == "−" or "·10^" in text):
+        return f"({text})"
+    items = node.items if isinstance(node, FormulaRow) else ()
+    parted = any((isinstance(x, Sign) and x.text in signs) or (isinstance(x, Fraction) and "/" in signs) for x in items)
+    return f"({text})" if parted or (len(items) > 1 and "·" in signs and not isinstance(items[0], Words)) else text
+
+
+_RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789−")
+
+
+def _raised(text: str) -> str:
+    """A power of ten as markup."""
+    head, ten, power = text.partition("·10")
+    return f"{head}·10^{{{power.translate(_RAISED)}}}" if ten else text
