@@ -159,7 +159,7 @@ def sentence(step: Step, k: int, to_mm: Callable[[float], float], unit: str = "m
     return wording.format(*shown, name=letter_of(step), value=value, formula=formula)
 
 
-_SECTIONS = {"train": "reducer", "rack": "gear",
+_SECTIONS = {"rack": "gear",
              **dict.fromkeys(("drive", "rotor", "motor", "crank", "energy", "reduction"), "flywheel")}
 """Parts of the note whose letters those of other plans are, by the first word of a plan's name."""
 _POWERS = str.maketrans("0123456789−", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")

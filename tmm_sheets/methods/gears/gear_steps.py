@@ -87,7 +87,8 @@ LIKE_PINION = _formula("shift of the ring like the pinion's", lambda x1: x1, (N,
                        marked("The ring is shifted like its pinion (the centre distance stays the reference one): {name} = {0} = "
                               "{value}."), "")
 HALF_SPACE = _formula("half of the ring's space at the base circle", lambda s, r, inv, z: pi / z - s / (2 * r) + inv, (N, N, N, N),
-                      "", "rad")
+                      marked("Half the angular width of the ring's space on the base circle ψ_b = π/z − s/2r + inv α: {name} = "
+                             "π/{3} − {0}/(2 × {1}) + {2} = {value}."), "rad")
 RING_FILLET = _formula(
     "fillet radius of a ring", lambda m, rb, rf, half, low: fillets.ring_radius(gf.FILLET * m, rb, rf, half, low), (N, N, N, N, N),
     marked("Radius of the ring's fillet 0.38m if there is room for it in the tooth space, else the greatest possible: {name} = "
