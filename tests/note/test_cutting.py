@@ -7,8 +7,7 @@ import pytest
 
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.marks import Arc, Line, Polyline, Provenance, Text, flat
-from tmm_sheets.note.cutting import bare, windowed
-from tmm_sheets.note.pictures import LETTERS, READABLE, SMALLEST, scale
+from tmm_sheets.note.pictures import LETTERS, READABLE, SMALLEST, bare, scale, windowed
 
 BOX = Box(0, 0, 100, 50)
 

@@ -17,10 +17,9 @@ from tmm_sheets.drawing.placing import place
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import composing as sheets
 from tmm_sheets.sheets.arrangement import arrangement
-from tmm_sheets.sheets.composing import INSIDE, TITLE_BLOCK
+from tmm_sheets.sheets.composing import BESIDE, INSIDE, TITLE_BLOCK, TOUCH, leaving
 from tmm_sheets.sheets.composition import arranged
 from tmm_sheets.sheets.sheet import composed
-from tmm_sheets.sheets.view_overflow import BESIDE, TOUCH, leaving
 
 
 def masses(distance, angle):
