@@ -187,6 +187,8 @@ VANISHED = Sentence("as-built", marked("without length, as follows from the mist
 TURNED = {1: Sentence("turned", marked("turned by {by}° counter-clockwise")),
           -1: Sentence("turned", marked("turned by {by}° clockwise"))}
 TOO_LONG = {1: Sentence("length", marked("{by} mm too long")), -1: Sentence("length", marked("{by} mm too short"))}
+LINE_TOO_LONG = {1: Sentence("length", marked("{line} is {by} mm too long")),
+                 -1: Sentence("length", marked("{line} is {by} mm too short"))}
 TOO_LONG_AT = Sentence("length", marked("{by} mm too long at {place}"))
 TOO_SHORT_AT = Sentence("length", marked("too short: {size} mm missing at {place}"))
 END = {

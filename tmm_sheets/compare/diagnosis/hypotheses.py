@@ -16,6 +16,7 @@ import numpy as np
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.codes import Number, Own, Remark, Sentence, joined
 from tmm_sheets.compare.diagnosis.replay import (
+    Again,
     Change,
     Done,
     argument,
@@ -30,9 +31,11 @@ from tmm_sheets.construction.step import Rule, Step, value_at
 from tmm_sheets.methods.linkage import accelerations, forces, loads, velocities, zhukovsky
 from tmm_sheets.words import marked
 
-Kind = Literal["coriolis", "normal", "sense", "parallel", "intersection", "inertia", "force", "moment", "mirror", "crank",
-               "neighbour", "scale"]
+Kind = Literal["coriolis", "normal", "sense", "parallel", "intersection", "inertia", "force", "moment", "left out", "radii",
+               "mirror", "crank", "neighbour", "scale"]
 """Kinds of mistakes, the more usual ones first."""
+RARITY: Mapping[str, float] = {"both parallel": 1.0, "crank": 2.0, "across": 2.0, "upside down": 2.0, "vector scale": 2.0}
+"""Price of what is done more rarely than the rest, mm of ink that it must explain more; by the key of its words."""
 
 LINKAGE = ("positions", "velocities", "accelerations", "loads", "moments", "lever")
 """Plans whose steps are tried, besides the force polygons."""
@@ -45,6 +48,11 @@ WORDS: Mapping[str, str] = {
     "crank": marked("the crank turns the other way: point {step} is on the other side at every position"),
     "parallel": marked("for point {step} a line is drawn parallel to {other} instead of perpendicular"),
     "perpendicular": marked("for point {step} a line is drawn perpendicular to {other} instead of parallel"),
+    "both parallel": marked("for point {step} both lines are drawn parallel instead of perpendicular, or the other way round"),
+    "left out": marked("the vector to {step} is left out"),
+    "side left out": marked("in the force polygon {other} is left out, before point {step}"),
+    "radii exchanged": marked("the radii of the arcs to {step} are exchanged"),
+    "of position": marked("this is the plan of position {other}"),
     "intersection": marked("point {step} is the other intersection"),
     "assembly": marked("point {step} is the other intersection at every position: the other assembly"),
     "inertia": marked("the force of inertia {step} is taken along the acceleration instead of against it"),
@@ -107,6 +115,11 @@ class Hypothesis:
         """The mistake."""
         done = built_otherwise(self.words, step=letter_of(self.step), other=self.other)
         return EVERYWHERE(mistake=done) if self.everywhere else done
+
+    @property
+    def rarity(self) -> float:
+        """What it costs more than a usual one, mm of ink."""
+        return RARITY.get(self.words, 0.0)
 
     def said(self) -> str:
         """The mistake as it is told to the reader."""
@@ -172,6 +185,7 @@ def _of_step(step: Step, k: int) -> Iterator[Hypothesis]:
     if rule in BACKWARDS:
         kind, words = BACKWARDS[rule]
         yield Hypothesis(kind, words, step, (Change(step, laid_off_backwards, k),), k)
+        yield Hypothesis("left out", "left out", step, (Change(step, laid_off(0.0), k),), k)
     if (rule in BACKWARDS or rule is rules.SHIFT) and isinstance(step.args[1], Step):
         yield from (Hypothesis("scale", "vector scale", step, (Change(step, laid_off(times), k),), k, Number(f"{times:g}"))
                     for times in FACTORS)
@@ -180,10 +194,16 @@ def _of_step(step: Step, k: int) -> Iterator[Hypothesis]:
         yield Hypothesis(kind, words, step, (Change(step, opposite, k),), k)
     if rule is rules.SHIFT and isinstance(step.args[1], Step):
         yield Hypothesis("force", "laid off", step, (Change(step, laid_off_backwards, k),), k, letter_of(step.args[1]))
+        yield Hypothesis("left out", "side left out", step, (Change(step, laid_off(0.0), k),), k, letter_of(step.args[1]))
     if rule in REACTIONS:
         yield Hypothesis("force", "reaction", step, (Change(step, opposite, k),), k, letter_of(step.args[0]))
     if rule is rules.LINE_LINE:
-        yield from (_turned(step, i, k) for i in (1, 3) if isinstance(step.args[i], Step))
+        some = [i for i in (1, 3) if isinstance(step.args[i], Step)]
+        yield from (_turned(step, i, k) for i in some)
+        if len(some) == 2:
+            yield Hypothesis("parallel", "both parallel", step, (Change(step, _both_turned, k),), k)
+    if rule is rules.ARC_ARC:
+        yield Hypothesis("radii", "radii exchanged", step, (Change(step, _radii_exchanged, k),), k)
     if rule is rules.LAY_OFF and np.ndim(step.value):
         first = float(value_at(step.args[2], 0))
         yield Hypothesis("crank", "crank", step, (Change(step, argument(2, lambda phi: 2 * first - phi)),))
@@ -203,6 +223,22 @@ def _turned(step: Step, i: int, k: int) -> Hypothesis:
     if line.rule is rules.TURN:
         return Hypothesis("parallel", "parallel", step, (change,), k, letter_of(line.args[0]))
     return Hypothesis("parallel", "perpendicular", step, (change,), k, letter_of(line))
+
+
+def _both_turned(again: Again, values: Sequence[Any]) -> Any:
+    return again(values[0], 1j * values[1], values[2], 1j * values[3], *values[4:])
+
+
+def _radii_exchanged(again: Again, values: Sequence[Any]) -> Any:
+    return again(values[0], values[3], values[2], values[1], *values[4:])
+
+
+def of_other_positions(steps: Sequence[Step], k: int, labels: Sequence[str]) -> Iterator[Hypothesis]:
+    """The plan of another position drawn, or measured, for that of position ``k``; ``steps`` are its points."""
+    some = [s for s in steps if np.size(s.value) == len(labels) > 1]
+    for other, label in enumerate(labels) if some else ():
+        if other != k:
+            yield Hypothesis("neighbour", "of position", some[-1], tuple(Change(s, of_position(other), k) for s in some), k, Own(label))
 
 
 def _moments(step: Step, k: int) -> Iterator[Hypothesis]:

@@ -1,0 +1,476 @@
+"""The strokes of a drawing as evidence for plans: where its ink is, which figures it forms, and what a plan laid on it costs.
+
+Lengths are mm of the student's paper, points complex. Nothing here knows of mechanisms: :class:`PlanLines` are lines that a plan
+should have, :class:`Figure` is ink that may be one, :meth:`Figure.price` how badly the two agree.
+
+Constants are named with what they are: pencil (``_MM``, ``_RAD``: how exactly one draws), paper (sizes of what is drawn), price
+(mm of ink).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tmm_sheets.compare.cad.cad_ink import DrawingSpace
+from tmm_sheets.drawing.marks import Points
+
+Floats = NDArray[np.float64]
+Numbers = NDArray[np.intp]
+
+# --- pencil: how exactly one draws -----------------------------------------------------------------------------------------
+TOLERANCE_MM = 0.5       # a stroke may lie beside its line, an end from its point
+SAME_POINT_MM = 0.5      # ends so near are one point of an arrow head
+PARALLEL_RAD = 0.012     # a stroke may be turned against its line
+UPRIGHT_RAD = 0.03       # a plan may be turned against the lettering
+# --- paper: sizes of what is drawn ------------------------------------------------------------------------------------------
+MAX_GAP_MM = 2.5         # strokes nearer than this are one figure
+MAX_HEAD_MM = 6.5        # longest stroke of an arrow head
+MAX_SYMBOL_MM = 14.0     # a closed outline up to this size is a symbol
+SUPPORT_MM = 10.0        # so near to a point of the mechanism, and so long, are the lines of its support
+MIN_DRAWN_MM = 0.7       # a shorter vector is not drawn
+STEP_MM = 1.0            # distance of the places at which lines are looked at
+COUNTED_MM = 40.0        # a longer line counts no more than this
+LETTERS_MM = (1.6, 15.0)  # heights of letters
+# --- price: mm of ink -------------------------------------------------------------------------------------------------------
+BARE_PRICE = 0.7         # of a mm of a line on bare paper, where one of unexplained ink is 1
+ABSENT_PRICE = 3.0       # of a class of lines that is not drawn at all
+DRAWN_SHARE = 0.85       # a line with so much ink is drawn
+LEFT_SHARE = 0.08        # of a stroke that may stay without a line
+PASSES_SHARE = 0.9       # what a line whose ends meet no end of ink counts at most
+LONGEST_LINES, LONGEST_STROKES = 12, 40  # laid on each other to find a place
+
+MAIN, OTHERS = "main", "others"
+"""Classes of lines: those that must be there, and those that explain ink and are never missed."""
+NOT_OF_PLANS = ("DIMENSION", "LEADER", "MULTILEADER", "MLEADER", "HATCH", "ACAD_TABLE", "TOLERANCE")
+UNITS_MM = (1.0, 25.4, 10.0, 1000.0)
+
+
+@dataclass(frozen=True)
+class Lettering:
+    """A text of one entity, its lines joined: where it stands and how it is turned, rad."""
+
+    text: str
+    at: complex
+    angle: float
+
+
+@dataclass(frozen=True, eq=False)
+class PlanLines:
+    """Lines of a plan in its own unit: ends (n,), class of each, number of each among those of its view.
+
+    ``through``, ``along`` are points and directions (m,) of lines without ends that explain ink, such as guides.
+    """
+
+    tails: Points
+    heads: Points
+    kinds: tuple[str, ...]
+    numbers: Numbers
+    through: Points
+    along: Points
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A plan at a place: z of the plan is at ``origin + scale * z``.
+
+    Attributes
+    ----------
+    price, extra, bare : mm of ink: the whole; ink that no line explains; lines on bare paper
+    drawn, left : by line the share with ink; by stroke the share without a line
+    ink, own : mm of ink of the figure, and of the main lines of the plan
+    """
+
+    price: float
+    extra: float
+    bare: float
+    scale: complex
+    origin: complex
+    drawn: Floats
+    left: Floats
+    ink: float
+    own: float
+
+    def at(self, z: Points) -> Points:
+        """Where points of the plan are."""
+        return np.asarray(self.origin + self.scale * z)
+
+
+class PlanInk:
+    """The straight strokes of a drawing that may be lines of plans, in mm: without dimensions, hatchings, curves, small symbols.
+
+    Attributes
+    ----------
+    a, b : ends (n,); ``stroke`` their numbers in the drawing; ``auxiliary`` whether their look is one of construction lines
+    heads : tips and directions of arrow heads
+    texts : lettering; ``turn`` how most of it is turned, rad, NaN without any
+    scale : mm per unit of the drawing; ``curves`` number of strokes that are bent and not looked at
+    """
+
+    def __init__(self, space: DrawingSpace, unit: float | None) -> None:
+        self.texts = _lettering(space)
+        self.scale = _scale(space, unit)
+        self.curves = 0
+        ends: list[complex] = []
+        stroke: list[int] = []
+        small: list[Points] = []
+        for n, s in enumerate(space.strokes):
+            z = s.points * self.scale
+            if space.entities[s.entity].kind in NOT_OF_PLANS:
+                continue
+            if _is_bent(z):
+                self.curves += 1
+            elif len(z) > 3 and abs(z[0] - z[-1]) < 0.05 and max(np.ptp(z.real), np.ptp(z.imag)) < MAX_SYMBOL_MM:
+                small.append(z)
+            else:
+                ends += [x for pair in zip(z[:-1].tolist(), z[1:].tolist(), strict=True) for x in pair]
+                stroke += [n] * (len(z) - 1)
+        s2 = np.array(ends, dtype=complex).reshape(-1, 2)
+        of = np.array(stroke, dtype=np.intp)
+        keep = _each_once(s2)
+        s2, of = s2[keep], of[keep]
+        filled = [*(a.points * self.scale for a in space.areas if a.solid and space.entities[a.entity].kind not in NOT_OF_PLANS),
+                  *small]
+        heads = [h for z in filled if (h := _triangle_head(z))]
+        barbs, more = _open_heads(s2)
+        self.a, self.b, self.stroke = (np.delete(x, barbs) for x in (s2[:, 0], s2[:, 1], of))
+        self.heads: list[tuple[complex, complex]] = heads + more
+        turns = Counter(round(float(np.degrees(t.angle)) % 360, 1) for t in self.texts)
+        self.turn = float(np.radians(turns.most_common(1)[0][0])) if turns else float("nan")
+        self.auxiliary = _auxiliary(space, self.stroke)
+        self.look = _looks(space, self.stroke)
+
+    def mirrored(self) -> PlanInk:
+        """The drawing seen from behind: reflected in the x axis, its lettering still read where it stands."""
+        other = object.__new__(PlanInk)
+        other.__dict__.update(self.__dict__, a=np.conj(self.a), b=np.conj(self.b), turn=float("nan"),
+                              heads=[(np.conj(tip), np.conj(way)) for tip, way in self.heads],
+                              texts=[Lettering(t.text, t.at.conjugate(), -t.angle) for t in self.texts])
+        return other
+
+    def figures(self, some: Numbers) -> list[Numbers]:
+        """Some strokes by the figures they hang together in."""
+        if not len(some):
+            return []
+        import shapely
+
+        a, b = self.a[some], self.b[some]
+        lines = shapely.linestrings(np.stack((np.stack((a.real, a.imag), -1), np.stack((b.real, b.imag), -1)), 1))
+        i, j = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=MAX_GAP_MM)
+        out = np.arange(len(some))
+        while True:
+            least = out.copy()
+            np.minimum.at(least, i, out[j])
+            least = np.minimum(least, least[least])
+            if (least == out).all():
+                return [some[out == f] for f in np.unique(out)]
+            out = least
+
+    def gap(self, some: Numbers, others: Numbers) -> float:
+        """How near strokes come to others, mm, by places along them."""
+        z = sample(self.a[some], self.b[some])[0]
+        w = np.concatenate((self.a[others], self.b[others], (self.a[others] + self.b[others]) / 2))
+        return float(np.abs(z[:, None] - w).min())
+
+
+def _lettering(space: DrawingSpace) -> list[Lettering]:
+    by_entity: dict[int, list[int]] = {}
+    for n, w in enumerate(space.writings):
+        by_entity.setdefault(w.entity, []).append(n)
+    return [Lettering(" ".join(space.writings[n].text.strip() for n in some), space.writings[some[0]].at,
+                      space.writings[some[0]].angle) for some in by_entity.values()]
+
+
+def _scale(space: DrawingSpace, unit: float | None) -> float:
+    """Millimetres of a unit of the drawing: the declared unit, unless the lettering would be too low or too high in it."""
+    units = list(dict.fromkeys((1.0 if space.paper else unit or 1.0, *UNITS_MM)))
+    if not space.writings:
+        size = max(float(np.ptp(z)) for z in _extent(space)) if space.strokes else 1.0
+        return next((u for u in units if 40 < u * size < 5000), 300 / max(size, 1e-9))
+    high = float(np.median([w.height for w in space.writings])) or 1.0
+    return next((u for u in units if LETTERS_MM[0] <= u * high <= LETTERS_MM[1]), 4.0 / high)
+
+
+def _extent(space: DrawingSpace) -> tuple[Floats, Floats]:
+    z = np.concatenate([s.points for s in space.strokes])
+    return z.real, z.imag
+
+
+def _is_bent(z: Points) -> bool:
+    """True if a polyline is a curve: many chords, each turned a little against the one before."""
+    d = np.diff(z)
+    d = d[np.abs(d) > 1e-9]
+    return len(d) > 6 and float(np.median(np.abs(np.angle(d[1:] / d[:-1])))) < 0.5 and bool(np.abs(d).sum() > 1.02 * abs(z[-1] - z[0]))
+
+
+def _each_once(s: NDArray[np.complex128]) -> list[int]:
+    """Numbers of the strokes that have a length, coincident ones once."""
+    seen, keep = set(), []
+    for n, (a, b) in enumerate(np.round(s, 2).tolist()):
+        key = frozenset((a, b))
+        if len(key) == 2 and key not in seen:
+            seen.add(key)
+            keep.append(n)
+    return keep
+
+
+def _triangle_head(z: Points) -> tuple[complex, complex] | None:
+    """Tip and direction of a small triangle that is longer than wide."""
+    corners = [p for i, p in enumerate(z.tolist()) if all(abs(p - q) > 0.1 for q in z[:i].tolist())]
+    if len(corners) != 3 or max(abs(p - sum(corners) / 3) for p in corners) > MAX_HEAD_MM:
+        return None
+    k = int(np.argmax([min(abs(corners[i] - corners[i - 1]), abs(corners[i] - corners[i - 2])) for i in range(3)]))
+    back = (corners[k - 1] + corners[k - 2]) / 2
+    size = abs(corners[k] - back)
+    return (corners[k], (corners[k] - back) / size) if size > 0.8 * abs(corners[k - 1] - corners[k - 2]) else None
+
+
+def _open_heads(s: NDArray[np.complex128]) -> tuple[list[int], list[tuple[complex, complex]]]:
+    """Heads of two strokes, and these: alike long, from one point at which a longer stroke ends that halves their angle."""
+    if not len(s):
+        return [], []
+    d = s[:, 1] - s[:, 0]
+    size = np.abs(d)
+    ends = np.concatenate((s[:, 0], s[:, 1]))
+    away = np.concatenate((d, -d)) / np.concatenate((size, size))
+    of = np.tile(np.arange(len(s)), 2)
+    used: set[int] = set()
+    heads = []
+    for i in np.flatnonzero(size[of] <= MAX_HEAD_MM).tolist():
+        if of[i] in used:
+            continue
+        at = np.flatnonzero((np.abs(ends - ends[i]) < SAME_POINT_MM) & (of != of[i]))
+        for j in at[(np.abs(size[of[at]] - size[of[i]]) < 0.02 * size[of[i]] + SAME_POINT_MM) & (size[of[at]] <= MAX_HEAD_MM)].tolist():
+            if of[j] in used or not 0.08 < abs(np.angle(away[j] / away[i])) / 2 < 0.5:
+                continue
+            middle = away[i] + away[j]
+            middle /= abs(middle)
+            slack = 0.02 + SAME_POINT_MM / 4 / size[of[i]]
+            if any(k != j and of[k] not in used and abs(np.angle(away[k] / middle)) < slack and size[of[k]] > 0.9 * size[of[i]]
+                   for k in at.tolist()):
+                heads.append((complex(ends[i]), complex(-middle)))
+                used |= {int(of[i]), int(of[j])}
+                break
+    return sorted(used), heads
+
+
+def _auxiliary(space: DrawingSpace, stroke: Numbers) -> NDArray[np.bool_]:
+    """By stroke whether its look is that of construction lines: not continuous, or thin where others are twice as wide."""
+    of = [space.entities[space.strokes[n].entity] for n in stroke.tolist()]
+    widths = np.array([np.nan if e.width is None else e.width for e in of])
+    widest = np.nanmax(widths) if np.isfinite(widths).any() else np.nan
+    thin = np.nan_to_num(widths, nan=np.inf) <= 0.6 * widest if np.isfinite(widest) else np.zeros(len(of), bool)
+    dashed = np.array([e.pattern != "continuous" for e in of], dtype=bool)
+    made = thin | dashed
+    return made if made.mean() < 0.7 else np.zeros(len(of), bool)
+
+
+def _looks(space: DrawingSpace, stroke: Numbers) -> Numbers:
+    """By stroke the number of its look: layer, line type, width."""
+    seen: dict[tuple[str, str, float | None], int] = {}
+    of = (space.entities[space.strokes[n].entity] for n in stroke.tolist())
+    return np.array([seen.setdefault((e.layer, e.pattern, e.width), len(seen)) for e in of], dtype=np.intp)
+
+
+def sample(a: Points, b: Points) -> tuple[Points, Points, Numbers]:
+    """Places along lines at most STEP_MM apart (but 30 on one): points, directions, numbers of their lines."""
+    size = np.abs(b - a)
+    n = np.clip(np.ceil(size / STEP_MM), 2, 30).astype(int)
+    of = np.repeat(np.arange(len(a)), n)
+    t = (np.arange(len(of)) - np.repeat(np.cumsum(n) - n, n) + 0.5) / n[of]
+    return a[of] + t * (b - a)[of], ((b - a) / np.maximum(size, 1e-9))[of], of
+
+
+def covered(z: Points, u: Points, a: Points, b: Points) -> NDArray[np.bool_]:
+    """By place z (its line has direction u) whether a stroke from a to b of nearly that direction passes within tolerance."""
+    if not len(a) or not len(z):
+        return np.zeros(len(z), bool)
+    d = b - a
+    size = np.maximum(np.abs(d), 1e-9)
+    e = d / size
+    w = (z[:, None] - a) * np.conj(e)
+    along = np.abs((u[:, None] * np.conj(e)).imag) < np.maximum(PARALLEL_RAD, 2 * TOLERANCE_MM / size)
+    near = (np.abs(w.imag) < TOLERANCE_MM) & (w.real > -TOLERANCE_MM) & (w.real < size + TOLERANCE_MM)
+    return np.asarray((near & along).any(1))
+
+
+class Figure:
+    """Strokes that may be a view, with what is computed of them once; ``strokes`` are their numbers in the ink."""
+
+    def __init__(self, ink: PlanInk, strokes: Numbers, vectors: bool = False) -> None:
+        self.strokes = strokes
+        self.a, self.b = ink.a[strokes], ink.b[strokes]
+        self.size = np.abs(self.b - self.a)
+        self.z, self.u, self.of = sample(self.a, self.b)
+        self.count = np.bincount(self.of, minlength=len(strokes))
+        self.ends = np.concatenate((self.a, self.b))
+        self.soft = ink.auxiliary[strokes] | self._barbs
+        if vectors:
+            self.soft |= self._without_heads(ink, strokes)
+        if self.soft.all():
+            self.soft = np.zeros(len(strokes), bool)
+        weight = np.where(self.soft, 0.0, np.minimum(self.size, COUNTED_MM))
+        self.weight = weight
+        self.ink = float(weight.sum())
+        self.long = np.argsort(-np.where(self.soft, 0.0, self.size))[:LONGEST_STROKES]
+        self.span = float(np.hypot(np.ptp(self.ends.real), np.ptp(self.ends.imag))) if len(strokes) else 0.0
+
+    @cached_property
+    def _barbs(self) -> NDArray[np.bool_]:
+        """Half arrow heads that were not read: short, on the end of a longer stroke, the other end free."""
+        near = np.abs(self.ends[:, None] - self.ends) < SAME_POINT_MM
+        n = np.tile(np.arange(len(self.a)), 2)
+        near &= n[:, None] != n
+        longer = (near & (self.size[n] > 1.5 * self.size[n][:, None])).any(1).reshape(2, -1)
+        alone = (~near.any(1)).reshape(2, -1)
+        return np.asarray((self.size < MAX_HEAD_MM) & ((longer[0] & alone[1]) | (longer[1] & alone[0])))
+
+    def _without_heads(self, ink: PlanInk, strokes: Numbers) -> NDArray[np.bool_]:
+        """Of vectors, the strokes of looks of which none has a head, where another look has some."""
+        tips = np.array([tip for tip, _ in ink.heads], dtype=complex)
+        looks = ink.look[strokes]
+        if not len(tips):
+            return np.zeros(len(strokes), bool)
+        headed = (np.abs(self.ends[:, None] - tips).min(1) < 2 * TOLERANCE_MM).reshape(2, -1).any(0)
+        some = set(looks[headed].tolist())
+        return ~np.isin(looks, list(some)) if some else np.zeros(len(strokes), bool)
+
+    def price(self, lines: PlanLines, scale: complex, origin: complex) -> Fit:
+        """What a plan at a place costs: ink that it does not explain, and lines of it on bare paper."""
+        a, b = origin + scale * lines.tails, origin + scale * lines.heads
+        size = np.abs(b - a)
+        shown = np.flatnonzero(size > MIN_DRAWN_MM)
+        left, drawn = np.ones(len(self.a)), np.ones(len(a))
+        if len(shown):
+            p, q = (np.concatenate((x[shown], y)) for x, y in zip((a, b), self._endless(lines, scale, origin), strict=True))
+            over = covered(self.z, self.u, p, q)
+            left = 1 - np.bincount(self.of, over, len(self.a)) / self.count
+            z, u, of = sample(a[shown], b[shown])
+            hit = covered(z, u, self.a, self.b)
+            drawn[shown] = np.bincount(of, hit, len(shown)) / np.bincount(of, minlength=len(shown))
+            # A line that is drawn ends where it should: an end of ink at both its ends, else it only passes over other lines.
+            for e in (a, b):
+                reach = np.abs(e[shown][:, None] - self.ends).min(1) < 2.5 * TOLERANCE_MM
+                drawn[shown] = np.where(reach, drawn[shown], np.minimum(drawn[shown], PASSES_SHARE))
+        unexplained = np.where(left > LEFT_SHARE, left, 0.0)
+        if len(lines.through):  # supports and blocks stand at points of the mechanism
+            points = np.concatenate((a, b))
+            near = np.abs((self.a + self.b)[:, None] / 2 - points).min(1) < SUPPORT_MM if len(points) else False
+            shortest = min(size[shown].tolist(), default=0.0)
+            unexplained = np.where(near & (self.size < min(SUPPORT_MM, 0.6 * shortest)), 0.0, unexplained)
+        extra = float((self.weight * unexplained).sum())
+        bare = 0.0
+        counted = np.minimum(size, COUNTED_MM)
+        kinds = np.array(lines.kinds)
+        is_shown = size > MIN_DRAWN_MM
+        for kind in set(lines.kinds) - {OTHERS}:
+            mine = is_shown & (kinds == kind)
+            gone = mine & (drawn < DRAWN_SHARE)
+            cost = BARE_PRICE * float((counted * (1 - drawn))[gone].sum())
+            whole = gone.sum() == mine.sum()
+            bare += cost if kind == MAIN else min(ABSENT_PRICE if whole else np.inf, 0.5 * cost) if gone.any() else 0.0
+        own = float(counted[is_shown & (kinds == MAIN)].sum())
+        return Fit(extra + bare, extra, bare, scale, origin, drawn, left, self.ink, own)
+
+    def _endless(self, lines: PlanLines, scale: complex, origin: complex) -> tuple[Points, Points]:
+        """Lines without ends, as far as the figure reaches, and two beside each: a guide is drawn as one line or as two."""
+        if not len(lines.through):
+            return np.zeros(0, complex), np.zeros(0, complex)
+        at, u = origin + scale * lines.through, scale / abs(scale) * lines.along
+        return at - self.span * u, at + self.span * u
+
+    def places(self, lines: PlanLines, turn: float, most: int) -> Iterator[tuple[complex, complex]]:
+        """Scales and origins that lay some line of the plan on some stroke, those first that put most points on ends of ink."""
+        d = lines.heads - lines.tails
+        size = np.abs(d)
+        pts = np.unique(np.round(np.concatenate((lines.tails, lines.heads)), 12))
+        extent = float(np.hypot(np.ptp(pts.real), np.ptp(pts.imag))) or 1e-9
+        main = [i for i in np.argsort(-size).tolist() if size[i] > 0.03 * extent and lines.kinds[i] != OTHERS][:LONGEST_LINES]
+        if not main or not len(self.long):
+            return
+        i, j = (x.ravel() for x in np.meshgrid(main, self.long, indexing="ij"))
+        ratio = (self.b[j] - self.a[j]) / d[i]
+        scale = np.concatenate((ratio, -ratio))
+        origin = np.concatenate((self.a[j] - ratio * lines.tails[i], self.b[j] + ratio * lines.tails[i]))
+        if np.isfinite(turn):
+            upright = np.exp(1j * turn)
+            ok = np.abs(np.angle(scale / upright)) < UPRIGHT_RAD
+            scale, origin = np.abs(scale[ok]) * upright, origin[ok]
+        ok = (np.abs(scale) * extent < 1.6 * self.span) & (np.abs(scale) * extent > 0.3 * self.span)
+        scale, origin = scale[ok], origin[ok]
+        if not len(scale):
+            return
+        there = origin[:, None] + scale[:, None] * pts
+        score = np.zeros(len(origin), int)
+        for n in range(0, len(origin), 64):
+            score[n:n + 64] = (np.abs(there[n:n + 64, :, None] - self.ends).min(2) < 2 * TOLERANCE_MM).sum(1)
+        seen: set[tuple[float, float, complex]] = set()
+        for n in np.argsort(-score, kind="stable").tolist():
+            key = (round(float(np.log(abs(scale[n]))) * 60), round(float(np.angle(scale[n])) * 60), complex(np.round(origin[n] / 1.5)))
+            if key not in seen:
+                seen.add(key)
+                yield self._refined(pts, complex(scale[n]), complex(origin[n]), bool(np.isfinite(turn)))
+                if len(seen) >= most:
+                    return
+
+    def _refined(self, pts: Points, scale: complex, origin: complex, keep_turn: bool) -> tuple[complex, complex]:
+        """A place by least squares over the points that lie on ends of strokes."""
+        for within in (3 * TOLERANCE_MM, 1.5 * TOLERANCE_MM):
+            off = np.abs((origin + scale * pts)[:, None] - self.ends)
+            near = off.min(1) < within
+            if near.sum() < 2:
+                break
+            p, q = pts[near], self.ends[off.argmin(1)[near]]
+            v = float((np.abs(p - p.mean()) ** 2).sum())
+            if v < 1e-18:
+                break
+            new = complex(((q - q.mean()) * np.conj(p - p.mean())).sum() / v)
+            if keep_turn:
+                unit = scale / abs(scale)
+                new = (new * unit.conjugate()).real * unit
+            if not abs(new):
+                break
+            scale, origin = new, complex(q.mean() - new * p.mean())
+        return scale, origin
+
+    def laid(self, lines: PlanLines, turn: float, most: int = 5, whole: bool = False) -> Fit | None:
+        """The cheapest place of a plan's lines; ``whole``: that where most of it is drawn, whatever else is."""
+        if not len(lines.tails):
+            return None
+        fits = [self.price(lines, *place) for place in self.places(lines, turn, most)]
+        return min(fits, key=lambda f: f.bare + 0.1 * f.extra if whole else f.price, default=None)
+
+    def away(self, at: complex) -> float:
+        """How far a title stands from the figure, mm; more beyond its sides than inside its box."""
+        e = self.b - self.a
+        t = np.clip(((at - self.a) * np.conj(e)).real / np.abs(e) ** 2, 0, 1)
+        x, y = self.ends.real, self.ends.imag
+        beside = np.hypot(max(x.min() - at.real, at.real - x.max(), 0), max(y.min() - at.imag, at.imag - y.max(), 0))
+        return min(float(np.abs(at - self.a - t * e).min()), 1.5 * float(beside) + 20)
+
+
+def reversed_heads(ink: PlanInk, lines: PlanLines, fit: Fit) -> list[int] | None:
+    """Numbers of the lines with a head at the wrong end; None where no head of the view is read.
+
+    A head is of one vector: of one that it is the right head of, if there is any.
+    """
+    a, b = fit.at(lines.tails), fit.at(lines.heads)
+    size = np.abs(b - a)
+    shown = [i for i in range(len(a)) if fit.drawn[i] >= DRAWN_SHARE and size[i] > MIN_DRAWN_MM]
+    read, wrong = 0, []
+    for tip, way in ink.heads:
+        right = any(_aimed(b[i], tip, way, b[i] - a[i]) for i in shown)
+        back = [i for i in shown if size[i] > 2 and lines.kinds[i] != OTHERS and _aimed(a[i], tip, way, a[i] - b[i])]
+        read += right or bool(back)
+        wrong += [] if right else back[:1]
+    return wrong if read else None
+
+
+def _aimed(at: complex, tip: complex, way: complex, along: complex) -> bool:
+    """True if a head stands at a point and points along a direction."""
+    return abs(at - tip) < 2 * TOLERANCE_MM and abs(np.angle(way / along)) < 0.2

@@ -1,0 +1,413 @@
+"""Plans in a drawing of any layout, title first: right, wrong with what was done, another plan, or not drawn.
+
+1. Plans that are wholly there as they should be take their strokes, whatever other ink their figures have.
+2. Each title that is left is judged on the figures that are left: the dictionary of mistakes (``diagnosis/hypotheses.py``) and
+   points that lie elsewhere are drawn again through the record; the cheapest explanation is the verdict, if it explains nearly all.
+3. Figures without a title are any plan that fits as it is.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from tmm_sheets.compare.cad.plan_ink import (
+    COUNTED_MM,
+    DRAWN_SHARE,
+    LEFT_SHARE,
+    MAIN,
+    MAX_GAP_MM,
+    OTHERS,
+    Figure,
+    Fit,
+    Numbers,
+    PlanInk,
+    PlanLines,
+    reversed_heads,
+)
+from tmm_sheets.compare.cad.plan_views import PlanRecord, PlanTitle, PlanView, at, titles
+from tmm_sheets.compare.codes import LINE_TOO_LONG, POINT_MOVED, Remark
+from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, hypotheses, of_other_positions
+from tmm_sheets.compare.diagnosis.replay import Change, displaced, laid_off, replay
+from tmm_sheets.compare.findings import millimetres
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.error import Errors
+from tmm_sheets.construction.protocol import letter_of
+from tmm_sheets.construction.step import Step, ordered
+
+# --- price of a hypothesis, mm of ink: by what must be assumed ---------------------------------------------------------------
+STEP_PRICE, BEFORE_PRICE, POSITION_PRICE, LENGTH_PRICE, MOVED_PRICE = 4.0, 6.0, 7.0, 8.0, 12.0
+GAIN = 6.0              # a mistake must be so much cheaper than a right plan
+LEFT_MM = 2.0           # ink that may stay unexplained in a plan that is right, besides the share
+# --- probability: shares of ink or of a plan ----------------------------------------------------------------------------------
+LEFT_OF_RIGHT = 0.005   # that may stay unexplained in a plan that is right
+WHOLE = 0.03            # of a plan that may be on bare paper where it is there as it should be
+EXPLAINS = 0.08         # of the ink that a mistake may leave
+HALF = 0.4              # of the price from which a mistake explains enough for a second one to be looked for
+UNLIKE = 0.55           # of the ink that, unexplained, makes it another plan
+# --- paper, mm ------------------------------------------------------------------------------------------------------------------
+FAR_MM = 150.0          # a title is no farther from ink that is not its plan
+NEAREST = 4             # figures tried under a title
+MIN_FIGURE_MM = 15.0    # a figure with less ink is no plan
+MIN_MOVED_MM, MAX_MOVED_MM, ENDS = 1.0, 60.0, 14  # how far from its point an end of ink is tried, and how many such ends
+SAME_MM = 0.25          # mistakes whose points lie so near cannot be told apart
+TOLD = 3
+
+Kind = Literal["right", "mistake", "partly", "unlike", "bare"]
+"""As it should be; with a mistake that is named; a few lines do not fit; another plan; a title without ink."""
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Something done otherwise: what, in which step, what to replay, and what it costs to assume it, mm of ink."""
+
+    remark: Remark
+    step: Step
+    changes: tuple[Change, ...]
+    price: float
+    mistake: Hypothesis | None = None
+
+
+@dataclass(eq=False)
+class JudgedView:
+    """A view of a drawing and its verdict.
+
+    Attributes
+    ----------
+    title : as it stands in the drawing, empty without one
+    name, positions : of the plan it was judged as, numbers of the positions
+    kind, causes : the verdict; mistakes that draw the same, or one and a second one if ``both``
+    exact, lines, fit : the plan as it should be, as it was built, and where it lies
+    strokes : numbers in the ink of what belongs to it; ``unexplained`` those that no line explains
+    reversed_heads : numbers of lines; None where no head was read
+    tried : hypotheses that were drawn
+    """
+
+    title: str
+    name: str
+    positions: tuple[int, ...]
+    view: PlanView
+    kind: Kind
+    exact: PlanLines
+    lines: PlanLines
+    fit: Fit | None
+    strokes: Numbers
+    unexplained: Numbers
+    causes: tuple[Cause, ...] = ()
+    both: bool = False
+    reversed_heads: list[int] | None = field(default_factory=list)
+    tried: int = 0
+
+    @property
+    def label(self) -> str:
+        """The label of its position, empty for several."""
+        return self.view.plan.labels[self.positions[0]] if len(self.positions) == 1 else ""
+
+    @property
+    def absent(self) -> list[int]:
+        """Numbers of the lines that are not drawn, of those that are missed."""
+        return [] if self.fit is None else [i for i in np.flatnonzero(self.fit.drawn < DRAWN_SHARE).tolist()
+                                            if self.lines.kinds[i] != OTHERS]
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedPlans:
+    """What the plans of a drawing came to: the ink, its views, figures without a title that are none, whether it is mirrored."""
+
+    ink: PlanInk
+    views: tuple[JudgedView, ...]
+    untitled: tuple[Numbers, ...]
+    mirrored: bool = False
+    askew: bool = False
+
+    @property
+    def fitting(self) -> list[JudgedView]:
+        """The views that are the plans they should be, right or with a mistake."""
+        return [v for v in self.views if v.kind in ("right", "mistake", "partly")]
+
+    @property
+    def explained(self) -> float:
+        """Share of the straight ink that belongs to such views."""
+        size = np.minimum(np.abs(self.ink.b - self.ink.a), COUNTED_MM)
+        mine = [v.strokes for v in self.fitting]
+        return float(size[np.unique(np.concatenate(mine))].sum() / size.sum()) if mine and size.sum() else 0.0
+
+
+def judge_plans(record: PlanRecord, ink: PlanInk) -> JudgedPlans:
+    """Judge the plans of a drawing; where none fits, also turned against its lettering, and seen from behind."""
+    found = JudgedPlans(ink, *_Judge(record, ink).judged())
+    if any(v.kind == "right" for v in found.views) or not len(ink.a):
+        return found
+    others = [JudgedPlans(turned, *_Judge(record, turned).judged(), mirrored, not mirrored)
+              for mirrored in (False, True) for turned in [_freed(ink.mirrored() if mirrored else ink)]]
+    best = max(others, key=lambda o: sum(v.kind == "right" for v in o.views))
+    better = sum(v.kind == "right" for v in best.views)
+    return best if better > 1 or (better and not found.fitting) else found
+
+
+def _freed(ink: PlanInk) -> PlanInk:
+    other = object.__new__(PlanInk)
+    other.__dict__.update(ink.__dict__, turn=float("nan"))
+    return other
+
+
+class _Judge:
+    """The state of judging one drawing."""
+
+    def __init__(self, record: PlanRecord, ink: PlanInk) -> None:
+        self.record, self.ink = record, ink
+        self.titles = titles(ink.texts)
+        labels = Counter(t.label for t in self.titles if t.label in record.labels)
+        self.usual = record.labels.index(labels.most_common(1)[0][0]) if labels else None  # type: ignore[arg-type]
+
+    def judged(self) -> tuple[tuple[JudgedView, ...], tuple[Numbers, ...]]:
+        """All views, and the figures that are none."""
+        whole = self._whole_plans()
+        free = np.ones(len(self.ink.a), bool)
+        for _, _, _, claimed in whole:
+            free[claimed] = False
+        rest = [f for some in self.ink.figures(np.flatnonzero(free)) if (f := Figure(self.ink, some)).ink > MIN_DRAWN_INK]
+        open_titles = [n for n in range(len(self.titles)) if n not in {w[0] for w in whole}]
+        out, used = self._with_mistakes(open_titles, rest)
+        left = [f for n, f in enumerate(rest) if n not in used]
+        # What is left beside a plan that is there is of that view: extra lines, or others than it should have.
+        for n, name, ks, claimed in whole:
+            beside = [f for f in left if self.ink.gap(claimed, f.strokes) < MAX_GAP_MM]
+            left = [f for f in left if f not in beside]
+            mine = np.concatenate([claimed, *(f.strokes for f in beside)])
+            out.append(self._judged(self.titles[n].text, name, ks, self._figure(mine, name)))
+        bare = [n for n in open_titles if all(v.title != self.titles[n].text for v in out)]
+        out += [self._without_ink(self.titles[n]) for n in bare]
+        known = [f for f in left if f.ink > 40 and len(f.strokes) > 2 and (v := self._untitled(f)) is not None and out.append(v) is None]
+        none = tuple(f.strokes for f in left if f not in known and f.ink > 40 and len(f.strokes) > 2)
+        for v in out:
+            if v.fit is not None and v.name != "positions" and v.kind in ("right", "mistake", "partly"):
+                v.reversed_heads = reversed_heads(self.ink, v.lines, v.fit)
+        return tuple(out), none
+
+    def _figure(self, strokes: Numbers, name: str) -> Figure:
+        return Figure(self.ink, strokes, vectors=name != "positions")
+
+    def _whole_plans(self) -> list[tuple[int, str, tuple[int, ...], Numbers]]:
+        """Plans that are there as they should be: number of the title, plan, positions, its strokes."""
+        figures = [some for some in self.ink.figures(np.arange(len(self.ink.a))) if len(some) > 1]
+        offers = []
+        for n, title in enumerate(self.titles):
+            for f, strokes in enumerate(figures):
+                figure = self._figure(strokes, title.kind)
+                if figure.ink < MIN_FIGURE_MM:
+                    continue
+                for name, ks in self.record.choices(title, self.usual):
+                    for some, fit in self._as_it_should_be(figure, name, ks):
+                        offers.append((-(fit.ink - fit.extra) / (1 + 0.005 * figure.away(title.at)), n, f, name, some))
+        out: list[tuple[int, str, tuple[int, ...], Numbers]] = []
+        free = np.ones(len(self.ink.a), bool)
+        for _, n, f, name, ks in sorted(offers, key=lambda x: x[:3]):
+            mine = figures[f][free[figures[f]]]
+            if len(mine) and all(n != w[0] for w in out):
+                for some, fit in self._as_it_should_be(self._figure(mine, name), name, ks)[:1]:
+                    claimed = mine[fit.left <= LEFT_SHARE]
+                    free[claimed] = False
+                    out.append((n, name, some, claimed))
+        return out
+
+    def _as_it_should_be(self, figure: Figure, name: str, ks: tuple[int, ...]) -> list[tuple[tuple[int, ...], Fit]]:
+        """A plan laid where most of it is drawn, if nearly all is; of all positions those that are drawn."""
+        view = self.record.view(name)
+        lines = view.lines(ks)
+        fit = figure.laid(lines, self.ink.turn, whole=True)
+        if fit is None:
+            return []
+        if len(ks) > 1 and fit.bare > WHOLE * fit.own:
+            gone = {int(lines.numbers[i]) // len(view.pairs) for i in np.flatnonzero(fit.drawn < DRAWN_SHARE) if lines.kinds[i] == MAIN}
+            some = tuple(k for i, k in enumerate(ks) if i not in gone)
+            if 1 < len(some) < len(ks):
+                return self._as_it_should_be(figure, name, some)
+        return [(ks, fit)] if fit.bare <= WHOLE * fit.own and fit.own > MIN_FIGURE_MM else []
+
+    def _with_mistakes(self, open_titles: Sequence[int], rest: Sequence[Figure]) -> tuple[list[JudgedView], set[int]]:
+        """Titles judged with mistakes on the figures that are left, and the numbers of these."""
+        offers = []
+        for n in open_titles:
+            title = self.titles[n]
+            near = sorted((f.away(title.at), k) for k, f in enumerate(rest) if f.ink > MIN_FIGURE_MM and len(f.strokes) > 1)
+            for far, k in near[:NEAREST]:
+                for name, ks in [*self.record.choices(title, self.usual)][:2]:
+                    v = self._judged(title.text, name, ks, self._figure(rest[k].strokes, name))
+                    if v.fit is not None:
+                        known = v.kind in ("right", "mistake")
+                        offers.append((not known, v.fit.price / max(v.fit.ink, 1.0) * known + far / FAR_MM, n, k, v))
+                        if known:
+                            break
+        out: dict[int, JudgedView] = {}
+        used: set[int] = set()
+        for unknown, _, n, k, v in sorted(offers, key=lambda x: x[:4]):
+            if n not in out and k not in used and (not unknown or rest[k].away(self.titles[n].at) < FAR_MM):
+                out[n] = v
+                used.add(k)
+        return list(out.values()), used
+
+    def _without_ink(self, title: PlanTitle) -> JudgedView:
+        name, ks = next(self.record.choices(title, self.usual), ("positions", (0,)))
+        view = self.record.view(name)
+        lines, none = view.lines(ks), np.zeros(0, np.intp)
+        return JudgedView(title.text, name, ks, view, "bare", lines, lines, None, none, none)
+
+    def _untitled(self, figure: Figure) -> JudgedView | None:
+        """A figure without a title as the plan that fits it best as it is."""
+        best: tuple[float, str, tuple[int, ...]] | None = None
+        for name, ks in self.record.everything():
+            fit = self._figure(figure.strokes, name).laid(self.record.view(name).lines(ks), self.ink.turn, 3)
+            if fit is not None and fit.extra < 0.25 * fit.ink and (best is None or fit.price < best[0]):
+                best = fit.price, name, ks
+        return None if best is None else self._judged("", best[1], best[2], self._figure(figure.strokes, best[1]))
+
+    def _judged(self, title: str, name: str, ks: tuple[int, ...], figure: Figure) -> JudgedView:
+        """A view on its ink: as it should be, with a mistake, or not this plan."""
+        return judge_view(self.record, title, name, ks, figure, self.ink.turn)
+
+
+MIN_DRAWN_INK = 5.0
+
+
+def judge_view(record: PlanRecord, title: str, name: str, ks: tuple[int, ...], figure: Figure, turn: float) -> JudgedView:
+    """Judge a figure as a plan at some positions: as it should be, else with the mistakes that may have been made in it."""
+    view = record.view(name)
+    exact = view.lines(ks)
+    usual = figure.laid(exact, turn, 12)
+    if usual is not None and usual.extra < LEFT_MM + LEFT_OF_RIGHT * usual.ink and usual.bare < 0.4 * usual.ink:
+        return _view(title, name, ks, view, "right", exact, exact, usual, figure)
+    search = _MistakeSearch(record, view, name, ks, exact, figure, turn)
+    found = search.best(usual)
+    if found is not None:
+        return _view(title, name, ks, view, "mistake", exact, found.lines, found.fit, figure, search.alike(found),
+                     found.second, search.tried)
+    unlike = usual is None or usual.extra > UNLIKE * usual.ink
+    return _view(title, name, ks, view, "unlike" if unlike else "partly", exact, exact, usual, figure, tried=search.tried)
+
+
+def _view(title: str, name: str, ks: tuple[int, ...], view: PlanView, kind: Kind, exact: PlanLines, lines: PlanLines, fit: Fit | None,
+          figure: Figure, causes: tuple[Cause, ...] = (), both: bool = False, tried: int = 0) -> JudgedView:
+    left = figure.strokes if fit is None else figure.strokes[(fit.left > LEFT_SHARE) & ~figure.soft]
+    return JudgedView(title, name, ks, view, kind, exact, lines, fit, figure.strokes, left, causes, both, tried=tried)
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    price: float
+    causes: tuple[Cause, ...]
+    fit: Fit
+    lines: PlanLines
+
+    @property
+    def second(self) -> bool:
+        return len(self.causes) > 1
+
+
+class _MistakeSearch:
+    """The mistakes that may have been made in a view, drawn again and laid on its ink."""
+
+    def __init__(self, record: PlanRecord, view: PlanView, name: str, ks: tuple[int, ...], exact: PlanLines, figure: Figure,
+                 turn: float) -> None:
+        self.record, self.view, self.name, self.ks = record, view, name, ks
+        self.exact, self.figure, self.turn = exact, figure, turn
+        self.errors: Errors = record.errors(view.plan)
+        self.before = list(ordered(view.points, lambda s: [x for x in self.errors.arguments(s) if isinstance(x, Step)]))
+        self.tried = 0
+        self._all: list[_Found] = []
+
+    def best(self, usual: Fit | None) -> _Found | None:
+        """The cheapest mistake, or two, that explain nearly all; None where none does."""
+        ink = self.figure.ink
+        base = usual.price if usual is not None else float("inf")
+        wrong = self._wrong_positions(usual)
+        self._all = self._cheapest([*self._causes(wrong, usual)], ())
+        best = self._all[0] if self._all else None
+        if best is None:
+            return None
+        if best.fit.extra > LEFT_MM + 0.01 * ink and base - best.price > HALF * min(base, ink):
+            # Most is explained, not all: another mistake besides.
+            more = self._cheapest([*self._causes(wrong, best.fit)], best.causes)
+            if more and more[0].price < best.price - GAIN:
+                best = more[0]
+        there = best.fit.extra < EXPLAINS * ink or (best.fit.bare <= WHOLE * best.fit.own and base - best.price > HALF * base)
+        return best if there and best.price < base - GAIN else None
+
+    def alike(self, found: _Found) -> tuple[Cause, ...]:
+        """The causes found; of one alone all that draw the same, the cheapest first."""
+        if found.second:
+            return found.causes
+        mine = found.fit
+        same = [f for f in self._all if f.price < found.price + 1.5 and len(f.lines.heads) == len(found.lines.heads)
+                and np.abs(f.fit.at(f.lines.heads) - mine.at(found.lines.heads)).max() < SAME_MM]
+        return tuple(f.causes[0] for f in same[:TOLD])
+
+    def _wrong_positions(self, usual: Fit | None) -> tuple[int, ...]:
+        """Of positions that are drawn all together those with lines on bare paper, three at most."""
+        if len(self.ks) == 1 or usual is None:
+            return self.ks[:1]
+        gone = {int(self.exact.numbers[i]) // len(self.view.pairs) for i in np.flatnonzero(usual.drawn < DRAWN_SHARE)
+                if self.exact.kinds[i] == MAIN}
+        return tuple(self.ks[n] for n in sorted(gone))[:3]
+
+    def _cheapest(self, causes: Sequence[Cause], made: tuple[Cause, ...]) -> list[_Found]:
+        """Causes on top of others, the cheapest first."""
+        out = []
+        self.tried += len(causes)
+        for cause in causes:
+            value = replay(self.errors, [c for one in (*made, cause) for c in one.changes])
+            try:
+                lines = self.view.lines(self.ks, value)
+            except (ValueError, ZeroDivisionError, TypeError, IndexError):
+                continue  # cannot be drawn so
+            same = len(lines.heads) == len(self.exact.heads) and np.allclose(lines.heads, self.exact.heads) and np.allclose(
+                lines.tails, self.exact.tails)
+            fit = None if same else self.figure.laid(lines, self.turn, 3)
+            if fit is not None:
+                out.append(_Found(fit.price + sum(c.price for c in (*made, cause)), (*made, cause), fit, lines))
+        return sorted(out, key=lambda f: f.price)
+
+    def _causes(self, ks: Sequence[int], fit: Fit | None) -> Iterator[Cause]:
+        """What may have been done: the dictionary on every step before the view's points, another position, a point elsewhere."""
+        seen = set()
+        for k in ks:
+            for h in hypotheses(self.before, k, self.view.plan.labels, list(self.view.plan)):
+                key = (h.words, id(h.step), h.at, str(h.other))
+                if key not in seen:
+                    seen.add(key)
+                    price = (STEP_PRICE if h.step.plan == self.name else BEFORE_PRICE) + h.rarity
+                    yield Cause(h.remark, h.step, h.changes, price, h)
+            if self.name != "positions":
+                for h in of_other_positions(self.view.points, k, self.view.plan.labels):
+                    yield Cause(h.remark, h.step, h.changes, POSITION_PRICE, h)
+            if fit is not None:
+                yield from self._moved(k, fit)
+
+    def _moved(self, k: int, fit: Fit) -> Iterator[Cause]:
+        """A point at an end of ink: along its line, so that a length is wrong, or anywhere."""
+        for p in self.view.points:
+            if not any(isinstance(x, Step) for x in p.args) or not np.isfinite(was := at(p.value, k)):
+                continue
+            here = fit.origin + fit.scale * was
+            ends = np.unique(np.round(self.figure.ends[np.abs(self.figure.ends - here) < MAX_MOVED_MM], 1))
+            for end in ends[np.argsort(np.abs(ends - here))][:ENDS].tolist():
+                if abs(end - here) < MIN_MOVED_MM:
+                    continue
+                by = (end - here) / fit.scale
+                yield from self._longer(p, was, by, k, fit)
+                remark = POINT_MOVED(point=letter_of(p), distance=millimetres(abs(end - here)))
+                yield Cause(remark, p, (Change(p, displaced(by), k),), MOVED_PRICE)
+
+    def _longer(self, p: Step, was: complex, by: complex, k: int, fit: Fit) -> Iterator[Cause]:
+        """A length laid off too long or too short, where the point stays on its line."""
+        if p.rule in (rules.LAY_OFF, rules.ALONG) and isinstance(p.args[0], Step):
+            base = at(p.args[0].value, k)
+            if abs(np.angle((was + by - base) / (was - base))) < 0.03:
+                times = abs(was + by - base) / abs(was - base)
+                off = (times - 1) * abs(was - base) * abs(fit.scale)
+                remark = LINE_TOO_LONG[1 if off > 0 else -1](line=letter_of(p.args[0]) + letter_of(p), by=millimetres(off))
+                yield Cause(remark, p, (Change(p, laid_off(times), k),), LENGTH_PRICE)

@@ -1,0 +1,194 @@
+"""What a title promises: plans of the record at their positions, as lines that can be laid on a drawing. No sheet is composed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tmm_sheets.compare.cad.plan_ink import MAIN, OTHERS, Lettering, PlanLines
+from tmm_sheets.compare.diagnosis.hypotheses import BACKWARDS
+from tmm_sheets.compare.elements import said
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.error import Errors
+from tmm_sheets.construction.plan import Plan, asked_for
+from tmm_sheets.construction.protocol import letter_of
+from tmm_sheets.construction.step import Step
+from tmm_sheets.words import marked, tell
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+
+CENTRES, RESULTANTS = "centres", "resultants"
+CLASSES = {CENTRES: marked("vectors to centres of mass"), RESULTANTS: marked("resultants")}
+"""Classes of lines that may be left out as a whole, in words."""
+KINEMATICS = ("positions", "velocities", "accelerations")
+TITLES = {"velocities": r"\bскор|\bшвидк|veloc", "accelerations": r"\bуск|\bприск|accel", "force": r"\bсил|\bforce",
+          "positions": r"\bполож|\bпозиц|\bмехан|\bсхем|posit|mechan|scheme"}
+"""How words begin that name a kind of plan."""
+POSITION = re.compile(r"\(?\b(?:поло\w*|пол\b\.?|posi\w*|pos\b\.?)\W{0,3}(\d+[′']*)", re.IGNORECASE)
+LONGEST_TITLE = 90
+"""More letters are a sentence, no title."""
+
+
+@dataclass(frozen=True)
+class PlanTitle:
+    """A title in a drawing: the kind of plan it names, the label of a position, the other numbers in it."""
+
+    text: str
+    at: complex
+    kind: str
+    label: str | None
+    numbers: tuple[str, ...]
+
+
+def titles(texts: Sequence[Lettering]) -> list[PlanTitle]:
+    """The texts that name a plan."""
+    return [title for text in texts if 4 < len(text.text) < LONGEST_TITLE and (title := _title(text)) is not None]
+
+
+def _title(text: Lettering) -> PlanTitle | None:
+    low = text.text.casefold().replace("'", "′")
+    found = POSITION.search(low)
+    rest = low if found is None else low[: found.start()] + " " + low[found.end():]
+    kind = next((k for k, stem in TITLES.items() if re.search(stem, rest)), "positions" if found and found.group()[:3] == "пол" else None)
+    return None if kind is None else PlanTitle(text.text, text.at, kind, found[1] if found else None, tuple(re.findall(r"\d+", rest)))
+
+
+@dataclass(frozen=True, eq=False)
+class PlanView:
+    """A plan as it may be drawn: pairs of steps that are lines, with class and name of each; guides by point and direction."""
+
+    plan: Plan
+    pairs: tuple[tuple[Step, Step, str, str], ...]
+    guides: tuple[tuple[Step, Step], ...] = ()
+
+    @cached_property
+    def points(self) -> tuple[Step, ...]:
+        """The steps that its lines end at."""
+        return tuple(dict.fromkeys(s for t, h, _, _ in self.pairs for s in (t, h)))
+
+    def lines(self, ks: Sequence[int], value: Callable[[Step], Any] = lambda step: step.value) -> PlanLines:
+        """Its lines at some positions, in the plan's unit; those that cannot be drawn are left out. Line n is of pair n mod count."""
+        with np.errstate(all="ignore"):
+            ends = np.array([[at(value(t), k), at(value(h), k)] for k in ks for t, h, _, _ in self.pairs]).reshape(-1, 2)
+            size = np.abs(ends[:, 1] - ends[:, 0])
+            n = np.flatnonzero(np.isfinite(ends).all(1) & (size > 0) & (size < 1e9))
+            guides = [(at(value(p), ks[0]), at(value(u), ks[0])) for p, u in self.guides]
+        through, along = (np.array(x, dtype=complex) for x in (zip(*guides, strict=True) if guides else ((), ())))
+        kinds = tuple(self.pairs[i % len(self.pairs)][2] for i in n.tolist())
+        return PlanLines(ends[n, 0], ends[n, 1], kinds, n, through, along)
+
+
+def at(value: Any, k: int) -> complex:
+    """A step's value at a position."""
+    v = np.asarray(value)
+    return complex(v[k] if v.ndim else v)
+
+
+class PlanRecord:
+    """The plans of a project that a drawing may show."""
+
+    def __init__(self, project: Project) -> None:
+        self.project = project
+        study = project.study
+        self.plans: dict[str, Plan] = {name: getattr(study, name).plan for name in KINEMATICS}
+        self.labels = tuple(self.plans["positions"].labels)
+        self._views: dict[str, PlanView] = {}
+
+    @cached_property
+    def forces(self) -> dict[str, Plan]:
+        """Force polygons; none where nothing loads the links."""
+        if "forces" not in self.project.parts:
+            return {}
+        study = self.project.study
+        plans = {**asked_for([study.forces]), **asked_for(vars(study.forces).values())}
+        return {name: plan for name, plan in plans.items() if name.startswith("force-")}
+
+    def errors(self, plan: Plan) -> Errors:
+        """How the plan is drawn again; its scale factor only matters to what is measured on it."""
+        sizes = [np.nanmax(np.abs(v)) for s in plan if (v := np.asarray(s.value)).dtype.kind == "c" and s.rule.gives != "direction"]
+        return Errors([(plan, float(max(sizes)) / 100 or 1.0)])
+
+    def view(self, name: str) -> PlanView:
+        """The lines of a plan."""
+        if name not in self._views:
+            self._views[name] = (self._positions() if name == "positions" else _of_vectors(self.plans.get(name) or self.forces[name]))
+        return self._views[name]
+
+    def choices(self, title: PlanTitle, usual: int | None) -> Iterator[tuple[str, tuple[int, ...]]]:
+        """Plans and positions that a title may mean, the likeliest first; ``usual`` is the position of most other titles."""
+        whole = tuple(range(len(self.labels)))
+        if title.kind == "force":
+            for name in self.forces:
+                if not title.numbers or tuple(re.findall(r"\d+", name)) == title.numbers:
+                    yield name, (self.project.force_index,)
+            return
+        k = self.labels.index(title.label) if title.label in self.labels else None
+        first = [k] if k is not None else [usual] if usual is not None else []
+        some = [(i,) for i in dict.fromkeys([*first, *(whole if k is None else ())])]
+        if title.kind == "positions":
+            some.insert(len(first), whole)
+        yield from ((title.kind, ks) for ks in some)
+
+    def everything(self) -> Iterator[tuple[str, tuple[int, ...]]]:
+        """All plans at all positions, for figures without a title."""
+        whole = tuple(range(len(self.labels)))
+        yield from ((name, (k,)) for name in KINEMATICS for k in whole)
+        yield "positions", whole
+        yield from ((name, (self.project.force_index,)) for name in self.forces)
+
+    def _positions(self) -> PlanView:
+        """Bars and the sides of links; the record has no segments of this plan, so any two points of a link may be joined."""
+        plan, m = self.plans["positions"], self.project.mechanism
+        pairs = [(s.args[0], s.args[1], MAIN, letter_of(s)) for s in plan
+                 if s.rule is rules.RAY and all(isinstance(x, Step) for x in s.args)]
+        have = {frozenset((t, h)) for t, h, _, _ in pairs}
+        centres = {link.centre for link in m.links.values()}
+        of_links = [[p for p in m.link_points(link) if p not in centres] for link in m.links]
+        of_links += [[p for p in (*g.outer, g.inner) if p] for g in m.groups]
+        for names in of_links:
+            some = [plan[n] for n in dict.fromkeys(names) if n in plan]
+            for i, x in enumerate(some):
+                for y in some[i + 1:]:
+                    if frozenset((x, y)) not in have:
+                        have.add(frozenset((x, y)))
+                        pairs.append((x, y, OTHERS, letter_of(x) + letter_of(y)))
+        guides = [(s.args[2], s.args[3]) for s in plan if s.rule is rules.ARC_LINE and all(isinstance(x, Step) for x in s.args[2:4])
+                  and not np.ndim(s.args[3].value)]
+        return PlanView(plan, tuple(pairs), tuple(guides))
+
+
+def _of_vectors(plan: Plan) -> PlanView:
+    """The vectors of a plan; those from the pole to any point, and whole relative ones, may be drawn besides."""
+    force = plan.name.startswith("force")
+    order = [s for s in plan if s.rule.gives == "point"]
+    pairs = []
+    for g in plan.segments:
+        kind = CENTRES if "S" in g.symbol and not force else RESULTANTS if force and _sums_up(order, g.tail, g.head) else MAIN
+        pairs.append((g.tail, g.head, kind, said(g.symbol)))
+    if plan.pole:
+        pole = plan[plan.pole]
+        have = {(t, h) for t, h, _, _ in pairs} | {(h, t) for t, h, _, _ in pairs}
+        made = [s for s in plan if s.rule.gives in ("point", "vector") and s is not pole and s.rule not in BACKWARDS]
+        pairs += [(pole, s, OTHERS, letter_of(pole) + letter_of(s)) for s in made if (pole, s) not in have]
+        for a in made:  # the whole relative vector, of which our sheet shows the components only
+            for t in [t for t, h, c, _ in pairs if h is a and c == MAIN and t.rule in BACKWARDS]:
+                if isinstance(t.args[0], Step) and (t.args[0], a) not in have:
+                    pairs.append((t.args[0], a, OTHERS, letter_of(t.args[0]) + letter_of(a)))
+                    have.add((t.args[0], a))
+    return PlanView(plan, tuple(pairs))
+
+
+def _sums_up(order: Sequence[Step], tail: Step, head: Step) -> bool:
+    """True of a side of a force polygon that is the sum of others."""
+    return len(order) > 2 and abs(order.index(tail) - order.index(head)) not in (1, len(order) - 1)
+
+
+def class_said(kind: str) -> str:
+    """A class of lines that may be left out, in words."""
+    return tell(CLASSES[kind])
