@@ -26,6 +26,7 @@ Numbers = NDArray[np.intp]
 # --- pencil: how exactly one draws -----------------------------------------------------------------------------------------
 TOLERANCE_MM = 0.5       # a stroke may lie beside its line, an end from its point
 SAME_POINT_MM = 0.5      # ends so near are one point of an arrow head
+CARELESS_MM = 0.9        # both ends of a stroke may lie so far from those of its line
 PARALLEL_RAD = 0.012     # a stroke may be turned against its line
 UPRIGHT_RAD = 0.03       # a plan may be turned against the lettering
 # --- paper: sizes of what is drawn ------------------------------------------------------------------------------------------
@@ -33,10 +34,11 @@ MAX_GAP_MM = 2.5         # strokes nearer than this are one figure
 MAX_HEAD_MM = 6.5        # longest stroke of an arrow head
 MAX_SYMBOL_MM = 14.0     # a closed outline up to this size is a symbol
 SUPPORT_MM = 10.0        # so near to a point of the mechanism, and so long, are the lines of its support
+MAX_HATCH_MM = 6.0       # longest stroke of the hatching of a support, and greatest distance of two
 MIN_DRAWN_MM = 0.7       # a shorter vector is not drawn
 STEP_MM = 1.0            # distance of the places at which lines are looked at
 COUNTED_MM = 40.0        # a longer line counts no more than this
-LETTERS_MM = (1.6, 15.0)  # heights of letters
+LETTERS_MM, LETTER_MM = (2.0, 10.5), 4.0  # heights of letters, and a usual one
 # --- price: mm of ink -------------------------------------------------------------------------------------------------------
 BARE_PRICE = 0.7         # of a mm of a line on bare paper, where one of unexplained ink is 1
 ABSENT_PRICE = 3.0       # of a class of lines that is not drawn at all
@@ -137,6 +139,8 @@ class PlanInk:
         filled = [*(a.points * self.scale for a in space.areas if a.solid and space.entities[a.entity].kind not in NOT_OF_PLANS),
                   *small]
         heads = [h for z in filled if (h := _triangle_head(z))]
+        symbols = _supports(s2)
+        s2, of = np.delete(s2, symbols, axis=0), np.delete(of, symbols)
         barbs, more = _open_heads(s2)
         self.a, self.b, self.stroke = (np.delete(x, barbs) for x in (s2[:, 0], s2[:, 1], of))
         self.heads: list[tuple[complex, complex]] = heads + more
@@ -193,7 +197,10 @@ def _scale(space: DrawingSpace, unit: float | None) -> float:
         size = max(float(np.ptp(z)) for z in _extent(space)) if space.strokes else 1.0
         return next((u for u in units if 40 < u * size < 5000), 300 / max(size, 1e-9))
     high = float(np.median([w.height for w in space.writings])) or 1.0
-    return next((u for u in units if LETTERS_MM[0] <= u * high <= LETTERS_MM[1]), 4.0 / high)
+    if LETTERS_MM[0] <= units[0] * high <= LETTERS_MM[1]:
+        return units[0]
+    best = min(units, key=lambda u: abs(np.log(u * high / LETTER_MM)))
+    return best if LETTERS_MM[0] / 1.5 <= best * high <= 1.5 * LETTERS_MM[1] else LETTER_MM / high
 
 
 def _extent(space: DrawingSpace) -> tuple[Floats, Floats]:
@@ -217,6 +224,34 @@ def _each_once(s: NDArray[np.complex128]) -> list[int]:
             seen.add(key)
             keep.append(n)
     return keep
+
+
+def _supports(s: NDArray[np.complex128]) -> list[int]:
+    """Numbers of hatching strokes of supports and guides, of the lines they hang on, and of the short lines that stand on these."""
+    d = s[:, 1] - s[:, 0]
+    size = np.abs(d)
+    short = np.flatnonzero(size < MAX_HATCH_MM)
+    middle = (s[:, 0] + s[:, 1]) / 2
+    hatch: set[int] = set()
+    for i in short.tolist():
+        if i not in hatch:
+            alike = short[(np.abs((d[short] / d[i]).imag) < 0.05) & (np.abs(size[short] / size[i] - 1) < 0.1)]
+            row = {i}
+            while True:
+                near = [int(j) for j in alike if int(j) not in row and np.abs(middle[j] - middle[list(row)]).min() < MAX_HATCH_MM]
+                if not near:
+                    break
+                row |= set(near)
+            hatch |= row if len(row) > 3 else set()
+    if not hatch:
+        return []
+    ends = np.concatenate((s[list(hatch), 0], s[list(hatch), 1]))
+    w = (ends[:, None] - s[:, 0]) / d
+    on = (np.abs(w.imag) * size < 0.3) & (w.real > -0.01) & (w.real < 1.01)
+    ground = set(np.flatnonzero(on.sum(0) > 3).tolist()) - hatch
+    w = (np.concatenate((s[:, 0], s[:, 1]))[:, None] - s[list(ground), 0]) / d[list(ground)]
+    stands = ((np.abs(w.imag) * size[list(ground)] < 0.3) & (w.real > -0.01) & (w.real < 1.01)).any(1).reshape(2, -1).any(0)
+    return sorted(hatch | ground | set(np.flatnonzero(stands & (size < SUPPORT_MM)).tolist()))
 
 
 def _triangle_head(z: Points) -> tuple[complex, complex] | None:
@@ -357,6 +392,13 @@ class Figure:
             for e in (a, b):
                 reach = np.abs(e[shown][:, None] - self.ends).min(1) < 2.5 * TOLERANCE_MM
                 drawn[shown] = np.where(reach, drawn[shown], np.minimum(drawn[shown], PASSES_SHARE))
+            # A stroke from end to end of a line is that line, drawn carelessly.
+            for n in np.flatnonzero(left > LEFT_SHARE).tolist():
+                off = np.minimum(np.maximum(np.abs(a[shown] - self.a[n]), np.abs(b[shown] - self.b[n])),
+                                 np.maximum(np.abs(a[shown] - self.b[n]), np.abs(b[shown] - self.a[n])))
+                if off.min() < CARELESS_MM:
+                    left[n] = 0.0
+                    drawn[shown[off.argmin()]] = 1.0
         unexplained = np.where(left > LEFT_SHARE, left, 0.0)
         if len(lines.through):  # supports and blocks stand at points of the mechanism
             points = np.concatenate((a, b))
@@ -372,8 +414,7 @@ class Figure:
             mine = is_shown & (kinds == kind)
             gone = mine & (drawn < DRAWN_SHARE)
             cost = BARE_PRICE * float((counted * (1 - drawn))[gone].sum())
-            whole = gone.sum() == mine.sum()
-            bare += cost if kind == MAIN else min(ABSENT_PRICE if whole else np.inf, 0.5 * cost) if gone.any() else 0.0
+            bare += cost if kind == MAIN else min(ABSENT_PRICE, cost)
         own = float(counted[is_shown & (kinds == MAIN)].sum())
         return Fit(extra + bare, extra, bare, scale, origin, drawn, left, self.ink, own)
 

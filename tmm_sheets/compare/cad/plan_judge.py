@@ -41,7 +41,7 @@ from tmm_sheets.construction.step import Step, ordered
 
 # --- price of a hypothesis, mm of ink: by what must be assumed ---------------------------------------------------------------
 STEP_PRICE, BEFORE_PRICE, POSITION_PRICE, LENGTH_PRICE, MOVED_PRICE = 4.0, 6.0, 7.0, 8.0, 12.0
-GAIN = 6.0              # a mistake must be so much cheaper than a right plan
+GAIN = 3.0              # a mistake must be so much cheaper than a right plan
 LEFT_MM = 2.0           # ink that may stay unexplained in a plan that is right, besides the share
 # --- probability: shares of ink or of a plan ----------------------------------------------------------------------------------
 LEFT_OF_RIGHT = 0.005   # that may stay unexplained in a plan that is right
@@ -223,8 +223,11 @@ class _Judge:
         if fit is None:
             return []
         if len(ks) > 1 and fit.bare > WHOLE * fit.own:
-            gone = {int(lines.numbers[i]) // len(view.pairs) for i in np.flatnonzero(fit.drawn < DRAWN_SHARE) if lines.kinds[i] == MAIN}
-            some = tuple(k for i, k in enumerate(ks) if i not in gone)
+            main = np.array([kind == MAIN for kind in lines.kinds])
+            size = np.abs(lines.heads - lines.tails) * main
+            of = lines.numbers // len(view.pairs)
+            there = np.bincount(of, size * (fit.drawn >= DRAWN_SHARE), len(ks)) > 0.9 * np.bincount(of, size, len(ks))
+            some = tuple(k for k, drawn in zip(ks, there.tolist(), strict=True) if drawn)
             if 1 < len(some) < len(ks):
                 return self._as_it_should_be(figure, name, some)
         return [(ks, fit)] if fit.bare <= WHOLE * fit.own and fit.own > MIN_FIGURE_MM else []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -145,22 +146,22 @@ class PlanRecord:
     def _positions(self) -> PlanView:
         """Bars and the sides of links; the record has no segments of this plan, so any two points of a link may be joined."""
         plan, m = self.plans["positions"], self.project.mechanism
-        pairs = [(s.args[0], s.args[1], MAIN, letter_of(s)) for s in plan
-                 if s.rule is rules.RAY and all(isinstance(x, Step) for x in s.args)]
-        have = {frozenset((t, h)) for t, h, _, _ in pairs}
-        centres = {link.centre for link in m.links.values()}
+        rays = {frozenset(s.args) for s in plan if s.rule is rules.RAY and all(isinstance(x, Step) for x in s.args)}
+        joints = Counter(p for link in m.links for p in m.link_points(link))
+        centres = {link.centre for link in m.links.values() if joints[str(link.centre)] < 2}
         of_links = [[p for p in m.link_points(link) if p not in centres] for link in m.links]
-        of_links += [[p for p in (*g.outer, g.inner) if p] for g in m.groups]
-        for names in of_links:
-            some = [plan[n] for n in dict.fromkeys(names) if n in plan]
+        pairs: dict[frozenset[Step], tuple[Step, Step, str, str]] = {}
+        for n, names in enumerate([*of_links, *([p for p in (*g.outer, g.inner) if p] for g in m.groups)]):
+            some = [plan[name] for name in dict.fromkeys(names) if name in plan]
             for i, x in enumerate(some):
                 for y in some[i + 1:]:
-                    if frozenset((x, y)) not in have:
-                        have.add(frozenset((x, y)))
-                        pairs.append((x, y, OTHERS, letter_of(x) + letter_of(y)))
+                    both = frozenset((x, y))
+                    if both not in pairs and (np.ndim(x.value) or np.ndim(y.value)):
+                        kind = MAIN if n < len(of_links) and (both in rays or len(some) == 2) else OTHERS
+                        pairs[both] = x, y, kind, letter_of(x) + letter_of(y)
         guides = [(s.args[2], s.args[3]) for s in plan if s.rule is rules.ARC_LINE and all(isinstance(x, Step) for x in s.args[2:4])
                   and not np.ndim(s.args[3].value)]
-        return PlanView(plan, tuple(pairs), tuple(guides))
+        return PlanView(plan, tuple(pairs.values()), tuple(guides))
 
 
 def _of_vectors(plan: Plan) -> PlanView:
