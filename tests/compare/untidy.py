@@ -86,7 +86,7 @@ def bars(project: Project, plan: Any) -> list[tuple[Step, Step]]:
     """The sides of the links of a mechanism."""
     m = project.mechanism
     joints = Counter(p for link in m.links for p in m.link_points(link))
-    centres = {link.centre for link in m.links.values() if joints[str(link.centre)] < 2}
+    centres = {c for link in m.links.values() if (c := link.centre) in plan and joints[c] < 2 and np.ndim(plan[c].value)}
     out = {}
     for link in m.links:
         some = [plan[p] for p in m.link_points(link) if p not in centres and p in plan]

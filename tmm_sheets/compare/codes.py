@@ -19,6 +19,7 @@ CODES: Mapping[str, str] = {
     "point-moved": "a point of a plan lies elsewhere; `step` is the point",
     "step-off": "a step that is no point on paper was drawn or computed off; `step` says which",
     "another-mechanism": "so much is wrong that something else was drawn",
+    "another-plan": "lines under a title are not those of the plan it names, or not all of them",
     "view-turned": "a view lies turned by right angles or as in a mirror",
     "view-missing": "a view with lines of its own was not found",
     "table-missing": "a table, text or detail was not found as it is on the sheet",
@@ -150,6 +151,11 @@ def sentences() -> Mapping[str, list[str | tuple[str, str]]]:
 
 ANOTHER_MECHANISM = Sentence("another-mechanism", marked(
     "So many mistakes: was another variant drawn, or with other scale factors than stated?"))
+ANOTHER_PLAN = Sentence("another-plan", marked_n(
+    "this is not the plan of position {position}: {n} line does not fit",
+    "this is not the plan of position {position}: {n} lines do not fit"))
+LINES_DO_NOT_FIT = Sentence("another-plan", marked_n("{n} line does not fit", "{n} lines do not fit"))
+NO_INK_UNDER_TITLE = Sentence("view-missing", marked('"{view}": nothing under this title is such a plan'))
 VIEW_TURNED = {
     "upside down": Sentence("view-turned", marked("drawn mirrored, top and bottom exchanged")),
     "across": Sentence("view-turned", marked("drawn mirrored, left and right exchanged")),
@@ -226,6 +232,7 @@ HEAD_AT_BEGINNING = Sentence("arrow-reversed", marked(
     "an arrow head at its beginning, where none belongs: it or one in a stroke with it points the other way"))
 NO_HEAD = Sentence("no-arrow-head", marked("no arrow head"))
 NO_HEAD_HERE = Sentence("no-arrow-head", marked("no arrow head here"))
+HEADS_NOT_READ = Sentence("not-compared", marked("heads not read in this view"))
 THIN_LINE_ONLY = Sentence("no-arrow-head", marked("only a thin line here, and no arrow head"))
 SAYS = Sentence("text", marked('reads "{found}" instead of "{wanted}"'))
 OTHER_LETTERS = Sentence("text", marked('the letters are not those of "{text}"'))

@@ -68,17 +68,14 @@ def _drawing(project: Project, n: int | None, path: Path, told: Callable[[str], 
     from dataclasses import replace
 
     from tmm_sheets.backends import svg
-    from tmm_sheets.compare.cad import cad_drawing, cad_overlay, cad_report
-    from tmm_sheets.compare.elements import drawn
+    from tmm_sheets.compare.cad import cad_drawing, cad_overlay
     from tmm_sheets.drawing.marks import Polyline
 
-    e = cad_drawing.examine(project, n, path, None, PENCIL, told)
-    report = cad_report.report(project.variant.project.name, path, e, PENCIL)
-    blank = replace(e.laid.known.sheet.drawing, views=(), dimensions=(), forms=())
-    theirs = svg.render(replace(blank, marks=tuple(cad_overlay.theirs(e.space))))
-    exact = svg.render(replace(blank, marks=tuple(Polyline(z, "thin") for one in e.exact for z in drawn(one))))
-    return _found(report) | {"theirs": _inline("image/svg+xml", theirs), "ours": _inline("image/svg+xml", exact),
-                             "sheet": e.laid.known.n}
+    e = cad_drawing.compared(project, n, path, None, PENCIL, told)
+    theirs = svg.render(replace(e.blank, marks=tuple(cad_overlay.theirs(e.space))))
+    exact = svg.render(replace(e.blank, marks=tuple(Polyline(z, "thin") for z in e.exact)))
+    pictures = {"theirs": _inline("image/svg+xml", theirs), "ours": _inline("image/svg+xml", exact)}
+    return _found(e.report) | pictures | {"sheet": e.sheet}
 
 
 def _sheet(project: Project, n: int) -> Message:

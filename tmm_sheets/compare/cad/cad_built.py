@@ -1,24 +1,25 @@
-"""Plans of a CAD drawing that were built on a wrong step: see ``diagnosis/built_plan.py``."""
+"""Plans on a sheet of ours that were built on a mistake: judged as plans of any layout are, but where the sheet has them."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.cad.cad_arrows import Heads, heads_in
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
-from tmm_sheets.compare.cad.line_fit import KnownLines
+from tmm_sheets.compare.cad.line_fit import lines
+from tmm_sheets.compare.cad.plan_ink import Figure, Numbers, PlanInk, covered
+from tmm_sheets.compare.cad.plan_judge import JudgedView, judge_view
+from tmm_sheets.compare.cad.plan_views import PlanRecord
 from tmm_sheets.compare.codes import joined
-from tmm_sheets.compare.diagnosis import built_plan
-from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, StudentDrawing
-from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint
-from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
-from tmm_sheets.compare.elements import Element, ElementView, sampled
+from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, errors_of
+from tmm_sheets.compare.diagnosis.drawn_plan import DrawnPlan, PlanPoint, drawn_plan, drawn_positions
+from tmm_sheets.compare.diagnosis.replay import replay
+from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import KnownSheet
 from tmm_sheets.compare.placing import Placing, moved
@@ -28,37 +29,80 @@ from tmm_sheets.drawing.marks import Points
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
-NEAR = 0.4
-"""Distance from ink within which a point of a plan counts as drawn, mm."""
-OVER = 1.0, 2.5, 4
-"""Beyond the end of a line: from where to where ink goes on, mm, and at how many places it is looked for."""
+BESIDE = 15.0
+"""How far beyond the box of a view its lines may go where a mistake was made, mm of paper."""
 
 
 def built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, moves: Mapping[ElementView, Placing],
-                    outcome: CadOutcome, made: Sequence[Hypothesis] = (), absent: Collection[ElementView] = ()) -> dict[
-                        ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]:
-    """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet.
-
-    ``made`` are mistakes of the sheet that are known already; ink where views would be that are ``absent`` is that of others.
-    """
-    wrong: dict[ElementView, list[Element]] = {}
+                    outcome: CadOutcome) -> dict[ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]:
+    """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet."""
+    wrong: dict[ElementView, set[int]] = {}
     for f in outcome.findings:
-        main = f.element.role in ("vector", "link") and f.element.kind == "line"
-        if main and f.verdict == "red" and f.element.view not in absent:
-            wrong.setdefault(f.element.view, []).append(f.element)
-    tips = np.unique(np.round(np.concatenate([s.points[[0, -1]] for s in space.strokes]), 2)) if space.strokes else np.zeros(0)
+        if f.element.role in ("vector", "link") and f.element.kind == "line" and f.verdict == "red":
+            wrong.setdefault(f.element.view, set()).add(f.element.number)
+    if not wrong:
+        return {}
+    plans, errors = errors_of(project, known)
+    record, ink = PlanRecord(project), PlanInk(space, 1.0, scaled=True)
+    out = {}
+    for view, numbers in wrong.items():
+        drawn = drawn_plan(known, plans, view) or drawn_positions(known, plans, view)
+        if drawn is None or drawn.plan.name not in {*record.plans, *record.forces}:
+            continue
+        strokes = _strokes(ink, outcome, drawn, moves.get(view, Placing()))
+        judged = _judged(record, ink, strokes, drawn, moves.get(view, Placing())) if len(strokes) else None
+        if judged is None or judged.kind != "mistake":
+            continue
+        made = judged.causes if judged.both else judged.causes[:1]
+        points = drawn.moved(replay(errors, [c for cause in made for c in cause.changes]))
+        if points:
+            out[view] = _built(judged, drawn, len(numbers)), points
+    order = list(plans)
+    return dict(sorted(out.items(), key=lambda x: order.index(x[1][0].step.plan) if x[1][0].step.plan in order else 0))
 
-    heads = heads_in(space)
 
-    def seen(view: ElementView) -> StudentDrawing:
-        move = moves.get(view, Placing())
+def _built(judged: JudgedView, drawn: DrawnPlan, wrong: int) -> BuiltPlan:
+    first = judged.causes[0]
+    label = drawn.plan.labels[first.changes[0].at] if first.changes[0].at is not None else ""
+    alike = tuple(c.mistake for c in judged.causes[1:] if c.mistake is not None and not judged.both)
+    said = joined([c.remark for c in judged.causes], "; ") if judged.both else first.mistake or first.remark
+    assert said is not None
+    return BuiltPlan(said, max(wrong - len(judged.unexplained), 0), wrong, first.step, label or drawn.plan.labels[drawn.k],
+                     label if drawn.of_positions else "", alike)
 
-        return StudentDrawing(lambda line: _inked(space.lines, move, line),
-                              lambda z: space.lines.nearest(np.asarray(move(z)), NEAR)[2],
-                       move.back(tips).tolist(), move.scale, lambda line: _goes_on(space.lines, move, line),
-                       lambda arrow: _headed(heads, move, arrow))
 
-    return built_plan.built_otherwise(project, known, wrong, seen, made, absent, positions=True)
+def _judged(record: PlanRecord, ink: PlanInk, strokes: Numbers, drawn: DrawnPlan, move: Placing) -> JudgedView | None:
+    """The plan judged where the sheet has it; None where its scale differs along its axes."""
+    frame = drawn.frame
+    if frame.mirror or frame.mu[0] != frame.mu[1] or move.mirrored:
+        return None
+    turn = move.turn * np.exp(1j * frame.turn) / frame.mu[0]
+    figure = Figure(ink, strokes, place=(complex(turn), complex(move(frame.origin))))
+    ks = tuple(drawn.positions)
+    return judge_view(record, "", drawn.plan.name, ks, figure, float(np.angle(turn)))
+
+
+def _strokes(ink: PlanInk, outcome: CadOutcome, drawn: DrawnPlan, move: Placing) -> Numbers:
+    """Strokes about a plan that are not those of something else that is right, nor of lettering."""
+    mine = {e.number for e in drawn.vectors}
+    view = drawn.vectors[0].view
+    box = move(np.array(view.box.corners))
+    low, high = complex(box.real.min(), box.imag.min()), complex(box.real.max(), box.imag.max())
+    middle = (ink.a + ink.b) / 2
+    near = np.flatnonzero((middle.real > low.real - BESIDE) & (middle.real < high.real + BESIDE)
+                          & (middle.imag > low.imag - BESIDE) & (middle.imag < high.imag + BESIDE))
+    others = [f.element for f in outcome.findings if f.verdict == "green" and f.element.number not in mine and f.element.kind != "text"]
+    ours = lines([p for e in others for p in (e.pieces or (e.points,))])
+    about = (np.maximum(ours.a.real, ours.b.real) > low.real - BESIDE) & (np.minimum(ours.a.real, ours.b.real) < high.real + BESIDE)
+    a, b = ours.a[about], ours.b[about]
+    if not len(near) or not len(a):
+        return near
+    return np.array([n for n in near.tolist() if not _is_taken(ink.a[n], ink.b[n], a, b)], dtype=np.intp)
+
+
+def _is_taken(a: complex, b: complex, ours_a: Points, ours_b: Points) -> bool:
+    z: Points = a + (b - a) * np.linspace(0.1, 0.9, 7)
+    return bool(covered(z, np.full(7, (b - a) / abs(b - a)), ours_a, ours_b).all())
 
 
 def as_built(finding: CadFinding | None, was: Element, now: Element, move: Placing, tolerance: float) -> CadFinding:
@@ -80,31 +124,3 @@ def as_built(finding: CadFinding | None, was: Element, now: Element, move: Placi
     deviation = max(off, finding.deviation)
     return replace(finding, verdict=verdict(deviation, tolerance), deviation=deviation, remark=remark,
                    follows=finding.verdict == "green")
-
-
-def _goes_on(theirs: KnownLines, move: Placing, line: Points) -> bool:
-    """Whether ink goes on in the direction of a line of a plan beyond its end: then the line that is drawn is a longer one."""
-    z = np.asarray(move(line))
-    along = (z[1] - z[0]) / abs(z[1] - z[0])
-    _, unit, found = theirs.nearest(z[1] + along * np.linspace(*OVER), NEAR)
-    return bool((found & (np.abs((unit * np.conj(along)).imag) < 0.1)).all())
-
-
-def _headed(heads: Heads, move: Placing, arrow: Element) -> bool:
-    """Whether an arrow has its head; which point of one round a hinge stays in place in another scale is up to who draws it."""
-    tip, back = complex(arrow.fills[0][0]), complex(arrow.fills[0].mean() - arrow.fills[0][0])
-    along = complex(move(tip) - move(tip + back))
-    kept = (arrow.middle, arrow.centre) if move.scaled and arrow.kind == "arc" else ()
-    return any(heads.at(complex(by(tip)), along / abs(along)) for by in (move, *map(move.unscaled, kept)))
-
-
-def _inked(theirs: KnownLines, move: Placing, line: Points) -> float:
-    """Share of a line of a plan that ink in nearly its direction covers in the drawing."""
-    z = np.asarray(move(line))
-    size = abs(z[1] - z[0])
-    if size < 0.5:
-        return 1.0
-    some = sampled(z, max(size / 40, 0.25))[0][1:-1]  # at its ends other lines begin
-    _, unit, found = theirs.nearest(some, NEAR)
-    along = (z[1] - z[0]) / size
-    return float((found & (np.abs((unit * np.conj(along)).imag) < 0.1)).mean())

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from tmm_sheets.compare import codes, view_places
-from tmm_sheets.compare.cad import cad_built, cad_file, cad_overlay, cad_report, cad_story, layout
+from tmm_sheets.compare.cad import cad_built, cad_file, cad_overlay, cad_report, cad_story, layout, plan_report
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.cad_language import lettered
 from tmm_sheets.compare.cad.matching import match
-from tmm_sheets.compare.cad.rebuilt_views import lost_views
+from tmm_sheets.compare.cad.plan_ink import PlanInk
+from tmm_sheets.compare.cad.plan_judge import JudgedPlans, judge_plans
+from tmm_sheets.compare.cad.plan_views import PlanRecord
 from tmm_sheets.compare.cad.registration import Registration, fitting, register
-from tmm_sheets.compare.cad.view_search import AS_DRAWN
 from tmm_sheets.compare.diagnosis.drawn_plan import rebuilt, vanished
-from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.elements import Element, ElementView, drawn
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.findings import worst
@@ -25,8 +27,10 @@ from tmm_sheets.compare.known_sheet import KnownSheet, known_sheet, sheet_number
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.compare.report import Report
 from tmm_sheets.compare.story import listed
-from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.drawing.marks import Drawing, Points
+from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.numbers import decimal, told
+from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.words import marked, name_of, on_paper, paper, tell
 
 if TYPE_CHECKING:
@@ -34,37 +38,30 @@ if TYPE_CHECKING:
 
 LOST = 0.2
 """Share of a sheet's lines that must be found; a drawing with fewer is not of this sheet."""
+MANY_STROKES = 250
+"""A drawing with more straight strokes may be a sheet of ours: the plans of a layout of its own have dozens."""
+MOSTLY_PLANS = 0.4
+"""Share of a drawing's straight ink from which on plans of its own layout are what it shows."""
 DRAWN_AT = {2.0: "1:2", 2.5: "1:2.5", 4.0: "1:4", 5.0: "1:5", 10.0: "1:10", 0.5: "2:1", 0.4: "2.5:1", 0.25: "4:1", 0.2: "5:1"}
 """Scales of GOST 2.302 by mm of the sheet per mm drawn."""
 UNIT_NAMES = {1000.0: marked("metres"), 25.4: marked("inches"), 10.0: marked("centimetres"), 1.0: marked("millimetres")}
 """Units by mm."""
 
 
+@dataclass(frozen=True)
+class ComparedDrawing:
+    """A drawing with its report: the sheet it is of, what it shows, the exact lines there, mm, on paper of the size of ``blank``."""
+
+    report: Report
+    sheet: int
+    blank: Drawing
+    space: DrawingSpace
+    exact: tuple[Points, ...]
+
+
 def compare(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
             say: Callable[[str], None]) -> Report:
-    """Compare a DXF drawing with a sheet of a project; the report has two overlays besides text and JSON.
-
-    Parameters and errors are those of :func:`examine`.
-    """
-    found = examine(project, sheet, path, views, pencil, say)
-    say(tell("overlay"))
-    outcome, laid = found.outcome, found.laid
-    gone = cad_report.gone(outcome)
-    shown = [f for f in worst(outcome.findings) if f.element.view not in gone]
-    marked = [(f.at, f.reach, str(f.element.number), str(f.verdict)) for f in shown]
-    marked += [(x.at, x.reach, f"+{k}", str(x.verdict)) for k, x in enumerate(outcome.extras, 1)]
-    looks = [(look.places, f"~{k}") for k, look in enumerate(outcome.looks, 1)]
-    exact = [p for e in found.exact for p in drawn(e)]
-    files = cad_overlay.files(laid.known.n, laid.known.sheet.drawing, exact, found.space, marked, looks)
-    name = project.variant.project.name
-    report = cad_report.report(name, path, found, pencil)
-    said = "\n".join([*listed(cad_story.mistakes(found, gone)), report.text])
-    return replace(report, text=said, files=files, story=cad_story.story(name, path, found, pencil))
-
-
-def examine(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
-            say: Callable[[str], None] = lambda _: None) -> cad_report.ExaminedDrawing:
-    """Compare a DXF drawing with a sheet of a project.
+    """Compare a DXF drawing with a project; the report has two overlays besides text and JSON.
 
     Parameters
     ----------
@@ -78,68 +75,139 @@ def examine(project: Project, sheet: int | None, path: Path, views: Path | None,
     Raises
     ------
     BadInput
-        If the file cannot be read as DXF, there is no such sheet, or the drawing is of none of them.
+        If the file cannot be read as DXF, or there is no such sheet.
+    CannotBuild
+        If the drawing shows none of the sheets and no plan of the project.
+    """
+    return compared(project, sheet, path, views, pencil, say).report
+
+
+def compared(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
+             say: Callable[[str], None] = lambda _: None) -> ComparedDrawing:
+    """Compare a drawing: plans in a layout of its own title first, else element by element with the sheet of ours that it shows.
+
+    Parameters and errors are those of :func:`compare`.
     """
     numbers = sheet_numbers(project, sheet)
+    if views is not None and len(numbers) > 1:
+        raise BadInput(tell("--views needs --sheet N: its views are those of one sheet"))
     say(tell("reading {file}").format(file=path.name))
     ink = cad_file.read(path)
+    space = max(ink.spaces, key=lambda s: len(s.strokes))
+    plans = PlanInk(space, ink.unit)
+    may_be_ours = views is not None or "positions" not in project.parts or len(plans.a) > MANY_STROKES
+    found = _on_sheet(project, numbers, path, views, pencil, say, ink) if may_be_ours else None
+    if found is None and "positions" in project.parts:
+        say(tell("judging plans by their titles"))
+        judged = judge_plans(PlanRecord(project), plans)
+        if judged.fitting and (judged.explained > MOSTLY_PLANS or may_be_ours):
+            return _of_plans(project, sheet or _sheet_of(project, judged), path, space, judged, pencil, ink.notes)
+        found = None if may_be_ours else _on_sheet(project, numbers, path, views, pencil, say, ink)
+        if found is None and (judged.fitting or any(v.kind == "unlike" and v.title for v in judged.views)):
+            return _of_plans(project, sheet or _sheet_of(project, judged), path, space, judged, pencil, ink.notes)
+    if found is None:
+        raise _refusal(project, numbers, ink, sheet, path)
+    return _of_sheet(project, found, path, pencil, say)
+
+
+def _of_plans(project: Project, sheet: int, path: Path, space: DrawingSpace, judged: JudgedPlans, pencil: float,
+              notes: Sequence[str]) -> ComparedDrawing:
+    """The report on plans in a layout of its own."""
+    report = plan_report.plan_report(project.variant.project.name, sheet, path, space, judged, pencil, notes)
+    scaled = space.placed(Placing(complex(judged.ink.scale)))
+    if judged.mirrored:
+        scaled = scaled.placed(Placing(mirrored=True))
+    z = np.concatenate([s.points for s in scaled.strokes])
+    corner = complex(z.real.min() - 10, z.imag.min() - 10)
+    blank = Drawing(float(np.ptp(z.real)) + 20, float(np.ptp(z.imag)) + 20, path.stem, ())
+    shift = Placing(shift=-corner)
+    exact = tuple(shift(z) for z in plan_report.exact_lines(judged))
+    on_paper_ = scaled.placed(shift)
+    places = [(complex(shift(at)), *rest) for at, *rest in plan_report.marked_places(judged)]
+    files = cad_overlay.files(sheet, blank, exact, on_paper_, places)  # type: ignore[arg-type]
+    return ComparedDrawing(replace(report, files=files), sheet, blank, on_paper_, exact)
+
+
+def _sheet_of(project: Project, judged: JudgedPlans) -> int:
+    """The first sheet that shows plans of the kinds drawn, by the arrangements alone."""
+    names = {v.name for v in judged.fitting} or {"positions"}
+    forces = any(name.startswith("force") for name in names)
+
+    def shown(n: int) -> int:
+        some = arrangement(project.sheets[n - 1]).views
+        return sum(v.kind.plan in names for v in some) + forces * any(v.kind.picture == "force plans" for v in some)
+
+    return max(range(1, len(project.sheets) + 1), key=lambda n: (shown(n), -n))
+
+
+def _of_sheet(project: Project, found: cad_report.ExaminedDrawing, path: Path, pencil: float,
+              say: Callable[[str], None]) -> ComparedDrawing:
+    """The report on a drawing of a sheet of ours, with its overlays."""
+    say(tell("overlay"))
+    outcome, laid = found.outcome, found.laid
+    gone = cad_report.gone(outcome)
+    shown = [f for f in worst(outcome.findings) if f.element.view not in gone]
+    places = [(f.at, f.reach, str(f.element.number), str(f.verdict)) for f in shown]
+    places += [(x.at, x.reach, f"+{k}", str(x.verdict)) for k, x in enumerate(outcome.extras, 1)]
+    looks = [(look.places, f"~{k}") for k, look in enumerate(outcome.looks, 1)]
+    exact = tuple(p for e in found.exact for p in drawn(e))
+    files = cad_overlay.files(laid.known.n, laid.known.sheet.drawing, exact, found.space, places, looks)
+    name = project.variant.project.name
+    report = cad_report.report(name, path, found, pencil)
+    said = "\n".join([*listed(cad_story.mistakes(found, gone)), report.text])
+    report = replace(report, text=said, files=files, story=cad_story.story(name, path, found, pencil))
+    blank = replace(laid.known.sheet.drawing, marks=(), views=(), dimensions=(), forms=())
+    return ComparedDrawing(report, laid.known.n, blank, found.space, exact)
+
+
+def _on_sheet(project: Project, numbers: range, path: Path, views: Path | None, pencil: float, say: Callable[[str], None],
+              ink: CadInk) -> cad_report.ExaminedDrawing | None:
+    """A drawing compared with the sheet of ours that it shows, in the language it is lettered in; None if it shows none."""
     known = []
     for n in numbers:
         say(tell("sheet {n}").format(n=n))
         known.append(known_sheet(project, n))
-    if views is not None and len(known) > 1:
-        raise BadInput(tell("--views needs --sheet N: its views are those of one sheet"))
     language, said = lettered(project, known, ink)
     if language == paper():
-        return _examined(project, sheet, path, views, pencil, say, ink, known)
+        return _examined(project, views, pencil, say, ink, known)
     with on_paper(language):
-        found = _examined(type(project)(project.variant), sheet, path, views, pencil, say, ink, said)
+        found = _examined(type(project)(project.variant), views, pencil, say, ink, said)
     note = tell("the drawing is lettered in {language}; it was compared with the sheet in that language")
-    return replace(found, notes=(*found.notes, note.format(language=tell(name_of(language)))))
+    return None if found is None else replace(found, notes=(*found.notes, note.format(language=tell(name_of(language)))))
 
 
-def _examined(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
-              say: Callable[[str], None], ink: CadInk, known: Sequence[KnownSheet]) -> cad_report.ExaminedDrawing:
+def _examined(project: Project, views: Path | None, pencil: float, say: Callable[[str], None], ink: CadInk,
+              known: Sequence[KnownSheet]) -> cad_report.ExaminedDrawing | None:
     """The contents of a drawing compared with the sheets known, in its language."""
     say(tell("laying it over the sheet"))
     laid = register(known, ink)
     given = view_places.read(views, views_of(laid.known.sheet)) if views is not None else ()
+    if laid.share < LOST / 2 and not given:
+        return None
     space = laid.space.placed(laid.placing)
     space = replace(space, writings=tuple(w for w in space.writings if not laid.known.tells_who([w.at])),
                     strokes=tuple(s for s in space.strokes if not laid.known.tells_who(s.points)))
     say(tell("placing the views"))
-    places = layout.find(laid.known.elements, space, [(p, laid.placing) for p in given], say, laid.views)
-    made: list[Hypothesis] = []
-    shaped = places.share
-    if laid.views:
-        lost, made = lost_views(project, laid.known, space, places)
-        shaped = {v: share for v, share in places.share.items() if v not in lost}  # these are where a mistake leads them
-        places = places.with_more(lost)
-    absent = {v for v in places.share if places.absent(v)}
+    places = layout.find(laid.known.elements, space, [(p, laid.placing) for p in given], say)
+    absent: set[ElementView] = set()
 
     def matched(elements: Sequence[Element]) -> CadOutcome:
         return _matched(laid.known.elements, elements, absent, space, places.moves, pencil)
 
     outcome = matched(laid.known.elements)
     say(tell("looking for what was done wrong"))
-    by_chance = _by_chance(outcome, shaped) if places.own else set()
-    built = cad_built.built_otherwise(project, laid.known, space, places.moves, outcome, made, absent | by_chance)
+    built = cad_built.built_otherwise(project, laid.known, space, places.moves, outcome)
     now = [rebuilt(e, built[e.view][1]) if e.view in built else e for e in laid.known.elements]
-    kept = absent | {v for v in places.share if not v.n}  # a frame alone is one
+    kept = {v for v in places.share if not v.n}  # a frame alone is one
     again, gone = bool(built), cad_report.gone(outcome) - kept - built.keys()
     while again or gone:  # ink of a view that is not there after all is that of nothing
         absent |= gone
         outcome, again = matched(now), False
         gone = cad_report.gone(outcome) - absent - kept
-    if not _of_this_sheet(outcome, places.own):  # one mistake may lead everything elsewhere
-        _refuse(project, laid, outcome, ink, sheet, path)
+    if not _of_this_sheet(outcome):  # one mistake may lead everything elsewhere
+        return None
     notes = (*ink.notes, *_how(laid, ink.unit), *places.notes, *outcome.notes)
     return cad_report.ExaminedDrawing(laid, space, places, outcome, notes, {view: plan for view, (plan, _) in built.items()})
-
-
-def _by_chance(outcome: CadOutcome, shaped: Mapping[ElementView, float]) -> set[ElementView]:
-    """Views that were taken for ink of their shape that has nothing else of them."""
-    return {v for v in cad_report.gone(outcome) if shaped.get(v, 0.0) >= AS_DRAWN}
 
 
 def _matched(known: Sequence[Element], now: Sequence[Element], absent: Collection[ElementView], space: DrawingSpace,
@@ -208,27 +276,25 @@ def _green(found: Sequence[CadFinding]) -> float:
     return sum(f.verdict == "green" or f.follows for f in found) / max(len(found), 1)
 
 
-def _of_this_sheet(outcome: CadOutcome, own: bool) -> bool:
-    """Whether enough lines are right on the whole sheet, or of what a layout of its ``own`` shows; or in one view."""
-    gone = cad_report.gone(outcome) if own else ()
-    found = [f for f in _judged_lines(outcome) if f.element.view not in gone]
+def _of_this_sheet(outcome: CadOutcome) -> bool:
+    """Whether enough lines are right on the whole sheet, or in one view."""
+    found = _judged_lines(outcome)
     by_view: dict[ElementView, list[CadFinding]] = {}
     for f in found:
         by_view.setdefault(f.element.view, []).append(f)
     return _green(found) >= LOST or any(len(of_view) > 10 and _green(of_view) > 0.7 for of_view in by_view.values())
 
 
-def _refuse(project: Project, laid: Registration, outcome: CadOutcome, ink: CadInk, asked: int | None, path: Path) -> None:
-    """Say that the drawing is not of this sheet, and of which it may be."""
-    hint = tell("is it the right project and variant? a drawing with a layout of its own can be told with --views where its "
-                "views are")
+def _refusal(project: Project, numbers: range, ink: CadInk, asked: int | None, path: Path) -> CannotBuild:
+    """That the drawing is of none of the sheets, and of which it may be."""
+    hint = tell("is it the right project and variant? in a layout of its own write over each plan what it is and at which position")
     count = len(project.variant.sheets)
+    laid = register([known_sheet(project, n) for n in numbers], ink)
     if asked is not None and count > 1:
         other, fit = fitting([known_sheet(project, n) for n in range(1, count + 1) if n != asked], ink)
         if fit > max(laid.share + 0.15, 0.4):
             hint = tell("it looks like sheet {n}: use --sheet {n}, or leave --sheet out").format(n=other)
     said = tell("only {share} % of the lines of sheet {n} are in this drawing") if asked is not None or count == 1 else tell(
         "only {share} % of the lines of any of the {count} sheets are in this drawing")
-    hint = "; ".join((*ink.notes, hint))
-    share = round(100 * _green(_judged_lines(outcome)))
-    raise BadInput(Problem(said.format(share=share, n=laid.known.n, count=count), str(path), hint=hint))
+    said = said.format(share=round(100 * laid.share), n=laid.known.n, count=count)
+    return CannotBuild(f"{path}: {said}", "; ".join((*ink.notes, hint)))

@@ -15,8 +15,6 @@ from tmm_sheets.compare.cad.cad_comparison import Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines
 from tmm_sheets.compare.cad.overlaps import Left, Overlaps, overlaps, union
-from tmm_sheets.compare.cad.titles import NAMED, DrawnTitle, likeness
-from tmm_sheets.compare.cad.view_search import TITLE
 from tmm_sheets.compare.elements import grown
 from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.marks import Points, Text
@@ -47,16 +45,13 @@ def lettering(state: Comparison) -> None:
 
 
 def _of_own_places(state: Comparison) -> None:
-    """Letters and titles of a view that has a place of its own may stand anywhere at it, and more than once: they are not extra."""
+    """Letters of a view that has a place of its own may stand anywhere at it, and more than once: they are not extra."""
     for view in state.moved:
         mine = [e for e in state.elements if e.view == view]
-        box, own = Box.around(np.concatenate([e.points for e in mine])), DrawnTitle.of(view.name)
+        box = Box.around(np.concatenate([e.points for e in mine]))
         letters = {part for e in mine if e.kind == "text" for part in (cad_text.meant(e.text), *cad_text.parts(e.text))}
-        for k, w in enumerate(state.space.writings):
-            said = DrawnTitle.of(w.text)
-            if (box.contains(w.at, cad_text.FAR) and cad_text.meant(w.text) in letters) or (
-                    box.contains(w.at, TITLE) and likeness(own, said, said.numbers) >= NAMED):
-                state.used_writings.add(k)
+        state.used_writings |= {k for k, w in enumerate(state.space.writings)
+                                if box.contains(w.at, cad_text.FAR) and cad_text.meant(w.text) in letters}
 
 
 def _bars(state: Comparison, n: int) -> None:

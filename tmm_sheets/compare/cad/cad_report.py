@@ -16,7 +16,6 @@ from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome, ExtraStr
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
 from tmm_sheets.compare.cad.layout import Layout
 from tmm_sheets.compare.cad.registration import Registration
-from tmm_sheets.compare.cad.view_search import SHAPES
 from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built
 from tmm_sheets.compare.diagnosis.hypotheses import built_otherwise
@@ -25,9 +24,12 @@ from tmm_sheets.compare.finding_records import FindingRecord, as_tree, point
 from tmm_sheets.compare.findings import called, of_element, place, table, worst
 from tmm_sheets.compare.placing import Placing, moved
 from tmm_sheets.compare.report import Report, said_verdict
+from tmm_sheets.drawing.marks import Role
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
 
+SHAPES: frozenset[Role] = frozenset({"vector", "link", "curve"})
+"""Roles of lines without which a view is a table or a text."""
 MANY = 4
 """Most numbers of elements in a row on line types and widths."""
 VIEW_GONE = 0.15

@@ -1,24 +1,21 @@
-"""Where the views of a sheet are in a drawing with another layout: each is placed, and scaled, by itself."""
+"""Where the views of our sheet are in a drawing of it: in their places, shifted, or where a file says."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from types import MappingProxyType
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from tmm_sheets.compare.cad import view_search
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.cad_text import meant
-from tmm_sheets.compare.cad.line_fit import lines, refine, search
-from tmm_sheets.compare.cad.view_search import FoundView
+from tmm_sheets.compare.cad.line_fit import KnownLines, lines, refine, search
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.compare.view_places import StatedViewPlace
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import decimal, told
-from tmm_sheets.words import tell, tell_n
+from tmm_sheets.words import tell
 
 MOST = 800
 """Most points of a view that are compared."""
@@ -42,31 +39,18 @@ class Layout:
     share : share of the lines of each view that was found, 0 .. 1
     said : what is told of the places that a file gives
     elsewhere : views that were found where they were not expected
-    own : whether the layout is the student's own
     """
 
     moves: Mapping[ElementView, Placing]
     share: Mapping[ElementView, float]
     said: tuple[str, ...]
     elsewhere: tuple[ElementView, ...]
-    own: bool
-
-    def absent(self, v: ElementView) -> bool:
-        """Whether a view is nowhere: in a layout of its own none is expected in its place on our sheet."""
-        return self.own and v.n > 0 and v not in self.moves and self.share.get(v, 0.0) < AT_HOME
 
     @property
     def notes(self) -> tuple[str, ...]:
         """Where the views are, in words."""
-        if self.own:
-            return (*self.said, _own_layout(list(self.share), self.moves), *_odd(self.moves))
         there = tell('"{view}" stands {place}; compared there')
         return (*self.said, *(there.format(view=v.name, place=_where(v, self.moves[v])) for v in self.elsewhere))
-
-    def with_more(self, found: Mapping[ElementView, FoundView]) -> Layout:
-        """The same with more views."""
-        return replace(self, moves={**self.moves, **{v: one.placing for v, one in found.items()}},
-                       share={**self.share, **{v: one.share for v, one in found.items()}})
 
 
 def ink(elements: Sequence[Element]) -> Points:
@@ -75,7 +59,7 @@ def ink(elements: Sequence[Element]) -> Points:
 
 
 def find(elements: Sequence[Element], space: DrawingSpace, given: Sequence[tuple[StatedViewPlace, Placing]] = (),
-         say: Callable[[str], None] = lambda _: None, found: Mapping[ElementView, FoundView] = MappingProxyType({})) -> Layout:
+         say: Callable[[str], None] = lambda _: None) -> Layout:
     """Place every view of a sheet.
 
     A view may be in its place, a little aside, where its texts are in the drawing, or anywhere in ink the other views leave.
@@ -86,14 +70,13 @@ def find(elements: Sequence[Element], space: DrawingSpace, given: Sequence[tuple
     space : the drawing, laid on the sheet as a whole, mm
     given : places from a file, each with the placing of the whole drawing; they are refined, not sought
     say : told what is being done
-    found : views of a layout of its own that are known already; then none is expected in its place on our sheet
 
     Raises
     ------
     BadInput
         If a place gives a scale factor for a view that has none of its own on the sheet.
     """
-    return _ViewFinder(elements, space, say).layout(given, found)
+    return _ViewFinder(elements, space, say).layout(given)
 
 
 class _ViewFinder:
@@ -114,17 +97,12 @@ class _ViewFinder:
         self.notes: list[str] = []
         self.elsewhere: list[ElementView] = []
 
-    def layout(self, given: Sequence[tuple[StatedViewPlace, Placing]], found: Mapping[ElementView, FoundView]) -> Layout:
+    def layout(self, given: Sequence[tuple[StatedViewPlace, Placing]]) -> Layout:
         """Place the views from the file, then the others near their places or their texts, last those that are nowhere near."""
         for place, whole in given:
             self._place_given(place, whole)
-        for v, one in found.items():
-            if v not in self.moves:
-                self.moves[v], self.share[v] = one.placing, one.share
-        if found:  # what has a shape was sought
-            self.share |= {v: 0.0 for v in view_search.shaped(self.elements) if v not in self.moves}
-        self._search([v for v in self.views if v not in self.moves and (v in self.share or not self._place_near(v))])
-        return Layout(self.moves, self.share, tuple(self.notes), tuple(self.elsewhere), bool(found))
+        self._search([v for v in self.views if v not in self.moves and not self._place_near(v)])
+        return Layout(self.moves, self.share, tuple(self.notes), tuple(self.elsewhere))
 
     def _place_given(self, place: StatedViewPlace, whole: Placing) -> None:
         v = place.view
@@ -203,44 +181,30 @@ class _ViewFinder:
         free = self.theirs
         for v, s in self.share.items():
             if s >= AT_HOME:
-                free = view_search.unused(free, self.moves.get(v, Placing())(self.points[v]))
-        self.say(tell("looking for views that stand elsewhere"))
-        at_home = {v: self.moves.get(v, Placing()) for v, s in self.share.items() if s >= AT_HOME}
-        for v, one in view_search.Search(self.elements, lost, self.space, free, at_home).found().items():
-            if self._score(v, one.placing) > self._score(v, Placing()):
-                self._take(v, one.placing, one.share)
-                free = view_search.unused(free, one.placing(self.points[v]))
-        # A table has no shape to be known by, and keeps its size.
-        tables = [v for v in lost if v not in self.moves and v.mu is None]
-        for v in sorted(tables, key=lambda v: -len(self.points[v])):
+                free = _unused(free, self.moves.get(v, Placing())(self.points[v]))
+        for v in sorted(lost, key=lambda v: -len(self.points[v])):
             if len(free.a) < 4:
                 return
             self.say(tell('looking for view "{view}"').format(view=v.name))
             start = search(self.points[v], free, [1.0], (0,), enough=0.95, tries=6).placing
             nudged = refine(self.points[v], free, start, (3.0, 1.5, 0.8, 0.4, 0.25), False, 1).placing
             if self._words_at(v, nudged.inverse()) and self._accept(v, [nudged.inverse()]):
-                free = view_search.unused(free, self.moves[v](self.points[v]))
+                free = _unused(free, self.moves[v](self.points[v]))
 
     def _words_at(self, v: ElementView, move: Placing) -> bool:
         """Whether words of a view are there, as far as both sides have any."""
         return not (self.words and self.texts[v]) or self._read(v, move) >= 0.2
 
 
-def _own_layout(views: Sequence[ElementView], moves: Mapping[ElementView, Placing]) -> str:
-    """How many views of a layout of its own were found, in words."""
-    shown = [v for v in views if v.n]
-    said = tell_n("the layout is the student's own: of {n} view {found} found by shape, scale and title",
-                  "the layout is the student's own: of {n} views {found} found by shape, scale and title", len(shown))
-    return said.format(n=len(shown), found=sum(v in moves for v in shown))
+def _unused(theirs: KnownLines, known: Points, step: float = 6.0) -> KnownLines:
+    """Their lines without those on which the points of a placed view, about ``step`` mm apart at most, are."""
+    import shapely
 
-
-def _odd(moves: Mapping[ElementView, Placing]) -> Iterator[str]:
-    """Plans that fit only at a scale factor that hardly anybody takes: all of their lengths may be wrong."""
-    for v, move in moves.items():
-        if v.mu is not None and not view_search.handy(move):
-            said = tell('"{view}" fits only at {times} times the size of ours, a scale factor that hardly anybody takes: '
-                        "is it yours?")
-            yield said.format(view=v.name, times=told(f"{move.scale:.4g}"))
+    if not len(theirs.a) or not len(known):
+        return theirs
+    _, j = theirs.tree.query(shapely.points(known.real, known.imag), predicate="dwithin", distance=NEAR)
+    hits = np.bincount(j, minlength=len(theirs.a))
+    return theirs.only((hits * step < 0.5 * theirs.length) | (hits == 0))
 
 
 def _where(view: ElementView, move: Placing) -> str:

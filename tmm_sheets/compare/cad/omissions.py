@@ -19,7 +19,6 @@ from tmm_sheets.compare.cad.cad_comparison import Comparison
 from tmm_sheets.compare.cad.cad_findings import AbsentKind, CadFinding
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines
 from tmm_sheets.compare.cad.overlaps import overlaps
-from tmm_sheets.compare.cad.view_search import positions
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.placing import HINGE
 from tmm_sheets.drawing.marks import Points
@@ -71,6 +70,15 @@ def said(kind: str, n: int) -> str:
         "text": tell_n("{n} text", "{n} texts", n),
     }
     return words[kind].format(n=n)
+
+
+def positions(main: Iterable[Element]) -> dict[str, list[Element]]:
+    """The links of each position, where a view shows several: one or two are as good a plan."""
+    found: dict[str, list[Element]] = {}
+    for e in main:
+        if e.role == "link" and e.position:
+            found.setdefault(e.position, []).append(e)
+    return found if len(found) > 1 else {}
 
 
 def positions_left_out(state: Comparison) -> None:

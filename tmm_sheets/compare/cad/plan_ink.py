@@ -34,6 +34,7 @@ MAX_GAP_MM = 2.5         # strokes nearer than this are one figure
 MAX_HEAD_MM = 6.5        # longest stroke of an arrow head
 MAX_SYMBOL_MM = 14.0     # a closed outline up to this size is a symbol
 SUPPORT_MM = 10.0        # so near to a point of the mechanism, and so long, are the lines of its support
+MAX_JOINT_MM = 3.2       # radius of the largest circle of a joint
 MAX_HATCH_MM = 6.0       # longest stroke of the hatching of a support, and greatest distance of two
 MIN_DRAWN_MM = 0.7       # a shorter vector is not drawn
 STEP_MM = 1.0            # distance of the places at which lines are looked at
@@ -114,10 +115,11 @@ class PlanInk:
     scale : mm per unit of the drawing; ``curves`` number of strokes that are bent and not looked at
     """
 
-    def __init__(self, space: DrawingSpace, unit: float | None) -> None:
-        self.texts = _lettering(space)
-        self.scale = _scale(space, unit)
+    def __init__(self, space: DrawingSpace, unit: float | None, scaled: bool = False) -> None:
+        self.scale = 1.0 if scaled else _scale(space, unit)
+        self.texts = _lettering(space, self.scale)
         self.curves = 0
+        joints: list[tuple[complex, float]] = []
         ends: list[complex] = []
         stroke: list[int] = []
         small: list[Points] = []
@@ -127,6 +129,7 @@ class PlanInk:
                 continue
             if _is_bent(z):
                 self.curves += 1
+                joints += _joint(z)
             elif len(z) > 3 and abs(z[0] - z[-1]) < 0.05 and max(np.ptp(z.real), np.ptp(z.imag)) < MAX_SYMBOL_MM:
                 small.append(z)
             else:
@@ -143,6 +146,7 @@ class PlanInk:
         s2, of = np.delete(s2, symbols, axis=0), np.delete(of, symbols)
         barbs, more = _open_heads(s2)
         self.a, self.b, self.stroke = (np.delete(x, barbs) for x in (s2[:, 0], s2[:, 1], of))
+        _extend(self.a, self.b, heads, joints)
         self.heads: list[tuple[complex, complex]] = heads + more
         turns = Counter(round(float(np.degrees(t.angle)) % 360, 1) for t in self.texts)
         self.turn = float(np.radians(turns.most_common(1)[0][0])) if turns else float("nan")
@@ -175,6 +179,14 @@ class PlanInk:
                 return [some[out == f] for f in np.unique(out)]
             out = least
 
+    def is_frame(self, some: Numbers) -> bool:
+        """True if strokes are upright and level only, and reach round most of the drawing."""
+        turn = np.exp(1j * (self.turn if np.isfinite(self.turn) else 0.0))
+        d, z = (self.b - self.a)[some] / turn, np.concatenate((self.a, self.b)) / turn
+        mine = np.concatenate((self.a[some], self.b[some])) / turn
+        aside = np.minimum(np.abs(d.real), np.abs(d.imag)) > PARALLEL_RAD * np.abs(d)
+        return bool(len(some) > 3 and not aside.any() and np.ptp(mine.real) > 0.9 * np.ptp(z.real) and np.ptp(mine.imag) > 0.9 * np.ptp(z.imag))
+
     def gap(self, some: Numbers, others: Numbers) -> float:
         """How near strokes come to others, mm, by places along them."""
         z = sample(self.a[some], self.b[some])[0]
@@ -182,11 +194,11 @@ class PlanInk:
         return float(np.abs(z[:, None] - w).min())
 
 
-def _lettering(space: DrawingSpace) -> list[Lettering]:
+def _lettering(space: DrawingSpace, scale: float) -> list[Lettering]:
     by_entity: dict[int, list[int]] = {}
     for n, w in enumerate(space.writings):
         by_entity.setdefault(w.entity, []).append(n)
-    return [Lettering(" ".join(space.writings[n].text.strip() for n in some), space.writings[some[0]].at,
+    return [Lettering(" ".join(space.writings[n].text.strip() for n in some), space.writings[some[0]].at * scale,
                       space.writings[some[0]].angle) for some in by_entity.values()]
 
 
@@ -224,6 +236,32 @@ def _each_once(s: NDArray[np.complex128]) -> list[int]:
             seen.add(key)
             keep.append(n)
     return keep
+
+
+def _joint(z: Points) -> list[tuple[complex, float]]:
+    """Centre and radius of a small circle."""
+    centre = complex(z.real.min() + z.real.max(), z.imag.min() + z.imag.max()) / 2
+    radius = np.abs(z - centre)
+    return [(centre, float(radius.mean()))] if abs(z[0] - z[-1]) < 0.05 and radius.max() < MAX_JOINT_MM and np.ptp(radius) < 0.1 else []
+
+
+def _extend(a: Points, b: Points, heads: Sequence[tuple[complex, complex]], joints: Sequence[tuple[complex, float]]) -> None:
+    """Lengthen strokes in place: up to the tip of the head that they end under, to the middle of the joint at whose rim they end."""
+    tips = np.array([tip for tip, _ in heads], dtype=complex)
+    ways = np.array([way for _, way in heads], dtype=complex)
+    centres, radii = np.array([c for c, _ in joints], dtype=complex), np.array([r for _, r in joints])
+    for end, other in ((a, b), (b, a)):
+        u = (end - other) / np.maximum(np.abs(end - other), 1e-9)
+        if len(tips):
+            w = (tips - end[:, None]) * np.conj(u)[:, None]
+            under = (w.real > 0.2) & (w.real < MAX_HEAD_MM) & (np.abs(w.imag) < 0.3) & (np.abs(np.angle(ways / u[:, None])) < 0.2)
+            n = np.flatnonzero(under.any(1))
+            end[n] = tips[under[n].argmax(1)]
+        if len(centres):
+            w = (centres - end[:, None]) * np.conj(u)[:, None]
+            rim = (np.abs(w.real - radii) < 0.3) & (np.abs(w.imag) < 0.3)
+            n = np.flatnonzero(rim.any(1))
+            end[n] = centres[rim[n].argmax(1)]
 
 
 def _supports(s: NDArray[np.complex128]) -> list[int]:
@@ -335,10 +373,13 @@ def covered(z: Points, u: Points, a: Points, b: Points) -> NDArray[np.bool_]:
 
 
 class Figure:
-    """Strokes that may be a view, with what is computed of them once; ``strokes`` are their numbers in the ink."""
+    """Strokes that may be a view, with what is computed of them once.
 
-    def __init__(self, ink: PlanInk, strokes: Numbers, vectors: bool = False) -> None:
-        self.strokes = strokes
+    ``strokes`` are their numbers in the ink, ``place`` scale and origin of the plan where they are known.
+    """
+
+    def __init__(self, ink: PlanInk, strokes: Numbers, vectors: bool = False, place: tuple[complex, complex] | None = None) -> None:
+        self.strokes, self.place = strokes, place
         self.a, self.b = ink.a[strokes], ink.b[strokes]
         self.size = np.abs(self.b - self.a)
         self.z, self.u, self.of = sample(self.a, self.b)
@@ -429,7 +470,7 @@ class Figure:
         """Scales and origins that lay some line of the plan on some stroke, those first that put most points on ends of ink."""
         d = lines.heads - lines.tails
         size = np.abs(d)
-        pts = np.unique(np.round(np.concatenate((lines.tails, lines.heads)), 12))
+        pts: Points = np.unique(np.round(np.concatenate((lines.tails, lines.heads)), 12)).astype(complex)
         extent = float(np.hypot(np.ptp(pts.real), np.ptp(pts.imag))) or 1e-9
         main = [i for i in np.argsort(-size).tolist() if size[i] > 0.03 * extent and lines.kinds[i] != OTHERS][:LONGEST_LINES]
         if not main or not len(self.long):
@@ -483,7 +524,8 @@ class Figure:
         """The cheapest place of a plan's lines; ``whole``: that where most of it is drawn, whatever else is."""
         if not len(lines.tails):
             return None
-        fits = [self.price(lines, *place) for place in self.places(lines, turn, most)]
+        places = self.places(lines, turn, most) if self.place is None else [self.place]
+        fits = [self.price(lines, *place) for place in places]
         return min(fits, key=lambda f: f.bare + 0.1 * f.extra if whole else f.price, default=None)
 
     def away(self, at: complex) -> float:
@@ -514,4 +556,4 @@ def reversed_heads(ink: PlanInk, lines: PlanLines, fit: Fit) -> list[int] | None
 
 def _aimed(at: complex, tip: complex, way: complex, along: complex) -> bool:
     """True if a head stands at a point and points along a direction."""
-    return abs(at - tip) < 2 * TOLERANCE_MM and abs(np.angle(way / along)) < 0.2
+    return bool(abs(at - tip) < 2 * TOLERANCE_MM and abs(np.angle(way / along)) < 0.2)

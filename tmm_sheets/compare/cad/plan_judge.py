@@ -53,6 +53,8 @@ UNLIKE = 0.55           # of the ink that, unexplained, makes it another plan
 FAR_MM = 150.0          # a title is no farther from ink that is not its plan
 NEAREST = 4             # figures tried under a title
 MIN_FIGURE_MM = 15.0    # a figure with less ink is no plan
+MIN_UNTITLED_MM = 40.0  # nor one with less ink that has no title
+MIN_REST_MM = 5.0       # less ink is nothing
 MIN_MOVED_MM, MAX_MOVED_MM, ENDS = 1.0, 60.0, 14  # how far from its point an end of ink is tried, and how many such ends
 SAME_MM = 0.25          # mistakes whose points lie so near cannot be told apart
 TOLD = 3
@@ -162,7 +164,7 @@ class _Judge:
         self.record, self.ink = record, ink
         self.titles = titles(ink.texts)
         labels = Counter(t.label for t in self.titles if t.label in record.labels)
-        self.usual = record.labels.index(labels.most_common(1)[0][0]) if labels else None  # type: ignore[arg-type]
+        self.usual = record.labels.index(labels.most_common(1)[0][0]) if labels else None
 
     def judged(self) -> tuple[tuple[JudgedView, ...], tuple[Numbers, ...]]:
         """All views, and the figures that are none."""
@@ -170,7 +172,8 @@ class _Judge:
         free = np.ones(len(self.ink.a), bool)
         for _, _, _, claimed in whole:
             free[claimed] = False
-        rest = [f for some in self.ink.figures(np.flatnonzero(free)) if (f := Figure(self.ink, some)).ink > MIN_DRAWN_INK]
+        rest = [f for some in self.ink.figures(np.flatnonzero(free)) if (f := Figure(self.ink, some)).ink > MIN_REST_MM
+                and not self.ink.is_frame(some)]
         open_titles = [n for n in range(len(self.titles)) if n not in {w[0] for w in whole}]
         out, used = self._with_mistakes(open_titles, rest)
         left = [f for n, f in enumerate(rest) if n not in used]
@@ -182,12 +185,17 @@ class _Judge:
             out.append(self._judged(self.titles[n].text, name, ks, self._figure(mine, name)))
         bare = [n for n in open_titles if all(v.title != self.titles[n].text for v in out)]
         out += [self._without_ink(self.titles[n]) for n in bare]
-        known = [f for f in left if f.ink > 40 and len(f.strokes) > 2 and (v := self._untitled(f)) is not None and out.append(v) is None]
-        none = tuple(f.strokes for f in left if f not in known and f.ink > 40 and len(f.strokes) > 2)
+        none = []
+        for f in (f for f in left if f.ink > MIN_UNTITLED_MM and len(f.strokes) > 2):
+            v = self._untitled(f)
+            if v is not None:
+                out.append(v)
+            else:
+                none.append(f.strokes)
         for v in out:
             if v.fit is not None and v.name != "positions" and v.kind in ("right", "mistake", "partly"):
                 v.reversed_heads = reversed_heads(self.ink, v.lines, v.fit)
-        return tuple(out), none
+        return tuple(out), tuple(none)
 
     def _figure(self, strokes: Numbers, name: str) -> Figure:
         return Figure(self.ink, strokes, vectors=name != "positions")
@@ -274,9 +282,6 @@ class _Judge:
         return judge_view(self.record, title, name, ks, figure, self.ink.turn)
 
 
-MIN_DRAWN_INK = 5.0
-
-
 def judge_view(record: PlanRecord, title: str, name: str, ks: tuple[int, ...], figure: Figure, turn: float) -> JudgedView:
     """Judge a figure as a plan at some positions: as it should be, else with the mistakes that may have been made in it."""
     view = record.view(name)
@@ -293,8 +298,8 @@ def judge_view(record: PlanRecord, title: str, name: str, ks: tuple[int, ...], f
     return _view(title, name, ks, view, "unlike" if unlike else "partly", exact, exact, usual, figure, tried=search.tried)
 
 
-def _view(title: str, name: str, ks: tuple[int, ...], view: PlanView, kind: Kind, exact: PlanLines, lines: PlanLines, fit: Fit | None,
-          figure: Figure, causes: tuple[Cause, ...] = (), both: bool = False, tried: int = 0) -> JudgedView:
+def _view(title: str, name: str, ks: tuple[int, ...], view: PlanView, kind: Kind, exact: PlanLines, lines: PlanLines,
+          fit: Fit | None, figure: Figure, causes: tuple[Cause, ...] = (), both: bool = False, tried: int = 0) -> JudgedView:
     left = figure.strokes if fit is None else figure.strokes[(fit.left > LEFT_SHARE) & ~figure.soft]
     return JudgedView(title, name, ks, view, kind, exact, lines, fit, figure.strokes, left, causes, both, tried=tried)
 

@@ -19,7 +19,7 @@ from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.plan import Plan, asked_for
 from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.step import Step
-from tmm_sheets.words import marked, tell
+from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -56,8 +56,11 @@ def _title(text: Lettering) -> PlanTitle | None:
     low = text.text.casefold().replace("'", "′")
     found = POSITION.search(low)
     rest = low if found is None else low[: found.start()] + " " + low[found.end():]
-    kind = next((k for k, stem in TITLES.items() if re.search(stem, rest)), "positions" if found and found.group()[:3] == "пол" else None)
-    return None if kind is None else PlanTitle(text.text, text.at, kind, found[1] if found else None, tuple(re.findall(r"\d+", rest)))
+    kind = next((k for k, stem in TITLES.items() if re.search(stem, rest)), None)
+    if kind is None and found is not None and "пол" in found.group():
+        kind = "positions"
+    label = found[1] if found is not None else None
+    return None if kind is None else PlanTitle(text.text, text.at, kind, label, tuple(re.findall(r"\d+", rest)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +134,7 @@ class PlanRecord:
             return
         k = self.labels.index(title.label) if title.label in self.labels else None
         first = [k] if k is not None else [usual] if usual is not None else []
-        some = [(i,) for i in dict.fromkeys([*first, *(whole if k is None else ())])]
+        some: list[tuple[int, ...]] = [(i,) for i in dict.fromkeys([*first, *(whole if k is None else ())])]
         if title.kind == "positions":
             some.insert(len(first), whole)
         yield from ((title.kind, ks) for ks in some)
@@ -148,7 +151,8 @@ class PlanRecord:
         plan, m = self.plans["positions"], self.project.mechanism
         rays = {frozenset(s.args) for s in plan if s.rule is rules.RAY and all(isinstance(x, Step) for x in s.args)}
         joints = Counter(p for link in m.links for p in m.link_points(link))
-        centres = {link.centre for link in m.links.values() if joints[str(link.centre)] < 2}
+        # A centre of mass that is a joint of two links, or a pivot in the frame, is drawn as such.
+        centres = {c for link in m.links.values() if (c := link.centre) in plan and joints[c] < 2 and np.ndim(plan[c].value)}
         of_links = [[p for p in m.link_points(link) if p not in centres] for link in m.links]
         pairs: dict[frozenset[Step], tuple[Step, Step, str, str]] = {}
         for n, names in enumerate([*of_links, *([p for p in (*g.outer, g.inner) if p] for g in m.groups)]):
@@ -188,8 +192,3 @@ def _of_vectors(plan: Plan) -> PlanView:
 def _sums_up(order: Sequence[Step], tail: Step, head: Step) -> bool:
     """True of a side of a force polygon that is the sum of others."""
     return len(order) > 2 and abs(order.index(tail) - order.index(head)) not in (1, len(order) - 1)
-
-
-def class_said(kind: str) -> str:
-    """A class of lines that may be left out, in words."""
-    return tell(CLASSES[kind])

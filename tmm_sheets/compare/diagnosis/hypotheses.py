@@ -238,7 +238,8 @@ def of_other_positions(steps: Sequence[Step], k: int, labels: Sequence[str]) -> 
     some = [s for s in steps if np.size(s.value) == len(labels) > 1]
     for other, label in enumerate(labels) if some else ():
         if other != k:
-            yield Hypothesis("neighbour", "of position", some[-1], tuple(Change(s, of_position(other), k) for s in some), k, Own(label))
+            changes = tuple(Change(s, of_position(other), k) for s in some)
+            yield Hypothesis("neighbour", "of position", some[-1], changes, k, Own(label))
 
 
 def _moments(step: Step, k: int) -> Iterator[Hypothesis]:
