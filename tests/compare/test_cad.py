@@ -18,13 +18,13 @@ from tests.few import seldom
 from tmm_sheets.backends import dxf
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare import view_places
-from tmm_sheets.compare.cad import cad_drawing, cad_file, cad_report
+from tmm_sheets.compare.cad import cad_drawing, cad_file
+from tmm_sheets.compare.cad.cad_report import SHAPES
 from tmm_sheets.compare.cad.line_fit import lines
-from tmm_sheets.compare.cad.view_search import SHAPES
 from tmm_sheets.compare.elements import elements
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.placing import Placing
-from tmm_sheets.errors import BadInput
+from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 
@@ -65,8 +65,7 @@ def compare(data, tmp_path, sheet=2, views=None, project=SHAPER):
     if views is not None:
         (tmp_path / "views.toml").write_text(views, encoding="utf-8")
         views = tmp_path / "views.toml"
-    found = cad_drawing.examine(project, sheet, path, views, 0.25)
-    report = cad_report.report("shaper", path, found, 0.25)
+    report = cad_drawing.compare(project, sheet, path, views, 0.25, lambda _: None)
     assert [*faults(report.tree)] == []
     return report
 
@@ -278,7 +277,11 @@ def test_a_single_view(tmp_path):
     assert all(lost[f["follows"][0]]["view"] == f["view"] for f in of_elements(report.tree) if f["view"] in others)
     shaped = {e.view.name for e in known if e.role in SHAPES}
     assert set(report.tree["summary"]["missing_tables"]) == others - shaped
-    assert f"{len(mine)} green (up to 0.00 mm), 0 amber, 0 red; 0 extra; {len(others & shaped)} of {len(shaped)} " in report.text
+    left = report.tree["summary"]["not_judged"]
+    assert left == len(known) - len(mine) + len(others)
+    assert report.tree["summary"]["not_drawn"] == len(known) - len(mine)
+    views = f"{len(others & shaped)} of {len(shaped)} views"
+    assert f"{len(mine)} green (up to 0.00 mm), 0 amber, 0 red, {left} not judged; 0 extra; {views}" in report.text
 
 
 def test_views_given_by_a_file(tmp_path):
@@ -329,9 +332,9 @@ def test_a_bad_file_of_views(tmp_path, text, said):
 def test_the_wrong_sheet_is_told_and_the_right_one_named(tmp_path):
     both = project_files.project(project_files.CRANK, project_files.REDUCER)
     first = drawn(elements(composed(both, 1)))
-    with pytest.raises(BadInput, match=r"only \d+ % of the lines of sheet 2 are in this drawing") as e:
+    with pytest.raises(CannotBuild, match=r"only \d+ % of the lines of sheet 2 are in this drawing") as e:
         compare(first, tmp_path, 2, project=both)
-    assert "it looks like sheet 1: use --sheet 1" in e.value.problems[0].hint
+    assert "it looks like sheet 1: use --sheet 1" in e.value.hint
     assert compare(first, tmp_path, None, project=both).tree["sheet"] == 1
 
 
@@ -340,7 +343,7 @@ def test_a_drawing_of_something_else(tmp_path):
     rng = np.random.default_rng(1)
     z = rng.uniform(0, 800, 60) + 1j * rng.uniform(0, 500, 60)
     other = [replace(LINE, points=np.array([a, b]), number=-1) for a, b in pairwise(z)]
-    with pytest.raises(BadInput, match="of the lines of sheet 1 are in this drawing"):
+    with pytest.raises(CannotBuild, match="of the lines of sheet 1 are in this drawing"):
         compare(drawn(other), tmp_path, 1, project=Project(read("lugansk/cam_flat")))
 
 

@@ -5,14 +5,12 @@ import pytest
 
 from tests.few import seldom
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare.cad import cad_built
 from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.diagnosis.built_plan import StudentDrawing, built_otherwise, errors_of, possible
 from tmm_sheets.compare.diagnosis.drawn_plan import between, drawn_plan
 from tmm_sheets.compare.diagnosis.drawn_senses import acting
 from tmm_sheets.compare.diagnosis.replay import replay
 from tmm_sheets.compare.known_sheet import known_sheet
-from tmm_sheets.compare.placing import Placing
 from tmm_sheets.project import Project
 
 PRESS = Project(read("press"))
@@ -26,6 +24,11 @@ def setup_module():
     POLYGON, SCHEME = VIEWS["План сил группы 2–3"], VIEWS["Группа Ассура 2–3 (2-й вид)"]
     PLANS, ERRORS = errors_of(PRESS, KNOWN)
     ARROWS = {view: acting(KNOWN, PLANS, view) for view in VIEWS.values()}
+
+
+def inked(theirs, line):
+    """Share of a line that others cover."""
+    return theirs.share(line[0] + (line[1] - line[0]) * np.linspace(0.02, 0.98, 40), 0.4)
 
 
 def test_which_arrows_there_are():
@@ -61,7 +64,7 @@ def named(made, arrows):
     heads = [a.fills[0][0] for a in arrows]
 
     def seen(view):
-        return StudentDrawing(lambda line: cad_built._inked(theirs, Placing(), line), lambda z: z, [],
+        return StudentDrawing(lambda line: inked(theirs, line), lambda z: z, [],
                        headed=lambda arrow: any(abs(arrow.fills[0][0] - head) < 1 for head in heads))
 
     absent = set(VIEWS.values()) - {POLYGON, SCHEME, VIEWS["Планы положений механизма"]}

@@ -37,7 +37,7 @@ def setup_module():
 def compared(found, tmp_path, looks=True, **way):
     path = tmp_path / "student.dxf"
     path.write_bytes(draw(list(found), Way(looks=looks, **way), random.Random(1)))
-    return cad_drawing.examine(PROJECT, 1, path, None, 0.25)
+    return cad_drawing.examine(PROJECT, range(1, 2), cad_file.read(path))
 
 
 def some(style, kind, length):
@@ -102,7 +102,7 @@ def test_a_scale_of_line_types_that_was_not_set_gets_a_remark(tmp_path):
     path = tmp_path / "student.dxf"
     data = draw(list(EXACT), Way(looks=True), random.Random(1))
     path.write_bytes(re.sub(rb"(\$LTSCALE\s+40\s+)4\.0", rb"\g<1>0.2", data))
-    found = cad_drawing.examine(PROJECT, 1, path, None, 0.25)
+    found = cad_drawing.examine(PROJECT, range(1, 2), cad_file.read(path))
     assert found.outcome.looks == ()
     (note,) = found.notes
     assert note == "dash-dot lines have strokes of 0.635 mm: GOST 2.303 asks for 5 to 30 mm (scale of line types, LTSCALE)"

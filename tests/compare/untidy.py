@@ -1,10 +1,10 @@
 """Untidy CAD drawings in layouts of their own, from the record alone: what does a comparison say of them?
 
 ``python -m tests.compare.untidy [DRAWINGS] [--seed N] [--first I] [--show]`` makes so many and prints one table: as wanted, right
-views accused, mistakes missed, named first, refused, seconds. Whoever draws so takes some plans at a position, each at a scale factor of
+views accused, mistakes missed, named, refused, seconds. Whoever draws so takes some plans at a position, each at a scale factor of
 its own, under titles in words of its own; ends are off by a hand's 0.05 to 0.15 mm; heads are filled, of two strokes or broad
-polylines; there are layers, dashed and thin construction lines, hinges, trajectories, hatchings, dimensions, letters, sometimes a
-frame; some are turned, a few mirrored. A third is right; the others have one mistake, a few two, or all that follows is drawn from it.
+polylines; there are layers, dashed and thin construction lines, hinges, trajectories, hatchings, letters, sometimes a frame; some
+are turned, a few mirrored. A third is right, most others have one mistake, some two.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import process_time
@@ -38,12 +39,15 @@ PROJECTS = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/1:2", "sixbar/3
             "transport/diesel@01-Т-27", "transport/crusher@23-СДМ-471", str(CASES / "compressor_rocker.toml"),
             str(OWN / "feeder.toml"), str(OWN / "visor.toml"), str(OWN / "conveyor.toml"), str(OWN / "pump.toml"))
 TITLES = {
-    "positions": ("План положений", "ПЛАН МЕХАНИЗМА", "Планы положений механизма", "Схема механизма (положение {k})", "План положень"),
+    "positions": ("План положений", "ПЛАН МЕХАНИЗМА", "Планы положений механизма", "Схема механизма (положение {k})",
+                  "План положень"),
     "velocities": ("План скоростей, положение {k}", "План скоростей (пол. {k})", "ПЛАН СКОРОСТЕЙ", "План швидкостей, положення {k}",
                    "Velocity plan, position {k}"),
-    "accelerations": ("План ускорений, положение {k}", "Пл. ускорений (пол. {k})", "ПЛАН УСКОРЕНИЙ", "План прискорень, положення {k}",
-                      "Acceleration plan, position {k}"),
+    "accelerations": ("План ускорений, положение {k}", "Пл. ускорений (пол. {k})", "ПЛАН УСКОРЕНИЙ", 
+                      "План прискорень, положення {k}", "Acceleration plan, position {k}"),
     "force": ("План сил группы {n}", "План сил {n}", "Force plan {n}")}
+MOVED = "number"
+"""Words that stand for a point that was drawn elsewhere."""
 SHOWS = 2.0
 """How far a mistake must move a point to be one, mm of the drawing."""
 
@@ -90,12 +94,13 @@ def bars(project: Project, plan: Any) -> list[tuple[Step, Step]]:
     out = {}
     for link in m.links:
         some = [plan[p] for p in m.link_points(link) if p not in centres and p in plan]
-        for a, b in [*zip(some, some[1:], strict=False), *([(some[-1], some[0])] if len(some) > 2 else [])]:
+        for a, b in [*pairwise(some), *([(some[-1], some[0])] if len(some) > 2 else [])]:
             out[frozenset((a, b))] = (a, b)
     return [x for x in out.values() if any(np.ndim(s.value) for s in x)]
 
 
-def lines_of(project: Project, view: View, plan: Any, value: Callable[[Step], Any], centres: bool) -> Iterator[tuple[complex, complex, str]]:
+def lines_of(project: Project, view: View, plan: Any, value: Callable[[Step], Any], centres: bool) -> Iterator[
+        tuple[complex, complex, str]]:
     """Tail, head (unit of the plan) and name of each line."""
     for k in view.ks:
         if view.name == "positions":
@@ -131,7 +136,7 @@ class Drawing:
         k = self.project.force_index if forces and rng.random() < 0.4 else rng.randrange(n)
         out = []
         for name in ("positions", "velocities", "accelerations", *(rng.sample(forces, min(2, len(forces))) if forces else ())):
-            if name.startswith("force") and k != self.project.force_index or rng.random() < 0.1:
+            if (name.startswith("force") and k != self.project.force_index) or rng.random() < 0.1:
                 continue
             ks: tuple[int, ...] = (k,)
             if name == "positions" and rng.random() < 0.3:
@@ -169,7 +174,8 @@ class Drawing:
             some = [n for a, b, n in lines_of(self.project, view, plan, self.value(view), False) if abs(b - a) * view.scale > 12]
             view.reversed_head = rng.choice(some) if some else ""
             return
-        points = list(dict.fromkeys(s for t, h in ([(g.tail, g.head) for g in plan.segments] or bars(self.project, plan)) for s in (t, h)))
+        ends = [(g.tail, g.head) for g in plan.segments] or bars(self.project, plan)
+        points = list(dict.fromkeys(s for pair in ends for s in pair))
         before = [s for s in ordered(points, lambda s: [x for x in s.args if isinstance(x, Step)]) if s.plan == view.name]
         if way < 0.2:
             movable = [p for p in points if any(isinstance(x, Step) for x in p.args) and np.ndim(p.value)]
@@ -177,13 +183,13 @@ class Drawing:
             for p in movable:
                 by = rng.uniform(2, 9) * np.exp(2j * np.pi * rng.random()) / view.scale
                 usual = self.value(view)
-                view.wrong.append(Hypothesis("sense", "turning", p, (Change(p, displaced(by), k),), k))
+                view.wrong.append(Hypothesis("sense", MOVED, p, (Change(p, displaced(by), k),), k))
                 if self._off(view, usual, self.value(view)) > SHOWS:
                     view.moved = letter_of(p)
                     return
                 view.wrong.pop()
-        some = [h for h in hypotheses(before, k, plan.labels, list(plan)) if h.kind not in ("mirror", "scale") and h.words != "position"
-                and not (h.words == "crank" and len(view.ks) > 1)]
+        some = [h for h in hypotheses(before, k, plan.labels, list(plan))
+                if h.kind not in ("mirror", "scale") and h.words != "position" and not (h.words == "crank" and len(view.ks) > 1)]
         if view.name != "positions":
             some += rng.sample([*of_other_positions(points, k, plan.labels)] or [None], 1)
         rng.shuffle(some)
@@ -206,9 +212,10 @@ class Drawing:
     def _off(self, view: View, usual: Callable[[Step], Any], now: Callable[[Step], Any]) -> float:
         """By how many mm some line that is drawn is another one than all right lines, wherever it stands and its head is."""
         plan = self.plans[view.name]
-        vectors = np.array([s * (b - a) * view.scale for a, b, _ in lines_of(self.project, view, plan, usual, True) for s in (1, -1)])
-        return max((float(np.abs(vectors - (b - a) * view.scale).min()) for a, b, _ in lines_of(self.project, view, plan, now, False)
-                    if abs(b - a) * view.scale > SHOWS), default=0.0)
+        right, drawn = (np.array([(b - a) * view.scale for a, b, _ in lines_of(self.project, view, plan, value, exact)])
+                        for value, exact in ((usual, True), (now, False)))
+        drawn = drawn[np.abs(drawn) > SHOWS]
+        return float(np.abs(np.concatenate((right, -right)) - drawn[:, None]).min(1).max()) if len(drawn) else 0.0
 
     @property
     def right(self) -> bool:
@@ -298,8 +305,8 @@ class Drawing:
 
     def _text(self, text: str, at: complex, height: float) -> None:
         angle = float(np.degrees(np.angle(self.turn))) * (-1 if self.mirrored else 1)
-        self.msp.add_text(text, height=height / self.unit, rotation=angle, dxfattribs={"layer": "Text" if self.layers else "0"}).set_placement(
-            self._at(at))
+        layer = {"layer": "Text" if self.layers else "0"}
+        self.msp.add_text(text, height=height / self.unit, rotation=angle, dxfattribs=layer).set_placement(self._at(at))
 
     def _extras(self, view: View, value: Callable[[Step], Any]) -> None:
         """Construction lines, hinges, a trajectory, a hatching, a dimension."""
@@ -321,7 +328,6 @@ class Drawing:
             s = rng.choice([s for s in points if np.ndim(s.value)])
             path = np.array([z * view.scale for z in np.asarray(value(s))])
             if np.isfinite(path).all() and rng.random() < 0.5:
-                self.msp.add_spline if False else None
                 fine = [self._at(z) for z in np.interp(np.linspace(0, len(path) - 1, 80), np.arange(len(path)), path)]
                 self.msp.add_polyline2d(fine, dxfattribs=attribs)
         else:
@@ -332,7 +338,8 @@ class Drawing:
                         a = value_at(value(s.args[i]) if isinstance(s.args[i], Step) else s.args[i], k) * view.scale
                         if abs(b - a) > 3:
                             u = (b - a) / abs(b - a)
-                            self._entity(a - 5 * u, b + 8 * u, "Построение", "DASHED" if not self.layers or rng.random() < 0.5 else "BYLAYER")
+                            dashed = not self.layers or rng.random() < 0.5
+                            self._entity(a - 5 * u, b + 8 * u, "Построение", "DASHED" if dashed else "BYLAYER")
         if self.msp.doc.dxfversion > "AC1009" and rng.random() < 0.3:
             z = 20 + 150j
             hatch = self.msp.add_hatch(dxfattribs=attribs)
@@ -351,7 +358,7 @@ def outcome(drawing: Drawing, path: Path) -> tuple[dict[str, tuple[str, list[str
     found = judge_plans(PlanRecord(drawing.project), PlanInk(ink.spaces[0], ink.unit))
     out = {}
     for v in found.views:
-        heads = [] if not v.reversed_heads else [v.view.pairs[int(v.lines.numbers[i]) % len(v.view.pairs)][3] for i in v.reversed_heads]
+        heads = [v.view.pairs[int(v.lines.numbers[i]) % len(v.view.pairs)][3] for i in v.reversed_heads or ()]
         out[v.title] = (v.kind, [c.remark.said() for c in v.causes], heads)
     return out, "" if found.fitting else "no view fits"
 
@@ -365,7 +372,7 @@ def judged(drawing: Drawing, found: dict[str, tuple[str, list[str], list[str]]])
         elif view.reversed_head and not view.wrong:
             yield view, "named" if heads and kind == "right" else f"missed head ({kind} {causes[:1]})"
         else:
-            wanted = [f"point {view.moved} lies" if view.moved and h is view.wrong[0] else h.said() for h in view.wrong]
+            wanted = [f"point {view.moved} lies" if h.words == MOVED else h.said() for h in view.wrong]
             hit = sum(any(c.startswith(w.split(" lies")[0]) for c in causes) for w in wanted)
             yield view, ("named" if hit == len(wanted) else "half named" if hit else f"missed ({wanted})" if kind == "right" else
                          f"listed ({wanted})" if kind in ("partly", "unlike") else f"misnamed {causes[:2]} for {wanted}")
@@ -394,7 +401,8 @@ def trial(count: int, seed: int, first: int = 0, show: bool = False) -> Counter[
             for _, r in results:
                 total[f"views {r.split(' (')[0].split(' [')[0]}"] += 1
             if show and bad:
-                print(i, drawing.name, f"sigma {drawing.sigma} mirrored {drawing.mirrored} turn {np.degrees(np.angle(drawing.turn)):.0f}")
+                turn = np.degrees(np.angle(drawing.turn))
+                print(i, drawing.name, f"sigma {drawing.sigma} mirrored {drawing.mirrored} turn {turn:.0f}")
                 for v, r in bad:
                     print("    ", v.name, v.ks if len(v.ks) < 4 else "all", repr(v.title), r)
     return total

@@ -91,7 +91,8 @@ def _strokes(ink: PlanInk, outcome: CadOutcome, drawn: DrawnPlan, move: Placing)
     middle = (ink.a + ink.b) / 2
     near = np.flatnonzero((middle.real > low.real - BESIDE) & (middle.real < high.real + BESIDE)
                           & (middle.imag > low.imag - BESIDE) & (middle.imag < high.imag + BESIDE))
-    others = [f.element for f in outcome.findings if f.verdict == "green" and f.element.number not in mine and f.element.kind != "text"]
+    others = [f.element for f in outcome.findings
+              if f.verdict == "green" and f.element.number not in mine and f.element.kind != "text"]
     ours = lines([p for e in others for p in (e.pieces or (e.points,))])
     about = (np.maximum(ours.a.real, ours.b.real) > low.real - BESIDE) & (np.minimum(ours.a.real, ours.b.real) < high.real + BESIDE)
     a, b = ours.a[about], ours.b[about]
@@ -101,8 +102,8 @@ def _strokes(ink: PlanInk, outcome: CadOutcome, drawn: DrawnPlan, move: Placing)
 
 
 def _is_taken(a: complex, b: complex, ours_a: Points, ours_b: Points) -> bool:
-    z: Points = a + (b - a) * np.linspace(0.1, 0.9, 7)
-    return bool(covered(z, np.full(7, (b - a) / abs(b - a)), ours_a, ours_b).all())
+    z = a + (b - a) * np.linspace(0.1, 0.9, 7).astype(complex)
+    return bool(covered(z, np.full(7, (b - a) / abs(b - a), dtype=complex), ours_a, ours_b).all())
 
 
 def as_built(finding: CadFinding | None, was: Element, now: Element, move: Placing, tolerance: float) -> CadFinding:

@@ -50,7 +50,7 @@ UNIT_NAMES = {1000.0: marked("metres"), 25.4: marked("inches"), 10.0: marked("ce
 
 @dataclass(frozen=True)
 class ComparedDrawing:
-    """A drawing with its report: the sheet it is of, what it shows, the exact lines there, mm, on paper of the size of ``blank``."""
+    """A drawing with its report: its sheet, what it shows, the exact lines there, mm, on paper as large as ``blank``."""
 
     report: Report
     sheet: int
@@ -95,14 +95,16 @@ def compared(project: Project, sheet: int | None, path: Path, views: Path | None
     ink = cad_file.read(path)
     space = max(ink.spaces, key=lambda s: len(s.strokes))
     plans = PlanInk(space, ink.unit)
-    may_be_ours = views is not None or "positions" not in project.parts or len(plans.a) > MANY_STROKES
-    found = _on_sheet(project, numbers, path, views, pencil, say, ink) if may_be_ours else None
+    may_be_ours = views is not None or "positions" not in project.parts or len(plans.a) > MANY_STROKES or plans.has_sheet_frame
+    found = examine(project, numbers, ink, views, pencil, say) if may_be_ours else None
+    if found is None and may_be_ours and _other_sheet(project, ink, sheet) is not None:
+        raise _refusal(project, numbers, ink, sheet, path)
     if found is None and "positions" in project.parts:
         say(tell("judging plans by their titles"))
         judged = judge_plans(PlanRecord(project), plans)
         if judged.fitting and (judged.explained > MOSTLY_PLANS or may_be_ours):
             return _of_plans(project, sheet or _sheet_of(project, judged), path, space, judged, pencil, ink.notes)
-        found = None if may_be_ours else _on_sheet(project, numbers, path, views, pencil, say, ink)
+        found = None if may_be_ours else examine(project, numbers, ink, views, pencil, say)
         if found is None and (judged.fitting or any(v.kind == "unlike" and v.title for v in judged.views)):
             return _of_plans(project, sheet or _sheet_of(project, judged), path, space, judged, pencil, ink.notes)
     if found is None:
@@ -160,8 +162,8 @@ def _of_sheet(project: Project, found: cad_report.ExaminedDrawing, path: Path, p
     return ComparedDrawing(report, laid.known.n, blank, found.space, exact)
 
 
-def _on_sheet(project: Project, numbers: range, path: Path, views: Path | None, pencil: float, say: Callable[[str], None],
-              ink: CadInk) -> cad_report.ExaminedDrawing | None:
+def examine(project: Project, numbers: range, ink: CadInk, views: Path | None = None, pencil: float = 0.25,
+            say: Callable[[str], None] = lambda _: None) -> cad_report.ExaminedDrawing | None:
     """A drawing compared with the sheet of ours that it shows, in the language it is lettered in; None if it shows none."""
     known = []
     for n in numbers:
@@ -285,16 +287,24 @@ def _of_this_sheet(outcome: CadOutcome) -> bool:
     return _green(found) >= LOST or any(len(of_view) > 10 and _green(of_view) > 0.7 for of_view in by_view.values())
 
 
+def _other_sheet(project: Project, ink: CadInk, asked: int | None) -> int | None:
+    """The sheet that a drawing shows instead of the one asked for; None where it shows none."""
+    others = [n for n in range(1, len(project.variant.sheets) + 1) if n != asked] if asked is not None else []
+    if not others:
+        return None
+    other, fit = fitting([known_sheet(project, n) for n in others], ink)
+    return other if fit > 0.4 else None
+
+
 def _refusal(project: Project, numbers: range, ink: CadInk, asked: int | None, path: Path) -> CannotBuild:
     """That the drawing is of none of the sheets, and of which it may be."""
     hint = tell("is it the right project and variant? in a layout of its own write over each plan what it is and at which position")
     count = len(project.variant.sheets)
     laid = register([known_sheet(project, n) for n in numbers], ink)
-    if asked is not None and count > 1:
-        other, fit = fitting([known_sheet(project, n) for n in range(1, count + 1) if n != asked], ink)
-        if fit > max(laid.share + 0.15, 0.4):
-            hint = tell("it looks like sheet {n}: use --sheet {n}, or leave --sheet out").format(n=other)
+    if (other := _other_sheet(project, ink, asked)) is not None:
+        hint = tell("it looks like sheet {n}: use --sheet {n}, or leave --sheet out").format(n=other)
     said = tell("only {share} % of the lines of sheet {n} are in this drawing") if asked is not None or count == 1 else tell(
         "only {share} % of the lines of any of the {count} sheets are in this drawing")
-    said = said.format(share=round(100 * laid.share), n=laid.known.n, count=count)
+    share = laid.space.placed(laid.placing).lines.share(layout.ink(laid.known.elements), 0.3)
+    said = said.format(share=round(100 * share), n=laid.known.n, count=count)
     return CannotBuild(f"{path}: {said}", "; ".join((*ink.notes, hint)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import radians
 from pathlib import Path
@@ -139,7 +139,7 @@ def text(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> str:
     for title, head, rows in others:
         if rows:
             out += [f"{title}:", *table(head, rows), ""]
-    return "\n".join([*out, summary(outcome, lost)])
+    return "\n".join([*out, summary(found, lost, pencil)])
 
 
 def tables(found: ExaminedDrawing, lost: set[ElementView]) -> list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
@@ -180,14 +180,15 @@ def _left_out(outcome: CadOutcome, lost: set[ElementView]) -> list[str]:
     return [said.format(view=v.name, what=", ".join(what)) for v, what in by_view.items()]
 
 
-def summary(outcome: CadOutcome, lost: set[ElementView]) -> str:
-    """How many elements got each verdict."""
-    there = [f for f in outcome.findings if f.element.view not in lost]
-    colours = Counter(f.verdict for f in there)
-    most = max((f.deviation for f in there if f.verdict == "green"), default=0.0)
-    said = [tell("{green} green (up to {most} mm), {amber} amber, {red} red, {skipped} not compared") if colours[None] else
-            tell("{green} green (up to {most} mm), {amber} amber, {red} red"), tell("{extra} extra")]
+def summary(found: ExaminedDrawing, lost: set[ElementView], pencil: float) -> str:
+    """How many findings got each verdict: the numbers of the JSON."""
+    outcome = found.outcome
     beside = tables_and_texts(outcome)
+    colours = Counter(r.verdict for r in _records(found, sorted(lost, key=lambda v: v.n), lost & beside, pencil)[0])
+    most = max((f.deviation for f in outcome.findings if f.verdict == "green" and f.element.view not in lost), default=0.0)
+    skipped = colours["not-judged"]
+    said = [tell("{green} green (up to {most} mm), {amber} amber, {red} red, {skipped} not judged") if skipped else
+            tell("{green} green (up to {most} mm), {amber} amber, {red} red"), tell("{extra} extra")]
     if lost - beside:
         said.append(tell("{lost} of {views} views not found"))
     if lost & beside:
@@ -195,7 +196,7 @@ def summary(outcome: CadOutcome, lost: set[ElementView]) -> str:
     if outcome.looks:
         said.append(tell("{unlike} of another type or width of line"))
     return "; ".join(said).format(
-        green=colours["green"], amber=colours["amber"], red=colours["red"], skipped=colours[None], most=told(f"{most:.2f}"),
+        green=colours["green"], amber=colours["amber"], red=colours["red"], skipped=skipped, most=told(f"{most:.2f}"),
         extra=len(outcome.extras), lost=len(lost - beside), views=len({f.element.view for f in outcome.findings} - beside),
         lost_tables=len(lost & beside), tables=len(beside),
         unlike=len({n for look in outcome.looks for n in look.elements}))
@@ -240,7 +241,8 @@ def report(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> Repo
     records, start = _records(found, lost, tables, pencil)
     tree = as_tree(
         "cad", name, laid.known.n, records, start, [_unclaimed(k, x) for k, x in enumerate(outcome.extras, 1)],
-        {"missing_views": [v.name for v in lost], "missing_tables": [v.name for v in lost if v in tables]},
+        {"missing_views": [v.name for v in lost], "missing_tables": [v.name for v in lost if v in tables],
+         "not_drawn": sum(r.remark.code == "not-drawn" for r in records)},
         drawing=path.name, space=laid.space.name, tolerance=pencil,
         placing={"scale": p.scale, "degrees": round(p.degrees, 4), "shift": point(p.shift), "mirrored": p.mirrored,
                  "share": round(laid.share, 4)},
@@ -261,8 +263,8 @@ def _records(found: ExaminedDrawing, lost: Sequence[ElementView], tables: Contai
     for v, remark in found.turned.items():
         some = turned.setdefault(remark, [])
         some.append(FindingRecord(remark, "red", v.name, whole=True, follows=some[0] if some else None))
-    missing = {v: FindingRecord(codes.TABLE_MISSING(views=v.name), "amber", v.name, whole=True) if v in tables else
-               FindingRecord(codes.VIEW_MISSING(view=v.name), "red", v.name, whole=True) for v in lost}
+    missing = {v: FindingRecord((codes.TABLE_MISSING(views=v.name) if v in tables else codes.VIEW_MISSING(view=v.name)),
+                                "not-judged", v.name, whole=True) for v in lost}
     mistakes = [*whole, *built.values(), *(r for some in turned.values() for r in some), *missing.values()]
     start = [r for r in mistakes if r.follows is None]
     return [*mistakes, *(_look(found, look) for look in found.outcome.looks),
@@ -277,8 +279,10 @@ def _follows(f: CadFinding, built: Mapping[ElementView, FindingRecord], missing:
 
 
 def _record(found: ExaminedDrawing, f: CadFinding, follows: FindingRecord | None, pencil: float) -> FindingRecord:
-    """What is listed of an element."""
+    """What is listed of an element; of one in a view that is not there, that it is not drawn."""
     e = f.element
+    if follows is not None and follows.remark.code in ("view-missing", "table-missing"):
+        return of_element(replace(f, remark=codes.NOT_DRAWN()), "not-judged", follows=follows)
     own = e.radius if e.kind == "circle" else e.length
     beside = {"missing": True} if f.missing else {}
     return of_element(f, f.verdict or "not-judged", shift=f.shift, turn=None if f.turn is None else radians(f.turn),

@@ -25,10 +25,10 @@ SHOWN = 10
 
 def story(name: str, path: Path, found: cad_report.ExaminedDrawing, pencil: float) -> Story:
     """The report on a drawing of project ``name``; ``pencil`` is the tolerance, mm."""
-    outcome, lost = found.outcome, cad_report.gone(found.outcome)
+    lost = cad_report.gone(found.outcome)
     title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=found.laid.known.n, file=path.name)
     tolerance = tell("tolerance {tolerance} mm").format(tolerance=told(f"{pencil:g}"))
-    about = (tolerance, cad_report.summary(outcome, lost), *found.notes)
+    about = (tolerance, cad_report.summary(found, lost, pencil), *found.notes)
     tables = [StoryTable(said[:1].upper() + said[1:], head, tuple(rows)) for said, head, rows in cad_report.tables(found, lost)
               if rows]
     return Story(title, about, tuple(mistakes(found, lost)), tuple(tables), tuple(_unjudged(found, lost)))

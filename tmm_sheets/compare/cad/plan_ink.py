@@ -38,6 +38,7 @@ MAX_JOINT_MM = 3.2       # radius of the largest circle of a joint
 MAX_HATCH_MM = 6.0       # longest stroke of the hatching of a support, and greatest distance of two
 MIN_DRAWN_MM = 0.7       # a shorter vector is not drawn
 STEP_MM = 1.0            # distance of the places at which lines are looked at
+A1_SIDES = np.array([816 / 584, 841 / 594])
 COUNTED_MM = 40.0        # a longer line counts no more than this
 LETTERS_MM, LETTER_MM = (2.0, 10.5), 4.0  # heights of letters, and a usual one
 # --- price: mm of ink -------------------------------------------------------------------------------------------------------
@@ -185,7 +186,17 @@ class PlanInk:
         d, z = (self.b - self.a)[some] / turn, np.concatenate((self.a, self.b)) / turn
         mine = np.concatenate((self.a[some], self.b[some])) / turn
         aside = np.minimum(np.abs(d.real), np.abs(d.imag)) > PARALLEL_RAD * np.abs(d)
-        return bool(len(some) > 3 and not aside.any() and np.ptp(mine.real) > 0.9 * np.ptp(z.real) and np.ptp(mine.imag) > 0.9 * np.ptp(z.imag))
+        round_it = all(np.ptp(x) > 0.9 * np.ptp(y) for x, y in ((mine.real, z.real), (mine.imag, z.imag)))
+        return round_it and len(some) > 3 and not aside.any()
+
+    @property
+    def has_sheet_frame(self) -> bool:
+        """True if among its longest strokes are two that stand to each other as the sides of an A1 frame."""
+        turn = np.exp(1j * (self.turn if np.isfinite(self.turn) else 0.0))
+        d = (self.b - self.a)[np.argsort(-np.abs(self.b - self.a))[:12]] / turn
+        level, upright = (np.abs(d[np.abs(part) < 1e-3 * np.abs(d)]) for part in (d.imag, d.real))
+        ratio = np.maximum(level[:, None], upright) / np.minimum(level[:, None], upright)
+        return bool((np.abs(ratio[..., None] / A1_SIDES - 1) < 0.003).any())
 
     def gap(self, some: Numbers, others: Numbers) -> float:
         """How near strokes come to others, mm, by places along them."""
@@ -224,7 +235,9 @@ def _is_bent(z: Points) -> bool:
     """True if a polyline is a curve: many chords, each turned a little against the one before."""
     d = np.diff(z)
     d = d[np.abs(d) > 1e-9]
-    return len(d) > 6 and float(np.median(np.abs(np.angle(d[1:] / d[:-1])))) < 0.5 and bool(np.abs(d).sum() > 1.02 * abs(z[-1] - z[0]))
+    if len(d) < 7 or np.abs(d).sum() < 1.02 * abs(z[-1] - z[0]):
+        return False
+    return float(np.median(np.abs(np.angle(d[1:] / d[:-1])))) < 0.5
 
 
 def _each_once(s: NDArray[np.complex128]) -> list[int]:
@@ -242,11 +255,12 @@ def _joint(z: Points) -> list[tuple[complex, float]]:
     """Centre and radius of a small circle."""
     centre = complex(z.real.min() + z.real.max(), z.imag.min() + z.imag.max()) / 2
     radius = np.abs(z - centre)
-    return [(centre, float(radius.mean()))] if abs(z[0] - z[-1]) < 0.05 and radius.max() < MAX_JOINT_MM and np.ptp(radius) < 0.1 else []
+    closed = abs(z[0] - z[-1]) < 0.05
+    return [(centre, float(radius.mean()))] if closed and radius.max() < MAX_JOINT_MM and np.ptp(radius) < 0.1 else []
 
 
 def _extend(a: Points, b: Points, heads: Sequence[tuple[complex, complex]], joints: Sequence[tuple[complex, float]]) -> None:
-    """Lengthen strokes in place: up to the tip of the head that they end under, to the middle of the joint at whose rim they end."""
+    """Lengthen strokes in place: to the tip of the head they end under, to the middle of the joint at whose rim they end."""
     tips = np.array([tip for tip, _ in heads], dtype=complex)
     ways = np.array([way for _, way in heads], dtype=complex)
     centres, radii = np.array([c for c, _ in joints], dtype=complex), np.array([r for _, r in joints])
@@ -318,7 +332,8 @@ def _open_heads(s: NDArray[np.complex128]) -> tuple[list[int], list[tuple[comple
         if of[i] in used:
             continue
         at = np.flatnonzero((np.abs(ends - ends[i]) < SAME_POINT_MM) & (of != of[i]))
-        for j in at[(np.abs(size[of[at]] - size[of[i]]) < 0.02 * size[of[i]] + SAME_POINT_MM) & (size[of[at]] <= MAX_HEAD_MM)].tolist():
+        alike = np.abs(size[of[at]] - size[of[i]]) < 0.02 * size[of[i]] + SAME_POINT_MM
+        for j in at[alike & (size[of[at]] <= MAX_HEAD_MM)].tolist():
             if of[j] in used or not 0.08 < abs(np.angle(away[j] / away[i])) / 2 < 0.5:
                 continue
             middle = away[i] + away[j]
@@ -493,7 +508,8 @@ class Figure:
             score[n:n + 64] = (np.abs(there[n:n + 64, :, None] - self.ends).min(2) < 2 * TOLERANCE_MM).sum(1)
         seen: set[tuple[float, float, complex]] = set()
         for n in np.argsort(-score, kind="stable").tolist():
-            key = (round(float(np.log(abs(scale[n]))) * 60), round(float(np.angle(scale[n])) * 60), complex(np.round(origin[n] / 1.5)))
+            log = np.log(scale[n])
+            key = (round(float(log.real) * 60), round(float(log.imag) * 60), complex(np.round(origin[n] / 1.5)))
             if key not in seen:
                 seen.add(key)
                 yield self._refined(pts, complex(scale[n]), complex(origin[n]), bool(np.isfinite(turn)))

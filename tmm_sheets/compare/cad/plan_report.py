@@ -67,7 +67,8 @@ def plan_report(project: str, sheet: int, path: Path, space: DrawingSpace, judge
     tree = as_tree("cad", project, sheet, records, start, extra, {"not_drawn": absent}, drawing=path.name, space=space.name,
                    tolerance=pencil, views=[_listed_view(v) for v in views])
     mistakes = tuple(_told(v, judged) for v in views if (v.whole is not None and v.whole.verdict == "red") or v.wrong)
-    mistakes = (*(ToldMistake(tell("the whole drawing"), r.remark.said(), "red", named=True) for r in start if not r.view), *mistakes)
+    whole = (ToldMistake(tell("the whole drawing"), r.remark.said(), "red", named=True) for r in start if not r.view)
+    mistakes = (*whole, *mistakes)
     title = tell("{project}, sheet {sheet}: {file}").format(project=project, sheet=sheet, file=path.name)
     head = tuple(map(tell, ("title", "plan", "verdict", "right", "wrong", "not drawn")))
     rows = [_row(v) for v in views]

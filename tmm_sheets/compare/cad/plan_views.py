@@ -77,7 +77,7 @@ class PlanView:
         return tuple(dict.fromkeys(s for t, h, _, _ in self.pairs for s in (t, h)))
 
     def lines(self, ks: Sequence[int], value: Callable[[Step], Any] = lambda step: step.value) -> PlanLines:
-        """Its lines at some positions, in the plan's unit; those that cannot be drawn are left out. Line n is of pair n mod count."""
+        """Its lines at some positions, in the plan's unit, but those that cannot be drawn; number n is of pair n mod count."""
         with np.errstate(all="ignore"):
             ends = np.array([[at(value(t), k), at(value(h), k)] for k in ks for t, h, _, _ in self.pairs]).reshape(-1, 2)
             size = np.abs(ends[:, 1] - ends[:, 0])
@@ -121,7 +121,8 @@ class PlanRecord:
     def view(self, name: str) -> PlanView:
         """The lines of a plan."""
         if name not in self._views:
-            self._views[name] = (self._positions() if name == "positions" else _of_vectors(self.plans.get(name) or self.forces[name]))
+            plan = self.plans.get(name) or self.forces[name]
+            self._views[name] = self._positions() if name == "positions" else _of_vectors(plan)
         return self._views[name]
 
     def choices(self, title: PlanTitle, usual: int | None) -> Iterator[tuple[str, tuple[int, ...]]]:
@@ -152,7 +153,7 @@ class PlanRecord:
         rays = {frozenset(s.args) for s in plan if s.rule is rules.RAY and all(isinstance(x, Step) for x in s.args)}
         joints = Counter(p for link in m.links for p in m.link_points(link))
         # A centre of mass that is a joint of two links, or a pivot in the frame, is drawn as such.
-        centres = {c for link in m.links.values() if (c := link.centre) in plan and joints[c] < 2 and np.ndim(plan[c].value)}
+        centres = {c for link in m.links.values() if (c := link.centre) and c in plan and joints[c] < 2 and np.ndim(plan[c].value)}
         of_links = [[p for p in m.link_points(link) if p not in centres] for link in m.links]
         pairs: dict[frozenset[Step], tuple[Step, Step, str, str]] = {}
         for n, names in enumerate([*of_links, *([p for p in (*g.outer, g.inner) if p] for g in m.groups)]):

@@ -27,6 +27,8 @@ LETTERS, MANY, MORE = 6, 0.3, 3
 """So many texts tell how a drawing is turned, else its lines, if that share has one direction and so many times less is upright."""
 ALIGNED = 1e-3
 """What is one direction, rad."""
+LONGEST_PART = 60_000.0
+"""Length of all lines of a part of a sheet, mm."""
 PART = 100.0
 """Width plus height of the smallest part of a sheet that is looked for, mm."""
 
@@ -122,6 +124,8 @@ def _by_parts(known: Iterable[KnownSheet], ink: CadInk) -> Iterator[Registration
         for space in ink.spaces:
             for size in dict.fromkeys(base * ratio for base in (ink.unit or 1.0, 1.0) for ratio in RATIOS):
                 scale = Placing(complex(size))
+                if space.lines.length.sum() * size > LONGEST_PART:
+                    continue
                 z = space.lines.moved(scale).points(1.0)
                 if not 30 < len(z) < 60_000 or np.ptp(z.real) + np.ptp(z.imag) < PART:
                     continue
