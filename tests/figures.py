@@ -69,11 +69,6 @@ def cost(said: str) -> str:
     return columns(said, 0, 1, 3, 5).replace(" lugansk/shaper", "")
 
 
-def counted(said: str) -> str:
-    """The counts that a trial prints last, as a line."""
-    return block(re.sub(r"[{']", "", said.strip().splitlines()[-1]).replace("}", ";"))
-
-
 def together(said: str) -> str:
     """The line of the foreign trial for all pictures, under its heads."""
     head, *rest = said.splitlines()
@@ -97,7 +92,6 @@ class Figure:
 
 FIVE = "lugansk/shaper lugansk/engine press sixbar/3:2 sixbar/6:3"
 STUDENTS = f"tests.compare.hypotheses {FIVE}"
-LAYOUTS = "tests.compare.own_layouts 6 --slips --quiet --projects lugansk/shaper press sixbar/3:1"
 FIGURES = {
     "methods": Figure("tmm_sheets bench --summary", methods),
     "peers": Figure("tmm_sheets bench --peers --summary", peers, long=True),
@@ -107,7 +101,7 @@ FIGURES = {
     "students": Figure(f"{STUDENTS} --students 8 --seed 441", last(2), long=True),
     "sound": Figure(f"{STUDENTS} --sound --students 5 --seed 445", last(1), long=True),
     "cad": Figure("tests.compare.cad_plants 12", last(1), long=True),
-    "layouts": Figure(f"{LAYOUTS} --seed 711", counted, long=True),
+    "layouts": Figure("tests.compare.untidy 100 --seed 3", last(12), long=True),
     "photographs": Figure("tests.foreign --pictures 8 --seed 301", together, long=True),
     "photograph": Figure("tests.compare.trial --time", last(1)),
     "cluster": Figure("tests.bench.cluster", str.strip, long=True),

@@ -202,7 +202,7 @@ class _Judge:
 
     def _whole_plans(self) -> list[tuple[int, str, tuple[int, ...], Numbers]]:
         """Plans that are there as they should be: number of the title, plan, positions, its strokes."""
-        figures = [some for some in self.ink.figures(np.arange(len(self.ink.a))) if len(some) > 1]
+        figures = self.ink.figures(np.arange(len(self.ink.a)))
         offers = []
         for n, title in enumerate(self.titles):
             for f, strokes in enumerate(figures):
@@ -238,7 +238,10 @@ class _Judge:
             some = tuple(k for k, drawn in zip(ks, there.tolist(), strict=True) if drawn)
             if 1 < len(some) < len(ks):
                 return self._as_it_should_be(figure, name, some)
-        return [(ks, fit)] if fit.bare <= WHOLE * fit.own and fit.own > MIN_FIGURE_MM else []
+        d = (lines.heads - lines.tails)[[kind == MAIN for kind in lines.kinds]]
+        flat = len(d) > 0 and bool((np.abs((d / d[np.abs(d).argmax()]).imag) < 0.02).all())
+        there = fit.bare <= WHOLE * fit.own and fit.own > MIN_FIGURE_MM and (flat or (fit.left <= LEFT_SHARE).sum() > 1)
+        return [(ks, fit)] if there else []
 
     def _with_mistakes(self, open_titles: Sequence[int], rest: Sequence[Figure]) -> tuple[list[JudgedView], set[int]]:
         """Titles judged with mistakes on the figures that are left, and the numbers of these."""

@@ -133,11 +133,10 @@ class PlanRecord:
                 if not title.numbers or tuple(re.findall(r"\d+", name)) == title.numbers:
                     yield name, (self.project.force_index,)
             return
-        k = self.labels.index(title.label) if title.label in self.labels else None
-        first = [k] if k is not None else [usual] if usual is not None else []
-        some: list[tuple[int, ...]] = [(i,) for i in dict.fromkeys([*first, *(whole if k is None else ())])]
-        if title.kind == "positions":
-            some.insert(len(first), whole)
+        k = self.labels.index(title.label) if title.label in self.labels else usual
+        some: list[tuple[int, ...]] = [(i,) for i in (whole if k is None else (k,))]
+        if title.kind == "positions" and title.label is None:
+            some.insert(k is not None, whole)
         yield from ((title.kind, ks) for ks in some)
 
     def everything(self) -> Iterator[tuple[str, tuple[int, ...]]]:

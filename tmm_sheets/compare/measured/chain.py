@@ -38,6 +38,8 @@ WHOLES = 3
 """Mistakes with the whole table that are looked for."""
 MOST = 10
 """Mistakes that are looked for; where there are more, another mechanism was drawn."""
+ANOTHER, FIRST_TRIED = 0.45, 1
+"""Share of the numbers that are red from which on, where the first mistakes looked for leave half of that, it is another variant."""
 SHARE = 0.5
 """Share of the tolerance that a mistake must make of a number to explain it."""
 LONG = 10.0
@@ -234,6 +236,7 @@ def _chains(evidence: Evidence, own: OwnNumbers, computed: Mapping[int, list[Jud
     judged = evidence.judged
     open_ = np.array([j.verdict == "red" for j in judged])
     beyond, tried = _beyond_chance(len(judged)), 0
+    most_is_wrong = open_.mean() > ANOTHER if len(open_) else False
     while open_.any():
         first = min(np.flatnonzero(open_), key=lambda i: (judged[i].order, i))
         start = judged[first]
@@ -243,6 +246,8 @@ def _chains(evidence: Evidence, own: OwnNumbers, computed: Mapping[int, list[Jud
             continue
         start.starts = True
         tried += 1
+        if most_is_wrong and tried > FIRST_TRIED and open_.mean() > ANOTHER / 2:
+            tried = MOST + 1  # no mistake explains that: another variant
         found = explanation(evidence, int(first)) if tried <= MOST else None
         if found is None and tried <= MOST:
             _wrong_row(start, judged)

@@ -8,7 +8,14 @@ from typing import get_args
 
 import numpy as np
 
-from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, computed_with, hypotheses
+from tmm_sheets.compare.diagnosis.hypotheses import (
+    MIRRORED,
+    Hypothesis,
+    Kind,
+    computed_with,
+    hypotheses,
+    of_other_positions,
+)
 from tmm_sheets.compare.measured.evidence import Evidence, Explanation, loss
 from tmm_sheets.compare.measured.exchanged_rows import wrong_rows
 from tmm_sheets.compare.measured.plan_scales import drawn_to, is_scaled, times_as_long
@@ -61,6 +68,9 @@ def mistakes_before(evidence: Evidence, i: int, others: Sequence[int] = ()) -> l
     before = evidence.made_of([step for n in (i, *others) for step, _, _ in evidence.judged[n].entry.terms])
     k = evidence.labels.index(j.entry.label) if j.entry.label in evidence.labels else 0
     found = [*hypotheses(before, k, evidence.labels, evidence.whole), *_computed_with(evidence, i), *_drawn_to(evidence, i)]
+    if j.entry.plan in MIRRORED:
+        points = [s for s in evidence.whole if s.plan == j.entry.plan and s.rule.gives in ("point", "vector")]
+        found += of_other_positions(points, k, evidence.labels)
     return sorted(found, key=lambda h: _KINDS.index(h.kind))
 
 

@@ -173,7 +173,7 @@ class Evidence:
         A neighbour's number is hardly another one: it is seen where it was taken, farther on it would be a guess.
         """
         at = [step for step, _, _ in self.judged[i].entry.terms]
-        if h.kind == "neighbour" and not any(h.step is s for step in at for s in (step, *step.args)):
+        if h.kind == "neighbour" and len(h.changes) == 1 and not any(h.step is s for step in at for s in (step, *step.args)):
             return False
         share = self.shares_of(h, [i])[0]
         left, allowed = self.after(share, [i])[0], np.hypot(self.allowed[i], CURVED * share)
