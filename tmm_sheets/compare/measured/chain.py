@@ -238,6 +238,10 @@ def _chains(evidence: Evidence, own: OwnNumbers, computed: Mapping[int, list[Jud
     beyond, tried = _beyond_chance(len(judged)), 0
     most_is_wrong = open_.mean() > ANOTHER if len(open_) else False
     while open_.any():
+        if most_is_wrong and tried > FIRST_TRIED and open_.mean() > ANOTHER / 2:
+            for i in np.flatnonzero(open_).tolist():
+                judged[i].starts, judged[i].follows = True, None
+            return  # no mistake explains that: another variant
         first = min(np.flatnonzero(open_), key=lambda i: (judged[i].order, i))
         start = judged[first]
         open_[first] = False
@@ -246,8 +250,6 @@ def _chains(evidence: Evidence, own: OwnNumbers, computed: Mapping[int, list[Jud
             continue
         start.starts = True
         tried += 1
-        if most_is_wrong and tried > FIRST_TRIED and open_.mean() > ANOTHER / 2:
-            tried = MOST + 1  # no mistake explains that: another variant
         found = explanation(evidence, int(first)) if tried <= MOST else None
         if found is None and tried <= MOST:
             _wrong_row(start, judged)
