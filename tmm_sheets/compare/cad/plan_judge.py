@@ -234,8 +234,8 @@ class _Judge:
             main = np.array([kind == MAIN for kind in lines.kinds])
             size = np.abs(lines.heads - lines.tails) * main
             of = lines.numbers // len(view.pairs)
-            there = np.bincount(of, size * (fit.drawn >= DRAWN_SHARE), len(ks)) > 0.9 * np.bincount(of, size, len(ks))
-            some = tuple(k for k, drawn in zip(ks, there.tolist(), strict=True) if drawn)
+            shown = np.bincount(of, size * (fit.drawn >= DRAWN_SHARE), len(ks)) > 0.9 * np.bincount(of, size, len(ks))
+            some = tuple(k for k, is_drawn in zip(ks, shown.tolist(), strict=True) if is_drawn)
             if 1 < len(some) < len(ks):
                 return self._as_it_should_be(figure, name, some)
         d = (lines.heads - lines.tails)[[kind == MAIN for kind in lines.kinds]]

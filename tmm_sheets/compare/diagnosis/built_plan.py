@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.codes import Own, Remark, Sentence
-from tmm_sheets.compare.diagnosis.drawn_plan import DRAWN, SHOWS, DrawnPlan, PlanPoint, between, drawn_plan, drawn_positions
+from tmm_sheets.compare.diagnosis.drawn_plan import DRAWN, SHOWS, DrawnPlan, PlanPoint, between, drawn_plan
 from tmm_sheets.compare.diagnosis.drawn_senses import acting
-from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, any_of, hypotheses
-from tmm_sheets.compare.diagnosis.replay import Change, displaced, of_position, replay
+from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, any_of, hypotheses, of_other_positions
+from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.finding_records import FindingRecord
 from tmm_sheets.compare.findings import millimetres
@@ -131,7 +131,6 @@ class _Found:
 class StudentDrawing:
     """A view of a drawing, by mm of our sheet: what share of a line has ink, which places, the ends of its lines; and its scale.
 
-    ``goes_on`` tells whether ink goes on beyond the end of a line, the second of two points; in pencil lines that tells nothing.
     ``headed`` tells whether an arrow has its head.
     """
 
@@ -139,7 +138,6 @@ class StudentDrawing:
     ink: Callable[[Points], NDArray[np.bool_]]
     tips: Sequence[complex]
     scale: float = 1.0
-    goes_on: Callable[[Points], bool] = lambda line: False
     headed: Callable[[Element], bool] = lambda arrow: False
 
 
@@ -154,41 +152,31 @@ def errors_of(project: Project, known: KnownSheet) -> tuple[dict[str, Plan], Err
 
 
 def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementView, Sequence[Element]],
-                    seen: Callable[[ElementView], StudentDrawing], made: Sequence[Hypothesis] = (),
-                    absent: Collection[ElementView] = (), positions: bool = False) -> dict[
+                    seen: Callable[[ElementView], StudentDrawing], absent: Collection[ElementView] = ()) -> dict[
                         ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]:
     """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet.
 
-    ``wrong`` are the vectors of views that are not where they belong, as they should be; ``made`` are mistakes of the sheet that
-    are known already, ``absent`` views that the drawing lacks. With ``positions`` the mechanism at all its positions is such a
-    plan, too; what is wrong there need not show in other plans, which were drawn from what it should be.
+    ``wrong`` are the vectors of views that are not where they belong, as they should be; ``absent`` views that the drawing lacks.
     """
     if not wrong:
         return {}
     plans, errors = errors_of(project, known)
     shown = {view: drawn for view in dict.fromkeys(e.view for e in known.elements)
              if view not in absent and (drawn := drawn_plan(known, plans, view)) is not None}
-    if positions:
-        shown |= {view: drawn for view in wrong if (drawn := drawn_positions(known, plans, view)) is not None}
-    # Where links of many positions meet each goes on in others.
-    drawings = {view: replace(seen(view), goes_on=lambda line: False) if drawn.of_positions else seen(view)
-                for view, drawn in shown.items()}
+    drawings = {view: seen(view) for view in shown}
     share = {view: _share(drawn, drawings[view], drawn.points) for view, drawn in shown.items()}
-    before = [_Mistake(h, h.changes) for h in made]
+    before: list[_Mistake] = []
 
     weight = {view: sum(e.length for e in drawn.vectors) for view, drawn in shown.items()}
 
-    def gain(mistake: _Mistake, alone: bool) -> float:
-        """By how much more ink the whole sheet has with a mistake; infinitely less where a plan has it where it should be.
-
-        A mistake that may be one view's ``alone`` is not refuted by the others.
-        """
+    def gain(mistake: _Mistake) -> float:
+        """By how much more ink the whole sheet has with a mistake; infinitely less where a plan has it where it should be."""
         value = _replay(errors, (*before, mistake))
         more = {view: _share(drawn, drawings[view], points) - share[view]
                 for view, drawn in shown.items() if (points := drawn.moved(value))}
-        if not alone and min(more.values(), default=0.0) <= -GAIN:
+        if min(more.values(), default=0.0) <= -GAIN:
             return -np.inf
-        return sum(weight[view] * (max(m, 0.0) if alone else m) for view, m in more.items())
+        return sum(weight[view] * m for view, m in more.items())
 
     arrows = [(one, drawing) for view in dict.fromkeys(e.view for e in known.elements) if view not in absent and view not in shown
               for some in [acting(known, plans, view)] if some for drawing in [seen(view)] for one in some]
@@ -211,7 +199,7 @@ def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementV
                         if e.number in there and np.abs(there[e.number] - e.points[[0, -1]]).max() >= SHOWS}
             h = found.mistake.said
             share[view] = found.share
-            if found.mistake not in before and not drawn.of_positions:
+            if found.mistake not in before:
                 before.append(found.mistake)
             explained = len(numbers & there.keys()), len(numbers)
             if isinstance(h, Remark):
@@ -222,14 +210,13 @@ def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementV
                 alike[id(h)] = _alike(h, [m for m in before if m.said is not h], drawn, of, errors, taken)
             label = "" if h.at is None else drawn.plan.labels[h.at]
             first, *others = alike[id(h)]
-            out[view] = BuiltPlan(first, *explained, first.step, label, label if drawn.of_positions else "",
-                                  tuple(others)), found.points
+            out[view] = BuiltPlan(first, *explained, first.step, label, alike=tuple(others)), found.points
     return out
 
 
-def explains(usual: float, now: float, least: float = EQUAL) -> bool:
-    """Whether a mistake explains a plan of which so much has ink in its place, and so much with the mistake: ``least`` more."""
-    return now - usual > min(GAIN, max(least, OF_REST * (1 - usual)))
+def explains(usual: float, now: float) -> bool:
+    """Whether a mistake explains a plan of which so much has ink in its place, and so much with the mistake."""
+    return now - usual > min(GAIN, max(EQUAL, OF_REST * (1 - usual)))
 
 
 def possible(shown: Iterable[DrawnPlan], errors: Errors) -> list[Hypothesis]:
@@ -239,19 +226,9 @@ def possible(shown: Iterable[DrawnPlan], errors: Errors) -> list[Hypothesis]:
         steps = [p.step for p in drawn.points]
         before = list(ordered(steps, lambda step: [a for a in errors.arguments(step) if isinstance(a, Step)]))
         for k in drawn.positions:
-            for h in (*hypotheses(before, k, drawn.plan.labels), *_twice(drawn, k)):
+            for h in (*hypotheses(before, k, drawn.plan.labels), *of_other_positions(steps, k, drawn.plan.labels)):
                 found.setdefault((h.words, id(h.step), h.at, h.other), h)
     return sorted(found.values(), key=lambda h: KINDS.index(h.kind))
-
-
-def _twice(drawn: DrawnPlan, k: int) -> Iterator[Hypothesis]:
-    """The plan of another position in place of this one."""
-    steps = [p.step for p in drawn.points if np.size(p.step.value) == len(drawn.plan.labels) > 1]
-    if steps and not drawn.of_positions:
-        for other, label in enumerate(drawn.plan.labels):
-            if other != k:
-                changes = tuple(Change(s, of_position(other), k) for s in steps)
-                yield Hypothesis("neighbour", "drawn twice", steps[-1], changes, k, Own(label))
 
 
 def _replay(errors: Errors, mistakes: Iterable[_Mistake]) -> Callable[[Step], Any]:
@@ -277,7 +254,7 @@ def _alike(mistake: Hypothesis, others: Sequence[_Mistake], drawn: DrawnPlan, of
 
 
 def _explained(drawn: DrawnPlan, errors: Errors, drawing: StudentDrawing, usual: float, before: Sequence[_Mistake],
-               gain: Callable[[_Mistake, bool], float]) -> _Found | None:
+               gain: Callable[[_Mistake], float]) -> _Found | None:
     """The mistake with which most of a plan has ink, if that is much more than has ink without it, ``usual``.
 
     What was done wrong in plans ``before`` it may lead on to this one; where that does, nothing else is looked for. Of mistakes
@@ -288,8 +265,7 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: StudentDrawing, usual:
         for m in mistakes:
             points = drawn.moved(_replay(errors, (*made, m)))
             share = _share(drawn, drawing, points) if points else 0.0
-            # One of the positions is little of them all.
-            if share >= MOST and explains(usual, share, 0.0 if drawn.of_positions else EQUAL):
+            if share >= MOST and explains(usual, share):
                 out.append(_Found(share, points, m))
         return out
 
@@ -298,17 +274,12 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: StudentDrawing, usual:
         led_on += [replace(f, mistake=before[-1]) for f in tried(before[-1:], before[:-1])]
     if led_on:
         return max(led_on, key=lambda f: f.share)
-    def more(mistake: _Mistake) -> float:
-        return gain(mistake, drawn.of_positions)
-
-    usual_ones = _best(tried((_Mistake(h, h.changes) for h in possible([drawn], errors)), before), more)
+    usual_ones = _best(tried((_Mistake(h, h.changes) for h in possible([drawn], errors)), before), gain)
     if usual_ones:
         most = max(gained for gained, _ in usual_ones)
         return next(f for gained, f in usual_ones if gained >= AS_GOOD * most)
-    if drawn.of_positions:
-        return None  # a link that lies elsewhere is told as that
     # A point may lie on another one, or on another vector: that only makes what is wrong disappear.
-    off = [(_ink(drawn, drawing, f.points), f) for _, f in _best(tried(_points_off(drawn, drawing), before), more)]
+    off = [(_ink(drawn, drawing, f.points), f) for _, f in _best(tried(_points_off(drawn, drawing), before), gain)]
     most, best = max(off, key=lambda x: x[0], default=(0, None))
     return best if most > _ink(drawn, drawing, drawn.points) + NEW_INK else None
 
@@ -348,15 +319,8 @@ def _share(drawn: DrawnPlan, drawing: StudentDrawing, points: Sequence[PlanPoint
     for length, line in lines:
         weight = min(length, WEIGHT)
         whole += weight
-        there += weight * (drawing.inked(line) >= WHOLE and not any(
-            drawing.goes_on(way) and not any(_covers(other, way) for _, other in lines) for way in (line, line[::-1])))
+        there += weight * (drawing.inked(line) >= WHOLE)
     return there / whole if whole else 0.0
-
-
-def _covers(other: Points, line: Points) -> bool:
-    """Whether another line has the ink that goes on beyond the end of a line."""
-    beyond = (line[1] + BEYOND * (line[1] - line[0]) / abs(line[1] - line[0]) - other[0]) / (other[1] - other[0])
-    return bool(0 <= beyond.real <= 1 and abs(beyond.imag) * abs(other[1] - other[0]) < ASIDE)
 
 
 def _ink(drawn: DrawnPlan, drawing: StudentDrawing, points: Sequence[PlanPoint]) -> int:

@@ -52,7 +52,6 @@ WORDS: Mapping[str, str] = {
     "left out": marked("the vector to {step} is left out"),
     "side left out": marked("in the force polygon {other} is left out, before point {step}"),
     "radii exchanged": marked("the radii of the arcs to {step} are exchanged"),
-    "of position": marked("this is the plan of position {other}"),
     "intersection": marked("point {step} is the other intersection"),
     "assembly": marked("point {step} is the other intersection at every position: the other assembly"),
     "inertia": marked("the force of inertia {step} is taken along the acceleration instead of against it"),
@@ -75,7 +74,7 @@ WORDS: Mapping[str, str] = {
     "position after": marked("in {other} stands the number of the position after each"),
     "position": marked("for {step} the number of position {other} is taken"),
     "number": marked("for {step} the number of {other} is taken"),
-    "drawn twice": marked("here the plan of position {other} is drawn once more"),
+    "drawn twice": marked("this is the plan of position {other}"),
     "numbering": marked("the positions are numbered from another start: {other}, and so on"),
     "unit": marked("the numbers are written in {other}"),
     "mechanism across": marked("the mechanism is drawn mirrored, left and right exchanged, and all plans with it"),
@@ -239,7 +238,7 @@ def of_other_positions(steps: Sequence[Step], k: int, labels: Sequence[str]) -> 
     for other, label in enumerate(labels) if some else ():
         if other != k:
             changes = tuple(Change(s, of_position(other), k) for s in some)
-            yield Hypothesis("neighbour", "of position", some[-1], changes, k, Own(label))
+            yield Hypothesis("neighbour", "drawn twice", some[-1], changes, k, Own(label))
 
 
 def _moments(step: Step, k: int) -> Iterator[Hypothesis]:

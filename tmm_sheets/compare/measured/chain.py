@@ -39,7 +39,7 @@ WHOLES = 3
 MOST = 10
 """Mistakes that are looked for; where there are more, another mechanism was drawn."""
 ANOTHER, FIRST_TRIED = 0.45, 1
-"""Share of the numbers that are red from which on, where the first mistakes looked for leave half of that, it is another variant."""
+"""Share of red numbers from which on, where the first mistakes looked for leave half of that, it is another variant."""
 SHARE = 0.5
 """Share of the tolerance that a mistake must make of a number to explain it."""
 LONG = 10.0
