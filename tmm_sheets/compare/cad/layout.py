@@ -9,7 +9,7 @@ import numpy as np
 
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.cad_text import meant
-from tmm_sheets.compare.cad.line_fit import KnownLines, lines, refine, search
+from tmm_sheets.compare.cad.line_fit import lines, refine
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.compare.view_places import StatedViewPlace
@@ -98,10 +98,12 @@ class _ViewFinder:
         self.elsewhere: list[ElementView] = []
 
     def layout(self, given: Sequence[tuple[StatedViewPlace, Placing]]) -> Layout:
-        """Place the views from the file, then the others near their places or their texts, last those that are nowhere near."""
+        """Place the views from the file, then the others near their places or their texts."""
         for place, whole in given:
             self._place_given(place, whole)
-        self._search([v for v in self.views if v not in self.moves and not self._place_near(v)])
+        for v in self.views:
+            if v not in self.moves:
+                self._place_near(v)
         return Layout(self.moves, self.share, tuple(self.notes), tuple(self.elsewhere))
 
     def _place_given(self, place: StatedViewPlace, whole: Placing) -> None:
@@ -173,38 +175,6 @@ class _ViewFinder:
     def _nudged(self, v: ElementView, start: Placing) -> Placing:
         """A move refined on the lines, without turn or scale."""
         return refine(self.points[v], self.theirs, start.inverse(), (6.0, 3.0, 1.5, 0.8, 0.4, 0.25), False, 1).placing.inverse()
-
-    def _search(self, lost: Sequence[ElementView]) -> None:
-        """Seek views anywhere in the ink the others leave, the larger ones first."""
-        if not lost:
-            return
-        free = self.theirs
-        for v, s in self.share.items():
-            if s >= AT_HOME:
-                free = _unused(free, self.moves.get(v, Placing())(self.points[v]))
-        for v in sorted(lost, key=lambda v: -len(self.points[v])):
-            if len(free.a) < 4:
-                return
-            self.say(tell('looking for view "{view}"').format(view=v.name))
-            start = search(self.points[v], free, [1.0], (0,), enough=0.95, tries=6).placing
-            nudged = refine(self.points[v], free, start, (3.0, 1.5, 0.8, 0.4, 0.25), False, 1).placing
-            if self._words_at(v, nudged.inverse()) and self._accept(v, [nudged.inverse()]):
-                free = _unused(free, self.moves[v](self.points[v]))
-
-    def _words_at(self, v: ElementView, move: Placing) -> bool:
-        """Whether words of a view are there, as far as both sides have any."""
-        return not (self.words and self.texts[v]) or self._read(v, move) >= 0.2
-
-
-def _unused(theirs: KnownLines, known: Points, step: float = 6.0) -> KnownLines:
-    """Their lines without those on which the points of a placed view, about ``step`` mm apart at most, are."""
-    import shapely
-
-    if not len(theirs.a) or not len(known):
-        return theirs
-    _, j = theirs.tree.query(shapely.points(known.real, known.imag), predicate="dwithin", distance=NEAR)
-    hits = np.bincount(j, minlength=len(theirs.a))
-    return theirs.only((hits * step < 0.5 * theirs.length) | (hits == 0))
 
 
 def _where(view: ElementView, move: Placing) -> str:

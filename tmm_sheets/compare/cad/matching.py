@@ -43,7 +43,6 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     """
     state = Comparison(elements, space, moves, tolerance)
     say(tell("comparing lines"))
-    omissions.positions_left_out(state)
     _not_compared(state)
     omissions.lines_left_out(state)
     _right(state)

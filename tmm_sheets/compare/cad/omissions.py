@@ -2,8 +2,7 @@
 
 Twelve construction lines that are not there are one remark on the view, not twelve mistakes, and what lies where they would be is
 not theirs. A kind is left out where hardly any of it has ink that nothing else accounts for; one missing line among others that are
-drawn is a mistake as ever. Where a view has a place of its own, its letters have too: those not found are a remark as well. There
-it may also show the mechanism at one of its positions only, or at some.
+drawn is a mistake as ever. Where a view has a place of its own, its letters have too: those not found are a remark as well.
 """
 
 from __future__ import annotations
@@ -30,8 +29,6 @@ SEVERAL = 3
 """Of fewer in a view each is judged by itself, unless the whole drawing leaves the kind out."""
 DRAWN = 0.6
 """Share of a line that must have ink for the line to be drawn."""
-AT_POSITION = 0.5
-"""The same of the links of a position."""
 CLEAR = 0.8
 """How far from every other element a point must be for its ink to prove anything, mm."""
 
@@ -55,8 +52,6 @@ def kind_of(e: Element) -> str:
 def said(kind: str, n: int) -> str:
     """How many elements of a kind, in words."""
     words = {
-        "position": tell_n("{n} position", "{n} positions", n),
-        "curve": tell_n("{n} curve", "{n} curves", n),
         "construction": tell_n("{n} construction line", "{n} construction lines", n),
         "symbol": tell_n("{n} line of a symbol", "{n} lines of symbols", n),
         "joint": tell_n("{n} circle of a joint", "{n} circles of joints", n),
@@ -70,26 +65,6 @@ def said(kind: str, n: int) -> str:
         "text": tell_n("{n} text", "{n} texts", n),
     }
     return words[kind].format(n=n)
-
-
-def positions(main: Iterable[Element]) -> dict[str, list[Element]]:
-    """The links of each position, where a view shows several: one or two are as good a plan."""
-    found: dict[str, list[Element]] = {}
-    for e in main:
-        if e.role == "link" and e.position:
-            found.setdefault(e.position, []).append(e)
-    return found if len(found) > 1 else {}
-
-
-def positions_left_out(state: Comparison) -> None:
-    """Set aside the positions that views of their own places do not show, and curves through all of them."""
-    of = _by_view(state)
-    for view in state.moved:
-        some = of.get(view, ())
-        if left_out := _of_positions_left_out(state, some):
-            _set_aside(state, left_out, "position")
-            through_all = [n for n in some if state.elements[n].role in ("link", "curve") and not state.elements[n].position]
-            _set_aside(state, [n for n in through_all if not _is_drawn(state, n)], "curve")
 
 
 def lines_left_out(state: Comparison) -> None:
@@ -144,30 +119,11 @@ def _other_words(state: Comparison, n: int) -> bool:
 
 def remarks(findings: Iterable[CadFinding]) -> tuple[AbsentKind, ...]:
     """What each view leaves out, by view and kind."""
-    left: dict[ElementView, dict[str, set[str | int]]] = {}
+    left: dict[ElementView, dict[str, set[int]]] = {}
     for f in findings:
         if f.absent:
-            what = f.element.position if f.absent == "position" else f.element.number
-            left.setdefault(f.element.view, {}).setdefault(f.absent, set()).add(what)
+            left.setdefault(f.element.view, {}).setdefault(f.absent, set()).add(f.element.number)
     return tuple(AbsentKind(view, kind, len(some)) for view, kinds in left.items() for kind, some in kinds.items())
-
-
-def _of_positions_left_out(state: Comparison, numbers: Sequence[int]) -> list[int]:
-    """What a view has of the positions at which nobody has drawn it.
-
-    Those are drawn that explain most ink, one after another: a link that lies upon one of another position proves nothing.
-    """
-    links = positions([state.elements[n] for n in numbers])
-    ways = {label: lines([e.points for e in some]) for label, some in links.items()}
-    free = {label: ours.points(0.5) for label, ours in ways.items()}
-    drawn: set[str] = set()
-    while True:
-        inked = {label: float(_in_direction(ways[label], state.theirs, z).sum()) for label, z in free.items() if label not in drawn}
-        best = max(inked, key=lambda label: inked[label], default="")
-        if not best or inked[best] <= AT_POSITION * len(free[best]):
-            return [n for n in numbers if state.elements[n].position in links.keys() - drawn]
-        drawn.add(best)
-        free = {label: z[_clear(ways[best], z)] for label, z in free.items()}
 
 
 def _is_drawn(state: Comparison, n: int) -> bool:

@@ -8,7 +8,7 @@ has ink, in a CAD file or a photograph.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, get_args
 
@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.codes import Own, Remark, Sentence
 from tmm_sheets.compare.diagnosis.drawn_plan import DRAWN, SHOWS, DrawnPlan, PlanPoint, between, drawn_plan
-from tmm_sheets.compare.diagnosis.drawn_senses import acting
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind, any_of, hypotheses, of_other_positions
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
 from tmm_sheets.compare.elements import Element, ElementView, sampled
@@ -129,20 +128,13 @@ class _Found:
 
 @dataclass(frozen=True)
 class StudentDrawing:
-    """A view of a drawing, by mm of our sheet: what share of a line has ink, which places, the ends of its lines; and its scale.
-
-    ``headed`` tells whether an arrow has its head.
-    """
+    """A view of a drawing, by mm of our sheet: what share of a line has ink, which places, the ends of its lines; its scale."""
 
     inked: Inked
     ink: Callable[[Points], NDArray[np.bool_]]
     tips: Sequence[complex]
     scale: float = 1.0
-    headed: Callable[[Element], bool] = lambda arrow: False
 
-
-Taken = Callable[[_Mistake, Sequence[_Mistake]], int]
-"""How many arrows at the mechanism are drawn as they were taken with a mistake, besides some others."""
 
 
 def errors_of(project: Project, known: KnownSheet) -> tuple[dict[str, Plan], Errors]:
@@ -152,17 +144,17 @@ def errors_of(project: Project, known: KnownSheet) -> tuple[dict[str, Plan], Err
 
 
 def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementView, Sequence[Element]],
-                    seen: Callable[[ElementView], StudentDrawing], absent: Collection[ElementView] = ()) -> dict[
+                    seen: Callable[[ElementView], StudentDrawing]) -> dict[
                         ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]:
     """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet.
 
-    ``wrong`` are the vectors of views that are not where they belong, as they should be; ``absent`` views that the drawing lacks.
+    ``wrong`` are the vectors of views that are not where they belong, as they should be.
     """
     if not wrong:
         return {}
     plans, errors = errors_of(project, known)
     shown = {view: drawn for view in dict.fromkeys(e.view for e in known.elements)
-             if view not in absent and (drawn := drawn_plan(known, plans, view)) is not None}
+             if (drawn := drawn_plan(known, plans, view)) is not None}
     drawings = {view: seen(view) for view in shown}
     share = {view: _share(drawn, drawings[view], drawn.points) for view, drawn in shown.items()}
     before: list[_Mistake] = []
@@ -177,14 +169,6 @@ def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementV
         if min(more.values(), default=0.0) <= -GAIN:
             return -np.inf
         return sum(weight[view] * m for view, m in more.items())
-
-    arrows = [(one, drawing) for view in dict.fromkeys(e.view for e in known.elements) if view not in absent and view not in shown
-              for some in [acting(known, plans, view)] if some for drawing in [seen(view)] for one in some]
-
-    def taken(mistake: _Mistake, others: Sequence[_Mistake]) -> int:
-        """How many arrows at the mechanism are drawn as they were taken with a mistake."""
-        value = _replay(errors, (*others, mistake))
-        return sum(_is_drawn(one.taken(value), drawing) for one, drawing in arrows)
 
     order, out = list(plans), {}
     alike: dict[int, Sequence[Hypothesis]] = {}
@@ -207,7 +191,7 @@ def built_otherwise(project: Project, known: KnownSheet, wrong: Mapping[ElementV
                 continue
             if id(h) not in alike:
                 of = list(shown.values()) if found.mistake in before else [drawn]
-                alike[id(h)] = _alike(h, [m for m in before if m.said is not h], drawn, of, errors, taken)
+                alike[id(h)] = _alike(h, [m for m in before if m.said is not h], drawn, of, errors)
             label = "" if h.at is None else drawn.plan.labels[h.at]
             first, *others = alike[id(h)]
             out[view] = BuiltPlan(first, *explained, first.step, label, alike=tuple(others)), found.points
@@ -237,11 +221,8 @@ def _replay(errors: Errors, mistakes: Iterable[_Mistake]) -> Callable[[Step], An
 
 
 def _alike(mistake: Hypothesis, others: Sequence[_Mistake], drawn: DrawnPlan, of: Sequence[DrawnPlan],
-           errors: Errors, taken: Taken) -> Sequence[Hypothesis]:
-    """A mistake that was found in a plan with others that draw the same of it and ``of`` all.
-
-    Only the arrows at the mechanism may tell them apart: those of which most were ``taken`` so. No drawing tells these apart.
-    """
+           errors: Errors) -> Sequence[Hypothesis]:
+    """A mistake that was found in a plan with others that draw the same of it and ``of`` all: no drawing tells these apart."""
     value = _replay(errors, [*others, _Mistake(mistake, mistake.changes)])
     same = [mistake]
     for h in possible([drawn], errors):
@@ -249,8 +230,7 @@ def _alike(mistake: Hypothesis, others: Sequence[_Mistake], drawn: DrawnPlan, of
             other = _replay(errors, [*others, _Mistake(h, h.changes)])
             if all(np.allclose(plan.places(other), plan.places(value), 0, SAME, equal_nan=True) for plan in (drawn, *of)):
                 same.append(h)
-    arrows = [taken(_Mistake(h, h.changes), others) for h in same]
-    return [h for h, n in zip(same, arrows, strict=True) if n == max(arrows)][:TOLD]
+    return same[:TOLD]
 
 
 def _explained(drawn: DrawnPlan, errors: Errors, drawing: StudentDrawing, usual: float, before: Sequence[_Mistake],
@@ -282,11 +262,6 @@ def _explained(drawn: DrawnPlan, errors: Errors, drawing: StudentDrawing, usual:
     off = [(_ink(drawn, drawing, f.points), f) for _, f in _best(tried(_points_off(drawn, drawing), before), gain)]
     most, best = max(off, key=lambda x: x[0], default=(0, None))
     return best if most > _ink(drawn, drawing, drawn.points) + NEW_INK else None
-
-
-def _is_drawn(arrow: Element, drawing: StudentDrawing) -> bool:
-    """Whether an arrow is drawn: its head, and of a straight one its line."""
-    return drawing.headed(arrow) and not (arrow.kind == "line" and drawing.inked(arrow.points[[0, -1]]) < WHOLE)
 
 
 def _best(found: Sequence[_Found], gain: Callable[[_Mistake], float]) -> list[tuple[float, _Found]]:
