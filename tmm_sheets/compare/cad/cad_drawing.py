@@ -61,7 +61,13 @@ class ComparedDrawing:
 
 def compare(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
             say: Callable[[str], None]) -> Report:
-    """Compare a DXF drawing with a project; the report has two overlays besides text and JSON.
+    """Compare a DXF drawing with a project; the report has two overlays besides text and JSON. Arguments as in :func:`compared`."""
+    return compared(project, sheet, path, views, pencil, say).report
+
+
+def compared(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
+             say: Callable[[str], None] = lambda _: None) -> ComparedDrawing:
+    """Compare a drawing: plans in a layout of its own title first, else element by element with the sheet of ours that it shows.
 
     Parameters
     ----------
@@ -78,15 +84,6 @@ def compare(project: Project, sheet: int | None, path: Path, views: Path | None,
         If the file cannot be read as DXF, or there is no such sheet.
     CannotBuild
         If the drawing shows none of the sheets and no plan of the project.
-    """
-    return compared(project, sheet, path, views, pencil, say).report
-
-
-def compared(project: Project, sheet: int | None, path: Path, views: Path | None, pencil: float,
-             say: Callable[[str], None] = lambda _: None) -> ComparedDrawing:
-    """Compare a drawing: plans in a layout of its own title first, else element by element with the sheet of ours that it shows.
-
-    Parameters and errors are those of :func:`compare`.
     """
     numbers = sheet_numbers(project, sheet)
     if views is not None and len(numbers) > 1:

@@ -205,6 +205,8 @@ def _notes(judged: JudgedPlans) -> Iterator[str]:
     n = len(judged.views)
     yield tell_n("the layout is the student's own: {n} view, judged by its title and its lines",
                  "the layout is the student's own: {n} views, judged by their titles and their lines", n).format(n=n)
+    if judged.askew:
+        yield tell("the plans are turned against the lettering; they were judged as they lie")
     if judged.ink.curves:
         yield tell("circles and curves are not judged in a layout of its own: {n}").format(n=judged.ink.curves)
 
