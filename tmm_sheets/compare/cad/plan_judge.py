@@ -22,6 +22,7 @@ from tmm_sheets.compare.cad.plan_ink import (
     MAIN,
     MAX_GAP_MM,
     OTHERS,
+    TOLERANCE_MM,
     Figure,
     Fit,
     Numbers,
@@ -225,23 +226,29 @@ class _Judge:
 
     def _as_it_should_be(self, figure: Figure, name: str, ks: tuple[int, ...]) -> list[tuple[tuple[int, ...], Fit]]:
         """A plan laid where most of it is drawn, if nearly all is; of all positions those that are drawn."""
-        view = self.record.view(name)
-        lines = view.lines(ks)
+        lines = self.record.view(name).lines(ks)
         fit = figure.laid(lines, self.ink.turn, whole=True)
-        if fit is None:
-            return []
-        if len(ks) > 1 and fit.bare > WHOLE * fit.own:
-            main = np.array([kind == MAIN for kind in lines.kinds])
-            size = np.abs(lines.heads - lines.tails) * main
-            of = lines.numbers // len(view.pairs)
-            shown = np.bincount(of, size * (fit.drawn >= DRAWN_SHARE), len(ks)) > 0.9 * np.bincount(of, size, len(ks))
-            some = tuple(k for k, is_drawn in zip(ks, shown.tolist(), strict=True) if is_drawn)
-            if 1 < len(some) < len(ks):
-                return self._as_it_should_be(figure, name, some)
+        if fit is None or fit.bare > WHOLE * fit.own:
+            some = self._drawn_positions(figure, name, ks) if len(ks) > 1 else ()
+            return self._as_it_should_be(figure, name, some) if 1 < len(some) < len(ks) else []
         d = (lines.heads - lines.tails)[[kind == MAIN for kind in lines.kinds]]
         flat = len(d) > 0 and bool((np.abs((d / d[np.abs(d).argmax()]).imag) < 0.02).all())
-        there = fit.bare <= WHOLE * fit.own and fit.own > MIN_FIGURE_MM and (flat or (fit.left <= LEFT_SHARE).sum() > 1)
-        return [(ks, fit)] if there else []
+        # Any line fits a plan along one line: it is one only with a head.
+        sure = self._is_headed(figure) if flat else (fit.left <= LEFT_SHARE).sum() > 1
+        return [(ks, fit)] if fit.own > MIN_FIGURE_MM and sure else []
+
+    def _is_headed(self, figure: Figure) -> bool:
+        tips = np.array([tip for tip, _ in self.ink.heads], dtype=complex)
+        return bool(len(tips) and (np.abs(figure.ends[:, None] - tips) < 2 * TOLERANCE_MM).any())
+
+    def _drawn_positions(self, figure: Figure, name: str, ks: tuple[int, ...]) -> tuple[int, ...]:
+        """Of many positions those that are there by themselves, most of them at one place."""
+        view = self.record.view(name)
+        fits = [(k, fit) for k in ks if (fit := figure.laid(view.lines((k,)), self.ink.turn, 3, whole=True)) is not None
+                and fit.bare <= WHOLE * fit.own]
+        alike = [tuple(k for k, other in fits if abs(other.scale / fit.scale - 1) < 0.01
+                       and abs(other.origin - fit.origin) < 4 * TOLERANCE_MM) for _, fit in fits]
+        return max(alike, key=len, default=())
 
     def _with_mistakes(self, open_titles: Sequence[int], rest: Sequence[Figure]) -> tuple[list[JudgedView], set[int]]:
         """Titles judged with mistakes on the figures that are left, and the numbers of these."""

@@ -237,10 +237,11 @@ def _not_drawn(views: Sequence[_OfView]) -> list[str]:
 
 def _row(v: _OfView) -> tuple[str, ...]:
     plan, count = v.view.view.plan, Counter(r.verdict for r in v.lines.values())
-    label = v.view.label or (tell("all") if v.view.kind != "bare" else "")
+    some = "" if v.view.kind == "bare" else tell("all") if len(v.view.positions) == len(plan.labels) else ", ".join(
+        plan.labels[k] for k in v.view.positions)
     what = v.whole.remark.said() if v.whole is not None else tell("right")
     wrong = count["red"] + (len(v.view.unexplained) if v.view.kind in ("partly", "unlike") else 0)
-    return (v.view.title or "–", f"{plan.name} {label}".strip(), what, str(count["green"]), str(wrong), str(count["not-judged"]))
+    return (v.view.title or "–", f"{plan.name} {some}".strip(), what, str(count["green"]), str(wrong), str(count["not-judged"]))
 
 
 def _listed_view(v: _OfView) -> dict[str, Any]:

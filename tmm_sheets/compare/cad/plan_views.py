@@ -135,7 +135,7 @@ class PlanRecord:
             return
         k = self.labels.index(title.label) if title.label in self.labels else usual
         some: list[tuple[int, ...]] = [(i,) for i in (whole if k is None else (k,))]
-        if title.kind == "positions" and title.label is None:
+        if title.kind == "positions":
             some.insert(k is not None, whole)
         yield from ((title.kind, ks) for ks in some)
 
