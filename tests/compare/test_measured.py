@@ -19,7 +19,7 @@ from tmm_sheets.__main__ import run
 from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.measured_file import FilledTable, MeasuredLine, read
 from tmm_sheets.compare.measured.measured_lengths import NAME
-from tmm_sheets.compare.measured.misplaced_point import covariance
+from tmm_sheets.compare.measured.mistake_search import covariance
 from tmm_sheets.construction.step import value_at
 from tmm_sheets.project import Project
 

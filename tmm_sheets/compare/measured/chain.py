@@ -2,7 +2,7 @@
 
 The numbers are taken in the order of drawing. What an earlier mistake does to a later number is told by drawing again with it: if
 what remains of a deviation is within tolerance, the number follows from that mistake and is not accused on its own. Otherwise a
-new chain starts, with what explains most of what is left (:mod:`~tmm_sheets.compare.measured.explaining`): something done
+new chain starts, with what explains most of what is left (:mod:`~tmm_sheets.compare.measured.mistake_search`): something done
 otherwise, or a step drawn off. A number whose deviation explains nothing else was read or computed wrong.
 """
 
@@ -20,10 +20,10 @@ from tmm_sheets.compare.codes import Number, Own, Remark, joined
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.measured import measured_units as units
 from tmm_sheets.compare.measured.evidence import CURVED, Evidence, Explanation, place_of
-from tmm_sheets.compare.measured.explaining import explanation
 from tmm_sheets.compare.measured.judged import JudgedValue, Place
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angle_apart
 from tmm_sheets.compare.measured.measured_file import FilledTable, MeasuredLine, factor_of
+from tmm_sheets.compare.measured.mistake_search import explanation
 from tmm_sheets.compare.measured.own_numbers import OwnNumbers
 from tmm_sheets.compare.measured.plan_scales import wrong_scales
 from tmm_sheets.compare.measured.student_recompute import OwnValue

@@ -1,0 +1,469 @@
+"""What explains a number that is not in order: something done otherwise, or a step drawn off, with all numbers as witnesses.
+
+Discrete mistakes come first: each is drawn again (:mod:`~tmm_sheets.compare.diagnosis`), and of those that leave little of the
+number's deviation the one that explains most of all numbers wins, two together where neither does alone. A displaced point is told
+only where its displacement, of which nothing is known beforehand, explains more than any of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
+from math import isfinite
+from typing import TypeVar, get_args
+
+import numpy as np
+import numpy.typing as npt
+
+from tmm_sheets.compare.codes import Own
+from tmm_sheets.compare.diagnosis.hypotheses import MIRRORED, Hypothesis, Kind, computed_with, hypotheses, of_other_positions
+from tmm_sheets.compare.diagnosis.replay import Change, displaced
+from tmm_sheets.compare.measured.evidence import CURVED, HUBER, LEFT, LOADS, Evidence, Explanation, Floats, done_in, loss, place_of
+from tmm_sheets.compare.measured.judged import JudgedValue, Mistake, Place
+from tmm_sheets.compare.measured.plan_scales import drawn_to, is_scaled, times_as_long
+from tmm_sheets.construction.step import value_at
+
+T = TypeVar("T")
+LEAST = 3
+"""Numbers that must be off before a column is said to be shifted."""
+
+
+def wrong_rows(evidence: Evidence, i: int) -> Iterator[tuple[Hypothesis, Explanation]]:
+    """What a number is off by when rows near it have the numbers of others; the smallest mistakes first."""
+    judged = evidence.judged
+    e = judged[i].entry
+    if not e.terms:
+        return
+    alike = [n for n, j in enumerate(judged) if (j.entry.plan, j.entry.title, j.entry.kind, j.entry.unit) == (
+        e.plan, e.title, e.kind, e.unit)]
+    beside = [n for n in alike if judged[n].entry.label == e.label]
+    along = [n for n in alike if judged[n].entry.quantity == e.quantity]
+    for n in (*_next(beside, i), *_next(along, i)):
+        yield from _written(evidence, i, {i: n, n: i}, "row", judged[n].row)
+    labels = list(dict.fromkeys(judged[n].entry.label for n in alike))
+    by_place = {(j.entry.label, j.entry.quantity): n for n, j in enumerate(judged)
+                if (j.entry.plan, j.entry.title) == (e.plan, e.title)}
+    for label in _next(labels, e.label):
+        pairs = [(n, by_place[label, q]) for (at, q), n in by_place.items() if at == e.label and (label, q) in by_place]
+        if len(pairs) > 1:
+            both = ", ".join(sorted((e.label, label), key=labels.index))
+            yield from _written(evidence, i, {x: y for a, b in pairs for x, y in ((a, b), (b, a))}, "positions", both)
+    down, lengths = (sorted(some, key=lambda n: judged[n].line.line) for some in (range(len(judged)), alike))
+    for rows, words in ((along, "position"), (lengths, "row"), (down, "row")):
+        for by, which in ((-1, "before"), (1, "after")):
+            yield from _shifted(evidence, i, rows, by, f"{words} {which}")
+
+
+def _next(some: Sequence[T], one: T) -> list[T]:
+    """The neighbours of one of some."""
+    at = some.index(one)
+    return [*some[max(at - 1, 0):at], *some[at + 1:at + 2]]
+
+
+def _shifted(evidence: Evidence, i: int, rows: Sequence[int], by: int, words: str) -> Iterator[tuple[Hypothesis, Explanation]]:
+    """That the rows round a number have, as far as that goes, the numbers of those before them (-1) or after them (1)."""
+    of = {n: rows[k + by] for k, n in enumerate(rows) if 0 <= k + by < len(rows)}
+    at = rows.index(i)
+    run = [i] if i in of and _fits(evidence, i, of[i]) else []
+    for step in (-1, 1):
+        k = at + step
+        while run and 0 <= k < len(rows) and rows[k] in of and _fits(evidence, rows[k], of[rows[k]]):
+            run.append(rows[k])
+            k += step
+    run = sorted(run, key=rows.index)
+    # What is right where it stands has not been shifted.
+    while run and not _off(evidence, run[0]):
+        run.pop(0)
+    while run and not _off(evidence, run[-1]):
+        run.pop()
+    if i in run and sum(_off(evidence, n) for n in run) >= LEAST:
+        judged = evidence.judged
+        said = f"{judged[run[0]].row} … {judged[run[-1]].row}"
+        for h, found in _written(evidence, i, {n: of[n] for n in run}, words, said):
+            # Where the column was cut the number of a row that is not there came in.
+            k = rows.index(run[0 if by < 0 else -1]) + by
+            if _off(evidence, rows[k]):
+                shares = found.shares.copy()
+                shares[rows[k]] = evidence.left[rows[k]]
+                found = replace(found, shares=shares)
+            yield h, found
+
+
+def _written(evidence: Evidence, i: int, of: Mapping[int, int], words: str, other: str) -> Iterator[tuple[
+        Hypothesis, Explanation]]:
+    """That rows have the numbers of others; nothing where that leaves much of one of them, or the number was hardly off."""
+    off = [n for n in of if _off(evidence, n)]
+    if i in off and len(off) >= min(len(of), 2) and all(_fits(evidence, n, m) for n, m in of.items()):
+        shares, doubt = np.zeros((2, len(evidence.judged)))
+        before = after = 0.0
+        for n, m in of.items():
+            shares[n] = _meant(evidence, m) - _meant(evidence, n)
+            doubt[n] = evidence.allowed[m]
+            before += float(loss(evidence.left[n] / evidence.allowed[n]))
+            after += float(loss(_apart(evidence, n, m) / evidence.allowed[m]))
+        h = Hypothesis("neighbour", words, evidence.judged[i].entry.terms[-1][0], (), other=Own(other))
+        yield h, Explanation((), shares, doubt, before - after)
+
+
+def _meant(evidence: Evidence, n: int) -> float:
+    """The number that a row ought to have, with the mistakes found so far."""
+    j = evidence.judged[n]
+    return j.exact + j.deviation - float(evidence.left[n])
+
+
+def _apart(evidence: Evidence, n: int, m: int) -> float:
+    """How far the number of a row is from that of another."""
+    j = evidence.judged[m]
+    value = evidence.judged[n].line.value
+    return j.apart((value if j.entry.signed or j.entry.kind == "angle" else abs(value)) - _meant(evidence, m))
+
+
+def _off(evidence: Evidence, n: int) -> bool:
+    return bool(abs(evidence.left[n]) > LEFT * evidence.allowed[n])
+
+
+def _fits(evidence: Evidence, n: int, m: int) -> bool:
+    """Whether a row may well have the number of another."""
+    return bool(np.isfinite(evidence.allowed[[n, m]]).all() and abs(_apart(evidence, n, m)) <= LEFT * evidence.allowed[m])
+
+
+ALONE = 0.9
+"""Share of the number it is looked for that a mistake has to explain, besides most of another one."""
+ENOUGH = 16.0
+"""What a mistake has to explain at the least: there are some hundreds, and one of so many explains a little by chance."""
+EQUAL = 0.98
+"""Share of the best discrete explanation with which another cannot be told from it."""
+APART = 0.05
+"""Share by which a scale factor is another one."""
+TOLD = 3
+"""Mistakes that are told of those that cannot be told apart."""
+_KINDS = get_args(Kind)
+
+
+def done_otherwise(evidence: Evidence, i: int) -> Explanation | None:
+    """The discrete mistake that explains a number, with those that cannot be told from it."""
+    alone = float(loss(evidence.left[i] / evidence.allowed[i]))
+    found = [(h, evidence.replayed(h)) for h in mistakes_before(evidence, i) if evidence.leaves_little(i, h)]
+    found += wrong_rows(evidence, i)
+    best = max((e.score for _, e in found), default=0.0)
+    if best <= ALONE * alone or (best < ENOUGH and evidence.judged[i].entry.kind != "sense"):
+        return None
+    # Of equally good ones the more usual first.
+    equal = [_as_often(evidence, h, e) for h, e in found if e.score >= EQUAL * best]
+    best = max(e.score for _, e in equal)
+    equal = [(h, e) for h, e in equal if e.score >= EQUAL * best]
+    first = equal[0][1]
+    return replace(first, wrong=tuple(h for h, _ in equal[:TOLD]))
+
+
+def _as_often(evidence: Evidence, h: Hypothesis, once: Explanation) -> tuple[Hypothesis, Explanation]:
+    """A mistake made at one position, or at all of them where numbers at the others tell that."""
+    if (often := h.at_every_position()) is None:
+        return h, once
+    always = evidence.replayed(often)
+    rest = [np.where(np.isfinite(e.shares), evidence.after(e.shares), evidence.left) / np.hypot(evidence.allowed, e.doubt)
+            for e in (once, always)]
+    more = float(np.sum(loss(rest[0]) - loss(rest[1])))
+    return (often, always) if min(more, always.score - once.score) > (1 - EQUAL) * once.score else (h, once)
+
+
+def mistakes_before(evidence: Evidence, i: int, others: Sequence[int] = ()) -> list[Hypothesis]:
+    """Mistakes that may have been made before a number, or before others of its position; the more usual kinds first."""
+    j = evidence.judged[i]
+    if not evidence.labels:
+        return []
+    before = evidence.made_of([step for n in (i, *others) for step, _, _ in evidence.judged[n].entry.terms])
+    k = evidence.labels.index(j.entry.label) if j.entry.label in evidence.labels else 0
+    found = [*hypotheses(before, k, evidence.labels, evidence.whole), *_computed_with(evidence, i), *_drawn_to(evidence, i)]
+    if j.entry.plan in MIRRORED:
+        points = [s for s in evidence.whole if s.plan == j.entry.plan and s.rule.gives in ("point", "vector")]
+        found += of_other_positions(points, k, evidence.labels)
+    return sorted(found, key=lambda h: _KINDS.index(h.kind))
+
+
+def _computed_with(evidence: Evidence, i: int) -> Iterator[Hypothesis]:
+    """That a result, and all others of its plan, was computed with another scale factor."""
+    j = evidence.judged[i]
+    of_plan = [s for s in evidence.whole if s.plan == j.entry.scale]
+    if j.entry.kind == "result" and j.entry.reading and j.exact + evidence.predicted[i] and of_plan:
+        times = float(j.line.value / (j.exact + evidence.predicted[i]))
+        if times > 0 and abs(times - 1) > APART:
+            yield computed_with(of_plan, times)
+
+
+def _drawn_to(evidence: Evidence, i: int) -> Iterator[Hypothesis]:
+    """That the plan of a length was drawn with another scale factor than stated."""
+    if is_scaled(evidence.judged[i]):
+        scale = evidence.judged[i].entry.scale
+        of_plan = [n for n, j in enumerate(evidence.judged) if is_scaled(j) and j.entry.scale == scale]
+        measured = np.array([evidence.judged[n].line.value for n in of_plan])
+        expected = measured - (evidence.deviation - evidence.predicted)[of_plan]
+        if (found := times_as_long(measured, expected, evidence.allowed[of_plan])) is not None:
+            yield drawn_to(found[0] * evidence.drawn.get(scale, 1.0), evidence.judged[i].entry.terms[-1][0], scale)
+
+
+USUAL = 10.0
+"""How far a misplaced point usually lies off, mm."""
+OFF_ALONE = 0.9
+"""Share of the number it is looked for that a mistake has to explain, besides most of another one."""
+DRAWN = ("point", "vector", "length", "ordinate")
+"""What is off by millimetres; numbers and forces are off by a share of themselves."""
+NEAR = 0.01
+"""Displacement for derivatives where a mistake has led to, as a share of the usual one."""
+TRIED = 4
+"""Steps that are tried by drawing again, of those that explain most by the Jacobian."""
+WITNESSED = 0.1
+"""Share of what a displacement explains of the number it is looked for that it has to explain of others."""
+NEARLY = 0.9
+"""Share of the best explanation with which another is as good."""
+
+
+def displaced_step(evidence: Evidence, i: int) -> Explanation | None:
+    """The displaced step behind a red number; None when it explains nothing else, or where the number is where it ought to be.
+
+    A number within its tolerance may be red because it does not follow from the student's own: no step need be displaced for it.
+    """
+    if abs(evidence.judged[i].deviation) <= evidence.judged[i].tolerance:
+        return None
+    possible = (_mistake(evidence, place) for place in evidence.places[i] if _can_be_wrong(evidence, place))
+    candidates = sorted(possible, key=lambda m: -m.score)
+    candidates = [_mistake(evidence, m.place, exact=True) for m in candidates[:TRIED]]
+    alone = float(loss(evidence.left[i] / evidence.allowed[i]))
+    own = evidence.judged[i].entry.head
+    good = [m for m in candidates if m.score > alone * OFF_ALONE and _helps(evidence, m, i)]
+    if not good:
+        return None
+    best = max(m.score for m in good)
+    near = [m for m in good if m.score >= NEARLY * best]
+    head = None if own is None else place_of(own, evidence.judged[i].at)
+    # Of steps that explain equally well the one that was measured here, else one that was measured at all.
+    m = max(near, key=lambda m: (m.place == head, m.place in evidence.heads, m.score))
+    lines, gradient = evidence.by_place[m.place]
+    shares, doubt = np.zeros((2, len(evidence.judged)))
+    shares[lines] = _shares(evidence, m.place, m.moved)
+    doubt[lines] = np.hypot(np.sqrt(np.einsum("ni,ij,nj->n", gradient, m.uncertain, gradient)), CURVED * np.abs(shares[lines]))
+    return Explanation((_change(evidence, m.place, m.moved),), shares, doubt, m.score, mistake=m)
+
+
+def _mistake(evidence: Evidence, place: Place, exact: bool = False) -> Mistake:
+    """The displacement of one step that explains most: least squares over all numbers that depend on it, green ones as well.
+
+    Numbers that other mistakes have spoilt count as much less as they are off (P. J. Huber's weights). With ``exact`` the
+    construction is drawn again with the displacement until that fits (Gauss and Newton's way), else the Jacobian will do. A
+    point that nearly rests moves its speed alike to both sides: the search begins also with what its own plan alone tells. A
+    vector that became longer than it is may point anywhere now: then it begins on all sides.
+    """
+    begins = [np.zeros(2)]
+    if exact:
+        begins += [*_by_own_plan(evidence, place), *_all_round(evidence, place)]
+    return max((_descended(evidence, place, x, exact) for x in begins), key=lambda m: m.score)
+
+
+def _by_own_plan(evidence: Evidence, place: Place) -> Iterator[Floats]:
+    """The displacement that the numbers of the step's own plan tell, where there are others."""
+    lines, gradient = evidence.by_place[place]
+    here = np.array([evidence.judged[i].entry.plan == evidence.steps[place].plan for i in lines])
+    if here.all() or not here.any():
+        return
+    rows, aims = (gradient / evidence.allowed[lines, None])[here], (evidence.left[lines] / evidence.allowed[lines])[here]
+    usual = _usual(evidence, place)
+    begin, *_ = np.linalg.lstsq(np.concatenate((rows, usual)), np.concatenate((aims, np.zeros(2))), rcond=None)
+    yield begin
+
+
+def _all_round(evidence: Evidence, place: Place) -> Iterator[Floats]:
+    """Displacements to four sides, as long as a vector became that was shorter."""
+    lines, gradient = evidence.by_place[place]
+    longer = [float(evidence.left[i] / np.hypot(*g)) for i, g in zip(lines, gradient, strict=True)
+              if (evidence.judged[i].entry.is_distance or evidence.judged[i].entry.is_size)
+              and evidence.left[i] > max(abs(evidence.judged[i].exact), evidence.judged[i].tolerance)]
+    if longer:
+        yield from max(longer) * np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])
+
+
+def _usual(evidence: Evidence, place: Place) -> npt.NDArray[np.float64]:
+    """Of what no number sees nothing is told: mistakes are some millimetres, a number is not wrong by more than itself."""
+    of = evidence.steps[place]
+    mu = evidence.errors.scale(of) if of.rule.gives in DRAWN else 0.0
+    return np.eye(2) / (USUAL * mu if mu else max(abs(complex(value_at(of, place[1]))), 1e-9))
+
+
+def _descended(evidence: Evidence, place: Place, x: npt.NDArray[np.float64], exact: bool) -> Mistake:
+    """The best displacement that the search finds when it begins with ``x``."""
+    lines, gradient = evidence.by_place[place]
+    of, mu, usual = evidence.steps[place], evidence.errors.scale(evidence.steps[place]), _usual(evidence, place)
+    rows, aims = gradient / evidence.allowed[lines, None], evidence.left[lines] / evidence.allowed[lines]
+    best = Mistake(place, of, x, np.eye(2), 0.0, mu)
+    for _ in range(6 if exact else 9):
+        if exact and x.any():
+            shares = _shares(evidence, place, x) / evidence.allowed[lines]
+            near = np.linalg.inv(usual) * NEAR
+            beside = [_shares(evidence, place, x + d) / evidence.allowed[lines] for d in near[:1 if not rows[:, 1].any() else 2]]
+            rows = np.stack([(b - shares) / d[i] for i, (b, d) in enumerate(zip(beside, near, strict=False))], axis=-1)
+            rows = rows if rows.shape[1] == 2 else np.concatenate((rows, 0 * rows), axis=1)
+        else:
+            shares = rows @ x
+        if not (np.all(np.isfinite(shares)) and np.all(np.isfinite(rows))):
+            break
+        score = float(np.sum(loss(aims)) - np.sum(loss(aims - shares)) - np.sum((usual @ x) ** 2))
+        if score > best.score:
+            best = Mistake(place, of, x, covariance(rows, usual), score, mu)
+        weights = 1 / np.sqrt(np.maximum(1, np.abs(aims - shares) / HUBER))
+        step, *_ = np.linalg.lstsq(np.concatenate((rows * weights[:, None], usual)),
+                                   np.concatenate(((aims - shares) * weights, -usual @ x)), rcond=None)
+        if np.abs(rows @ step).max() < 0.01:
+            break
+        x = x + step
+    return best
+
+
+def _can_be_wrong(evidence: Evidence, place: Place) -> bool:
+    """False for what follows from the project file alone and was not written down: nobody has seen it wrong."""
+    error = evidence.errors.error(evidence.steps[place])
+    return place in evidence.heads or bool(error[min(place[1], len(error) - 1)] > 0)
+
+
+def _helps(evidence: Evidence, mistake: Mistake, i: int) -> bool:
+    """True when a mistake explains most of the number it was looked for, and of another one that is not in order.
+
+    A little of much that other mistakes have spoilt explains nothing, nor does a great displacement that only one number shows.
+    Of what is off against the student's own numbers only there is nothing to explain.
+    """
+    if np.hypot(*mistake.moved) < 2 * evidence.errors.pencil * mistake.mu:
+        return False  # that is the pencil
+    shares = _shares(evidence, mistake.place, mistake.moved)
+    mostly = {j for j, share in zip(evidence.by_place[mistake.place][0].tolist(), shares, strict=True)
+              if evidence.judged[j].verdict != "green" and abs(evidence.left[j] - share) < 0.5 * abs(evidence.left[j])}
+    if not mostly - {i} or not (i in mostly or abs(evidence.left[i]) <= evidence.allowed[i]):
+        return False
+    lines = evidence.by_place[mistake.place][0]
+    gain = loss(evidence.left[lines] / evidence.allowed[lines]) - loss((evidence.left[lines] - shares) / evidence.allowed[lines])
+    far = float(np.sum((_usual(evidence, mistake.place) @ mistake.moved) ** 2))
+    return bool(gain[lines != i].sum() > max(far, WITNESSED * gain[lines == i].sum()))
+
+
+def _shares(evidence: Evidence, place: Place, x: Floats) -> Floats:
+    """What a displacement of a step makes of the numbers that depend on it, by drawing again."""
+    value, lines = evidence.with_changes((_change(evidence, place, x),)), evidence.by_place[place][0]
+    return np.asarray([evidence.changed(evidence.judged[i], value) for i in lines] - evidence.predicted[lines])
+
+
+def _change(evidence: Evidence, place: Place, x: Floats) -> Change:
+    step = evidence.steps[place]
+    return Change(step, displaced(complex(*x)), place[1] if np.ndim(step.value) else None)
+
+
+def covariance(rows: Floats, usual: Floats) -> Floats:
+    """Covariance of a displacement that ``rows`` of tolerance one and what is ``usual`` tell; (2, 2).
+
+    The square of a very sensitive row would have no inverse in floating point.
+    """
+    inverse = np.linalg.pinv(np.concatenate((rows, usual)))
+    return np.asarray(inverse @ inverse.T)
+
+
+RED, WITNESSES = 2.0, 3
+"""Numbers of a plan and position, off by so many tolerances, without which two mistakes at once are not looked for."""
+
+
+def two_mistakes(evidence: Evidence, i: int) -> Explanation | None:
+    """The first of two discrete mistakes that explain a number together and neither of them alone.
+
+    A displaced point cannot do that.
+    """
+    found = [(evidence.replayed(_both(first, second)), first, second)
+             for pairs in (_in_one_plan, _made_good) for first, second in pairs(evidence, i)]
+    best = max((e.score for e, _, _ in found), default=0.0)
+    if best < 2 * ENOUGH:
+        return None  # of so many pairs one explains more by chance
+    equal = sorted((pair for pair in found if pair[0].score >= EQUAL * best), key=lambda pair: -pair[0].score)
+    both, first, _ = equal[0]
+    begun = evidence.replayed(first)
+    # Those of other pairs, too: which two of them they were is not known then.
+    seconds = tuple(dict.fromkeys(second for _, _, second in sorted(equal, key=lambda pair: pair[1] is not first)))
+    then = replace(both, changes=seconds[0].changes, shares=both.shares - begun.shares, wrong=seconds[:TOLD])
+    return replace(begun, score=best, wrong=tuple(dict.fromkeys(h for _, h, _ in equal))[:TOLD], then=then)
+
+
+def _both(first: Hypothesis, second: Hypothesis) -> Hypothesis:
+    return replace(first, changes=(*first.changes, *second.changes))
+
+
+def _made_good(evidence: Evidence, i: int) -> Iterator[tuple[Hypothesis, Hypothesis]]:
+    """Mistakes that explain a number but would spoil others, each with one that was made besides and leaves those as they are."""
+    for first in mistakes_before(evidence, i):
+        if not evidence.leaves_little(i, first):
+            continue
+        spoilt = sorted(evidence.replayed(first).spoils, key=lambda n: evidence.judged[n].order)
+        if not spoilt:
+            continue
+        everywhere = len({evidence.judged[n].entry.label for n in spoilt}) > 1
+        for h in mistakes_before(evidence, spoilt[0]):
+            second = h.at_every_position() if everywhere else h
+            if second is not None and second.kind not in (first.kind, "neighbour") and second.step is not first.step:
+                both = _both(first, second)
+                if _leaves_little_of(evidence, spoilt[:1], both) and _leaves_little_of(evidence, spoilt, both):
+                    yield first, second
+
+
+def _in_one_plan(evidence: Evidence, i: int) -> Iterator[tuple[Hypothesis, Hypothesis]]:
+    """Two mistakes in one plan; little may be left of everything that they reach in it."""
+    at = evidence.judged[i].entry
+    plan = _seen_in(evidence.judged[i])
+    here = [n for n, j in enumerate(evidence.judged) if j.entry.label == at.label and isfinite(j.tolerance)
+            and (_seen_in(j) == plan or (plan in LOADS and j.entry.plan.startswith("force-")))]
+    if sum(abs(evidence.left[n]) > RED * evidence.allowed[n] for n in here) < WITNESSES:
+        return
+    for first, second in _pairs(evidence, i, here):
+        both = _both(first, second)
+        if evidence.leaves_little(i, both) and _leaves_little_of(evidence, here, both) and not any(
+                _leaves_little_of(evidence, here, h) for h in (first, second)):
+            yield first, second
+
+
+def _pairs(evidence: Evidence, i: int, here: Sequence[int]) -> Iterator[tuple[Hypothesis, Hypothesis]]:
+    """Two mistakes in the plan of some numbers, in the order of drawing, of which one at least reaches number ``i``."""
+    plans = {_seen_in(evidence.judged[n]) for n in (i, *here)}
+    some = [h for h in mistakes_before(evidence, i, here) if h.kind != "neighbour" and any(done_in(h, plan) for plan in plans)]
+    some.sort(key=lambda h: evidence.errors.order(h.step))
+    before = set(evidence.made_of([step for step, _, _ in evidence.judged[i].entry.terms]))
+    reaching = [any(change.step in before for change in h.changes) for h in some]
+    alone = [reaches and evidence.leaves_little(i, h) for h, reaches in zip(some, reaching, strict=True)]
+    for a, b in combinations(range(len(some)), 2):
+        # Where one of them does not reach the number the other explains it alone.
+        if ((reaching[a] and reaching[b]) or alone[a] or alone[b]) and some[a].step is not some[b].step and (
+                some[a].kind != some[b].kind):
+            yield some[a], some[b]
+
+
+def _leaves_little_of(evidence: Evidence, lines: Sequence[int], h: Hypothesis) -> bool:
+    """Whether all these numbers are nearly what they would be with a mistake."""
+    shares = evidence.shares_of(h, lines)
+    return all(isfinite(share) and abs(evidence.judged[n].apart(evidence.left[n] - share)) <= LEFT * np.hypot(
+        evidence.allowed[n], CURVED * share) for n, share in zip(lines, shares, strict=True))
+
+
+def _seen_in(j: JudgedValue) -> str:
+    """The plan that a number was measured in, or where its step is when it was computed."""
+    return j.entry.terms[-1][0].plan if j.entry.kind in ("result", "sense") and j.entry.terms else j.entry.plan
+
+
+def explanation(evidence: Evidence, i: int) -> Explanation | None:
+    """What explains a number best; None when nothing does: a slip in reading or computing this one."""
+    done = done_otherwise(evidence, i)
+    if done is not None:
+        reached = np.abs(done.shares) > evidence.allowed
+        alike = reached.copy()  # with all that a step drawn off may explain
+        for place in evidence.places[i]:
+            alike[evidence.by_place[place][0]] = True
+        if reached.sum() > 1 and done.score > NEARLY * float(np.sum(loss((evidence.left / evidence.allowed)[alike]))):
+            return done  # nothing can explain much more
+    off = displaced_step(evidence, i)
+    best = off if done is None or (off is not None and off.score * NEARLY > done.score) else done
+    both = two_mistakes(evidence, i)
+    if best is None or both is None:
+        return best or both
+    # A displacement that may be anything explains much of two mistakes; what it leaves is told by chance no more than one mistake.
+    enough = max(NEARLY * both.score, both.score - ENOUGH if best is off else 0.0)
+    return best if best.score > enough else both
