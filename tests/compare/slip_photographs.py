@@ -25,7 +25,7 @@ from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.known_sheet import KnownSheet, known_sheet
 from tmm_sheets.compare.photo import image
-from tmm_sheets.compare.photo.image_report import image_report
+from tmm_sheets.compare.photo.photo_report import image_report
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.compare.report_pages import page
 from tmm_sheets.drawing.ink import letters

@@ -9,8 +9,8 @@ import pytest
 
 from tests.compare.test_image import N, grey, known, rectified, shot
 from tmm_sheets.compare.elements import grown
-from tmm_sheets.compare.photo import frame_quads, rectification, tracing
-from tmm_sheets.compare.photo.frame_quads import homographies
+from tmm_sheets.compare.photo import frame_candidates, rectification, tracing
+from tmm_sheets.compare.photo.frame_candidates import homographies
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.masking import fill
 from tmm_sheets.compare.photo.occlusion import at as hidden_at
@@ -133,7 +133,7 @@ def test_a_frame_is_not_thrown_out_for_lines_on_both_sides_of_each(pitch, share)
     near[rows.astype(int)] = near[rows.astype(int) - 1] = 255
     p = np.repeat(594 - rows[3:-3], 8) * 1j + np.tile(np.linspace(100, 700, 8), len(rows) - 6)
     flipped = CORNERS.real + 1j * (594 - CORNERS.imag)
-    found = frame_quads._shares(near, flipped[None], p, np.full(len(p), 1j))
+    found = frame_candidates._shares(near, flipped[None], p, np.full(len(p), 1j))
     assert found == pytest.approx([share])
 
 

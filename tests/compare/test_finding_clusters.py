@@ -9,7 +9,7 @@ import pytest
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.findings import called
-from tmm_sheets.compare.photo import extra_ink, image_report, image_story, occlusion
+from tmm_sheets.compare.photo import extra_ink, occlusion, photo_report
 from tmm_sheets.compare.photo.finding_clusters import places
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.profiles import SCALE
@@ -72,7 +72,7 @@ def test_the_worst_speaks_for_a_place_and_lettering_for_itself():
     letter = judge(InkTrace(text, "absent lettering"), 0.25, 0.15)
     place, alone = places([off, worse, letter], [])
     assert (place.verdict, [f.element.number for f in place.findings]) == ("red", [2, 1])
-    assert image_story.said(place).endswith("; here also: line a1")
+    assert photo_report.said(place).endswith("; here also: line a1")
     assert alone.findings == (letter,)
 
 
@@ -95,7 +95,7 @@ def test_lines_between_which_nothing_decides_are_told_as_such():
     (place,) = places(either, [])
     assert {f.element.number for f in place.findings} == {1, 2, 3}
     place = replace(place, findings=tuple(either))
-    assert image_story.said(place).endswith("; it may be instead: line a2; here also: line a3")
+    assert photo_report.said(place).endswith("; it may be instead: line a2; here also: line a3")
 
 
 @pytest.mark.parametrize(("high", "beside", "rim"), [(0.5, 0.4, True), (0.5, 2.0, False), (1.0, 0.4, False)])
@@ -128,7 +128,7 @@ def test_ink_as_large_as_lettering_that_is_not_there_is_told_with_it(by, size, s
     text = Element(3, PLAN, "F3", "text", np.array([47, 53, 53 + 5j, 47 + 5j]), "text")
     off = judge(InkTrace(text, "absent lettering"), 0.25, 0.15)
     first, *rest = places([off], [ExtraInk(text.middle + by, size, 5.0, 8.0, text.middle + by + np.zeros(3))])
-    assert image_story.said(first) == said
+    assert photo_report.said(first) == said
     assert len(rest) == (said == "no lettering here")
 
 
@@ -145,8 +145,8 @@ def moved(number, at, by, view=PLAN):
 def test_lettering_that_was_moved_together_is_one_place(findings, expected):
     told = places(findings, [])
     assert [len(p.findings) for p in told] == expected
-    assert image_story.said(told[0]).startswith("not in its place: what stands 8.0 mm too far up may be it")
-    assert ("here also: text b, text c" in image_story.said(told[0])) == (expected == [3])
+    assert photo_report.said(told[0]).startswith("not in its place: what stands 8.0 mm too far up may be it")
+    assert ("here also: text b, text c" in photo_report.said(told[0])) == (expected == [3])
 
 
 def test_the_ink_of_lettering_that_was_moved_is_told_with_it():
@@ -167,16 +167,16 @@ def test_ink_on_a_circle_about_the_centre_of_another_is_told_as_a_circle(arcs, b
     else:
         (place,) = told
         assert place.findings[0].trace.growth == pytest.approx(by, abs=0.01)
-        assert f"radius {abs(by):.1f} mm too {'large' if by > 0 else 'small'}" in image_story.said(place)
+        assert f"radius {abs(by):.1f} mm too {'large' if by > 0 else 'small'}" in photo_report.said(place)
 
 
 def test_the_tree_has_all_ink_with_its_place():
-    judged = image_report._Judged([line(1, 0, 50, 3j)], [ink(10 + 0.5j, 40 + 2.5j), ink(200, 220)])
-    records, start = image_report._records(judged, {})
-    assert [x["place"] for x in image_report._unclaimed(judged)] == [1, 2]
+    judged = photo_report._Judged([line(1, 0, 50, 3j)], [ink(10 + 0.5j, 40 + 2.5j), ink(200, 220)])
+    records, start = photo_report._records(judged, {})
+    assert [x["place"] for x in photo_report._unclaimed(judged)] == [1, 2]
     assert [r.beside["place"] for r in records] == [1]
     assert start == []
-    assert image_report._extra(judged) == ["1 place with ink that is not on the sheet"]
+    assert photo_report._extra(judged) == ["1 place with ink that is not on the sheet"]
 
 
 @pytest.mark.parametrize(("shift", "degrees", "verdict"), [(0, 0, "green"), (0, 12, "green"), (0.5j, 0, "amber"), (0, 20, "amber"),
@@ -253,7 +253,7 @@ def test_letters_that_are_not_seen_beside_what_is_hidden_are_hidden_too(away, st
 def test_what_is_not_in_its_place_and_may_lie_beside_is_not_called_missing(extra, said):
     first = places([line(1, 0, 50, status="missing")], extra)[0]
     assert first.verdict == "red"
-    assert image_story.said(first) == said
+    assert photo_report.said(first) == said
 
 
 @pytest.mark.parametrize(("role", "covered", "verdict"), [("link", 0.5, "amber"), ("table", 0.5, "green"), ("table", 0.1, "amber")])
@@ -268,7 +268,7 @@ STROKE = ink(10 + 1.6j, 49 + 7.84j)
 
 def named(*others, stroke=STROKE):
     (place,) = (p for p in places(others, [stroke]) if not p.findings)
-    return image_story.said(place).partition("; ")[2]
+    return photo_report.said(place).partition("; ")[2]
 
 
 @pytest.mark.parametrize(("others", "said"), [

@@ -15,8 +15,8 @@ from tmm_sheets import catalogue
 from tmm_sheets.backends import pdf, png
 from tmm_sheets.compare.elements import elements
 from tmm_sheets.compare.photo import frame_fit, frame_search, image, rectification, tracing
-from tmm_sheets.compare.photo.image_report import image_report
 from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.photo_report import image_report
 from tmm_sheets.compare.photo.photograph import Photograph, read
 from tmm_sheets.compare.report_pages import page
 from tmm_sheets.drawing.marks import Arc

@@ -5,8 +5,7 @@ import pytest
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.photo.coincident_lines import coincident_lines
-from tmm_sheets.compare.photo.ink_reassignment import reassign_ink
+from tmm_sheets.compare.photo.shared_ink import coincident_lines, reassign_ink
 from tmm_sheets.compare.photo.traces import InkTrace
 
 pytestmark = pytest.mark.judging

@@ -9,7 +9,7 @@ import pytest
 from tests.compare.test_tracing import line
 from tests.few import seldom
 from tmm_sheets.compare.elements import sampled
-from tmm_sheets.compare.photo import local_distortion
+from tmm_sheets.compare.photo import paper_distortion
 from tmm_sheets.compare.photo.ink_levels import ink_levels
 from tmm_sheets.compare.photo.profiles import pixels
 from tmm_sheets.compare.photo.rectification import straighten
@@ -44,7 +44,7 @@ def taken(place, some=SHEET):
 
 def bulging(picture, sheet=SHEET):
     ink = straighten(picture, AS_IT_IS)
-    return local_distortion.local_distortion(local_distortion.trace_lines(sheet, ink, ink_levels(ink)[1], NOTHING))
+    return paper_distortion.local_distortion(paper_distortion.trace_lines(sheet, ink, ink_levels(ink)[1], NOTHING))
 
 
 @pytest.mark.parametrize(("place", "some", "found"), [
@@ -93,7 +93,7 @@ def test_a_map_follows_a_bulge_and_no_single_line_in_it():
         return over_a_pencil(z) + (1.2j if abs(z[0] - 260 - 275j) < 1e-6 else 0)  # this one was drawn elsewhere, too
 
     picture = taken(place)
-    m, _, left = local_distortion.over_bulges(AS_IT_IS, straighten(picture, AS_IT_IS), SHEET, NOTHING,
+    m, _, left = paper_distortion.over_bulges(AS_IT_IS, straighten(picture, AS_IT_IS), SHEET, NOTHING,
                                               lambda m: straighten(picture, m))
     assert not len(left)
     for e in SHEET[:5]:
@@ -105,7 +105,7 @@ def test_a_map_follows_a_bulge_and_no_single_line_in_it():
 
 
 def test_places_where_nothing_is_judged_are_told(tmp_path):
-    places = local_distortion.about(np.array([360 + 270j, 362 + 272j, 500 + 100j]))
-    said = list(local_distortion.bulge_notes(tmp_path / "a.jpg", places))
+    places = paper_distortion.about(np.array([360 + 270j, 362 + 272j, 500 + 100j]))
+    said = list(paper_distortion.bulge_notes(tmp_path / "a.jpg", places))
     assert [words.split(", so")[0] for words in said] == ["a.jpg: the paper bulges about x = 361, y = 271 mm",
                                                           "a.jpg: the paper bulges about x = 500, y = 100 mm"]  # fmt: skip

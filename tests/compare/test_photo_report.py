@@ -9,7 +9,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.findings import called, counted
 from tmm_sheets.compare.legend import around, legend
-from tmm_sheets.compare.photo import image_report, overlay
+from tmm_sheets.compare.photo import overlay, photo_report
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.marks import Provenance as By
@@ -61,9 +61,9 @@ def test_a_text_is_called_by_its_letters(name, said):
       "1 element is too near to others to be measured (plan: 1)"]),
 ])
 def test_what_could_not_be_judged_is_told_by_views_and_nothing_of_none(statuses, said):
-    judged = image_report._Judged([finding(status, view) for status, view in statuses], [])
-    assert image_report._hidden(judged) == said
-    assert image_report._extra(judged) == []
+    judged = photo_report._Judged([finding(status, view) for status, view in statuses], [])
+    assert photo_report._hidden(judged) == said
+    assert photo_report._extra(judged) == []
 
 
 def test_numbers_on_the_overlay_stand_apart():
@@ -83,9 +83,9 @@ def test_what_is_wrong_and_what_is_doubtful_differ_in_form_and_the_legend_stays_
 
 def test_places_where_the_paper_bulges_are_told_in_millimetres():
     mask = np.zeros((594, 841), bool)
-    assert image_report.boxes(mask) == []
+    assert photo_report.boxes(mask) == []
     mask[94:104, 50:70] = mask[500:594, 800:841] = True
-    assert image_report.boxes(mask) == [[50, 490, 70, 500], [800, 0, 841, 94]]
+    assert photo_report.boxes(mask) == [[50, 490, 70, 500], [800, 0, 841, 94]]
 
 
 def test_the_legend_of_an_attempt_says_nothing_of_the_drawing(monkeypatch):

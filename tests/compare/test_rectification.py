@@ -14,12 +14,12 @@ from tmm_sheets.backends import png
 from tmm_sheets.compare.elements import elements
 from tmm_sheets.compare.photo import block_match, fit_check, frame_search, map_fit, profiles, rectification
 from tmm_sheets.compare.photo.fit_check import FitCheck
+from tmm_sheets.compare.photo.frame_candidates import FrameGuess, follow_sides, inked, side_moved_to_ink
 from tmm_sheets.compare.photo.frame_fit import FrameFit, initial_map, sides_near
 from tmm_sheets.compare.photo.frame_search import FoundFrame
-from tmm_sheets.compare.photo.frame_sides import FrameGuess, follow_sides, inked, side_moved_to_ink
 from tmm_sheets.compare.photo.map_fit import FOCUS, Seen, camera_foot, camera_height, fit_map, fit_waves, lens_and_homography
+from tmm_sheets.compare.photo.paper_distortion import fit_surface
 from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, PAPER, RELIEF, Map, drawn_in, heights, homography, spline
-from tmm_sheets.compare.photo.surface import fit_surface
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import composed
 

@@ -49,7 +49,7 @@ def compare(asked: Mapping[str, str], say: Say) -> Message:
 
 def _picture(project: Project, n: int, path: Path, told: Callable[[str], None]) -> Message:
     from tmm_sheets.compare.photo import image, overlay
-    from tmm_sheets.compare.photo.image_report import image_report
+    from tmm_sheets.compare.photo.photo_report import image_report
     from tmm_sheets.compare.photo.sheet_map import PAPER
 
     try:

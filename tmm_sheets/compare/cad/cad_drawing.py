@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tmm_sheets.compare import codes, view_places
-from tmm_sheets.compare.cad import cad_built, cad_file, cad_overlay, cad_report, cad_story, layout, plan_report
+from tmm_sheets.compare.cad import cad_built, cad_file, cad_overlay, cad_report, layout, plan_report
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.cad_language import lettered
@@ -153,8 +153,8 @@ def _of_sheet(project: Project, found: cad_report.ExaminedDrawing, path: Path, p
     files = cad_overlay.files(laid.known.n, laid.known.sheet.drawing, exact, found.space, places, looks)
     name = project.variant.project.name
     report = cad_report.report(name, path, found, pencil)
-    said = "\n".join([*listed(cad_story.mistakes(found, gone)), report.text])
-    report = replace(report, text=said, files=files, story=cad_story.story(name, path, found, pencil))
+    said = "\n".join([*listed(cad_report.mistakes(found, gone)), report.text])
+    report = replace(report, text=said, files=files, story=cad_report.story(name, path, found, pencil))
     blank = replace(laid.known.sheet.drawing, marks=(), views=(), dimensions=(), forms=())
     return ComparedDrawing(report, laid.known.n, blank, found.space, exact)
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.cad import cad_arrows, cad_extras, cad_lettering, cad_symbols, displaced_lines, line_styles, omissions
+from tmm_sheets.compare.cad import cad_extras, cad_lettering, displaced_lines, line_styles, omissions, symbol_matching
 from tmm_sheets.compare.cad.cad_comparison import JOINT, Comparison
 from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
@@ -48,7 +48,7 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     _right(state)
     say(tell("comparing lettering"))
     cad_lettering.lettering(state)
-    cad_symbols.hatching(state)
+    symbol_matching.hatching(state)
     say(tell("looking for what was meant"))
     rest = left(state.theirs, state.claimed())
     displaced_lines.circles(state, rest)
@@ -56,9 +56,9 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     displaced_lines.elsewhere(state, rest)
     displaced_lines.curves(state, left(state.theirs, state.claimed()))
     displaced_lines.incomplete(state)
-    cad_symbols.filled(state)
-    cad_arrows.arrows(state)
-    cad_symbols.heads_of_dimensions(state)
+    symbol_matching.filled(state)
+    symbol_matching.arrows(state)
+    symbol_matching.heads_of_dimensions(state)
     omissions.others_left_out(state)
     _leading_elsewhere(state)
     say(tell("looking for what is extra"))

@@ -24,9 +24,8 @@ from tmm_sheets.compare.measured.judged import JudgedValue, Place
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angle_apart
 from tmm_sheets.compare.measured.measured_file import FilledTable, MeasuredLine, factor_of
 from tmm_sheets.compare.measured.mistake_search import explanation
-from tmm_sheets.compare.measured.own_numbers import OwnNumbers
 from tmm_sheets.compare.measured.plan_scales import wrong_scales
-from tmm_sheets.compare.measured.student_recompute import OwnValue
+from tmm_sheets.compare.measured.recomputation import OwnNumbers, OwnValue
 from tmm_sheets.compare.measured.systematic_error import SystematicError, mark, whole_table
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.step import Step, value_at

@@ -14,10 +14,19 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.compare.photo.frame_candidates import (
+    PLACES,
+    FrameGuess,
+    bend,
+    follow_sides,
+    frame_guesses,
+    frame_quads,
+    inked,
+    long_lines,
+    side_moved_to_ink,
+    three_sided,
+)
 from tmm_sheets.compare.photo.frame_fit import STATIONS, WANTED, initial_map
-from tmm_sheets.compare.photo.frame_guesses import frame_guesses
-from tmm_sheets.compare.photo.frame_quads import frame_quads, long_lines, three_sided
-from tmm_sheets.compare.photo.frame_sides import PLACES, FrameGuess, bend, follow_sides, inked, side_moved_to_ink
 from tmm_sheets.compare.photo.photograph import Grey
 from tmm_sheets.compare.photo.profiles import ProfileLines, darkness, sample
 from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, Floats, Map, chords, homography, projected

@@ -18,9 +18,9 @@ from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
 from tmm_sheets.compare.photo import built_photo, numbers_read, placed_views, rectification, tracing, washed_out
 from tmm_sheets.compare.photo.black_and_white import lost_to_threshold
 from tmm_sheets.compare.photo.fit_check import MATCH
-from tmm_sheets.compare.photo.image_report import image_report
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
 from tmm_sheets.compare.photo.judging import PhotoFinding, judge, tolerance_of
+from tmm_sheets.compare.photo.photo_report import image_report
 from tmm_sheets.compare.photo.photograph import Photograph, read
 from tmm_sheets.compare.photo.rectification import LONGEST, Rectified, rectify
 from tmm_sheets.compare.photo.refusal import refusal

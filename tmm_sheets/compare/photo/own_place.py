@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
+from tmm_sheets.compare.photo.divergence import may_part
 from tmm_sheets.compare.photo.ink_owner import Owners
-from tmm_sheets.compare.photo.narrow_divergence import may_part
 from tmm_sheets.compare.photo.occlusion import Mask, at
 from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats

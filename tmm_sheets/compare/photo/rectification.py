@@ -25,14 +25,13 @@ from tmm_sheets.compare.photo.black_and_white import LostToThreshold
 from tmm_sheets.compare.photo.fit_check import MATCH, FitCheck
 from tmm_sheets.compare.photo.frame_search import FoundFrame
 from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
-from tmm_sheets.compare.photo.local_distortion import about, bulge_notes, over_bulges
 from tmm_sheets.compare.photo.map_fit import SIDE, Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.occlusion import Mask, hidden_places
+from tmm_sheets.compare.photo.paper_distortion import about, bulge_notes, fit_surface, over_bulges
 from tmm_sheets.compare.photo.photograph import Photograph
 from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, inked
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, RELIEF, Floats, Map
 from tmm_sheets.compare.photo.stations import as_lines
-from tmm_sheets.compare.photo.surface import fit_surface
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell

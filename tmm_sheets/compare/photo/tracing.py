@@ -23,24 +23,20 @@ import numpy as np
 from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo import moved_labels
 from tmm_sheets.compare.photo.arrow_heads import exchanged, with_heads
-from tmm_sheets.compare.photo.coincident_lines import coincident_lines
 from tmm_sheets.compare.photo.displacement import beside, better_match, displaced
-from tmm_sheets.compare.photo.diverging_lines import diverging_line
+from tmm_sheets.compare.photo.divergence import diverging_line, narrow_divergence
 from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.extra_ink import extra_ink, without_creases
 from tmm_sheets.compare.photo.fragmented_lines import in_pieces, torn_widths
 from tmm_sheets.compare.photo.ink_levels import NO_GREY, ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
-from tmm_sheets.compare.photo.ink_reassignment import reassign_ink
 from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.line_ends import with_ends
 from tmm_sheets.compare.photo.masking import ROOM, fill, fixed, paint, wipe_found, wipe_small
-from tmm_sheets.compare.photo.meeting_ends import ignore_junction_ends
-from tmm_sheets.compare.photo.narrow_divergence import narrow_divergence
 from tmm_sheets.compare.photo.occlusion import Mask, at, share_hidden, widened
-from tmm_sheets.compare.photo.overlap_resolution import resolve_overlaps
 from tmm_sheets.compare.photo.own_place import Strip, in_place, strips, uncovered
 from tmm_sheets.compare.photo.profiles import SCALE, pixels, sample
+from tmm_sheets.compare.photo.shared_ink import coincident_lines, ignore_junction_ends, reassign_ink, resolve_overlaps
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
 from tmm_sheets.compare.photo.stations import LEAST, expected_ink, measurable, stations
 from tmm_sheets.compare.photo.traces import ExtraInk, InkTrace, Status

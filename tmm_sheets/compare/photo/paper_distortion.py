@@ -1,9 +1,8 @@
-"""Places where the paper bulges: over what lies beneath it, across a crease, along an edge that stands up.
+"""Paper that is not smooth: waves, creases, what lies beneath it.
 
-A map follows paper as it usually bends. Where it does not, one straight line after the other is seen with the same bend in it. A
-hand draws lines in wrong places, too long, turned, but with a ruler and compasses: when several lines near each other are neither
-straight nor round any more, the paper is guilty. There the map is corrected by all lines that can be followed; where that does not
-help, nothing is judged.
+Its height is a cubic B-spline over the sheet, with a prior against bending, so that single lines do not lift it; where it is
+steep, it also is shorter by as much as paper is that keeps its length, and what that leaves a coarser spline takes up in the plane.
+Everything is fitted together with the homography, the lens and the camera's foot.
 """
 
 from __future__ import annotations
@@ -18,13 +17,116 @@ import numpy as np
 from tmm_sheets.compare.elements import Element, grown, sampled
 from tmm_sheets.compare.photo.ink_levels import ink_levels
 from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.map_fit import LENS, Seen, camera_foot, camera_height, lens_and_homography
 from tmm_sheets.compare.photo.masking import fill
 from tmm_sheets.compare.photo.occlusion import Mask, at
 from tmm_sheets.compare.photo.profiles import follow, peaks, pixels, sample
-from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Floats, Map, spline_base
+from tmm_sheets.compare.photo.sheet_map import AWAY, FRAME, PAPER, Floats, Map, drawn_in, spline_base, spline_nodes
 from tmm_sheets.compare.photo.stations import Stations, fit, measurable, similarity_base
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import tell
+
+CELLS, STRETCHED = (20, 14), (8, 6)
+"""Cells along the frame's width and height, of the height and of what is taken up in the plane."""
+POINT, SHARPLY = 0.5, 0.6
+"""Share of the distance that counts as far off, at most the second number, mm, which at one point costs as much as a prior's usual
+size: the nearer by lines are sought, the less the paper's stiffness tells."""
+CURVED = 2.0e-3
+"""Usual curvature of the height, 1/mm."""
+TALL, LONG = 20.0, 1.0
+"""Usual height and usual displacement in the plane, mm."""
+FREE = 2.0
+"""How much more freely the camera's foot may move than in a smooth map: what is wrong in the height is taken up in the plane."""
+STEPS, SETTLED = 8, 0.05
+"""Most steps, and mm of change at every point below which no further one is done."""
+
+
+def fit_surface(m: Map, sides: Seen, loose: float, seen: Seen, far: float) -> Map:
+    """A map with a curved surface instead of a relief, fitted to points of the frame and of lines inside.
+
+    Parameters
+    ----------
+    m
+        Where to start.
+    sides, loose
+        Points of the frame, and the distance from which on they count little, mm.
+    seen, far
+        The same of lines inside.
+    """
+    loosely = np.repeat((loose, far), (len(sides.weight), len(seen.weight)))
+    seen = Seen(*(np.concatenate(pair) for pair in zip(sides, seen, strict=True)))
+    shape, flat = (CELLS[1] + 3, CELLS[0] + 3), (STRETCHED[1] + 3, STRETCHED[0] + 3)
+    foot, error = camera_foot(m)
+    away = camera_height(m)
+    if not m.surface.any():
+        m = replace(m, surface=np.zeros(shape), stretch=np.zeros((2, *flat)), drawn_in=np.zeros((2, *shape)), foot=foot)
+    m = replace(m, sides=np.zeros_like(m.sides), relief=np.zeros_like(m.relief), waves=np.zeros_like(m.waves))
+    p, n, q = seen.sheet, np.conj(seen.normals), (seen.picture - m.middle) / m.reach
+    here_of, height = spline_nodes(p, shape)
+    plane_of, plane = spline_nodes(p, flat)
+    count, few = shape[0] * shape[1], flat[0] * flat[1]
+    # Of some six hundred unknowns a point knows sixty: all points in one cell of both splines the same ones.
+    which = np.hstack((np.tile(np.arange(12), (len(p), 1)), 12 + here_of, 12 + count + plane_of, 12 + count + few + plane_of))
+    _, cell = np.unique(here_of[:, 0] * few + plane_of[:, 0], return_inverse=True)
+    order = np.argsort(cell, kind="stable")
+    cells = np.split(order, np.flatnonzero(np.diff(cell[order])) + 1)
+    spacing = FRAME.width / CELLS[0]
+    rough, uneven = _bending(shape) / (CURVED * spacing**2), _bending(flat) / LONG
+    usual = np.concatenate((np.full(8, np.inf), LENS, (FREE * error, FREE * error), np.full(count, TALL), np.full(2 * few, LONG)))
+    middle = np.zeros(len(usual))
+    middle[10:12] = foot.real, foot.imag
+    prior = np.diag(usual**-2.0)
+    prior[12 : 12 + count, 12 : 12 + count] += rough.T @ rough
+    for k in range(2):
+        mine = slice(12 + count + k * few, 12 + count + (k + 1) * few)
+        prior[mine, mine] += uneven.T @ uneven
+
+    def packed(m: Map) -> Floats:
+        return np.concatenate(((m.matrix / m.matrix[2, 2]).ravel()[:8], m.bend, (m.foot.real, m.foot.imag), m.surface.ravel(),
+                               m.stretch.ravel()))
+
+    def unpacked(x: Floats) -> Map:
+        risen = x[12 : 12 + count].reshape(shape)
+        return replace(m, matrix=np.append(x[:8], 1.0).reshape(3, 3), bend=(float(x[8]), float(x[9])), foot=complex(x[10], x[11]),
+                       surface=risen, stretch=x[12 + count :].reshape(2, *flat), drawn_in=drawn_in(risen, away / AWAY))
+
+    x = packed(m)
+    lever_less = np.hstack((-n.real[:, None] * plane, n.imag[:, None] * plane))
+    for _ in range(STEPS):
+        (here, slopes), lift = lens_and_homography(x[:10], q, n), (height * x[12 + here_of]).sum(1)
+        lever = np.real(n * (p - complex(x[10], x[11]))) / AWAY
+        aside = drawn_in(x[12 : 12 + count].reshape(shape), away / AWAY).reshape(2, -1)
+        shorter = [(height * part[here_of]).sum(1) for part in aside]
+        r = here - np.real(n * (p + shorter[0] + 1j * shorter[1])) - lift * lever + (lever_less * x[which[:, 28:]]).sum(1)
+        jacobian = np.hstack((
+            slopes,
+            np.stack((n.real * lift, -n.imag * lift), -1) / AWAY,
+            -lever[:, None] * height,
+            lever_less,
+        ))  # fmt: skip
+        w = seen.weight / (1 + (r / loosely) ** 2) / (POINT * np.minimum(loosely, SHARPLY))
+        weighted, wanted = jacobian * w[:, None], r * w
+        square, down = prior.copy(), -prior @ (x - middle)
+        for some in cells:
+            mine, part = which[some[0]], weighted[some]
+            square[mine[:, None], mine] += part.T @ part
+            down[mine] -= wanted[some] @ part
+        scale = 1 / np.sqrt(np.maximum(np.diag(square), 1e-12))
+        square = square * scale * scale[:, None]
+        change = scale * np.linalg.solve(square + 1e-9 * np.eye(len(x)), scale * down)
+        x = x + change
+        if float(np.abs((jacobian * change[which]).sum(1)).max()) < SETTLED:
+            break
+    return unpacked(x)
+
+
+def _bending(shape: tuple[int, int]) -> Any:
+    """Second differences of the coefficients of a spline, along, up and across."""
+    one = np.eye(shape[0] * shape[1]).reshape(*shape, -1)
+    return np.concatenate([d.reshape(-1, one.shape[-1]) for d in (
+        np.diff(one, 2, axis=0), np.diff(one, 2, axis=1), np.sqrt(2) * np.diff(np.diff(one, axis=0), axis=1),
+    )])  # fmt: skip
+
 
 REACH, ACROSS, ALONG = 4.0, 0.2, 1.0
 """mm to both sides of a line, and between offsets across it and stations along it."""
@@ -47,7 +149,7 @@ CELL, ABOUT = 12.0, 50.0
 """Side of the cells of the spline by which a map follows a bulge, mm, and how far about its bends it may."""
 FAR = (3.0, 1.5, 0.8, 0.5, 0.5)
 """Distances from which on lines count little there, mm, one after the other."""
-POINT, BEND_OF_SPLINE, SIZE = 0.6, 2.0, 20.0
+LOCAL_POINT, BEND_OF_SPLINE, SIZE = 0.6, 2.0, 20.0
 """Usual error of a followed point, usual second difference of the spline and its usual size, mm."""
 MARGIN = 8
 """mm about bent lines in which nothing is judged."""
@@ -186,7 +288,7 @@ def _over(m: Map, lines: Sequence[TracedLine], places: Points) -> Map:
     target = wanted + both @ old
     c = old
     for far in FAR:
-        w = 1 / (1 + ((target - both @ c) / far) ** 2) ** 2 / POINT**2
+        w = 1 / (1 + ((target - both @ c) / far) ** 2) ** 2 / LOCAL_POINT**2
         c = np.linalg.solve(both.T @ (both * w[:, None]) + prior, both.T @ (w * target))
     out = local.reshape(2, -1).copy()
     out[:, free] = c.reshape(2, -1)
