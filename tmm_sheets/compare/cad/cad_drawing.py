@@ -42,6 +42,8 @@ MANY_STROKES = 250
 """A drawing with more straight strokes may be a sheet of ours: the plans of a layout of its own have dozens."""
 MOSTLY_PLANS = 0.4
 """Share of a drawing's straight ink from which on plans of its own layout are what it shows."""
+LEGEND, MARGIN = 45.0, 25.0
+"""Room of the legend of the overlay, to the left, and round it, mm."""
 DRAWN_AT = {2.0: "1:2", 2.5: "1:2.5", 4.0: "1:4", 5.0: "1:5", 10.0: "1:10", 0.5: "2:1", 0.4: "2.5:1", 0.25: "4:1", 0.2: "5:1"}
 """Scales of GOST 2.302 by mm of the sheet per mm drawn."""
 UNIT_NAMES = {1000.0: marked("metres"), 25.4: marked("inches"), 10.0: marked("centimetres"), 1.0: marked("millimetres")}
@@ -116,9 +118,9 @@ def _of_plans(project: Project, sheet: int, path: Path, space: DrawingSpace, jud
     scaled = space.placed(Placing(complex(judged.ink.scale)))
     if judged.mirrored:
         scaled = scaled.placed(Placing(mirrored=True))
-    z = np.concatenate([s.points for s in scaled.strokes])
-    corner = complex(z.real.min() - 10, z.imag.min() - 10)
-    blank = Drawing(float(np.ptp(z.real)) + 20, float(np.ptp(z.imag)) + 20, path.stem, ())
+    z = np.concatenate([*(s.points for s in scaled.strokes), np.array([w.at for w in scaled.writings], dtype=complex)])
+    corner = complex(z.real.min() - LEGEND, z.imag.min() - MARGIN)
+    blank = Drawing(float(np.ptp(z.real)) + LEGEND + MARGIN, float(np.ptp(z.imag)) + 2 * MARGIN, path.stem, ())
     shift = Placing(shift=-corner)
     exact = tuple(shift(z) for z in plan_report.exact_lines(judged))
     on_paper_ = scaled.placed(shift)
