@@ -101,7 +101,7 @@ FIGURES = {
     "students": Figure(f"{STUDENTS} --students 8 --seed 441", last(2), long=True),
     "sound": Figure(f"{STUDENTS} --sound --students 5 --seed 445", last(1), long=True),
     "cad": Figure("tests.compare.cad_plants 12", last(1), long=True),
-    "layouts": Figure("tests.compare.untidy 100 --seed 77", last(12), long=True),
+    "layouts": Figure("tests.compare.untidy 100 --seed 77", last(13), long=True),
     "photographs": Figure("tests.foreign --pictures 8 --seed 301", together, long=True),
     "photograph": Figure("tests.compare.trial --time", last(1)),
     "cluster": Figure("tests.bench.cluster", str.strip, long=True),
