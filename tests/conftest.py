@@ -15,7 +15,7 @@ from hypothesis import settings
 from tmm_sheets import kept
 
 # A busy machine is no mistake of the program: time is measured by benchmarks, never by tests.
-settings.register_profile("few", deadline=None, max_examples=40)
+settings.register_profile("few", deadline=None, max_examples=20)
 settings.register_profile("many", deadline=None, max_examples=400)  # make trials
 settings.load_profile("few")
 
@@ -57,10 +57,13 @@ SHARED = os.environ[kept.FOLDER]
 
 
 class _Patch(pytest.MonkeyPatch):
-    """Who changes the program has no use for sheets of the unchanged one, nor others for theirs: from then on nothing is kept."""
+    """Who changes the program has no use for sheets of the unchanged one, nor others for theirs: from then on nothing is kept.
+
+    What is typed changes no program.
+    """
 
     def setattr(self, *args, **named):
-        if os.environ[kept.FOLDER] == SHARED:
+        if os.environ[kept.FOLDER] == SHARED and args[0] != "sys.stdin":
             self.setenv(kept.FOLDER, "")
         super().setattr(*args, **named)
 

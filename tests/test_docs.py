@@ -26,7 +26,6 @@ TEXTS = {p.relative_to(ROOT).as_posix(): p.read_text(encoding="utf-8") for p in 
 EVERYWHERE = "\n".join(TEXTS.values())
 SECTIONS = [f.alias or name for name, f in variant.Variant.model_fields.items()]
 FENCED = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-papers = pytest.mark.parametrize("paper", TEXTS)
 
 
 def test_readme_is_short():
@@ -83,9 +82,8 @@ def links(text):
     return re.findall(r"\[[^\]]*\]\(([^)\s]+)\)", without_code)
 
 
-@papers
-def test_links_lead_somewhere(paper):
-    for link in links(TEXTS[paper]):
+def test_links_lead_somewhere():
+    for paper, link in ((paper, link) for paper, text in TEXTS.items() for link in links(text)):
         if re.match(r"[a-z]+:", link):
             continue
         place, _, anchor = link.partition("#")
@@ -129,13 +127,11 @@ def parsed(arguments):
     return command.make_context(name, rest, parent=context)
 
 
-@papers
-def test_commands_can_be_typed(paper, tmp_path, monkeypatch):
+def test_commands_can_be_typed(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "ciphers.txt").write_text("press\n")
-    commands = [c for c in typed(TEXTS[paper], "tmm-sheets") if c[:1] not in ([], ["COMMAND"])]
-    for arguments in commands:
-        if "--help" not in arguments:
+    for arguments in typed(EVERYWHERE, "tmm-sheets"):
+        if arguments[:1] not in ([], ["COMMAND"]) and "--help" not in arguments:
             with parsed(arguments):
                 pass
 
@@ -153,11 +149,10 @@ def test_wrong_commands_are_found():
             parsed(line.split())
 
 
-@papers
-def test_make_targets_and_modules_are_there(paper):
+def test_make_targets_and_modules_are_there():
     targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
-    assert {t for arguments in typed(TEXTS[paper], "make") for t in arguments if "=" not in t} <= targets
-    for module in re.findall(r"python -m (tests[.\w]*)", TEXTS[paper]):
+    assert {t for arguments in typed(EVERYWHERE, "make") for t in arguments if "=" not in t} <= targets
+    for module in re.findall(r"python -m (tests[.\w]*)", EVERYWHERE):
         place = ROOT / module.replace(".", "/")
         assert place.with_suffix(".py").is_file() or (place / "__main__.py").is_file()
 
@@ -269,11 +264,12 @@ NOT_RUN = {
 """Commands of docs/ that the next test leaves out, by what they have in them, and why."""
 LONG = ("note", "--lang uk", "page my.toml --sheet", "--list", "roster", "optimise", "family check", "tests/projects", "--dxf",
         "lugansk/shaper press my.toml", "bench", "stress", "--image", "build --all", "--group works", "--report mine.html",
-        "--json record.json")
+        "--json record.json", "--marks", "--window", "--preview", "--supervisor")
 """Commands of docs/ that are run in a trial only, by what they have in them."""
 SHORTER = {"stress": ("--cases", "3"), "--summary": ("--quick",), "build --all": ("--sheet", "2", "--format", "svg"),
            "--supervisor": ("--sheet", "1"), **dict.fromkeys(
-               ("plot ", "png", "--paper", "--portrait", "--one-file", "--text strokes", "--explain"), ("--sheet", "4"))}
+               ("plot ", "page my.toml -o", "build lugansk/shaper --student",
+               "png", "--paper", "--portrait", "--one-file", "--text strokes", "--explain"), ("--sheet", "4"))}
 """Options with which a command is run that takes long as it stands, by what it has in it."""
 FILLED = "id;measured\nvelocities/2/pb;30.2\nvelocities/2/pd;46\n"
 """A table of numbers measured, for a command that compares one."""
@@ -340,17 +336,15 @@ def test_other_commands_work(every, tmp_path, monkeypatch, capsys):
 QUICK = ("list", "show", "check", "solve", "protocol")
 
 
-@papers
-def test_quick_commands_work(paper, tmp_path, monkeypatch, capsys):
+def test_quick_commands_work(tmp_path, monkeypatch, capsys):
+    """Of commands with the same options the first one."""
     monkeypatch.chdir(tmp_path)
     Path("my.toml").write_text(catalogue.read("lugansk/shaper").text, encoding="utf-8")
-    texts = list(TEXTS.values())[:list(TEXTS).index(paper)]
-    before = [shape(shlex.join(c)) for text in texts for c in typed(text, "tmm-sheets") if c]
-    for arguments in typed(TEXTS[paper], "tmm-sheets"):
-        if arguments and arguments[0] in QUICK and "PROJECT" not in arguments and shape(shlex.join(arguments)) not in before:
-            if "-o" in arguments:
-                Path(arguments[arguments.index("-o") + 1]).unlink(missing_ok=True)  # what is there already is not overwritten
-            assert __main__.run(arguments) == __main__.DONE, (arguments, capsys.readouterr().err)
+    quick = [c for c in typed(EVERYWHERE, "tmm-sheets") if c and c[0] in QUICK and "PROJECT" not in c]
+    for arguments in {shape(shlex.join(c)): c for c in reversed(quick)}.values():
+        if "-o" in arguments:
+            Path(arguments[arguments.index("-o") + 1]).unlink(missing_ok=True)  # what is there already is not overwritten
+        assert __main__.run(arguments) == __main__.DONE, (arguments, capsys.readouterr().err)
 
 
 @pytest.mark.parametrize("name", cli.NAMES)
@@ -374,12 +368,12 @@ def test_no_option_is_named_that_no_command_has():
 # --- tables made from the program -----------------------------------------------------------------------------------
 
 
-@papers
-def test_made_parts_are_current(paper):
-    assert docs.current(TEXTS[paper]) == TEXTS[paper], "run: make docs"
-    made, measured = len(docs.PART.findall(TEXTS[paper])), len(figures.PART.findall(TEXTS[paper]))
-    assert (TEXTS[paper].count("<!-- made"), TEXTS[paper].count("<!-- figure")) == (made, measured)
-    assert TEXTS[paper].count("<!-- end -->") == made + measured
+def test_made_parts_are_current():
+    for paper, text in TEXTS.items():
+        assert docs.current(text) == text, f"{paper}; run: make docs"
+        made, measured = len(docs.PART.findall(text)), len(figures.PART.findall(text))
+        assert (text.count("<!-- made"), text.count("<!-- figure")) == (made, measured), paper
+        assert text.count("<!-- end -->") == made + measured, paper
 
 
 def test_the_figures_tell_where_they_come_from():
@@ -407,11 +401,10 @@ def tables():
     return [*named, variant.Variant]
 
 
-@pytest.mark.parametrize("table", tables())
-def test_every_key_has_a_value_and_a_meaning(table):
-    assert set(keys.meanings(table)) <= set(table.model_fields), "a string under what is no key"
-    if table is not variant.Variant:
-        for key in keys.keys_of(table):
+def test_every_key_has_a_value_and_a_meaning():
+    for table in tables():
+        assert set(keys.meanings(table)) <= set(table.model_fields), f"{table.__name__}: a string under what is no key"
+        for key in () if table is variant.Variant else keys.keys_of(table):
             assert all((key.takes, key.left_out, key.means)), f"{table.__name__}: {key}"
 
 

@@ -74,9 +74,8 @@ def unsaid(tree):
             yield f"{name} raises {error}"
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda p: p.relative_to(ROOT).as_posix())
-def test_errors_are_said(path):
-    assert list(unsaid(ast.parse(path.read_text(encoding="utf-8")))) == []
+def test_errors_are_said():
+    assert {path: found for path in MODULES if (found := [*unsaid(ast.parse(path.read_text(encoding="utf-8")))])} == {}
 
 
 def test_rooms_are_there():

@@ -100,7 +100,7 @@ def one(test):
 
 
 @pytest.mark.parametrize(("n", "asked", "text"), [
-    seldom(1, 1, "live"), seldom(3, None, "live"), seldom(1, None, "strokes"), (3, 3, "strokes")])
+    seldom(1, 1, "live"), seldom(3, None, "live"), seldom(1, None, "strokes"), seldom(3, 3, "strokes")])
 def test_our_own_drawing_has_no_deviation(tmp_path, n, asked, text):
     report = compare(dxf.render(composed(SHAPER, n).drawing, text), tmp_path, asked)
     assert report.tree["sheet"] == n

@@ -34,7 +34,6 @@ def smallest(some):
 
 
 @given(paths)
-@settings(max_examples=200)
 def test_without_doubles_draws_all_of_it_once(some):
     got = list(smallest(without_doubles(some)))
     assert len(got) == len(set(got))
@@ -42,7 +41,6 @@ def test_without_doubles_draws_all_of_it_once(some):
 
 
 @given(paths)
-@settings(max_examples=200)
 def test_joined_paths_begin_and_end_only_where_they_must(some):
     """An open path begins and ends where an odd number of lines meet, one at each such place (Euler); the rest is closed."""
     single = list(without_doubles(some))

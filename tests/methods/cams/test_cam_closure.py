@@ -4,7 +4,7 @@ from math import pi, radians
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from shapely import Polygon
 
@@ -49,7 +49,6 @@ def test_spring_of_a_rocker_acts_at_its_roller():
     assert c.spring.worst == pytest.approx(1.75, rel=1e-10)
 
 
-@settings(max_examples=40)
 @given(st.floats(40, 170), st.floats(40, 120), st.sampled_from(["sine", "cosine", "constant", "trapezoid", "linearly decreasing"]),
        st.floats(1, 3), st.floats(0.05, 0.9))
 def test_worst_ratio_against_sampling(rise, fall, law, factor, preload):

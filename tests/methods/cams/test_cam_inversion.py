@@ -4,7 +4,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from shapely import Polygon
 from shapely import intersection as meet
@@ -182,7 +182,6 @@ def test_protocol_of_the_inversions():
     assert cam(rocker_data()).inversion.plan.check() is None
 
 
-@settings(max_examples=30)
 @given(st.floats(40, 170), st.floats(0, 40), st.floats(40, 120), st.floats(5, 50), st.floats(25, 60), st.booleans(), st.booleans(),
        st.sampled_from(["rise", "both"]), st.sampled_from(["sine", "cosine", "constant", "trapezoid", "linearly decreasing"]),
        st.one_of(st.none(), st.floats(1, 40)))
@@ -204,7 +203,6 @@ def test_any_rocker_cam_is_right_or_refused(rise, dwell, fall, swing, angle, sam
     np.testing.assert_allclose(c.dense.centres.value, closed_form(c, c.dense.phi), rtol=0, atol=1e-9 * zone.l0)
 
 
-@settings(max_examples=30)
 @given(st.floats(30, 170), st.floats(0, 40), st.floats(30, 120), st.floats(2, 80), st.booleans(),
        st.sampled_from(["sine", "cosine", "constant", "trapezoid", "linearly decreasing"]), st.one_of(st.none(), st.floats(5, 300)))
 def test_any_flat_cam_is_convex_or_refused(rise, dwell, fall, stroke, clockwise, law, radius):

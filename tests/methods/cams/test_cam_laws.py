@@ -5,7 +5,7 @@ from math import pi, radians
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from tests.methods.cams.cam_cases import cam_data, sine_motion
@@ -83,7 +83,6 @@ def test_table_of_a_sine_is_a_sine_nearly():
     np.testing.assert_allclose(law.dds(x), SINE.dds(x), rtol=0, atol=0.02)
 
 
-@settings(max_examples=80)
 @given(st.lists(st.floats(0.05, 1), min_size=1, max_size=5), st.lists(st.floats(0.05, 1), min_size=1, max_size=5),
        st.floats(0.2, 0.8))
 def test_any_table_makes_a_whole_stroke_or_is_refused(up, down, middle):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data, sine_motion
@@ -194,7 +194,6 @@ def test_protocol_says_every_step_in_millimetres():
     assert any("S_16" in s and "хорду" in s for s in said)
 
 
-@settings(max_examples=60)
 @given(st.floats(20, 170), st.floats(0, 60), st.floats(20, 120), st.floats(1, 120), st.sampled_from(sorted(LAWS)))
 def test_any_phases_fill_their_place(rise, dwell, fall, stroke, name):
     law = law_of(cam_data(rise=rise, upper_dwell=dwell, fall=fall, stroke=stroke, law=name))

@@ -8,7 +8,7 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from shapely import Polygon
 
@@ -321,7 +321,6 @@ def test_what_cannot_be_built_is_said(changes, said):
         cam(cam_data(**changes))
 
 
-@settings(max_examples=60)
 @given(st.floats(25, 170), st.floats(0, 60), st.floats(25, 125), st.floats(2, 80), st.floats(15, 60),
        st.sampled_from(["rise", "both"]), st.sampled_from(["clockwise", "counter-clockwise"]),
        st.sampled_from(["sine", "cosine", "constant"]), st.one_of(st.none(), st.floats(1, 30)))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from shapely import Point, Polygon, box
 from shapely import intersection as meet
@@ -236,7 +236,6 @@ def test_protocol_of_the_zones():
     assert not any("{" in s or "nan" in s for s in said + outwards + flat_said + given_e)
 
 
-@settings(max_examples=40)
 @given(st.floats(30, 170), st.floats(0, 40), st.floats(30, 120), st.floats(5, 80), st.floats(5, 70), st.booleans(), st.booleans(),
        st.sampled_from(["rise", "both"]), st.sampled_from(["vertex", "least"]))
 def test_any_rocker_keeps_its_limits_or_is_refused(rise, dwell, fall, swing, angle, same, clockwise, limit, centre):

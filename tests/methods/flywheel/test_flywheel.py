@@ -276,7 +276,6 @@ def test_unknown_method():
 # --- scales ------------------------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=25)
 @given(st.floats(1e-3, 1e4), st.floats(1e-6, 1e3), st.integers(8, 24))
 def test_scales_are_handy_and_fit_for_any_size(strength, mass, positions):
     @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from shapely import LineString, Polygon
 
@@ -394,7 +394,6 @@ def test_least_shift_of_the_manual_is_accepted():
     driver=st.sampled_from((1, 2)),
     sense=st.sampled_from(("clockwise", "counter-clockwise")),
 )
-@settings(max_examples=60)
 def test_builds_or_refuses(z, x, driver, sense):
     """Whatever the tooth numbers and shifts: a whole drawing or a refusal, never garbage."""
     try:

@@ -6,7 +6,7 @@ from math import gcd
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tmm_sheets.methods.gears.planetary import (
@@ -115,7 +115,6 @@ def fits_by_placing(signs, z, count):
 
 
 @given(st.sampled_from(sorted(SIGNS)).flatmap(lambda name: st.tuples(st.just(name), stages(name, 8, 26))), st.integers(2, 6))
-@settings(max_examples=150)
 def test_assembly_is_necessary_and_sufficient(case, count):
     name, z = case
     assert bool(assembles(SIGNS[name], z, count)) == fits_by_placing(SIGNS[name], z, count)

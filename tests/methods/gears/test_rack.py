@@ -6,7 +6,7 @@ from math import cos, pi, radians, sin, sqrt
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 from shapely import MultiPoint, Point, Polygon, difference, union_all
 
@@ -206,7 +206,6 @@ def fine(gear, w):
     x=st.tuples(st.floats(-0.5, 1.0), st.floats(-0.5, 1.0)),
     basic=st.sampled_from(((1.0, 0.25), (1.0, 0.2), (0.8, 0.2), (0.8, 0.25))),
 )
-@settings(max_examples=60)
 @example(z=(21, 22), x=(-0.25, -0.25), basic=(1.0, 0.25))
 def test_builds_or_refuses(z, x, basic):
     """Whatever the tooth numbers and shifts: teeth that mesh without sharing area, or a refusal."""

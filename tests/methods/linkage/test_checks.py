@@ -7,7 +7,7 @@ from time import perf_counter
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests import project_files
@@ -235,7 +235,6 @@ def advice(hint):
     return [float(x) / 1000 for x in re.findall(r"([\d.]+) mm", hint)]
 
 
-@settings(max_examples=40)
 @given(st.floats(0.01, 0.5), st.floats(0, 0.3))
 def test_slider_agrees_with_geometry_and_the_advice_helps(rod, e):
     message, hint = said(rrp(rod, e))
@@ -249,7 +248,6 @@ def test_slider_agrees_with_geometry_and_the_advice_helps(rod, e):
         assert said(rrp(enough, e)) == ("", "")
 
 
-@settings(max_examples=60)
 @given(st.floats(0.02, 0.6), st.floats(0.02, 0.6), st.floats(0.02, 0.5))
 def test_four_bar_agrees_with_geometry_and_the_advice_helps(rod, rocker, d):
     message, hint = said(rrr(rod, rocker, d), start=0.1)
@@ -269,7 +267,6 @@ def test_four_bar_agrees_with_geometry_and_the_advice_helps(rod, rocker, d):
             assert said(rrr(changed["BC"], changed["CD"], d), start=0.1) == ("", "")
 
 
-@settings(max_examples=40)
 @given(st.floats(0.02, 0.6), st.floats(0.02, 0.6), st.floats(0.05, 0.5))
 def test_positions_and_limits_agree_with_the_plan(rod, rocker, d):
     m = rrr(rod, rocker, d)

@@ -49,7 +49,6 @@ def test_engine_of_the_manual():
     assert s.lengths == {"H": pytest.approx(0.108, rel=1e-15), "l_AB": 0.054, "l_BC": 0.192, "l_BS": 0.054}
 
 
-@settings(max_examples=60)
 @given(st.floats(1.02, 4), st.floats(0.01, 5), st.floats(0.01, 5))
 def test_quick_return_against_closed_forms(k, stroke, distance):
     s = quick_return(k, stroke, distance)
