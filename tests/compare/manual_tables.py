@@ -16,11 +16,11 @@ from functools import cache
 from pathlib import Path
 
 from tests import project_files as files
+from tests.compare.students import measured
 from tests.manuals.test_engine_tables import ERRATA as ENGINE_ERRATA
 from tests.manuals.test_shaper_tables import ERRATA as SHAPER_ERRATA
 from tmm_sheets import catalogue
 from tmm_sheets.compare.measured.chain import judge
-from tmm_sheets.compare.measured.collecting import measurables
 from tmm_sheets.compare.measured.judged import JudgedValue
 from tmm_sheets.compare.measured.measurable import Measurables
 from tmm_sheets.compare.measured.measured_file import FilledTable, read
@@ -289,7 +289,7 @@ def press() -> list[Table]:
 def opened(project: str) -> Measurables:
     """Entries of a shipped project; the manual divides the shaper's strokes by its nominal coefficient."""
     nominal = {"cycle.division": "nominal"} if project == "lugansk/shaper" else {}
-    return measurables(files.project(files.from_file(project), nominal), lambda what: None)
+    return measured(files.project(files.from_file(project), nominal))
 
 
 def compared(table: Table, folder: Path) -> tuple[list[Outcome], list[Cell]]:

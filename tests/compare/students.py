@@ -183,8 +183,13 @@ def compared(found: Measurables, rng: np.random.Generator, plants: tuple[Plant, 
 
 @cache
 def opened(project: str) -> Measurables:
+    """What can be measured of a shipped project or a file."""
+    return measured(Project(catalogue.read(project)))
+
+
+def measured(project: Project) -> Measurables:
     """What can be measured of a project; the error analysis is the same for all its students."""
-    found = measurables(Project(catalogue.read(project)), lambda what: None)
+    found = measurables(project, lambda what: None)
     errors, kept = found.errors, {}
 
     def once(factors: Mapping[str, float], pencil: float, reading: float) -> error.Errors:

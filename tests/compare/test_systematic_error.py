@@ -5,13 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.compare.students import PENCIL, READING, Hand
+from tests.compare.students import PENCIL, READING, Hand, measured
 from tests.project_files import MOMENT, SLIDER, WORKING, project
 from tmm_sheets.compare import group
 from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.measured import measured_lengths
 from tmm_sheets.compare.measured.chain import judge
-from tmm_sheets.compare.measured.collecting import measurables
 from tmm_sheets.compare.measured.measured_file import FilledTable
 from tmm_sheets.compare.report import Report
 
@@ -24,7 +23,7 @@ LINKS = {
 
 @pytest.fixture(scope="module")
 def found():
-    return measurables(project(SLIDER, WORKING, LINKS, MOMENT), lambda what: None)
+    return measured(project(SLIDER, WORKING, LINKS, MOMENT))
 
 
 @pytest.fixture(scope="module")
