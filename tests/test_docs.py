@@ -264,7 +264,7 @@ NOT_RUN = {
 """Commands of docs/ that the next test leaves out, by what they have in them, and why."""
 LONG = ("note", "--lang uk", "page my.toml --sheet", "--list", "roster", "optimise", "family check", "tests/projects", "--dxf",
         "lugansk/shaper press my.toml", "bench", "stress", "--image", "build --all", "--group works", "--report mine.html",
-        "--json record.json", "--marks", "--window", "--preview", "--supervisor")
+        "--json record.json", "record lugansk/shaper --sheet", "--marks", "--window", "--preview", "--supervisor", "--paper A3")
 """Commands of docs/ that are run in a trial only, by what they have in them."""
 SHORTER = {"stress": ("--cases", "3"), "--summary": ("--quick",), "build --all": ("--sheet", "2", "--format", "svg"),
            "--supervisor": ("--sheet", "1"), **dict.fromkeys(

@@ -23,7 +23,7 @@ from tmm_sheets.resources import template
 
 FEEDER, PUMP = "tests/projects/feeder.toml", "tests/projects/pump.toml"
 NAMES = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/3:2", "loom", FEEDER, PUMP)
-each = pytest.mark.parametrize("name", few(NAMES, "lugansk/shaper", "sixbar/3:2"))
+each = pytest.mark.parametrize("name", few(NAMES, "lugansk/shaper"))
 CHOSEN = ("positions.special.", "forces.friction.approximations")
 """Chosen by the very angles that are asked: the legs whose normals meet best, how many approximations."""
 LARGEST = 3_000_000
@@ -70,8 +70,7 @@ def test_one_file_without_network():
 
 
 def test_the_same_bytes_each_time():
-    first, again = (page(Project(catalogue.read("lugansk/shaper")), [2])[0] for _ in range(2))
-    assert first == again
+    assert page(Project(catalogue.read("lugansk/shaper")), (1,))[0] == made("lugansk/shaper", (1,))
 
 
 def test_every_module_stands_in_the_page():
@@ -96,7 +95,7 @@ def test_text_of_a_project_is_no_markup(tmp_path):
 
 def test_a_plan_that_is_not_drawn_is_refused():
     with pytest.raises(BadInput, match="velocitees"):
-        page(Project(catalogue.read("lugansk/shaper")), [1], "velocitees")
+        page(Project(catalogue.read("lugansk/shaper")), [4], "velocitees")
 
 
 def test_a_project_without_a_linkage_has_no_motion(tmp_path):
@@ -153,7 +152,7 @@ def compare(told, values, record, parts):
 @each
 def test_values_are_those_of_solve(name, tmp_path):
     """At 200 random angles, by the ids of the record."""
-    text = made(name)
+    text = made(name, (1,))
     record = record_of(text)
     phi = np.random.default_rng(1).uniform(-np.pi, np.pi, 200)
     told = told_at(Project(catalogue.read(name)), tuple(phi))
@@ -190,7 +189,7 @@ def other_numbers(record, rng, share):
 
 
 @javascript.needed
-@pytest.mark.parametrize(("name", "sets"), [("press", 1), (FEEDER, 1), *(seldom(name, 10) for name in NAMES)])
+@pytest.mark.parametrize(("name", "sets"), [(FEEDER, 1), *(seldom(name, 10) for name in NAMES)])
 def test_other_lengths_give_what_solve_gives(name, sets, tmp_path):
     """At random angles and lengths: the project file that is saved can be read, and its values are those of the page."""
     text = made(name, (1,))
