@@ -74,6 +74,8 @@ def drawn():
     rim = max((e for e in known() if e.view.name == WHEEL and e.kind == "circle" and e.style == "main"), key=lambda e: e.radius)
     marks = []
     for m in sheet().drawing.marks:
+        if id(m) not in belongs:  # who drew it
+            continue
         e = belongs[id(m)]
         new = shifted(m, e, e.view.name) if e.view.name in TURN else m
         marks.append(new._replace(radius=new.radius + 2.0) if m is rim.marks[0] else new)

@@ -109,5 +109,6 @@ def test_one_group_alone():
                                                (["kinematics_forces", "engine_2", "friction"], ["Д1", "Д2", "Д5"])])
 def test_no_two_sheets_of_a_project_have_one_designation(sheets, codes):
     given = variant.read(Path(__file__).parents[1] / "projects" / "pump.toml")
-    project = Project(given.model_copy(update={"project": given.project.model_copy(update={"sheets": sheets})}))
-    assert [composed(project, n).drawing.subject for n in (1, 2, 3)] == codes  # without a designation it is the code alone
+    block = given.title_block.model_copy(update={"designation": "ТММ.01"})
+    project = Project(given.model_copy(update={"project": given.project.model_copy(update={"sheets": sheets}), "title_block": block}))
+    assert [composed(project, n).drawing.subject for n in (1, 2, 3)] == [f"ТММ.01 {code}" for code in codes]
