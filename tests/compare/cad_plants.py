@@ -19,7 +19,7 @@ import ezdxf
 import numpy as np
 
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare.cad import cad_file, layout, matching
+from tmm_sheets.compare.cad import cad_drawing, cad_file, registration
 from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.cad.registration import register
 from tmm_sheets.compare.elements import Element, elements
@@ -248,8 +248,8 @@ def compared(data: bytes, sheet, found):
         ink = cad_file.read(path)
     laid = register([KnownSheet(1, sheet, tuple(found))], ink)
     space = laid.space.placed(laid.placing)
-    places = layout.find(found, space)
-    return matching.match(found, space, places.moves, 0.25)
+    places = registration.find(found, space)
+    return cad_drawing.match(found, space, places.moves, 0.25)
 
 
 def sheets_of(projects: list[str]) -> list[tuple[str, int, Composed, list[Element]]]:

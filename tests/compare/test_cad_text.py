@@ -4,7 +4,7 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.cad.cad_ink import Writing
-from tmm_sheets.compare.cad.cad_text import read
+from tmm_sheets.compare.cad.cad_lettering import read
 from tmm_sheets.compare.elements import Element, ElementView
 
 VIEW = ElementView(1, "", Box(0, 0, 100, 100))

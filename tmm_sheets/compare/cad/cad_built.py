@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
+from tmm_sheets.compare.cad.cad_comparison import CadFinding, CadOutcome
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.cad.plan_ink import Figure, Numbers, PlanInk, covered

@@ -1,33 +1,59 @@
-"""A student's CAD drawing against a sheet: laid over it, its views placed, compared element by element."""
+"""A CAD drawing compared: plans in a layout of its own title first, else element by element with the sheet of ours it shows.
+
+With a sheet the order of the steps keeps ink from being mistaken for that of another element:
+
+1. Elements with ink everywhere along them, within the tolerance, are right, whatever entities the ink is of. They claim it.
+2. For each of the others the line, circle or curve that was drawn for it is sought in the rest: shifted, turned, too long,
+   with a gap (``displaced_lines.py``).
+3. Ink that no element claims is the excess of one that does, or it is extra.
+4. The ink of every element should have its line type and width (``line_styles.py``).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tmm_sheets import words
+from tmm_sheets.box import Box
 from tmm_sheets.compare import codes, view_places
-from tmm_sheets.compare.cad import cad_built, cad_file, cad_overlay, cad_report, layout, plan_report
-from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome
-from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
-from tmm_sheets.compare.cad.cad_language import lettered
-from tmm_sheets.compare.cad.matching import match
+from tmm_sheets.compare.cad import (
+    cad_built,
+    cad_extras,
+    cad_file,
+    cad_lettering,
+    cad_overlay,
+    cad_report,
+    displaced_lines,
+    line_styles,
+    omissions,
+    plan_report,
+    registration,
+    symbol_matching,
+)
+from tmm_sheets.compare.cad.cad_comparison import JOINT, CadFinding, CadOutcome, Comparison
+from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace, normal
+from tmm_sheets.compare.cad.overlaps import Numbers, gaps, left, overlaps, union
 from tmm_sheets.compare.cad.plan_ink import PlanInk
 from tmm_sheets.compare.cad.plan_judge import JudgedPlans, judge_plans
 from tmm_sheets.compare.cad.plan_views import PlanRecord
 from tmm_sheets.compare.cad.registration import Registration, fitting, register
 from tmm_sheets.compare.diagnosis.drawn_plan import rebuilt, vanished
-from tmm_sheets.compare.elements import Element, ElementView, drawn
+from tmm_sheets.compare.elements import Element, ElementView, drawn, interruptions
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.findings import worst
 from tmm_sheets.compare.known_sheet import KnownSheet, known_sheet, sheet_numbers
-from tmm_sheets.compare.placing import Placing
+from tmm_sheets.compare.links import links
+from tmm_sheets.compare.placing import BESIDE, Placing, symbol
 from tmm_sheets.compare.report import Report
 from tmm_sheets.compare.story import listed
 from tmm_sheets.drawing.marks import Drawing, Points
+from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.numbers import decimal, told
 from tmm_sheets.sheets.arrangement import arrangement
@@ -35,6 +61,137 @@ from tmm_sheets.words import marked, name_of, on_paper, paper, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
+
+def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[ElementView, Placing], tolerance: float,
+          say: Callable[[str], None] = lambda _: None) -> CadOutcome:
+    """Compare the elements with a drawing that was laid on the sheet.
+
+    Parameters
+    ----------
+    elements : of one sheet
+    space : the drawing, in mm of the sheet
+    moves : for views with another place or size in the drawing, how to take them there from the sheet
+    tolerance : how far a point may be off, mm
+    say : told what is being done
+    """
+    state = Comparison(elements, space, moves, tolerance)
+    say(tell("comparing lines"))
+    _not_compared(state)
+    omissions.lines_left_out(state)
+    _right(state)
+    say(tell("comparing lettering"))
+    cad_lettering.lettering(state)
+    symbol_matching.hatching(state)
+    say(tell("looking for what was meant"))
+    rest = left(state.theirs, state.claimed())
+    displaced_lines.circles(state, rest)
+    displaced_lines.straight(state, rest)
+    displaced_lines.elsewhere(state, rest)
+    displaced_lines.curves(state, left(state.theirs, state.claimed()))
+    displaced_lines.incomplete(state)
+    symbol_matching.filled(state)
+    symbol_matching.arrows(state)
+    symbol_matching.heads_of_dimensions(state)
+    omissions.others_left_out(state)
+    _leading_elsewhere(state)
+    say(tell("looking for what is extra"))
+    extras = cad_extras.extra(state)
+    for n in range(len(state.elements)):
+        if n not in state.found:
+            state.found[n] = state.finding(n, 0.0, None)
+    say(tell("comparing line types and widths"))
+    looks, notes = line_styles.looks(state)
+    found = tuple(state.found[n] for n in range(len(state.elements)))
+    return CadOutcome(found, extras, looks, notes, omissions.remarks(found))
+
+
+def _not_compared(state: Comparison) -> None:
+    """In a view of another scale symbols keep their size: they are not compared."""
+    for n, e in enumerate(state.elements):
+        if n not in state.found and e.view in state.moved and state.moved[e.view].scaled and symbol(e):
+            state.found[n] = CadFinding(e, None, 0.0, codes.OTHER_SCALE(), e.middle, 5.0)
+            if e.role != "dimension":
+                state.zones.append(Box.around(e.points, BESIDE).corners)
+
+
+def _leading_elsewhere(state: Comparison) -> None:
+    """Lines from one view to another that are missing where a view is elsewhere are no errors."""
+    leading = links(state.elements)
+    for n, e in enumerate(state.elements):
+        if e.number in leading and e.view in state.moved and state.found[n].missing:
+            state.found[n] = CadFinding(e, None, 0.0, codes.LEADS_ELSEWHERE(), e.middle, 5.0)
+
+
+def _right(state: Comparison) -> None:
+    """Find the elements with ink everywhere along them, and where the others have some."""
+    numbers = [n for n, e in enumerate(state.elements) if state.paths[n] and e.kind != "hatch"]
+    ours, of, base = state.ours(numbers)
+    every = overlaps(ours, state.theirs, state.tolerance)
+    state.in_place, state.in_place_of = every, of[every.ours]
+    state.along = base[every.ours] + every.s0, base[every.ours] + every.s1
+    order = np.lexsort((state.along[0], state.in_place_of))
+    owner = state.in_place_of[order]
+    s0, s1 = (x[order] for x in state.along)
+    off = (np.abs(every.off0 + every.off1) / 2)[order]
+    bounds = np.searchsorted(owner, np.arange(len(state.elements) + 1))
+    right = np.zeros(len(state.elements), bool)
+    for n in numbers:
+        if n in state.found:
+            continue
+        p, q = bounds[n], bounds[n + 1]
+        e, whole = state.elements[n], state.whole(n)
+        lettered = [(a * whole, b * whole) for a, b in interruptions(e)]
+        parts = union([*zip(s0[p:q].tolist(), s1[p:q].tolist(), strict=True), *lettered], state.gap(e))
+        if parts and all(b - a <= state.tolerance + 1e-9 for a, b in gaps(parts, whole)):
+            # Between the dashes only ink of other elements can lie.
+            nearest = _nearest(s0[p:q], s1[p:q], off[p:q], whole, lettered)
+            typical = float(np.median(nearest) if line_type(e.style).pattern else nearest.max()) if len(nearest) else 0.0
+            state.found[n] = state.finding(n, min(typical, state.tolerance), None)
+            right[n] = True
+        else:
+            state.inked[n] = parts
+    state.claims.append(every.only(right[state.in_place_of]))
+
+
+def _nearest(s0: Numbers, s1: Numbers, off: Numbers, whole: float, gaps: Sequence[tuple[float, float]]) -> Numbers:
+    """Distances of the nearest ink at points along an element of length ``whole`` but in its gaps, mm."""
+    t = np.linspace(0.0, whole, 25)[1:-1]
+    t = t[[not any(a <= x <= b for a, b in gaps) for x in t]]
+    on = (s0 - JOINT <= t[:, None]) & (t[:, None] <= s1 + JOINT)
+    nearest = np.where(on, off, np.inf).min(axis=1)
+    return np.asarray(nearest[np.isfinite(nearest)])
+
+
+WORD = re.compile(r"[^\W\d_]{4,}")
+"""A label says the same in every language, a word does not."""
+READ, MORE, FEWEST = 0.5, 0.2, 3
+"""Share of the drawing's words on a sheet in its language; how much more are in another one; fewer texts of words tell nothing."""
+
+
+def lettered(project: Project, known: Sequence[KnownSheet], ink: CadInk) -> tuple[str, Sequence[KnownSheet]]:
+    """The language a drawing is lettered in, and the sheets in it: those given unless another has clearly more of its words."""
+    texts = [w.text for space in ink.spaces for w in space.writings if WORD.search(w.text)]
+    theirs, here = _words(texts), words.paper()
+    if len(texts) < FEWEST or _share(theirs, known) >= READ:
+        return here, known
+    best, least = (here, known), _share(theirs, known) + MORE
+    for language in words.LANGUAGES:
+        if language != here:
+            with words.on_paper(language):
+                said = [known_sheet(type(project)(project.variant), sheet.n) for sheet in known]
+            if (share := _share(theirs, said)) > least:
+                best, least = (language, said), share
+    return best
+
+
+def _share(theirs: set[str], known: Iterable[KnownSheet]) -> float:
+    """Share of the drawing's words that are on the sheets."""
+    return len(theirs & _words(e.text for sheet in known for e in sheet.elements if e.kind == "text")) / len(theirs)
+
+
+def _words(texts: Iterable[str]) -> set[str]:
+    return {normal(word.casefold()) for text in texts for word in WORD.findall(text)}
+
 
 LOST = 0.2
 """Share of a sheet's lines that must be found; a drawing with fewer is not of this sheet."""
@@ -189,7 +346,7 @@ def _examined(project: Project, views: Path | None, pencil: float, say: Callable
     space = replace(space, writings=tuple(w for w in space.writings if not laid.known.tells_who([w.at])),
                     strokes=tuple(s for s in space.strokes if not laid.known.tells_who(s.points)))
     say(tell("placing the views"))
-    places = layout.find(laid.known.elements, space, [(p, laid.placing) for p in given], say)
+    places = registration.find(laid.known.elements, space, [(p, laid.placing) for p in given], say)
     absent: set[ElementView] = set()
 
     def matched(elements: Sequence[Element]) -> CadOutcome:
@@ -304,6 +461,6 @@ def _refusal(project: Project, numbers: range, ink: CadInk, asked: int | None, p
         hint = tell("it looks like sheet {n}: use --sheet {n}, or leave --sheet out").format(n=other)
     said = tell("only {share} % of the lines of sheet {n} are in this drawing") if asked is not None or count == 1 else tell(
         "only {share} % of the lines of any of the {count} sheets are in this drawing")
-    share = laid.space.placed(laid.placing).lines.share(layout.ink(laid.known.elements), 0.3)
+    share = laid.space.placed(laid.placing).lines.share(registration.line_points(laid.known.elements), 0.3)
     said = said.format(share=round(100 * share), n=laid.known.n, count=count)
     return CannotBuild(f"{path}: {said}", "; ".join((*ink.notes, hint)))

@@ -10,8 +10,7 @@ import numpy as np
 
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad import cad_lettering
-from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, LOOSE_STYLES, Comparison, middle_of, reach_of
-from tmm_sheets.compare.cad.cad_findings import ExtraStroke
+from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, LOOSE_STYLES, Comparison, ExtraStroke, middle_of, reach_of
 from tmm_sheets.compare.cad.cad_ink import Entity, normal
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines, shapes
 from tmm_sheets.compare.cad.overlaps import Left, left, pieces

@@ -1,23 +1,224 @@
-"""Lettering: texts by what they say, drawn letters stroke by stroke."""
+"""Lettering of a sheet against the texts of a CAD drawing, and against letters that are drawn stroke by stroke."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from itertools import combinations, permutations
+from math import inf
 
 import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.cad import cad_text
-from tmm_sheets.compare.cad.cad_comparison import Comparison
-from tmm_sheets.compare.cad.cad_findings import CadFinding
+from tmm_sheets.compare.cad.cad_comparison import CadFinding, Comparison
+from tmm_sheets.compare.cad.cad_ink import Writing, normal
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines
 from tmm_sheets.compare.cad.overlaps import Left, Overlaps, overlaps, union
-from tmm_sheets.compare.elements import grown
+from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.marks import Points, Text
+
+CLOSE = 0.3
+"""How far beyond the box of a text the middle of a part of it may be, mm."""
+SIZES = 1.2
+"""How many times as high as another a text of the same size may be."""
+ARROWS = str.maketrans("", "", "→←↑↓")
+"""Signs that may be drawn among the texts."""
+MOST = 8
+"""So many texts are tried in all ways in which one or two of them belong to another label."""
+WORDS = re.compile(r"[^\W\d_]{4}")
+"""What a title has and a label has not."""
+SOME = 4
+"""A label with more parts is left out whole."""
+FAR = 12.0
+"""How far from its place a text may be, mm: where a letter goes is the draughtsman's choice."""
+
+
+@dataclass(frozen=True)
+class FoundText:
+    """``writings`` are the numbers of the texts found for a wanted one, ``says`` what they say if that is something else."""
+
+    writings: tuple[int, ...]
+    says: str | None = None
+
+
+def read(wanted: Sequence[Element], writings: Sequence[Writing]) -> dict[int, FoundText]:
+    """The texts found for wanted ones, by the number of the wanted one.
+
+    The same text near by comes first, of about the same size, which an index is not; then several texts that make one (a letter and
+    its index), then the same text of any size, then one that contains ours among others (a line of values), last what is in its
+    place and says something else.
+    """
+    reading = _Reading(wanted, writings)
+    reading.alike(SIZES)
+    if writings:
+        reading.joined()
+        reading.alike()
+        reading.contained()
+        reading.others()
+    return reading.found
+
+
+class _Reading:
+    """Wanted texts, texts of the drawing, and which of them belong together so far."""
+
+    def __init__(self, wanted: Sequence[Element], writings: Sequence[Writing]) -> None:
+        self.wanted, self.writings = wanted, writings
+        self.at = np.array([w.at for w in writings], dtype=complex)
+        self.found: dict[int, FoundText] = {}
+        self.free = set(range(len(writings)))
+
+    def alike(self, sizes: float = inf) -> None:
+        """The same text near by, the nearest pairs first; of two heights none is more than ``sizes`` times the other."""
+        by_meaning: dict[str, list[int]] = {}
+        for k, w in enumerate(self.writings):
+            by_meaning.setdefault(meant(w.text), []).append(k)
+        pairs = [(_beyond(want, self.writings[k]), n, k) for n, want in enumerate(self.wanted)
+                 for k in by_meaning.get(meant(want.text), ())
+                 if n not in self.found and (sizes == inf or 1 / sizes <= self.writings[k].height / want.height <= sizes)]
+        for far, n, k in sorted(pairs):
+            if far <= FAR and n not in self.found and k in self.free:
+                self._take(n, k)
+
+    def joined(self) -> None:
+        """Several texts that make one: those within its box, or else those ever a little farther off; last all but one or two.
+
+        A part of a label that stands close by may lie in the box, too.
+        """
+        for strangers in (0, 1, 2):
+            for margin in (0.0, 0.25, 0.5):
+                for n, want in self._missing():
+                    near = [k for k in self._about(want)
+                            if k in self.free and _inside(want, self.writings[k].at, margin * (want.height + 1.0) + CLOSE)]
+                    if order := next(filter(None, (self._spelling(some, want) for some in _but(near, strangers))), None):
+                        self._take(n, *order)
+
+    def _spelling(self, near: list[int], want: Element) -> list[int]:
+        """The texts in an order in which they make the wanted one; none if there is no such order.
+
+        They follow one another by their middles or by their left ends; of indices above one another either may be first.
+        """
+        meaning, several = meant(want.text), len(near) > 1
+        for ends, lift in ((0.0, 0.0), (0.5, 0.0), (0.5, 0.5), (0.5, -0.5)):
+            order = self._along(near, want, ends, lift)
+            if order and _same(meant("".join(self.writings[k].text for k in order)), meaning, several):
+                return order
+        return []
+
+    def _along(self, near: list[int], want: Element, ends: float = 0.5, lift: float = 0.0) -> list[int]:
+        """Texts in the direction of a wanted one, by their left ends (0.5) or middles (0); ``lift`` puts off what stands higher."""
+        along = want.points[1] - want.points[0]
+        u = np.conj(along) / max(abs(along), 1e-9)
+        place = {k: (self.writings[k].at - want.middle) * u - ends * self.writings[k].width for k in near}
+        return sorted(near, key=lambda k: (place[k].real + lift * place[k].imag, k))
+
+    def contained(self) -> None:
+        """A text with ours among its words."""
+        for n, want in self._missing():
+            for k in self._about(want, 150.0):
+                w = self.writings[k]
+                away = (want.middle - w.at) * np.exp(-1j * w.angle)
+                if abs(away.real) < w.width and abs(away.imag) < 1.5 * w.height and _has(w.text, want.text):
+                    self._take(n, k)
+                    break
+
+    def others(self) -> None:
+        """What is in its place and says something else."""
+        pairs = [(_beyond(want, self.writings[k]), n, k) for n, want in self._missing() for k in self._about(want)
+                 if k in self.free and _inside(want, self.writings[k].at, 3.0)]
+        for _, n, k in sorted(pairs):
+            if n not in self.found and k in self.free and self._meant_for(n, k):
+                want = self.wanted[n]
+                parts = {k, *(j for j in self._about(want) if j in self.free and _inside(want, self.writings[j].at, CLOSE)
+                              and not self._title_of_another(n, j))}
+                order = self._along(list(parts), want)
+                self._take(n, *order, says="".join(self.writings[j].text for j in order).strip())
+
+    def _meant_for(self, n: int, k: int) -> bool:
+        """Whether a text may be meant for a wanted one: none is a title where a label should be, or the label of another one.
+
+        That stands there by chance, unless the two were exchanged.
+        """
+        text = self.writings[k].text
+        if bool(WORDS.search(text)) != bool(WORDS.search(self.wanted[n].text)):
+            return False
+        owners = [m for m, want in self._missing() if m != n and meant(want.text) == meant(text)]
+        return not owners or any(j != k and j in self.free and _inside(self.wanted[m], self.writings[j].at, 3.0)
+                                 for m in owners for j in self._about(self.wanted[m]))
+
+    def _title_of_another(self, n: int, k: int) -> bool:
+        """Whether a text is the whole title of something else, which stands too near."""
+        text = self.writings[k].text
+        return bool(WORDS.search(text)) and any(m != n and meant(w.text) == meant(text) for m, w in enumerate(self.wanted))
+
+    def _missing(self) -> Iterator[tuple[int, Element]]:
+        return ((n, want) for n, want in enumerate(self.wanted) if n not in self.found)
+
+    def _take(self, n: int, *texts: int, says: str | None = None) -> None:
+        self.found[n] = FoundText(texts, says)
+        self.free.difference_update(texts)
+
+    def _about(self, want: Element, reach: float = 5.0) -> list[int]:
+        """Texts whose middle is not far from the rectangle."""
+        size = abs(complex(want.points[2] - want.points[0])) / 2
+        return np.flatnonzero(np.abs(self.at - want.middle) < size + reach).tolist()
+
+
+def _but(near: list[int], strangers: int) -> Iterator[list[int]]:
+    """All of some texts, then all but one, and so on; two are left at least."""
+    yield near
+    for less in range(1, min(strangers, len(near) - 2) + 1 if len(near) <= MOST else 0):
+        yield from map(list, combinations(near, len(near) - less))
+
+
+def _same(joined: str, wanted: str, several: bool) -> bool:
+    """Whether texts put together are the wanted one; indices may come in another order, but numbers keep their digits."""
+    wanted = wanted.translate(ARROWS) if several and joined == joined.translate(ARROWS) else wanted
+    return joined == wanted or (several and sorted(joined) == sorted(wanted) and _digits(joined) == _digits(wanted))
+
+
+def meant(text: str) -> str:
+    """Text as it is compared: normal, with numbers without trailing zeros (0,50 is 0,5)."""
+    return re.sub(r"\d+\.\d+", lambda m: m.group().rstrip("0").rstrip("."), normal(text))
+
+
+def parts(text: str) -> list[str]:
+    """What a label is put together of, as it is compared: letters of several points, and the position of one."""
+    return [p for part in re.split(r"[,()]", text) if (p := meant(part))]
+
+
+def says_less(text: str, wanted: str) -> bool:
+    """Whether a text is a label without some of its parts, in any order."""
+    some = parts(wanted)
+    return any(meant(text) == "".join(few) for size in range(1, min(len(some), SOME) + 1) for few in permutations(some, size))
+
+
+def _has(text: str, part: str) -> bool:
+    """Whether the words of a part follow one another in a text."""
+    words, wanted = [meant(w) for w in text.split()], [meant(w) for w in part.split()]
+    return any(words[k : k + len(wanted)] == wanted for k in range(len(words) - len(wanted) + 1))
+
+
+def _digits(text: str) -> str:
+    return "".join(c for c in text if c.isdigit())
+
+
+def _inside(want: Element, z: complex, margin: float) -> bool:
+    """Whether a point is in the box or within a margin of it."""
+    a, b, _, d = want.points
+    u = (b - a) / max(abs(b - a), 1e-9)
+    p = (z - a) * np.conj(u)
+    return bool(-margin <= p.real <= abs(b - a) + margin and -margin <= p.imag <= abs(d - a) + margin)
+
+
+def _beyond(want: Element, w: Writing) -> float:
+    """Distance of the middles, less the error that an estimated width may have."""
+    along = (w.at - want.middle) * np.exp(-1j * w.angle)
+    return float(np.hypot(max(abs(along.real) - 0.25 * w.width, 0.0), along.imag))
+
 
 LETTER = 4
 """A stroke that is more than so many times as long as a letter is high is none of a letter."""
@@ -27,7 +228,7 @@ def lettering(state: Comparison) -> None:
     """Check what texts say; lettering that no text is found for is sought as drawn letters."""
     numbers = [n for n, e in enumerate(state.elements) if e.kind == "text" and n not in state.found]
     wanted = [state.elements[n] for n in numbers]
-    got = cad_text.read(wanted, state.space.writings)
+    got = read(wanted, state.space.writings)
     for k, answer in got.items():
         n = numbers[k]
         entities = tuple(state.space.writings[i].entity for i in answer.writings)
@@ -49,9 +250,9 @@ def _of_own_places(state: Comparison) -> None:
     for view in state.moved:
         mine = [e for e in state.elements if e.view == view]
         box = Box.around(np.concatenate([e.points for e in mine]))
-        letters = {part for e in mine if e.kind == "text" for part in (cad_text.meant(e.text), *cad_text.parts(e.text))}
+        letters = {part for e in mine if e.kind == "text" for part in (meant(e.text), *parts(e.text))}
         state.used_writings |= {k for k, w in enumerate(state.space.writings)
-                                if box.contains(w.at, cad_text.FAR) and cad_text.meant(w.text) in letters}
+                                if box.contains(w.at, FAR) and meant(w.text) in letters}
 
 
 def _bars(state: Comparison, n: int) -> None:

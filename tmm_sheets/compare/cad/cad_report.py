@@ -1,4 +1,4 @@
-"""The report on a comparison with a CAD drawing: a table for the terminal, what JSON lists."""
+"""The report on a comparison of a CAD drawing with a sheet of ours: table, JSON, and the story view by view with pictures."""
 
 from __future__ import annotations
 
@@ -14,10 +14,9 @@ import numpy as np
 
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad import omissions
-from tmm_sheets.compare.cad.cad_findings import CadFinding, CadOutcome, ExtraStroke, LookFinding
+from tmm_sheets.compare.cad.cad_comparison import CadFinding, CadOutcome, ExtraStroke, LookFinding
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
-from tmm_sheets.compare.cad.layout import Layout
-from tmm_sheets.compare.cad.registration import Registration
+from tmm_sheets.compare.cad.registration import Layout, Registration
 from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built
 from tmm_sheets.compare.diagnosis.hypotheses import built_otherwise

@@ -14,8 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.cad.cad_comparison import Comparison
-from tmm_sheets.compare.cad.cad_findings import STYLES, LookFinding
+from tmm_sheets.compare.cad.cad_comparison import STYLES, Comparison, LookFinding
 from tmm_sheets.compare.cad.cad_ink import Entity
 from tmm_sheets.compare.cad.cad_patterns import Pattern, of_dashes, of_strokes
 from tmm_sheets.compare.cad.overlaps import Interval, gaps, overlaps, union

@@ -13,9 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.cad import cad_text
-from tmm_sheets.compare.cad.cad_comparison import Comparison
-from tmm_sheets.compare.cad.cad_findings import AbsentKind, CadFinding
+from tmm_sheets.compare.cad import cad_lettering
+from tmm_sheets.compare.cad.cad_comparison import AbsentKind, CadFinding, Comparison
 from tmm_sheets.compare.cad.line_fit import KnownLines, lines
 from tmm_sheets.compare.cad.overlaps import overlaps
 from tmm_sheets.compare.elements import Element, ElementView, sampled
@@ -113,8 +112,8 @@ def _other_words(state: Comparison, n: int) -> bool:
     if e.kind != "text" or finding.says is None:
         return False
     letters = {part for other in state.elements if other.view == e.view and other.kind == "text"
-               for part in (cad_text.meant(other.text), *cad_text.parts(other.text))}
-    return not e.step or cad_text.meant(finding.says) in letters or cad_text.says_less(finding.says, e.text)
+               for part in (cad_lettering.meant(other.text), *cad_lettering.parts(other.text))}
+    return not e.step or cad_lettering.meant(finding.says) in letters or cad_lettering.says_less(finding.says, e.text)
 
 
 def remarks(findings: Iterable[CadFinding]) -> tuple[AbsentKind, ...]:

@@ -1,8 +1,4 @@
-"""Arrow heads: whether every arrow has its own, at the right end.
-
-A head belongs to one arrow. Those in their places are given out first, then those at the other end that point backwards, last those
-that stand elsewhere on the line of an arrow without one: a head that another arrow has is no witness against this one.
-"""
+"""Arrow heads, hatchings, filled areas and heads of dimensions in a CAD drawing."""
 
 from __future__ import annotations
 
@@ -15,8 +11,7 @@ import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.cad.cad_comparison import BEYOND, SIZE_OF_SYMBOL, Comparison
-from tmm_sheets.compare.cad.cad_findings import CadFinding
+from tmm_sheets.compare.cad.cad_comparison import BEYOND, SIZE_OF_SYMBOL, CadFinding, Comparison
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
 from tmm_sheets.compare.cad.displaced_lines import FARTHEST
 from tmm_sheets.compare.cad.line_fit import lines

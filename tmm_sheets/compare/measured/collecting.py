@@ -1,17 +1,334 @@
-"""Everything that can be measured on the sheets of a project."""
+"""Everything that can be measured on the sheets of a project: diagrams, flywheel, gears, cams, and the plans of all of them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from math import degrees, pi
+from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.compare.measured import diagram_items, flywheel_items, linkage_items, machine_items
-from tmm_sheets.compare.measured.measurable import Measurables
+import numpy as np
+
+from tmm_sheets.compare.measured import linkage_items
+from tmm_sheets.compare.measured import measured_units as units
+from tmm_sheets.compare.measured.measurable import (
+    CALCULATED,
+    RESULTS,
+    Measurable,
+    Measurables,
+    length,
+    magnitude,
+    measured_step,
+    scalar,
+    size,
+)
+from tmm_sheets.compare.measured.measured_units import DEGREES, MILLIMETRES, TURNS
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.error import Errors
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.protocol import spoken
+from tmm_sheets.construction.scale import Scale
+from tmm_sheets.construction.step import Kind, Rule, Step, value_at, value_of
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.methods.cams.cam_motion import ACROSS, ORDINATE
+from tmm_sheets.methods.gears.rack import TAKEN
+from tmm_sheets.methods.integration import CHORD
+from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.project import Project
+
+OF_POINT = {"graph-S": marked("Graph of displacement"), "graph-V": marked("Graph of velocity"),
+            "graph-a": marked("Graph of acceleration")}
+OF_LINK = {"graph-psi": marked("Graph of the angle of rotation"), "graph-omega": marked("Graph of angular velocity"),
+           "graph-epsilon": marked("Graph of angular acceleration")}
+OF_MOMENT = ("graph-M", marked("Graph of the balancing moment"))
+
+
+def diagrams(project: Project, found: Measurables) -> None:
+    """Ordinates of the graphs that the sheets show; their signs depend on the sense one begins with, so magnitudes are compared."""
+    for name in project.diagrams:
+        link = name in project.mechanism.links
+        graphs = OF_LINK if link else OF_POINT
+        with suppress(CannotBuild):  # the sheet shows the graphs of others
+            if graphs.keys() & found.scales.keys():
+                motion = project.motion.link(name) if link else project.motion.point(name)
+                for graph, step in zip(graphs.items(), motion.at_positions, strict=True):
+                    _graph(found, graph, step.name, step, project.study.labels)
+    if OF_MOMENT[0] in found.scales and project.driver is None:
+        called = tr("M_b") if project.balancing == "Mур" else project.balancing
+        _graph(found, OF_MOMENT, "M_ур", project.study.balance["M"], project.study.labels, called)
+
+
+def _graph(found: Measurables, graph: tuple[str, str], quantity: str, step: Step, labels: tuple[str, ...],
+           called: str = "") -> None:
+    """The ordinates of one curve, ``called`` so where its letter is not its name."""
+    key, title = graph
+    if key in found.scales:
+        mu = found.scales[key].mu
+        for k, label in enumerate(labels):
+            ordinate = float(value_at(step, k)) / mu
+            found.add(magnitude(Measurable(f"{key}/{label}/y_{quantity}", key, tr(title), label, f"y_{called or quantity}",
+                                           MILLIMETRES, "length", ordinate, ((step, k, 1 / mu + 0j),), key, 1.0,
+                                           main=graph == OF_MOMENT)))
+
+
+TITLE = marked("Flywheel")
+MOMENT, WORK, ENERGY, EXCESS, INERTIA = "moment", "work", "energy", "excess", "inertia"
+"""Keys of the scale factors: diagrams of one quantity have one, but that of dE may have its own."""
+NEAR = 1e-3
+"""Millimetres by which the segment ab is moved to see what reading it does to the results."""
+
+
+def flywheel(project: Project, found: Measurables) -> None:
+    """Ordinates of all graphs at the numbered positions, segment ab, angles of the tangents, moments of inertia and sizes."""
+    f = project.flywheel
+    s = f.scales
+    plans = f.plans
+    work = {step.name: f"y_A({step.name})" for step in f.work_plan if step.rule is CHORD}
+    diagrams: dict[str, tuple[str, Scale, dict[str, str]]] = {
+        "reduced-moment": (MOMENT, s.moment, {"M": "y_M"}),
+        "work": (WORK, s.work, work),
+        "driving-moment": (WORK, s.work, {"K": "y_K"}),
+        "total-work": (EXCESS, s.excess, {"ΔE": "y_ΔE"}) if s.excess is not None else (ENERGY, s.energy, {"ΔE": "y_ΔE"}),
+        "reduced-inertia": (INERTIA, s.inertia, {"J": "y_J"}),
+        "energy-mass": (ENERGY, s.energy, {"ab": "ab", "ψ_max": "ψ_max", "ψ_min": "ψ_min"}),
+        "first-energy": (ENERGY, s.energy, {"T_II": "y_T2", "T_I": "y_T1", "ab": "ab"}),
+    }
+    for name, (key, scale, steps) in diagrams.items():
+        if name not in plans:
+            continue
+        plan = plans[name]
+        found.scales[key] = scale
+        found.plans.append((plan, key))
+        found.on_paper.add(key)
+        for step_name, quantity in steps.items():
+            step = plan[step_name]
+            for k in range(len(plan.labels) if np.ndim(step.value) else 1):
+                if quantity.startswith("y_") and k == len(plan.labels) - 1 and len(plan.labels) > 1:
+                    continue  # the position that closes the cycle
+                entry = measured_step(plan, found.scales, k, step, quantity, key)
+                found.add(replace(entry, slope=(INERTIA, ENERGY) if entry.kind == "angle" else None, main=quantity != "y_T2"))
+    _between_positions(f, found)
+    _results(f, found)
+    if "crank-speed" in plans:
+        plan = plans["crank-speed"]
+        found.plans.append((plan, ENERGY))
+        for k, label in enumerate(plan.labels[:-1]):
+            step = plan["ω1"]
+            entry_id = f"{RESULTS}/{label}/omega_I"
+            title = tell("Angular velocity of the driving link")
+            found.add(replace(size(title, entry_id, label, "ω_I", units.ANGULAR_SPEED, k, step, by=step), main=False))
+
+
+def _between_positions(f: Flywheel, found: Measurables) -> None:
+    """What the diagrams have from between the numbered positions: ordinates at the contacts, and the velocities behind those in the
+    middles and at the contacts, which are known no better than on the plans that are drawn.
+    """
+    found.plans.append((f.contacts_plan, ENERGY))
+    for at in f.reduced.kept.values():
+        found.plans += [(plan, key) for plan in at.plans for key in ("positions", "velocities")
+                        if plan.name.startswith(f"{key}@") and key in found.scales]
+
+
+def _results(f: Flywheel, found: Measurables) -> None:
+    moment = f.driving_plan["M"]
+    scalar(found, tell(TITLE), "M_const", float(moment.value), units.MOMENT, [(moment, 0, 1 + 0j)], scale=MOMENT, signed=False)
+    steps = {"J_I": (f.first_plan["J_I"], units.INERTIA), "J_flywheel": (f.first_plan["J_м"], units.INERTIA)}
+    if f.wheel is not None:
+        sizes = f.wheel.plan
+        steps |= {name: (sizes[name], units.MASS if name == "m" else units.METRES) for name in "DBHm" if name in sizes}
+    read = Errors([]).displaced(f.ab, 0, NEAR)
+    for name, (step, unit) in steps.items():
+        value = float(step.value)
+        scalar(found, tell(TITLE), name, value, unit, [(step, 0, 1 + 0j)], scale=ENERGY,
+               reading=abs(float(read(step)) - value) / NEAR)
+
+
+GEAR_ANGLES = ("alpha_w", "tau1", "tau2", "phi_alpha1", "phi_alpha2")
+GEAR_MAIN = ("z1", "z2", "x1", "x2", "a_w", "alpha_w", "eps_alpha")
+GEAR_NUMBERS = ("z1", "z2", "x1", "x2", "y", "dy", "eps_alpha", "theta1_greatest", "theta2_greatest")
+
+
+def others(project: Project, found: Measurables) -> None:
+    """Dead positions and synthesis: points from those they were drawn from; the chord of a tooth."""
+    for plan in (p for of_part in project.plans.values() for p in (of_part or {}).values()):
+        if plan.name not in found.scales:
+            continue
+        if plan.name.startswith("gear-tooth"):
+            found.plans.append((plan, plan.name))
+            found.add(length(plan, found.scales, 0, plan["E"], plan["F"], "EF"))
+        elif plan.name in ("dead-positions", "synthesis"):
+            found.plans.append((plan, plan.name))
+            _lengths(plan, found, plan.name)
+            for head in (s for s in plan if s.rule.gives == "point" and np.ndim(s.value) == 0):
+                for tail in dict.fromkeys(a for a in head.args if isinstance(a, Step) and a.name in plan and plan[a.name] is a):
+                    if tail.rule.gives == "point" and "₀" not in tail.name:
+                        found.add(length(plan, found.scales, 0, tail, head, f"{tail.name}{head.name}"))
+
+
+def _lengths(plan: Plan, found: Measurables, key: str) -> None:
+    """All lengths and angles of a plan that were measured or drawn as circles; not those taken from numbers."""
+    taken = (rules.GIVEN_LENGTH, TAKEN)
+    for step in plan:
+        if step.rule.gives in ("length", "ordinate", "angle", "inclination") and step.rule not in taken and step.args:
+            for k in range(np.size(step.value)):
+                entry = measured_step(plan, found.scales, k, step, key=key)
+                found.add(replace(entry, main=entry.kind == "length" or np.size(step.value) == 1))
+
+
+def gear(project: Project, found: Measurables) -> None:
+    """Lengths, angles and results of the gear pair, as far as the sheets show it."""
+    pair = project.gear
+    if "gear-engagement" in found.scales:
+        plan = pair.engagement
+        found.plans.append((plan, "gear-engagement"))
+        _lengths(plan, found, "gear-engagement")
+        for tail, head in (("O1", "O2"), ("N1", "N2"), ("A", "B"), ("A", "Pw"), ("Pw", "B")):
+            if tail in plan and head in plan:
+                found.add(length(plan, found.scales, 0, plan[tail], plan[head], tail + head))
+    if "gear-sliding" in found.scales:
+        _sliding(pair.sliding, found)
+    for name, told in pair.results().items():
+        value = told.value
+        if name in GEAR_ANGLES:
+            scalar(found, tell("Gear pair"), name, degrees(value), DEGREES, part="gear", main=name in GEAR_MAIN)
+        else:
+            scalar(found, tell("Gear pair"), name, value, "" if name in GEAR_NUMBERS else MILLIMETRES,
+                   part="gear", main=name in GEAR_MAIN)
+
+
+def _sliding(plan: Plan, found: Measurables) -> None:
+    """Ordinates of the speeds, mm, and specific slidings at the manual's divisions of the line of action."""
+    found.plans.append((plan, "gear-sliding"))
+    for i, label in enumerate(plan.labels):
+        for name in ("yV1", "yV2", "theta1", "theta2"):
+            step = plan[name]
+            value = float(np.real(value_at(step, i)))
+            ordinate = name.startswith("y")
+            sign = 1.0 if value >= 0 else -1.0
+            found.add(Measurable(
+                f"gear-sliding/{label}/{name}", plan.name, plan.title, label, spoken(name) if not ordinate else name,
+                MILLIMETRES if ordinate else "", "length" if ordinate else "result", abs(value) if ordinate else value,
+                ((step, i, complex(sign if ordinate else 1)),), "", 1.0 if ordinate else 0.0, main=False,
+                calculated=0.0 if ordinate else CALCULATED, head=step, signed=not ordinate))
+
+
+def reducer(project: Project, found: Measurables) -> None:
+    """Results of the reducer."""
+    results: Mapping[str, Any] = project.reducer.results()
+    for group, unit in (("teeth", ""), ("diameters_w", MILLIMETRES), ("speeds_rpm", TURNS)):
+        for name, told in results[group].items():
+            scalar(found, tell("Reducer"), f"reducer-{name}", told.value, unit)
+    speed_pictures("reducer", project.reducer.plans, found)
+    for name in ("ratio", "ratio_planetary", "ratio_simple", "efficiency", "q"):
+        if name in results:
+            scalar(found, tell("Reducer"), f"reducer-{name}", results[name].value, "")
+
+
+def train(project: Project, found: Measurables) -> None:
+    """Results of the train of gears; tooth numbers and speeds that are given are none."""
+    train = project.train
+    results: Mapping[str, Any] = train.results()
+    for name, told in results["distances"].items():
+        scalar(found, tell("Train of gears"), f"train-{name}", told.value, MILLIMETRES)
+    for m in train.meshes:
+        scalar(found, tell("Train of gears"), f"train-d{m.central}-{m.planet}", float(train.pitch(m).value), MILLIMETRES)
+    for name, told in results["speeds_rpm"].items():
+        if name.removeprefix("n") not in train.given:
+            scalar(found, tell("Train of gears"), f"train-{name}", told.value, TURNS)
+    speed_pictures("train", train.plans, found)
+
+
+def cam(project: Project, found: Measurables) -> None:
+    """Lengths, angles and results of the cam."""
+    cam = project.cam
+    m = cam.motion
+    if m.plan.name in found.scales:
+        for name, scale in zip(m.names, (m.scales.dds, m.scales.ds, m.scales.s), strict=True):
+            found.scales[f"cam-motion-{name}"] = scale
+        found.plans.append((m.plan, m.plan.name))
+        found.on_paper |= {f"cam-motion-{name}" for name in m.names}
+        for step in m.plan:
+            if step.rule in (CHORD, ORDINATE, ACROSS):
+                key = f"cam-motion-{step.name.partition('_')[0]}"
+                found.add(replace(measured_step(m.plan, found.scales, 0, step, key=key), main=not step.name.startswith("S''")))
+    for part in ("zone", "inversion"):
+        plan = getattr(getattr(cam, part, None), "plan", None)
+        if plan is not None and plan.name in found.scales:
+            found.plans.append((plan, plan.name))
+            _lengths(plan, found, plan.name)
+    for name, step in cam.results().items():
+        if name in ("r0", "e", "s0", "l0", "r_roller", "rho_min"):
+            # Read off the drawing where it is drawn; in mm, as the manuals write it.
+            mu = found.scales[step.plan].mu if step.plan in found.scales else 0.0
+            # A roller is chosen in whole half millimetres: no small error of what it is chosen by moves it.
+            terms = [] if name == "r_roller" else [(step, 0, 1000 + 0j)]
+            scalar(found, tell("Cam"), name, 1000 * float(step.value), MILLIMETRES, terms,
+                   scale=step.plan if mu else "", reading=1000 * mu)
+            if mu:
+                found.check(f"{RESULTS}/{name}", [f"{step.plan}/{step.name}"], lambda x: 1000 * x)
+
+
+DRAWN: tuple[Kind, ...] = ("point", "vector", "direction")
+"""Kinds of what lies on the paper."""
+
+
+def speed_pictures(part: str, plans: Mapping[str, Plan], found: Measurables) -> None:
+    """Lengths of velocities, and of speeds on their plan, where the sheets show them."""
+    picture, turning = (f"{part}-{name}" for name in ("velocities", "speeds"))
+    if picture not in found.scales or turning not in found.scales:
+        return
+    mu = found.scales[picture].mu, found.scales[f"{part}-scheme"].mu
+    done: dict[Step, Step] = {}
+    for name in (picture, turning):
+        paper = _on_paper(plans[name], mu, done)
+        found.plans.append((paper, name))
+        found.on_paper.add(name)
+    pole = abs(complex(done[plans[turning]["P"]].value))
+    found.scales[turning] = Scale("μ_n", 30 / pi * mu[0] / (mu[1] * pole), tell("rpm/mm"))
+    for paper, _ in found.plans[-2:]:
+        _lengths_of_speed(paper, found)
+
+
+def _lengths_of_speed(paper: Plan, found: Measurables) -> None:
+    """Velocities of points ``A`` to their ends ``a``, and speeds from the origin ``0``."""
+    for step in paper:
+        tail = paper.steps.get(step.name.upper() if step.name.islower() else "0")
+        if step.rule.gives == "point" and tail is not None and tail is not step and step.name not in ("P", "0"):
+            found.add(replace(length(paper, found.scales, 0, tail, step, tail.name + step.name), main=tail.name == "0"))
+
+
+def _on_paper(plan: Plan, mu: tuple[float, float], done: dict[Step, Step]) -> Plan:
+    """A plan with other scale factors along its axes as it lies on paper, mm; ``done`` has what was drawn before, and its steps.
+
+    Its moves are those of a ruler: parallels remain so, whatever the scales.
+    """
+    paper = Plan(plan.name, plan.title, "mm", pole=plan.pole)
+    for step in plan:
+        args = [done.get(a, a) if isinstance(a, Step) else _times(value_of(a), (1 / mu[0], 1 / mu[1]), kind)
+                for a, kind in zip(step.args, step.rule.takes, strict=True)]
+        done[step] = paper.add(step.name, replace(step.rule, compute=_scaled(step.rule, mu)), *args, symbol=step.symbol)
+    return paper
+
+
+def _scaled(rule: Rule, mu: tuple[float, float]) -> Callable[..., Any]:
+    """The arithmetic of a rule from and to millimetres."""
+    def compute(*args: Any) -> Any:
+        value = rule.compute(*(_times(a, mu, kind) for a, kind in zip(args, rule.takes, strict=True)))
+        return _times(value, (1 / mu[0], 1 / mu[1]), rule.gives)
+
+    return compute
+
+
+def _times(z: Any, by: tuple[float, float], kind: Kind) -> Any:
+    """What lies on paper with other units along its axes; numbers stay what they are."""
+    if kind not in DRAWN:
+        return z
+    made = np.real(z) * by[0] + 1j * np.imag(z) * by[1]
+    return made / np.abs(made) if kind == "direction" else made
 
 
 def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
@@ -38,13 +355,13 @@ def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
     there = project.parts
     if "positions" in there:
         linkage_items.collect(project, found, shown)
-        diagram_items.collect(project, found)
-    for part, collect in (("flywheel", flywheel_items.collect), ("gear", machine_items.gear), ("reducer", machine_items.reducer),
-                          ("train", machine_items.train), ("cam", machine_items.cam)):
+        diagrams(project, found)
+    for part, collect in (("flywheel", flywheel), ("gear", gear), ("reducer", reducer),
+                          ("train", train), ("cam", cam)):
         if part in there:
             with suppress(CannotBuild):  # its sheet has said why
                 collect(project, found)
-    machine_items.others(project, found)
+    others(project, found)
     titles = list(dict.fromkeys(e.title for e in found.entries.values()))
     found.entries = dict(sorted(found.entries.items(), key=lambda pair: titles.index(pair[1].title)))
     return found
