@@ -19,8 +19,8 @@ from tests.compare.form import of_elements
 from tests.compare.simulation import shoot
 from tmm_sheets import catalogue
 from tmm_sheets.compare.elements import elements
-from tmm_sheets.compare.links import links
 from tmm_sheets.compare.photo import image
+from tmm_sheets.compare.placing import links
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Polyline, Text
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.project import Project

@@ -1,4 +1,4 @@
-"""Numbers beside marked places, so that none lies on another: each goes where there is room, with a line to its place."""
+"""Numbers beside findings on an overlay, and its legend."""
 
 from __future__ import annotations
 
@@ -9,6 +9,35 @@ from math import pi
 import numpy as np
 
 from tmm_sheets.box import Box
+from tmm_sheets.drawing.ink import letters
+from tmm_sheets.drawing.lettering import advance
+from tmm_sheets.drawing.marks import Points, Text
+
+HEIGHT = 4.0
+"""Height of the words, mm."""
+START, GAP = 12.0 + 30.0j, 12.0
+"""Where the first entry begins, and what is free after each, mm."""
+SAMPLE = 12.0
+"""Length of the sample of a line, mm."""
+
+
+def around(verdict: str, at: complex, radius: float) -> Points:
+    """The mark round a place, closed."""
+    corners = np.linspace(0, 2 * np.pi, 5 if verdict == "amber" else 49)
+    return np.asarray(at + radius * np.exp(1j * corners))
+
+
+def legend(entries: Sequence[tuple[str, str]]) -> list[list[Points]]:
+    """Strokes of each entry, mm of the sheet: its sample, a "line" or the mark of a verdict, and its words."""
+    along, out = 0.0, []
+    for form, words in entries:
+        middle = along + SAMPLE / 2 + 0.5j * HEIGHT
+        sample = np.array([along, along + SAMPLE]) + 0.5j * HEIGHT if form == "line" else around(form, middle, 0.8 * HEIGHT)
+        at = along + SAMPLE + 0.5 * HEIGHT
+        out.append([START + 1j * z for z in (sample, *letters(Text(complex(at), words, HEIGHT)))])
+        along = at + advance(words, HEIGHT) + GAP
+    return out
+
 
 WIDE = 0.62
 """Width of a digit with the space after it, in heights."""

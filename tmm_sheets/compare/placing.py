@@ -1,15 +1,33 @@
-"""Where a drawing, or a view of it, lies: scale, turn and shift; and what of the sheet keeps its size there."""
+"""Where a drawing, or a view of it, lies; what of the sheet keeps its size there, and what leads to other views."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from tmm_sheets.compare.elements import Element
+from tmm_sheets.box import Box
+from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Role, Text
+
+BEYOND = 15.0
+"""How far such a line must reach beyond everything else in its view, mm."""
+LEADING: frozenset[Role] = frozenset({"construction", "axis"})
+"""Roles of lines that may do so."""
+
+
+def links(elements: Sequence[Element]) -> frozenset[int]:
+    """Numbers of the elements that lead out of their views."""
+    places: dict[ElementView, list[Element]] = {}
+    for e in elements:
+        if e.view.n and e.role not in LEADING:
+            places.setdefault(e.view, []).append(e)
+    boxes = {view: Box.around(np.concatenate([e.points for e in found])) for view, found in places.items()}
+    return frozenset(e.number for e in elements if e.kind == "line" and e.role in LEADING and e.view in boxes
+                     and not all(boxes[e.view].contains(complex(z), BEYOND) for z in e.points))
+
 
 SAME = 0.02
 """A view whose size is off by less than this share is drawn to our scale."""

@@ -48,8 +48,7 @@ from tmm_sheets.compare.elements import Element, ElementView, drawn, interruptio
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.findings import worst
 from tmm_sheets.compare.known_sheet import KnownSheet, known_sheet, sheet_numbers
-from tmm_sheets.compare.links import links
-from tmm_sheets.compare.placing import BESIDE, Placing, symbol
+from tmm_sheets.compare.placing import BESIDE, Placing, links, symbol
 from tmm_sheets.compare.report import Report
 from tmm_sheets.compare.story import listed
 from tmm_sheets.drawing.marks import Drawing, Points

@@ -10,8 +10,7 @@ import numpy as np
 from tmm_sheets.backends import pdf
 from tmm_sheets.compare.cad import cad_file
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Writing
-from tmm_sheets.compare.legend import around, legend
-from tmm_sheets.compare.numbering import numbered
+from tmm_sheets.compare.numbering import around, legend, numbered
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Drawing, Mark, Points, Polyline
 from tmm_sheets.words import tell

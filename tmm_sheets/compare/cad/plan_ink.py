@@ -154,12 +154,14 @@ class PlanInk:
         self.auxiliary = _auxiliary(space, self.stroke)
         self.look = _looks(space, self.stroke)
 
-    def mirrored(self) -> PlanInk:
-        """The drawing seen from behind: reflected in the x axis, its lettering still read where it stands."""
+    def freed(self, mirrored: bool) -> PlanInk:
+        """The drawing as if its lettering told no turn; ``mirrored``: reflected in the x axis, its lettering still read."""
         other = object.__new__(PlanInk)
-        other.__dict__.update(self.__dict__, a=np.conj(self.a), b=np.conj(self.b), turn=float("nan"),
-                              heads=[(np.conj(tip), np.conj(way)) for tip, way in self.heads],
-                              texts=[Lettering(t.text, t.at.conjugate(), -t.angle) for t in self.texts])
+        other.__dict__.update(self.__dict__, turn=float("nan"))
+        if mirrored:
+            other.a, other.b = np.conj(self.a), np.conj(self.b)
+            other.heads = [(tip.conjugate(), way.conjugate()) for tip, way in self.heads]
+            other.texts = [Lettering(t.text, t.at.conjugate(), -t.angle) for t in self.texts]
         return other
 
     def figures(self, some: Numbers) -> list[Numbers]:

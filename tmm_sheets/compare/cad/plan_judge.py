@@ -146,16 +146,10 @@ def judge_plans(record: PlanRecord, ink: PlanInk) -> JudgedPlans:
     if any(v.kind == "right" for v in found.views) or not len(ink.a):
         return found
     others = [JudgedPlans(turned, *_Judge(record, turned).judged(), mirrored, not mirrored)
-              for mirrored in (False, True) for turned in [_freed(ink.mirrored() if mirrored else ink)]]
+              for mirrored in (False, True) for turned in [ink.freed(mirrored)]]
     best = max(others, key=lambda o: sum(v.kind == "right" for v in o.views))
     better = sum(v.kind == "right" for v in best.views)
     return best if better > 1 or (better and not found.fitting) else found
-
-
-def _freed(ink: PlanInk) -> PlanInk:
-    other = object.__new__(PlanInk)
-    other.__dict__.update(ink.__dict__, turn=float("nan"))
-    return other
 
 
 class _Judge:

@@ -13,8 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.compare.legend import around, legend
-from tmm_sheets.compare.numbering import Numbered, numbered
+from tmm_sheets.compare.numbering import Numbered, around, legend, numbered
 from tmm_sheets.compare.photo.masking import fixed
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.drawing.marks import Points
