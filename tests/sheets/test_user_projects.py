@@ -110,5 +110,6 @@ def test_one_group_alone():
 def test_no_two_sheets_of_a_project_have_one_designation(sheets, codes):
     given = variant.read(Path(__file__).parents[1] / "projects" / "pump.toml")
     block = given.title_block.model_copy(update={"designation": "ТММ.01"})
-    project = Project(given.model_copy(update={"project": given.project.model_copy(update={"sheets": sheets}), "title_block": block}))
+    asked = given.project.model_copy(update={"sheets": sheets})
+    project = Project(given.model_copy(update={"project": asked, "title_block": block}))
     assert [composed(project, n).drawing.subject for n in (1, 2, 3)] == [f"ТММ.01 {code}" for code in codes]
