@@ -61,7 +61,7 @@ def of_commands() -> Iterator[tuple[str, str, None]]:
     for command in (commands, *commands.every().values()):
         for spoken in (command, *(p for p in command.params if isinstance(p, click.Option))):
             if spoken.help:
-                yield f"tmm_sheets/cli/{command.name if command is not commands else '__init__'}.py", cleandoc(spoken.help), None
+                yield f"tmm_sheets/cli/{command.name}.py", cleandoc(spoken.help), None
 
 
 def of_projects() -> Iterator[tuple[str, str, None]]:

@@ -31,7 +31,7 @@ from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.frame import PlanFrame
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import messages, units, variant
-from tmm_sheets.task.cam_keys import FOLLOWER_KEYS
+from tmm_sheets.task.cam_table import FOLLOWER_KEYS
 from tmm_sheets.task.keys import Key, keys_of, spaced
 from tmm_sheets.task.names import GROUP_KEYS
 from tmm_sheets.words import LANGUAGES, tell, tell_n

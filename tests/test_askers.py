@@ -5,8 +5,8 @@ import pytest
 from tests.few import seldom
 from tmm_sheets import catalogue, kept
 from tmm_sheets.__main__ import run
-from tmm_sheets.askers import listening
 from tmm_sheets.construction.step import Step
+from tmm_sheets.explain import listening
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import every
 

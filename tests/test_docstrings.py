@@ -11,7 +11,7 @@ ROOMS = (
     "mechanism", "task", "methods/linkage", "methods/gears", "methods/cams", "methods/integration.py", "drawing", "backends",
     "output", "lab/stress", "lab/bench", "compare/cad", "compare/photo", "optimising", "page", "catalogue.py", "errors.py",
     "explain.py",
-    "api.py", "askers.py", "files.py", "numbers.py", "project.py", "protocols.py", "resources.py", "result_arrays.py", "results.py",
+    "api.py", "files.py", "numbers.py", "project.py", "protocols.py", "resources.py", "result_files.py", "results.py",
     "summary.py", "encodings.py",
 )  # fmt: skip
 """Rooms and modules whose docstrings are done; those of the command line are its help."""

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from tmm_sheets.compare.report import Kind, Report
     from tmm_sheets.optimising.optimum import Optimum
     from tmm_sheets.output.view_pictures import Picture
-    from tmm_sheets.result_arrays import Numbers
+    from tmm_sheets.result_files import Numbers
     from tmm_sheets.task.title_entries import Names
     from tmm_sheets.task.variant import Variant
 
@@ -163,7 +163,7 @@ class Opened:
         import numpy as np
 
         from tmm_sheets import results
-        from tmm_sheets.result_arrays import Numbers
+        from tmm_sheets.result_files import Numbers
 
         if sum(x is not None for x in (phi, phi_deg, positions)) > 1:
             raise BadInput(tell("give one of phi, phi_deg and positions"))

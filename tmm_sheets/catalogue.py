@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import files, quoting, resources, spelling
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.task import families, family_listing, headings
+from tmm_sheets.task import families
 from tmm_sheets.words import either, every, tell
 
 if TYPE_CHECKING:
@@ -61,7 +61,9 @@ def found(word: str) -> tuple[ShippedProject, ...]:
 
 def _heading(name: str) -> dict[str, Any]:
     folder = families.folder_of(name)
-    return family_listing.heading(folder, name) if folder is not None else headings.of(_path(name).read_text(encoding="utf-8"))
+    if folder is not None:
+        return families.heading(folder, name)
+    return families.table_of_heading(_path(name).read_text(encoding="utf-8"))
 
 
 def read(project: str, corrected: bool = False) -> Variant:

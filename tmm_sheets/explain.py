@@ -4,37 +4,23 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from time import perf_counter
-from typing import TYPE_CHECKING
+from types import FrameType
+from typing import TYPE_CHECKING, NamedTuple
 
+from tmm_sheets.construction.search_count import SearchCount
+from tmm_sheets.construction.step import Step, ordered, parents
 from tmm_sheets.numbers import of_reader
+from tmm_sheets.progress import Stopwatch
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
-    from tmm_sheets.askers import Askers
     from tmm_sheets.drawing.marks import Drawing
     from tmm_sheets.project import Project
 
 HEAVY = ("numpy", "shapely", "pydantic", "ezdxf", "reportlab", "matplotlib", "fontTools")
 """Modules whose import is worth telling."""
-
-
-class Stopwatch:
-    """Seconds of each phase of a command, in the order in which they began."""
-
-    def __init__(self) -> None:
-        self.phases: dict[str, float] = {}
-
-    @contextmanager
-    def phase(self, name: str) -> Iterator[None]:
-        """Count the time inside to the phase ``name``."""
-        start = perf_counter()
-        try:
-            yield
-        finally:
-            self.phases[name] = self.phases.get(name, 0.0) + perf_counter() - start
 
 
 def text(project: Project, drawings: Mapping[int, Drawing], watch: Stopwatch, askers: Askers) -> str:
@@ -97,3 +83,135 @@ def _searches(project: Project) -> Iterator[str]:
         yield from ("", "{:30}{:>7}{:>11}{:>20}".format(tell("searches"), tell("plans"), tell("steps"), tell("ms")))
     for search in project.searches:
         yield f"  {tell(search.purpose):28}{search.plans:7}{search.steps:11}{of_reader(f'{1000 * search.seconds:.3f}'):>20}"
+
+
+# --- who asks for the steps --------------------------------------------------------------------------------------------
+
+
+HERE, STEPS = "tmm_sheets.", "tmm_sheets.construction."
+SHOWING = ("sheets.", "drawing.")
+"""Modules that read a step to draw or to print it; others decide by it, or tell it on."""
+
+
+class Asker(NamedTuple):
+    """Who asked for a step, for a report; ``shown``: the step is drawn, printed, or made into one that is."""
+
+    said: str
+    shown: bool
+
+
+class StepReader(NamedTuple):
+    """A module that read a step's value, and the sheet and view that were drawn then (0 and empty outside of all)."""
+
+    module: str
+    sheet: int
+    view: str
+
+    @property
+    def shows(self) -> bool:
+        """Whether it draws or prints what it reads."""
+        return self.module.startswith(SHOWING)
+
+    @property
+    def said(self) -> str:
+        """For a report."""
+        if not self.sheet:
+            return tell("read by {module}").format(module=self.module)
+        return tell("read by {module} for sheet {n}, {view}").format(module=self.module, n=self.sheet, view=self.view)
+
+
+class Askers:
+    """Readers of steps, and the steps in whose arithmetic others were evaluated."""
+
+    def __init__(self) -> None:
+        self.readers: dict[Step, StepReader] = {}
+        self.within: dict[Step, Step] = {}
+
+    def note(self, step: Step, frame: FrameType) -> None:
+        """A step is read: by one that shows it if any does, else by the first."""
+        if step not in self.readers or not self.readers[step].shows:
+            reader = _reader(frame)
+            if step not in self.readers or reader.shows:
+                self.readers[step] = reader
+
+    def told(self, steps: Iterable[Step], drawings: Mapping[int, Drawing]) -> dict[Step, Asker]:
+        """Evaluated steps, arguments first: drawn or printed in a view, made into another step, or read by a method.
+
+        Steps of searches are left out: nobody keeps them.
+        """
+        drawn = _drawn(drawings)
+        every = [step for step in ordered([*steps, *self.readers, *self.within], parents) if step.evaluated]
+        kept = [step for step in every if isinstance(step.seconds, list)]
+        whose = dict(self.within)
+        for step in reversed(every):
+            whose |= dict.fromkeys(parents(step), step)
+        found = {step: reader.said for step, reader in self.readers.items() if reader.shows}
+        found |= {step: drawn[step.path] for step in kept if step.path in drawn}
+        shown = {*ordered(found, parents)}
+        for step in kept:
+            if step in self.readers and step not in shown:
+                found[step] = self.readers[step].said
+            elif step in whose:
+                found.setdefault(step, _for(whose[step]))
+        return {step: Asker(found.get(step, ""), step in shown) for step in kept}
+
+
+def _for(step: Step) -> str:
+    """What a step is made for."""
+    if isinstance(step.seconds, SearchCount):
+        return tell("search: {purpose}").format(purpose=tell(step.seconds.purpose))
+    return tell("for {step}").format(step=step.path or step.name)
+
+
+@contextmanager
+def listening() -> Iterator[Askers]:
+    """Note who reads a step from here on."""
+    found, usual = Askers(), vars(Step)["value"]
+    pending: list[Step] = []
+
+    def value(step: Step) -> object:
+        if not pending:
+            found.note(step, sys._getframe(1))
+        if not step.evaluated:
+            if pending:
+                found.within[step] = pending[-1]
+            pending.append(step)
+            try:
+                vars(step)["value"] = usual.func(step)
+            finally:
+                pending.pop()
+        return vars(step)["value"]
+
+    type.__setattr__(Step, "value", property(value))
+    try:
+        yield found
+    finally:
+        type.__setattr__(Step, "value", usual)
+
+
+def _reader(frame: FrameType | None) -> StepReader:
+    """The module nearest to a reading that is no construction itself, and the view in whose drawing it happened."""
+    from tmm_sheets.sheets import composing
+
+    module = ""
+    while frame is not None:
+        name = str(frame.f_globals.get("__name__", ""))
+        if not module and name.startswith(HERE) and not name.startswith(STEPS):
+            module = name.removeprefix(HERE)
+        if frame.f_code in (composing.viewed.__code__, composing.ask_again.__code__):
+            view = frame.f_locals.get("view")
+            return StepReader(module, frame.f_locals["n"], view.draw) if view is not None else StepReader(module, 0, "")
+        frame = frame.f_back
+    return StepReader(module, 0, "")
+
+
+def _drawn(drawings: Mapping[int, Drawing]) -> dict[str, str]:
+    """Paths of the steps that left marks, with the view of the first of them."""
+    found = dict[str, str]()
+    for n, drawing in drawings.items():
+        for view in drawing.views:
+            for first, end in view.spans:
+                for mark in drawing.marks[first:end]:
+                    if mark.by is not None:
+                        found.setdefault(mark.by.step, tell("drawn on sheet {n}: {view}").format(n=n, view=view.name))
+    return found

@@ -12,12 +12,12 @@ import platform
 import re
 import stat
 import unicodedata
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from contextvars import ContextVar
 from pathlib import Path, PureWindowsPath
 from threading import Lock
-from time import gmtime, time
+from time import gmtime, sleep, time
 from typing import IO
 
 from tmm_sheets.errors import BadInput, Problem, reason_of
@@ -230,10 +230,21 @@ def refuse_other(path: Path, data: bytes, force: bool) -> None:
     BadInput
         when it does: it may be somebody's own work.
     """
-    if force or not path.is_file() or path.read_bytes() == data:
-        return
-    raise BadInput(Problem(tell("is there already and says something else; nothing was written"), str(path),
-                           hint=tell("choose another name, or overwrite it with --force")))
+    if not force and path.is_file() and path.read_bytes() != data:
+        refuse_present(path, force, tell("is there already and says something else; nothing was written"))
+
+
+def refuse_present(path: Path, force: bool, said: str = "") -> None:
+    """Refuse to write over what there is, unless forced to.
+
+    Raises
+    ------
+    BadInput
+        when there is something.
+    """
+    if path.exists() and not force:
+        raise BadInput(Problem(said or tell("is there already; nothing was written"), str(path),
+                               hint=tell("choose another name, or overwrite it with --force")))
 
 
 def check_folder(folder: Path) -> None:
@@ -319,3 +330,31 @@ def source_date() -> int | None:
             )
         )
     return seconds
+
+
+# --- files that somebody works on --------------------------------------------------------------------------------------
+
+
+EACH_LOOK = 0.5
+"""Seconds between two looks."""
+
+
+def saved(paths: Sequence[Path], wait: Callable[[float], None] = sleep) -> Iterator[None]:
+    """At once, and then each time that one of some files is written, made or removed, until nobody asks."""
+    before = None
+    while True:
+        now = [state(path) for path in paths]
+        if now != before:
+            before = now
+            yield
+        else:
+            wait(EACH_LOOK)
+
+
+def state(path: Path) -> tuple[int, int] | None:
+    """What is another one when a file has been written; None where there is none."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size

@@ -1,4 +1,4 @@
-"""Progress of long work on a terminal; silent for short work, files and pipes."""
+"""Progress of long work on a terminal; silent for short work, files and pipes; and how long its phases took."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from threading import Timer
-from time import monotonic
+from time import monotonic, perf_counter
 from types import TracebackType
 from typing import Self
 
@@ -48,6 +48,10 @@ class Progress:
             listener(what)
         if monotonic() - self.start > PATIENCE:
             self._show()
+
+    def doing(self, what: str) -> None:
+        """The same with points behind it: work that goes on."""
+        self.say(f"{what} ...")
 
     def _show(self) -> None:
         if self.what and sys.stderr.isatty():
@@ -107,3 +111,19 @@ class Bar(Progress):
 def _clock(seconds: int) -> str:
     hours, rest = divmod(seconds, 3600)
     return f"{hours}:{rest // 60:02}:{rest % 60:02}" if hours else f"{rest // 60}:{rest % 60:02}"
+
+
+class Stopwatch:
+    """Seconds of each phase of a command, in the order in which they began."""
+
+    def __init__(self) -> None:
+        self.phases: dict[str, float] = {}
+
+    @contextmanager
+    def phase(self, name: str) -> Iterator[None]:
+        """Count the time inside to the phase ``name``."""
+        start = perf_counter()
+        try:
+            yield
+        finally:
+            self.phases[name] = self.phases.get(name, 0.0) + perf_counter() - start

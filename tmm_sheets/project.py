@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.linkage.motion import Motion
     from tmm_sheets.methods.linkage.study import Study
     from tmm_sheets.methods.linkage.synthesis import Synthesis
-    from tmm_sheets.task.given import Printed
+    from tmm_sheets.task.units import Printed
 
 
 PLANNED = ("synthesis", "cycle", "driver", "applied", "study", "motion", "reduced", "flywheel", "reducer", "gear", "train", "cam")
@@ -111,9 +111,9 @@ class Project:
     @property
     def given(self) -> tuple[Printed, ...]:
         """Quantities as the task prints them; none where the file does not say."""
-        from tmm_sheets.task import given
+        from tmm_sheets.task import units
 
-        return tuple(given.printed(self.variant.given))
+        return tuple(units.printed(self.variant.given))
 
     @cached_property
     def mechanism(self) -> Mechanism:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import in_a_row, listed, of_reader
-from tmm_sheets.task import edited_text, title_entries, units
+from tmm_sheets.task import edited_text, title_entries, toml_file, units
 from tmm_sheets.words import of_file, tell, tell_n
 
 if TYPE_CHECKING:
@@ -137,11 +137,8 @@ def _leaves(variant: Variant, path: KeyPath, value: Any) -> Iterator[tuple[str, 
         for i, inner in enumerate(value):
             yield from _leaves(variant, (*path, i), inner)
     else:
-        field = ""
-        for part in path:
-            field += f"[{part + 1}]" if isinstance(part, int) else f".{part}" if field else part
         written = str(value).lower() if isinstance(value, bool) else str(value)
-        yield field, ", ".join(map(str, value)) if isinstance(value, list) else written, variant.source(*path)
+        yield toml_file.called(path), ", ".join(map(str, value)) if isinstance(value, list) else written, variant.source(*path)
 
 
 def _structure(m: Mechanism) -> Iterator[str]:

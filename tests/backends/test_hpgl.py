@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.backends.geometry import area, beyond, drawn, polygon, shape
-from tmm_sheets.backends import hpgl, plot_file
+from tmm_sheets.backends import hpgl
 from tmm_sheets.drawing.marks import Box, Drawing, Fill, Line, Text
 from tmm_sheets.drawing.pen_paths import plan
 from tmm_sheets.drawing.plotters import Pen, plotter
@@ -184,7 +184,7 @@ def test_reported_lengths_are_those_of_the_file(data, drawing):
 def test_preview_reads_what_was_written(drawing, name):
     machine = plotter(name)
     made = plan(drawing, machine)
-    got = plot_file.read(hpgl.encode(made, drawing.title), machine)
+    got = hpgl.read(hpgl.encode(made, drawing.title), machine)
     lines = [s for s in got.strokes if not s.filled]
     want = [(layer.pen.width, UNIT * (np.array(path if len(path) > 1 else path * 2) @ [1, 1j]))
             for layer in made.layers for path in layer.paths]  # fmt: skip
@@ -204,7 +204,7 @@ def test_preview_reads_what_was_written(drawing, name):
 )  # fmt: skip
 def test_what_is_not_ours_is_not_guessed_at(text, said):
     with pytest.raises(ValueError, match=re.escape(said)):
-        plot_file.read(text.encode(), plotter("a1"))
+        hpgl.read(text.encode(), plotter("a1"))
 
 
 def test_missing_letter_and_lost_places_are_named(drawing):

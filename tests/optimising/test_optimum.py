@@ -12,7 +12,7 @@ import tmm_sheets
 from tests.few import few
 from tests.test_docs import parsed
 from tmm_sheets.__main__ import run
-from tmm_sheets.optimising import optimum, picture, search, wishes
+from tmm_sheets.optimising import optimum, picture, wishes
 
 DOC = (Path(__file__).parents[2] / "docs" / "optimise.md").read_text("utf-8")
 EXAMPLES = re.findall(r"^```sh\n(.*?)\n```\n\n```text\n(.*?)^```$", DOC, re.MULTILINE | re.DOTALL)
@@ -147,7 +147,7 @@ def test_the_search_of_hard_functions():
             made.append(of(x))
             return made[-1]
 
-        search.search(ask, dimensions, 400)
+        optimum.search(ask, dimensions, 400)
         return min(made)
 
     assert least(lambda x: (0.0, 16 * (x[1] - x[0] ** 2) ** 2 + (1 - 1.3 * x[0]) ** 2), 2)[1] < 1e-5  # a bent valley

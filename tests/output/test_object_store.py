@@ -11,7 +11,7 @@ import pytest
 
 from tmm_sheets.__main__ import run
 from tmm_sheets.output import build_store
-from tmm_sheets.output.object_store import ObjectStore, Url, place
+from tmm_sheets.output.build_store import ObjectStore, Url, place
 
 fsspec = pytest.importorskip("fsspec", reason="fsspec is not installed")
 CAMS = ["lugansk/cam_flat", "lugansk/cam_rocker"]

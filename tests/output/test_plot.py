@@ -11,7 +11,7 @@ from ezdxf.addons import acadctb
 from PIL import Image
 
 from tmm_sheets.__main__ import run
-from tmm_sheets.backends import dxf, plot_file
+from tmm_sheets.backends import dxf, hpgl
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Drawing
@@ -101,7 +101,7 @@ def test_outline_and_bar(sheet):
     machine = plotter("a1")
 
     def extent(**look):
-        strokes = plot_file.read(plot.job(sheet, "s", plot.PlotLook(machine, **look)).data, machine).strokes
+        strokes = hpgl.read(plot.job(sheet, "s", plot.PlotLook(machine, **look)).data, machine).strokes
         points = np.concatenate([s.points for s in strokes])
         return points.real.min(), points.real.max()
 

@@ -5,10 +5,10 @@ from itertools import islice
 import pytest
 
 from tests.project_files import EVEN, SLIDER, write
+from tmm_sheets import files
 from tmm_sheets.__main__ import run
-from tmm_sheets.cli import watch
+from tmm_sheets.cli import build as build_commands
 from tmm_sheets.errors import BadInput
-from tmm_sheets.output import watching
 
 
 def test_scheme_and_views(tmp_path, monkeypatch, capsys):
@@ -47,8 +47,8 @@ def test_a_watch_outlives_any_error(error, tmp_path, monkeypatch, capsys):
         built.append(project)
 
     file = write(tmp_path, SLIDER, EVEN)
-    monkeypatch.setattr(watching, "saved", lambda paths: iter((None, None)))
-    monkeypatch.setattr(watch, "build_one", build)
+    monkeypatch.setattr(files, "saved", lambda paths: iter((None, None)))
+    monkeypatch.setattr(build_commands, "build_one", build)
     assert run(["watch", file, "--lang", "en"]) == 0
     assert built == [file]
     assert len(capsys.readouterr().err.splitlines()) == 2
@@ -57,5 +57,5 @@ def test_a_watch_outlives_any_error(error, tmp_path, monkeypatch, capsys):
 def test_each_time_a_file_is_saved(tmp_path):
     file, waits = tmp_path / "own.toml", iter(["first", "second"])
     file.write_text("")
-    seen = watching.saved([file, tmp_path / "none"], lambda seconds: file.write_text(next(waits) * 3))
+    seen = files.saved([file, tmp_path / "none"], lambda seconds: file.write_text(next(waits) * 3))
     assert len([*islice(seen, 3)]) == 3

@@ -15,8 +15,8 @@ import pytest
 
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
-from tmm_sheets.page import choice, doors, guard, jobs, serving
-from tmm_sheets.page.shown import Shown, following
+from tmm_sheets.page import doors, jobs, serving
+from tmm_sheets.page.doors import Shown, followed_file
 from tmm_sheets.page.workers import Languages, Limits, Workers
 from tmm_sheets.task import keys
 
@@ -67,7 +67,7 @@ def test_every_shipped_project_can_be_chosen(client):
     assert {v["name"] for task in tasks for v in task["variants"]} == set(catalogue.shipped())
     assert {task["machine"] for task in tasks if task["machine"]} == {f"transport/{m}" for m in
                                                                      ("diesel", "press", "compressor", "crusher")}
-    assert len(tasks) == sum(len(manual["tasks"]) for manual in choice.manuals()) < 30
+    assert len(tasks) == sum(len(manual["tasks"]) for manual in doors.manuals()) < 30
 
 
 def test_families_that_work_cannot_open_are_not_offered(client, monkeypatch):
@@ -381,13 +381,13 @@ def test_a_file_too_large_for_the_memory_is_stopped():
 def test_a_request_that_does_not_end_is_not_waited_for(monkeypatch):
     async def begun():
         pieces = [{"type": "http.request", "body": b"a", "more_body": True}]
-        receive = guard._counted(lambda: asyncio.sleep(0 if pieces else 60, pieces.pop() if pieces else None), 10)
+        receive = doors._counted(lambda: asyncio.sleep(0 if pieces else 60, pieces.pop() if pieces else None), 10)
         assert (await receive())["body"] == b"a"
-        with pytest.raises(guard.HTTPException) as refused:
+        with pytest.raises(doors.HTTPException) as refused:
             await receive()
         return refused.value.status_code
 
-    monkeypatch.setattr(guard, "SILENT", 0.05)
+    monkeypatch.setattr(doors, "SILENT", 0.05)
     assert asyncio.run(begun()) == 408
 
 
@@ -449,7 +449,7 @@ def test_a_file_is_followed(tmp_path):
     path.write_text(CAM, encoding="utf-8")
 
     async def saved():
-        texts = following(path).saved()
+        texts = followed_file(path).saved()
         waits = asyncio.create_task(anext(texts))
         await asyncio.sleep(0.1)
         path.write_text("schema = 1\n", encoding="utf-8")

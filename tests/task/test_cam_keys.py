@@ -5,7 +5,7 @@ import pytest
 from tests import project_files
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import variant
-from tmm_sheets.task.cam_keys import EXAMPLES, FOLLOWER_KEYS
+from tmm_sheets.task.cam_table import EXAMPLES, FOLLOWER_KEYS
 
 COMMON = {"law": '"sine"', "rise": '"100 deg"', "fall": '"70 deg"'}
 

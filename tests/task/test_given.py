@@ -2,7 +2,7 @@
 
 import pytest
 
-from tmm_sheets.task import given
+from tmm_sheets.task import units
 
 
 @pytest.mark.parametrize(("name", "letters"), [
@@ -10,7 +10,7 @@ from tmm_sheets.task import given
     ("m_{2} = m_{4}", "m_{2} = m_{4}"), ("speed", "speed"), ("z_1′", "z_{1}′"), ("h_a*", "h_a*"), ("λ", "λ"),
 ])
 def test_letters(name, letters):
-    assert given.symbol(name) == letters
+    assert units.symbol(name) == letters
 
 
 @pytest.mark.parametrize(("text", "number", "unit"), [
@@ -18,10 +18,10 @@ def test_letters(name, letters):
     ("1/0", "", ""), ("3 apples", "", ""), ("", "", ""),
 ])
 def test_numbers(text, number, unit):
-    assert given.split(text) == (number, unit)
+    assert units.split_printed(text) == (number, unit)
 
 
 def test_values():
-    weight, delta = given.printed({"G2": "0,5 kN", "delta": "1/80"})
+    weight, delta = units.printed({"G2": "0,5 kN", "delta": "1/80"})
     assert (weight.value, weight.unit) == (500.0, "kN")
     assert delta.value == 1 / 80

@@ -7,14 +7,14 @@ from tmm_sheets import api, catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput
 from tmm_sheets.output import roster
-from tmm_sheets.task import title_entries, user_folder
+from tmm_sheets.task import families, title_entries
 from tmm_sheets.task.title_entries import Names, TitleEntry, given
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv(user_folder.FOLDER, str(tmp_path / "of user"))
+    monkeypatch.setenv(families.CONFIG_FOLDER, str(tmp_path / "of user"))
     (tmp_path / "of user").mkdir()
     return tmp_path
 

@@ -19,11 +19,24 @@ from functools import cache
 from io import StringIO
 from itertools import count, islice
 from math import cos, degrees, pi, sin
-from pathlib import Path
 from typing import Any, Literal
 
-from tmm_sheets.backends.dxf_entities import entity, extents, flat, head, letter_strokes, place, short
-from tmm_sheets.backends.dxf_frame import COMMON, DIMENSION_STYLE, FONT_FILE, LETTERS, OWN, DxfFrame, SheetParts
+from tmm_sheets.backends.dxf_frame import (
+    COMMON,
+    DIMENSION_STYLE,
+    FONT_FILE,
+    LETTERS,
+    OWN,
+    DxfFrame,
+    SheetParts,
+    entity,
+    extents,
+    flat,
+    head,
+    letter_strokes,
+    place,
+    short,
+)
 from tmm_sheets.backends.dxf_frame import weight as weight
 from tmm_sheets.drawing.dashes import interrupted, strokes
 from tmm_sheets.drawing.ink import check
@@ -31,7 +44,6 @@ from tmm_sheets.drawing.layers import layer
 from tmm_sheets.drawing.lettering import BAR, PEN, advance, glyph, lacking, letter
 from tmm_sheets.drawing.marks import Dimension, Drawing, Form, FormField, Mark, Text, View
 from tmm_sheets.drawing.styles import line_type, line_types
-from tmm_sheets.files import put
 from tmm_sheets.resources import template
 
 TEXT_LAYER = "TEXT"
@@ -310,19 +322,6 @@ def frame(width: float, height: float) -> DxfFrame:
 
 
 Lettering = Literal["live", "librecad", "strokes"]
-
-
-def write(drawing: Drawing, path: Path, text: Lettering = "live") -> None:
-    """Write a drawing as DXF R2010.
-
-    Raises
-    ------
-    ValueError
-        When a mark has coordinates that are not finite or a letter is missing from the font.
-    OSError
-        When the file cannot be written; nothing is left behind.
-    """
-    put({path: render(drawing, text)})
 
 
 def render(drawing: Drawing, text: Lettering = "live") -> bytes:

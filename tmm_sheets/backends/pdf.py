@@ -11,7 +11,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from hashlib import md5
 from io import BytesIO
 from math import ceil, cos, isfinite, pi, sin, tan
-from pathlib import Path
 from time import gmtime, strftime
 from typing import Any, NamedTuple
 
@@ -26,7 +25,7 @@ from tmm_sheets.drawing.dashes import strokes
 from tmm_sheets.drawing.layers import layer, roles
 from tmm_sheets.drawing.marks import Arc, Box, Drawing, Fill, Line, Mark, Text
 from tmm_sheets.drawing.styles import line_type
-from tmm_sheets.files import put, source_date
+from tmm_sheets.files import source_date
 from tmm_sheets.resources import template
 from tmm_sheets.words import paper, tr
 
@@ -43,19 +42,6 @@ class _FastFlate(pdfdoc.PDFStreamFilterZCompress):  # type: ignore[misc]
 
     def encode(self, text: str | bytes) -> bytes:
         return zlib.compress(text.encode("latin-1") if isinstance(text, str) else text, 1)
-
-
-def write(drawing: Drawing, path: Path) -> None:
-    """Write a drawing as a one-page PDF of its paper size, 1:1.
-
-    Raises
-    ------
-    ValueError
-        When a mark has coordinates that are not finite or a letter is missing from the font.
-    OSError
-        When the file cannot be written; nothing is left behind.
-    """
-    put({path: render(drawing)})
 
 
 def render(drawing: Drawing, date: int | None = None) -> bytes:

@@ -10,7 +10,6 @@ import struct
 import zlib
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,25 +21,11 @@ from matplotlib.transforms import Affine2D
 from tmm_sheets.drawing.clipping import polyline_inside
 from tmm_sheets.drawing.ink import SAGITTA, InkStroke, ink
 from tmm_sheets.drawing.marks import Box, Drawing, Points
-from tmm_sheets.files import put
 
 DPI = 150.0
 LEAST_DPI, MOST_DPI = 10.0, 1200.0
 BAND = 8_000_000  # pixels drawn at a time
 INCH = 25.4
-
-
-def write(drawing: Drawing, path: Path, dpi: float = DPI) -> None:
-    """Write a drawing as PNG with ``dpi`` dots per inch.
-
-    Raises
-    ------
-    ValueError
-        When a mark has coordinates that are not finite or a letter is missing from the font.
-    OSError
-        When the file cannot be written; nothing is left behind.
-    """
-    put({path: render(drawing, dpi)})
 
 
 def render(drawing: Drawing, dpi: float = DPI) -> bytes:

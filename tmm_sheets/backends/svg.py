@@ -10,7 +10,6 @@ import re
 from cmath import exp
 from collections.abc import Iterable, Sequence
 from math import ceil, pi
-from pathlib import Path
 
 import numpy as np
 
@@ -20,23 +19,9 @@ from tmm_sheets.drawing.ink import check, letters
 from tmm_sheets.drawing.lettering import PEN
 from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Mark, Polyline, Text
 from tmm_sheets.drawing.styles import line_type
-from tmm_sheets.files import put
 from tmm_sheets.words import paper
 
 PIECE = pi / 2  # an arc is written in pieces: the centre of a half turn hangs on the last digit of its ends
-
-
-def write(drawing: Drawing, path: Path) -> None:
-    """Write a drawing as SVG, 1:1.
-
-    Raises
-    ------
-    ValueError
-        When a mark has coordinates that are not finite or a letter is missing from the font.
-    OSError
-        When the file cannot be written; nothing is left behind.
-    """
-    put({path: render(drawing)})
 
 
 def render(drawing: Drawing) -> bytes:

@@ -1,4 +1,4 @@
-"""The commands: arguments in, files and messages out; no mechanics. Each has a module of its name, imported when it is asked for.
+"""The commands: arguments in, files and messages out; no mechanics. Their modules are imported when they are asked for.
 
 Everything heavy is imported where it is used.
 """
@@ -6,6 +6,7 @@ Everything heavy is imported where it is used.
 from __future__ import annotations
 
 from importlib import import_module
+from typing import cast
 
 import click
 
@@ -13,13 +14,15 @@ from tmm_sheets import spelling
 from tmm_sheets.localized_cli import Group, Option
 from tmm_sheets.version import __version__
 
-NAMES = ("bench", "build", "check", "compare", "family", "list", "new", "note", "optimise", "page", "plot", "protocol", "record",
-         "roster", "serve", "show", "solve", "stress", "watch", "why")  # fmt: skip
+MODULES = {"build": "build roster watch", "compare": "compare", "lab": "bench stress", "plot": "plot",
+           "reading": "check protocol record show solve why", "tasks": "family list new", "writing": "note optimise page serve"}
+"""The commands of each module, there under their names with ``run_`` before."""
+NAMES = tuple(sorted(" ".join(MODULES.values()).split()))
 """The commands."""
 
 
 class Commands(Group):
-    """The commands, each of the module that has its name."""
+    """The commands, each of its module."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Their names."""
@@ -27,10 +30,10 @@ class Commands(Group):
 
     def get_command(self, ctx: click.Context | None, cmd_name: str) -> click.Command | None:
         """The command of a name, None where there is none."""
-        if cmd_name not in NAMES:
-            return None
-        found: click.Command = import_module(f"tmm_sheets.cli.{cmd_name}").run
-        return found
+        for module, names in MODULES.items():
+            if cmd_name in names.split():
+                return cast(click.Command, getattr(import_module(f"tmm_sheets.cli.{module}"), f"run_{cmd_name}"))
+        return None
 
     def every(self) -> dict[str, click.Command]:
         """All of them, by name."""

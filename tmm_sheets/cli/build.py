@@ -1,22 +1,39 @@
-"""``build``: the sheets."""
+"""``build``, ``watch``, ``roster``: the sheets of one project or of many, once or each time their file is saved."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from tmm_sheets import kept, words
-from tmm_sheets.cli import opening
-from tmm_sheets.cli.batches import come_of, say_stopped
-from tmm_sheets.cli.options import CORRECTED, DASK, JOBS, NO_CACHE, REMAKE, SHEETS, formats_of, on_paper, plotter, titled
-from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
+from tmm_sheets import catalogue, encodings, files, kept, quoting, words
+from tmm_sheets.cli.options import (
+    CORRECTED,
+    DASK,
+    JOBS,
+    NO_CACHE,
+    PROJECT,
+    REMAKE,
+    SHEETS,
+    folder_of,
+    formats_of,
+    on_paper,
+    plotter,
+    put,
+    read_variant,
+    title_names,
+    titled,
+)
+from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of, told_of
 from tmm_sheets.localized_cli import argument, command, option
+from tmm_sheets.progress import Bar, Progress
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.plotters import Plotter
+    from tmm_sheets.output.batch import Outcome
     from tmm_sheets.output.building import Order
     from tmm_sheets.project import Project
 
@@ -50,7 +67,7 @@ if TYPE_CHECKING:
               "svg, png or pdf.")
 @option("--open", "show_files", is_flag=True, help="Open what was made: one file, or its folder.")
 @option("--explain", is_flag=True, help="Also tell what was built and evaluated, and how long it took.")  # fmt: skip
-def run(
+def run_build(
     projects: tuple[str, ...], families: tuple[str, ...], lists: tuple[str, ...], corrected: bool, sheets: tuple[int, ...],
     formats: tuple[str, ...], dpi: float, machine: Plotter | None, text: str, one_file: bool, output: Path | None,
     archive: bool, force: bool, jobs: int | None, scheduler: str | None, with_note: bool, views: bool,
@@ -61,15 +78,14 @@ def run(
         raise click.UsageError(tell("Missing argument 'PROJECT'; or give --all FAMILY, or --list FILE."))
     if one_file and "pdf" not in formats:
         raise click.UsageError(tell("--one-file is for PDF: add pdf to --format"))
-    from tmm_sheets import files
+    from tmm_sheets.output.build_store import place
     from tmm_sheets.output.building import Order
-    from tmm_sheets.output.object_store import place
 
     output = None if output is None else place(output)
     settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": machine}, "dxf": {"text": text},
                                            "pdf": {"date": files.source_date()}}  # fmt: skip
     order = Order(sheets, formats, settings, corrected, force, archive, one_file, words.asked(), words.reader(), kept.used(),
-                  opening.names())
+                  title_names())
     if len(projects) == 1 and not families and not lists:
         if jobs is not None or scheduler is not None:
             raise click.UsageError(tell("--jobs and --dask are for several projects"))
@@ -120,7 +136,6 @@ def _listed(file: str) -> list[str]:
     """Lines of a list of projects, of standard input for -."""
     import sys
 
-    from tmm_sheets import encodings, files
 
     hint = tell("a list names a project in each line, in UTF-8")
     try:
@@ -137,35 +152,34 @@ def build_one(project: str, order: Order, output: Path | None, explain: bool = F
     """Build the sheets of one project and what goes with them, and tell the files and what is to be said of them."""
     from contextlib import nullcontext
 
-    from tmm_sheets.explain import Stopwatch
     from tmm_sheets.output.building import build as build_project
-    from tmm_sheets.progress import Progress
+    from tmm_sheets.progress import Stopwatch
 
     watch = Stopwatch()
     with watch.phase(tell("read")):
-        variant = opening.read_variant(project, order.corrected)
-    folder = opening.folder_of(variant, output)
+        variant = read_variant(project, order.corrected)
+    folder = folder_of(variant, output)
     outlet = order.outlet(folder)
     if explain:
-        from tmm_sheets.askers import listening
+        from tmm_sheets.explain import listening
     with Progress() as progress, listening() if explain else nullcontext() as askers:
         if with_note:
             from tmm_sheets.note import note as writing
 
             words.set_paper(words.of_project(variant.project.language))
             with watch.phase(tell("pages of the note")):
-                variant = writing.run_on(variant, lambda what: progress.say(f"{what} ..."))
-        built = build_project(variant, order, outlet, watch, lambda what: progress.say(f"{what} ..."))
+                variant = writing.run_on(variant, progress.doing)
+        built = build_project(variant, order, outlet, watch, progress.doing)
         paths, warnings = built.paths, built.warnings
         if with_note:
 
             with watch.phase(tell("note")):
-                written = writing.write(built.opened, ("pdf",), lambda what: progress.say(f"{what} ..."))
-                noted, kept = opening.put(folder, written.files, order.force)
+                written = writing.write(built.opened, ("pdf",), progress.doing)
+                noted, kept = put(folder, written.files, order.force)
             paths += noted
             warnings += (*kept, *(tell("left out: {problem}").format(problem=problem) for problem in written.problems))
         if views:
-            pictured, kept = opening.put(folder / "views", _pictures(built.opened, order), order.force)
+            pictured, kept = put(folder / "views", _pictures(built.opened, order), order.force)
             paths += pictured
             warnings += tuple(kept)
     for path in paths:
@@ -198,3 +212,98 @@ def _pictures(opened: Project, order: Order) -> dict[str, bytes]:
     drawn = sheet.attempt(opened, chosen(opened.variant, order.sheets)).drawn
     dpi = order.settings["png"]["dpi"]
     return {name: data for n, composed in drawn.items() for name, data in view_pictures.of_sheet(n, composed, formats, dpi)}
+
+
+@command("watch")
+@PROJECT
+@CORRECTED
+@titled
+@SHEETS
+@formats_of("pdf")
+@option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR", help="Folder of the sheets.  [default: out/<project>]")
+def run_watch(project: str, corrected: bool, sheets: tuple[int, ...], formats: tuple[str, ...], output: Path | None) -> None:
+    """Draw the sheets of a project file each time it is saved, until Ctrl-C."""
+    from tmm_sheets.output.building import Order
+    from tmm_sheets.task import title_entries
+
+    if catalogue.is_shipped(project):
+        raise click.UsageError(tell("{project} is a shipped project, which nobody changes: {command}").format(
+            project=project, command=quoting.command("new", "my", "--from", project)))
+    path = catalogue.located(project)
+    click.echo(tell("watching {file}, Ctrl-C ends it").format(file=path), err=True)
+    for _ in files.saved((path, path.parent / title_entries.FILE)):
+        try:
+            order = Order(sheets, formats, {}, corrected, language=words.asked(), reader=words.reader(), kept=kept.used(),
+                          names=title_names())
+            build_one(project, order, output)
+        except BrokenPipeError:
+            raise  # nobody listens
+        except Exception as e:
+            click.echo(told_of(e), err=True)
+
+
+@command("roster")
+@argument("table", metavar="FILE", type=click.Path(path_type=Path))
+@option("--task", default="", metavar="PROJECT", help="Task of those for whom the table names none, or a machine for its ciphers.")
+@CORRECTED
+@titled
+@formats_of("dxf,pdf")
+@option("-o", "--output", type=click.Path(path_type=Path), default=Path("out"), show_default=True, metavar="DIR",
+        help="Folder with one for each student.")
+@REMAKE
+@JOBS
+@DASK
+@NO_CACHE
+def run_roster(table: Path, task: str, corrected: bool, formats: tuple[str, ...], output: Path, force: bool, jobs: int | None,
+               scheduler: str | None) -> None:
+    """Make the work of a whole group: for each student of a CSV FILE sheets, note, living page, a table to fill in."""
+    from tmm_sheets.output import batch, build_store
+    from tmm_sheets.output import roster as rosters
+    from tmm_sheets.output.build_store import place
+    from tmm_sheets.output.building import Order
+
+    students = rosters.read(table, task)
+    output = place(output)
+    build_store.check(output)
+    settings: dict[str, dict[str, Any]] = {"pdf": {"date": files.source_date()}}
+    order = Order((), formats, settings, corrected, force, False, False, words.asked(), words.reader(), kept.used(),
+                  title_names())
+    works = [batch.Task(s.project, s.folder, s.student, s.group) for s in students]
+    came, stopped = come_of(batch.on(works, order, output, jobs, scheduler), len(works))
+    done = {outcome.folder: outcome for outcome in came}
+    written, hand = put(output, rosters.lists(students, done, output), force)
+    for s in students:
+        if s.renamed:
+            click.echo(s.renamed, err=True)
+        for warning in done[s.folder].warnings if s.folder in done else ():
+            click.echo(f"{s.student}: {warning}", err=True)
+    for line in hand:
+        click.echo(line, err=True)
+    click.echo(rosters.told(students, done))
+    for path in written:
+        click.echo(path)
+    if stopped is not None:
+        say_stopped(len(students) - len(done), len(students))
+        raise stopped
+    failed = [s for s in students if done[s.folder].problem]
+    if failed:
+        raise CannotBuild("\n".join(f"{s.student}: {done[s.folder].problem}" for s in failed))
+
+
+def come_of(running: Iterable[Outcome], total: int) -> tuple[list[Outcome], KeyboardInterrupt | None]:
+    """Outcomes of a batch as they come, with a bar; and what told it to end before."""
+    done: list[Outcome] = []
+    try:
+        with Bar(total) as bar:
+            for outcome in running:
+                done.append(outcome)
+                bar.step(bool(outcome.problem))
+    except KeyboardInterrupt as e:
+        return done, e
+    return done, None
+
+
+def say_stopped(left: int, total: int) -> None:
+    """Tell how many of a batch are left after Ctrl-C."""
+    said = tell("stopped, {n} of {total} projects left; the same command goes on from there")
+    click.echo(said.format(n=left, total=total), err=True)

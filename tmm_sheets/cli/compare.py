@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tmm_sheets.cli import opening
-from tmm_sheets.cli.options import CORRECTED, NO_CACHE, PROJECT
+from tmm_sheets import files
+from tmm_sheets.cli.options import CORRECTED, NO_CACHE, PROJECT, folder_of, open_project
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.localized_cli import command, option
+from tmm_sheets.progress import Progress
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ if TYPE_CHECKING:
 @NO_CACHE
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
               help="Folder of the template and the overlays.  [default: out/<project>]")  # fmt: skip
-def run(
+def run_compare(
     project: str, corrected: bool, template: bool, everything: bool, measured: Path | None, sheet: int | None,
     image: Path | None, read_numbers: bool, views: Path | None, dxf: Path | None, group: Path | None, marks: Path | None,
     pencil: float, reading: float, target: str | None, pages: tuple[Path, ...], output: Path | None,
@@ -60,33 +61,28 @@ def run(
     if read_numbers and image is None:
         raise click.UsageError(tell("--read-numbers goes with --image FILE"))
     _check_pages(pages)
-    from tmm_sheets import files
-    from tmm_sheets.progress import Progress
 
     scheme = None
     if marks is not None:
         from tmm_sheets.compare import marking
 
         scheme = marking.read(marks)
-    opened = opening.open_project(project, corrected)
-    folder = opening.folder_of(opened.variant, output)
+    opened = open_project(project, corrected)
+    folder = folder_of(opened.variant, output)
     with Progress() as progress:
-        def say(what: str) -> None:
-            progress.say(f"{what} ...")
-
         if template:
             from tmm_sheets.compare.measured import measured_lengths as by_ruler
 
-            report = by_ruler.template(opened, folder, everything, say)
+            report = by_ruler.template(opened, folder, everything, progress.doing)
         elif group is not None:
-            report = _of_group(group, opened, corrected, scheme, pencil, reading, say)
+            report = _of_group(group, opened, corrected, scheme, pencil, reading, progress.doing)
         else:
             from tmm_sheets.api import compared
 
             kinds: dict[Kind, Path | None] = {"measured": measured, "image": image, "dxf": dxf}
             ((kind, path),) = [(kind, path) for kind, path in kinds.items() if path is not None]
             try:
-                report = compared(opened, kind, path, sheet, views, pencil, reading, read_numbers, say)
+                report = compared(opened, kind, path, sheet, views, pencil, reading, read_numbers, progress.doing)
             except CannotBuild as e:
                 files.write_all({folder / name: data for name, data in e.files.items()})
                 for name in e.files:
@@ -124,7 +120,7 @@ def _of_group(group: Path, opened: Project, corrected: bool, scheme: MarkingSche
         return compared(project, kind, path, sheet, None, pencil, reading)
 
     name = opened.variant.called
-    return whole.compare(group, name, lambda other: opened if other == name else opening.open_project(other, corrected), judged,
+    return whole.compare(group, name, lambda other: opened if other == name else open_project(other, corrected), judged,
                          scheme, say)
 
 

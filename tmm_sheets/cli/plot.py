@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING
 
 import click
 
+from tmm_sheets import files
 from tmm_sheets.box import Box
-from tmm_sheets.cli import opening
-from tmm_sheets.cli.options import CORRECTED, NO_CACHE, SHEETS, TITLE, on_paper, plotter, titled
+from tmm_sheets.cli.options import CORRECTED, NO_CACHE, SHEETS, TITLE, folder_of, on_paper, open_project, plotter, titled
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.localized_cli import argument, command, option
+from tmm_sheets.progress import Progress
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.plotters import Plotter
     from tmm_sheets.output.plot import Job, PlotLook
-    from tmm_sheets.progress import Progress
     from tmm_sheets.project import Project
 
 
@@ -55,7 +55,7 @@ def _window(context: click.Context, parameter: click.Parameter, value: str | Non
 @NO_CACHE
 @option("-o", "--output", type=click.Path(path_type=Path), metavar="DIR",
               help="Folder of the files.  [default: out/<project>]")  # fmt: skip
-def run(
+def run_plot(
     project: str, corrected: bool, sheets: tuple[int, ...], machine: Plotter | None, printer: str | None, tile: str | None,
     overlap: float, bar: bool, outline: str, window: Box | None, preview: bool, dpi: float, ctb: bool, dry_run: bool,
     output: Path | None,
@@ -63,9 +63,7 @@ def run(
     """Put the sheets of PROJECT on paper, 1:1, or send a FILE made before (.plt, .pdf)."""
     if machine is not None and tile is not None:
         raise click.UsageError(tell("--tile cuts a PDF; a plotter takes a sheet in parts with --window"))
-    from tmm_sheets import files
     from tmm_sheets.output import plot as plotting
-    from tmm_sheets.progress import Progress
 
     finished = project.lower().endswith(plotting.FILES)
     if finished and any((sheets, tile, bar, window, outline == "off", click.get_current_context().meta.get(TITLE))):
@@ -77,8 +75,8 @@ def run(
             jobs = {Path(project): plotting.ready(Path(project))}
             made: dict[Path, bytes] = {}
         else:
-            opened = opening.open_project(project, corrected)
-            folder = opening.folder_of(opened.variant, output)
+            opened = open_project(project, corrected)
+            folder = folder_of(opened.variant, output)
             if not dry_run:
                 files.check_folder(folder)
             look = plotting.PlotLook(machine, tile, overlap, bar, outline == "on", window)
@@ -114,7 +112,7 @@ def _plots(opened: Project, sheets: tuple[int, ...], look: PlotLook, folder: Pat
     from tmm_sheets.output.building import chosen
     from tmm_sheets.sheets import pages, sheet
 
-    attempt = sheet.every(opened, lambda what: progress.say(f"{what} ..."), chosen(opened.variant, sheets))
+    attempt = sheet.every(opened, progress.doing, chosen(opened.variant, sheets))
     problem = attempt.problem()
     jobs: list[Job] = []
     for n, composed in attempt.drawn.items():

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets import files, words
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.explain import Stopwatch
 from tmm_sheets.output.build_store import (
     BuildRecord,
     Outlet,
@@ -23,6 +22,7 @@ from tmm_sheets.output.build_store import (
     record_of,
 )
 from tmm_sheets.program import fingerprint, program
+from tmm_sheets.progress import Stopwatch
 from tmm_sheets.task.title_entries import Names
 from tmm_sheets.words import tell
 

@@ -201,10 +201,10 @@ def preview(plot: Job, plotter: Plotter, dpi: float) -> dict[str, bytes]:
     stem = Path(plot.name).stem
     if not plot.name.lower().endswith(PLOT_FILES):
         return {f"{stem}-preview{page}.png": data for page, data in _pages(plot.data, dpi)}
-    from tmm_sheets.backends import plot_file, png
+    from tmm_sheets.backends import hpgl, png
 
     try:
-        read = plot_file.read(plot.data, plotter)
+        read = hpgl.read(plot.data, plotter)
     except ValueError as e:
         raise BadInput(f"{plot.name}: {e}") from None
     reach = plotter.reach

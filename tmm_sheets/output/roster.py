@@ -14,17 +14,13 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from tmm_sheets import catalogue, csv_tables, files, spelling
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
-from tmm_sheets.output.handouts import KINDS
+from tmm_sheets.output.batch import KINDS, Outcome
 from tmm_sheets.task import families
 from tmm_sheets.task.letters import title_text
 from tmm_sheets.words import both, either, every, tell
-
-if TYPE_CHECKING:
-    from tmm_sheets.output.batch import Outcome
 
 COLUMNS = {
     "student": ("student", "name", "surname", "студент", "фамили", "прізвищ", "фио", "піб"),

@@ -9,12 +9,14 @@ import threading
 from collections.abc import Callable
 from importlib.util import find_spec
 from secrets import token_urlsafe
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import quoting
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of
-from tmm_sheets.page.shown import Shown
 from tmm_sheets.words import both, tell
+
+if TYPE_CHECKING:
+    from tmm_sheets.page.doors import Shown
 
 PORT = 8731
 """Where it listens unless told: another free one where somebody is there already."""

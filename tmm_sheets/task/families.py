@@ -10,17 +10,23 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+import tomllib
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from functools import cache, lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from string import Template
+from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import files, resources
-from tmm_sheets.task import family_listing, user_folder
 
 if TYPE_CHECKING:
     from tmm_sheets.task.family_folder import FolderFamily
+
+FILE, PATH, GROUP = "family.toml", "TMM_SHEETS_PATH", "tmm_sheets.families"
+"""File of a folder that is a family, environment variable and entry points that tell where there are some."""
+CONFIG_FOLDER = "TMM_SHEETS_CONFIG"
+"""Environment variable that names the user's folder; empty for none."""
 
 
 @cache
@@ -49,11 +55,44 @@ def names() -> Iterator[str]:
     """Names of all families' projects; none of a folder that cannot be read."""
     for folder in (*(resources.variants() / name for name in known()), *folders().values()):
         with suppress(OSError, ValueError, LookupError, TypeError, AttributeError):  # somebody has not finished it
-            yield from family_listing.listed(folder)
+            yield from listed(folder)
 
 
-FILE, PATH, GROUP = "family.toml", "TMM_SHEETS_PATH", "tmm_sheets.families"
-"""File of a folder that is a family, environment variable and entry points that tell where there are some."""
+def listed(folder: Path) -> Iterator[str]:
+    """Names of a family's projects, as ``list`` shows them: of each machine the example, or all ciphers that ``shown`` has."""
+    rules = _rules(folder)
+    for name, machine in rules["machine"].items():
+        for cipher in rules.get("shown") or [machine.get("example") or rules["example"]]:
+            yield f"{folder.resolve().name}/{name}{rules.get('separator', '@')}{cipher}"
+
+
+def heading(folder: Path, project: str) -> dict[str, Any]:
+    """Table ``[project]`` of one of these names; a KeyError where it needs what tables have."""
+    rules = _rules(folder)
+    called, _, cipher = project.partition("/")[2].partition(rules.get("separator", "@"))
+    machine = rules["machine"][called]
+    about = {"name": project, "machine": called, "cipher": cipher, "title": machine.get("title") or called}
+    return table_of_heading(files.named(machine["scheme"][0], folder, folder).read_text(encoding="utf-8-sig"), about)
+
+
+def table_of_heading(text: str, fields: Mapping[str, str] | None = None) -> dict[str, Any]:
+    """Table ``[project]`` of a project file, or of a scheme with the ``fields`` that are filled in there; no other is read."""
+    rest = re.split(r"^\[project\]$", text, maxsplit=1, flags=re.MULTILINE)[1]
+    heading = re.split(r"^\[", rest, maxsplit=1, flags=re.MULTILINE)[0]
+    return tomllib.loads(Template(heading).substitute(fields) if fields else heading)
+
+
+def user_folder() -> Path | None:
+    """Where the user's own settings and families are, or would be; None without such a folder, or for work on data of strangers."""
+    if files.confined():
+        return None
+    told = os.environ.get(CONFIG_FOLDER)
+    if told is not None:
+        return Path(told) if told else None
+    from platformdirs import user_config_dir
+
+    found = Path(user_config_dir("tmm-sheets", appauthor=False))
+    return found if found.is_absolute() else None  # nobody's home
 
 
 def folders() -> dict[str, Path]:
@@ -65,6 +104,18 @@ def folders() -> dict[str, Path]:
     for name, folder in _installed():
         found.setdefault(name, folder)
     return {name: folder for name, folder in found.items() if name not in known()}
+
+
+def _rules(folder: Path) -> dict[str, Any]:
+    """What ``family.toml`` of a folder says; nothing is checked."""
+    path = folder / FILE
+    return _parsed(path, path.stat().st_mtime_ns)
+
+
+@lru_cache(maxsize=64)
+def _parsed(path: Path, changed: int) -> dict[str, Any]:
+    """A family's rules, read once however many of its projects are listed."""
+    return tomllib.loads(path.read_text(encoding="utf-8-sig"))
 
 
 def _folder(name: str) -> Path | None:
@@ -80,7 +131,7 @@ def _places() -> Iterator[Path]:
     if files.confined():
         return
     yield Path()
-    user = user_folder.folder()
+    user = user_folder()
     if user is not None:
         yield user / "families"
     yield from (Path(place) for place in os.environ.get(PATH, "").split(os.pathsep) if place)

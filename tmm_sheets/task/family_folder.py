@@ -19,13 +19,11 @@ from pydantic import Field, ValidationError
 
 from tmm_sheets import files, spelling
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.task import family_listing, family_tables, formulas, toml_file
-from tmm_sheets.task.cipher_form import Cipher, CipherForm, CipherTable, of_signs
-from tmm_sheets.task.family_tables import Choice, Row
-from tmm_sheets.task.filling import SOURCE, filled
+from tmm_sheets.task import family_tables, toml_file
+from tmm_sheets.task.family_tables import SOURCE, Choice, Cipher, CipherForm, CipherTable, Row, filled, of_signs
 from tmm_sheets.task.messages import said
-from tmm_sheets.task.misprint import Misprint
 from tmm_sheets.task.schema import Table
+from tmm_sheets.task.variant import Misprint
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
@@ -138,22 +136,13 @@ class FolderFamily:
     def __init__(self, folder: Path) -> None:
         self.folder, self.name = folder, folder.resolve().name
         file = str(folder / FILE)
-        try:
-            text, _ = toml_file.text_of(folder / FILE, LARGEST)
-        except (FileNotFoundError, NotADirectoryError):
-            raise BadInput(Problem(tell("no such file"), file,
-                                   hint=tell("a family of tasks is a folder with family.toml"))) from None
-        data, lines = toml_file.parsed(text, file)
+        _, data, lines = toml_file.read(folder / FILE, LARGEST, tell("a family of tasks is a folder with family.toml"))
         try:
             self.rules = FamilyTable.model_validate(data)
         except ValidationError as e:
             raise BadInput(toml_file.problem(file, lines, *said(error, FamilyTable)) for error in e.errors()) from None
 
     # --- what families offer ----------------------------------------------------------------------------------------------
-
-    def names(self) -> tuple[str, ...]:
-        """Every machine with a cipher."""
-        return tuple(family_listing.listed(self.folder))
 
     def every(self, machine: str) -> Iterator[str]:
         """Names of a machine with all ciphers, evenly spread where there are too many."""
@@ -297,7 +286,7 @@ class FolderFamily:
 
     def _value(self, formula: str, numbers: Mapping[str, float], field: str) -> float:
         try:
-            return formulas.value(formula, numbers)
+            return family_tables.formula_value(formula, numbers)
         except ValueError as e:
             why = tell("{formula} cannot be computed: {why}").format(formula=formula, why=e)
             raise BadInput(Problem(why, str(self.folder / FILE), None, field)) from None
@@ -307,10 +296,7 @@ class FolderFamily:
 
     def _filled(self, scheme: str, values: Mapping[str, Choice]) -> str:
         path = self._file(scheme)
-        try:
-            text, _ = toml_file.text_of(path, LARGEST)
-        except FileNotFoundError:
-            raise BadInput(Problem(tell("no such file"), str(path))) from None
+        text, _ = toml_file.text_of(path, LARGEST)
         try:
             return filled(text, values)
         except ValueError:

@@ -1,4 +1,4 @@
-"""Tables of a family's variants, CSV or TOML, as a manual prints them, and what a cipher chooses in them.
+"""Tables of a family's variants, CSV or TOML, as a manual prints them, and what a cipher chooses in them; filling in a scheme.
 
 A table with a column ``key`` has a row for each quantity, and a column for each figure of a digit of the cipher (``0`` .. ``9``, or
 ``0..4``); which digit stands in the column ``digit``; ``symbol``, ``table`` and ``note`` are for the source. Any other table has a
@@ -8,16 +8,25 @@ begins with ``unit`` has their units. A TOML table has ``digit``, ``[unit]`` and
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import ast
+import itertools
+import math
+import operator
+import re
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from string import Template
 
+from pydantic import Field, field_validator
+
 from tmm_sheets import csv_tables
 from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets.spelling import latin
 from tmm_sheets.task import toml_file
-from tmm_sheets.words import tell
+from tmm_sheets.task.schema import Table
+from tmm_sheets.words import marked, tell
 
 ABOUT = ("table", "symbol")
 """Columns of what a quantity is called in the manual."""
@@ -104,10 +113,7 @@ def read(path: Path, digits: str) -> list[Row]:
 
 @lru_cache(64)
 def _read(path: Path, digits: str, changed: int) -> tuple[Row, ...]:
-    try:
-        text, _ = toml_file.text_of(path, LARGEST)
-    except FileNotFoundError:
-        raise BadInput(Problem(tell("no such file"), str(path))) from None
+    text, _ = toml_file.text_of(path, LARGEST)
     rows = [*(_of_toml(text, str(path)) if path.suffix == ".toml" else _of_csv(text, str(path)))]
     for row in rows:
         if unknown := [letter for letter in row.digit if letter not in digits]:
@@ -147,3 +153,171 @@ def _of_toml(text: str, file: str) -> Iterator[Row]:
         digit = data.get("digit", "")
         yield Row(key, str(data.get("unit", {}).get(key, "")), str(digit.get(key, "") if isinstance(digit, dict) else digit),
                   {str(n): str(cell) for n, cell in enumerate(cells)}, file, line)
+
+
+# --- schemes and formulas ---------------------------------------------------------------------------------------------
+
+
+def filled(scheme: str, values: Mapping[str, Choice]) -> str:
+    """A scheme with its values; behind each line what the numbers on it come from, unless the line says it, as in ``$l_source``.
+
+    Raises
+    ------
+    KeyError
+        for a name that is none of the values.
+    ValueError
+        for a sign $ that stands before no name.
+    """
+    lines = []
+    for line in scheme.splitlines():
+        keys = Template(line).get_identifiers()
+        line = Template(line).substitute({key: values[key].text for key in keys})
+        told = any(key.endswith(SOURCE) for key in keys)
+        sources = [part for part in dict.fromkeys(values[key].source for key in keys) if part and not told]
+        if sources:
+            written, _, comment = line.partition("#")
+            line = f"{written.rstrip()}  # {'; '.join(filter(None, (comment.strip(), *sources)))}".lstrip()
+        lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
+_TWO: dict[type[ast.operator], Callable[[float, float], float]] = {
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow}
+_OF_DEGREES: dict[str, Callable[[float], float]] = {
+    "sin": lambda x: math.sin(math.radians(x)), "cos": lambda x: math.cos(math.radians(x)),
+    "tan": lambda x: math.tan(math.radians(x)), "asin": lambda x: math.degrees(math.asin(x)),
+    "acos": lambda x: math.degrees(math.acos(x)), "atan": lambda x: math.degrees(math.atan(x))}
+KNOWN: dict[str, Callable[[float], float]] = {**_OF_DEGREES, "sqrt": math.sqrt, "abs": abs, "round": round}
+"""Functions of one number; angles are degrees."""
+
+
+def formula_value(text: str, numbers: Mapping[str, float]) -> float:
+    """The number that a formula gives; of a comparison, 1 where it holds.
+
+    Raises
+    ------
+    ValueError
+        for what is no formula, a name that is no number, or a number that there is not.
+    """
+    try:
+        return float(_value(ast.parse(text.strip().replace("^", "**"), mode="eval").body, numbers))
+    except (SyntaxError, ZeroDivisionError, OverflowError, TypeError, RecursionError) as e:
+        raise ValueError(str(e)) from None
+
+
+def _value(node: ast.expr, numbers: Mapping[str, float]) -> float:
+    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
+        return float(node.value)  # type: ignore[arg-type]
+    if isinstance(node, ast.Name) and (node.id in numbers or node.id == "pi"):
+        return numbers.get(node.id, math.pi)
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+        return -_value(node.operand, numbers)
+    if isinstance(node, ast.BinOp) and type(node.op) in _TWO:
+        return _TWO[type(node.op)](_value(node.left, numbers), _value(node.right, numbers))
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in KNOWN and len(node.args) == 1:
+        return KNOWN[node.func.id](_value(node.args[0], numbers))
+    if isinstance(node, ast.Compare) and [type(sign) for sign in node.ops] in ([ast.Lt], [ast.Gt]):
+        left, right = _value(node.left, numbers), _value(node.comparators[0], numbers)
+        return float(left < right if isinstance(node.ops[0], ast.Lt) else left > right)
+    raise ValueError(ast.unparse(node))
+
+
+# --- ciphers -----------------------------------------------------------------------------------------------------------
+
+
+MOST_CIPHERS = 1000
+"""Most ciphers that are gone through."""
+
+
+class CipherTable(Table):
+    """``[cipher]``, where digits at fixed places do not say it."""
+
+    form: str = Field(
+        description=marked('a regular expression with named parts, for example "(?P<year>[0-9]+)-(?P<number>[0-9]+)"'))
+    written: str = ""
+    """how it is printed, `$year-$number`; as it was typed unless told"""
+    letters: str = Field(description=marked('a letter for each digit that chooses, for example "abc"'))
+    digits: tuple[tuple[str, int], ...] = Field(
+        description=marked('the last digits of parts, for example [["year", 1], ["number", 2]]'))
+    padding: str = "0"
+    """what fills a part with too few digits, at its end"""
+    spelling: dict[str, str] = Field(default={})
+    """words in another alphabet"""
+
+    @field_validator("form")
+    @classmethod
+    def _compiles(cls, form: str) -> str:
+        try:
+            re.compile(form)
+        except re.error as e:
+            raise ValueError(str(e)) from None
+        return form
+
+
+def of_signs(signs: str) -> CipherTable:
+    """A cipher such as ``yy-Т-ab``: small Latin letters are digits; those that it has once choose."""
+    parts = [f"p{k}" if "a" <= sign <= "z" else "" for k, sign in enumerate(signs)]
+    form = "".join(f"(?P<{part}>[0-9])" if part else _either(sign) for part, sign in zip(parts, signs, strict=True))
+    chosen = [(part, sign) for part, sign in zip(parts, signs, strict=True) if part and signs.count(sign) == 1]
+    written = "".join(f"${{{part}}}" if part else sign.replace("$", "$$") for part, sign in zip(parts, signs, strict=True))
+    return CipherTable(form=form, written=written, letters="".join(sign for _, sign in chosen),
+                       digits=tuple((part, 1) for part, _ in chosen))
+
+
+def _either(sign: str) -> str:
+    """A letter of a cipher in either alphabet."""
+    return f"[{sign}{latin(sign)}]" if latin(sign) != sign else re.escape(sign)
+
+
+@dataclass(frozen=True)
+class Cipher:
+    """A student's cipher as it is printed, its parts by name, its digits by letter."""
+
+    text: str
+    parts: Mapping[str, str]
+    digits: Mapping[str, str]
+
+
+class CipherForm:
+    """Reads ciphers, and goes through them."""
+
+    def __init__(self, table: CipherTable) -> None:
+        self.table = table
+        self.letters = table.letters
+
+    @cached_property
+    def _words(self) -> dict[str, str]:
+        spelling = self.table.spelling
+        return {latin(word.upper()): own for own in spelling.values() for word in (own, *spelling)
+                if spelling.get(word, own) == own}
+
+    def read(self, text: str) -> Cipher | None:
+        """The cipher of a text; None when it is written otherwise."""
+        match = re.fullmatch(self.table.form, text.strip())
+        return None if match is None else self._of(text.strip(), match.groupdict(default=""))
+
+    def _of(self, text: str, found: Mapping[str, str]) -> Cipher:
+        parts = {name: self._words.get(latin(part.upper()), part) for name, part in found.items()}
+        figures = "".join(parts[name][-n:].ljust(n, self.table.padding) for name, n in self.table.digits)
+        written = Template(self.table.written).substitute(parts) if self.table.written else text
+        return Cipher(written, parts, dict(zip(self.letters, figures, strict=True)))
+
+    def every(self, example: str) -> Iterator[str]:
+        """Ciphers of all digits in the places of the example's, evenly spread where there are more than :data:`MOST_CIPHERS`."""
+        like = self.read(example)
+        parts = dict.fromkeys(re.compile(self.table.form).groupindex, "0") if like is None else like.parts
+        counts = {name: max(n for other, n in self.table.digits if other == name) for name, _ in self.table.digits}
+        total = sum(counts.values())
+        step = max(1, 10**total // MOST_CIPHERS)
+        for figures in itertools.islice(itertools.product("0123456789", repeat=total), 0, None, step):
+            left = "".join(figures)
+            own = dict(parts)
+            for name, n in counts.items():
+                own[name], left = left[:n], left[n:]
+            text = Template(self.table.written or "".join(f"${{{name}}}" for name in own)).substitute(own)
+            if self.read(text) is not None:
+                yield text
+
+
+SOURCE = "_source"
+"""What the name of a quantity's source ends with."""

@@ -8,12 +8,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from tmm_sheets.encodings import cleaned
-from tmm_sheets.task.toml_lines import KeyPath
+from tmm_sheets.task.toml_lines import Found, KeyPath
 from tmm_sheets.task.units import Refused
 from tmm_sheets.words import marked, tell
-
-Found = tuple[KeyPath, str, str]
-"""Key path, message, hint."""
 
 _USUAL = re.compile(r"[ -~А-яЁё°–—№«»]*")
 _NOT_DRAWN = {("project", "name"), ("project", "variant")}

@@ -13,11 +13,8 @@ from typing import Any
 from tmm_sheets import spelling
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.task.schema import CrankTable
-from tmm_sheets.task.toml_lines import KeyPath
+from tmm_sheets.task.toml_lines import Found, KeyPath
 from tmm_sheets.words import both, marked, tell, tell_n
-
-Found = tuple[KeyPath, str, str]
-"""Key path, message, hint."""
 
 GROUP_KEYS: dict[int, tuple[tuple[str, ...], tuple[str, ...]]] = {
     1: (("outer", "inner", "lengths"), ("side", "branch", "at")),

@@ -877,7 +877,7 @@ class TrainTable(Table):
 class CamTable(Table):
     """``[cam]``: a disc cam and its follower.
 
-    Which keys belong to which follower: :data:`tmm_sheets.task.cam_keys.FOLLOWER_KEYS`.
+    Which keys belong to which follower: :data:`tmm_sheets.task.cam_table.FOLLOWER_KEYS`.
     """
 
     follower: Literal["translating roller", "oscillating roller", "flat"] = Field(

@@ -9,11 +9,8 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from tmm_sheets.task.toml_lines import KeyPath
+from tmm_sheets.task.toml_lines import Found, KeyPath
 from tmm_sheets.words import tell
-
-Found = tuple[KeyPath, str, str]
-"""Key path, message, hint."""
 
 _WRITTEN = re.compile(r"(?P<sign>-?)\s*(?:(?P<part>[0-9]+(?:[.,][0-9]+)?)\s*[*·]?\s*)?synthesis(?:\s+(?P<name>\S+))?")
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from pydantic import ValidationError
 
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.task import toml_file, user_folder
+from tmm_sheets.task import families, toml_file
 from tmm_sheets.task.letters import title_text
 from tmm_sheets.task.messages import said
 from tmm_sheets.task.schema import PaperTable, Table, TitleBlockTable
@@ -134,7 +134,7 @@ def _beside(variant: Variant) -> dict[str, TitleEntry]:
 
 def user_file() -> Path | None:
     """Where the settings of the user are, if there are any; None where the user has no folder for them."""
-    folder = user_folder.folder()
+    folder = families.user_folder()
     return folder / FILE if folder is not None else None
 
 
@@ -165,10 +165,9 @@ def of_file(path: Path) -> dict[str, TitleEntry]:
     """
     file = str(path)
     try:
-        text, _ = toml_file.text_of(path, LARGEST)
-    except (FileNotFoundError, NotADirectoryError):
+        _, data, lines = toml_file.read(path, LARGEST)
+    except toml_file.NoSuchFile:
         return {}
-    data, lines = toml_file.parsed(text, file)
     try:
         settings = SettingsTable.model_validate(data)
     except ValidationError as e:

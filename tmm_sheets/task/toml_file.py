@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterator
+from decimal import Decimal
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from tmm_sheets import encodings, files, spelling
 from tmm_sheets.errors import BadInput, Problem, reason_of
@@ -18,21 +19,25 @@ DIGITS, BITS = 4301, 63
 """Digits of the shortest whole number that Python does not read; bits of the longest one that TOML has, beside its sign."""
 
 
-def text_of(path: Path, most: int) -> tuple[str, str]:
+class NoSuchFile(BadInput):
+    """There is no file of this name."""
+
+
+def text_of(path: Path, most: int, hint: str = "") -> tuple[str, str]:
     """Text of a file of at most ``most`` bytes, and what is to be said of its encoding.
 
     Raises
     ------
-    FileNotFoundError
-        when there is none.
+    NoSuchFile
+        when there is none, with a hint.
     BadInput
         when it cannot be read, or is no text.
     """
     file = str(path)
     try:
         data = files.content(path, most)
-    except FileNotFoundError:
-        raise
+    except (FileNotFoundError, NotADirectoryError):
+        raise NoSuchFile(Problem(tell("no such file"), file, hint=hint)) from None
     except IsADirectoryError:
         raise BadInput(Problem(tell("expected a project file, this is a folder"), file)) from None
     except OSError as e:
@@ -44,18 +49,9 @@ def text_of(path: Path, most: int) -> tuple[str, str]:
     return encodings.cleaned(text), note
 
 
-def read(path: Path, most: int = 1_000_000) -> tuple[str, dict[str, Any], TomlLines]:
-    """Text of a file, its tables and where its keys stand, as :func:`text_of` and :func:`parsed` give them.
-
-    Raises
-    ------
-    BadInput
-        also when there is no such file.
-    """
-    try:
-        text, _ = text_of(path, most)
-    except FileNotFoundError:
-        raise BadInput(Problem(tell("no such file"), str(path))) from None
+def read(path: Path, most: int = 1_000_000, hint: str = "") -> tuple[str, dict[str, Any], TomlLines]:
+    """Text of a file, its tables and where its keys stand, as :func:`text_of` and :func:`parsed` give them."""
+    text, _ = text_of(path, most, hint)
     return text, *parsed(text, str(path))
 
 
@@ -115,7 +111,86 @@ def syntax(message: str, text: str, file: str) -> Problem:
 
 def problem(file: str, lines: TomlLines, path: KeyPath, message: str, hint: str = "") -> Problem:
     """A problem placed at a key of a file."""
-    field = ""
-    for part in path:
-        field += f"[{part + 1}]" if isinstance(part, int) else f".{part}" if field else part
-    return Problem(message, file, lines.line(path), field, hint)
+    return Problem(message, file, lines.line(path), called(path), hint)
+
+
+def called(path: KeyPath) -> str:
+    """A key as messages name it, lists counted from 1: ``group[1].length``."""
+    return "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in path).removeprefix(".")
+
+
+# --- values without their quotes ---------------------------------------------------------------------------------------
+
+
+_PAIR = re.compile(r"""(\s*[\w."'-]+\s*=\s*)(["']?[^"'\[\]{}#=]*?["']?)(\s*(?:#.*)?)""")
+_NUMBER = re.compile(r"([+-]?)(\d+(?:[ \u00a0]\d{3})*[.,]?\d*|[.,]\d+)")
+MOST_PUT_RIGHT = 20
+"""Lines that are put right; more are no slips."""
+LONGEST_PUT_RIGHT = 50_000
+"""Characters of a text that is put right: it is read anew for each of them, and a person writes no longer one."""
+
+
+class BareValue(NamedTuple):
+    """A value without its quotes: its line, what stands before, itself, what stands behind."""
+
+    line: int
+    before: str
+    value: str
+    behind: str
+
+    @property
+    def meant(self) -> tuple[str, ...]:
+        """What may be meant, as TOML: a number with a point and, where it is a share, in per cent; else the same in quotes."""
+        match = _NUMBER.fullmatch(self.value)
+        if match is None:
+            return (f'"{self.value}"',)
+        plain = re.sub(r"\s", "", match[2]).replace(",", ".")
+        number = Decimal(match[1] + plain)
+        percent = f'"{(number * 100).normalize():f} %"'
+        return (f"{number:f}", *((percent,) if 0 < number < 1 else ()))
+
+    def put(self, text: str, value: str) -> str:
+        """The text with another value in this place."""
+        lines = text.split("\n")
+        lines[self.line - 1] = f"{self.before}{value}{self.behind}"
+        return "\n".join(lines)
+
+
+def quoted(text: str) -> tuple[str, dict[int, BareValue]]:
+    """The text with such values in quotes, and these by their lines; it may still be no TOML for other reasons."""
+    found: dict[int, BareValue] = {}
+    while len(found) < MOST_PUT_RIGHT and len(text) < LONGEST_PUT_RIGHT:
+        try:
+            check_keys(text)
+            tomllib.loads(text)
+        except tomllib.TOMLDecodeError as e:
+            match = re.search(r"\(at line (\d+),", str(e))
+            line = int(match[1]) if match else 0
+            bare = _bare(text, line) if line and line not in found else None
+            if bare is None:
+                break
+            found[line] = bare
+            text = bare.put(text, f'"{bare.value}"')
+        except (ValueError, RecursionError):  # told by who reads it
+            break
+        else:
+            break
+    return text, found
+
+
+def _bare(text: str, line: int) -> BareValue | None:
+    lines = text.split("\n")
+    match = _PAIR.fullmatch(lines[line - 1].rstrip("\r")) if line <= len(lines) else None
+    value = match[2].strip("\"'") if match else ""
+    if match is None or not value or "\\" in value or _reads(match[2]):
+        return None
+    return BareValue(line, match[1], value, match[3])
+
+
+def _reads(value: str) -> bool:
+    """Whether TOML reads a value: what is wrong with its line is something else."""
+    try:
+        tomllib.loads(f"x = {value}")
+    except ValueError:
+        return False
+    return True

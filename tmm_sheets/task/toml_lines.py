@@ -12,6 +12,8 @@ from bisect import bisect_right
 from dataclasses import dataclass, field
 
 KeyPath = tuple[str | int, ...]
+Found = tuple[KeyPath, str, str]
+"""What is wrong with a value: its key path, message, hint."""
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 DEEPEST = 16

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import math
 import re
+import unicodedata
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from tmm_sheets import spelling
 from tmm_sheets.words import marked, tell
@@ -214,3 +216,46 @@ def _quoted(quantity: Quantity) -> str:
 def _shown(value: Any) -> str:
     names = {bool: marked("true or false"), list: marked("a list"), dict: marked("a table")}
     return tell(names[type(value)]) if type(value) in names else repr(value)
+
+
+# --- quantities as a task prints them ----------------------------------------------------------------------------------
+
+
+_NAME = re.compile(r"([^\W\d_]+?)_?((?<=_)\w+|\d*)(′*)")
+
+
+class Printed(NamedTuple):
+    """A quantity: its name in the file, letters with markup, number and unit as they are written, and its value in SI."""
+
+    name: str
+    symbol: str
+    number: str
+    unit: str
+    value: float
+
+
+def printed(given: Mapping[str, str]) -> Iterator[Printed]:
+    """The quantities of a table whose values :func:`split_printed` takes."""
+    for name, text in given.items():
+        number, unit = split_printed(text)
+        yield Printed(name, symbol(name), number, common(unit), si(text))
+
+
+def split_printed(text: str) -> tuple[str, str]:
+    """Number, which may be a fraction such as 1/80, and unit of a value; both empty where it is none."""
+    number, unit = split(text)
+    return (number, unit) if quantity_of(unit) else ("", "")
+
+
+def symbol(name: str) -> str:
+    """Lettering markup of a quantity as it is typed: l_OA, G2, theta, omega1; what is no letter with an index stands as it is."""
+    found = _NAME.fullmatch(name)
+    if found is None:
+        return name
+    letter, index, primes = found.groups()
+    try:
+        letter = unicodedata.lookup(f"GREEK SMALL LETTER {letter}")
+    except KeyError:
+        if len(letter) > 1:
+            return name
+    return f"{letter}{f'_{{{index}}}' if index else ''}{primes}"

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, WrapValidator
 
 from tmm_sheets import resources, spelling
-from tmm_sheets.task import given, units
+from tmm_sheets.task import units
 from tmm_sheets.task.letters import title_text
 from tmm_sheets.words import marked, tell
 
@@ -138,7 +138,7 @@ _INNER_FRACTION = in_range(marked("expected a number between 0 and 1, both exclu
 
 def _printed(value: Any) -> str:
     """Number with a known unit, or a fraction such as `"1/80"`."""
-    if isinstance(value, bool) or not isinstance(value, str | int | float) or not given.split(str(value))[0]:
+    if isinstance(value, bool) or not isinstance(value, str | int | float) or not units.split_printed(str(value))[0]:
         raise ValueError(tell('expected a number with its unit, or a fraction, for example "80 N" or "1/80"'))
     return str(value)
 

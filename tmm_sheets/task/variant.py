@@ -8,6 +8,8 @@ turn) is judged where the geometry is.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 from typing import Any, Literal, Self
 
@@ -16,11 +18,9 @@ from pydantic import Field, PrivateAttr, ValidationError
 from tmm_sheets import quoting, words
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.task import synthesis_refs, toml_file, units
-from tmm_sheets.task.bare_values import BareValue, quoted
-from tmm_sheets.task.cam_keys import check_cam
+from tmm_sheets.task.cam_table import check_cam
 from tmm_sheets.task.letters import check_letters, freed
 from tmm_sheets.task.messages import said
-from tmm_sheets.task.misprint import Misprint
 from tmm_sheets.task.names import check_names
 from tmm_sheets.task.schema import (
     BalancingTable,
@@ -47,9 +47,24 @@ from tmm_sheets.task.schema import (
     TitleBlockTable,
     TrainTable,
 )
+from tmm_sheets.task.toml_file import BareValue, quoted
 from tmm_sheets.task.toml_lines import KeyPath, TomlLines
 from tmm_sheets.task.values import Coordinate, Name, PositiveNumber, PrintedNumber
 from tmm_sheets.words import either, marked, tell
+
+
+@dataclass(frozen=True)
+class Misprint:
+    """Symbol and unit, the numbers printed and suggested, why; ``reason`` is looked up in the catalogues where it is said."""
+
+    symbol: str
+    unit: str
+    printed: Decimal
+    suggested: Decimal
+    reason: str
+    corrected: bool
+    """whether the project has the suggested number."""
+
 
 LINKAGE = ("positions", "velocities", "accelerations", "forces")
 """Parts of the results that the linkage has."""
@@ -293,13 +308,9 @@ def read(path: Path | str) -> Variant:
     BadInput
         with every problem of the file: line, field, what was expected, what to try.
     """
-    file = str(path)
-    try:
-        text, note = toml_file.text_of(Path(path), LARGEST)
-    except FileNotFoundError:
-        raise BadInput(Problem(tell("no such file"), file, hint=tell("{command} shows the shipped projects").format(
-            command=quoting.command("list")))) from None
-    return parse(text, file, (note,) if note else ())
+    hint = tell("{command} shows the shipped projects").format(command=quoting.command("list"))
+    text, note = toml_file.text_of(Path(path), LARGEST, hint)
+    return parse(text, str(path), (note,) if note else ())
 
 
 def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple[Misprint, ...] = ()) -> Variant:

@@ -12,7 +12,7 @@ from tmm_sheets.__main__ import run
 from tmm_sheets.errors import BadInput
 from tmm_sheets.output import family_check
 from tmm_sheets.project import Project
-from tmm_sheets.task import families, family_folder, family_tables, formulas, user_folder
+from tmm_sheets.task import families, family_folder, family_tables
 
 EXAMPLE = Path(__file__).parents[3] / "docs" / "examples" / "department"
 
@@ -84,7 +84,7 @@ def test_commands_take_it(folder, capsys):
 
 
 def test_where_families_are_found(folder, tmp_path, monkeypatch):
-    monkeypatch.setenv(user_folder.FOLDER, str(tmp_path / "user"))
+    monkeypatch.setenv(families.CONFIG_FOLDER, str(tmp_path / "user"))
     monkeypatch.setenv(families.PATH, str(tmp_path / "share"))
     families._installed.cache_clear()
     package = type("P", (), {"__path__": [str(shutil.copytree(folder, tmp_path / "package/gift"))]})
@@ -164,14 +164,14 @@ def test_a_table_in_toml(tmp_path):
     ("a < b", 1), ("a > b / 2", 0),
 ])
 def test_formulas(text, value):
-    assert formulas.value(text, {"a": 2, "b": 4}) == pytest.approx(value)
+    assert family_tables.formula_value(text, {"a": 2, "b": 4}) == pytest.approx(value)
 
 
 @pytest.mark.parametrize("text", ["c + 1", "a / 0", "open('x')", "a.b", "a if b else 1", "'x'", "a b", "sqrt(0-1)", "True",
                                   "a == b", "a < b < 9", "__import__('os')"])
 def test_what_is_no_formula(text):
     with pytest.raises(ValueError, match=r"."):
-        formulas.value(text, {"a": 2, "b": 4})
+        family_tables.formula_value(text, {"a": 2, "b": 4})
 
 
 def test_the_doc_shows_the_example():

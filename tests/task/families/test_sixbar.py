@@ -21,7 +21,7 @@ from tmm_sheets.project import Project
 from tmm_sheets.task import families, family_tables
 
 SIXBAR = families.of("sixbar/1:1")
-NAMES = SIXBAR.names()
+NAMES = tuple(families.listed(SIXBAR.folder))
 PHI = np.arange(24) * np.pi / 12
 G = 9.81
 with (Path(__file__).parents[2] / "manuals/sixbar_reference.csv").open(encoding="utf-8") as lines:

@@ -87,8 +87,8 @@ def test_both_alphabets_give_one_project():
 
 
 def test_names_are_answered():
-    assert len(TRANSPORT.names()) == 4
-    assert set(TRANSPORT.names()) <= set(catalogue.shipped())
+    assert len(tuple(families.listed(TRANSPORT.folder))) == 4
+    assert set(families.listed(TRANSPORT.folder)) <= set(catalogue.shipped())
     with pytest.raises(BadInput, match="needs a cipher"):
         catalogue.read("transport/press")
     with pytest.raises(BadInput, match="did you mean transport/crusher"):

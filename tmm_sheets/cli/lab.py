@@ -1,4 +1,4 @@
-"""``bench``: error and time of the methods."""
+"""``bench``, ``stress``: error and time of the methods, hard random mechanisms."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ from pathlib import Path
 
 import click
 
+from tmm_sheets import files
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.localized_cli import command, option
+from tmm_sheets.progress import Progress
 from tmm_sheets.words import tell
 
 
@@ -18,24 +21,22 @@ from tmm_sheets.words import tell
 @option("--peers", is_flag=True, help="Instead: the same linkages by other programs, those of the extra [peers].")
 @option("--cost", metavar="PROJECT", help="Instead: what one sheet or one number of PROJECT costs against the whole.")
 @option("--whole", metavar="PROJECT", help="Instead: all sheets of PROJECT against plain calls of the libraries.")
-def run(target: str | None, folder: Path | None, quick: bool, summary: bool, peers: bool, cost: str | None,
-          whole: str | None) -> None:
+def run_bench(target: str | None, folder: Path | None, quick: bool, summary: bool, peers: bool, cost: str | None,
+              whole: str | None) -> None:
     """Measure every method: error against a truth of 30 digits or more, and time."""
     if cost is not None or whole is not None:
         if any((target, folder, quick, summary, peers, cost and whole)):
             raise click.UsageError(tell("--cost and --whole go alone"))
         click.echo(_prices(cost, whole))
         return
-    from tmm_sheets import files
     from tmm_sheets.lab.bench import records
     from tmm_sheets.lab.bench import run as benchmark
-    from tmm_sheets.progress import Progress
 
     if folder is not None:
         files.check_folder(folder)
     with Progress() as progress:
         measure = benchmark.compare if peers else benchmark.run
-        found = measure(quick, lambda what: progress.say(f"{what} ..."))
+        found = measure(quick, progress.doing)
     if peers:
         from tmm_sheets.lab.bench import peers as by_others
 
@@ -57,16 +58,34 @@ def run(target: str | None, folder: Path | None, quick: bool, summary: bool, pee
 
 def _prices(cost: str | None, whole: str | None) -> str:
     """What parts of a project cost against the whole, or the whole against plain calls of the libraries."""
-    from tmm_sheets.progress import Progress
-
     with Progress() as progress:
-        def say(what: str) -> None:
-            progress.say(f"{what} ...")
-
         if cost is not None:
             from tmm_sheets.lab.bench import costs
 
-            return costs.table(cost, say)
+            return costs.table(cost, progress.doing)
         from tmm_sheets.lab.bench import whole as sheets
 
-        return sheets.table(sheets.measure(str(whole), say))
+        return sheets.table(sheets.measure(str(whole), progress.doing))
+
+
+@command("stress")
+@option("--cases", type=click.IntRange(1), default=900, show_default=True, metavar="N", help="How many random mechanisms.")
+@option("--seed", type=click.IntRange(0), default=0, show_default=True, metavar="S", help="Seed of the random numbers.")
+@option("--case", "single", type=click.IntRange(0), metavar="N", help="Only this case of the seed, again.")
+def run_stress(cases: int, seed: int, single: int | None) -> None:
+    """Try hard random mechanisms: the worst of every invariant against its bound."""
+    from tmm_sheets.lab.stress import report
+
+    if single is not None:
+        worst = report.run_one(seed, single)
+    else:
+        with Progress() as progress:
+            worst = report.run(
+                cases, seed, lambda case: progress.say(tell("case {case} of {cases} ...").format(case=case, cases=cases))
+            )
+    click.echo(report.table(worst, seed))
+    failed = report.exceeded(worst)
+    if failed:
+        raise CannotBuild(
+            tell("bound exceeded: {invariants}").format(invariants=", ".join(failed)), tell("the table names a case that shows it")
+        )

@@ -1,4 +1,4 @@
-"""``new``: a project file to begin with."""
+"""``list``, ``new``, ``family``: which tasks there are, a file to begin with, a folder of tasks tried."""
 
 from __future__ import annotations
 
@@ -6,11 +6,37 @@ from pathlib import Path
 
 import click
 
-from tmm_sheets.cli import opening
-from tmm_sheets.cli.options import CORRECTED, titled
-from tmm_sheets.errors import BadInput, Problem
+from tmm_sheets import catalogue, files, quoting, words
+from tmm_sheets.cli.options import CORRECTED, read_variant, title_names, titled
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.localized_cli import argument, command, option
+from tmm_sheets.progress import Progress
 from tmm_sheets.words import tell
+
+
+@command("list")
+@argument("word", required=False)
+@option("--json", "as_json", is_flag=True, help="As JSON.")
+def run_list(word: str | None, as_json: bool) -> None:
+    """List the shipped projects; with a WORD those that have it in their names or titles."""
+    entries = catalogue.found(word) if word else catalogue.entries()
+    if not entries:
+        raise CannotBuild(tell('no shipped project has "{word}" in its name or title').format(word=word),
+                          tell("{command} shows the shipped projects").format(command=quoting.command("list")))
+    if as_json:
+        import json
+        from dataclasses import asdict
+
+        click.echo(json.dumps([asdict(e) for e in entries], ensure_ascii=False, indent=1))
+        return
+    width = max((len(e.name) for e in entries), default=0)
+    for e in entries:
+        called = ", ".join(words.of_file(text, tell) for text in (e.title, e.variant) if text)
+        click.echo(
+            tell("{project}  {title}; sheets: {sheets}").format(
+                project=f"{e.name:{width}}", title=called, sheets=", ".join(e.sheets)
+            )
+        )
 
 
 @command("new")
@@ -21,30 +47,27 @@ from tmm_sheets.words import tell
 @CORRECTED
 @titled
 @option("--force", is_flag=True, help="Overwrite a file that says something else.")
-def run(name: str, source: str | None, groups: str | None, parts: str | None, corrected: bool, force: bool) -> None:
+def run_new(name: str, source: str | None, groups: str | None, parts: str | None, corrected: bool, force: bool) -> None:
     """Write a project file NAME.toml to begin with; what is not told (task, student, group) is asked."""
     if source is not None and (groups is not None or parts is not None):
         raise click.UsageError(tell("--from takes the whole of a project: leave --groups and --parts out"))
-    from tmm_sheets import catalogue, files
     from tmm_sheets.task import new_file, title_entries, variant
 
     path = Path(name if name.endswith(catalogue.SUFFIX) else f"{name}{catalogue.SUFFIX}")
     files.check_folder(path.parent)
-    if path.exists() and not force:
-        raise BadInput(Problem(tell("is there already; nothing was written"), str(path),
-                               hint=tell("choose another name, or overwrite it with --force")))
+    files.refuse_present(path, force)
     if source is None and groups is None and parts is None:
         source = _asked(tell("Task: a shipped project, such as lugansk/shaper, or a project file"))
         if not source:
             raise click.UsageError(tell("give a task: --from PROJECT, --groups K,K or --parts P,P"))
     tables, read = "", None
     if source is not None:
-        read = opening.read_variant(source, corrected, drawn=False)
+        read = read_variant(source, corrected, drawn=False)
     else:
         tables = new_file.of_groups(_kinds(groups)) if groups is not None else ""
         tables += "\n" * bool(tables and parts) + new_file.of_parts(_words(parts)) if parts is not None else ""
-    entries = dict(opening.names().options)
-    known = {*title_entries.of_file(path.parent / title_entries.FILE), *opening.names().user}
+    entries = dict(title_names().options)
+    known = {*title_entries.of_file(path.parent / title_entries.FILE), *title_names().user}
     for key, question in (("student", tell("Student")), ("group", tell("Group"))):
         if key not in entries and key not in known and (answer := _asked(question)):
             entries[key] = answer
@@ -78,3 +101,19 @@ def _kinds(value: str) -> list[int]:
     except ValueError:
         raise click.BadParameter(tell("expected kinds of groups from 1 to 5 with commas between, not {kinds}").format(kinds=value),
                                  param_hint="--groups") from None
+
+
+@command("family")
+@argument("action", type=click.Choice(["check"]), metavar="check")
+@argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@option("--quick", is_flag=True, help="Read the project files only; assemble nothing.")
+def run_family(action: str, folder: Path, quick: bool) -> None:
+    """Try a family of tasks, a folder with family.toml: read and assemble every cipher of every machine."""
+    from tmm_sheets.output import family_check
+
+    with Progress() as progress:
+        found = [*family_check.tried(folder, quick, progress.doing)]
+    told = family_check.table(found)
+    if any(t.problem for t in found):
+        raise CannotBuild(told)
+    click.echo(told)
