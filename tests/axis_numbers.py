@@ -17,7 +17,7 @@ import numpy as np
 from tests.gallery import names
 from tmm_sheets import catalogue
 from tmm_sheets.drawing import ink_index
-from tmm_sheets.drawing.dashes import interrupted
+from tmm_sheets.drawing.ink import interrupted
 from tmm_sheets.drawing.marks import Box, Line, Text
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.project import Project

@@ -73,8 +73,7 @@ Counts = dict[str, dict[str, dict[str, int]]]
 def watch() -> Callable[[], dict[str, int]]:
     """Wrap what is to be counted; gives what tells the counts."""
     from tmm_sheets.construction.step import Step
-    from tmm_sheets.drawing.cells import Cells
-    from tmm_sheets.drawing.ink_index import InkIndex
+    from tmm_sheets.drawing.ink_index import Cells, InkIndex
     from tmm_sheets.sheets import composing
 
     steps: list[Step] = []

@@ -20,7 +20,7 @@ from tmm_sheets import catalogue, cli, resources
 from tmm_sheets.backends import dxf
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.diagnosis import hypotheses
-from tmm_sheets.drawing import layers, marks
+from tmm_sheets.drawing import marks, styles
 from tmm_sheets.drawing.marks import Arc, Drawing, Line
 from tmm_sheets.mechanism.groups import KINDS
 from tmm_sheets.methods.linkage import numbering
@@ -195,7 +195,7 @@ def walk() -> str:
         ("frame", frame, f"origin ({circle.real:g}, {circle.imag:g}) mm, μ_l = {scale.mu:g} m/mm: B at "
                          f"({there.real:.4f}, {there.imag:.4f}) mm"),
         ("mark", marks, f"`Line` in the style `{crank.style}`, of `{crank.of}`, shortened by the circles of its hinges"),
-        ("file", dxf, f"`LINE` on the layer `{layers.layer(crank).name}`: {groups_of_line}"),
+        ("file", dxf, f"`LINE` on the layer `{styles.layer(crank).name}`: {groups_of_line}"),
     )
     return table(("station", "where", "what it is there"), *((name, f"`{path(module)}`", told) for name, module, told in rows))
 

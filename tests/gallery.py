@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from tmm_sheets import catalogue
-from tmm_sheets.drawing.dashes import strokes as dashed
+from tmm_sheets.drawing.ink import strokes as dashed
 from tmm_sheets.drawing.lettering import strokes as letters
 from tmm_sheets.drawing.marks import Fill, Text, flat
 from tmm_sheets.drawing.styles import line_types

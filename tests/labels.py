@@ -30,7 +30,7 @@ from tmm_sheets import kept as stored
 from tmm_sheets.drawing import evenness, ink_index, lettering, owners
 from tmm_sheets.drawing import labels as placing
 from tmm_sheets.drawing.canvas import Label
-from tmm_sheets.drawing.dashes import strokes
+from tmm_sheets.drawing.ink import strokes
 from tmm_sheets.drawing.marks import Box, Fill, Line, Text
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.drawing.text_boxes import run_corners, text_box

@@ -14,7 +14,7 @@ from tmm_sheets.cli import NAMES
 from tmm_sheets.cli.options import PARTS
 from tmm_sheets.project import PARTS as ALL_PARTS
 from tmm_sheets.project import Project
-from tmm_sheets.record.results_map import leaves
+from tmm_sheets.record.step_index import leaves
 from tmm_sheets.results import told
 
 ROOT = Path(__file__).parents[1]

@@ -83,7 +83,7 @@ RULES = {
 LIBRARIES = {
     "ezdxf": "backends.dxf backends.dxf_frame_making lab.bench.plain compare.cad.cad_file",
     "reportlab": "backends.pdf lab.bench.plain compare.story_pdf",
-    "matplotlib": "backends.png lab.bench.plots optimising.picture",
+    "matplotlib": "backends.png lab.bench.records optimising.picture",
     "pydantic": "task.values task.schema task.messages task.variant task.title_entries task.keys "
                 "task.family_folder task.family_tables",
     "pydantic_core": "task.messages task.keys", "cv2": "compare.photo", "pypdfium2": "compare.photo",

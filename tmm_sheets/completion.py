@@ -293,7 +293,7 @@ def results(context: click.Context, incomplete: str) -> Items:
     if part not in project.parts:
         return []
     from tmm_sheets import results
-    from tmm_sheets.record.results_map import leaves
+    from tmm_sheets.record.step_index import leaves
 
     return _begun((name for name, _ in leaves(results.told(project, [part]))), incomplete)
 

@@ -5,7 +5,7 @@ from math import cos, sin
 import numpy as np
 import shapely
 
-from tmm_sheets.drawing.dashes import strokes
+from tmm_sheets.drawing.ink import strokes
 from tmm_sheets.drawing.lettering import strokes as letter_strokes
 from tmm_sheets.drawing.marks import Fill, Text, flat
 from tmm_sheets.drawing.styles import line_type

@@ -9,11 +9,10 @@ import pytest
 from ezdxf.lldxf.const import VALID_DXF_LINEWEIGHTS
 
 from tmm_sheets.backends import dxf
-from tmm_sheets.drawing.dashes import strokes
-from tmm_sheets.drawing.layers import layer
+from tmm_sheets.drawing.ink import strokes
 from tmm_sheets.drawing.lettering import strokes as letter_strokes
 from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Polyline, Text
-from tmm_sheets.drawing.styles import line_types
+from tmm_sheets.drawing.styles import layer, line_types
 
 
 @pytest.fixture(scope="module")

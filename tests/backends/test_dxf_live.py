@@ -16,8 +16,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.backends import dxf
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.dashes import interrupted
-from tmm_sheets.drawing.ink import letters
+from tmm_sheets.drawing.ink import interrupted, letters
 from tmm_sheets.drawing.lettering import glyph
 from tmm_sheets.drawing.marks import Arc, Drawing, Form, FormField, Line, Polyline, Text, View
 from tmm_sheets.drawing.placing import place

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from tmm_sheets.backends import pdf
-from tmm_sheets.drawing.dashes import strokes
-from tmm_sheets.drawing.layers import roles
+from tmm_sheets.drawing.ink import strokes
 from tmm_sheets.drawing.lettering import advance
 from tmm_sheets.drawing.marks import Arc, Box, Drawing, Fill, Line, Polyline, Text, View
-from tmm_sheets.drawing.styles import line_types
+from tmm_sheets.drawing.styles import line_types, roles
 from tmm_sheets.words import tr
 
 MM = 72 / 25.4

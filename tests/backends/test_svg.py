@@ -8,7 +8,7 @@ import pytest
 
 from tests.backends.geometry import area, beyond, drawn, polygon, shape
 from tmm_sheets.backends import svg
-from tmm_sheets.drawing.dashes import strokes
+from tmm_sheets.drawing.ink import strokes
 from tmm_sheets.drawing.marks import Arc, Box, Drawing, Fill, Line, Polyline, Text, View
 from tmm_sheets.drawing.styles import line_types
 

@@ -14,8 +14,9 @@ from tests.methods.linkage import shaper_truth, statics
 from tests.methods.linkage import truth as other
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.lab.bench import costs, diagrams, emission, linkages, plain, plots, profiles, reducers, truth, whole
+from tmm_sheets.lab.bench import costs, diagrams, emission, linkages, plain, profiles, truth, whole
 from tmm_sheets.lab.bench.records import Bench, BenchRecord, as_json, fastest, table
+from tmm_sheets.lab.bench.records import diagrams as drawn_fields
 
 
 def measured(*modules):
@@ -27,7 +28,7 @@ def measured(*modules):
 
 @pytest.fixture(scope="module")
 def records():
-    return measured(linkages, diagrams, profiles, reducers)
+    return measured(linkages, diagrams, profiles)
 
 
 def of(records, method):
@@ -163,7 +164,7 @@ def test_fastest_of_repeated_runs():
 
 def test_diagrams(records):
     some = [r for r in records if r.field in ("cam", "rack generation")]
-    drawn = plots.diagrams([*some, BenchRecord("cam", "a failed one", "positions", 3, None, None, "why")])
+    drawn = drawn_fields([*some, BenchRecord("cam", "a failed one", "positions", 3, None, None, "why")])
     assert set(drawn) == {"cam.svg", "rack-generation.svg"}
     assert b"r0 by tangents" in drawn["cam.svg"]
     assert b"a failed one" not in drawn["cam.svg"]
@@ -172,7 +173,7 @@ def test_diagrams(records):
 
 
 def test_command(tmp_path, monkeypatch, capsys, records):
-    monkeypatch.setattr("tmm_sheets.lab.bench.run.run", lambda quick, say: [replace(r, seconds=1.0) for r in records[:3]])
+    monkeypatch.setattr("tmm_sheets.lab.bench.records.run", lambda quick, say: [replace(r, seconds=1.0) for r in records[:3]])
     assert run(["bench", "--quick", "--json", str(tmp_path / "b.json"), "--plot", str(tmp_path / "plots")]) == 0
     assert "positions of the four-bar" in capsys.readouterr().out
     assert json.loads((tmp_path / "b.json").read_text())["schema"] == 1

@@ -10,7 +10,7 @@ import pytest
 from tests.methods.linkage import truth as other
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.lab.bench import peer_programs, peers, plots
+from tmm_sheets.lab.bench import peer_programs, peers, records
 from tmm_sheets.lab.bench.peer_programs import PeerProgram, Turn
 from tmm_sheets.lab.bench.records import Bench, as_json
 
@@ -123,7 +123,7 @@ def test_without_a_peer(monkeypatch, program):
 
 def test_table_command_and_diagrams(tmp_path, monkeypatch, capsys):
     found = [replace(r, seconds=12e-6) for r in measured(peers.Ours)[:3]]
-    monkeypatch.setattr("tmm_sheets.lab.bench.run.compare", lambda quick, say: found)
+    monkeypatch.setattr("tmm_sheets.lab.bench.records.compare", lambda quick, say: found)
     assert run(["bench", "--peers", "--quick", "--json", str(tmp_path / "p.json"), "--plot", str(tmp_path)]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].split() == ["four-bar", *peers.Ours.name.split()]
@@ -135,4 +135,4 @@ def test_table_command_and_diagrams(tmp_path, monkeypatch, capsys):
     assert lines[0] == "us for a position at 12 positions; largest relative error"
     assert f"| four-bar | positions | 1; {found[0].error:.0e} |" in lines
     assert run(["bench", "--peers", "--cost", "lugansk/shaper"]) == 2
-    assert set(plots.diagrams(found)) == {"peers-four-bar.svg"}
+    assert set(records.diagrams(found)) == {"peers-four-bar.svg"}

@@ -14,7 +14,7 @@ from dataclasses import replace
 from tests.compare.cad_plants import compared, covered, draw, sheets_of, some_way
 from tmm_sheets.compare.cad.cad_comparison import STYLES
 from tmm_sheets.compare.cad.line_styles import BROAD
-from tmm_sheets.drawing.dashes import cut
+from tmm_sheets.drawing.ink import cut
 from tmm_sheets.drawing.styles import line_type
 
 WRONG = {

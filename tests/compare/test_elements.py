@@ -11,7 +11,7 @@ from tmm_sheets.catalogue import read
 from tmm_sheets.compare.elements import dashed, elements, said, sampled, views
 from tmm_sheets.compare.known_sheet import known_sheet
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
-from tmm_sheets.drawing.dashes import strokes
+from tmm_sheets.drawing.ink import strokes
 from tmm_sheets.drawing.marks import Drawing, Fill, Text
 from tmm_sheets.drawing.placing import place
 from tmm_sheets.project import Project

@@ -8,7 +8,7 @@ import pytest
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import expression, rules
-from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.expression import Argument, lettered
 from tmm_sheets.construction.given import Given, GivenNumber, GivenPoint

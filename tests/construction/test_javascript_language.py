@@ -6,7 +6,7 @@ import pytest
 from tests.few import few
 from tests.living import javascript
 from tests.methods.linkage.test_function import CLOSE, N, forceless, over_positions, studied
-from tmm_sheets.construction.javascript_language import JavaScriptSource, literal, told
+from tmm_sheets.construction.function import JavaScriptSource, literal, told
 from tmm_sheets.construction.program import program, rows_of
 from tmm_sheets.construction.step import value_of
 

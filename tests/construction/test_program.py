@@ -11,10 +11,9 @@ import tmm_sheets
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import Operation, primitive
-from tmm_sheets.construction.function import NARROW, Function, fill
+from tmm_sheets.construction.function import NARROW, Function, Replay, fill
 from tmm_sheets.construction.given import Given, GivenNumber
 from tmm_sheets.construction.program import GIVEN, NUMBER, PACKED, REAL, Language, program, written
-from tmm_sheets.construction.replay import Replay
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import rpr

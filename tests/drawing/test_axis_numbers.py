@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tmm_sheets.drawing import axis_numbers, placing
+from tmm_sheets.drawing import placing
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink_index import InkIndex, enters
 from tmm_sheets.drawing.marks import Box, Text
@@ -43,7 +43,7 @@ def struck(canvas):
 def test_what_stands_clear_stays():
     canvas = graph((-20j, 90 - 20j))
     before = list(canvas.marks)
-    axis_numbers.set_numbers(canvas, InkIndex(canvas.marks))
+    placing.set_numbers(canvas, InkIndex(canvas.marks))
     assert canvas.marks == before
 
 
@@ -57,20 +57,20 @@ def test_what_stands_clear_stays():
 def test_numbers_make_way_for_lines(lines):
     canvas = graph(*lines)
     assert struck(canvas)
-    axis_numbers.set_numbers(canvas, InkIndex(canvas.marks))
+    placing.set_numbers(canvas, InkIndex(canvas.marks))
     assert not struck(canvas)
 
 
 def test_numbers_of_one_axis_stay_on_one_level():
     canvas = graph((-3j, 90 - 3j))
-    axis_numbers.set_numbers(canvas, InkIndex(canvas.marks))
+    placing.set_numbers(canvas, InkIndex(canvas.marks))
     levels = {m.at.imag for name, m in texts(canvas).items() if name != "0"}
     assert len(levels) == 1
 
 
 def test_a_number_stays_nearest_to_its_own_position():
     canvas = graph(*[(PITCH * k + 30j, PITCH * k - 30j) for k in range(7)])
-    axis_numbers.set_numbers(canvas, InkIndex(canvas.marks))
+    placing.set_numbers(canvas, InkIndex(canvas.marks))
     for name, mark in texts(canvas).items():
         z = text_box(mark)
         middle = (z.real.min() + z.real.max()) / 2
@@ -80,7 +80,7 @@ def test_a_number_stays_nearest_to_its_own_position():
 def test_numbers_keep_clear_of_other_lettering():
     canvas = graph((-3j, 90 - 3j))
     canvas.text(30 + 1.5j, "H = 40", 3.5)
-    axis_numbers.set_numbers(canvas, InkIndex(canvas.marks))
+    placing.set_numbers(canvas, InkIndex(canvas.marks))
     boxes = [text_box(m) for m in canvas.marks if isinstance(m, Text)]
     for i, a in enumerate(boxes):
         for b in boxes[:i]:
@@ -94,7 +94,7 @@ def test_a_number_of_the_ordinate_axis_stands_right_at_its_lines():
     canvas.line(-40j, 40j, "axis")
     for y in (5.0, 12.0, 12.6, 30.0):
         canvas.line(1j * y, 50 + 1j * y)
-    plain = axis_numbers.PointNumbers(canvas)
+    plain = placing.PointNumbers(canvas)
     assert plain.place(canvas, [5j], "1′")
     assert plain.place(canvas, [30j], "4′")
     mark = texts(canvas)["1′"]
@@ -105,14 +105,14 @@ def test_a_number_of_the_ordinate_axis_stands_right_at_its_lines():
     crowd.line(-40j, 40j, "axis")
     for y in np.arange(0.0, 12.0, 1.5):
         crowd.line(1j * y - 50, 50 + 1j * y)
-    assert not axis_numbers.PointNumbers(crowd).place(crowd, [6j], "5′")
+    assert not placing.PointNumbers(crowd).place(crowd, [6j], "5′")
 
 
 def test_a_number_of_points_close_together_stands_over_the_highest_or_under_the_lowest():
     canvas = Canvas()
     for y in (12.0, 12.6, 13.4):
         canvas.line(1j * y, 50 + 1j * y)
-    numbers = axis_numbers.PointNumbers(canvas)
+    numbers = placing.PointNumbers(canvas)
     assert numbers.place(canvas, [12j, 12.6j, 13.4j], "2′–4′")
     assert 13.4 < texts(canvas)["2′–4′"].at.imag < 14.4
     assert not struck(canvas)

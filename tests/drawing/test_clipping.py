@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely import LineString, box
 
-from tmm_sheets.drawing.clipping import arcs_inside, polyline_inside, segment_inside
+from tmm_sheets.drawing.ink import arcs_inside, polyline_inside, segment_inside
 from tmm_sheets.drawing.marks import Box
 
 PLACE = Box(-3.0, -2.0, 4.0, 5.0)

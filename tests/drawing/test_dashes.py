@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tmm_sheets.drawing.dashes import cut, strokes
+from tmm_sheets.drawing.ink import cut, strokes
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Polyline, Text, flat
 from tmm_sheets.drawing.styles import line_types
 

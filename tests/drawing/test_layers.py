@@ -1,8 +1,7 @@
 import pytest
 
-from tmm_sheets.drawing.layers import layer, layers, roles
 from tmm_sheets.drawing.marks import Line, Provenance, Role, Text
-from tmm_sheets.drawing.styles import line_types
+from tmm_sheets.drawing.styles import layer, layers, line_types, roles
 
 
 def test_every_role_has_a_layer_and_names_are_one_layer_each():

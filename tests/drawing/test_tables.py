@@ -3,7 +3,7 @@
 import pytest
 
 from tmm_sheets.drawing.lettering import letter, size_for
-from tmm_sheets.drawing.tables import GAP, LEAST, needs, parted, size_in, widened
+from tmm_sheets.drawing.text_layout import GAP, LEAST, needs, parted, size_in, widened
 
 WIDE, NARROW = "Balancing moment by the lever, N·m", "12"
 

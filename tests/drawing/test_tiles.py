@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tmm_sheets.drawing.marks import Box, Drawing, Line, Polyline, Text, bounds
-from tmm_sheets.drawing.tiles import BAR, MARGIN, PAPERS, tiles, with_bar, without_outline
+from tmm_sheets.drawing.paper import BAR, MARGIN, PAPERS, tiles, with_bar, without_outline
 
 SHEET = Drawing(841, 594, "Лист_1 ^", ())
 

@@ -8,7 +8,7 @@ import pytest
 from tests.labels import crossings
 from tmm_sheets import catalogue
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.dashes import interrupted, strokes
+from tmm_sheets.drawing.ink import interrupted, strokes
 from tmm_sheets.drawing.marks import Arc, Drawing, Line, Polyline, Provenance, Text
 from tmm_sheets.drawing.placing import interrupt
 from tmm_sheets.drawing.text_boxes import CLEAR

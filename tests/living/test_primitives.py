@@ -6,12 +6,12 @@ import pytest
 from tests.few import few
 from tests.living import javascript
 from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction.curve import Curve
-from tmm_sheets.construction.javascript_language import told
+from tmm_sheets.construction.arithmetic import Curve
+from tmm_sheets.construction.function import told
 from tmm_sheets.mechanism.groups import dead_centres, three_legs
 from tmm_sheets.methods.flywheel import works
 from tmm_sheets.methods.integration import ordinate_of
-from tmm_sheets.methods.linkage import dead_positions, forces, loads, numbering, synthesis
+from tmm_sheets.methods.linkage import cycle, forces, loads, numbering, synthesis
 
 RUN = javascript.modules("digits", "primitives") + """
 const result = ({ name, rows }) => rows.map((args) => PRIMITIVES[name](...args));
@@ -54,7 +54,7 @@ ELEMENTWISE = {
     "tangent direction": (ar.tangent_direction, ("point", "point", "length", "side", "length", "length")),
     "value or its limit": (forces.in_limit, ("number", "known")),
     "angle turned": (np.vectorize(numbering._turned), ("angle", "angle", "side")),
-    "angle turned to a point": (dead_positions._turned, ("point", "point", "angle", "side")),
+    "angle turned to a point": (cycle._turned, ("point", "point", "angle", "side")),
     "within the first turn": (works._within, ("angle", "length")),
     "fraction of a swing": (loads._swung, ("direction", "side", "angle", "length")),
     "unit": (np.vectorize(ar.unit), ("angle",)),

@@ -15,13 +15,13 @@ from tmm_sheets.construction import rules
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.lab.stress.invariants import State
 from tmm_sheets.mechanism.groups import RRP
+from tmm_sheets.mechanism.groups.contexts import Outline
 from tmm_sheets.mechanism.groups.dead_centres import PIN_ANGLE
-from tmm_sheets.mechanism.groups.hints import Outline
 from tmm_sheets.mechanism.groups.rrr import RRRKind
 from tmm_sheets.mechanism.model import Crank, Guide, Link, StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import acceleration_plan
 from tmm_sheets.methods.linkage.checks import check_turn
-from tmm_sheets.methods.linkage.dead_positions import dead_positions
+from tmm_sheets.methods.linkage.cycle import dead_positions
 from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.velocities import velocity_plan

@@ -21,10 +21,10 @@ import numpy as np
 
 from tmm_sheets import kept, results, sheets
 from tmm_sheets.catalogue import read
-from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.step import Step, value_of
 from tmm_sheets.project import Project
-from tmm_sheets.record.results_map import leaves
+from tmm_sheets.record.step_index import leaves
 from tmm_sheets.sheets.sheet import attempt
 
 PROJECTS = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/3:2", "transport/diesel@01-Т-27", "transport/press@07-ЭПС-7",

@@ -7,7 +7,7 @@ import numpy as np
 
 import tmm_sheets
 from tmm_sheets.construction import expression
-from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.arithmetic import Curve
 
 ROOMS = ("tmm_sheets.construction", "tmm_sheets.mechanism", "tmm_sheets.methods")
 

@@ -12,7 +12,7 @@ from tmm_sheets import catalogue, kept, results
 from tmm_sheets.__main__ import run
 from tmm_sheets.project import Project
 from tmm_sheets.record import recording
-from tmm_sheets.record.results_map import leaves
+from tmm_sheets.record.step_index import leaves
 
 PROJECTS = ("lugansk/shaper", "lugansk/engine", "press", "sixbar/1:1", "sixbar/8:3", "transport/press@05-ЭПС-123",
             "transport/crusher@12-СДМ-1908", "lugansk/cam_flat")
@@ -213,11 +213,11 @@ def test_why_of_the_cycle(result, given, value, capsys):
 @pytest.mark.parametrize("numbers", [seldom((1,)), (1, 2)])
 def test_searches_are_counted(numbers):
     """Every step that is evaluated, or done again at other angles, is one of a drawn plan or of a search."""
-    from tmm_sheets.construction import replay
+    from tmm_sheets.construction import function
     from tmm_sheets.construction.step import Step
     from tmm_sheets.sheets import sheet
 
-    total, computed, repeated = 0, Step._computed, replay.Replay.__call__
+    total, computed, repeated = 0, Step._computed, function.Replay.__call__
 
     def counted(step):
         nonlocal total
@@ -232,7 +232,7 @@ def test_searches_are_counted(numbers):
     project = Project(catalogue.read("sixbar/1:1"))
     with pytest.MonkeyPatch.context() as patch, kept.unused():
         patch.setattr(Step, "_computed", counted)
-        patch.setattr(replay.Replay, "__call__", again)
+        patch.setattr(function.Replay, "__call__", again)
         sheet.every(project, numbers=numbers)
         drawn = sum(step.evaluated for of in project.plans.values() for plan in (of or {}).values()
                     for step in (*plan, *plan.auxiliaries.values(), *plan.conditions.values()))

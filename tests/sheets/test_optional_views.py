@@ -12,7 +12,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.cells import sum_area
+from tmm_sheets.drawing.ink_index import sum_area
 from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.drawing.marks import Polyline
 from tmm_sheets.numbers import number

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.catalogue import read
-from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Step, value_at
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, PlacedFrame, Points, Polyline, Text, flat

@@ -15,7 +15,7 @@ from tmm_sheets.__main__ import run
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import primitive
-from tmm_sheets.lab.stress import invariants, report, truth
+from tmm_sheets.lab.stress import cases, change_points, invariants
 from tmm_sheets.lab.stress.cases import BOUNDS, SCENES, memory, run_case
 from tmm_sheets.lab.stress.invariants import State
 from tmm_sheets.mechanism.groups import PRP, RRP, RRR
@@ -31,15 +31,15 @@ FOLDING = ("parallelogram", "antiparallelogram", "kite", "slider-crank", "four-b
 
 @pytest.fixture(scope="module")
 def worst():
-    return report.run(CASES, 11, million=False)
+    return cases.run(CASES, 11, million=False)
 
 
 def test_every_bound_holds(worst):
-    assert report.exceeded(worst) == []
+    assert cases.exceeded(worst) == []
 
 
 def test_every_invariant_is_told_of(worst):
-    assert set(worst) == set(BOUNDS) - {report.MEMORY}
+    assert set(worst) == set(BOUNDS) - {cases.MEMORY}
     assert all(w.cases > 5 for w in worst.values())
 
 
@@ -65,7 +65,7 @@ def test_a_case_repeats(worst):
         scene, values = run_case(11, w.case)
         assert scene == w.scene
         assert dict(values)[name] == w.value
-        assert report.run_one(11, w.case)[name].value == w.value
+        assert cases.run_one(11, w.case)[name].value == w.value
 
 
 def test_memory_is_that_of_a_chunk():
@@ -83,7 +83,7 @@ def test_decimal_truth_against_differentiation(kind):
                       guides=[Guide("x", "0", 0.1 + 0.05j, 0.3)])
     m = replace(m, crank=replace(m.crank, acceleration=50.0))
     for phi in (0.3, -2.0, 100.0):
-        found, true = truth.motion(m, phi), fifty_digits.motion(m, phi, epsilon=50.0)
+        found, true = change_points.motion(m, phi), fifty_digits.motion(m, phi, epsilon=50.0)
         for x, y in ((found.z, true.z), (found.v, true.v), (found.a, true.a)):
             assert abs(x - y["C"]) < 4e-16 * abs(y["C"])
 
@@ -93,8 +93,8 @@ def test_decimal_truth_knows_what_does_not_assemble():
     m = mechanism(StructuralGroup(RRP, ("2", "3"), ("B",), "C", (0.05,), ("x",)), guides=[Guide("x", "0", 0j, 0.0)], crank=crank)
     with mpmath.workdps(40):
         limit = mpmath.asin(mpmath.mpf(0.05) / mpmath.mpf(0.1))
-        assert truth.motion(m, float(limit - mpmath.mpf("1e-15"))) is not None
-        assert truth.motion(m, float(limit + mpmath.mpf("1e-15"))) is None
+        assert change_points.motion(m, float(limit - mpmath.mpf("1e-15"))) is not None
+        assert change_points.motion(m, float(limit + mpmath.mpf("1e-15"))) is None
 
 
 # --- what the data decide, not the arithmetic ------------------------------------------------------------------------
@@ -113,7 +113,7 @@ def test_a_guide_given_far_away_is_as_exact_as_a_near_one(way, direction):
     g = StructuralGroup(RRP, ("2", "3"), ("B",), "C", (0.35,), ("x",))
     m = mechanism(g, guides=[Guide("x", "0", complex(through), direction)])
     for phi in (0.3, -2.0, 3.0):
-        s, true = State(m, [phi]), truth.motion(m, phi)
+        s, true = State(m, [phi]), change_points.motion(m, phi)
         for got, want in ((s.z, true.z), (s.v, true.v), (s.a, true.a)):
             assert abs(got["C"][0] - want) < 1e-15 * max(abs(got["B"][0]), abs(want))
 
@@ -254,7 +254,7 @@ def test_lines_that_fall_together_are_caught(monkeypatch):
 
 
 def test_command(capsys, monkeypatch):
-    monkeypatch.setattr(report, "memory", lambda: 1.0)
+    monkeypatch.setattr(cases, "memory", lambda: 1.0)
     assert run(["stress", "--cases", "12", "--seed", "3"]) == 0
     out, err = capsys.readouterr()
     assert err == ""
@@ -270,7 +270,7 @@ def test_command(capsys, monkeypatch):
 
 def test_command_tells_what_is_exceeded(capsys, monkeypatch):
     monkeypatch.setattr(accelerations, "CORIOLIS", mutated(accelerations.CORIOLIS, lambda a, w, v, u: a + 1j * w * (u - v)))
-    monkeypatch.setattr(report, "memory", lambda: 1.0)
+    monkeypatch.setattr(cases, "memory", lambda: 1.0)
     assert run(["stress", "--cases", "36"]) == 1
     out, err = capsys.readouterr()
     assert "EXCEEDED" in out
@@ -280,9 +280,9 @@ def test_command_tells_what_is_exceeded(capsys, monkeypatch):
 
 
 def test_no_number_exceeds_every_bound():
-    w = report.Worst()
+    w = cases.Worst()
     w.take(1e-20, 0, "chain")
     w.take(float("nan"), 1, "chain")
     w.take(1e-18, 2, "chain")
-    assert report.exceeded({"link lengths": w}) == ["link lengths"]
+    assert cases.exceeded({"link lengths": w}) == ["link lengths"]
     assert w.case == 1

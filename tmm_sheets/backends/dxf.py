@@ -38,12 +38,10 @@ from tmm_sheets.backends.dxf_frame import (
     short,
 )
 from tmm_sheets.backends.dxf_frame import weight as weight
-from tmm_sheets.drawing.dashes import interrupted, strokes
-from tmm_sheets.drawing.ink import check
-from tmm_sheets.drawing.layers import layer
+from tmm_sheets.drawing.ink import check, interrupted, strokes
 from tmm_sheets.drawing.lettering import BAR, PEN, advance, glyph, lacking, letter
 from tmm_sheets.drawing.marks import Dimension, Drawing, Form, FormField, Mark, Text, View
-from tmm_sheets.drawing.styles import line_type, line_types
+from tmm_sheets.drawing.styles import layer, line_type, line_types
 from tmm_sheets.resources import template
 
 TEXT_LAYER = "TEXT"

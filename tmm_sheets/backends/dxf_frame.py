@@ -15,10 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tmm_sheets.drawing.layers import LayerStyle, layers, roles
 from tmm_sheets.drawing.lettering import PEN, glyph, widened
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Text
-from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.drawing.styles import LayerStyle, layers, line_type, roles
 
 COMMON, OWN = "lc_opengost-br", "tmm_sheets_b"
 """Names of the text style. LibreCAD takes it for that of a font, where others look at the font file: the first it brings along,

@@ -1,7 +1,7 @@
 """PDF: true line widths, embedded lettering that can be searched and copied, black only, the same bytes every time.
 
 reportlab makes the page, the font and the file; the content stream is written here, in millimetres. What is of one role (see
-``drawing/layers.py``) is a layer that a viewer can hide; the sheets and their views are bookmarks.
+``drawing/styles.py``) is a layer that a viewer can hide; the sheets and their views are bookmarks.
 """
 
 from __future__ import annotations
@@ -21,10 +21,9 @@ from reportlab.pdfbase.ttfonts import TTFont
 from reportlab.pdfgen.canvas import Canvas
 
 from tmm_sheets.backends.svg import escaped
-from tmm_sheets.drawing.dashes import strokes
-from tmm_sheets.drawing.layers import layer, roles
+from tmm_sheets.drawing.ink import strokes
 from tmm_sheets.drawing.marks import Arc, Box, Drawing, Fill, Line, Mark, Text
-from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.drawing.styles import layer, line_type, roles
 from tmm_sheets.files import source_date
 from tmm_sheets.resources import template
 from tmm_sheets.words import paper, tr

@@ -18,8 +18,7 @@ from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.path import Path as AggPath
 from matplotlib.transforms import Affine2D
 
-from tmm_sheets.drawing.clipping import polyline_inside
-from tmm_sheets.drawing.ink import SAGITTA, InkStroke, ink
+from tmm_sheets.drawing.ink import SAGITTA, InkStroke, ink, polyline_inside
 from tmm_sheets.drawing.marks import Box, Drawing, Points
 
 DPI = 150.0

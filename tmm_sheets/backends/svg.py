@@ -14,8 +14,7 @@ from math import ceil, pi
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.drawing.dashes import strokes
-from tmm_sheets.drawing.ink import check, letters
+from tmm_sheets.drawing.ink import check, letters, strokes
 from tmm_sheets.drawing.lettering import PEN
 from tmm_sheets.drawing.marks import Arc, Drawing, Fill, Line, Mark, Polyline, Text
 from tmm_sheets.drawing.styles import line_type

@@ -30,12 +30,11 @@ def run_bench(target: str | None, folder: Path | None, quick: bool, summary: boo
         click.echo(_prices(cost, whole))
         return
     from tmm_sheets.lab.bench import records
-    from tmm_sheets.lab.bench import run as benchmark
 
     if folder is not None:
         files.check_folder(folder)
     with Progress() as progress:
-        measure = benchmark.compare if peers else benchmark.run
+        measure = records.compare if peers else records.run
         found = measure(quick, progress.doing)
     if peers:
         from tmm_sheets.lab.bench import peers as by_others
@@ -50,9 +49,7 @@ def run_bench(target: str | None, folder: Path | None, quick: bool, summary: boo
     elif target is not None:
         made[Path(target)] = (records.as_json(found) + "\n").encode()
     if folder is not None:
-        from tmm_sheets.lab.bench import plots
-
-        made |= {folder / name: data for name, data in plots.diagrams(found).items()}
+        made |= {folder / name: data for name, data in records.diagrams(found).items()}
     files.write_all(made)
 
 
@@ -74,17 +71,17 @@ def _prices(cost: str | None, whole: str | None) -> str:
 @option("--case", "single", type=click.IntRange(0), metavar="N", help="Only this case of the seed, again.")
 def run_stress(cases: int, seed: int, single: int | None) -> None:
     """Try hard random mechanisms: the worst of every invariant against its bound."""
-    from tmm_sheets.lab.stress import report
+    from tmm_sheets.lab.stress import cases as stressed
 
     if single is not None:
-        worst = report.run_one(seed, single)
+        worst = stressed.run_one(seed, single)
     else:
         with Progress() as progress:
-            worst = report.run(
+            worst = stressed.run(
                 cases, seed, lambda case: progress.say(tell("case {case} of {cases} ...").format(case=case, cases=cases))
             )
-    click.echo(report.table(worst, seed))
-    failed = report.exceeded(worst)
+    click.echo(stressed.table(worst, seed))
+    failed = stressed.exceeded(worst)
     if failed:
         raise CannotBuild(
             tell("bound exceeded: {invariants}").format(invariants=", ".join(failed)), tell("the table names a case that shows it")

@@ -24,7 +24,7 @@ from typing import Literal
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.drawing import dashes
+from tmm_sheets.drawing import ink
 from tmm_sheets.drawing.canvas import MarkGroup
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Provenance, Role, Text, View
@@ -178,7 +178,7 @@ def dashed(element: Element) -> tuple[Points, ...]:
     """Where an element has ink: the strokes of a dashed line, hatching or text, else its line; each an array of points, mm."""
     if element.kind in ("hatch", "text"):
         return element.pieces
-    return tuple(_line(m) for m in dashes.strokes(element.marks) if not isinstance(m, Fill | Text))
+    return tuple(_line(m) for m in ink.strokes(element.marks) if not isinstance(m, Fill | Text))
 
 
 def interruptions(e: Element) -> tuple[tuple[float, float], ...]:

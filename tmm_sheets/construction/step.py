@@ -24,7 +24,7 @@ Complex = npt.NDArray[np.complex128]
 Kind = Literal["point", "direction", "vector", "force", "length", "ordinate", "angle", "number", "inclination", "curve"]
 """What a value is. A length is an opening of the compass or an arm, without sign; an ordinate is laid off to either side.
 
-A curve is a value of its own (:class:`~tmm_sheets.construction.curve.Curve`): tangents, extremes and ordinates take it.
+A curve is a value of its own (:class:`~tmm_sheets.construction.arithmetic.Curve`): tangents, extremes and ordinates take it.
 """
 
 

@@ -14,7 +14,6 @@ from typing import Any, Literal, NamedTuple, TypeVar, cast
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.drawing.headings import LEADING, TOGETHER, heading
 from tmm_sheets.drawing.lettering import Lettering, fitted, letter, size_for
 from tmm_sheets.drawing.marks import (
     Arc,
@@ -31,6 +30,7 @@ from tmm_sheets.drawing.marks import (
     Role,
     Text,
 )
+from tmm_sheets.drawing.text_layout import LEADING, TOGETHER, heading
 
 Align = Literal["left", "centre", "right"]
 SMALLEST = 2.5

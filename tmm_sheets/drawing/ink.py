@@ -1,20 +1,28 @@
 """A drawing as strokes of round pens: dashes cut, arcs as chords, lettering as its single strokes.
 
 For outputs that know nothing but pens: plotters, pixels. Whoever can draw an arc as an arc takes the marks themselves.
+
+Dashed and chain lines cut into separate strokes, once, for every output.
+
+Programs disagree about dashes: where the pattern starts, how it goes round a corner or a circle, whether a short line shows
+any. Cut here, a line begins and ends with a long stroke, crosses its middle and a circle crosses its axes with one, as
+GOST 2.303 asks, and a PDF, a DXF in any program and a plotter show the same strokes.
+
+What of a circle, a line or a curve lies inside a rectangle.
 """
 
 from __future__ import annotations
 
-from cmath import exp, isfinite
+from cmath import exp, isfinite, phase, rect
 from collections.abc import Iterable, Iterator
-from math import acos, ceil
+from itertools import chain, pairwise
+from math import acos, ceil, inf, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from tmm_sheets.drawing import lettering
-from tmm_sheets.drawing.dashes import strokes
-from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Points, Polyline, Text
+from tmm_sheets.drawing.marks import Arc, Box, Fill, Line, Mark, Points, Polyline, Text
 from tmm_sheets.drawing.styles import line_type
 
 SAGITTA = 0.005  # mm between an arc and its chords
@@ -83,3 +91,181 @@ def _points(mark: Line | Arc | Polyline, sagitta: float) -> Points:
     step = 2 * acos(max(1 - sagitta / mark.radius, 0.0)) if mark.radius > 0 else 1.0
     n = max(ceil(abs(mark.end - mark.start) / step), 1)
     return np.asarray(mark.centre + mark.radius * np.exp(1j * np.linspace(mark.start, mark.end, n + 1)))
+
+
+def arcs_inside(box: Box, centre: complex, radius: float) -> list[tuple[float, float]]:
+    """Arcs of a circle inside the box as (start, end), rad counter-clockwise, at most one turn each; empty when none."""
+    cuts = set()
+    for x in (box.x0, box.x1):
+        d = x - centre.real
+        if abs(d) < radius:
+            h = sqrt((radius - d) * (radius + d))
+            cuts |= {phase(complex(d, s * h)) % (2 * pi) for s in (1, -1) if box.y0 <= centre.imag + s * h <= box.y1}
+    for y in (box.y0, box.y1):
+        d = y - centre.imag
+        if abs(d) < radius:
+            h = sqrt((radius - d) * (radius + d))
+            cuts |= {phase(complex(s * h, d)) % (2 * pi) for s in (1, -1) if box.x0 <= centre.real + s * h <= box.x1}
+    if not cuts:
+        return [(0.0, 2 * pi)] if box.contains(centre + radius) else []
+    ends = sorted(cuts)
+    spans = []
+    for start, end in zip(ends, [*ends[1:], ends[0] + 2 * pi], strict=True):
+        middle = (start + end) / 2
+        if box.contains(centre + rect(radius, middle)):
+            spans.append((start, end))
+    return spans
+
+
+def chords(box: Box, centre: complex, radius: float, hollow: float = 0.0) -> list[tuple[complex, complex]]:
+    """Parts of the box's sides inside a circle that it cuts, each in the sense of running round the box counter-clockwise.
+
+    What lies inside the smaller circle of the radius ``hollow`` is left out.
+    """
+    corners = complex(box.x0, box.y0), complex(box.x1, box.y0), complex(box.x1, box.y1), complex(box.x0, box.y1)
+    found = []
+    for a, b in zip(corners, (*corners[1:], corners[0]), strict=True):
+        u = (b - a) / abs(b - a)
+        foot = a + ((centre - a) * u.conjugate()).real * u
+        inside, left_out = (r**2 - abs(centre - foot) ** 2 for r in (radius, hollow))
+        if inside <= 0:
+            continue
+        ends = foot - sqrt(inside) * u, foot + sqrt(inside) * u
+        free = [ends] if left_out <= 0 else [(ends[0], foot - sqrt(left_out) * u), (foot + sqrt(left_out) * u, ends[1])]
+        found += [part for one in free for part in (segment_inside(box, *one),) if part is not None]
+    return found
+
+
+def segment_inside(box: Box, a: complex, b: complex) -> tuple[complex, complex] | None:
+    """Part of a straight line inside the box (Liang and Barsky), None when there is none."""
+    t0, t1 = 0.0, 1.0
+    d = b - a
+    for step, low, high in ((d.real, box.x0 - a.real, box.x1 - a.real), (d.imag, box.y0 - a.imag, box.y1 - a.imag)):
+        if step == 0:
+            if low > 0 or high < 0:
+                return None
+            continue
+        s0, s1 = sorted((low / step, high / step))
+        t0, t1 = max(t0, s0), min(t1, s1)
+    return (a + t0 * d, a + t1 * d) if t0 < t1 else None
+
+
+def chord(centre: complex, radius: float, a: complex, b: complex) -> tuple[complex, complex] | None:
+    """Part of a straight line inside a circle, None when there is none."""
+    if a == b:
+        return None
+    u = (b - a) / abs(b - a)
+    foot = ((centre - a) * u.conjugate()).real
+    inside = radius**2 - abs(a + foot * u - centre) ** 2
+    if inside <= 0:
+        return None
+    t0, t1 = max(foot - sqrt(inside), 0.0), min(foot + sqrt(inside), abs(b - a))
+    return (a + t0 * u, a + t1 * u) if t0 < t1 else None
+
+
+def polyline_inside(box: Box, points: Points) -> list[Points]:
+    """Stretches of a polyline inside the box."""
+    stretches: list[list[complex]] = []
+    for a, b in pairwise(points.tolist()):
+        part = segment_inside(box, a, b)
+        if part is None:
+            continue
+        if stretches and stretches[-1][-1] == part[0]:
+            stretches[-1].append(part[1])
+        else:
+            stretches.append(list(part))
+    return [np.array(s) for s in stretches]
+
+
+LEAST = 0.32  # a long stroke may shrink to this share of its nominal length (5 of 16 mm; GOST 2.303: 5 .. 30) ...
+LEAST_MM = 2.0  # ... but not below this (dashed line: 2 .. 8)
+
+
+def cut(length: float, pattern: tuple[float, ...], closed: bool = False) -> list[tuple[float, float]]:
+    """Stretches of a line of ``length`` mm that are drawn, mm from its beginning.
+
+    Gaps and short strokes keep their length, the long strokes are fitted to the line. A line too short for two long
+    strokes is solid. A chain line has an odd number of long strokes where there is room for three: one in the middle, where
+    centre lines cross. On a closed line the first and the last stretch meet, and the number of periods is a multiple of four
+    where there is room: a circle is crossed by its axes in long strokes.
+    """
+    long, rest = pattern[0], pattern[1:]
+    fixed = sum(map(abs, rest))
+    least = max(LEAST * long, LEAST_MM)
+    if not least < length < inf:  # too short, or not a length at all: the writers report that
+        return [(0.0, length)]
+    periods = (length if closed else length - long) / (long + fixed)
+    if closed:
+        choices = (4 * max(round(periods / 4), 1), 2)
+    elif len(pattern) > 2:
+        choices = (2 * max(round(periods / 2), 1), 1)
+    else:
+        choices = (max(round(periods), 1), 1)
+    for n in choices:
+        stroke = length / n - fixed if closed else (length - n * fixed) / (n + 1)
+        if stroke >= least:
+            break
+    else:
+        return [(0.0, length)]
+    pieces, at = [], 0.0
+    for i in range(n):
+        first = stroke / 2 if closed and i == 0 else stroke
+        for step in (first, *rest):
+            if step > 0:
+                pieces.append((at, at + step))
+            at += abs(step)
+    pieces.append((at, length))
+    return pieces
+
+
+def _along(points: Points, pattern: tuple[float, ...], closed: bool) -> Iterator[Points]:
+    """The strokes of a polyline, measured along it; corners within a stroke are kept."""
+    measure = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(points)))))
+    for a, b in cut(float(measure[-1]), pattern, closed):
+        inner = points[np.searchsorted(measure, a, "right") : np.searchsorted(measure, b, "left")]
+        ends = np.interp([a, b], measure, points.real) + 1j * np.interp([a, b], measure, points.imag)
+        yield np.concatenate((ends[:1], inner, ends[1:]))
+
+
+def interrupted(mark: Mark) -> list[Mark]:
+    """The pieces of a line that lettering interrupts; any other mark as it is."""
+    if isinstance(mark, Text | Fill) or not mark.gaps:
+        return [mark]
+    borders = [0.0, *(border for gap in mark.gaps for border in gap), 1.0]
+    pieces = [(a, b) for a, b in zip(borders[::2], borders[1::2], strict=True) if b > a]
+    whole = mark._replace(gaps=())
+    if isinstance(whole, Line):
+        d = whole.b - whole.a
+        return [whole._replace(a=whole.a + d * a, b=whole.a + d * b) for a, b in pieces]
+    if isinstance(whole, Arc):
+        turn = whole.end - whole.start
+        return [whole._replace(start=whole.start + turn * a, end=whole.start + turn * b) for a, b in pieces]
+    points = np.append(whole.points, whole.points[:1]) if whole.closed else whole.points
+    run = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(points)))))
+    out: list[Mark] = []
+    for a, b in pieces:
+        s = np.array([a, b]) * run[-1]
+        ends = np.interp(s, run, points.real) + 1j * np.interp(s, run, points.imag)
+        inner = points[(run > s[0]) & (run < s[1])]
+        out.append(whole._replace(points=np.concatenate((ends[:1], inner, ends[1:])), closed=False))
+    return out
+
+
+def strokes(marks: Iterable[Mark]) -> Iterator[Mark]:
+    """The marks with every line of a patterned type, or interrupted behind lettering, replaced by its separate strokes."""
+    for mark in chain.from_iterable(map(interrupted, marks)):
+        if not isinstance(mark, Line | Arc | Polyline) or not (pattern := line_type(mark.style).pattern):
+            yield mark
+        elif isinstance(mark, Line):
+            length = abs(mark.b - mark.a)
+            u = (mark.b - mark.a) / length if length else 0j
+            for a, b in cut(length, pattern):
+                yield mark._replace(a=mark.a + a * u, b=mark.a + b * u)
+        elif isinstance(mark, Arc):
+            r = mark.radius
+            for a, b in cut((mark.end - mark.start) * r, pattern, mark.end - mark.start > 2 * pi - 1e-9):
+                yield mark._replace(start=mark.start + a / r, end=mark.start + b / r)
+        else:
+            points = np.append(mark.points, mark.points[:1]) if mark.closed else mark.points
+            for part in _along(points, pattern, mark.closed):
+                yield Polyline(part, mark.style, False, mark.of, mark.by)

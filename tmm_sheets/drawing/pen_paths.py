@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.drawing.clipping import polyline_inside
-from tmm_sheets.drawing.ink import ink
+from tmm_sheets.drawing.ink import ink, polyline_inside
 from tmm_sheets.drawing.marks import Box, Drawing, Points
 from tmm_sheets.drawing.plotters import NEAR, Pen, Plotter
 

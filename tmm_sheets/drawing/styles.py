@@ -1,4 +1,7 @@
-"""Line types of the sheets, read from ``templates/linetypes.toml``."""
+"""Line types and layers of the sheets, read from ``templates/linetypes.toml`` and ``templates/layers.toml``.
+
+What lies on a layer is of one role and one line type.
+"""
 
 from __future__ import annotations
 
@@ -7,16 +10,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
+from tmm_sheets.drawing.marks import Mark, Text
 from tmm_sheets.resources import template
+from tmm_sheets.words import tr
 
 
 @dataclass(frozen=True)
 class LineType:
     """How a line looks: ``width`` in mm; ``pattern`` dash, -gap, dash ... in mm, empty for a solid line.
 
-    ``layer`` is what it adds to the name of a layer (see :mod:`~tmm_sheets.drawing.layers`), ``description`` says it in words;
+    ``layer`` is what it adds to the name of a layer (see :mod:`~tmm_sheets.drawing.styles`), ``description`` says it in words;
     ``colour`` (AutoCAD colour index) and ``linetype`` are what a DXF file calls it.
     """
 
@@ -53,3 +58,62 @@ def line_type(name: str) -> LineType:
     except KeyError:
         known = ", ".join(line_types())
         raise ValueError(f"line type '{name}' is not in templates/linetypes.toml (it has {known})") from None
+
+
+BY_STYLE = {"main": "symbol", "thin": "symbol", "centre": "axis", "hidden": "link", "twodot": "link"}
+"""Roles of marks that tell none, by line type; other line types are called after the role."""
+
+
+class LayerStyle(NamedTuple):
+    """A layer: ``name`` is the same in every language, ``style`` is its line type."""
+
+    name: str
+    role: str
+    style: str
+
+    @property
+    def description(self) -> str:
+        """What lies on it, in the language of the paper."""
+        row, line = roles()[self.role], line_type(self.style).description
+        description = row["description"]
+        if self.style == row["style"]:
+            return tr(description)
+        return tr("{role}: {line}").format(role=tr(description), line=tr(line))
+
+
+@cache
+def roles() -> Mapping[str, Mapping[str, str]]:
+    """Rows of the file: by role its description and its usual line type."""
+    return MappingProxyType(tomllib.loads(template("layers.toml").read_text(encoding="utf-8")))
+
+
+@cache
+def layers() -> Mapping[tuple[str, str], LayerStyle]:
+    """Every layer there may be, by role and line type; the role's usual one first."""
+    found = {}
+    for role, row in roles().items():
+        usual = row["style"]
+        for style in (usual, *(name for name in line_types() if name != usual)):
+            name = role.upper() if style == usual else f"{role.upper()}_{line_type(style).layer}"
+            found[role, style] = LayerStyle(name, role, style)
+    return MappingProxyType(found)
+
+
+def layer(mark: Mark) -> LayerStyle:
+    """The layer of a mark.
+
+    Raises
+    ------
+    ValueError
+        when there is no layer for its role and line type.
+    """
+    style = "text" if isinstance(mark, Text) else mark.style
+    if mark.of == "title block" and not isinstance(mark, Text):
+        role = "frame"
+    else:
+        role = mark.by.role if mark.by is not None else BY_STYLE.get(style, style)
+    try:
+        return layers()[role, style]
+    except KeyError:
+        line_type(style)  # says which there are
+        raise ValueError(f"role '{role}' is not in templates/layers.toml (it has {', '.join(roles())})") from None

@@ -12,11 +12,11 @@ from functools import cache
 from math import pi
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.drawing.headings import NARROWEST
 from tmm_sheets.drawing.lettering import Lettering, letter, plain
 from tmm_sheets.drawing.marks import Box, Form, FormField
 from tmm_sheets.drawing.paper import A1, Paper
 from tmm_sheets.drawing.styles import line_type
+from tmm_sheets.drawing.text_layout import NARROWEST
 from tmm_sheets.resources import template
 from tmm_sheets.words import tr_in
 

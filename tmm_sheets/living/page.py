@@ -1,4 +1,7 @@
-"""One HTML file with the sheets of a project, their record and the program of its plans; it needs no network."""
+"""One HTML file with the sheets of a project, their record and the program of its plans; it needs no network.
+
+Its words in the language of the sheets, and the sliders: what the schema of the project file takes, in the unit of the file.
+"""
 
 from __future__ import annotations
 
@@ -7,26 +10,28 @@ import json
 import re
 from base64 import b64encode
 from collections.abc import Iterable, Mapping
+from copy import deepcopy
+from functools import reduce
 from html import escape
+from operator import getitem
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import results, spelling, words
 from tmm_sheets.drawing.styles import line_types
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.living.hanging import hung
-from tmm_sheets.living.markers import markers
+from tmm_sheets.living.anchors import hung, markers
 from tmm_sheets.living.motion import MotionProgram, WrittenPlan, motion
-from tmm_sheets.living.page_words import page_words
-from tmm_sheets.living.sliders import slider
 from tmm_sheets.note import phrases
 from tmm_sheets.record import recording
-from tmm_sheets.record.sheets import called
+from tmm_sheets.record.recording import called
 from tmm_sheets.resources import template
-from tmm_sheets.task.toml_lines import scan
-from tmm_sheets.words import tell
+from tmm_sheets.task import units
+from tmm_sheets.task.toml_lines import KeyPath, scan
+from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
+    from tmm_sheets.task.variant import Variant
 
 MODULES = ("digits", "primitives", "strokes", "courses", "searches", "formula", "data", "flywheel", "machine", "sheet", "viewport",
            "steps", "ask", "markers", "player", "stage", "drag", "change", "main")
@@ -121,3 +126,116 @@ def _programs(programs: Mapping[str, WrittenPlan]) -> str:
 
 def _text(name: str) -> str:
     return template(f"living/{name}").read_text(encoding="utf-8")
+
+
+WIDEST = 4.0
+"""A slider goes no farther than so many times the project's own number."""
+HALVINGS = 7
+
+
+def path_of(name: str) -> KeyPath:
+    """Keys of a given number in the project file."""
+    return tuple(int(part) if part.isdigit() else part for part in re.findall(r"[^.\[\]]+", name))
+
+
+def slider(variant: Variant, lines: Mapping[KeyPath, int], name: str) -> dict[str, Any]:
+    """Line of a given number, its unit with the factor to SI, and limits of what the schema takes, SI; nothing of one left out.
+
+    ``low`` and ``high`` are told where there are any.
+    """
+    path = path_of(name)
+    if path not in lines:
+        return {}
+    told: dict[str, Any] = {"line": lines[path]}
+    try:
+        written = reduce(getitem, path, variant.data)  # type: ignore[arg-type]
+    except (KeyError, IndexError, TypeError):
+        return told
+    number, unit = units.split(written[0] if isinstance(written, list) and written else written)
+    factor = units.si(f"1 {unit}") if unit else 1.0
+    if not number or not factor:
+        return told
+    told |= {"shown": [unit, factor]} if unit else {}
+    if isinstance(written, list):
+        return told
+    own = units.si(number)
+
+    def taken(x: float) -> bool:
+        """Whether the schema takes a number."""
+        data = deepcopy(variant.data)
+        place = reduce(getitem, path[:-1], data)  # type: ignore[arg-type]
+        place[path[-1]] = f"{x!r} {unit}" if unit else x  # type: ignore[index]
+        try:
+            type(variant).model_validate(data)
+        except ValueError:
+            return False
+        return True
+
+    def end(far: float) -> float | None:
+        """Where the schema ends between the own number and a far one."""
+        if taken(far):
+            return None
+        near = own
+        for _ in range(HALVINGS):
+            middle = (near + far) / 2
+            near, far = (middle, far) if taken(middle) else (near, middle)
+        return near
+
+    low = 0.0 if taken(0.0) and not taken(-max(abs(own), 1.0)) else end(-abs(own))
+    high = end(WIDEST * own) if own > 0 else None
+    return told | {key: x * factor for key, x in (("low", low), ("high", high)) if x is not None}
+
+
+def page_words() -> dict[str, str]:
+    """Texts by their keys."""
+    return {
+        "a turn in {s} s": tr("a turn in {s} s"),
+        "and {n} more": tr("and {n} more"),
+        "angles": tr("Angles"),
+        "back": tr("← Back"),
+        "by the flywheel": tr("How unevenly the crank runs comes from the flywheel, which this page does not compute: with other "
+                              "numbers there are no accelerations and forces here. Save the file and solve it."),
+        "click a line": tr("Click a line, a point or a letter: the step that made it, what it is made of, why."),
+        "crank angle": tr("Crank angle"),
+        "crank pin: drag it round": tr("Crank pin: drag it round"),
+        "does not assemble at this angle": tr("The mechanism does not assemble at this angle"),
+        "drag the crank pin or a slider": tr("Drag the crank pin round, or a slider: all plans follow."),
+        "fixed points": tr("Fixed points"),
+        "find": tr("Find a step or a result"),
+        "from it follow": tr("From it follow"),
+        "gap": tr("gap"),
+        "given": tr("given"),
+        "how to": tr("How the sheet was drawn"),
+        "in motion": tr("In motion"),
+        "keys": tr("Keys"),
+        "lengths": tr("Lengths"),
+        "list of keys": tr("Space: play or pause\n← →: a step, or a degree\nHome, End: beginning, end\n"
+                           "+ −: zoom, 0: the whole sheet\nEsc: leave a step\nCtrl+Z: undo"),
+        "loads": tr("Loads"),
+        "made of": tr("Made of"),
+        "masses": tr("Masses and moments of inertia"),
+        "pause": tr("Pause"),
+        "play": tr("Play"),
+        "play it": tr("Press ▶ to see each line drawn as a hand draws it."),
+        "position {label}": tr("position {label}"),
+        "redo": tr("Redo"),
+        "reset": tr("Reset"),
+        "save as project file": tr("Save as project file"),
+        "sheet {n}": tr("Sheet {n}"),
+        "speed": tr("Speed"),
+        "speeds": tr("Speeds"),
+        "step": tr("Next step"),
+        "step back": tr("Step back"),
+        "steps": tr("Steps"),
+        "the whole sheet": tr("The whole sheet"),
+        "turn the crank": tr("In motion: turn the crank, change lengths and masses; the plans follow."),
+        "turn the crank on the sheet": tr("Turn the crank: markers follow on the diagrams"),
+        "undo": tr("Undo"),
+        "velocities": tr("Velocities"),
+        "views of this sheet": tr("Views of this sheet"),
+        "what is played": tr("What is played"),
+        "whole sheet": tr("Whole sheet"),
+        "why: back to the givens": tr("Why: back to the givens"),
+        "zoom in": tr("Zoom in"),
+        "zoom out": tr("Zoom out"),
+    }

@@ -15,8 +15,15 @@ if TYPE_CHECKING:
     from tmm_sheets.construction.limit_angles import Gaps
     from tmm_sheets.construction.plan import Plan
     from tmm_sheets.construction.step import Step
-    from tmm_sheets.mechanism.groups.contexts import AccelerationPlan, ForcePlans, PositionPlan, VelocityPlan
-    from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
+    from tmm_sheets.mechanism.groups.contexts import (
+        AccelerationPlan,
+        Crossing,
+        ForcePlans,
+        OuterReaction,
+        Outline,
+        PositionPlan,
+        VelocityPlan,
+    )
     from tmm_sheets.mechanism.groups.limits import AssemblyLimit
 
     # The plans as a kind of group sees them.

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.quantities import Directions, Points, Reals

@@ -22,8 +22,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_sheets.drawing.clipping import arcs_inside, polyline_inside, segment_inside
-from tmm_sheets.drawing.ink import letters
+from tmm_sheets.drawing.ink import arcs_inside, letters, polyline_inside, segment_inside
 from tmm_sheets.drawing.marks import Arc, Fill
 
 BESIDE = 12.0

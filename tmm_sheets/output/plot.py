@@ -64,7 +64,7 @@ def job(drawing: Drawing, name: str, look: PlotLook) -> Job:
     BadInput
         for a window outside the sheet or too large for the plotter, or an overlap that leaves nothing of a page.
     """
-    from tmm_sheets.drawing.tiles import with_bar, without_outline
+    from tmm_sheets.drawing.paper import with_bar, without_outline
 
     window = look.window
     sheet = Box(0.0, 0.0, drawing.width, drawing.height)
@@ -125,7 +125,7 @@ def passes(plotter: Plotter, width: float, height: float) -> list[Box]:
 def _printed(drawing: Drawing, name: str, look: PlotLook) -> Job:
     from tmm_sheets.backends import pdf
     from tmm_sheets.drawing.marks import Drawing
-    from tmm_sheets.drawing.tiles import tiles
+    from tmm_sheets.drawing.paper import tiles
 
     part = look.window or Box(0.0, 0.0, drawing.width, drawing.height)
     if look.tile is not None:

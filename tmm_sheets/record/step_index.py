@@ -1,13 +1,16 @@
-"""The steps of a project under their ids, arguments before what is made of them, and the rules they use."""
+"""The steps of a project under their ids, the rules they use, and the paths of ``solve --json`` with the steps behind them.
+
+Arguments stand before what is made of them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from tmm_sheets.construction import expression
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Step, ordered, parents
+from tmm_sheets.construction.step import Reported, Step, ordered, parents
 from tmm_sheets.words import tr
 
 
@@ -109,3 +112,40 @@ def _free(name: str, taken: dict[str, Any]) -> str:
     while found in taken:
         found, n = f"{name}@{n}", n + 1
     return found
+
+
+SECTIONS = ("cycle", "positions", "velocities", "accelerations", "forces", "flywheel", "gear", "reducer", "train", "cam")
+"""Parts of the results whose numbers are steps."""
+
+WITHOUT_STEPS = ("labels",)
+"""Keys of texts: names of positions."""
+
+
+def leaves(tree: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Numeric leaves of a results tree by their paths: what :class:`Told` says, or a bare number that has no step."""
+    for name in SECTIONS:
+        if name in tree:
+            yield from _leaves(name, tree[name])
+
+
+def _leaves(path: str, value: Any) -> Iterator[tuple[str, Any]]:
+    if isinstance(value, Step):
+        yield path, Reported(value)
+    elif isinstance(value, Reported):
+        yield path, value
+    elif isinstance(value, Mapping):
+        for key, v in value.items():
+            if key not in WITHOUT_STEPS:
+                yield from _leaves(f"{path}.{key}", v)
+    elif isinstance(value, list | tuple):
+        if any(isinstance(v, Step | Reported | Mapping) for v in value):
+            for i, v in enumerate(value):
+                yield from _leaves(f"{path}[{i}]", v)
+        elif any(not _text(v) for v in value):
+            yield path, value
+    elif not _text(value):
+        yield path, value
+
+
+def _text(value: Any) -> bool:
+    return value is None or isinstance(value, str | bool) or (isinstance(value, list | tuple) and all(map(_text, value)))

@@ -15,8 +15,7 @@ from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.numbers import in_a_row, listed
 from tmm_sheets.project import LINKAGE
 from tmm_sheets.record.recording import book_of, unit
-from tmm_sheets.record.results_map import leaves
-from tmm_sheets.record.step_index import StepIndex, chain
+from tmm_sheets.record.step_index import StepIndex, chain, leaves
 from tmm_sheets.words import marked, tell, tell_n
 
 if TYPE_CHECKING:

@@ -35,7 +35,7 @@ from math import ceil, floor, inf, pi
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.drawing.clipping import polyline_inside
+from tmm_sheets.drawing.ink import polyline_inside
 from tmm_sheets.drawing.marks import Arc, Line, Mark, Points, Text, flat
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.sheets.composed import Leaving

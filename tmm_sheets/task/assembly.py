@@ -13,7 +13,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import KINDS, TRIAD
-from tmm_sheets.mechanism.groups.hints import Leg
+from tmm_sheets.mechanism.groups.contexts import Leg
 from tmm_sheets.mechanism.groups.triad import TriadGroup
 from tmm_sheets.mechanism.model import Crank, Drive, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.cycle import Cycle

@@ -8,7 +8,7 @@ import pytest
 from tests.methods.linkage import shaper_truth
 from tmm_sheets import catalogue
 from tmm_sheets.construction import expression
-from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.step import Reported, Step, value_of

@@ -12,11 +12,9 @@ from tmm_sheets import catalogue
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import RPR, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, LinkPoint, StructuralGroup
-from tmm_sheets.methods.linkage.cycle import closed
-from tmm_sheets.methods.linkage.dead_positions import dead_positions
+from tmm_sheets.methods.linkage.cycle import closed, dead_positions, root
 from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle
 from tmm_sheets.methods.linkage.positions import position_plan
-from tmm_sheets.methods.linkage.strokes import root
 from tmm_sheets.project import Project
 
 DEAD = acos(0.08 / 0.26)

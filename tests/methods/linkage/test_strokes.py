@@ -18,10 +18,10 @@ from tmm_sheets import catalogue
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import RPR, RRR
 from tmm_sheets.mechanism.model import LinkPoint, StructuralGroup
+from tmm_sheets.methods.linkage.cycle import Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.methods.linkage.loads import OutputMotion, stroke_law, turning_motion
 from tmm_sheets.methods.linkage.numbering import dead_cycle, even_cycle
 from tmm_sheets.methods.linkage.positions import position_plan
-from tmm_sheets.methods.linkage.strokes import Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.project import Project
 from tmm_sheets.task.assembly import _by_run
 

@@ -16,7 +16,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.lab.stress.draw import chain
 from tmm_sheets.mechanism.groups import TRIAD, three_legs
-from tmm_sheets.mechanism.groups.hints import Leg
+from tmm_sheets.mechanism.groups.contexts import Leg
 from tmm_sheets.mechanism.groups.triad import TriadGroup
 from tmm_sheets.mechanism.model import Crank
 from tmm_sheets.mechanism.structure import decompose

@@ -11,7 +11,7 @@ from tests.methods.linkage.mechanisms import mechanism, mechanisms, value
 from tests.methods.settings import every_kind, tried
 from tmm_sheets.mechanism.groups import RPP, RPR, RRR
 from tmm_sheets.mechanism.model import Guide, LinkPoint, StructuralGroup
-from tmm_sheets.methods.linkage.dead_positions import dead_positions
+from tmm_sheets.methods.linkage.cycle import dead_positions
 from tmm_sheets.methods.linkage.positions import position_plan
 from tmm_sheets.methods.linkage.velocities import velocity_plan
 

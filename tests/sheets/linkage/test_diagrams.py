@@ -11,7 +11,7 @@ from tests.project_files import EVEN, SLIDER, from_file, project
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.construction.scale import handy
-from tmm_sheets.drawing import axis_numbers
+from tmm_sheets.drawing import placing
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.marks import Line, Polyline, Text
@@ -207,7 +207,7 @@ def test_numbers_of_positions_keep_off_the_curves_and_each_other(curves):
     graphs.numbers(canvas, graphs.Graph(0j), x, [str(k + 9) for k in range(len(x))], np.where(x < 50, 1.0, -1.0))
     for curve in curves:
         canvas.polyline(curve)
-    axis_numbers.set_numbers(canvas, InkIndex(canvas.marks))
+    placing.set_numbers(canvas, InkIndex(canvas.marks))
     texts = [m for m in canvas.marks if isinstance(m, Text)]
     assert len(texts) == len(x)
     boxes = [Box.around(text_box(m)) for m in texts]

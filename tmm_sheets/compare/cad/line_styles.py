@@ -20,7 +20,7 @@ from tmm_sheets.compare.cad.cad_patterns import Pattern, of_dashes, of_strokes
 from tmm_sheets.compare.cad.overlaps import Interval, gaps, overlaps, union
 from tmm_sheets.compare.codes import Number, Remark
 from tmm_sheets.compare.elements import ElementView
-from tmm_sheets.drawing.dashes import cut
+from tmm_sheets.drawing.ink import cut
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell

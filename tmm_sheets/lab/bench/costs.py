@@ -8,16 +8,18 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from time import perf_counter
+from typing import Any, NamedTuple
 
 from tmm_sheets import kept
 from tmm_sheets.errors import BadInput
 from tmm_sheets.explain import HEAVY
-from tmm_sheets.lab.bench.processes import timed
 from tmm_sheets.words import tell
 
 RUNS = 3
@@ -165,3 +167,20 @@ def table(project: str, say: Callable[[str], None]) -> str:
         )
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)
+
+
+class TimedProcess(NamedTuple):
+    """What became of a process, and its times, s, Python's start included."""
+
+    done: subprocess.CompletedProcess[str]
+    wall: float
+    processor: float
+
+
+def timed(program: str, arguments: list[str], environment: Mapping[str, str] | None = None) -> TimedProcess:
+    """Run Python source in a fresh interpreter; ``environment`` is ours when left out."""
+    start, before = perf_counter(), os.times()
+    done = subprocess.run([sys.executable, "-c", program, *arguments], capture_output=True, text=True, env=environment, check=False)
+    wall, after = perf_counter() - start, os.times()
+    processor = after.children_user - before.children_user + after.children_system - before.children_system
+    return TimedProcess(done, wall, processor)

@@ -1,11 +1,13 @@
-"""Cams by tangents and as envelopes, involutes by unrolling, teeth cut by a rack."""
+"""Cams by tangents and as envelopes, involutes by unrolling, teeth cut by a rack, tooth numbers of a reducer by search."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import partial
-from math import asin, inf, pi, radians, tan
+from itertools import product
+from math import asin, inf, pi, radians, sin, tan
 from typing import Any
 
 import numpy as np
@@ -19,6 +21,7 @@ from tmm_sheets.methods.gears.gear_engagement import divisions, involute_plan
 from tmm_sheets.methods.gears.gear_geometry import GearWheel
 from tmm_sheets.methods.gears.gear_pair import GearPair
 from tmm_sheets.methods.gears.rack import Rack, flank
+from tmm_sheets.methods.gears.tooth_search import TIERS, ToothSet, search
 from tmm_sheets.project import Project
 
 DIGITS = 40
@@ -267,7 +270,68 @@ def _racks(bench: Bench) -> None:
 
 
 def rows(bench: Bench) -> None:
-    """Cam, involute, rack."""
+    """Cam, involute, rack, search for tooth numbers."""
     _cams(bench)
     _involutes(bench)
     _racks(bench)
+    _tooth_searches(bench)
+
+
+LIMITS = (30, 40, 60, 90, 120)
+TRIED = 60
+"""Largest tooth number of the exhaustive search."""
+
+
+def _data(most: int) -> Any:
+    """A single-row planetary stage after a simple pair, 1250 to 300 rpm, with at most so many teeth a wheel."""
+    found = catalogue.read("transport/diesel@01-T-27").reducer
+    assert found is not None
+    speeds = {"input_speed": 1250 * pi / 30, "output_speed": 300 * pi / 30}
+    return found.model_copy(update={"most_teeth": most, "simple_ratio": (1.0, 4.0), **speeds})
+
+
+def _best(most: int) -> tuple[int, Fraction]:
+    """Tier of the deviation and height in metres of the best permitted set, by loops over exact fractions."""
+    d = _data(most)
+    asked, pinion = Fraction(1250, 300), d.teeth["z1"]
+    module, simple_module = (Fraction(str(m)) for m in (d.module, d.simple_module))
+    bounds = [*(Fraction(str(t)) for t in TIERS), Fraction(str(d.tolerance))]
+    best: tuple[int, Fraction] | None = None
+    for sun, satellite in product(range(d.least_teeth, most + 1), repeat=2):
+        ring = sun + 2 * satellite
+        if (sun + ring) % d.satellites or (sun + satellite) * sin(pi / d.satellites) <= satellite + 2 * d.addendum:
+            continue
+        for wheel in range(pinion, min(4 * pinion, most) + 1):
+            off = abs((1 + Fraction(ring, sun)) * Fraction(wheel, pinion) / asked - 1)
+            if off > bounds[-1]:
+                continue
+            tier = next(k for k, bound in enumerate(bounds) if off <= bound)
+            stage, one, two = ring * module / 2, pinion * simple_module / 2, wheel * simple_module / 2
+            found = tier, max(stage, two) + max(stage, two + 2 * one)
+            best = found if best is None else min(best, found)
+    if best is None:
+        raise ValueError("no permitted set")
+    return best
+
+
+def _search(most: int) -> list[ToothSet]:
+    return search(_data(most))
+
+
+def _tooth_searches(bench: Bench) -> None:
+    """The height of the chosen set against the least of its tier of deviation.
+
+    Raises
+    ------
+    ValueError
+        when no set is permitted.
+    """
+    for most in bench.upto(LIMITS, 40):
+        goal = _best(min(most, TRIED))
+
+        def error(found: list[ToothSet], goal: tuple[int, Fraction] = goal) -> float:
+            tier = sum(abs(found[0].deviation) > bound * (1 + 1e-12) for bound in TIERS)
+            return abs(found[0].height - float(goal[1])) / float(goal[1]) if tier == goal[0] else 1.0
+
+        note = "" if most <= TRIED else f"compared with the best of {TRIED} teeth: larger wheels make a larger reducer"
+        bench.row(("reducer", "search of tooth numbers", "teeth at most"), most, partial(_search, most), error, note)

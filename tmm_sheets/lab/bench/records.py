@@ -1,18 +1,22 @@
-"""Rows of a work-precision table: measuring, printing and storing them."""
+"""The benchmark in order, and rows of a work-precision table: measuring, printing, storing and drawing them."""
 
 from __future__ import annotations
 
 import gc
 import json
 import platform
-from collections.abc import Callable, Iterable
+import re
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
+from importlib import import_module
+from io import BytesIO
 from math import isfinite
 from time import perf_counter
 from typing import Any, TypeVar
 
-from tmm_sheets.errors import CannotBuild
+from tmm_sheets import quoting
+from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.version import __version__
 from tmm_sheets.words import tell
 
@@ -179,3 +183,92 @@ def as_json(records: Iterable[BenchRecord]) -> str:
         "records": [{f.name: getattr(r, f.name) for f in fields(BenchRecord)} for r in records],
     }  # fmt: skip
     return json.dumps(tree, ensure_ascii=False, indent=1, allow_nan=False)
+
+
+FIELDS = ("linkages", "diagrams", "profiles", "emission")
+"""Modules that measure, in the order of the table."""
+PEERS = ("peers",)
+"""The module that measures other programs."""
+
+
+def run(quick: bool, say: Callable[[str], None], fields: tuple[str, ...] = FIELDS) -> list[BenchRecord]:
+    """Measure fields.
+
+    Parameters
+    ----------
+    quick
+        Only a few small runs.
+    say
+        Told what is measured next.
+    fields
+        Modules that measure.
+
+    Raises
+    ------
+    BadInput
+        Without mpmath, which the truth needs.
+    """
+    try:
+        import mpmath  # noqa: F401
+    except ImportError:
+        raise BadInput(tell("bench needs mpmath: the errors are told against a truth of 30 digits and more"),
+                       hint=quoting.install("bench")) from None
+    bench = Bench(quick, say)
+    for module in fields:
+        import_module(f"tmm_sheets.lab.bench.{module}").rows(bench)
+    return bench.records
+
+
+def compare(quick: bool, say: Callable[[str], None]) -> list[BenchRecord]:
+    """Measure this program and others on the same mechanisms; see :func:`run`."""
+    return run(quick, say, PEERS)
+
+
+LEAST = 2.0**-54
+"""Stands for an error of zero, which has no place on a log scale: half of the rounding unit."""
+
+
+def diagrams(records: Sequence[BenchRecord]) -> dict[str, bytes]:
+    """An SVG file for each field, by file name; a point for each run, a line for each method."""
+    found = {}
+    for measured in dict.fromkeys(r.field for r in records):
+        name = f"{re.sub(r'[^a-z]+', '-', measured.lower()).strip('-')}.svg"
+        found[name] = _svg(measured, [r for r in records if r.field == measured and r.seconds is not None])
+    return found
+
+
+def _svg(field: str, rows: Sequence[BenchRecord]) -> bytes:
+    """The diagrams of a field: time over the parameter, and two of the errors where there are any."""
+    from matplotlib import colormaps, rc_context
+    from matplotlib.figure import Figure
+
+    by_method = {method: [r for r in rows if r.method == method] for method in dict.fromkeys(r.method for r in rows)}
+    judged = any(r.error is not None for r in rows)
+    figure = Figure(figsize=(15 if judged else 6, 2.6 + 0.2 * len(by_method)), layout="constrained")
+    axes = figure.subplots(1, 3 if judged else 1, squeeze=False)[0]
+    colours = colormaps["tab10" if len(by_method) <= 10 else "tab20"]
+    for k, (method, runs) in enumerate(by_method.items()):
+        _draw(axes, method, runs, {"marker": "o", "markersize": 3, "linewidth": 1, "color": colours(k)})
+    labels = ", ".join(dict.fromkeys(r.parameter for r in rows))
+    axes[-1].set(xlabel=labels, ylabel="time, s")
+    if judged:
+        axes[0].set(xlabel=labels, ylabel="error")
+        axes[1].set(xlabel="time, s", ylabel="error")
+    for ax in axes:
+        ax.grid(which="major", linewidth=0.4, alpha=0.6)
+    figure.legend(loc="outside lower center", ncols=3 if judged else 1, fontsize="small", frameon=False)
+    figure.suptitle(field)
+    buffer = BytesIO()
+    with rc_context({"svg.hashsalt": field, "svg.fonttype": "none"}):
+        figure.savefig(buffer, format="svg", metadata={"Date": None})
+    return buffer.getvalue()
+
+
+def _draw(axes: Any, method: str, runs: Sequence[BenchRecord], look: dict[str, Any]) -> None:
+    """One method in each of the diagrams of its field."""
+    value, seconds = [r.value for r in runs], [float(r.seconds or 0) for r in runs]
+    axes[-1].loglog(value, seconds, label=method, **look)
+    if len(axes) > 1:
+        errors = [max(r.error or 0.0, LEAST) for r in runs]
+        axes[0].loglog(value, errors, **look)
+        axes[1].loglog(seconds, errors, **look)

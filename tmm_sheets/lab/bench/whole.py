@@ -17,7 +17,7 @@ from typing import Any
 
 from tmm_sheets import kept
 from tmm_sheets.errors import BadInput
-from tmm_sheets.lab.bench.processes import timed
+from tmm_sheets.lab.bench.costs import timed
 from tmm_sheets.words import tell
 
 ROUNDS = 7
@@ -95,8 +95,7 @@ def _run(program: str, arguments: list[str]) -> TimedRun:
 def prepare(project: str, path: Path) -> int:
     """Write the display lists of all sheets to a file, as plain tuples; returns the number of entities."""
     from tmm_sheets import catalogue
-    from tmm_sheets.drawing.layers import layers
-    from tmm_sheets.drawing.styles import line_type
+    from tmm_sheets.drawing.styles import layers, line_type
     from tmm_sheets.project import Project
     from tmm_sheets.resources import template
     from tmm_sheets.sheets.sheet import compose
@@ -120,10 +119,10 @@ def _plain(drawing: Any) -> dict[str, Any]:
     from math import pi
 
     from tmm_sheets.backends.dxf import weight
-    from tmm_sheets.drawing.dashes import strokes
-    from tmm_sheets.drawing.layers import layer
+    from tmm_sheets.drawing.ink import strokes
     from tmm_sheets.drawing.lettering import PEN, glyph
     from tmm_sheets.drawing.marks import Arc, Line, Polyline, Text
+    from tmm_sheets.drawing.styles import layer
 
     def xy(z: complex) -> tuple[float, float]:
         return (float(z.real), float(z.imag))

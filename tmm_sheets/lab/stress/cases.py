@@ -1,4 +1,4 @@
-"""The cases of a stress run, one scene after another, and what each invariant came to."""
+"""A stress run: cases in turn, one scene after another, the worst of each invariant against its bound, as a table."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets import quoting
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.lab.stress import truth
+from tmm_sheets.lab.stress import change_points
 from tmm_sheets.lab.stress.change_points import folding, in_a_row, scene
 from tmm_sheets.lab.stress.draw import chain, crank_of, loaded
 from tmm_sheets.lab.stress.features import features
@@ -28,6 +29,8 @@ from tmm_sheets.lab.stress.invariants import (
 )
 from tmm_sheets.mechanism.groups import RRP, RRR, TRIAD
 from tmm_sheets.mechanism.model import Guide, Link, Mechanism, StructuralGroup
+from tmm_sheets.numbers import of_reader
+from tmm_sheets.words import tell
 
 ANGLES = 24
 """Crank angles of a case."""
@@ -154,10 +157,10 @@ def _limited(rng: np.random.Generator) -> tuple[Mechanism, float]:
 def _sharpened(m: Mechanism, angle: float) -> float:
     """The double next to the dead position on the side where the group assembles."""
     low, high = angle - 1e-6, angle + 1e-6
-    inside = truth.motion(m, low) is not None
+    inside = change_points.motion(m, low) is not None
     for _ in range(60):
         middle = (low + high) / 2
-        low, high = (middle, high) if (truth.motion(m, middle) is not None) == inside else (low, middle)
+        low, high = (middle, high) if (change_points.motion(m, middle) is not None) == inside else (low, middle)
     return low if inside else high
 
 
@@ -165,11 +168,11 @@ def _dead(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     m, angle = _limited(rng)
     m = loaded(rng, m)
     limit = _sharpened(m, angle)
-    sense = 1 if truth.motion(m, limit + 1e-3) is not None else -1
+    sense = 1 if change_points.motion(m, limit + 1e-3) is not None else -1
     gaps = np.concatenate(([0.0], 10.0 ** rng.uniform(-15, 0, 6)))
     phi = limit + sense * gaps
-    true = [truth.motion(m, float(x)) for x in phi]
-    beyond = np.array([truth.motion(m, float(x)) is None for x in limit - sense * gaps[1:]])
+    true = [change_points.motion(m, float(x)) for x in phi]
+    beyond = np.array([change_points.motion(m, float(x)) is None for x in limit - sense * gaps[1:]])
     s = make(m, np.concatenate((phi, limit - sense * gaps[1:])))
     known = np.array([t is not None for t in true])
     # Against exact arithmetic: here even the last bit of the crank angle decides rightly.
@@ -199,7 +202,7 @@ def _change_points(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     yield from assembled(s)
 
 
-def _compared(s: State, true: list[truth.MotionTruth | None]) -> Iterator[Residual]:
+def _compared(s: State, true: list[change_points.MotionTruth | None]) -> Iterator[Residual]:
     """Velocity and acceleration of the first group's hinge against exact arithmetic at the first positions of a state."""
     pin, n = s.m.crank.speed * s.m.crank.length, len(true)
     v, a = (np.array([np.nan if t is None else getattr(t, name) for t in true]) for name in "va")
@@ -231,7 +234,7 @@ def _stroke_ends(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     gaps = np.concatenate(([0.0], 10.0 ** rng.uniform(-16, 0, 5) * rng.choice((1, -1), 5)))
     phi = np.concatenate([end + gaps for end in ends])
     s = make(m, phi)
-    yield from _compared(s, [truth.motion(m, float(x)) for x in phi])
+    yield from _compared(s, [change_points.motion(m, float(x)) for x in phi])
     still = np.abs(s.v["C"][[0, len(gaps)]]) / (crank.speed * r)
     # The angle of the end is a double, the way beside it is of the second order.
     yield "standstill at the ends of the stroke", still
@@ -256,7 +259,7 @@ def _tangent(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     yield from rigidity(s)
     yield from assembled(s)
     # A rod longer by half a unit in its last place lifts the half-chord by that over the half-chord: data, not arithmetic.
-    for name, residual in _compared(s, [truth.motion(m, float(x)) for x in phi[:-1]]):
+    for name, residual in _compared(s, [change_points.motion(m, float(x)) for x in phi[:-1]]):
         yield name.replace("dead position", "change point"), residual / s.condition[:-1]
 
 
@@ -365,3 +368,62 @@ def memory(positions: int = 1_000_000) -> float:
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     return peak / 1e6
+
+
+MEMORY = "memory of a million positions, MB"
+NUMBERS = (1, 2, 3, 4)
+"""Columns of the table that hold numbers."""
+
+
+def run(cases: int, seed: int, say: Callable[[int], None] = lambda case: None, *, million: bool = True) -> dict[str, Worst]:
+    """Run cases 0 .. ``cases``-1 of a seed; ``say`` hears the number of each before it is run.
+
+    Returns the worst of every invariant that some case tells of; ``million`` adds the memory of very many positions.
+    """
+    worst: dict[str, Worst] = {}
+    for case in range(cases):
+        say(case)
+        scene, values = run_case(seed, case)
+        for name, value in values:
+            worst.setdefault(name, Worst()).take(value, case, scene)
+    if million:
+        worst[MEMORY] = Worst(1, memory(), 0, f"chunks of {CHUNK}")
+    return _ordered(worst)
+
+
+def run_one(seed: int, case: int) -> dict[str, Worst]:
+    """The same of a single case."""
+    scene, values = run_case(seed, case)
+    return _ordered({name: Worst(1, value, case, scene) for name, value in values})
+
+
+def _ordered(worst: dict[str, Worst]) -> dict[str, Worst]:
+    return {name: worst[name] for name in BOUNDS if name in worst}
+
+
+def exceeded(worst: dict[str, Worst]) -> list[str]:
+    """Invariants whose bound does not hold; a value that is no number holds nothing."""
+    return [name for name, w in worst.items() if not w.value <= BOUNDS[name][0]]
+
+
+def table(worst: dict[str, Worst], seed: int) -> str:
+    """The table: invariant, cases that tell of it, worst value, bound, the case it is from, what the value is a share of."""
+    rows = [(tell("invariant"), tell("cases"), tell("worst"), tell("bound"), tell("case"), tell("scene"), tell("share"))]
+    for name, w in worst.items():
+        bound, share = BOUNDS[name]
+        number = "-" if name == MEMORY else str(w.case)
+        of = share if w.value <= bound else tell("EXCEEDED: {share}").format(share=share)
+        rows.append((name, str(w.cases), of_reader(f"{w.value:.1e}"), f"{bound:.0e}", number, w.scene, of))
+    widths = [max(len(row[i]) for row in rows) for i in range(6)]
+    lines = []
+    for row in rows:
+        cells = (f"{cell:{'>' if i in NUMBERS else '<'}{w}}" for i, (cell, w) in enumerate(zip(row, widths, strict=False)))
+        lines.append("  ".join([*cells, row[6]]))
+    again = quoting.command("stress", "--seed", str(seed), "--case", str(_nearest(worst)))
+    return "\n".join([*lines, tell("one case again: {command}").format(command=again)])
+
+
+def _nearest(worst: dict[str, Worst]) -> int:
+    """The case that is nearest to a bound, or farthest beyond it."""
+    shares = ((inf if isnan(w.value) else w.value / BOUNDS[name][0], w.case) for name, w in worst.items() if name != MEMORY)
+    return max(shares, default=(0.0, 0))[1]

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, TRIAD
-from tmm_sheets.mechanism.groups.hints import Leg
+from tmm_sheets.mechanism.groups.contexts import Leg
 from tmm_sheets.mechanism.groups.triad import TriadGroup
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 

@@ -19,10 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.function import fill
+from tmm_sheets.construction.function import Replay, fill
 from tmm_sheets.construction.indices import on_link, pair_index
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.replay import Replay
 from tmm_sheets.construction.step import Step
 from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, TRIAD, GroupKind
 from tmm_sheets.mechanism.groups.triad import TriadGroup

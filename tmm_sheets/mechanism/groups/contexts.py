@@ -1,20 +1,196 @@
-"""What a kind of group is handed: the plans it constructs itself on, as far as it uses them.
+"""What kinds of groups and the plans they are in hand one another.
 
-The plans are those of :mod:`tmm_sheets.methods.linkage`, which fit these protocols; the kinds know nothing of that room. ``M`` is
-the mechanism and ``G`` a group, left open here because a group has a kind.
+A kind is handed the plans it constructs itself on, as far as it uses them, and force plans with their loads; it tells how the crank
+angle knows its crossing, how its links look, which reactions come from outside. The plans are those of
+:mod:`tmm_sheets.methods.linkage`, which fit these protocols; the kinds know nothing of that room. ``M`` is the mechanism and ``G``
+a group, left open here because a group has a kind.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
+
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.indices import against, on_link
+from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan
-    from tmm_sheets.construction.step import Step
-    from tmm_sheets.mechanism.groups.force_plan import ForcePlan, Load, Role
-    from tmm_sheets.mechanism.groups.hints import SpecialPoint
     from tmm_sheets.mechanism.groups.three_legs import Course
+
+
+@dataclass(frozen=True)
+class Turning:
+    """How a group with change points goes on, as steps or rows: the ``side`` on which it is; the angle that its first link turns by
+    an angle of the crank, ``first``, and the derivative of that, ``second``; both None of a group that hangs on others: the plans
+    of its motion find them. ``steps`` are those of them that belong to the plan of positions, arguments first.
+    """
+
+    side: Any
+    first: Any
+    second: Any
+    steps: tuple[Step, ...]
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """What the crank angle knows of the crossing of a group, as steps: half of the chord (or the tangent's length), the distance
+    of the centres (none for a line), the sine between the group's lines in the plans of velocities.
+
+    ``turning`` of a group that has change points; ``line`` of the centres where they come to lie in one place.
+    """
+
+    half: Step
+    distance: Step | None
+    sine: Step
+    turning: Turning | None = None
+    line: Step | None = None
+
+    @property
+    def known(self) -> tuple[Step, ...]:
+        """Further arguments of the rule that makes the crossing."""
+        return tuple(step for step in (self.half, self.distance, self.line) if step is not None)
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """All of them, arguments first."""
+        t = self.turning
+        return (*(() if t is None else t.steps), *self.known, self.sine)
+
+
+@dataclass(frozen=True)
+class Outline:
+    """A link as a bar through points, or as a block at a point along a direction.
+
+    ``aim`` is a further point that the bar's line passes through, ``arms`` are further lines by the names of their ends;
+    ``slot`` is the direction of the slot in a ram, ``slotted`` says that a block may carry the slot of another group's block.
+    """
+
+    link: str
+    bar: tuple[str, ...] = ()
+    aim: str | None = None
+    arms: tuple[tuple[str, str], ...] = ()
+    block: str | None = None
+    along: Step | None = None
+    slot: Step | None = None
+    slotted: bool = False
+
+
+@dataclass(frozen=True)
+class OuterReaction:
+    """Reaction on a link from outside its group: in the hinge ``point``, or from ``guide``, balancing moments about ``point``."""
+
+    link: str
+    point: str
+    guide: str | None = None
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A leg: its link and the ``corner`` of the triangle it belongs to.
+
+    ``outer`` is its outer hinge, ``length`` m from there to the corner; or ``guide`` the outer guide it slides along; or, with
+    ``outer`` and ``slot``, it is a block in a slot of the triangle through the corner, turned by ``slot``, rad, from the line of
+    the first corner to the second.
+    """
+
+    link: str
+    corner: str
+    outer: str = ""
+    guide: str = ""
+    length: float = 0.0
+    slot: float | None = None
+
+    @property
+    def form(self) -> str:
+        """Its outer and its inner pair: R turning, P sliding."""
+        return "PR" if self.guide else "RR" if self.slot is None else "RP"
+
+    @property
+    def at(self) -> str:
+        """Point of the triangle where it is held: its normal passes there."""
+        return self.corner if self.slot is None else self.outer
+
+    def index(self, triangle: str, carrier: str) -> str:
+        """Index of the motion that it leaves the triangle: against its outer hinge, its block, or the ``carrier`` of its guide."""
+        if self.guide:
+            return against(self.corner, carrier)
+        return f"{self.corner if self.slot is None else on_link(self.outer, triangle)}{self.outer}"
+
+
+@dataclass(frozen=True)
+class SpecialPoint:
+    """Where the normals of the legs of a ``pair`` meet; the ``third`` leg is the other one."""
+
+    name: str
+    step: Step
+    pair: tuple[Leg, Leg]
+    third: Leg
+
+
+Role = Literal["weight", "inertia", "applied", "reaction"]
+
+CLOSE = Rule("close a polygon", lambda tail, head: head - tail, ("point", "point"), "force",
+             marked("Close the polygon: {name} = |{0}–{1}|·μ_F = {value}."), lambda a, v: (Helper("line", a[0], a[1]),))
+OPPOSITE_COUPLE = Rule("opposite couple", lambda m: -m, ("number",), "number", marked("{name} = {value} N·m."), unit="N*m")
+
+
+@dataclass(frozen=True)
+class Load:
+    """A force on a link: symbol in sheet markup, the link, its point, the vector (N), and a couple carried with it (N m).
+
+    ``source`` is the link a reaction comes from.
+    """
+
+    symbol: str
+    link: str
+    at: Step
+    vector: Step
+    role: Role
+    couple: Step | None = None
+    source: str | None = None
+
+
+@dataclass(frozen=True)
+class TangentialPart:
+    """Part of the reaction on ``link`` from ``source`` in the hinge ``at``, N, that the moments about ``centre`` gave."""
+
+    link: str
+    source: str
+    at: str
+    centre: str
+    vector: Step
+
+
+@dataclass
+class ForcePlan:
+    """Force plan of one link or of a whole group: polygon 1-2-...-1 of ``plan`` with its forces in order."""
+
+    name: str
+    links: tuple[str, ...]
+    plan: Plan
+    sides: list[tuple[str, Step, Step, bool]] = field(default_factory=list)
+
+    def side(self, symbol: str, tail: Step, head: Step, unknown: bool = False) -> None:
+        """Record a side of the polygon; ``unknown`` sides are found by closing it."""
+        self.sides.append((symbol, tail, head, unknown))
+        self.plan.vector(symbol, tail, head)
+
+    def chain(self, start: int, tail: Step, loads: Iterable[Load]) -> Step:
+        """Lay the loads off one after another; returns the end of the chain."""
+        for n, load in enumerate(loads, start + 1):
+            head = self.plan.add(str(n), rules.SHIFT, tail, load.vector)
+            self.side(load.symbol, tail, head)
+            tail = head
+        return tail
+
+    def between(self, name: str, tail: Step, head: Step) -> Step:
+        """The force that closes the polygon from ``tail`` to ``head``."""
+        return self.plan.add(name, CLOSE, tail, head)
+
 
 M = TypeVar("M", covariant=True)
 G = TypeVar("G", contravariant=True)

@@ -11,8 +11,8 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link, pair_index
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.mechanism.groups.contexts import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, PIN_ANGLE, TANGENT, measured, span_from_crank
-from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline
 from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, extremes, lacking, less, mm, span
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
 from tmm_sheets.words import marked, tell, tr

@@ -11,17 +11,19 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import against, on_link
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.change_points import HALF_BESIDE_LINE, LINE, passing
+from tmm_sheets.mechanism.groups.contexts import Crossing, OuterReaction, Outline, Turning
 from tmm_sheets.mechanism.groups.dead_centres import (
+    HALF_BESIDE_LINE,
     HALF_OF_LINE,
+    LINE,
     fold_and_stretch,
     gaps_of_line,
     measured,
     near_point,
     on_crank,
+    passing,
     reaches,
 )
-from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline, Turning
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, mm, more, rounding, unrounded
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
 from tmm_sheets.words import marked, tell

@@ -10,19 +10,23 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.change_points import ARCS, HALF_BESIDE_ARCS, LINE_OF_CENTRES, SIGNED_DISTANCE, passing
+from tmm_sheets.mechanism.groups.contexts import Crossing, OuterReaction, Outline, Turning
 from tmm_sheets.mechanism.groups.dead_centres import (
+    ARCS,
     DISTANCE,
+    HALF_BESIDE_ARCS,
     HALF_OF_ARCS,
+    LINE_OF_CENTRES,
+    SIGNED_DISTANCE,
     fold_and_stretch,
     gaps_of_arcs,
     measured,
     meets,
     on_crank,
+    passing,
     reaches,
     span_from_crank,
 )
-from tmm_sheets.mechanism.groups.hints import Crossing, OuterReaction, Outline, Turning
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, extremes, lacking, less, mm, more, rounding, sine, span, unrounded
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, turning
 from tmm_sheets.words import marked, tell

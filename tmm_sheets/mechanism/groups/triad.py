@@ -25,7 +25,7 @@ from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Helper, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import three_legs
-from tmm_sheets.mechanism.groups.hints import Leg, OuterReaction, Outline, SpecialPoint
+from tmm_sheets.mechanism.groups.contexts import Leg, OuterReaction, Outline, SpecialPoint
 from tmm_sheets.mechanism.groups.limits import AssemblyLimit, lacking
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
 from tmm_sheets.numbers import in_a_row, of_reader

@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.construction.arithmetic import by_pieces
-from tmm_sheets.construction.curve import inner_slopes
+from tmm_sheets.construction.arithmetic import by_pieces, inner_slopes
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.quantities import Points, Reals

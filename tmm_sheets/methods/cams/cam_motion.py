@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.readable import CURVE, MAIN, POLE

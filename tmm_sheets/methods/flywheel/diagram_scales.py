@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.given import named
 from tmm_sheets.construction.readable import CURVE, MAIN
 from tmm_sheets.construction.scale import Scale, coarser, finer, handy, plain, reach

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.curve import Curve
+from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given, named
 from tmm_sheets.construction.plan import Plan

@@ -14,9 +14,9 @@ from tmm_sheets.construction.rules import GIVEN_NUMBER
 from tmm_sheets.construction.search_count import SearchCount
 from tmm_sheets.construction.step import Helper, Rule
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.methods.linkage.accelerations import Sliding
 from tmm_sheets.methods.linkage.forces import Kinetostatics
 from tmm_sheets.methods.linkage.friction import Coefficients, Friction, Rows, friction, order
-from tmm_sheets.methods.linkage.sliding import Sliding
 from tmm_sheets.methods.linkage.velocities import Velocities
 from tmm_sheets.words import marked, tell, tr
 

@@ -1,18 +1,27 @@
-"""A cycle: numbered positions of the crank, and the strokes of the output point among them."""
+"""A cycle: numbered positions of the crank, its dead positions, and the strokes of the output point among them.
+
+Dead positions of the group on the crank pin are constructed by ruler and compass (manual 000, section 3.1).
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.quantities import Reals
+from tmm_sheets.construction.step import Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.linkage.strokes import Floats, Run
-from tmm_sheets.words import tell
+from tmm_sheets.mechanism.model import Mechanism
+from tmm_sheets.words import marked, tell, tr
 
 
 @dataclass(frozen=True)
@@ -132,3 +141,199 @@ class Cycle:
         except ValueError:
             raise CannotBuild(asked + tell("there is no position {label}").format(label=label),
                               tell("the positions are {labels}").format(labels=", ".join(self.labels))) from None
+
+
+def dead_positions(m: Mechanism) -> tuple[Plan | None, tuple[Step, Step] | None]:
+    """Dead positions as constructions of their own: their plan, m, and the two angles of the crank, rad.
+
+    How they are constructed is known to the kind of the group on the crank pin; None where it has no such construction.
+    """
+    c = m.crank
+    group = next((g for g in m.groups if c.pin in g.outer), None)
+    if group is None:
+        return None, None
+    plan = Plan("dead-positions", tr("Dead positions"), "m")
+    dead = group.kind.dead_positions(m, group, plan, plan.add(c.pivot, rules.GIVEN, m.fixed[c.pivot]))
+    return (None, None) if dead is None else (plan, dead)
+
+
+@primitive("angle turned to a point", "real")
+def _turned(centre: Any, pin: Any, start: Any, sense: Any) -> Any:
+    """Angle from a direction to that from a centre to a point, in the sense of rotation, 0 to 360 degrees."""
+    v = pin - centre
+    return np.mod(sense * (np.arctan2(v.imag, v.real) - start), 2 * np.pi)
+
+
+TURNED = Rule("angle turned to a place of the crank pin", _turned, ("point", "point", "angle", "number"), "angle",
+              marked("Angle turned from position 0 to {1} {name} = {value}."), unit="rad", source="001, (6)-(9)")
+
+
+def named_angles(m: Mechanism, start: float, sense: float) -> Plan | None:
+    """Crank angles φ_1k and φ_2k of the rocker on the crank pin (manual 001, formulas 6 to 9), turned from position 0, rad.
+
+    Its dead positions if it swings; where it turns all round, the positions in which it is square to the line of the pivots.
+    Steps ``A_1k``, ``A_2k`` and ``φ_1k``, ``φ_2k`` in the order in which they are reached; None without such a rocker.
+    """
+    c = m.crank
+    group = next((g for g in m.groups if c.pin in g.outer and g.kind.rocker(g) is not None), None)
+    pivot = group.outer[1] if group is not None and not group.offset and group.outer[1] in m.fixed else None
+    if pivot is None or abs(m.fixed[pivot] - m.fixed[c.pivot]) in (0.0, c.length):
+        return None
+    plan = Plan("slot-angles", tr("Angles φ_1k and φ_2k of the crank"), "m")
+    centre, far = (plan.add(name, rules.GIVEN, m.fixed[name]) for name in (c.pivot, pivot))
+    if abs(far.value - centre.value) > c.length:
+        rule: Rule = rules.TANGENT
+        args: tuple[Any, ...] = (far, centre, c.length)
+    else:
+        across = plan.add(f"⟂{c.pivot}{pivot}", rules.PERPENDICULAR, centre, far)
+        rule, args = rules.ARC_LINE, (centre, c.length, far, across)
+    sides = sorted((1, -1), key=lambda side: float(_turned(centre.value, rule.compute(*map(value_of, args), side), start, sense)))
+    for k, side in enumerate(sides, 1):
+        pin = plan.add(f"{c.pin}_{k}k", rule, *args, side, symbol=f"{c.pin}_{{{k}k}}")
+        plan.add(f"φ_{k}k", TURNED, centre, pin, start, sense, symbol=f"φ_{{{k}k}}")
+    return plan
+
+
+Floats = npt.NDArray[np.float64]
+
+TURN = 2 * np.pi
+SWEEP = 720
+"""Angles per turn at which an output is looked at before its reversals are found exactly."""
+STILL = 1e-12
+"""Share of the greatest speed below which an output stands still: what is left of zero by rounding."""
+SHALLOW = 0.01
+"""Share of the greatest speed below which a minimum between the angles of the sweep may hide two reversals."""
+EQUAL = 1e-9
+"""Share of the way by which two extremes may differ and be the same one."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """From ``begin`` to ``end`` (rad turned from position 0, ``end`` > ``begin``) the output keeps its ``sense``.
+
+    ``sense`` is +1 in the working sense, -1 against it, 0 while the output stands still; ``stroke`` the number of the stroke it
+    is a part of, which is a ``working`` or an idle one.
+    """
+
+    begin: float
+    end: float
+    sense: int
+    stroke: int = 0
+    working: bool = False
+
+    def later(self, angle: float, strokes: int = 0) -> Run:
+        """The same run turned on by an angle and a number of strokes."""
+        return replace(self, begin=self.begin + angle, end=self.end + angle, stroke=self.stroke + strokes)
+
+
+def runs_of(speed: Callable[[Floats], Any], turn: float = TURN) -> list[Run]:
+    """Runs of one turn from the sign of a speed, a periodic function of the angles turned, rad, shape (n,) to shape (n,).
+
+    One run if the output never turns back, none where the speed is not defined all the way round.
+    """
+    t = np.linspace(0.0, turn, SWEEP, endpoint=False)
+    v = np.asarray(speed(t))
+    if np.isnan(v).any():
+        return []
+    still = STILL * float(np.abs(v).max())
+    t, v = _with_dips(speed, t, v, still, turn)
+    signs = np.where(np.abs(v) <= still, 0, np.sign(v)).astype(int).tolist()
+    moving = [i for i, sign in enumerate(signs) if sign]
+    if not moving:
+        return [Run(0.0, turn, 0)]
+    ends: list[tuple[float, int]] = []  # where a run begins, and its sense
+    for i, j in zip(moving, [*moving[1:], moving[0]], strict=True):
+        zeros = (j - i - 1) % len(t)
+        after = [float(t[(i + k) % len(t)]) + turn * ((i + k) // len(t)) for k in range(zeros + 2)]
+        if zeros > 1:
+            ends.append((root(lambda x: still - np.abs(speed(x)), after[0], after[1]), 0))
+            ends.append((root(lambda x: np.abs(speed(x)) - still, after[-2], after[-1]), signs[j]))
+        elif signs[i] != signs[j]:
+            ends.append((after[1] if zeros else root(speed, after[0], after[1]), signs[j]))
+    if not ends:
+        return [Run(0.0, turn, signs[moving[0]])]
+    ends = sorted((float(np.mod(angle, turn)), sense) for angle, sense in ends)
+    follow = [*(angle for angle, _ in ends[1:]), ends[0][0] + turn]
+    return [Run(angle, end, sense) for (angle, sense), end in zip(ends, follow, strict=True)]
+
+
+def _with_dips(speed: Callable[[Floats], Any], t: Floats, v: Floats, still: float, turn: float) -> tuple[Floats, Floats]:
+    """The sweep with the angles added where the speed changes its sign twice between two of its angles."""
+    size, before, after = np.abs(v), np.roll(v, 1), np.roll(v, -1)
+    low = (size < SHALLOW * size.max()) & (size <= np.abs(before)) & (size <= np.abs(after))
+    low &= (np.minimum(np.abs(before), np.abs(after)) > still) & (np.sign(before) == np.sign(after))
+    extra: list[float] = []
+    for i in np.flatnonzero(low):
+        sign, best, step = np.sign(before[i]), float(t[i]), turn / len(t)
+        for _ in range(4):
+            x = best + step * np.linspace(-1, 1, 65)
+            y = sign * np.asarray(speed(x))
+            best, step = float(x[np.argmin(y)]), step / 16
+            if y.min() < -still:
+                extra.append(float(np.mod(best, turn)))
+                break
+    t = np.sort(np.append(t, extra))
+    return (t, np.asarray(speed(t))) if extra else (t, v)
+
+
+def in_strokes(runs: Sequence[Run], ways: Sequence[float] | Floats) -> list[Run]:
+    """The runs of one turn with their strokes; ``ways``, one a run, m or rad, tell how far the output is where it begins.
+
+    They are counted in the working sense.
+    Runs without a way from one extreme to another are one idle stroke.
+    """
+    low, high = float(np.min(ways)), float(np.max(ways))
+    near = EQUAL * (high - low)
+    # The extremes in their order: each is the begin of a run.
+    marks = [(k, +1 if way >= high - near else -1) for k, way in enumerate(ways) if way >= high - near or way <= low + near]
+    working = [False] * len(runs)
+    for (k, at), (n, to) in zip(marks, [*marks[1:], marks[0]], strict=True):
+        if (at, to) == (-1, +1) and high > low:
+            for i in range(k, n if n > k else n + len(runs)):
+                working[i % len(runs)] = True
+    # Begin with the run that begins a stroke, so that no stroke is cut in two.
+    first = next((k for k in range(len(runs)) if working[k] != working[k - 1]), 0)
+    order = [(i % len(runs), i // len(runs)) for i in range(first, first + len(runs))]
+    result: list[Run] = []
+    last: int | None = None
+    number = -1
+    for i, turned in order:
+        number += last is None or working[i] != working[last]
+        last = i
+        result.append(replace(runs[i], stroke=number, working=working[i]).later(TURN * turned))
+    return result
+
+
+def working_stroke(runs: Iterable[Run]) -> tuple[float, float]:
+    """Begin and end of the working stroke, of several the longest; there must be one."""
+    strokes = [list(of) for _, of in groupby((r for r in runs if r.working), key=lambda r: r.stroke)]
+    spans = [(of[0].begin, of[-1].end) for of in strokes]
+    return max(spans, key=lambda s: s[1] - s[0])
+
+
+def over_cycle(runs: Sequence[Run], period: float, first: float = 0.0) -> tuple[Run, ...]:
+    """The runs of one turn over all turns of the cycle, numbered from the stroke that begins nearest to ``first``, rad."""
+    turns = round(period / TURN)
+    per_turn = runs[-1].stroke + 1
+    every = [r.later(TURN * n, per_turn * n) for n in range(turns) for r in runs]
+    begins = [i for i, r in enumerate(every) if i == 0 or r.stroke != every[i - 1].stroke]
+    start = min(begins, key=lambda i: abs(np.angle(np.exp(1j * (every[i].begin - first) * TURN / period))))
+    shift, strokes = every[start].stroke, per_turn * turns
+    ordered = every[start:] + [r.later(period) for r in every[:start]]
+    return tuple(replace(r, stroke=(r.stroke - shift) % strokes) for r in ordered)
+
+
+def root(f: Callable[[Floats], Floats], low: float, high: float) -> float:
+    """Zero of a continuous function (shape (n,) to shape (n,)) between two arguments where its signs differ, to the last bit.
+
+    Each step divides the interval into eight.
+    """
+    sign = float(np.sign(f(np.array([high]))[0]))
+    for _ in range(20):
+        x = np.linspace(low, high, 9)
+        if not x[0] < x[1] < x[-1]:
+            break
+        values = sign * f(x)
+        i = int(np.argmax(values > 0))
+        low, high = float(x[max(i - 1, 0)]), float(x[i])
+    return (low + high) / 2

@@ -10,7 +10,7 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.mechanism.groups.force_plan import Load
+from tmm_sheets.mechanism.groups.contexts import Load
 from tmm_sheets.methods.linkage.accelerations import Accelerations
 from tmm_sheets.methods.linkage.forces import TOTAL, GearForce, InputForce, kinetostatics
 from tmm_sheets.methods.linkage.passages import CHOICE, Floats, PassagePlace, alone, beside

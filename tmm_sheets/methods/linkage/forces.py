@@ -22,7 +22,7 @@ from tmm_sheets.construction.given import FoundNumber, Given
 from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.force_plan import OPPOSITE_COUPLE, ForcePlan, Load, Role, TangentialPart
+from tmm_sheets.mechanism.groups.contexts import OPPOSITE_COUPLE, ForcePlan, Load, Role, TangentialPart
 from tmm_sheets.mechanism.groups.triad import BY_MOMENTS
 from tmm_sheets.mechanism.model import Drive, StructuralGroup, lettered
 from tmm_sheets.methods.linkage.accelerations import Accelerations

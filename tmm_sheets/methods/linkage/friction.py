@@ -20,9 +20,9 @@ from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.search_count import SearchCount
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.force_plan import OPPOSITE_COUPLE
+from tmm_sheets.mechanism.groups.contexts import OPPOSITE_COUPLE
 from tmm_sheets.mechanism.model import Mechanism, Pair
-from tmm_sheets.methods.linkage.sliding import Sliding, ordered
+from tmm_sheets.methods.linkage.accelerations import Sliding, ordered
 from tmm_sheets.methods.linkage.velocities import Velocities
 from tmm_sheets.words import marked, tr
 

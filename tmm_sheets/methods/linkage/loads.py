@@ -1,6 +1,6 @@
 """Technological forces and moments over the cycle: constants, tables over the stroke or the angle, signs by stroke.
 
-The strokes are those of :mod:`~tmm_sheets.methods.linkage.strokes`: from one true extreme of the way to the other. The law of
+The strokes are those of :mod:`~tmm_sheets.methods.linkage.cycle`: from one true extreme of the way to the other. The law of
 a force switches in the dead points that were found, not where a computed velocity happens to be zero; inside a stroke a force
 against (or along) the motion turns round with each reversal, and there is none while the output stands still.
 Source: manual 000, sections 4 and 5; manual 001, section 3; manual 003, section 2.
@@ -17,7 +17,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from tmm_sheets.construction.curve import Curve, inner_slopes
+from tmm_sheets.construction.arithmetic import Curve, inner_slopes
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
@@ -26,9 +26,8 @@ from tmm_sheets.construction.step import Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
-from tmm_sheets.methods.linkage.cycle import Cycle, Strokes
+from tmm_sheets.methods.linkage.cycle import SWEEP, TURN, Cycle, Floats, Run, Strokes, in_strokes, over_cycle, root, runs_of
 from tmm_sheets.methods.linkage.positions import Positions
-from tmm_sheets.methods.linkage.strokes import SWEEP, TURN, Floats, Run, in_strokes, over_cycle, root, runs_of
 from tmm_sheets.methods.linkage.watched import Watched
 from tmm_sheets.words import marked, tell
 
@@ -454,8 +453,8 @@ def diagram(x: Reals, y: Reals, smooth: Any, turns: Reals) -> Curve:
 def _curve(x: Reals, y: Reals, smooth: bool, period: float | None) -> Curve:
     """The curve with its end where it begins again; arguments given twice are jumps.
 
-    Straight lines, or a cubic in every interval with :func:`~tmm_sheets.construction.curve.inner_slopes`. At the ends and at jumps
-    the slope is that of the only neighbour.
+    Straight lines, or a cubic in every interval with :func:`~tmm_sheets.construction.arithmetic.inner_slopes`. At the ends and at
+    jumps the slope is that of the only neighbour.
     """
     x, y = (np.asarray(v, dtype=float) for v in (x, y))
     if period is not None and x[-1] - x[0] < period - NEAR:

@@ -15,7 +15,7 @@ from tmm_sheets.construction.quantities import Directions, Reals
 from tmm_sheets.construction.rules import take
 from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.linkage.dead_positions import named_angles
+from tmm_sheets.methods.linkage.cycle import named_angles
 from tmm_sheets.methods.linkage.study import Study
 from tmm_sheets.words import marked, tell, tr
 

@@ -18,10 +18,20 @@ from tmm_sheets.construction.step import Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
-from tmm_sheets.methods.linkage.cycle import Cycle, Strokes
-from tmm_sheets.methods.linkage.dead_positions import dead_positions
+from tmm_sheets.methods.linkage.cycle import (
+    SWEEP,
+    TURN,
+    Cycle,
+    Floats,
+    Run,
+    Strokes,
+    dead_positions,
+    in_strokes,
+    over_cycle,
+    runs_of,
+    working_stroke,
+)
 from tmm_sheets.methods.linkage.positions import passages
-from tmm_sheets.methods.linkage.strokes import SWEEP, TURN, Floats, Run, in_strokes, over_cycle, runs_of, working_stroke
 from tmm_sheets.methods.linkage.watched import OfAngles, Watched
 from tmm_sheets.words import marked, tell, tr
 
@@ -282,7 +292,7 @@ def _strokes(m: Mechanism, output: str, dead: DeadPoints, begin: float) -> Strok
 def _dead_of(m: Mechanism, output: str, axis: complex, round_about: bool = False) -> DeadPoints:
     """Where the output's strokes begin and end; ``round_about``: of one that goes round a hinge, too.
 
-    The strokes are those between the true extremes of the way, see :mod:`~tmm_sheets.methods.linkage.strokes`. Their ends are
+    The strokes are those between the true extremes of the way, see :mod:`~tmm_sheets.methods.linkage.cycle`. Their ends are
     constructed where the group on the crank pin allows it and the output has its extremes there; found as zeros of its velocity
     otherwise.
     """

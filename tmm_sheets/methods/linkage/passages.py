@@ -1,6 +1,6 @@
 """Change points of a mechanism, and limits in them and next to them of what lines that fall together cannot tell.
 
-Of a group between the crank and the frame the crank angle knows all (:mod:`tmm_sheets.mechanism.groups.change_points`). A group
+Of a group between the crank and the frame the crank angle knows all (:mod:`tmm_sheets.mechanism.groups.dead_centres`). A group
 that hangs on another one has its change points where a gap of it comes down to zero. What lies next to such an angle on one smooth
 way is a smooth function of the crank angle: it is taken at some angles on both sides, where the lines cross well, and a polynomial
 through them tells it in between, in the change point too. So it is with forces, of all groups alike.

@@ -14,8 +14,8 @@ import numpy as np
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step, value_of
+from tmm_sheets.mechanism.groups.contexts import Crossing, SpecialPoint, Turning
 from tmm_sheets.mechanism.groups.dead_centres import near_point
-from tmm_sheets.mechanism.groups.hints import Crossing, SpecialPoint, Turning
 from tmm_sheets.mechanism.groups.three_legs import Course, course
 from tmm_sheets.mechanism.groups.triad import TRIAD, TriadGroup
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup

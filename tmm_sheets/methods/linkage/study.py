@@ -12,16 +12,15 @@ import numpy as np
 from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.mechanism.groups.force_plan import Load
+from tmm_sheets.mechanism.groups.contexts import Load
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.integration import weighted
-from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan
+from tmm_sheets.methods.linkage.accelerations import Accelerations, Sliding, acceleration_plan
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.force_limits import limits_of_forces
 from tmm_sheets.methods.linkage.forces import GearForce, InputForce, Kinetostatics, external_loads, kinetostatics
 from tmm_sheets.methods.linkage.loads import Applied
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
-from tmm_sheets.methods.linkage.sliding import Sliding
 from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
 from tmm_sheets.methods.linkage.zhukovsky import Lever, lever
 from tmm_sheets.words import marked, tr

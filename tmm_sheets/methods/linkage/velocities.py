@@ -15,7 +15,7 @@ from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Rule, Step
-from tmm_sheets.mechanism.groups.hints import Turning
+from tmm_sheets.mechanism.groups.contexts import Turning
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.positions import SEARCHED, Positions, passages, position_plan
 from tmm_sheets.words import marked, tr

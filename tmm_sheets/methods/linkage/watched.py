@@ -10,8 +10,8 @@ from typing import Any, cast
 
 import numpy as np
 
+from tmm_sheets.construction.function import Replay
 from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.replay import Replay
 from tmm_sheets.construction.step import Step
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.positions import Positions, position_plan

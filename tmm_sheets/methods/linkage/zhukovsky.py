@@ -16,7 +16,7 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.plan import Plan, symbol
 from tmm_sheets.construction.step import Helper, Rule, Step
-from tmm_sheets.mechanism.groups.force_plan import Load
+from tmm_sheets.mechanism.groups.contexts import Load
 from tmm_sheets.methods.linkage.forces import GearForce, InputForce, contact_point
 from tmm_sheets.methods.linkage.velocities import POLE, SAME, SIMILAR, Velocities
 from tmm_sheets.words import marked, tr

@@ -18,7 +18,7 @@ from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
 from tmm_sheets.drawing.lettering import fitted, letter, size_for
 from tmm_sheets.drawing.marks import Box, Points
-from tmm_sheets.drawing.tables import needs, parted, widened
+from tmm_sheets.drawing.text_layout import needs, parted, widened
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.frame import OVER
 from tmm_sheets.sheets.player import PlayerStage, placed, play

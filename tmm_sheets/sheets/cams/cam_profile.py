@@ -12,11 +12,11 @@ import numpy as np
 
 from tmm_sheets.construction.scale import fitting
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.clipping import segment_inside
+from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import pivot
-from tmm_sheets.drawing.tables import LEAST, needs, size_in, widened
+from tmm_sheets.drawing.text_layout import LEAST, needs, size_in, widened
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.cams import cam_scale
 from tmm_sheets.sheets.cams.cam import ANGLE, distinct, for_cams, in_degrees, in_mm, lines_of_text, raised

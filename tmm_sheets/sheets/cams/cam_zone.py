@@ -11,7 +11,7 @@ import numpy as np
 from tmm_sheets.construction.equation import Quantity, digits_for, equation
 from tmm_sheets.construction.scale import Scale, handy
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, hatch_polygon
-from tmm_sheets.drawing.clipping import segment_inside
+from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import bar, hinge

@@ -15,7 +15,7 @@ from tmm_sheets.drawing.canvas import SMALLEST, Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, PlacedFrame, Points
 from tmm_sheets.drawing.paper import A1
-from tmm_sheets.drawing.tables import parted, size_in, widened
+from tmm_sheets.drawing.text_layout import parted, size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed
 from tmm_sheets.words import tell, tr
@@ -113,7 +113,7 @@ def numbers(canvas: Canvas, g: Graph, x: Floats, labels: Sequence[str], heights:
     """Numbers of the positions along the angle axis, on the side where the graph is not: of one height, that their distance allows.
 
     ``x`` and ``heights`` are abscissae and ordinates of the graph at them, mm, of shape (labels,).
-    What else is drawn they make way for, see :mod:`~tmm_sheets.drawing.axis_numbers`.
+    What else is drawn they make way for, see :mod:`~tmm_sheets.drawing.placing`.
     """
     gaps = np.concatenate(([np.inf], np.diff(x), [np.inf]))
     size = 3.5 if np.ptp(x) >= (letter("00", 3.5).width + 2.0) * (len(x) - 1) else SMALLEST

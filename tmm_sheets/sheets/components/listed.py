@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import GAP, LEAST, needs, widened
+from tmm_sheets.drawing.text_layout import GAP, LEAST, needs, widened
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:

@@ -6,10 +6,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.headings import LEADING, TOGETHER, Heading, heading
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import needs, size_in, widened
+from tmm_sheets.drawing.text_layout import LEADING, TOGETHER, Heading, heading, needs, size_in, widened
 
 Rows = Sequence[Sequence[str]]
 

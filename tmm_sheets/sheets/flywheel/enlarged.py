@@ -14,7 +14,7 @@ import numpy as np
 from tmm_sheets.construction.readable import MAIN
 from tmm_sheets.construction.scale import fit
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.clipping import segment_inside
+from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.sheets.components import graphs

@@ -20,12 +20,12 @@ import numpy as np
 
 from tmm_sheets.construction.equation import Quantity, digits_for, equation, of_step
 from tmm_sheets.construction.scale import times
-from tmm_sheets.drawing.axis_numbers import PointNumbers
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
 from tmm_sheets.drawing.evenness import dense
-from tmm_sheets.drawing.headings import TOGETHER, wrapped
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box, Points, Text
+from tmm_sheets.drawing.placing import PointNumbers
+from tmm_sheets.drawing.text_layout import TOGETHER, wrapped
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import decimals_for, enough, fixed, is_zero, number
 from tmm_sheets.sheets.border_solver import GAP

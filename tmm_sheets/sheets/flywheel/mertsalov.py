@@ -14,11 +14,10 @@ import numpy as np
 
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.clipping import segment_inside
-from tmm_sheets.drawing.headings import TOGETHER
+from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import size_in, widened
+from tmm_sheets.drawing.text_layout import TOGETHER, size_in, widened
 from tmm_sheets.numbers import decimals_for, enough, fixed, number, size
 from tmm_sheets.sheets.components import graphs
 from tmm_sheets.sheets.flywheel import flywheel

@@ -12,12 +12,12 @@ import numpy as np
 
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, in_role
-from tmm_sheets.drawing.clipping import arcs_inside, chords, polyline_inside, segment_inside
+from tmm_sheets.drawing.ink import arcs_inside, chords, polyline_inside, segment_inside
 from tmm_sheets.drawing.ink_index import InkIndex, enters
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Arc, Box, Dimension, Points, Role
-from tmm_sheets.drawing.tables import LEAST, needs
 from tmm_sheets.drawing.text_boxes import SHELF, spread
+from tmm_sheets.drawing.text_layout import LEAST, needs
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets.components.listed import LARGE, LETTERS, ROW
 from tmm_sheets.sheets.player import PlayerStage

@@ -11,7 +11,7 @@ import numpy as np
 from tmm_sheets.construction.readable import TOOTH
 from tmm_sheets.construction.scale import STANDARD, Scale
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas, lettered
-from tmm_sheets.drawing.clipping import arcs_inside, segment_inside
+from tmm_sheets.drawing.ink import arcs_inside, segment_inside
 from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Line

@@ -12,7 +12,7 @@ from tmm_sheets.construction.equation import Quantity, equation
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import fitted
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import widened
+from tmm_sheets.drawing.text_layout import widened
 from tmm_sheets.numbers import fixed, number
 from tmm_sheets.sheets.components.listed import LARGE, Lines, Table, letters_in
 from tmm_sheets.sheets.gears.gear_marks import ruled_table

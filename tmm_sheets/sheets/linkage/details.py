@@ -21,7 +21,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas, Label
-from tmm_sheets.drawing.clipping import chord
+from tmm_sheets.drawing.ink import chord
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame, Points, Provenance, Text, flat
 from tmm_sheets.drawing.text_boxes import text_box

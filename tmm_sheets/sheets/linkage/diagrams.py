@@ -12,7 +12,7 @@ from tmm_sheets.construction.step import Step, value_of
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import LEAST, needs, size_in, widened
+from tmm_sheets.drawing.text_layout import LEAST, needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import NOISE
 from tmm_sheets.remarks import Remark

@@ -17,7 +17,7 @@ from tmm_sheets.sheets.player import PlayerStage, play, stage
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.mechanism.groups.hints import SpecialPoint
+    from tmm_sheets.mechanism.groups.contexts import SpecialPoint
     from tmm_sheets.mechanism.groups.triad import TriadGroup
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project

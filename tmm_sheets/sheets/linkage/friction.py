@@ -18,7 +18,7 @@ from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import size_in, widened
+from tmm_sheets.drawing.text_layout import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, is_zero, number
 from tmm_sheets.sheets.components import cycle_graphs, graphs

@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import size_in, widened
+from tmm_sheets.drawing.text_layout import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number, size
 from tmm_sheets.sheets.linkage.link_marks import indexed, tell_signs

@@ -14,13 +14,12 @@ from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.scale import Scale, handy, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import SMALLEST, Align, Canvas
-from tmm_sheets.drawing.clipping import segment_inside
 from tmm_sheets.drawing.evenness import dense
-from tmm_sheets.drawing.headings import TOGETHER
+from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.ink_index import STRONG, distance
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box, PlacedFrame, Points, Text
-from tmm_sheets.drawing.tables import needs, size_in, widened
+from tmm_sheets.drawing.text_layout import TOGETHER, needs, size_in, widened
 from tmm_sheets.mechanism.structure import decompose
 from tmm_sheets.numbers import decimals_for, fixed, is_zero, number
 from tmm_sheets.sheets.components import flat_crossings, graphs

@@ -21,8 +21,7 @@ from tmm_sheets.words import tr
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Segment
     from tmm_sheets.construction.step import Step
-    from tmm_sheets.mechanism.groups.force_plan import ForcePlan, Load
-    from tmm_sheets.mechanism.groups.hints import Leg, OuterReaction
+    from tmm_sheets.mechanism.groups.contexts import ForcePlan, Leg, Load, OuterReaction
     from tmm_sheets.mechanism.model import StructuralGroup
     from tmm_sheets.methods.linkage.forces import Kinetostatics
     from tmm_sheets.methods.linkage.positions import Positions

@@ -13,10 +13,9 @@ from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import ARROW, KEPT_OFF, Align, Canvas
-from tmm_sheets.drawing.headings import TOGETHER, wrapped
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import widened
+from tmm_sheets.drawing.text_layout import TOGETHER, widened, wrapped
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, decimals_for, fixed, is_zero, number
 from tmm_sheets.sheets.components import flat_crossings
@@ -62,7 +61,7 @@ from tmm_sheets.words import tell, tr
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan, Segment
     from tmm_sheets.construction.step import Step
-    from tmm_sheets.mechanism.groups.force_plan import ForcePlan
+    from tmm_sheets.mechanism.groups.contexts import ForcePlan
     from tmm_sheets.mechanism.model import StructuralGroup
     from tmm_sheets.methods.linkage.forces import Kinetostatics
     from tmm_sheets.methods.linkage.positions import Positions

@@ -17,7 +17,7 @@ from tmm_sheets.sheets.player import PlayerStage
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.mechanism.groups.hints import Outline
+    from tmm_sheets.mechanism.groups.contexts import Outline
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project

@@ -19,7 +19,7 @@ from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
 from tmm_sheets.sheets.view_sizes import fixed, leaf, reaching, rows
 
 if TYPE_CHECKING:
-    from tmm_sheets.mechanism.groups.force_plan import ForcePlan
+    from tmm_sheets.mechanism.groups.contexts import ForcePlan
     from tmm_sheets.project import Project
 
 MAIN = 4

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.tables import needs, size_in
+from tmm_sheets.drawing.text_layout import needs, size_in
 from tmm_sheets.numbers import is_zero, number, written
 from tmm_sheets.sheets.linkage.link_marks import drawn_points
 from tmm_sheets.words import marked, tr
