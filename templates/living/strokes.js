@@ -1,4 +1,4 @@
-// Strokes of an output over one turn of the crank, as methods/linkage/strokes.py finds them; words and numbers are told there.
+// Strokes of an output over one turn of the crank, as methods/linkage/cycle.py finds them; words and numbers are told there.
 
 const TURN = 2 * Math.PI, SWEEP = 720;
 const NO_MOTION = 1e-12, SHALLOW = 0.01, ALIKE_WAY = 1e-9;
