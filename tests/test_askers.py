@@ -21,6 +21,7 @@ EXCEPTIONS = {
     "methods.flywheel.mertsalov": "first energies and the speeds between them, numbers that views print of it",
     "methods.flywheel.energy_mass": "tangents of the diagram and where they touch",
     "methods.flywheel.wheel": "sizes of the wheel and the motor's slip, numbers that views print of it",
+    "methods.gears.gear_geometry": "whether the pair is possible: tips beyond base circles, a distance that its teeth allow",
     "methods.gears.gear_pair": "whether a rack cuts into the flank, where the fillet begins; the greatest sliding",
     "methods.cams.cam_motion": "second derivatives, which the curvature is made of",
     "methods.cams.cam_profile": "the least radius of each part of the turn: the greatest of them is drawn",
