@@ -270,7 +270,13 @@ def _racks(bench: Bench) -> None:
 
 
 def rows(bench: Bench) -> None:
-    """Cam, involute, rack, search for tooth numbers."""
+    """Cam, involute, rack, search for tooth numbers.
+
+    Raises
+    ------
+    ValueError
+        when no set of tooth numbers is permitted.
+    """
     _cams(bench)
     _involutes(bench)
     _racks(bench)
