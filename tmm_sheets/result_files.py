@@ -1,4 +1,7 @@
-"""Results as files: JSON, piece by piece, arrays (npz), a table (csv). However many positions there are, no second copy is made."""
+"""Results as files: JSON, piece by piece, arrays (npz), a table (csv). However many positions there are, no second copy is made.
+
+In Python they are arrays under their paths, as ``why`` takes them: ``velocities.points.B``.
+"""
 
 from __future__ import annotations
 

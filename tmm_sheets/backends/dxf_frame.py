@@ -1,7 +1,8 @@
 """What stands round the entities of a DXF file: ezdxf has written it, what a sheet adds is put in.
 
 Header, layers, line types, the text style, the dimension style, the layout with its viewport are ezdxf's; entries of tables,
-blocks and groups of one sheet are texts that go to their places (see :class:`SheetParts`).
+blocks and groups of one sheet are texts that go to their places (see :class:`SheetParts`). Marks become such texts, too: ten times
+quicker than one object of a library each.
 """
 
 from __future__ import annotations

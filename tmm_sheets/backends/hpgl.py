@@ -2,6 +2,8 @@
 
 A pen plotter gets what every machine since the first understands: IN, SP, VS, PU, PD, whole steps of 0.025 mm. A printer
 gets line widths in millimetres (PW), round ends and joins (LA) and filled polygons (PM, FP) besides.
+
+A plot file is also read back, for the preview and the tests: what the pens will draw, from the file itself and nothing else.
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 A project is built by the same code with the same inputs wherever that happens, so the bytes do not depend on the number
 of workers. What is current stays (see :mod:`tmm_sheets.output.build_store`): an interrupted batch goes on where it stopped.
+A student gets more than sheets: the note, an empty table for what is measured, the living page.
 """
 
 from __future__ import annotations

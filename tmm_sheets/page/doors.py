@@ -1,4 +1,4 @@
-"""The doors of the page: each request that is let in, and what answers it."""
+"""The doors of the page: who is let in, what answers each request, and the project that the page opens with."""
 
 from __future__ import annotations
 

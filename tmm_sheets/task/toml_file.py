@@ -1,4 +1,8 @@
-"""A TOML file that a person wrote: its text, and what is wrong with it by line and key."""
+"""A TOML file that a person wrote: its text, and what is wrong with it by line and key.
+
+Values that TOML does not read without quotes (``0,02``, ``2 %``, ``80 mm``, a word) are put into quotes, so that the rest of the
+file can be read and its mistakes told, too; what may be meant is tried out.
+"""
 
 from __future__ import annotations
 

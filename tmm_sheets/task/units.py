@@ -1,7 +1,8 @@
 """Numbers with their units, as people write them: ``"0.26 m"``, ``"260 мм"``, ``"72 rpm"``, ``"0,15 kg m2"``.
 
 A field fixes the quantity, so a unit is looked up among the few of that quantity; the result is always SI (m, rad,
-s, kg, N, N m, Pa ...). Conversion is exact up to the last rounding: decimal factors are rational numbers.
+s, kg, N, N m, Pa ...). Conversion is exact up to the last rounding: decimal factors are rational numbers. Quantities
+as a task prints them (table ``[given]``) keep number and unit as they are written.
 """
 
 from __future__ import annotations
