@@ -8,6 +8,7 @@ from tmm_sheets import api
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing import evenness
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.output.building import with_room
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import legibility
 from tmm_sheets.sheets.composition import arranged
@@ -71,10 +72,14 @@ def test_sheets_without_a_mechanism_tell_what_is_too_low_on_them(tables, told):
     assert all(part in line for line, part in zip(said, told, strict=True))
 
 
-def test_fewer_groups_stay_beside_the_kinematics():
+def test_fewer_groups_stay_beside_the_kinematics_if_their_plans_have_room():
     three = project_files.project(project_files.from_file("tests/projects/planer.toml"), {"project.sheets": None})
     assert three.sheets[0] == "kinematics_forces_wide"
-    assert not list(legibility.crowded(three, [1]))
+    told = list(legibility.crowded(three, [1]))
+    assert all("names" in remark.values for remark in told)  # nothing but what another sheet helps
+    apart = Project(with_room(three.variant))
+    assert apart.sheets[:2] == (("kinematics", "forces") if told else three.sheets[:2])
+    assert not list(legibility.crowded(apart, [1, 2]))
 
 
 @pytest.mark.parametrize(("count", "columns", "corners"), [

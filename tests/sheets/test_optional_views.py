@@ -205,7 +205,9 @@ def test_equation_of_the_lever_holds_in_the_numbers_written(name):
         by_statics = float(p.study.forces.balancing.at(k)) * p.mechanism.crank.sense
         assert value * p.mechanism.crank.length == pytest.approx(by_statics, rel=1e-3)
         for said in (lines[2], list(moments._lines(p))[-1]):
-            assert f" = {number(by_statics, 5)} Н·м («+» — по ω_1)" in said
+            told = re.search(r" = (−?[\d,]+) Н·м \(«\+» — по ω_1\)", said)[1].replace("−", "-")
+            last = 10.0 ** -len(told.partition(",")[2])
+            assert float(told.replace(",", ".")) == pytest.approx(by_statics, abs=0.51 * last)
     else:
         assert value == pytest.approx(abs(complex(p.study.forces.balancing.at(k))), rel=1e-3)
 
