@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import os
 import re
-import tomllib
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from functools import cache, lru_cache
@@ -79,6 +78,8 @@ def table_of_heading(text: str, fields: Mapping[str, str] | None = None) -> dict
     """Table ``[project]`` of a project file, or of a scheme with the ``fields`` that are filled in there; no other is read."""
     rest = re.split(r"^\[project\]$", text, maxsplit=1, flags=re.MULTILINE)[1]
     heading = re.split(r"^\[", rest, maxsplit=1, flags=re.MULTILINE)[0]
+    import tomllib  # not for --help, which looks for no family
+
     return tomllib.loads(Template(heading).substitute(fields) if fields else heading)
 
 
@@ -115,6 +116,8 @@ def _rules(folder: Path) -> dict[str, Any]:
 @lru_cache(maxsize=64)
 def _parsed(path: Path, changed: int) -> dict[str, Any]:
     """A family's rules, read once however many of its projects are listed."""
+    import tomllib
+
     return tomllib.loads(path.read_text(encoding="utf-8-sig"))
 
 

@@ -40,7 +40,8 @@ def test_ordinates_of_the_pressure_angle_stand_apart(name):
 
 def test_the_graph_of_a_spring_keeps_a_height_that_can_be_read():
     follower, boxes = places("transport/crusher@11-СДМ-314")
-    assert cam.spring_height(follower, boxes["cam.spring"].width, boxes["cam.spring"].height) >= 40.0
+    assert len(cam._spring_lines(follower.spring, True)) == cam.SPRING_LINES
+    assert cam.spring_height(boxes["cam.spring"].width, boxes["cam.spring"].height) >= 40.0
 
 
 def test_the_name_of_a_level_stands_where_the_curve_is_farther_off():

@@ -526,10 +526,13 @@ def _lines_beside(width: float, height: float) -> bool:
     return width > 1.7 * height
 
 
-def spring_height(cam: Cam, width: float, height: float) -> float:
+def spring_height(width: float, height: float) -> float:
     """Height of the graph of the spring in a place of this size, mm."""
-    assert cam.spring is not None
-    return height - (40.0 if _lines_beside(width, height) else 46.0 + 7.0 * len(_spring_lines(cam.spring, True)))
+    return height - (40.0 if _lines_beside(width, height) else 46.0 + 7.0 * SPRING_LINES)
+
+
+SPRING_LINES = 8
+"""Number of the lines below: a sheet that is arranged asks for it hundreds of times."""
 
 
 def _spring_lines(spring: Spring, straight: bool) -> list[str]:

@@ -87,7 +87,7 @@ def pressure(project: Project, view: ViewPlace) -> BorderNode | None:
 def spring(project: Project, view: ViewPlace) -> BorderNode | None:
     """A graph with its lines beside it or under it, where they leave it the height to be read."""
     def drawn(width: float, height: float) -> float:
-        return 0.6 * width * height * min(max(cam_views.spring_height(project.cam, width, height) / GRAPH, 0.05), 1.0)
+        return 0.6 * width * height * min(max(cam_views.spring_height(width, height) / GRAPH, 0.05), 1.0)
 
     return leaf(view.box, Need(least=(0.8 * view.box.width, 80.0), drawn=drawn))
 
