@@ -92,10 +92,16 @@ def cleaned(text: str) -> str:
     """The same with composed letters (NFC), every kind of space as a plain one, and no signs without width."""
     if text.isascii():
         return text
-    text = unicodedata.normalize("NFC", text)
-    return "".join(" " if _kind(c) in ("Zs", "Zl", "Zp") else c for c in text
-                   if _kind(c) != "Cf" and ord(c) not in _VARIATIONS)  # fmt: skip
+    return unicodedata.normalize("NFC", text).translate(_PLAIN)
 
 
-def _kind(char: str) -> str:
-    return unicodedata.category(char)
+class _Plain(dict[int, str]):
+    """What each character is read as, by its code; found when it is first met."""
+
+    def __missing__(self, code: int) -> str:
+        kind = unicodedata.category(chr(code))
+        self[code] = " " if kind in ("Zs", "Zl", "Zp") else "" if kind == "Cf" or code in _VARIATIONS else chr(code)
+        return self[code]
+
+
+_PLAIN = _Plain()

@@ -50,24 +50,24 @@ def maker() -> str:
 @cache
 def _fingerprints() -> tuple[str, str]:
     there, latest = _looked_at()
-    name = fingerprint("program", *there)
+    name = fingerprint("program", "\n".join(there))
     known = kept.read(name)
     if known is not None:
         own, whole = json.loads(known)
         return str(own), str(whole)
     from importlib.metadata import version
 
-    own = fingerprint(__version__, *(part for p in _files() for part in (p.name, p.read_bytes())))
+    own = fingerprint(__version__, *(part for path in _files() for part in (os.path.basename(path), Path(path).read_bytes())))
     whole = fingerprint(own, sys.version, *(f"{name} {version(name)}" for name in LIBRARIES))
     if time_ns() - latest > SETTLED:
         kept.write(name, json.dumps([own, whole]).encode())
     return own, whole
 
 
-def _files() -> list[Path]:
-    """Sources and templates."""
-    sources = sorted(p for p in Path(__file__).parent.rglob("*.py") if "_templates" not in p.parts)
-    return [*sources, *sorted(p for p in template("").rglob("*") if p.is_file())]
+def _files() -> list[str]:
+    """Paths of sources and templates, in a fixed order."""
+    own, templates = (sorted(entry.path for entry in _walk(str(folder))) for folder in (Path(__file__).parent, template("")))
+    return [*(path for path in own if path.endswith(".py") and not path.startswith(str(template("")))), *templates]
 
 
 def _looked_at() -> tuple[list[str], int]:

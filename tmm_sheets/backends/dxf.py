@@ -15,7 +15,7 @@ import struct
 import zlib
 from cmath import phase
 from collections.abc import Iterable, Iterator
-from functools import cache
+from functools import cache, lru_cache
 from io import StringIO
 from itertools import count, islice
 from math import cos, degrees, pi, sin
@@ -274,13 +274,20 @@ def _look(mark_height: float) -> str:
 
 def _text(handle: int, owner: str, on: str, mark: Text, style: str, more: str = "") -> str:
     """A run as TEXT from its left end; two letters and more are fitted to their length, whatever the font."""
-    if missing := lacking(mark.text):
+    look, said, run = _form(mark.text, mark.height, mark.angle, mark.wide)
+    fit = f"72\n5\n{flat(11, mark.at + run)}" if len(mark.text) > 1 else ""
+    return (f"0\nTEXT\n5\n{handle:X}\n{head('AcDbText', owner, on, more + look)}{flat(10, mark.at)}"
+            f"{said}7\n{style}\n{fit}100\nAcDbText\n")
+
+
+@lru_cache(maxsize=4096)
+def _form(text: str, height: float, angle: float, wide: float) -> tuple[str, str, complex]:
+    """What a run has wherever it stands: tags of its pen, tags of its letters, the way from its beginning to its end, mm."""
+    if missing := lacking(text):
         raise ValueError(f"the drawing font has no character '{missing[0]}' (U+{ord(missing[0]):04X})")
-    end = mark.at + _direction(mark.angle) * _length(mark.text, mark.height) * mark.wide
-    fit = f"72\n5\n{flat(11, end)}" if len(mark.text) > 1 else ""
-    angle = f"50\n{short(degrees(mark.angle) % 360)}\n" if mark.angle else ""
-    return (f"0\nTEXT\n5\n{handle:X}\n{head('AcDbText', owner, on, more + _look(mark.height))}{flat(10, mark.at)}"
-            f"40\n{mark.height:g}\n1\n{_escaped(mark.text)}\n{angle}{_width(mark.wide)}7\n{style}\n{fit}100\nAcDbText\n")
+    turned = f"50\n{short(degrees(angle) % 360)}\n" if angle else ""
+    return (_look(height), f"40\n{height:g}\n1\n{_escaped(text)}\n{turned}{_width(wide)}",
+            _direction(angle) * _length(text, height) * wide)
 
 
 def _length(text: str, height: float) -> float:

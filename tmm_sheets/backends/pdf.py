@@ -260,11 +260,15 @@ def _lettering(drawing: Drawing, page: Any) -> str:
     """Text operators, run by run in the order of the drawing."""
     font, doc, escape = pdfmetrics.getFont(FONT), page._doc, page._escape
     out, now, wide = ["BT"], "", 1.0
+    coded = dict[str, list[tuple[str, str]]]()  # by its text each run's subsets of the font with its codes there
     for mark in drawing.marks:
         if not isinstance(mark, Text):
             continue
-        if missing := [c for c in mark.text if ord(c) not in font.face.charToGlyph]:
-            raise ValueError(f"the drawing font has no character '{missing[0]}' (U+{ord(missing[0]):04X}) in '{mark.text}'")
+        if mark.text not in coded:
+            if missing := [c for c in mark.text if ord(c) not in font.face.charToGlyph]:
+                raise ValueError(f"the drawing font has no character '{missing[0]}' (U+{ord(missing[0]):04X}) in '{mark.text}'")
+            coded[mark.text] = [(font.getSubsetInternalName(subset, doc), escape(code))
+                                for subset, code in font.splitString(mark.text, doc)]
         c, s = cos(mark.angle), sin(mark.angle)
         place = f"{c:.5f} {s:.5f} {-s:.5f} {c:.5f} {mark.at.real:.3f} {mark.at.imag:.3f} Tm"
         if "n" in place:
@@ -273,8 +277,8 @@ def _lettering(drawing: Drawing, page: Any) -> str:
         if mark.wide != wide:
             out.append(f"{100 * mark.wide:g} Tz")
             wide = mark.wide
-        for subset, code in font.splitString(mark.text, doc):
-            look = f"{font.getSubsetInternalName(subset, doc)} {mark.height / CAP:.4f} Tf"
-            out.append(f"({escape(code)}) Tj" if look == now else f"{look} ({escape(code)}) Tj")
+        for subset, code in coded[mark.text]:
+            look = f"{subset} {mark.height / CAP:.4f} Tf"
+            out.append(f"({code}) Tj" if look == now else f"{look} ({code}) Tj")
             now = look
     return "\n".join([*out, "ET"])

@@ -8,7 +8,7 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.ink_index import sample
-from tmm_sheets.drawing.marks import Drawing, Mark, Points, Text, flat
+from tmm_sheets.drawing.marks import Drawing, Line, Mark, Points, Text, flat
 from tmm_sheets.drawing.text_boxes import text_box
 
 FIELD = Box(20.0, 5.0, 836.0, 589.0)
@@ -53,10 +53,14 @@ def _outline(mark: Mark) -> Points:
 
 def dense(marks: Iterable[Mark], step: float) -> Points:
     """Points along marks, or round their lettering, no more than ``step`` mm apart."""
-    outlines = [_outline(mark) for mark in marks]
-    if not outlines:
-        return np.empty(0, complex)
-    return sample(np.concatenate([z[:-1] for z in outlines]), np.concatenate([z[1:] for z in outlines]), step)
+    straight, others = list[tuple[complex, complex]](), list[Points]()  # most are lines: quicker without an array for each
+    for mark in marks:
+        if isinstance(mark, Line):
+            straight.append((mark.a, mark.b))
+        else:
+            others.append(_outline(mark))
+    a, b = np.array(straight, complex).reshape(-1, 2).T
+    return sample(np.concatenate((a, *(z[:-1] for z in others))), np.concatenate((b, *(z[1:] for z in others))), step)
 
 
 def covering(box: Box) -> Points:

@@ -145,8 +145,13 @@ def segment_inside(box: Box, a: complex, b: complex) -> tuple[complex, complex] 
             if low > 0 or high < 0:
                 return None
             continue
-        s0, s1 = sorted((low / step, high / step))
-        t0, t1 = max(t0, s0), min(t1, s1)
+        near, far = low / step, high / step
+        if near > far:
+            near, far = far, near
+        if near > t0:
+            t0 = near
+        if far < t1:
+            t1 = far
     return (a + t0 * d, a + t1 * d) if t0 < t1 else None
 
 
@@ -165,6 +170,9 @@ def chord(centre: complex, radius: float, a: complex, b: complex) -> tuple[compl
 
 def polyline_inside(box: Box, points: Points) -> list[Points]:
     """Stretches of a polyline inside the box."""
+    x, y = points.real, points.imag
+    if not len(points) or x.max() < box.x0 or x.min() > box.x1 or y.max() < box.y0 or y.min() > box.y1:
+        return []
     stretches: list[list[complex]] = []
     for a, b in pairwise(points.tolist()):
         part = segment_inside(box, a, b)
@@ -229,7 +237,7 @@ def _along(points: Points, pattern: tuple[float, ...], closed: bool) -> Iterator
 
 def interrupted(mark: Mark) -> list[Mark]:
     """The pieces of a line that lettering interrupts; any other mark as it is."""
-    if isinstance(mark, Text | Fill) or not mark.gaps:
+    if not getattr(mark, "gaps", None):  # letters and filled areas have none
         return [mark]
     borders = [0.0, *(border for gap in mark.gaps for border in gap), 1.0]
     pieces = [(a, b) for a, b in zip(borders[::2], borders[1::2], strict=True) if b > a]

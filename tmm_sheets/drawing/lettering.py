@@ -117,6 +117,7 @@ def glyph(char: str) -> Glyph:
                  float(ink.real.max()) + half, float(ink.imag.max()) + half)
 
 
+@lru_cache(maxsize=8192)
 def lacking(text: str) -> str:
     """Characters of ``text`` that cannot be lettered, each once; an overbar needs a letter before it."""
     known = _font()["glyphs"]
@@ -126,7 +127,13 @@ def lacking(text: str) -> str:
 
 def advance(text: str, height: float) -> float:
     """Distance from the origin of the first letter of ``text`` to the origin of what would follow, mm."""
-    return height * sum(glyph(c).advance for c in text)
+    return height * _advance(text)
+
+
+@lru_cache(maxsize=8192)
+def _advance(text: str) -> float:
+    """Distance :func:`advance` of letters 1 mm high."""
+    return sum(glyph(c).advance for c in text)
 
 
 def strokes(text: str, height: float) -> list[Points]:

@@ -31,6 +31,8 @@ LESS = 1e-3
 """Places that cost less by no more than this are none the better, mm^2."""
 ROUNDS = 3
 """How often all borders are tried with each of these."""
+TOO_SMALL, BELOW = 1e8, 1e7
+"""Price of a place that is too small by its own size, mm^2: more than that of any sheet; and of what is not seen at all in it."""
 _SERIES = (*HANDY, 10.0)
 
 
@@ -75,36 +77,52 @@ class Need:
 
     def needed(self, width: float, height: float) -> float:
         """Scale factor with which the view fits a place of this size, not rounded."""
-        w, h = min(width - ROUNDED, self.most[0]), min(height - ROUNDED - self.covered, self.most[1])
+        w, h = self._room(width, height)
         if self.scale is not None:
             return self.scale(w, h)
-        free = w - self.around[0], h - self.around[1]
-        return max(self.span[0] / free[0], self.span[1] / free[1]) if min(free) > 1.0 else inf
+        free_w, free_h = w - self.around[0], h - self.around[1]
+        if free_w <= 1.0 or free_h <= 1.0:
+            return inf
+        a, b = self.span[0] / free_w, self.span[1] / free_h
+        return a if a > b else b
 
     def ink(self, width: float, height: float) -> float:
         """Area that is drawn upon in a place of this size, mm^2."""
-        w, h = min(width - ROUNDED, self.most[0]), min(height - ROUNDED - self.covered, self.most[1])
+        w, h = self._room(width, height)
         if self.drawn is not None:
             return self.drawn(w, h)
-        free = w - self.around[0], h - self.around[1]
-        if not max(self.span) > 0 or not min(free) > 1.0:
-            return min(w, max(self.around[0], self.least[0])) * min(h, max(self.around[1], self.least[1]))
-        mu = rounded_up(max(self.span[0] / free[0], self.span[1] / free[1], self.finest))
-        return (self.span[0] / mu + self.around[0]) * (self.span[1] / mu + self.around[1])
+        (span_w, span_h), (around_w, around_h) = self.span, self.around
+        free_w, free_h = w - around_w, h - around_h
+        if not (span_w > 0 or span_h > 0) or free_w <= 1.0 or free_h <= 1.0:
+            return min(w, max(around_w, self.least[0])) * min(h, max(around_h, self.least[1]))
+        a, b = span_w / free_w, span_h / free_h
+        mu = a if a > b else b
+        mu = rounded_up(mu if mu > self.finest else self.finest)
+        return (span_w / mu + around_w) * (span_h / mu + around_h)
+
+    def _room(self, width: float, height: float) -> tuple[float, float]:
+        """What of a place of this size the view can use, mm. Written without min and max: it is asked thousands of times."""
+        w, h = width - ROUNDED, height - ROUNDED - self.covered
+        most_w, most_h = self.most
+        return w if w < most_w else most_w, h if h < most_h else most_h
 
     def short(self, width: float, height: float) -> float:
         """How much a place is too small, in its own size."""
-        found = max(self.least[0] - width, 0.0) / self.least[0] + max(self.least[1] + self.covered - height, 0.0) / self.least[1]
-        return found + JUST if found else 0.0
+        least_w, least_h = self.least
+        low = least_h + self.covered - height
+        if width >= least_w and low <= 0.0:
+            return 0.0
+        return max(least_w - width, 0.0) / least_w + max(low, 0.0) / least_h + JUST
 
     def below(self, width: float, height: float) -> float:
         """How far what is drawn in a place is below its floors: the part of them that it lacks."""
         small = max(1.0 - self.coarsest / self.needed(width, height), 0.0) if self.coarsest < inf else 0.0
         return small + max(1.0 - self.ink(width, height) / (width * height * self.filled), 0.0) if self.filled else small
 
-
-TOO_SMALL, BELOW = 1e8, 1e7
-"""Price of a place that is too small by its own size, mm^2: more than that of any sheet; and of what is not seen at all in it."""
+    def cost(self, area: float, width: float, height: float) -> float:
+        """Price of a place of this size for a view that is meant to have ``area``, mm^2; the square: what is worst counts most."""
+        found = area * (area / self.ink(width, height)) ** 2 + TOO_SMALL * self.short(width, height)
+        return found + BELOW * self.below(width, height) if self.filled or self.coarsest < inf else found
 
 
 @dataclass
@@ -145,20 +163,15 @@ class BorderNode:
         if found is not None:
             return found
         if self.need is not None:
-            ink = self.need.ink(width, height)  # the square: what is worst counts most
-            found = self.area * (self.area / ink) ** 2
-            found += TOO_SMALL * self.need.short(width, height) + BELOW * self.need.below(width, height)
+            found = self.need.cost(self.area, width, height)
         else:
             found = 0.0
             for child, size in zip(self.children, self.sizes(width, height), strict=True):
-                found += self._of(child, size, width, height, most - found)
+                found += child.cost(width, size, most - found) if self.axis else child.cost(size, height, most - found)
                 if found >= most:
                     return found
         self.tried[place] = found
         return found
-
-    def _of(self, child: BorderNode, size: float, width: float, height: float, most: float = inf) -> float:
-        return child.cost(width, size, most) if self.axis else child.cost(size, height, most)
 
     def settle(self, width: float, height: float, steps: Sequence[float]) -> bool:
         """Move each border by that of some steps, to one side or the other, which costs least, then those inside the parts.
@@ -180,10 +193,13 @@ class BorderNode:
         now, pair = self.shares[i:i + 2], self.children[i:i + 2]
         best, least = now, inf
         for shares in (now, *([now[0] + d, now[1] - d] for by in steps for d in (by, -by) if now[0] + d > 0 < now[1] - d)):
-            most, smaller = least + LESS, int(shares[1] < now[1])  # which costs more than before, as a rule
-            cost = self._of(pair[smaller], shares[smaller] * free, width, height, most)
-            if cost < most:
-                cost += self._of(pair[1 - smaller], shares[1 - smaller] * free, width, height, most - cost)
+            most, cost = least + LESS, 0.0
+            for k in (1, 0) if shares[1] < now[1] else (0, 1):  # the smaller first: it costs more than before, as a rule
+                size = shares[k] * free
+                cost += pair[k].cost(width, size, most - cost) if self.axis else pair[k].cost(size, height, most - cost)
+                if cost >= most:
+                    break
+            else:
                 if round(cost, 3) < least:
                     best, least = shares, round(cost, 3)
         self.shares[i:i + 2] = best

@@ -32,8 +32,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import ceil, floor, inf, pi
 
-import numpy as np
-
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.ink import polyline_inside
 from tmm_sheets.drawing.marks import Arc, Line, Mark, Points, Text, flat
@@ -128,11 +126,11 @@ def _tie(mark: Mark) -> bool:
     return not isinstance(mark, Text) and mark.style == TIE
 
 
-def _outside(p: Points, box: Box) -> tuple[float, str]:
-    """How far points come out of a box, and on which side."""
-    out = (box.x0 - p.real.min(), box.y0 - p.imag.min(), p.real.max() - box.x1, p.imag.max() - box.y1)
-    k = int(np.argmax(out))
-    return float(out[k]), SIDES[k]
+def _outside(own: Box, box: Box) -> tuple[float, str]:
+    """How far the rectangle round a mark comes out of a box, and on which side: the first of the farthest."""
+    out = (box.x0 - own.x0, box.y0 - own.y0, own.x1 - box.x1, own.y1 - box.y1)
+    by = max(out)
+    return by, SIDES[out.index(by)]
 
 
 Departure = tuple[float, str, str]
@@ -154,23 +152,24 @@ class _Bounds:
             if _surely_inside(mark, self.box):
                 continue
             p = text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0)
-            out = self._across(p) or (None if _tie(mark) else self._beyond(p, slack, beside))
+            own = Box.around(p)
+            out = self._across(p, own) or (None if _tie(mark) else self._beyond(p, own, slack, beside))
             if out is not None:
                 yield out
 
-    def _beyond(self, p: Points, slack: float, beside: list[Box]) -> Departure | None:
+    def _beyond(self, p: Points, own: Box, slack: float, beside: list[Box]) -> Departure | None:
         """How far a mark leaves its view, or comes into the part beside its own."""
-        by, side = _outside(p, self.view)
+        by, side = _outside(own, self.view)
         if by > slack:
             return by, side, ""
-        by, side = _outside(p, self.box)
+        by, side = _outside(own, self.box)
         if by > slack and any(polyline_inside(other.inset(slack), p) for other in beside):
             return by, side, ", into the one beside it"
         return None
 
-    def _across(self, p: Points) -> Departure | None:
+    def _across(self, p: Points, own: Box) -> Departure | None:
         """How far a mark crosses the frame, or comes into the title block."""
-        by, side = _outside(p, self.frame)
+        by, side = _outside(own, self.frame)
         if by > 0:
             return by, side, ", over the frame"
         block = self.title_block
