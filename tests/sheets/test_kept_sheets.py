@@ -54,7 +54,7 @@ def same(a, b):
 
 
 @pytest.mark.parametrize(("name", "n"), few(
-    [*SHEETS, *((f"tests/projects/{tree}.toml", 1) for tree in TREES)], ("transport/press@07-ЭПС-718", 3),
+    [*SHEETS, *((f"tests/projects/{tree}.toml", 1) for tree in TREES)], ("transport/press@07-ЭПС-718", 3), ("lugansk/shaper", 2),
     ("tests/projects/visor.toml", 1)))
 def test_it_is_the_sheet_itself(name, n):
     with kept.unused():

@@ -104,8 +104,9 @@ def _bookmarks(page: Canvas, drawing: Drawing, n: int) -> None:
     page.bookmarkPage(f"sheet{n}")
     page.addOutlineEntry(drawing.title, f"sheet{n}", 0)
     for k, view in enumerate(drawing.views, 1):
-        key, box = f"sheet{n}-{k}", view.box
-        page.bookmarkPage(key, "FitR", left=box.x0 * MM, bottom=box.y0 * MM, right=box.x1 * MM, top=box.y1 * MM)
+        key = f"sheet{n}-{k}"
+        left, bottom, right, top = (float(edge) * MM for edge in view.box)  # reportlab gives NumPy's numbers all their digits
+        page.bookmarkPage(key, "FitR", left=left, bottom=bottom, right=right, top=top)
         page.addOutlineEntry(view.name, key, 1)
 
 

@@ -220,12 +220,15 @@ def part_of(value: Any, part: Part) -> Any:
     return _PARTS[part](value) if part else value
 
 
+_HOLDERS, _SCALARS = (Step, Given), (float, complex, str)  # a union of types would be made at each of thousands of calls
+
+
 def value_of(x: Any) -> Any:
     """Value of a step or of a given row, or the given number itself."""
-    return x.value if isinstance(x, Step | Given) else x
+    return x.value if isinstance(x, _HOLDERS) else x
 
 
 def value_at(x: Any, k: int) -> Any:
     """Value of a step or of a given array at position ``k``; numbers are the same at every position."""
     value = value_of(x)
-    return value if isinstance(value, float | complex | str) or np.ndim(value) == 0 else value[k]
+    return value if isinstance(value, _SCALARS) or np.ndim(value) == 0 else value[k]

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.composed import Composed
 from collections.abc import Sequence
-from itertools import accumulate, pairwise
+from itertools import accumulate, islice, pairwise
 from typing import Any
 
 import numpy as np
@@ -46,7 +46,7 @@ from tmm_sheets.drawing.marks import (
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets.composed import Composed, Leaving
 
-FORM = "4"
+FORM = "5"
 """Number of the form, another one for every change of it."""
 NUMBERS = np.dtype("<f8")
 KINDS: dict[str, type[Any]] = {"L": Line, "A": Arc, "P": Polyline, "T": Text, "F": Fill}
@@ -61,7 +61,7 @@ def stored(sheet: Composed) -> bytes:
     tree = {
         "paper": [drawing.width, drawing.height, drawing.title, drawing.author, drawing.subject, drawing.keywords],
         "marks": _marks(drawing.marks, points),
-        "views": [[v.name, v.box, v.spans, [type(x) is float for x in v.box]] for v in drawing.views],
+        "views": [[v.name, v.box, v.spans] for v in drawing.views],
         "dimensions": drawing.dimensions, "forms": drawing.forms,
         "scales": {name: [s.symbol, s.mu, s.unit] for name, s in sheet.scales.items()},
         "crowded": [[c.text, c.at, *([c.left] if isinstance(c, Shortened) else [])] for c in sheet.crowded],
@@ -89,7 +89,7 @@ def _sheet(tree: dict[str, Any], points: Any) -> Composed:
     width, height, title, author, subject, keywords = tree["paper"]
     drawing = Drawing(
         width, height, title, tuple(_marks_of(tree["marks"], points)), author, subject, keywords,
-        views=tuple(View(name, _exactly(box, plain), tuple(map(_pair, spans))) for name, box, spans, plain in tree["views"]),
+        views=tuple(View(name, Box(*box), tuple(map(_pair, spans))) for name, box, spans in tree["views"]),
         dimensions=tuple(Dimension(kind, first, end, _point(a), _point(b), _point(line), text, _point(middle), factor,
                                    _point(vertex), _pair(label))
                          for kind, first, end, a, b, line, text, middle, factor, vertex, label in tree["dimensions"]),
@@ -116,17 +116,21 @@ def _marks(marks: Sequence[Mark], points: list[Any]) -> dict[str, Any]:
     lines, arcs, polylines, texts, fills = kinds.values()
     points += [np.array([(m.a, m.b) for m in lines], complex).ravel(), np.array([m.centre for m in arcs], complex),
                np.array([m.at for m in texts], complex), *(m.points for m in (*polylines, *fills))]
-    traces, of, styles, letters = _Numbered(), _Numbered(), _Numbered(), _Numbered()
+    curved = *polylines, *fills
+    traces, by = _numbered([m.by for m in marks])
+    views, of = _numbered([m.of for m in marks])
+    looks, styles = _numbered([m.style for m in (*lines, *arcs, *curved)])
+    letters, lettered = _numbered([(m.height, m.angle) for m in texts])
+    numbers = iter(styles)
     return {
         "kinds": "".join({kind: letter for letter, kind in KINDS.items()}[type(m)] for m in marks),
-        "of": [of(m.of) for m in marks], "by": [traces(m.by) for m in marks],
-        "styles": [[styles(m.style) for m in some] for some in (lines, arcs, polylines, fills)],
+        "of": of, "by": by, "styles": [[*islice(numbers, len(some))] for some in (lines, arcs, polylines, fills)],
         "arcs": [[m.radius, m.start, m.end] for m in arcs],
-        "closed": [m.closed for m in polylines], "lengths": [len(m.points) for m in (*polylines, *fills)],
+        "closed": [m.closed for m in polylines], "lengths": [len(m.points) for m in curved],
         "gaps": {k: m.gaps for k, m in enumerate(marks) if isinstance(m, Line | Arc | Polyline) and m.gaps},
         "wide": {k: m.wide for k, m in enumerate(marks) if isinstance(m, Text) and m.wide != 1.0},
-        "texts": [m.text for m in texts], "letters": [letters((m.height, m.angle)) for m in texts],
-        "tables": [list(table.known) for table in (of, traces, styles, letters)],
+        "texts": [m.text for m in texts], "letters": lettered,
+        "tables": [views, traces, looks, letters],
     }  # fmt: skip
 
 
@@ -155,19 +159,12 @@ def _marks_of(tree: dict[str, Any], points: Any) -> Iterator[Mark]:
         yield KINDS[kind](*next(heads[kind]), of[i], traces[j], *last.get(k, ()))
 
 
-class _Numbered:
-    """Numbers of values, equal ones and of one type the same, as they are met."""
-
-    def __init__(self) -> None:
-        self._numbers: dict[Any, int] = {}
-        self.known: list[Any] = []
-
-    def __call__(self, value: Any) -> int:
-        key = value, *(map(type, value) if isinstance(value, tuple) else ())
-        if key not in self._numbers:
-            self._numbers[key] = len(self.known)
-            self.known.append(value)
-        return self._numbers[key]
+def _numbered(values: Sequence[Any]) -> tuple[list[Any], list[int]]:
+    """The values that differ, as they are met, and the number of each value among them; 1 and 1.0 in a tuple are two values."""
+    keys = [(value, *map(type, value)) if isinstance(value, tuple) else value for value in values]
+    numbers = {key: number for number, key in enumerate(dict.fromkeys(keys))}
+    known = dict(zip(reversed(keys), reversed(values), strict=True))
+    return [known[key] for key in numbers], [numbers[key] for key in keys]
 
 
 def _told(remark: Remark) -> list[Any]:
@@ -193,11 +190,6 @@ def _plain(value: Any) -> Any:
 def _point(pair: Sequence[float]) -> complex:
     x, y = pair
     return complex(x, y)
-
-
-def _exactly(box: Sequence[float], plain: Sequence[bool]) -> Box:
-    """A box whose numbers are Python's or NumPy's as they were: the library that writes PDF gives these all their digits."""
-    return Box(*(x if own else np.float64(x) for x, own in zip(box, plain, strict=True)))
 
 
 def _pair(pair: Iterable[T]) -> tuple[T, T]:
