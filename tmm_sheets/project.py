@@ -48,6 +48,8 @@ class Project:
         self.variant = variant
         self.shown = set[int]()
         """Numbers of the sheets whose steps are made."""
+        self.arranged = dict[int, Any]()
+        """Arrangements of the sheets with their views in place, by number (:mod:`tmm_sheets.sheets.composition`)."""
 
     @property
     def sheets(self) -> tuple[str, ...]:
@@ -58,7 +60,7 @@ class Project:
         """The same project on sheets of these arrangements: what it has found stays found."""
         other, v = copy(self), self.variant
         other.variant = v.model_copy(update={"project": v.project.model_copy(update={"sheets": list(names)})})
-        other.shown = set()
+        other.shown, other.arranged = set(), {}
         return other
 
     @property

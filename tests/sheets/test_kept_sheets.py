@@ -17,7 +17,8 @@ from tmm_sheets.__main__ import run
 from tmm_sheets.output.building import BACKENDS
 from tmm_sheets.project import Project
 from tmm_sheets.remarks import Remark
-from tmm_sheets.sheets import composing, sheet
+from tmm_sheets.sheets import answered, composing, sheet
+from tmm_sheets.sheets.answered import Answered
 from tmm_sheets.task.variant import parse
 
 SHEETS = [(name, n) for name, count in (("lugansk/shaper", 4), ("press", 4), ("sixbar/8:3", 2), ("transport/press@07-ЭПС-718", 3))
@@ -93,7 +94,7 @@ def test_the_second_time_nothing_is_composed(place, tmp_path, monkeypatch, capsy
     assert run(["plot", name, "--sheet", "1", "-o", str(tmp_path / "a")]) == 0
     made = tmp_path / "a" / "sheet1.dxf"
     assert run(["compare", name, "--sheet", "1", "--dxf", str(made), "-o", str(tmp_path / "a")]) == 0
-    assert len(list(place.iterdir())) in (2, 3)  # what was asked; and the fingerprint of the program, unless it was known
+    assert len(list(place.iterdir())) in (4, 5)  # sheet, arrangement, what was asked; the program, unless known
 
 
 def test_steps_of_a_kept_sheet_with_details_are_made(place):
@@ -151,22 +152,25 @@ def test_a_sheet_cut_short_is_none():
     assert sheet.loaded(data + bytes(16)) is None
 
 
-def test_what_a_sheet_is_made_of_names_it(monkeypatch):
-    def name(project, n=1):
-        return sheet._name(sheet._about(project, n), project, (("title_block",), ("sheets",), ("source", "crank", "length")))
+def test_only_the_same_answers_find_what_was_kept(place, monkeypatch):
+    def found(project, n=1):
+        return [*Answered(project, n, "sheet", "1").found()]
 
     variant = catalogue.read("press")
     project = Project(variant)
     block = variant.title_block.model_copy(update={"first_sheet": 7})
     others = [Project(variant.model_copy(update={"title_block": block})),
               Project(catalogue.read("lugansk/shaper")), Project(catalogue.read("press"))]  # fmt: skip
-    names = [name(project), name(project, 2), *map(name, others)]
-    assert names[-1] == names[0]
-    assert len(set(names[:-1])) == 4
+    variant.ask([("title_block",), ("sheets",), ("source", "crank", "length")])
+    Answered(project, 1, "sheet", "1").keep(b"made")
+    assert found(project) == found(others[-1]) == [b"made"]
+    assert ("sheets",) in others[-1].variant.asked  # what is used of it later depends on that, too
+    assert [found(project, 2), *map(found, others[:-1])] == [[]] * 3
+    assert [*Answered(project, 1, "sheet", "2").found()] == [*Answered(project, 1, "arrangement", "1").found()] == []
     with words.on_paper("uk"):
-        assert name(project) not in names
-    monkeypatch.setattr(sheet, "maker", lambda: "another program")
-    assert name(project) not in names
+        assert found(project) == []
+    monkeypatch.setattr(answered, "maker", lambda: "another program")
+    assert found(project) == []
 
 
 def changed(*pairs):
@@ -204,4 +208,4 @@ def test_loading_imports_nothing_that_draws(place, tmp_path):
     modules = told.stderr.splitlines()[-1].split()
     assert not [m for m in modules if m.startswith(("shapely", "scipy", "tmm_sheets.methods.", "tmm_sheets.mechanism."))]
     assert {m for m in modules if m.startswith("tmm_sheets.sheets.")} == {
-        f"tmm_sheets.sheets.{name}" for name in ("sheet", "composed")}  # fmt: skip
+        f"tmm_sheets.sheets.{name}" for name in ("sheet", "composed", "answered")}  # fmt: skip

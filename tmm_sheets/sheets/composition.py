@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+import json
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets import view_sizes
+from tmm_sheets.sheets.answered import Answered
 from tmm_sheets.sheets.arrangement import Arrangement, ViewPlace, arrangement
 from tmm_sheets.sheets.border_solver import GAP, BorderNode, cut, joined, solve
 from tmm_sheets.sheets.linkage import kinematic_frames
@@ -21,20 +23,32 @@ if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
     from tmm_sheets.project import Project
 
+FORM = "1"
+"""Number of the form in which arrangements are kept, another one for every change of it."""
 TITLE_BLOCK = Box(648.0, 8.0, 832.0, 61.0)
 """Place of the title block among the views."""
 DESIGNATION = Box(20.0, 573.0, 92.0, 589.0)
 """Place of the turned designation, over the views in the upper left corner (GOST 2.104)."""
 
 
-@lru_cache(maxsize=16)
 def arranged(project: Project, n: int) -> Arrangement:
-    """Arrangement of sheet ``n`` (from 1) with every view in the place the sheet has for it.
+    """Arrangement of sheet ``n`` (from 1) with every view in the place the sheet has for it: found once, and kept.
 
     Of several ways to arrange the same views that in which they fill most of what they are meant to have.
     Raises :class:`CannotBuild` where the project has nothing for any of its views.
     """
+    if n not in project.arranged:
+        project.arranged[n] = _arranged(project, n)
+    found: Arrangement = project.arranged[n]
+    return found
+
+
+def _arranged(project: Project, n: int) -> Arrangement:
     plan = _with_all_groups(project, arrangement(project.sheets[n - 1]).fitted(project.parts))
+    before = Answered(project, n, "arrangement", FORM)
+    for data in before.found():
+        with suppress(ValueError, TypeError, KeyError, AttributeError):
+            return replace(plan, views=tuple(_loaded(*row) for row in json.loads(data)))
     if any(view.needs == "forces" for view in plan.views):
         project.check_forces()
     if any("axis" in view.options for view in plan.views):
@@ -53,7 +67,17 @@ def arranged(project: Project, n: int) -> Arrangement:
     for way in ways[1:]:
         way.means(ways[0])
     found = [solved for way in ways if (solved := way.solved()) is not None]
-    return min(found, key=lambda solved: round(solved[0], 3))[1] if found else as_written
+    if not found:
+        return as_written
+    taken = min(found, key=lambda solved: round(solved[0], 3))[1]
+    before.keep(json.dumps([[view.draw, view.box, view.options] for view in taken.views]).encode())
+    return taken
+
+
+def _loaded(draw: str, box: Sequence[float], options: dict[str, Any]) -> ViewPlace:
+    """A view in its place as it was kept; the places of its parts are boxes."""
+    own = {"places": [Box(*place) for place in options["places"]]} if "places" in options else {}
+    return ViewPlace(draw, Box(*box), {**options, **own})
 
 
 def _with_all_groups(project: Project, plan: Arrangement) -> Arrangement:

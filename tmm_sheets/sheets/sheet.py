@@ -3,24 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Generic, TypeVar
-
-from tmm_sheets import kept, words
-from tmm_sheets.errors import CannotBuild, together
-from tmm_sheets.program import fingerprint, maker
-from tmm_sheets.words import tell
-
-if TYPE_CHECKING:
-    from tmm_sheets.drawing.canvas import Canvas
-    from tmm_sheets.drawing.marks import Drawing
-    from tmm_sheets.project import Project
-    from tmm_sheets.sheets.composed import Composed
-from collections.abc import Sequence
 from itertools import accumulate, islice, pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
@@ -43,8 +30,15 @@ from tmm_sheets.drawing.marks import (
     Text,
     View,
 )
+from tmm_sheets.errors import CannotBuild, together
 from tmm_sheets.remarks import Remark
+from tmm_sheets.sheets.answered import Answered
 from tmm_sheets.sheets.composed import Composed, Leaving
+from tmm_sheets.words import tell
+
+if TYPE_CHECKING:
+    from tmm_sheets.drawing.canvas import Canvas
+    from tmm_sheets.project import Project
 
 FORM = "5"
 """Number of the form, another one for every change of it."""
@@ -197,13 +191,6 @@ def _pair(pair: Iterable[T]) -> tuple[T, T]:
     return x, y
 
 
-WAYS = 8
-"""Sets of questions that are remembered of a sheet: mechanisms with and without loads, parts made in another order."""
-
-Questions = tuple[tuple[str | int, ...], ...]
-"""What a project file was asked: ``Variant.asked``."""
-
-
 @dataclass
 class Attempt(Generic[T]):
     """What came of the sheets, by number, that could be drawn, and by number and arrangement why others could not."""
@@ -277,22 +264,17 @@ def composed(project: Project, n: int, steps: bool = False) -> Composed:
     it was made: another length leaves the sheets of the gears as they are. Its steps are not kept: whoever reads those of the
     project asks for ``steps``, and the views ask the project for what they show, whether or not they are drawn.
     """
-    about = _about(project, n) if kept.folder() is not None and project.variant.content else ""
-    known = _asked_before(about) if about else []
-    for questions in known:
-        data = kept.read(_name(about, project, questions))
-        if data is not None and (found := loaded(data)) is not None:
+    before = Answered(project, n, "sheet", FORM)
+    for data in before.found():
+        found = loaded(data)
+        if found is not None:
             if steps:
                 ask_again(project, n, found)
             return found
     from tmm_sheets.sheets import composing
 
     made = composing.composed(project, n)
-    if about:
-        questions = project.variant.asked
-        kept.write(_name(about, project, questions), stored(made))
-        if questions not in known:
-            kept.write(about, json.dumps([questions, *known][:WAYS]).encode())
+    before.keep(stored(made))
     return made
 
 
@@ -302,22 +284,3 @@ def ask_again(project: Project, n: int, found: Composed) -> None:
         from tmm_sheets.sheets import composing
 
         composing.ask_again(project, n, found.parts)
-
-
-def _about(project: Project, n: int) -> str:
-    """What the questions that lead to a sheet are kept under."""
-    arrangement = project.sheets[n - 1]
-    return fingerprint("sheet", FORM, maker(), words.paper(), words.reader(), arrangement, str(n))
-
-
-def _asked_before(about: str) -> list[Questions]:
-    """The sets of questions that led to such a sheet before, the latest first."""
-    try:
-        return [tuple(tuple(question) for question in questions) for questions in json.loads(kept.read(about) or b"[]")]
-    except (ValueError, TypeError):
-        return []
-
-
-def _name(about: str, project: Project, questions: Questions) -> str:
-    """What a sheet is kept under: the questions that led to it and the answers of the project file."""
-    return fingerprint(about, *(part for asked in questions for part in (repr(asked), project.variant.answer(asked))))

@@ -7,7 +7,7 @@ turn) is judged where the geometry is.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
@@ -151,6 +151,10 @@ class Variant(Table):
         Whatever was made of it comes out the same for another file that gives the same :meth:`answer` to each.
         """
         return tuple(sorted(self._asked, key=repr))
+
+    def ask(self, questions: Iterable[Question]) -> None:
+        """Count questions as asked, since something is used that was made of their answers."""
+        self._asked.update(questions)
 
     def answer(self, question: Question) -> str:
         """What is said to a question, as a text."""
