@@ -7,6 +7,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Container, Iterable, Mapping
 from math import isfinite
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -180,7 +181,9 @@ def record(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, Any
         "rules": book.rules,
         "steps": _steps(book, scales),
         "results": dict(_results(behind, book)),
-        "searches": [{"purpose": s.purpose, "plans": s.plans, "steps": s.steps} for s in project.searches],
+        # in an order of their own: which was first depends on what is kept
+        "searches": [{"purpose": s.purpose, "plans": s.plans, "steps": s.steps}
+                     for s in sorted(project.searches, key=attrgetter("purpose"))],
         "sheets": [recorded_sheet(n, composed, book.steps) for n, composed in attempt.drawn.items()],
         **({"not_computed": {name: str(reason) for name, reason in lost.items()}} if lost else {}),
     }  # fmt: skip

@@ -15,7 +15,6 @@ from tmm_sheets.program import fingerprint, maker
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
-    from tmm_sheets.task.variant import Variant
 
 WAYS = 8
 """Sets of questions that are remembered of a thing: mechanisms with and without loads, parts made in another order."""
@@ -28,7 +27,7 @@ class Answered:
     """What is kept of sheet ``n`` (from 1) of a project as a thing of some ``kind``; another ``form``, another name."""
 
     def __init__(self, project: Project, n: int, kind: str, form: str) -> None:
-        self.variant: Variant = project.variant
+        self.variant = project.variant
         self._about = fingerprint(kind, form, maker(), words.paper(), words.reader(), project.sheets[n - 1], str(n)) \
             if kept.folder() is not None and self.variant.content else ""
         self._known = self._asked_before() if self._about else []

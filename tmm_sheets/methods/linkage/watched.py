@@ -19,6 +19,8 @@ from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
 
 OfAngles = Callable[[Any], Any]
 """Values at crank angles, rad in the world frame, in the shape of these."""
+REMEMBERED = 32
+"""Sets of angles whose values are remembered: loads are asked for at the positions of the sheets again and again."""
 RECORDED = "watched"
 """Under which a mechanism keeps them."""
 
@@ -57,9 +59,13 @@ class Watched:
 
     def _of(self, pick: Callable[[_Plans], Step]) -> OfAngles:
         replay: Replay | None = None
+        known = dict[tuple[Any, ...], Any]()
 
         def values(phi: Any) -> Any:
             nonlocal replay
+            asked = np.shape(phi), np.asarray(phi).tobytes()
+            if asked in known:
+                return known[asked]
             if replay is None:
                 plans = self._plans(phi)
                 found = Replay([pick(plans)], [plans.row])
@@ -67,7 +73,10 @@ class Watched:
             else:
                 found = replay
             (value,) = self._done(found, phi)
-            return np.broadcast_to(value, np.shape(phi))
+            if len(known) == REMEMBERED:
+                known.clear()
+            known[asked] = np.broadcast_to(value, np.shape(phi))
+            return known[asked]
 
         return values
 
