@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from tmm_sheets.construction.equation import digits_for
 from tmm_sheets.construction.scale import fitting
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink import segment_inside
@@ -260,7 +261,7 @@ def table_size(cam: Cam) -> tuple[float, float]:
 
 def in_full(length: float) -> str:
     """A length of the synthesis, m, in mm to the micrometre: as a given one is written where it is one."""
-    return number(round(length * 1e3, 3), 9)
+    return number(length * 1e3, digits_for(length * 1e3, 3))
 
 
 def _given(cam: Any, letter_of: str = ANGLE) -> list[list[str]]:
