@@ -1,4 +1,4 @@
-"""The tables of docs/ that follow from the program: keys of the project file, units, options, arrangements, examples.
+"""The tables of docs/ that follow from the program: keys of the project file, units, options, arrangements, codes, the record.
 
 A line ``<!-- made: NAME ARGUMENT -->`` begins such a part, ``<!-- end -->`` ends it; ``make docs`` writes what is between anew.
 What a key means stands in a string under it in ``schema.py``, where only this module looks for it: the program starts no slower.
@@ -6,7 +6,9 @@ What a key means stands in a string under it in ``schema.py``, where only this m
 
 import inspect
 import re
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from functools import reduce
 from math import degrees
 from pathlib import Path
 from types import ModuleType
@@ -14,7 +16,6 @@ from typing import Any
 
 import click
 
-from tests.compare.languages import to_reader
 from tests.record import replayer
 from tmm_sheets import catalogue, cli, resources
 from tmm_sheets.backends import dxf
@@ -22,10 +23,10 @@ from tmm_sheets.compare import codes
 from tmm_sheets.compare.diagnosis import hypotheses
 from tmm_sheets.drawing import marks, styles
 from tmm_sheets.drawing.marks import Arc, Drawing, Line
-from tmm_sheets.mechanism.groups import KINDS
 from tmm_sheets.methods.linkage import numbering
 from tmm_sheets.methods.linkage import positions as positions_module
 from tmm_sheets.project import Project
+from tmm_sheets.record import recording
 from tmm_sheets.sheets import frame
 from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.frame import PlanFrame
@@ -34,7 +35,6 @@ from tmm_sheets.task import messages, units, variant
 from tmm_sheets.task.cam_table import FOLLOWER_KEYS
 from tmm_sheets.task.keys import Key, keys_of, spaced
 from tmm_sheets.task.names import GROUP_KEYS
-from tmm_sheets.words import LANGUAGES, tell, tell_n
 
 ROOT = Path(__file__).parents[1]
 PAPERS = (ROOT / "README.md", ROOT / "README.ru.md", *sorted((ROOT / "docs").glob("**/*.md")))
@@ -62,11 +62,16 @@ def keys(section: str) -> str:
     return table(HEAD, *map(set_as_code, keys_of(model)))
 
 
-HEAD = ("key", "value", "left out", "meaning")
+HEAD = ("key and value", "meaning")
+SHORTER = {", 200 characters at most": "", "name in quotes": "name", "names in quotes": "names", "greater than zero": "> 0"}
+"""What is said once for all keys, or in fewer signs."""
 
 
 def set_as_code(key: Key) -> tuple[str, ...]:
-    return f"`{key.name}`", key.takes, key.left_out, key.means
+    """Row of a key: bold if it is needed, with its default behind the value."""
+    value = reduce(lambda text, words: text.replace(*words), SHORTER.items(), key.takes)
+    name = f"**`{key.name}`**" if key.left_out == "needed" else f"`{key.name}`"
+    return f"{name}: {value}" + (f"; default {key.left_out}" if key.left_out not in ("needed", "–") else ""), key.means
 
 
 def whole() -> str:
@@ -79,7 +84,7 @@ TOP = ("schema", "points", "given", "scales")
 
 
 def groups() -> str:
-    rows = ((f"{kind}", f"{PAIRS[kind - 1]} ({KINDS[kind].form})", code("links", *must), code(*may) or "–")
+    rows = ((f"{kind}", PAIRS[kind - 1], code("links", *must), code(*may) or "–")
             for kind, (must, may) in GROUP_KEYS.items())
     return table(("kind", "pairs", "needs", "may have"), *rows)
 
@@ -95,10 +100,6 @@ def quantities() -> str:
     return table(("quantity", "units", "for example"), *rows)
 
 
-def example(path: str) -> str:
-    return f"```toml\n{(ROOT / path).read_text(encoding='utf-8')}```\n"
-
-
 # --- commands and sheets --------------------------------------------------------------------------------------------
 
 
@@ -106,18 +107,39 @@ EVERYWHERE = "--lang"
 """The option of every command: it is told once."""
 
 
-def options(command: str) -> str:
+def helps(command: str) -> list[tuple[str, str]]:
     """Every option of a command but that of all, as ``--help`` has it."""
     found = cli.commands.every()[command]
-    rows = [helped for p in found.params if isinstance(p, click.Option) and EVERYWHERE not in p.opts
+    return [helped for p in found.params if isinstance(p, click.Option) and EVERYWHERE not in p.opts
             if (helped := p.get_help_record(click.Context(found))) is not None]  # fmt: skip
+
+
+def common() -> dict[str, str]:
+    """Options that more than two commands have, with what they do in these."""
+    counted = Counter(helped for command in cli.NAMES for helped in helps(command))
+    return {names: says for (names, says), n in counted.items() if n > 2}
+
+
+def option_table(rows: Iterable[tuple[str, str]]) -> str:
     return table(("option", "does"), *((f"`{names}`", says.replace("|", "\\|")) for names, says in rows))
+
+
+def common_options() -> str:
+    return option_table(common().items())
+
+
+def options(command: str) -> str:
+    """Options of a command: its own with what they do, then the names of the common ones."""
+    shared = common()
+    own = [(names, says) for names, says in helps(command) if shared.get(names) != says]
+    others = [names.split()[0] for names, says in helps(command) if shared.get(names) == says]
+    also = f"[Common options](#common-options): {code(*others)}.\n" if others else ""
+    return "\n".join(filter(None, (option_table(own) if own else "", also)))
 
 
 def arrangements() -> str:
     names = sorted(p.stem for p in resources.template("sheets").glob("*.toml"))
-    rows = ((f"`{a.name}`", a.code, a.title, code(*dict.fromkeys(v.draw for v in a.views))) for a in map(arrangement, names))
-    return table(("arrangement", "code", "title", "views"), *rows)
+    return table(("arrangement", "code", "title"), *((f"`{a.name}`", a.code, a.title) for a in map(arrangement, names)))
 
 
 # --- primitives of the record ----------------------------------------------------------------------------------------
@@ -125,8 +147,16 @@ def arrangements() -> str:
 
 def primitives() -> str:
     """Every primitive with its arguments and what its docstring says."""
-    rows = ((f"`{name}`", ", ".join(arguments(f)), what_it_is(f)) for name, f in sorted(replayer.primitives().items()))
-    return table(("primitive", "takes", "is"), *rows)
+    lines = (f"- `{name}` ({', '.join(arguments(f))}): {what_it_is(f)}" for name, f in sorted(replayer.primitives().items()))
+    return "\n".join(line.removesuffix(": ") for line in lines) + "\n"
+
+
+def record_keys(function: str) -> str:
+    """Keys of a part of the record, from the docstring of the function that writes it."""
+    lines = (inspect.getdoc(getattr(recording, function)) or "").partition("Keys\n----\n")[2].split("\n\n")[0]
+    entries = re.findall(r"^(\S.*?) : (.*(?:\n +.*)*)", lines, re.MULTILINE)
+    rows = ((code(*names.split(", ")), " ".join(says.replace("``", "`").split())) for names, says in entries)
+    return table(("key", "holds"), *rows)
 
 
 def what_it_is(function: Any) -> str:
@@ -145,21 +175,13 @@ def arguments(function: Any) -> Iterator[str]:
 
 
 def finding_codes() -> str:
-    """Every code of a comparison: what it means, and what is told in each language."""
-    told = codes.sentences()
-    return table(("code", "means", *LANGUAGES), *((f"`{code}`", means, *spoken(told[code])) for code, means in codes.CODES.items()))
+    """Every code of a comparison and what it means."""
+    return table(("code", "means"), *((f"`{code}`", means) for code, means in codes.CODES.items()))
 
 
 def usual_mistakes() -> str:
     """Every mistake that is recognised in a construction, by the key of its words."""
-    return table(("mistake", *LANGUAGES), *((f"`{key}`", *spoken([text])) for key, text in hypotheses.WORDS.items()))
-
-
-def spoken(texts: Sequence[str | tuple[str, str]]) -> Iterator[str]:
-    """Texts in each language."""
-    for language in LANGUAGES:
-        with to_reader(language):
-            yield "; ".join(tell(text) if isinstance(text, str) else tell_n(*text, 5) for text in texts)
+    return table(("mistake", "means"), *((f"`{key}`", text) for key, text in hypotheses.WORDS.items()))
 
 
 # --- one crank angle through the code -------------------------------------------------------------------------------
@@ -210,8 +232,8 @@ def path(module: ModuleType) -> str:
     return Path(module.__file__).relative_to(ROOT).as_posix()
 
 
-MAKERS = {f.__name__: f for f in (keys, whole, groups, followers, quantities, example, options, arrangements, primitives, walk,
-                                 finding_codes, usual_mistakes)}
+MAKERS = {f.__name__: f for f in (keys, whole, groups, followers, quantities, options, common_options, arrangements, primitives,
+                                 record_keys, walk, finding_codes, usual_mistakes)}
 
 
 def current(text: str) -> str:

@@ -1,10 +1,12 @@
 """The record: every number of `solve` has its step, and the steps follow from the givens by the rules alone."""
 
 import json
+import re
 
 import numpy as np
 import pytest
 
+from tests import docs
 from tests.few import few, seldom
 from tests.record.printed import strangers
 from tests.record.replayer import Replay, number
@@ -27,6 +29,17 @@ def case(request):
     found, problem = recording.record(project)
     assert problem is None
     return project, json.loads(recording.as_json(found)), results.assemble(Project(catalogue.read(request.param)), None)
+
+
+def test_every_key_is_in_the_tables(case):
+    """docs/record.md has them from the docstrings."""
+    _, record, _ = case
+    steps, marks = list(record["steps"].values()), [mark for sheet in record["sheets"] for mark in sheet["marks"]]
+    givens = [a for step in steps for a in step["args"] if "given" in a]
+    written = {"record": [record], "_step": steps, "given": givens, "recorded_sheet": record["sheets"], "_mark": marks}
+    for function, parts in written.items():
+        told = set(re.findall(r"`([^`]+)`", " ".join(re.findall(r"^\|(.*?)\|", docs.record_keys(function), re.MULTILINE))))
+        assert set().union(*parts) - {"schema"} <= told, function
 
 
 def told(entry, record):

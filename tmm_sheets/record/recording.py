@@ -68,7 +68,15 @@ def shape(value: Any, positions: int) -> dict[str, Any]:
 
 
 def given(x: Any, positions: int) -> dict[str, Any]:
-    """A given number, point or row; a number of the program itself is a constant."""
+    """A given number, point or row, as an argument of a step.
+
+    Keys
+    ----
+    given, over, type : its value, and what kind of value that is, as of a step
+    name : path in the project file, lists counted from 0 (``group[1].lengths[0]``); ``constant`` for a number of the construction
+    symbol, unit, source : its letter, its unit, the comment behind it in the file
+    criterion : by what a search chose it; whole numbers and words then have the type ``choice``
+    """
     if isinstance(x, Given):
         found = {"given": written(x.value), **shape(x.value, positions), **_origin(x)}
         if x.over != "positions":  # what the row itself says of nodes and tables goes before its length
@@ -153,7 +161,21 @@ SCHEMA = 1
 
 
 def record(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, Any], CannotBuild | None]:
-    """The record of a project with some of its sheets, all unless told, and what could not be built of it.
+    """Record of a project with the sheets ``numbers`` (default: all), and the reason why parts of it could not be built.
+
+    Keys
+    ----
+    project, variant, lang : the task, and the language of the sentences
+    plans : what is drawn and what results come from, in order of construction: ``id``, ``title``, ``unit``, ``pole`` (a step),
+        ``positions`` (labels; empty for a single construction), ``steps``; of plans over the cycle also ``phi`` (crank angles) and
+        ``closes`` (label of the position that ends the cycle)
+    rules : moves and formulas: what each ``takes`` and ``gives``, its ``primitive`` or ``expression``, the ``source`` of a formula
+    steps : every step by its id ``plan/name``; arguments stand before what is made of them
+    results : the ``step`` behind every number of ``solve --json`` but ``structure``, ``condition`` and ``scales``; ``part`` if it
+        is a part of the step's value, ``at`` if it exists at some positions only
+    searches : plans that only looked for something, by purpose: how many, and how many steps were evaluated or replayed
+    sheets : ``frames`` and ``marks`` of each sheet
+    not_computed : parts and sheets that cannot be built, with the reason; absent if there are none
 
     Raises
     ------
@@ -233,6 +255,20 @@ def _steps(book: StepIndex, scales: dict[str, Scale]) -> dict[str, Any]:
 
 
 def _step(book: StepIndex, telling: _Telling, key: str, step: Step) -> dict[str, Any]:
+    """One step of a plan.
+
+    Keys
+    ----
+    plan, name, symbol : where it belongs; its letter on the sheet, in lettering markup, if that is not the name
+    rule : key of its rule
+    kind, unit : what it is: point, direction, vector, force, length, ordinate, angle, inclination, number, curve
+    over, type : one value (``none``), one for each of the plan's ``positions``, or a ``curve`` (any other row); ``real``,
+        ``complex``, ``integer`` or ``choice``
+    args : everything it is made of: ``{"step": id}`` or a given
+    value : a number or a list; of a drawn curve its points, slopes and law
+    sentence, formula, helpers : by position label: the sentence, the formula in LaTeX with letters and with numbers, the helper
+        lines in the unit of the plan; of plans with more than 72 positions, and of nodes of a quadrature, the first only
+    """
     plan, value = telling.plan, step.value
     n = len(plan.labels)
     found: dict[str, Any] = {
@@ -327,7 +363,16 @@ BY_STYLE = {"construction": "construction", "hatch": "hatch", "axis": "axis", "c
 
 
 def recorded_sheet(number: int, composed: Composed, known: Container[str]) -> dict[str, Any]:
-    """A drawn sheet; ``known`` are the ids of the recorded steps."""
+    """One drawn sheet; ``known`` are the ids of the recorded steps.
+
+    Keys
+    ----
+    sheet, title, size : its number and title; width and height of the paper, mm
+    frames : where plans lie: ``id``, ``view``, ``plan``, ``position``, and ``origin``, ``mu``, ``turn``, ``mirror``. A point z of
+        the plan lies at origin + turned(mirrored(z/mu)) mm: ``mu`` along both axes, unit of the plan per mm; ``mirror`` flips the y
+        axis before the turn
+    marks : everything drawn
+    """
     parts = composed.parts
     starts, names = [part.first for part in parts], [_name(part) for part in parts]
     frames = [{"id": i, "view": names[f.view] if 0 <= f.view < len(names) else "", "plan": f.plan, "position": f.position,
@@ -358,6 +403,20 @@ def called(view: str) -> str:
 
 
 def _mark(number: int, mark: Mark, view: str, block: bool, known: Container[str]) -> dict[str, Any]:
+    """One mark of a sheet.
+
+    Keys
+    ----
+    id, view, frame : its number, the view and the frame it stands in
+    role : vector, construction, point, curve, axis, link, symbol, dimension, hatch, text, table or frame
+    style : its line type
+    geometry : ``line`` (two points), ``polyline`` (perhaps ``closed``), ``arc`` (centre, radius, from and to in rad
+        counter-clockwise), ``circle``, ``text`` (at, height, angle, string, ``wide`` if its letters are stretched) or ``fill`` (a
+        polygon), mm from the lower left corner of the paper
+    step, position : the step it shows, and at which position
+    name : its name, if it has one of its own
+    lettering : ``id`` of the first of the marks that are read as one text (letter, index, bar)
+    """
     found: dict[str, Any] = {"id": number, "view": view}
     by = mark.by
     if by is not None and by.frame >= 0:
