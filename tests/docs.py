@@ -47,6 +47,11 @@ def table(*rows: tuple[str, ...]) -> str:
     return "\n".join((head, "|" + "---|" * len(rows[0]), *body)) + "\n"
 
 
+def listed(rows: Iterable[tuple[str, str]]) -> str:
+    """Names with what they mean, an item each: read as it stands as well as on the site."""
+    return "".join(f"- {name}: {means}\n" if means else f"- {name}\n" for name, means in rows)
+
+
 def code(*words: Any) -> str:
     return ", ".join(f"`{word}`" for word in words)
 
@@ -59,24 +64,31 @@ def keys(section: str) -> str:
     model: Any = variant.Variant
     for key in section.split("."):
         model = messages.table_of(model.model_fields[key].annotation)
-    return table(HEAD, *map(set_as_code, keys_of(model)))
+    found = list(keys_of(model))
+    first = {key.takes: key.name for key in reversed(found) if len(key.takes.split()) > LONG}
+    return listed(set_as_code(key if first.get(key.takes, key.name) == key.name else key._replace(takes=f"as `{first[key.takes]}`"))
+                  for key in found)
 
 
-HEAD = ("key and value", "meaning")
-SHORTER = {", 200 characters at most": "", "name in quotes": "name", "names in quotes": "names", "greater than zero": "> 0"}
+LONG = 4
+"""Words of a value that is not written a second time in a table."""
+
+
+SHORTER = {", 200 characters at most": "", "name in quotes": "name", "names in quotes": "names", "greater than zero": "> 0",
+           ", both excluded": ""}
 """What is said once for all keys, or in fewer signs."""
 
 
-def set_as_code(key: Key) -> tuple[str, ...]:
-    """Row of a key: bold if it is needed, with its default behind the value."""
+def set_as_code(key: Key) -> tuple[str, str]:
+    """A key with its value, bold if it is needed, with its default otherwise; and what it means."""
     value = reduce(lambda text, words: text.replace(*words), SHORTER.items(), key.takes)
     name = f"**`{key.name}`**" if key.left_out == "needed" else f"`{key.name}`"
-    return f"{name}: {value}" + (f"; default {key.left_out}" if key.left_out not in ("needed", "–") else ""), key.means
+    return f"{name} ({value}" + (f"; default {key.left_out})" if key.left_out not in ("needed", "–") else ")"), key.means
 
 
 def whole() -> str:
     """Keys and tables of a project file that stand in no table of their own."""
-    return table(HEAD, *(set_as_code(key) for key in keys_of(variant.Variant) if key.name in TOP))
+    return listed(set_as_code(key) for key in keys_of(variant.Variant) if key.name in TOP)
 
 
 TOP = ("schema", "points", "given", "scales")
@@ -95,9 +107,7 @@ def followers() -> str:
 
 
 def quantities() -> str:
-    rows = ((q.name, code(*map(spaced, filter(None, q.units))), f"`{q.example}`" if q is units.NUMBER else f'`"{q.example}"`')
-            for q in units.QUANTITIES)
-    return table(("quantity", "units", "for example"), *rows)
+    return listed((q.name, code(*map(spaced, filter(None, q.units)))) for q in units.QUANTITIES)
 
 
 # --- commands and sheets --------------------------------------------------------------------------------------------
@@ -120,12 +130,12 @@ def common() -> dict[str, str]:
     return {names: says for (names, says), n in counted.items() if n > 2}
 
 
-def option_table(rows: Iterable[tuple[str, str]]) -> str:
-    return table(("option", "does"), *((f"`{names}`", says.replace("|", "\\|")) for names, says in rows))
+def option_list(rows: Iterable[tuple[str, str]]) -> str:
+    return listed((f"`{names}`", " ".join(says.split())) for names, says in rows)
 
 
 def common_options() -> str:
-    return option_table(common().items())
+    return option_list(common().items())
 
 
 def options(command: str) -> str:
@@ -133,13 +143,12 @@ def options(command: str) -> str:
     shared = common()
     own = [(names, says) for names, says in helps(command) if shared.get(names) != says]
     others = [names.split()[0] for names, says in helps(command) if shared.get(names) == says]
-    also = f"[Common options](#common-options): {code(*others)}.\n" if others else ""
-    return "\n".join(filter(None, (option_table(own) if own else "", also)))
+    return option_list(own) + (f"- [Common options](#common-options): {code(*others)}\n" if others else "")
 
 
 def arrangements() -> str:
     names = sorted(p.stem for p in resources.template("sheets").glob("*.toml"))
-    return table(("arrangement", "code", "title"), *((f"`{a.name}`", a.code, a.title) for a in map(arrangement, names)))
+    return listed((f"`{a.name}` ({a.code})", a.title) for a in map(arrangement, names))
 
 
 # --- primitives of the record ----------------------------------------------------------------------------------------
@@ -147,16 +156,14 @@ def arrangements() -> str:
 
 def primitives() -> str:
     """Every primitive with its arguments and what its docstring says."""
-    lines = (f"- `{name}` ({', '.join(arguments(f))}): {what_it_is(f)}" for name, f in sorted(replayer.primitives().items()))
-    return "\n".join(line.removesuffix(": ") for line in lines) + "\n"
+    return listed((f"`{name}` ({', '.join(arguments(f))})", what_it_is(f)) for name, f in sorted(replayer.primitives().items()))
 
 
 def record_keys(function: str) -> str:
     """Keys of a part of the record, from the docstring of the function that writes it."""
     lines = (inspect.getdoc(getattr(recording, function)) or "").partition("Keys\n----\n")[2].split("\n\n")[0]
     entries = re.findall(r"^(\S.*?) : (.*(?:\n +.*)*)", lines, re.MULTILINE)
-    rows = ((code(*names.split(", ")), " ".join(says.replace("``", "`").split())) for names, says in entries)
-    return table(("key", "holds"), *rows)
+    return listed((code(*names.split(", ")), " ".join(says.replace("``", "`").split())) for names, says in entries)
 
 
 def what_it_is(function: Any) -> str:
@@ -176,12 +183,12 @@ def arguments(function: Any) -> Iterator[str]:
 
 def finding_codes() -> str:
     """Every code of a comparison and what it means."""
-    return table(("code", "means"), *((f"`{code}`", means) for code, means in codes.CODES.items()))
+    return listed((f"`{code}`", means) for code, means in codes.CODES.items())
 
 
 def usual_mistakes() -> str:
     """Every mistake that is recognised in a construction, by the key of its words."""
-    return table(("mistake", "means"), *((f"`{key}`", text) for key, text in hypotheses.WORDS.items()))
+    return listed((f"`{key}`", text) for key, text in hypotheses.WORDS.items())
 
 
 # --- one crank angle through the code -------------------------------------------------------------------------------

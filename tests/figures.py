@@ -58,9 +58,14 @@ def peers(said: str) -> str:
     return columns("\n".join((head, line, *(row for row in rows if "| accelerations |" in row))), 0, 2, 3, 4, 5)
 
 
+SHOWN = 12
+"""Invariants of the page, those nearest to their bounds."""
+
+
 def invariants(said: str) -> str:
-    """Invariant, worst, bound."""
+    """Invariant, worst, bound of the worst in all."""
     rows = re.findall(r"^(.+?) {2,}\d+ +(\S+) +(\S+) ", said, re.MULTILINE)
+    rows = sorted(rows, key=lambda row: float(row[2]) / max(float(row[1]), 1e-300))[:SHOWN]
     return "\n".join(("| invariant | worst | bound |", "|---|---|---|", *(f"| {' | '.join(row)} |" for row in rows)))
 
 

@@ -395,7 +395,7 @@ def test_figures_without_a_source_are_found():
 def test_every_table_of_the_project_file_is_told():
     told = set(re.findall(r"<!-- made: keys (\S+) -->", TEXTS["docs/project-file.md"]))
     assert told == {s for s in SECTIONS if s not in docs.TOP} | {"flywheel.motor", "group.leg", "train.mesh"}
-    assert {"schema", "points", "scales"} <= set(re.findall(r"^\| \**`(\w+)`\**:", docs.whole(), re.MULTILINE))
+    assert {"schema", "points", "scales"} <= set(re.findall(r"^- \**`(\w+)`", docs.whole(), re.MULTILINE))
 
 
 def tables():

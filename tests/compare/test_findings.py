@@ -20,7 +20,7 @@ DOCS = Path(__file__).parents[2] / "docs" / "findings.md"
 
 def test_every_code_is_documented_with_what_it_stands_for():
     some, usual = DOCS.read_text(encoding="utf-8").split("## Codes")[1].split("## Mistakes")
-    rows, mistakes = (dict(re.findall(r"^\| `([\w -]+)` \| (.*) \|$", part, re.MULTILINE)) for part in (some, usual))
+    rows, mistakes = (dict(re.findall(r"^- `([\w -]+)`: (.*)$", part, re.MULTILINE)) for part in (some, usual))
     assert (rows.keys(), mistakes.keys()) == (CODES.keys(), WORDS.keys())
     told = codes.sentences()
     assert [code for code in CODES if not told[code]] == ["built-otherwise"]
