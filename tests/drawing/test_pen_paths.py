@@ -9,7 +9,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tmm_sheets.drawing.pen_paths import _travel, joined, of_area, of_line, ordered, without_doubles
+from tmm_sheets.drawing.pen_paths import _travel, drop_retraced, fill_passes, join_segments, line_passes, ordered
 
 place = st.tuples(st.integers(0, 6), st.integers(0, 6))
 path = st.lists(place, min_size=1, max_size=6).map(lambda p: (p[0], *(b for a, b in pairwise(p) if a != b)))
@@ -35,7 +35,7 @@ def smallest(some):
 
 @given(paths)
 def test_without_doubles_draws_all_of_it_once(some):
-    got = list(smallest(without_doubles(some)))
+    got = list(smallest(drop_retraced(some)))
     assert len(got) == len(set(got))
     assert set(got) == set(smallest(some))
 
@@ -43,8 +43,8 @@ def test_without_doubles_draws_all_of_it_once(some):
 @given(paths)
 def test_joined_paths_begin_and_end_only_where_they_must(some):
     """An open path begins and ends where an odd number of lines meet, one at each such place (Euler); the rest is closed."""
-    single = list(without_doubles(some))
-    got = joined(single)
+    single = list(drop_retraced(some))
+    got = join_segments(single)
     assert sorted(smallest(got)) == sorted(smallest(single))
     degree = Counter(p for piece in single if len(piece) == 2 for p in piece)
     ends = Counter(p for path in got if path[0] != path[-1] for p in (path[0], path[-1]))
@@ -53,19 +53,19 @@ def test_joined_paths_begin_and_end_only_where_they_must(some):
 
 def test_a_curve_goes_straight_on_where_it_crosses_another():
     cross = [((0, 0), (5, 5)), ((5, 5), (10, 10)), ((0, 10), (5, 5)), ((5, 5), (10, 0))]
-    assert sorted(map(sorted, joined(cross))) == [[(0, 0), (5, 5), (10, 10)], [(0, 10), (5, 5), (10, 0)]]
+    assert sorted(map(sorted, join_segments(cross))) == [[(0, 0), (5, 5), (10, 10)], [(0, 10), (5, 5), (10, 0)]]
 
 
 def test_a_closed_curve_is_one_path():
     ring = [((0, 0), (9, 0)), ((9, 9), (9, 0)), ((0, 9), (9, 9)), ((0, 0), (0, 9))]
-    (path,) = joined(ring)
+    (path,) = join_segments(ring)
     assert path[0] == path[-1]
     assert len(path) == 5
 
 
 def test_overlapping_and_touching_lines_become_one():
     lines = [((0, 0), (10, 0)), ((20, 0), (5, 0)), ((20, 0), (30, 0)), ((40, 0), (31, 0)), ((0, 1), (10, 1)), ((3, 1), (7, 1))]
-    assert sorted(without_doubles(lines)) == [((0, 0), (30, 0)), ((0, 1), (10, 1)), ((31, 0), (40, 0))]
+    assert sorted(drop_retraced(lines)) == [((0, 0), (30, 0)), ((0, 1), (10, 1)), ((31, 0), (40, 0))]
 
 
 def test_order_keeps_every_path_and_saves_most_of_the_travel():
@@ -91,7 +91,7 @@ def test_order_of_a_few_is_near_the_best():
 def test_passes_cover_a_thick_bent_line(corners, pen):
     points = np.array(corners) @ [1, 1j]
     band = inked([points], 1.0)
-    ink = inked(of_line(points, 1.0, pen), pen)
+    ink = inked(line_passes(points, 1.0, pen), pen)
     assert ink.difference(band.buffer(0.01)).area == 0
     assert band.buffer(-0.01).difference(ink.buffer(0.05)).area == 0
 
@@ -101,9 +101,9 @@ def test_areas_that_are_alike_are_filled_once():
 
     pen_paths._filled.cache_clear()
     head = np.array([0, -4 + 0.7j, -4 - 0.7j])
-    first = list(of_area(head, 0.2))
+    first = list(fill_passes(head, 0.2))
     for place, turn in ((30 + 20j, 1j), (7 - 3j, np.exp(0.3j)), (0, -1)):
-        found = list(of_area(place + turn * head, 0.2))
+        found = list(fill_passes(place + turn * head, 0.2))
         assert len(found) == len(first) > 2
         for way, own in zip(found, first, strict=True):
             np.testing.assert_allclose(way, place + turn * own, atol=1e-5)
@@ -113,12 +113,12 @@ def test_areas_that_are_alike_are_filled_once():
 def test_passes_fill_an_area_but_for_its_acute_tips():
     arrow = np.array([0, -6 + 1j, -6 - 1j])
     area = shapely.Polygon(np.column_stack((arrow.real, arrow.imag)))
-    ink = inked(of_area(arrow, 0.2), 0.2)
+    ink = inked(fill_passes(arrow, 0.2), 0.2)
     assert area.difference(ink.buffer(0.05)).area == 0
     assert ink.difference(area.buffer(0.1)).area < 1e-12
     assert ink.difference(area.buffer(0.05)).bounds[0] > -1.2  # only at the tip is the pen too thick
 
 
 def test_an_area_narrower_than_the_pen_is_one_stroke():
-    (stroke,) = of_area(np.array([0, 5, 5 + 0.1j, 0.1j]), 0.3)
+    (stroke,) = fill_passes(np.array([0, 5, 5 + 0.1j, 0.1j]), 0.3)
     assert abs(stroke[1] - stroke[0]) == abs(5 + 0.1j) - 0.3

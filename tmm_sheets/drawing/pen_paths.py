@@ -1,6 +1,6 @@
-"""Pen paths of a drawing on a plotter: cut to its reach, doubles removed, strokes joined, put in a short order.
+"""Pen paths of a drawing on a plotter: clipped to its reach, each line once, strokes joined, in an order with little travel.
 
-From here on places are whole plotter steps (0.025 mm), so that 'the same point' and 'the same line' are exact.
+Paths are in whole plotter steps (0.025 mm), so that points and lines can be compared exactly.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ from tmm_sheets.drawing.ink import ink, polyline_inside
 from tmm_sheets.drawing.marks import Box, Drawing, Points
 from tmm_sheets.drawing.plotters import NEAR, Pen, Plotter
 
-SPACING = 0.85  # of the pen: neighbouring passes overlap a little
-GRID = 1e-5  # mm to which areas are rounded, so that putting them together never fails
-ROUND = 6  # chords in a quarter of the round end of a pass
-CORNER = 0.045  # mm a corner may stay white before the pen goes into it on purpose
-BLEED = 0.02  # mm the outermost pass of an area goes over its edge, so that corners come out sharper
-SPOT = 0.01  # mm: white spots narrower than twice this are left
-ALIKE = 6  # decimals of a millimetre to which polygons are alike
-SAGITTA = 0.004  # mm a pass may cut corners: a sixth of a plotter step
+PASS_SPACING_SHARE = 0.85  # of the pen width: neighbouring passes overlap a little
+GRID_MM = 1e-5  # areas are rounded to it: a union of unrounded ones may fail
+CHORDS_IN_QUARTER = 6  # of the round end of a pass
+MAX_WHITE_CORNER_MM = 0.045  # a larger white corner gets a pass of its own
+BLEED_MM = 0.02  # the outermost pass of an area goes over its edge by this: sharper corners
+WHITE_SPOT_RADIUS_MM = 0.01  # spots narrower than twice this stay white
+SHAPE_DECIMALS = 6  # of a millimetre, to which polygons count as equal
+SAGITTA_MM = 0.004  # by which a pass may cut corners: a sixth of a plotter step
 
 
-def of_line(points: Points, width: float, pen: float) -> Iterator[Points]:
-    """Passes of a pen along a line ``width`` mm wide; the line itself when the pen is wide enough.
+def line_passes(points: Points, width: float, pen: float) -> Iterator[Points]:
+    """Passes of a pen along a polyline, complex (n,) mm, that is ``width`` mm wide; the polyline itself if the pen is as wide.
 
-    The pass at a distance from the line goes round it and closes, without lifting the pen.
+    A pass at a distance from the polyline goes round it and closes, without lifting the pen.
     """
     spare = width - pen
     if spare <= NEAR + 1e-9:
         yield points
         return
-    n = ceil(spare / (SPACING * pen)) + 1
+    n = ceil(spare / (PASS_SPACING_SHARE * pen)) + 1
     passes = [ring for i in range(n // 2) for ring in _rings(_band(points, spare * (0.5 - i / (n - 1))))]
     if n % 2:
         passes.append(points)
@@ -48,15 +48,15 @@ def of_line(points: Points, width: float, pen: float) -> Iterator[Points]:
         yield from _missed(_band(points, width / 2), passes, pen)
 
 
-def of_area(points: Points, pen: float) -> Iterator[Points]:
-    """Passes of a pen that fill a polygon: along its edge, then inwards; into acute corners as far as the round pen can.
+def fill_passes(points: Points, pen: float) -> Iterator[Points]:
+    """Passes of a pen that fill a polygon, complex (n,) mm: along its edge, then inwards, into acute corners as far as a pen goes.
 
-    Heads of arrows and dots are alike all over a sheet: polygons that differ by place and direction only are filled alike.
+    Polygons that differ by a translation and a rotation only share cached passes: arrow heads and dots repeat all over a sheet.
     """
     shape = points - points[0]
     far = complex(shape[np.argmax(np.abs(shape))])
     turn = far / abs(far) if far else 1.0 + 0j
-    ways = _filled(tuple(np.round(shape / turn, ALIKE).tolist()), pen)
+    ways = _filled(tuple(np.round(shape / turn, SHAPE_DECIMALS).tolist()), pen)
     yield from (points[0] + turn * way for way in ways)
     if not ways:  # thinner than the pen
         yield _diagonal(points, pen)
@@ -71,27 +71,27 @@ def _passes(points: Points, pen: float) -> Iterator[Points]:
     import shapely
 
     area = shapely.make_valid(shapely.Polygon(_xy(points)))
-    depth, passes = pen / 2 - BLEED, list[Points]()
+    depth, passes = pen / 2 - BLEED_MM, list[Points]()
     while not (inner := area.buffer(-depth, join_style="mitre", mitre_limit=20)).is_empty:
         passes += _rings(inner)
-        depth += SPACING * pen
+        depth += PASS_SPACING_SHARE * pen
     if not passes:
         return
     edge = np.concatenate(passes)
     for corner in points.tolist():
         start = complex(edge[np.argmin(np.abs(edge - corner))])
-        if abs(corner - start) > pen / 2 + CORNER:
+        if abs(corner - start) > pen / 2 + MAX_WHITE_CORNER_MM:
             passes.append(np.array([start, corner - pen / 2 * (corner - start) / abs(corner - start)]))
     yield from passes
-    yield from _missed(area.buffer(-CORNER), passes, pen)
+    yield from _missed(area.buffer(-MAX_WHITE_CORNER_MM), passes, pen)
 
 
 def _missed(area: Any, passes: Iterable[Points], pen: float) -> Iterator[Points]:
-    """A stroke for each spot of an area that the passes leave white."""
+    """One stroke for each spot of an area that the passes leave white."""
     import shapely
 
-    covered = shapely.union_all([_band(p, pen / 2) for p in passes], grid_size=GRID)
-    for spot in shapely.get_parts(shapely.difference(area, covered, grid_size=GRID).buffer(-SPOT)):
+    covered = shapely.union_all([_band(p, pen / 2) for p in passes], grid_size=GRID_MM)
+    for spot in shapely.get_parts(shapely.difference(area, covered, grid_size=GRID_MM).buffer(-WHITE_SPOT_RADIUS_MM)):
         if spot.is_empty:
             continue
         x, y = spot.exterior.xy
@@ -99,15 +99,15 @@ def _missed(area: Any, passes: Iterable[Points], pen: float) -> Iterator[Points]
 
 
 def _band(points: Points, radius: float) -> Any:
-    """What a round pen of that radius covers along a line.
+    """Area that a round pen of ``radius`` mm covers along a polyline.
 
-    Piece by piece: the library's own buffer of a long line with many short pieces now and then comes out invalid.
+    Buffered segment by segment: shapely's buffer of a long line with many short segments is sometimes invalid.
     """
     import shapely
 
     xy = _xy(points)
     pieces = shapely.linestrings(np.stack((xy[:-1], xy[1:]), axis=1)) if len(xy) > 1 else shapely.points(xy)
-    return shapely.union_all(shapely.buffer(pieces, radius, quad_segs=ROUND), grid_size=GRID)
+    return shapely.union_all(shapely.buffer(pieces, radius, quad_segs=CHORDS_IN_QUARTER), grid_size=GRID_MM)
 
 
 def _diagonal(points: Points, pen: float) -> Points:
@@ -124,7 +124,7 @@ def _xy(points: Points) -> Any:
 
 
 def _rings(area: Any) -> Iterator[Points]:
-    simple = area.simplify(SAGITTA)
+    simple = area.simplify(SAGITTA_MM)
     for part in getattr(simple, "geoms", [simple]):
         for ring in (part.exterior, *part.interiors):
             x, y = ring.xy
@@ -132,15 +132,15 @@ def _rings(area: Any) -> Iterator[Points]:
 
 
 STEP = 0.025  # mm
-SWEEPS = 5  # times the order is gone through to shorten it
-WORTH = 1.0  # plotter steps that a change of the order has to save
+MAX_SWEEPS = 5  # through the order to shorten it
+MIN_GAIN_STEPS = 1.0  # plotter steps that a change of the order has to save
 Step = tuple[int, int]
 Path = tuple[Step, ...]
 
 
 @dataclass(frozen=True)
 class Layer:
-    """What one pen draws: paths in their order, and areas that the machine fills by itself (printers only)."""
+    """Work of one pen: paths in drawing order, and areas that the machine fills itself (printers only)."""
 
     pen: Pen
     paths: tuple[Path, ...]
@@ -149,10 +149,10 @@ class Layer:
 
 @dataclass(frozen=True)
 class PenPlan:
-    """What goes to a plotter, and what it costs. Lengths in mm.
+    """Paths for a plotter, and their cost. Lengths in mm.
 
-    ``travel_before`` is the way of the lifted pen if every stroke were drawn as it comes in the drawing, pen by pen;
-    ``doubled`` the length of lines that would have been drawn twice, ``lost`` that of lines beyond the reach.
+    ``travel_before``: travel of the raised pen if strokes were drawn in the order of the drawing, pen by pen; ``doubled``: length
+    of lines that would have been drawn twice; ``lost``: length of lines beyond the reach.
     """
 
     plotter: Plotter
@@ -173,7 +173,7 @@ class PenPlan:
 
 
 def plan(drawing: Drawing, plotter: Plotter, window: Box | None = None) -> PenPlan:
-    """Pen paths of a drawing, or of a ``window`` of it in mm of the sheet, whose lower left corner is then the paper's.
+    """Pen paths of a drawing, or of a ``window`` of it (mm of the sheet), whose lower left corner becomes that of the paper.
 
     Raises
     ------
@@ -183,7 +183,7 @@ def plan(drawing: Drawing, plotter: Plotter, window: Box | None = None) -> PenPl
     view = window or Box(0.0, 0.0, drawing.width, drawing.height)
     width, height = view.x1 - view.x0, view.y1 - view.y0
     shift = complex(-view.x0, -view.y0) - (complex(width, height) / 2 if plotter.origin == "centre" else 0)
-    lines, areas, strokes, lost = _pen_ways(drawing, plotter, view, shift)
+    lines, areas, strokes, lost = _pen_lines(drawing, plotter, view, shift)
     order = plotter.pens or tuple(sorted({*lines, *areas}, key=lambda pen: pen.width))
     layers, before, after, drawn, doubled, place = [], 0.0, 0.0, 0.0, 0.0, (0, 0)
     last = (0, 0)
@@ -192,23 +192,23 @@ def plan(drawing: Drawing, plotter: Plotter, window: Box | None = None) -> PenPl
             continue
         before += _travel(lines[pen], last)
         last = lines[pen][-1][-1] if lines[pen] else last
-        single = list(without_doubles(lines[pen]))
-        paths = ordered(joined(single), place)
+        single = list(drop_retraced(lines[pen]))
+        paths = ordered(join_segments(single), place)
         after += _travel(paths, place)
         place = paths[-1][-1] if paths else place
-        ink_once = sum(map(_way, single))
-        doubled += sum(map(_way, lines[pen])) - ink_once
+        ink_once = sum(map(_path_length, single))
+        doubled += sum(map(_path_length, lines[pen])) - ink_once
         drawn += ink_once
         layers.append(Layer(pen, tuple(paths), tuple(areas[pen])))
     return PenPlan(plotter, width, height, tuple(layers), strokes, STEP * drawn, STEP * before, STEP * after, STEP * doubled,
                    lost if window is None else 0.0)  # fmt: skip
 
 
-def _pen_ways(drawing: Drawing, plotter: Plotter, view: Box, shift: complex) -> tuple[
+def _pen_lines(drawing: Drawing, plotter: Plotter, view: Box, shift: complex) -> tuple[
         defaultdict[Pen, list[Path]], defaultdict[Pen, list[Path]], int, float]:
-    """Lines and filled areas of each pen within the view and the plotter's reach, in the drawing's order.
+    """Lines and filled areas by pen within the view and the plotter's reach, in the order of the drawing.
 
-    Also how many strokes of the drawing they come from, and the length of what is beyond the reach, mm.
+    Also the number of strokes they come from, and the length beyond the reach, mm.
     """
     reach = Box(*(round(v, 6) for v in (
         max(plotter.reach.x0, view.x0 + shift.real), max(plotter.reach.y0, view.y0 + shift.imag),
@@ -228,15 +228,15 @@ def _pen_ways(drawing: Drawing, plotter: Plotter, view: Box, shift: complex) -> 
                 areas[Pen(1, 0.2)].append(_steps(points))
             continue
         pen = plotter.finest if stroke.filled else plotter.pen(stroke.width)
-        for way in of_area(points, pen.width) if stroke.filled else of_line(points, stroke.width, pen.width):
+        for way in fill_passes(points, pen.width) if stroke.filled else line_passes(points, stroke.width, pen.width):
             parts = [way] if _inside(reach, way) else polyline_inside(reach, way)
             lost += _length(way) - sum(map(_length, parts))
             lines[pen] += [_steps(part) for part in parts]
     return lines, areas, strokes, lost
 
 
-def without_doubles(paths: Iterable[Path]) -> Iterator[Path]:
-    """The straight pieces of the paths, what lies on one another once; places where a pen only dots stay as they are."""
+def drop_retraced(paths: Iterable[Path]) -> Iterator[Path]:
+    """Straight segments of the paths, overlapping stretches once; then the dots, paths of one point."""
     lines: dict[tuple[int, int, int], list[tuple[int, Step, int, Step]]] = defaultdict(list)
     dots = set()
     for path in paths:
@@ -262,8 +262,8 @@ def without_doubles(paths: Iterable[Path]) -> Iterator[Path]:
     yield from sorted(dots)
 
 
-def joined(pieces: Iterable[Path]) -> list[Path]:
-    """Straight pieces put together to paths, straight on where several meet."""
+def join_segments(pieces: Iterable[Path]) -> list[Path]:
+    """Join straight segments to paths, straight on where several meet."""
     pieces = list(pieces)
     at: dict[Step, list[int]] = defaultdict(list)
     for i, piece in enumerate(pieces):
@@ -292,7 +292,7 @@ def joined(pieces: Iterable[Path]) -> list[Path]:
 
 
 def _next(path: list[Step], at: dict[Step, list[int]], pieces: list[Path]) -> int | None:
-    """The piece not yet drawn at the end of the path that turns least."""
+    """Index of the undrawn segment at the end of the path that turns least; None if there is none."""
     x, y = path[-1]
     candidates = at[x, y]
     if len(candidates) < 2 or len(path) < 2:
@@ -308,9 +308,9 @@ def _next(path: list[Step], at: dict[Step, list[int]], pieces: list[Path]) -> in
 
 
 def ordered(paths: list[Path], start: Step = (0, 0)) -> list[Path]:
-    """Paths in an order with little travel between, turned round where that helps.
+    """Order paths for little travel from ``start``, reversing them where that helps.
 
-    First always the nearest end next, then stretches of the order are turned round as long as it pays (2-opt; Croes 1958).
+    Nearest end first, then stretches of the order are reversed as long as that saves travel (2-opt; Croes 1958).
     """
     if not paths:
         return []
@@ -319,18 +319,18 @@ def ordered(paths: list[Path], start: Step = (0, 0)) -> list[Path]:
     first, last = np.where(turned, ends, starts)[order], np.where(turned, starts, ends)[order]
     turned = turned[order]
     leap = np.append(np.abs(first[1:] - last[:-1]), 0.0)  # from the end of each path to the next one
-    for _ in range(SWEEPS):
+    for _ in range(MAX_SWEEPS):
         better = False
         for i in range(len(order)):
             before = last[i - 1] if i else complex(*start)
             reached = abs(first[i] - before)
-            if 2 * reached <= WORTH:  # no turn gains more than twice the way to what it begins with
+            if 2 * reached <= MIN_GAIN_STEPS:  # no reversal gains more than twice the travel to its beginning
                 continue
-            # Turning i .. j round joins what was before i to the end of j, and the beginning of i to what comes after j.
+            # Reversing i .. j joins the path before i to the end of j, and the beginning of i to the path after j.
             gain = leap[i:] - np.abs(last[i:] - before)
             gain[:-1] -= np.abs(first[i + 1 :] - first[i])
             j = i + int(np.argmax(gain))
-            if reached + gain[j - i] > WORTH:
+            if reached + gain[j - i] > MIN_GAIN_STEPS:
                 part = slice(i, j + 1)
                 first[part], last[part] = last[part][::-1].copy(), first[part][::-1].copy()
                 order[part], turned[part] = order[part][::-1].copy(), ~turned[part][::-1]
@@ -345,7 +345,7 @@ def ordered(paths: list[Path], start: Step = (0, 0)) -> list[Path]:
 
 
 def _nearest_next(starts: Points, ends: Points, place: complex) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
-    """Order of paths, each the one with an end nearest to where the one before stopped, and which of them go backwards."""
+    """Greedy order of paths, indices (n,), each with an end nearest to where the last stopped; (n,) True where reversed."""
     n = len(starts)
     both = np.concatenate((starts, ends))
     index = np.arange(2 * n)
@@ -365,7 +365,7 @@ def _nearest_next(starts: Points, ends: Points, place: complex) -> tuple[npt.NDA
 
 
 def _steps(points: Points) -> Path:
-    """Points in plotter steps, those that fall on the one before left out."""
+    """Points, complex (n,) mm, in plotter steps without repeats."""
     x, y = (np.rint(v / STEP).astype(int).tolist() for v in (points.real, points.imag))
     steps = list(zip(x, y, strict=True))
     return (steps[0], *(b for a, b in pairwise(steps) if a != b))
@@ -386,14 +386,14 @@ def _length(points: Points) -> float:
     return float(np.abs(np.diff(points)).sum())
 
 
-def _way(path: Path) -> float:
+def _path_length(path: Path) -> float:
     return sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(path))
 
 
 def _travel(paths: Iterable[Path], start: Step) -> float:
-    """Way of the lifted pen, plotter steps."""
-    way, place = 0.0, start
+    """Travel of the raised pen, plotter steps."""
+    travel, place = 0.0, start
     for path in paths:
-        way += hypot(path[0][0] - place[0], path[0][1] - place[1])
+        travel += hypot(path[0][0] - place[0], path[0][1] - place[1])
         place = path[-1]
-    return way
+    return travel
