@@ -36,7 +36,7 @@ def test_every_key_is_in_the_tables(case):
     _, record, _ = case
     steps, marks = list(record["steps"].values()), [mark for sheet in record["sheets"] for mark in sheet["marks"]]
     givens = [a for step in steps for a in step["args"] if "given" in a]
-    written = {"record": [record], "_step": steps, "given": givens, "recorded_sheet": record["sheets"], "_mark": marks}
+    written = {"record": [record], "_step": steps, "given_argument": givens, "sheet_record": record["sheets"], "_mark": marks}
     for function, parts in written.items():
         told = set(re.findall(r"`([^`]+)`", " ".join(re.findall(r"^- (.*?):", docs.record_keys(function), re.MULTILINE))))
         assert set().union(*parts) - {"schema"} <= told, function

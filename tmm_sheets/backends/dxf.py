@@ -1,7 +1,7 @@
 """DXF R2010: model space in sheet millimetres, a layer for each role and line type.
 
-Live by default: lettering is TEXT fitted to its length, the title block has attributes, dimensions are dimensions, a line is whole
-and its line type draws the dashes, a view is a group. With ``text="strokes"`` lettering and dashes go out as separate strokes: the
+Live by default: lettering is TEXT fitted to its length, the title block has attributes, dimensions are DIMENSION, a line is whole
+and its line type draws the dashes, a view is a group. With ``text="strokes"`` lettering and dashes are separate strokes: the
 same picture in every program, with or without fonts. With ``text="librecad"`` the text style is that of our own font for LibreCAD.
 
 Header, tables, objects and the layout are as ezdxf writes them (``dxf_frame.py``); the entities are written here and spliced in.
@@ -48,17 +48,17 @@ TEXT_LAYER = "TEXT"
 WHOLE = re.compile(r"\S(?:.*\S)?")
 """Pattern of a text without spaces at its ends."""
 HIDDEN = "60\n1\n"
-"""Tags of what is not shown."""
+"""Tags of an invisible entity."""
 OWN_BLOCK = 32
 """Flag of a dimension whose block is its own."""
 LEVEL = 1e-6
-"""Ends of a dimension no farther from one level, mm, have its lettering level."""
+"""Height difference of the ends of a dimension, mm, up to which its lettering is horizontal."""
 FACTOR = 144
-"""Number of the variable DIMLFAC: what a dimension measures per unit of the drawing."""
+"""Number of the variable DIMLFAC: measured size per unit of the drawing."""
 
 
 class LiveSheet:
-    """Entities, blocks and groups of a drawing with lettering of a text style; handles are taken from ``handles``."""
+    """Builder of the entities, blocks and groups of a drawing with live text; takes handles from ``handles``."""
 
     def __init__(self, drawing: Drawing, frame: DxfFrame, style: str, handles: Iterator[int]) -> None:
         self.marks, self.frame, self.style, self.handles = drawing.marks, frame, style, handles
@@ -87,7 +87,7 @@ class LiveSheet:
             self._group(view.name, [h for a, b in view.spans for k in range(a, b) for h in self.found.get(k, ())])
 
     def _add(self, mark: int, made: list[tuple[int, str]]) -> None:
-        """Put entities with their handles into model space."""
+        """Add entities with their handles to model space."""
         self.found.setdefault(mark, []).extend(handle for handle, _ in made)
         for handle, text in made:
             self.places[handle] = len(self.parts.entities)
@@ -109,7 +109,7 @@ class LiveSheet:
         return made
 
     def _text(self, mark: Text, owner: str, on: str, more: str = "") -> Iterator[tuple[int, str]]:
-        """A run of letters as TEXT; those that the font of the style has not are drawn."""
+        """A run of letters as TEXT; letters missing from the font of the style are drawn."""
         for part in (lacking_in_common() if self.style == COMMON else WHOLE).finditer(mark.text):
             at = mark.at + _direction(mark.angle) * advance(mark.text[: part.start()], mark.height) * mark.wide
             run = mark._replace(at=at, text=part[0])
@@ -134,7 +134,7 @@ class LiveSheet:
         self.parts.blocks.append(f"0\nENDBLK\n5\n{next(self.handles):X}\n{head('AcDbBlockEnd', record, '0')}")
 
     def _dimension(self, d: Dimension) -> None:
-        """A dimension with the picture of it that was drawn: programs show that until somebody changes the dimension."""
+        """A DIMENSION with its drawn picture, which programs show until the dimension is changed."""
         name = f"*D{len(self.parts.records) + 1}"
         record = self._block(name, 1)
         marks = (*self.marks[d.first : d.end], *self.marks[slice(*d.label)])
@@ -148,9 +148,9 @@ class LiveSheet:
             f"1\n{_stacked(d.text)}\n{points}{_factor(d.factor)}"))])
 
     def _form(self, form: Form) -> None:
-        """A block with attributes.
+        """A form as a block with attributes.
 
-        LibreCAD does not know attributes, and shows what other programs take for invisible: it gets the same words as TEXT so.
+        LibreCAD ignores attributes and shows invisible entities: for it the texts are there as invisible TEXT, too.
         """
         name = form.name.upper()
         record = self._block(name, 2)
@@ -205,14 +205,14 @@ class LiveSheet:
 
 @cache
 def lacking_in_common() -> re.Pattern[str]:
-    """Pattern of the runs of a text between spaces at its ends, each letter that the common font has not as one "drawn"."""
+    """Pattern of the runs of a text; each letter missing from the common font is a run "drawn"."""
     text = template(f"fonts/{COMMON}.lff").read_text(encoding="utf-8")
     known = "".join(re.escape(chr(int(code, 16))) for code in re.findall(r"^\[#?([0-9a-fA-F]+)\]", text, re.M)) + BAR
     return re.compile(rf"(?P<drawn>[^\s{known}])|[{known}](?:[\s{known}]*[{known}])?")
 
 
 def clean(name: str) -> str:
-    """A name that tables of a DXF file take."""
+    """A name fit for the tables of a DXF file."""
     return " ".join(re.sub(r'[<>/\\":;?*|,=`]', " ", name).split()) or "_"
 
 
@@ -221,9 +221,9 @@ def _direction(angle: float) -> complex:
 
 
 def _along(d: Dimension) -> bool:
-    """Whether LibreCAD, which draws dimensions anew, leaves the lettering where it is: it turns it along the line, on to the arc.
+    """True if LibreCAD, which redraws dimensions, leaves the lettering in place: it sets it along the line or on the arc.
 
-    In a drawing made for it all others are lines and letters.
+    In a drawing for LibreCAD the other dimensions are lines and letters.
     """
     return d.label[0] == d.label[1] or (d.kind == "linear" and abs((d.b - d.a).imag) < LEVEL)
 
@@ -234,7 +234,7 @@ def _turned(d: Dimension) -> float:
 
 
 def _measuring(d: Dimension) -> tuple[int, complex, float, str]:
-    """Kind of a dimension, its definition point, what it measures (mm, rad), and the tags of its class with its places."""
+    """Kind of a dimension, its definition point, its measured size (mm, rad), and the tags of its class with its points."""
     if d.kind == "angle":
         sides = f"{place(13, d.vertex)}{place(14, d.a)}{place(15, d.vertex)}{place(16, d.line)}"
         return 2, d.b, _turned(d), f"100\nAcDb2LineAngularDimension\n{sides}"
@@ -245,12 +245,12 @@ def _measuring(d: Dimension) -> tuple[int, complex, float, str]:
 
 
 def _factor(value: float) -> str:
-    """Tags of a dimension that measures otherwise than its style."""
+    """Tags of a dimension whose measuring factor differs from that of its style."""
     return "" if value == 1.0 else f"1001\nACAD\n1000\nDSTYLE\n1002\n{{\n1070\n{FACTOR}\n1040\n{value:.9g}\n1002\n}}\n"
 
 
 def _stacked(markup: str) -> str:
-    """Lettering as MTEXT has it, an index as the lower or upper half of a fraction without its line."""
+    """Lettering as MTEXT; an index is the lower or upper half of a fraction without a line."""
     said = ""
     for run in letter(markup, LETTERS).runs:
         text = re.sub(r"([\\{}])", r"\\\1", run.text.replace(BAR, "").replace("\u00a0", " "))
@@ -310,14 +310,14 @@ def _centred(f: FormField, value: str, style: str, wide: float) -> str:
 
 
 def made_of(width: float, height: float) -> dict[str, Any]:
-    """What a frame follows from besides the program: the paper's size, mm, and the line types."""
+    """Inputs of a frame besides the program: the paper's size, mm, and the line types."""
     return {"size": [width, height],
             "line types": [f"{style.linetype} {style.name} {list(style.pattern)}" for style in line_types().values()]}
 
 
 @cache
 def frame(width: float, height: float) -> DxfFrame:
-    """The frame for paper of that size, mm."""
+    """Frame for paper of a size, mm."""
     kept = json.loads(template("dxf_frame.json").read_text(encoding="utf-8"))
     if kept["made of"] == made_of(width, height):
         return DxfFrame(**kept["frame"])
@@ -330,7 +330,7 @@ Lettering = Literal["live", "librecad", "strokes"]
 
 
 def render(drawing: Drawing, text: Lettering = "live") -> bytes:
-    """The bytes of the DXF file.
+    """DXF file of a drawing, bytes.
 
     Raises
     ------
@@ -349,13 +349,13 @@ def render(drawing: Drawing, text: Lettering = "live") -> bytes:
 
 
 def companions(text: Lettering = "live") -> dict[str, bytes]:
-    """Files that lie beside live drawings, by name: the font, for LibreCAD in its own form too, and its licence."""
+    """Files to be put beside live drawings, by name: the font, for LibreCAD also as LFF, and its licence."""
     names = {"live": (FONT_FILE, "OFL.txt"), "librecad": (FONT_FILE, f"{OWN}.lff", "OFL.txt"), "strokes": ()}
     return {name: template(f"fonts/{name}").read_bytes() for name in names[text]}
 
 
 def _stroked(marks: Iterable[Mark], around: DxfFrame, handles: Iterator[int]) -> SheetParts:
-    """Every mark as strokes, the lettering last."""
+    """All marks as strokes, lettering last."""
     parts, texts = SheetParts(), list[Text]()
     for mark in strokes(marks):
         on = layer(mark).name
@@ -379,7 +379,7 @@ def _named_view(view: View, around: DxfFrame, handles: Iterator[int]) -> str:
 
 
 def plot_styles() -> bytes:
-    """A colour-dependent plot style table (CTB): every colour prints black, widths are those of the objects."""
+    """Colour-dependent plot style table (CTB): every colour prints black, in the width of the object."""
     from ezdxf.addons import acadctb
 
     table = acadctb.new_ctb()

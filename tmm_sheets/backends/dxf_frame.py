@@ -1,7 +1,7 @@
-"""What stands round the entities of a DXF file: ezdxf has written it, what a sheet adds is put in.
+"""Frame of a DXF file, everything but the entities: ezdxf has written it, the parts of a sheet are spliced in.
 
 Header, layers, line types, the text style, the dimension style, the layout with its viewport are ezdxf's; entries of tables,
-blocks and groups of one sheet are texts that go to their places (see :class:`SheetParts`). Marks become such texts, too: ten times
+blocks and groups of one sheet are texts that are put in place (see :class:`SheetParts`). Marks become such texts, too: ten times
 quicker than one object of a library each.
 """
 
@@ -31,12 +31,12 @@ LETTERS = 3.5
 TITLE, AUTHOR, STYLE, HANDSEED, EXTENTS, LAYERS, VIEWS, RECORDS, BLOCKS, BODY, GROUPED, GROUPS = (f"{{{word}}}" for word in (
     "title", "author", "text style", "first free handle", "extents", "layers", "views", "block records", "blocks", "entities",
     "group names", "groups"))  # fmt: skip
-"""What stands in a frame for what differs from sheet to sheet."""
+"""Placeholders in a frame for the parts that differ from sheet to sheet."""
 
 
 @dataclass
 class SheetParts:
-    """What a sheet adds: entities, entries of the tables, blocks, groups; ``layers`` are the names of those in use."""
+    """Parts of a sheet: entities, entries of the tables, blocks, groups; ``layers``: names of those in use."""
 
     entities: list[str] = field(default_factory=list)
     views: list[str] = field(default_factory=list)
@@ -48,10 +48,10 @@ class SheetParts:
 
 
 class DxfFrame(NamedTuple):
-    """Everything round the entities, the same for all sheets of a size.
+    """Frame of all sheets of a size.
 
-    ``text`` has the signs above in it; ``layer`` is the entry of a layer to be filled in. The rest are handles: of model space, the
-    tables of views and of blocks, the dictionary of groups, and the first one that is free.
+    ``text``: with the placeholders above; ``layer``: template of the entry of a layer. The rest are handles: of model space, the
+    tables of views and of blocks, the dictionary of groups, and the first free one.
     """
 
     text: str
@@ -94,7 +94,7 @@ WEIGHTS = (0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100,
 
 @cache
 def weight(width: float) -> int:
-    """The lineweight legal in DXF that is nearest to a width in mm."""
+    """Lineweight of DXF, 0.01 mm, nearest to a width in mm."""
     return min(WEIGHTS, key=lambda legal: abs(legal - 100 * width))
 
 
@@ -102,16 +102,16 @@ def weight(width: float) -> int:
 
 
 ALONG = 128
-"""Flag of a polyline whose line type runs on through its corners."""
+"""Flag of a polyline whose line type continues through its corners."""
 
 
 def head(kind: str, owner: str, layer: str, more: str = "") -> str:
-    """Tags from the owner of an entity to the mark of its class."""
+    """Tags of an entity from its owner to its class marker."""
     return f"330\n{owner}\n100\nAcDbEntity\n8\n{layer}\n{more}100\n{kind}\n"
 
 
 def flat(code: int, z: complex) -> str:
-    """Tags of a point in the plane of the drawing, whose height goes without saying: there are thousands of them in lettering."""
+    """Tags of a point without its z = 0, which is implied: lettering has thousands of them."""
     return f"{code}\n{short(z.real)}\n{code + 10}\n{short(z.imag)}\n"
 
 
@@ -121,13 +121,13 @@ def place(code: int, z: complex) -> str:
 
 
 def short(value: float, digits: int = 4) -> str:
-    """A number with so many decimals; zeros at the end say nothing."""
+    """A number with at most ``digits`` decimals, without trailing zeros."""
     return f"{value:.{digits}f}".rstrip("0").rstrip(".")
 
 
 def entity(mark: Line | Arc | Polyline | Fill, handle: int, owner: str, layer: str, dashed: bool = False,
            solid: bool = False) -> str:
-    """A mark as an entity; ``dashed``: of a line type with a pattern, ``solid``: continuous whatever its layer says."""
+    """A mark as an entity; ``dashed``: of a line type with a pattern; ``solid``: continuous on any layer."""
     plain = "6\nContinuous\n" if solid else ""
     if isinstance(mark, Line):
         return f"0\nLINE\n5\n{handle:X}\n{head('AcDbLine', owner, layer, plain)}{flat(10, mark.a)}{flat(11, mark.b)}"
@@ -164,7 +164,7 @@ def _xy(points: Points) -> tuple[float, ...]:
 
 
 def letter_strokes(texts: Iterable[Text], owner: str, layer: str, handles: Iterator[int]) -> str:
-    """Strokes of all letters: placed together as arrays, then written one polyline each.
+    """Strokes of all letters as polylines; they are placed together, as arrays.
 
     Raises
     ------
@@ -198,7 +198,7 @@ def letter_strokes(texts: Iterable[Text], owner: str, layer: str, handles: Itera
 
 
 def extents(marks: Iterable[Mark]) -> tuple[float, float, float, float]:
-    """Least x and y, greatest x and y of the lines of the marks, mm; zeros for none."""
+    """Bounding box x0, y0, x1, y1 of the lines of the marks, mm; zeros if there are none."""
     found: list[complex] = []
     for mark in marks:
         if isinstance(mark, Line):
@@ -215,7 +215,7 @@ def extents(marks: Iterable[Mark]) -> tuple[float, float, float, float]:
 
 
 def _reach(arc: Arc) -> list[complex]:
-    """The ends of an arc and where it meets the axes of its circle."""
+    """Ends of an arc, and its points on the axes of its circle."""
     turns = [arc.start, arc.end]
     quarter = pi / 2
     k = np.ceil(arc.start / quarter) if np.isfinite(arc.start) else 0.0

@@ -1,7 +1,7 @@
-"""The frame of a DXF file as ezdxf writes it, with signs in the places of what a sheet adds.
+"""Frame of a DXF file as ezdxf writes it, with placeholders for the parts of a sheet.
 
-This is run for ``templates/dxf_frame.json`` (``python -m tests.backends.frame_file`` writes it), and where that is for other paper
-or other line types.
+Run for ``templates/dxf_frame.json`` (``python -m tests.backends.frame_file`` writes it), and if that is for other paper or other
+line types.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ PATTERN = "{name}"
 
 
 def made(width: float, height: float) -> DxfFrame:
-    """The frame for paper of that size, mm."""
+    """Make the frame for paper of a size, mm."""
     before = options.write_fixed_meta_data_for_testing
     options.write_fixed_meta_data_for_testing = True  # no dates and random identifiers: the same bytes every time
     try:
@@ -71,13 +71,13 @@ def _written(doc: Document) -> DxfFrame:
 
 
 def _before(text: str, start: str, end: str, sign: str, skip: int = 0) -> str:
-    """The text with a sign before the first ``end`` after ``start`` (and ``skip`` characters)."""
+    """The text with a placeholder before the first ``end`` after ``start`` (and ``skip`` characters)."""
     at = text.index(end, text.index(start) + skip)
     return f"{text[:at]}{sign}{text[at:]}"
 
 
 def _without_layer(text: str) -> tuple[str, str]:
-    """The text with a sign for the entry of our layer, and this with places for what differs from layer to layer."""
+    """The text with a placeholder for the entry of our layer, and that entry as a template for all layers."""
     name = text.index(f"AcDbLayerTableRecord\n  2\n{PATTERN}\n")
     start, end = text.rindex("  0\nLAYER\n", 0, name), text.index("  0\n", name)
     entry = text[start:end]
@@ -87,7 +87,7 @@ def _without_layer(text: str) -> tuple[str, str]:
 
 
 def _document(width: float, height: float) -> Document:
-    """Everything but what a sheet adds."""
+    """Document of ezdxf without the parts of a sheet."""
     doc = new("R2010", units=MM)
     doc.header["$MEASUREMENT"] = 1
     doc.header["$LWDISPLAY"] = 1
@@ -115,7 +115,7 @@ def _document(width: float, height: float) -> Document:
 
 
 def _lettering(doc: Document) -> None:
-    """The text style and the dimension style; the header names them too, for programs that look there only."""
+    """Add the text style and the dimension style; the header names them too, for programs that look only there."""
     style = doc.styles.add(STYLE, font=FONT_FILE)
     style.set_extended_font_data("TMM Sheets B", italic=True)
     doc.header["$TEXTSTYLE"], doc.header["$TEXTSIZE"] = STYLE, LETTERS

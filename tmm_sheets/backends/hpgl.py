@@ -1,9 +1,9 @@
 """HPGL for pen plotters, HPGL/2 in a PJL wrapper for large-format printers.
 
-A pen plotter gets what every machine since the first understands: IN, SP, VS, PU, PD, whole steps of 0.025 mm. A printer
-gets line widths in millimetres (PW), round ends and joins (LA) and filled polygons (PM, FP) besides.
+A pen plotter gets commands that every machine understands: IN, SP, VS, PU, PD, whole steps of 0.025 mm. A printer also gets
+line widths in millimetres (PW), round ends and joins (LA) and filled polygons (PM, FP).
 
-A plot file is also read back, for the preview and the tests: what the pens will draw, from the file itself and nothing else.
+Plot files are also read back, for the preview and the tests: the strokes of the pens, from the file alone.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ UEL = "\x1b%-12345X"  # leaves whatever language the printer is in
 
 
 def render(drawing: Drawing, machine: Plotter | None = None) -> bytes:
-    """The bytes of the plot file."""
+    """Plot file of a drawing, bytes."""
     return encode(plan(drawing, machine or plotter()), drawing.title)
 
 
 def encode(paths: PenPlan, title: str = "") -> bytes:
-    """Plot file of pen paths."""
+    """Plot file of pen paths, bytes."""
     language = _printer if paths.plotter.language == "hpgl2" else _pens
     return "".join(language(paths, title)).encode("ascii")
 
@@ -76,7 +76,7 @@ def _places(steps: Iterable[Step]) -> str:
 _WRAPPER = re.compile(r"@PJL[^\n]*\n|\x1b%-12345X|\x1b%-?\d+[AB]")
 _COMMAND = re.compile(r"([A-Za-z]{2})([-+.,\d\s]*);?\s*")
 _NUMBER = re.compile(r"[-+]?\d*\.?\d+")
-_SILENT = ("BP", "LA", "VS", "FP", "PG")  # say nothing about where ink goes; an area is noted when it is closed
+_SILENT = ("BP", "LA", "VS", "FP", "PG")  # do not move ink; an area is recorded when it is closed
 UNKNOWN_PEN = 0.3  # mm
 
 
@@ -84,7 +84,7 @@ UNKNOWN_PEN = 0.3  # mm
 class PlotPicture:
     """Contents of a plot file: strokes in drawing order, mm in the plotter's axes.
 
-    ``pens`` are the pens taken, in order; ``size`` the page in mm if the file says it; ``travel`` the way of the lifted pen.
+    ``pens``: pens taken, in order; ``size``: the page, mm, if the file has it; ``travel``: travel of the raised pen, mm.
     """
 
     strokes: list[InkStroke] = field(default_factory=list)
@@ -94,7 +94,7 @@ class PlotPicture:
 
 
 def read(data: bytes, plotter: Plotter) -> PlotPicture:
-    """What a plot file draws with the pens of a plotter.
+    """Read a plot file as strokes of the pens of a plotter.
 
     Raises
     ------
@@ -125,7 +125,7 @@ def read(data: bytes, plotter: Plotter) -> PlotPicture:
 
 
 class _PlotReader:
-    """The state of the machine; its methods with names in capitals are the commands."""
+    """State of the machine; methods with names in capitals are its commands."""
 
     def __init__(self, widths: dict[int, float]) -> None:
         self.plot = PlotPicture()
@@ -135,7 +135,7 @@ class _PlotReader:
         self.polygon = False
 
     def lift(self) -> None:
-        """What was drawn since the pen went down becomes a stroke."""
+        """Raise the pen: the path since it went down becomes a stroke."""
         if len(self.path) > 1 and not self.polygon:
             self.plot.strokes.append(InkStroke(np.array(self.path), self.width))
             self.path = self.path[-1:]

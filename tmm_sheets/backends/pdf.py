@@ -1,6 +1,6 @@
 """PDF: true line widths, embedded lettering that can be searched and copied, black only, the same bytes every time.
 
-reportlab makes the page, the font and the file; the content stream is written here, in millimetres. What is of one role (see
+reportlab makes the page, the font and the file; the content stream is written here, in millimetres. Each role (see
 ``drawing/styles.py``) is a layer that a viewer can hide; the sheets and their views are bookmarks.
 """
 
@@ -37,14 +37,14 @@ BEZIER = pi / 4  # an arc is cut into cubic curves of at most this angle: 4e-6 o
 
 
 class _FastFlate(pdfdoc.PDFStreamFilterZCompress):  # type: ignore[misc]
-    """Compression at zlib's fastest level: a tenth larger, seven times quicker."""
+    """Flate filter at zlib's fastest level: a tenth larger, seven times quicker."""
 
     def encode(self, text: str | bytes) -> bytes:
         return zlib.compress(text.encode("latin-1") if isinstance(text, str) else text, 1)
 
 
 def render(drawing: Drawing, date: int | None = None) -> bytes:
-    """The bytes of the PDF file; ``date`` is what it tells for its own, seconds since 1970 (SOURCE_DATE_EPOCH unless given).
+    """PDF file of a drawing, bytes; ``date``: its date, seconds since 1970 (default: SOURCE_DATE_EPOCH).
 
     Raises
     ------
@@ -100,7 +100,7 @@ def _resources(page: Canvas, names: Mapping[str, str]) -> Any:
 
 
 def _bookmarks(page: Canvas, drawing: Drawing, n: int) -> None:
-    """The sheet, below it its views."""
+    """Add a bookmark for the sheet, and below it one for each view."""
     page.bookmarkPage(f"sheet{n}")
     page.addOutlineEntry(drawing.title, f"sheet{n}", 0)
     for k, view in enumerate(drawing.views, 1):
@@ -111,7 +111,7 @@ def _bookmarks(page: Canvas, drawing: Drawing, n: int) -> None:
 
 
 def render_coloured(layers: Sequence[tuple[Drawing, tuple[float, float, float]]]) -> bytes:
-    """The bytes of a one-page PDF with several drawings over each other, each in a colour of its own (red, green, blue, 0 .. 1).
+    """One-page PDF, bytes, of several drawings over each other, each in a colour (red, green, blue, 0 .. 1).
 
     Raises
     ------
@@ -129,7 +129,7 @@ def render_coloured(layers: Sequence[tuple[Drawing, tuple[float, float, float]]]
 
 
 class PdfPage(NamedTuple):
-    """A page that shows a ``part`` of a sheet, moved there by ``shift``, and marks of its own (its size is theirs), mm."""
+    """A page that shows ``part`` of a sheet, moved by ``shift``, and a drawing of its own that sets its size, mm."""
 
     part: Box
     shift: complex
@@ -137,7 +137,7 @@ class PdfPage(NamedTuple):
 
 
 def render_pages(drawing: Drawing, pages: Iterable[PdfPage]) -> bytes:
-    """The bytes of a PDF with parts of one drawing, 1:1; the drawing is in the file once, whatever the number of pages.
+    """PDF, bytes, of parts of one drawing, 1:1; the file has the drawing once for all pages.
 
     Raises
     ------
@@ -189,7 +189,7 @@ def _document(drawing: Drawing, buffer: BytesIO, date: int | None = None) -> Can
 
 
 def _metadata(drawing: Drawing, date: str) -> bytes:
-    """What the file says of itself, as an XMP packet."""
+    """Metadata of the file as an XMP packet."""
     words = "".join(f"<rdf:li>{escaped(word)}</rdf:li>" for word in drawing.keywords.split(", ") if word)
     return (
         '<?xpacket begin="\ufeff" id="W5M0MpCehiHzreSzNTczkc9d"?>\n'
@@ -209,7 +209,7 @@ def _metadata(drawing: Drawing, date: str) -> bytes:
 
 
 def _geometry(drawing: Drawing, names: Mapping[str, str] | None = None) -> str:
-    """Path operators of everything but the lettering, role by role with the names of their layers, line type by line type."""
+    """Path operators of all marks but lettering, by role, in its layer, and by line type."""
     by_look: dict[tuple[str, str], list[str]] = {}
     for mark in strokes(drawing.marks):
         if not isinstance(mark, Text):
@@ -258,7 +258,7 @@ def _arc(mark: Arc) -> str:
 
 
 def _lettering(drawing: Drawing, page: Any) -> str:
-    """Text operators, run by run in the order of the drawing."""
+    """Text operators of the runs of letters, in the order of the drawing."""
     font, doc, escape = pdfmetrics.getFont(FONT), page._doc, page._escape
     out, now, wide = ["BT"], "", 1.0
     coded = dict[str, list[tuple[str, str]]]()  # by its text each run's subsets of the font with its codes there

@@ -1,7 +1,7 @@
 """PNG at any resolution: black on white, 8 bits of grey, anti-aliased, true widths; the size on paper is in the file.
 
-matplotlib's Agg draws; it does so band by band, and the bands go into the file one after another: A1 at 600 dots per inch
-is 279 million pixels, which at four bytes each nobody wants in memory.
+matplotlib's Agg draws band by band, and the bands go into the file one after another: A1 at 600 dots per inch has 279 million
+pixels, four bytes each, too many for the memory.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ INCH = 25.4
 
 
 def render(drawing: Drawing, dpi: float = DPI) -> bytes:
-    """The bytes of the PNG file."""
+    """PNG file of a drawing, bytes."""
     chord = min(max(SAGITTA, 0.02 * INCH / dpi), 0.02)
     return picture(drawing.width, drawing.height, ink(drawing.marks, chord), dpi, drawing.title, drawing.author)
 
@@ -77,7 +77,7 @@ def _filtered(bands: Iterable[npt.NDArray[np.uint8]]) -> Iterator[bytes]:
 
 
 def _bands(columns: int, rows: int, strokes: list[InkStroke], dpi: float) -> Iterator[npt.NDArray[np.uint8]]:
-    """The picture from the top down, in bands of whole rows: 255 for paper, 0 for ink."""
+    """Bands of the picture from the top down, uint8 (rows, width): 255 paper, 0 ink."""
     pixel = dpi / INCH
     # Lines are cut a little outside of a band, by half a pen and more, where their round ends do not show.
     rim = int(max((s.width for s in strokes), default=0.0) * pixel) + 4
@@ -104,7 +104,7 @@ def _bands(columns: int, rows: int, strokes: list[InkStroke], dpi: float) -> Ite
 
 
 def _paths(stroke: InkStroke, box: Box) -> Iterator[AggPath]:
-    """A stroke as Agg wants it, cut to a box: left to itself matplotlib draws lines of its own where a curve leaves the picture."""
+    """Paths of a stroke for Agg, clipped to a box: matplotlib draws stray lines where a curve leaves the picture."""
     points = stroke.points
     if stroke.filled:
         yield _path(np.append(points, points[:1]), True)

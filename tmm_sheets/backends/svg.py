@@ -1,7 +1,7 @@
 """SVG 1.1: paths in millimetres, a titled group for each view, in it one for each line type, lettering as strokes.
 
-Letters are strokes and not text: a viewer without the drawing font would show others, wider and upright. What they say
-stands in the ``aria-label`` of their path, for those who search or listen. Inside, y points up as on the sheet.
+Letters are strokes, not text: a viewer without the drawing font would show others, wider and upright. Their text is the
+``aria-label`` of the path, for search and screen readers. Inside, y points up as on the sheet.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ PIECE = pi / 2  # an arc is written in pieces: the centre of a half turn hangs o
 
 
 def render(drawing: Drawing) -> bytes:
-    """The bytes of the SVG file."""
+    """SVG file of a drawing, bytes."""
     views, rest = [], set(range(len(drawing.marks)))
     for n, view in enumerate(drawing.views, 1):
         own = [k for first, end in view.spans for k in range(first, end)]
@@ -47,9 +47,9 @@ def render(drawing: Drawing) -> bytes:
 
 
 def picture(marks: Iterable[Mark], box: Box) -> bytes:
-    """SVG of some marks, cut out along a rectangle of the sheet (mm), without titles: for a page of text.
+    """SVG of marks, clipped to a rectangle of the sheet (mm), without titles: a picture in a page of text.
 
-    Units are whole micrometres, y points down, and a line type or a height of lettering is one path: it is read by programs only.
+    Units are whole micrometres, y points down, each line type and each height of lettering is one path: only programs read it.
     """
     corner = complex(box.x0, box.y1)
     lines: dict[str, _Trace] = {}
@@ -90,19 +90,19 @@ MICRO = 1000.0
 
 
 class _Trace:
-    """Lines of one look, gathered into one path."""
+    """Lines of one style, collected into one path."""
 
     def __init__(self) -> None:
         self.points: list[complex] = []
         self.form: list[str] = []
 
     def add(self, points: Sequence[complex], closed: str = "", to: str = "L") -> None:
-        """One more line through points of the sheet, mm; ``to`` leads from one to the next."""
+        """Add a line through points of the sheet, complex mm; ``to``: the path command from one to the next."""
         self.points += points
         self.form.append("M%d %d" + f"{to}%d %d" * (len(points) - 1) + closed)
 
     def path(self, corner: complex) -> str:
-        """The path in micrometres from the upper left corner of the picture."""
+        """Path element, in micrometres from ``corner``, the upper left one of the picture."""
         z = (np.array(self.points) - corner) * MICRO
         places = np.rint(np.column_stack((z.real, -z.imag))).astype(int)
         data = "".join(self.form) % tuple(places.ravel().tolist())
@@ -110,7 +110,7 @@ class _Trace:
 
 
 def _paths(marks: Iterable[Mark], called: str) -> str:
-    """Groups of some marks by line type, the filled areas and the lettering last; ``called`` is what holds the name of a group."""
+    """Groups of marks by line type, filled areas and lettering last; ``called``: the attribute with the name of a group."""
     lines: dict[str, list[str]] = {}
     fills: list[str] = []
     texts: dict[float, list[str]] = {}
@@ -145,7 +145,7 @@ def _path(mark: Line | Arc | Polyline) -> str:
 
 
 def _ends(mark: Arc) -> tuple[list[complex], str]:
-    """Ends of the pieces of an arc, and "z" for a whole circle."""
+    """End points of the pieces of an arc, complex mm, and "z" for a whole circle."""
     n = max(ceil((mark.end - mark.start) / PIECE - 1e-9), 1)
     ends = [mark.centre + mark.radius * exp(1j * (mark.start + (mark.end - mark.start) * i / n)) for i in range(n + 1)]
     return ends, "z" if mark.end - mark.start > 2 * pi - 1e-9 else ""
@@ -160,12 +160,12 @@ def _place(p: complex) -> str:
 
 
 def _number(value: float) -> str:
-    """Micrometres are kept, idle zeros are not."""
+    """A number with three decimals at most, without trailing zeros."""
     text = f"{value:.3f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
 
 def escaped(text: str) -> str:
-    """Text fit for XML, which takes no control characters at all."""
+    """Escape text for XML; control characters, which XML cannot hold, are replaced."""
     text = re.sub("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]", "\ufffd", text)
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace('"', "&quot;")

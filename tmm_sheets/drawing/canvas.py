@@ -1,4 +1,4 @@
-"""The hand that draws: views put marks and requests for labels on a canvas, in millimetres of the sheet."""
+"""Canvas on which views put marks and requests for labels, in millimetres of the sheet."""
 
 from __future__ import annotations
 
@@ -38,20 +38,19 @@ SMALLEST = 2.5
 ARROW = (5.0, 0.85)
 """Length and half width of an arrow head, mm (GOST 2.307: about 20 degrees)."""
 KEPT_OFF = 4.0
-"""How many times more than other lettering do letters keep off thin lines that one of their own, or the next, would strike."""
+"""Weight of thin lines for lettering that its own or the next line would strike through."""
 LOOSE = 0.25
-"""Further distance of an index from its base in slanting lettering, mm."""
+"""Extra distance of an index from its base in rotated lettering, mm."""
 
 
 @dataclass(frozen=True)
 class Label:
-    """A request for lettering near ``anchor``; the sheet finds the free place when all views are drawn.
+    """Request for lettering near ``anchor``; a free position is searched when all views are drawn.
 
-    ``away`` is the preferred direction from the anchor (0 when any will do), ``gap`` the clear distance to it.
-    with ``leader`` it may as well stand farther off with a leader line; without, only where nothing near is free.
-    Lettering with a ``shelf`` stands on one, at the end of a leader that begins at this distance from the anchor.
-    It keeps off ``thin`` lines so many times more than usual. ``dimension`` is the number of the dimension it letters.
-    ``of``, ``part`` (its number) and ``by`` (the step it names) are those of the canvas when the label was asked for.
+    ``away``: preferred direction from the anchor (0: any); ``gap``: clearance to it, mm. With ``leader`` it may as well stand
+    farther off on a leader line; without, only if nothing near is free. With a ``shelf`` it stands on one, at the end of a leader
+    that begins at this distance from the anchor, mm. ``thin``: weight of thin lines; ``dimension``: number of the dimension it
+    letters. ``of``, ``part`` (its number) and ``by`` (the step it names) are those of the canvas at the time of the request.
     """
 
     anchor: complex
@@ -69,10 +68,10 @@ class Label:
 
 
 class AxisNumber(NamedTuple):
-    """The number of a position at the axis of a graph: its mark and its lettering, ``foot`` is the point of the axis it belongs to.
+    """Number of a position at the axis of a graph: its mark, its lettering, and ``foot``, its point of the axis.
 
-    ``side`` is 1 where it was meant to stand over the axis, -1 under it; ``pitch`` the distance to its neighbours, mm. ``first`` is
-    that of the origin, which may stand beside the other axis.
+    ``side``: 1 if it was meant to stand over the axis, -1 under it; ``pitch``: distance to its neighbours, mm. ``first``: that of
+    the origin, which may stand beside the other axis.
     """
 
     mark: int
@@ -87,10 +86,10 @@ class AxisNumber(NamedTuple):
 
 @dataclass(frozen=True)
 class PlacedNote:
-    """A remark to a view in words; the sheet finds it a free place, in ``box`` or near it, when all labels are set.
+    """Request for a remark on a view; a free position in or near ``box`` is searched when all labels are set.
 
-    ``of`` and ``part`` are those of the canvas when the note was asked for. ``signs`` are what it ends with, a list that may become
-    shorter until it is set. ``about`` tells what is remarked on, where another view may have more to say of it.
+    ``of`` and ``part`` are those of the canvas at the time of the request. ``signs``: a list at its end, which may get shorter
+    until it is set. ``about``: its subject, if another view may add to the remark.
     """
 
     text: str
@@ -102,15 +101,15 @@ class PlacedNote:
 
     @property
     def said(self) -> str:
-        """The whole of it."""
+        """Text of the remark with its signs."""
         return f"{self.text}{', '.join(self.signs)}"
 
 
 class Part(NamedTuple):
-    """A view, or a titled part of one: its marks are those from ``first`` to where the next part begins.
+    """A view, or a titled part of one: its marks are those from ``first`` to the beginning of the next part.
 
-    ``draw`` is the view's name in the arrangement, ``title`` what stands over it on the sheet (lettering markup, may be empty);
-    ``scales`` is how many scale factors were chosen before. ``headed`` is the first mark after a title that is drawn, else 0.
+    ``draw``: the view's name in the arrangement; ``title``: lettering markup, may be empty; ``scales``: number of scale factors
+    chosen before; ``headed``: first mark after a drawn title, else 0.
     """
 
     first: int
@@ -122,9 +121,9 @@ class Part(NamedTuple):
 
 
 class MarkGroup(NamedTuple):
-    """Marks ``first`` .. ``end`` - 1, which whoever looks at the sheet sees as one thing.
+    """Marks ``first`` .. ``end`` - 1 that a reader of the sheet sees as one thing.
 
-    ``text`` is the markup of lettering; ``part`` and ``anchor`` are those of a label, set when all views were drawn.
+    ``text``: markup of lettering; ``part`` and ``anchor``: those of a label, set when all views were drawn.
     """
 
     kind: Literal["arrow", "dot", "hatch", "lettering"]
@@ -139,7 +138,7 @@ Drawn = TypeVar("Drawn", bound=Callable[..., Any])
 
 
 def in_role(role: Role) -> Callable[[Drawn], Drawn]:
-    """Decorator of what draws marks of one role, whatever they are drawn for."""
+    """Decorator of functions that draw marks of one role."""
     def made(draw: Drawn) -> Drawn:
         @wraps(draw)
         def drawn(canvas: Canvas, *args: Any, **options: Any) -> Any:
@@ -152,12 +151,12 @@ def in_role(role: Role) -> Callable[[Drawn], Drawn]:
 
 
 PAST = 2.0
-"""How far extension lines run beyond their dimension line, mm."""
+"""Overrun of extension lines beyond their dimension line, mm."""
 
 
 def lettered(a: complex, b: complex, offset: float, markup: str, height: float = 3.5,
              share: float = 0.5) -> tuple[complex, complex]:
-    """Middle of the baseline of a dimension's lettering, and its direction."""
+    """Middle of the baseline of a dimension's lettering, complex mm, and its direction, complex of magnitude 1."""
     u = (b - a) / abs(b - a)
     at, angle = a + offset * 1j * u + share * (b - a), phase(u)
     out = offset
@@ -171,17 +170,19 @@ def lettered(a: complex, b: complex, offset: float, markup: str, height: float =
 
 @dataclass
 class Canvas:
-    """Collects the marks of a sheet.
+    """Collector of the marks of a sheet.
 
-    ``of`` names the construction step or view the following marks belong to; it ends up on each mark.
-    ``by`` tells the step that leaves them (see :meth:`traced`), ``frames`` where plans were placed.
-    ``scales`` keeps the scale factor with which each plan was drawn, by the plan's name, for protocol and results; ``chosen``
-    are the names of those that a project file may set.
-    ``parts`` and ``groups`` tell what the marks belong to and which of them are one thing, for whoever reads the sheet again;
-    ``dimensions`` and ``forms`` which are dimensions and forms to be filled in, for programs that know such things;
-    ``shortened`` are texts that were too long for their cell of a form, with what stands there. ``windows`` are the numbers of
-    circles through which what is inside is read. ``numbers`` are those at axes, which make way for lines when all are drawn.
-    ``inked`` are cells of ink of its parts, kept while views are added: nothing changes what was drawn before.
+    Attributes
+    ----------
+    of, by : view or construction step of the following marks, and their provenance (see :meth:`traced`)
+    frames : where plans were placed
+    scales, chosen : scale factor of each drawn plan by its name, and the names that a project file may set
+    parts, groups : which view the marks belong to, and which of them are one thing to a reader
+    dimensions, forms : which marks are dimensions and forms to be filled in
+    shortened : texts that were too long for their cell of a form, and what stands there
+    windows : numbers of the circles of enlarged details
+    numbers : those at axes, which make way for lines when all are drawn
+    inked : cells of ink by part, cached while views are added: earlier marks do not change
     """
 
     marks: list[Mark] = field(default_factory=list)
@@ -202,7 +203,7 @@ class Canvas:
     inked: dict[Any, npt.NDArray[np.bool_]] = field(default_factory=dict)
 
     def begin(self, box: Box, title: str = "", draw: str = "") -> None:
-        """Begin a view, or a part of the present one when ``draw`` is left out: something that has a place of its own."""
+        """Begin a view, or without ``draw`` a part of the current one with a box of its own."""
         self.parts.append(Part(len(self.marks), draw or (self.parts[-1].draw if self.parts else ""), title, box, len(self.scales)))
 
     def span(self, k: int) -> tuple[int, int]:
@@ -210,14 +211,14 @@ class Canvas:
         return self.parts[k].first, self.parts[k + 1].first if k + 1 < len(self.parts) else len(self.marks)
 
     def tracing(self, role: Role, step: str = "", position: str = "", frame: int = -1, name: str = "") -> Canvas:
-        """The same canvas for marks of one role that come from that step, see :class:`~tmm_sheets.drawing.marks.Provenance`."""
+        """Canvas that puts marks with this provenance on this one; see :class:`~tmm_sheets.drawing.marks.Provenance`."""
         other = copy(self)
         other.by = Provenance(role, step, position, frame, name)
         return other
 
     @contextmanager
     def traced(self, role: Role, step: str = "", position: str = "", frame: int = -1, name: str = "") -> Iterator[None]:
-        """The marks drawn inside have this role and come from that step, see :class:`~tmm_sheets.drawing.marks.Provenance`."""
+        """Context in which marks get this provenance; see :class:`~tmm_sheets.drawing.marks.Provenance`."""
         before, self.by = self.by, Provenance(role, step, position, frame, name)
         try:
             yield
@@ -225,12 +226,12 @@ class Canvas:
             self.by = before
 
     def as_role(self, role: Role) -> AbstractContextManager[None]:
-        """The marks drawn inside have this role and come from the same step as those round them."""
+        """Context in which marks get this role; their step stays."""
         return self.traced(role, *(self.by[1:] if self.by is not None else ()))
 
     def placed(self, plan: str, position: str, origin: complex, mu: float | tuple[float, float], turn: float = 0.0,
                mirror: bool = False) -> int:
-        """Note where a plan lies on the sheet; returns the number of the frame."""
+        """Record the placement of a plan; returns the number of the frame."""
         both = mu if isinstance(mu, tuple) else (mu, mu)
         self.frames.append(PlacedFrame(len(self.parts) - 1, plan, position, complex(origin), both, turn, mirror))
         return len(self.frames) - 1
@@ -256,7 +257,7 @@ class Canvas:
             self.marks.append(Arc(complex(centre), float(radius), 0.0, 2 * pi, style, self.of, self.by))
 
     def window(self, centre: complex, radius: float) -> None:
-        """Circle of an enlarged detail: it parts no label from what it names."""
+        """Circle of an enlarged detail; labels may stand across it from their objects."""
         self.windows.add(len(self.marks))
         self.circle(centre, radius, "thin")
 
@@ -300,7 +301,7 @@ class Canvas:
         self.fill((tip, tip - size * u + across, tip - size * u - across), style)
 
     def arrow(self, a: complex, b: complex, style: str = "main", head: float | None = None, stubby: bool = False) -> None:
-        """Arrow from ``a`` to ``b``; the head shrinks with short arrows and is left out below half a millimetre."""
+        """Arrow from ``a`` to ``b``; the head shrinks with short arrows, nothing is drawn up to half a millimetre."""
         length = abs(b - a)
         if not length > 0.5:
             return
@@ -340,7 +341,7 @@ class Canvas:
 
     def text(self, at: complex, markup: str, height: float = 3.5, align: Align = "left", angle: float = 0.0,
              wide: float = 1.0) -> Lettering:
-        """Lettering at a fixed place: ``at`` is left end, middle or right end of the baseline, letters ``wide`` times as wide."""
+        """Lettering with the left end, middle or right end of its baseline at ``at``; ``wide``: stretch of the letters."""
         laid = letter(markup, height)
         shift = {"left": 0.0, "centre": -wide * laid.width / 2, "right": -wide * laid.width}[align]
         self.put(laid, at + rect(1, angle) * shift, angle, markup, wide)
@@ -360,7 +361,7 @@ class Canvas:
             self.text(at - 1j * i * step, line, height, align)
 
     def put(self, laid: Lettering, at: complex, angle: float = 0.0, markup: str = "", wide: float = 1.0) -> None:
-        """Set laid out lettering with the left end of its baseline at ``at``, its letters ``wide`` times as wide."""
+        """Set laid out lettering with the left end of its baseline at ``at``; ``wide``: stretch of the letters."""
         u, first = rect(1, angle), len(self.marks)
         by = Provenance("text", *self.by[1:]) if self.by is not None else Provenance("text")
         # Programs that read a PDF back know upright rectangles only: those of slanting letters and indices overlap sooner.
@@ -376,20 +377,20 @@ class Canvas:
 
     def label(self, anchor: complex, markup: str, away: complex = 0j, height: float = 3.5, gap: float = 1.0,
               leader: bool = True, shelf: float = 0.0, thin: float = 1.0, dimension: int = -1) -> None:
-        """Ask for lettering near a point; see :class:`Label`."""
+        """Request lettering near a point; see :class:`Label`."""
         if anchor == anchor:
             self.labels.append(
                 Label(complex(anchor), markup, height, complex(away), gap, leader, self.of, len(self.parts) - 1, self.by, shelf,
                       thin, dimension))
 
     def note(self, box: Box, text: str, signs: Iterable[str] = (), about: Any = None) -> None:
-        """Ask for a remark in words to the view in ``box``; see :class:`PlacedNote`."""
+        """Request a remark on the view in ``box``; see :class:`PlacedNote`."""
         self.notes.append(PlacedNote(text, box, self.of, len(self.parts) - 1, tuple(signs), about))
 
     def title(self, box: Box, text: str, factor: str = "", height: float = 5.0, spare: float = 0.0) -> Box:
-        """Title of a view centred at the top of its place, the scale factor under it and no larger; returns what is left below.
+        """Title of a view, centred at the top of its box, with the scale factor under it; returns the box left below.
 
-        It may be on more lines for each ``LEADING`` mm of height that the view can ``spare``.
+        It may take one more line for each ``LEADING`` mm of height that the view can ``spare``.
         """
         text = text.replace(TOGETHER, " ")
         self.begin(box, text)
@@ -410,8 +411,8 @@ class Canvas:
                   factor: float = 1.0, apart: tuple[complex, complex] | None = None) -> None:
         """Linear dimension of ``a`` .. ``b`` with extension lines; the dimension line lies ``offset`` mm to the left.
 
-        It measures ``factor`` per mm. Its lettering is at this ``share`` of the way, or looks for a place near a point in a
-        direction, where these are given (``apart``).
+        ``factor``: measured size per mm. The lettering stands at this ``share`` of the length, or is placed by search near a point
+        in a direction (``apart``).
         """
         if not abs(b - a) > 0:
             return
@@ -443,7 +444,7 @@ class Canvas:
     @in_role("table")
     def table(self, corner: complex, widths: Sequence[float], rows: Sequence[Sequence[str]], row: float = 7.0,
               height: float = 3.5, header: int = 1) -> Box:
-        """Table with its upper left corner at ``corner``; the first ``header`` rows are ruled off with a main line."""
+        """Table with its upper left corner at ``corner``, a main line under the first ``header`` rows; returns its box."""
         widths, x0, y1 = _for_text(widths, rows), corner.real, corner.imag
         total, y0 = sum(widths), y1 - row * len(rows)
         for i in range(len(rows) + 1):
@@ -464,10 +465,10 @@ class Canvas:
     @in_role("dimension")
     def angle_mark(self, vertex: complex, start: float, end: float, radius: float, markup: str, height: float = 3.5,
                    share: float = 0.5, thin: float = 1.0) -> None:
-        """Dimension arc of an angle from ``start`` to ``end`` (rad, counter-clockwise), its sign at ``share`` of it.
+        """Dimension arc of an angle from ``start`` to ``end`` (rad, counter-clockwise), its lettering at ``share`` of it.
 
-        The sign keeps ``thin`` times more than others off thin lines, its own arc among them.
-        Where two heads have no room between the sides of the angle they stand outside, on the arc drawn on (GOST 2.307).
+        ``thin``: weight of thin lines for the lettering, its own arc among them. If two heads have no room between the sides of the
+        angle they stand outside, on the prolonged arc (GOST 2.307).
         """
         first = len(self.marks)
         outside = (end - start) * radius <= 8
@@ -485,13 +486,13 @@ class Canvas:
         self.angle(first, vertex, start, end, radius, markup)
 
     def angle(self, first: int, vertex: complex, start: float, end: float, radius: float, markup: str) -> None:
-        """What was drawn from the mark ``first`` on is the dimension of an angle."""
+        """Record the marks from ``first`` on as the dimension of an angle."""
         a, middle, b = (vertex + rect(radius, turn) for turn in (start, (start + end) / 2, end))
         self.dimensions.append(Dimension("angle", first, len(self.marks), a, b, middle, markup, middle, vertex=vertex))
 
 
 def _for_text(widths: Sequence[float], rows: Sequence[Sequence[str]]) -> list[float]:
-    """Widths of columns in which all cells have room in the smallest letters, what is missing taken from where there is more."""
+    """Widths of columns, mm, redistributed so that all cells fit in the smallest letters, if their sum allows."""
     least = [max(letter(cell, SMALLEST).width for cell in column) + 1.0 for column in zip(*rows, strict=True)]
     short = sum(max(need - w, 0.0) for w, need in zip(widths, least, strict=True))
     spare = sum(max(w - need, 0.0) for w, need in zip(widths, least, strict=True))

@@ -1,4 +1,4 @@
-"""Lettering that a sheet has no room for."""
+"""Reports of lettering that has no room on a sheet."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Crowded:
 
 @dataclass(frozen=True)
 class Shortened(Crowded):
-    """A text of the title block that was too long for its cell; what is ``left`` of it stands there."""
+    """A text of the title block that was too long for its cell and was shortened to ``left``."""
 
     left: str
 

@@ -1,4 +1,4 @@
-"""How evenly a sheet is filled: cells of the field without ink, and what views use of their places."""
+"""Evenness of a sheet: share of empty cells, and how much of their boxes the views fill."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ FIELD = Box(20.0, 5.0, 836.0, 589.0)
 TAKEN = Box(651.0, 5.0, 836.0, 60.0), Box(20.0, 575.0, 90.0, 589.0)
 """Title block and turned designation."""
 CELL = 50.0
-"""About the side of a cell, mm."""
+"""Approximate side of a cell, mm."""
 FRAME = "title block"
 
 
 def empty_cells(drawing: Drawing) -> float:
-    """Share of the cells of the field in which nothing is drawn, 0 .. 1."""
+    """Share of the cells of the field without ink, 0 .. 1."""
     nx, ny = round(FIELD.width / CELL), round(FIELD.height / CELL)
     inked = np.zeros((nx, ny), bool)
     z = np.concatenate((dense((mark for mark in drawing.marks if mark.of != FRAME), 4.0), *map(covering, TAKEN)))
@@ -33,10 +33,9 @@ def empty_cells(drawing: Drawing) -> float:
 
 
 def fills(drawing: Drawing) -> Iterator[tuple[str, float]]:
-    """Name of each view of a sheet and the share of its place that the rectangle round its ink takes, 0 .. 1.
+    """Name of each view and the share of its box that the bounding box of its ink takes, 0 .. 1.
 
-    What a view draws beyond its place, as projection lines to another graph, fills nothing of it. The circle of an enlarged detail
-    is no view with a place of its own.
+    Ink beyond the box, such as projection lines to another graph, does not count. The circle of an enlarged detail is not a view.
     """
     for view in {view.box: view for view in reversed(drawing.views)}.values():
         marks = [mark for a, b in view.spans for mark in drawing.marks[a:b] if mark.of != FRAME]
@@ -52,7 +51,7 @@ def _outline(mark: Mark) -> Points:
 
 
 def dense(marks: Iterable[Mark], step: float) -> Points:
-    """Points along marks, or round their lettering, no more than ``step`` mm apart."""
+    """Points along marks, or round their lettering, complex (n,), at most ``step`` mm apart."""
     straight, others = list[tuple[complex, complex]](), list[Points]()  # most are lines: quicker without an array for each
     for mark in marks:
         if isinstance(mark, Line):
@@ -64,6 +63,6 @@ def dense(marks: Iterable[Mark], step: float) -> Points:
 
 
 def covering(box: Box) -> Points:
-    """Points all over a box, 4 mm apart: what counts as filled."""
+    """Grid of points in a box, complex (n,), 4 mm apart: it counts as filled."""
     x, y = np.meshgrid(np.arange(box.x0, box.x1, 4.0), np.arange(box.y0, box.y1, 4.0))
     return np.asarray((x + 1j * y).ravel())

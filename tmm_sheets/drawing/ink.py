@@ -1,14 +1,10 @@
-"""A drawing as strokes of round pens: dashes cut, arcs as chords, lettering as its single strokes.
+"""A drawing as strokes of round pens: dashes cut, arcs as chords, lettering as single strokes; clipping to boxes and circles.
 
-For outputs that know nothing but pens: plotters, pixels. Whoever can draw an arc as an arc takes the marks themselves.
+Strokes are for outputs that know nothing but pens: plotters, pixels. Formats with arcs take the marks themselves.
 
-Dashed and chain lines cut into separate strokes, once, for every output.
-
-Programs disagree about dashes: where the pattern starts, how it goes round a corner or a circle, whether a short line shows
-any. Cut here, a line begins and ends with a long stroke, crosses its middle and a circle crosses its axes with one, as
-GOST 2.303 asks, and a PDF, a DXF in any program and a plotter show the same strokes.
-
-What of a circle, a line or a curve lies inside a rectangle.
+Dashed and chain lines are cut into separate strokes here, once for every output, because programs disagree about dashes: where
+the pattern starts, how it goes round a corner or a circle, whether a short line shows any. A line begins and ends with a long
+stroke, and crosses its middle with one; so does a circle its axes, as GOST 2.303 asks.
 """
 
 from __future__ import annotations
@@ -29,7 +25,7 @@ SAGITTA = 0.005  # mm between an arc and its chords
 
 
 class InkStroke(NamedTuple):
-    """A round pen ``width`` mm wide along ``points``, mm; when ``filled`` the area they go round, without a pen."""
+    """Path of a round pen ``width`` mm wide along ``points``, complex (n,) mm; if ``filled`` the area inside them."""
 
     points: Points
     width: float
@@ -37,7 +33,7 @@ class InkStroke(NamedTuple):
 
 
 def ink(marks: Iterable[Mark], sagitta: float = SAGITTA) -> Iterator[InkStroke]:
-    """Strokes of the marks in their order; a closed curve ends where it began.
+    """Strokes of the marks in their order; a closed curve repeats its first point. ``sagitta``: mm between an arc and its chords.
 
     Raises
     ------
@@ -56,19 +52,19 @@ def ink(marks: Iterable[Mark], sagitta: float = SAGITTA) -> Iterator[InkStroke]:
 
 
 def letters(text: Text) -> Iterator[Points]:
-    """Centre lines of the strokes of lettering in its place on the sheet, mm."""
+    """Centre lines of the strokes of lettering, complex (n,) mm of the sheet."""
     turn = exp(1j * text.angle)
     for points in lettering.strokes(text.text, text.height):
         yield text.at + turn * (points if text.wide == 1.0 else lettering.widened(points, text.wide))
 
 
 def check(mark: Mark) -> None:
-    """Check that a mark has a place on the sheet.
+    """Check that the coordinates of a mark are finite.
 
     Raises
     ------
     ValueError
-        when its place is not finite.
+        when they are not.
     """
     if isinstance(mark, Line):
         good = isfinite(mark.a) and isfinite(mark.b)
@@ -94,7 +90,7 @@ def _points(mark: Line | Arc | Polyline, sagitta: float) -> Points:
 
 
 def arcs_inside(box: Box, centre: complex, radius: float) -> list[tuple[float, float]]:
-    """Arcs of a circle inside the box as (start, end), rad counter-clockwise, at most one turn each; empty when none."""
+    """Arcs of a circle inside the box, (start, end) in rad counter-clockwise, at most one turn each."""
     cuts = set()
     for x in (box.x0, box.x1):
         d = x - centre.real
@@ -118,9 +114,9 @@ def arcs_inside(box: Box, centre: complex, radius: float) -> list[tuple[float, f
 
 
 def chords(box: Box, centre: complex, radius: float, hollow: float = 0.0) -> list[tuple[complex, complex]]:
-    """Parts of the box's sides inside a circle that it cuts, each in the sense of running round the box counter-clockwise.
+    """Parts (a, b) of the box outline inside the circle, each directed counter-clockwise round the box.
 
-    What lies inside the smaller circle of the radius ``hollow`` is left out.
+    Without what lies inside the concentric circle of radius ``hollow``.
     """
     corners = complex(box.x0, box.y0), complex(box.x1, box.y0), complex(box.x1, box.y1), complex(box.x0, box.y1)
     found = []
@@ -137,7 +133,7 @@ def chords(box: Box, centre: complex, radius: float, hollow: float = 0.0) -> lis
 
 
 def segment_inside(box: Box, a: complex, b: complex) -> tuple[complex, complex] | None:
-    """Part of a straight line inside the box (Liang and Barsky), None when there is none."""
+    """Part of the segment a .. b inside the box (Liang and Barsky); None if there is none."""
     t0, t1 = 0.0, 1.0
     d = b - a
     for step, low, high in ((d.real, box.x0 - a.real, box.x1 - a.real), (d.imag, box.y0 - a.imag, box.y1 - a.imag)):
@@ -156,7 +152,7 @@ def segment_inside(box: Box, a: complex, b: complex) -> tuple[complex, complex] 
 
 
 def chord(centre: complex, radius: float, a: complex, b: complex) -> tuple[complex, complex] | None:
-    """Part of a straight line inside a circle, None when there is none."""
+    """Part of the segment a .. b inside a circle; None if there is none."""
     if a == b:
         return None
     u = (b - a) / abs(b - a)
@@ -169,7 +165,7 @@ def chord(centre: complex, radius: float, a: complex, b: complex) -> tuple[compl
 
 
 def polyline_inside(box: Box, points: Points) -> list[Points]:
-    """Stretches of a polyline inside the box."""
+    """Stretches of a polyline, complex (n,), inside the box."""
     x, y = points.real, points.imag
     if not len(points) or x.max() < box.x0 or x.min() > box.x1 or y.max() < box.y0 or y.min() > box.y1:
         return []
@@ -185,21 +181,21 @@ def polyline_inside(box: Box, points: Points) -> list[Points]:
     return [np.array(s) for s in stretches]
 
 
-LEAST = 0.32  # a long stroke may shrink to this share of its nominal length (5 of 16 mm; GOST 2.303: 5 .. 30) ...
-LEAST_MM = 2.0  # ... but not below this (dashed line: 2 .. 8)
+MIN_STROKE_SHARE = 0.32  # of its nominal length, to which a long stroke may shrink (5 of 16 mm; GOST 2.303: 5 .. 30) ...
+MIN_STROKE_MM = 2.0  # ... but not below this (dashed line: 2 .. 8)
 
 
 def cut(length: float, pattern: tuple[float, ...], closed: bool = False) -> list[tuple[float, float]]:
-    """Stretches of a line of ``length`` mm that are drawn, mm from its beginning.
+    """Drawn stretches (start, end) of a line of ``length`` mm, mm from its beginning.
 
-    Gaps and short strokes keep their length, the long strokes are fitted to the line. A line too short for two long
-    strokes is solid. A chain line has an odd number of long strokes where there is room for three: one in the middle, where
-    centre lines cross. On a closed line the first and the last stretch meet, and the number of periods is a multiple of four
-    where there is room: a circle is crossed by its axes in long strokes.
+    Gaps and short strokes keep their length, the long strokes are fitted to the line. A line too short for two long strokes is
+    solid. A chain line with room for three has an odd number of long strokes: one in the middle, where centre lines cross. On a
+    closed line the first and last stretch meet, and the number of periods is a multiple of four if there is room, so that the axes
+    of a circle cross it in long strokes.
     """
     long, rest = pattern[0], pattern[1:]
     fixed = sum(map(abs, rest))
-    least = max(LEAST * long, LEAST_MM)
+    least = max(MIN_STROKE_SHARE * long, MIN_STROKE_MM)
     if not least < length < inf:  # too short, or not a length at all: the writers report that
         return [(0.0, length)]
     periods = (length if closed else length - long) / (long + fixed)
@@ -227,7 +223,7 @@ def cut(length: float, pattern: tuple[float, ...], closed: bool = False) -> list
 
 
 def _along(points: Points, pattern: tuple[float, ...], closed: bool) -> Iterator[Points]:
-    """The strokes of a polyline, measured along it; corners within a stroke are kept."""
+    """Strokes of a polyline by arc length; corners within a stroke are kept."""
     measure = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(points)))))
     for a, b in cut(float(measure[-1]), pattern, closed):
         inner = points[np.searchsorted(measure, a, "right") : np.searchsorted(measure, b, "left")]
@@ -236,8 +232,8 @@ def _along(points: Points, pattern: tuple[float, ...], closed: bool) -> Iterator
 
 
 def interrupted(mark: Mark) -> list[Mark]:
-    """The pieces of a line that lettering interrupts; any other mark as it is."""
-    if not getattr(mark, "gaps", None):  # letters and filled areas have none
+    """Pieces of a line that lettering interrupts; any other mark unchanged."""
+    if isinstance(mark, (Text, Fill)) or not mark.gaps:
         return [mark]
     borders = [0.0, *(border for gap in mark.gaps for border in gap), 1.0]
     pieces = [(a, b) for a, b in zip(borders[::2], borders[1::2], strict=True) if b > a]
@@ -260,7 +256,7 @@ def interrupted(mark: Mark) -> list[Mark]:
 
 
 def strokes(marks: Iterable[Mark]) -> Iterator[Mark]:
-    """The marks with every line of a patterned type, or interrupted behind lettering, replaced by its separate strokes."""
+    """The marks, with lines that have a pattern or are interrupted behind lettering replaced by their strokes."""
     for mark in chain.from_iterable(map(interrupted, marks)):
         if not isinstance(mark, Line | Arc | Polyline) or not (pattern := line_type(mark.style).pattern):
             yield mark

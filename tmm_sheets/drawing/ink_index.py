@@ -1,4 +1,4 @@
-"""Where the ink of a sheet is: asked for what is near a place, what is in a rectangle, what a line crosses, where there is room."""
+"""Spatial index of the ink of a sheet: what is near a point, in a rectangle or crossed by a line, and where there is room."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from tmm_sheets.drawing.styles import line_types
 from tmm_sheets.drawing.text_boxes import bounds_of, text_boxes
 
 ROUNDING = 1e-6
-"""mm by which what is looked at may lie farther off."""
+"""Margin of a preselection, mm."""
 STRONG = frozenset({"main", "curve", "vector", "axis", "hidden"})
-"""Line types that a leader or lettering had better not meet."""
+"""Line types that leaders and lettering should not meet."""
 CELL = 0.5
-"""Size of the cells in which room for lettering is looked for, mm."""
+"""Side of the cells in which room for lettering is searched, mm."""
 WIDEST = 2.0
-"""A line that is farther off than this comes no nearer to a rectangle than is asked, mm."""
+"""Largest distance, mm, at which a line can come nearer to a rectangle than is asked."""
 WORSE = 10
-"""A side of lettering in a rectangle, or a strong line near it, is as bad as so many thin lines."""
+"""Weight of a side of lettering, or of a strong line, in thin lines."""
 SHORT = 4.0
-"""Lines no longer than this are covered whole by a letter, mm: they cannot be interrupted behind it."""
+"""Length, mm, up to which a line is covered whole by a letter, so that it cannot be interrupted behind it."""
 NOWHERE = Box(0.0, 0.0, 0.0, 0.0)
 TOUCHING = 1e-9
-"""Product of two areas, mm^4, on both sides of a line, up to which what they belong to only touches it, whatever the processor."""
+"""Product of the areas, mm^4, on both sides of a line up to which a segment only touches it: above rounding of any processor."""
 LEADER = -1
-"""Number of the mark that a leader of a label has."""
+"""Mark number that stands for leaders of labels."""
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
@@ -39,11 +39,11 @@ Numbers = npt.NDArray[np.intp]
 
 
 class InkIndex:
-    """What is drawn: lines as segments ``a`` .. ``b``, shape (n,), lettering as upright rectangles ``written``, shape (t, 4).
+    """Ink of a sheet: lines as segments ``a`` .. ``b``, complex (n,), lettering as bounding boxes ``written``, (t, 4).
 
-    Each segment has the number of its mark (``of``), is ``strong`` or not, and has ``half`` the width of its line, mm.
-    The rectangles are x0, y0, x1, y1, of the marks numbered ``texts``; not numbers where lettering is taken off. ``area`` is where
-    room is looked for; ``windows`` are the numbers of circles through which what is inside is read.
+    Each segment has the number of its mark (``of``), is ``strong`` or not, and has ``half`` the width of its line, mm. The boxes
+    are x0, y0, x1, y1 of the marks numbered ``texts``; NaN where lettering was removed. ``area``: where room is searched;
+    ``windows``: numbers of the circles of enlarged details.
     """
 
     def __init__(self, marks: Iterable[Mark] = (), area: Box = NOWHERE, windows: Collection[int] = ()) -> None:
@@ -59,7 +59,7 @@ class InkIndex:
         self.add(marks)
 
     def add(self, marks: Iterable[Mark]) -> None:
-        """Something more is drawn."""
+        """Add marks."""
         first, starts, ends, lines = len(self.marks), list[Any](), list[Any](), list[tuple[int, bool, bool, bool, float]]()
         texts, filled = dict[int, Text](), list[tuple[float, float, float, float]]()
         self.marks.extend(marks)
@@ -101,34 +101,34 @@ class InkIndex:
         vars(self).pop("_outlines", None)
 
     def move_text(self, number: int, text: Text | None) -> None:
-        """Lettering of a mark stands elsewhere now, or is taken off."""
+        """Move the lettering of a mark to where ``text`` stands, or remove it (None)."""
         row = self.texts.index(number)
         self._corners[row] = np.nan if text is None else text_boxes([text])[0]
         self.written[row] = np.nan if text is None else bounds_of(self._corners[[row]])[0]
 
     def set_leaders(self, a: Any, b: Any) -> None:
-        """The leaders there are now, from ``a`` to ``b``, shape (n,)."""
+        """Replace the leaders by those from ``a`` to ``b``, complex (n,)."""
         self._leaders = np.asarray(a, complex), np.asarray(b, complex)
 
     def of_step(self, by: Provenance) -> list[int]:
-        """Numbers of the marks of the same step, position and frame; one arm among those of a sum has a name of its own."""
+        """Numbers of the marks with this step, position and frame, and with this name if any has it (an arm of a sum)."""
         return (by.name and self._steps.get(by[1:])) or self._steps.get(by[1:4], [])
 
     def near(self, box: Box, reach: float) -> Numbers:
-        """Numbers of the segments that may be within ``reach`` of a rectangle, mm."""
+        """Numbers of the segments whose bounding boxes are within ``reach`` mm of a rectangle."""
         return find_near(self.sides, box, reach)
 
     def bounds(self, *spans: tuple[int, int]) -> Box | None:
-        """Rectangle round the marks with these numbers, from where to where; None where there are none."""
+        """Bounding box of the marks numbered in ``spans`` (first, end); None if they have no ink."""
         edges = np.vstack((self.sides.T, self.written))
         of = np.append(self.of, self.texts)
         own = edges[np.any([(of >= first) & (of < end) for first, end in spans], axis=0)] if spans else edges[:0]
         return Box(*own[:, :2].min(axis=0).tolist(), *own[:, 2:].max(axis=0).tolist()) if len(own) else None
 
     def parting(self, p: complex, reach: float) -> tuple[Points, Points, Numbers, Flags]:
-        """What may part a label from what it names within ``reach`` of a point: ``a``, ``b``, number of the mark, strength.
+        """Segments within ``reach`` of a point that may separate a label from its object: ``a``, ``b``, mark number, strong or not.
 
-        Bars over letters do not, nor windows; leaders come last.
+        Without bars over letters and windows; leaders come last.
         """
         here = self.near(Box(p.real, p.imag, p.real, p.imag), reach)
         here = here[self._parts[here]]
@@ -139,7 +139,7 @@ class InkIndex:
                 np.append(self.of[here], np.full(n, LEADER)), np.append(self.strong[here], np.zeros(n, bool)))
 
     def count_in(self, box: Box, origin: complex = 0j, direction: float = 0.0) -> int:
-        """How many lines are in a rectangle of axes turned by an angle about a point, rad; strong ones and lettering count more."""
+        """Weighted number of lines in a rectangle whose axes have ``direction``, rad, about ``origin``; see ``WORSE``."""
         along, p = rect(1, direction), box.centre
         middle = origin + p * along
         start, end, around, counts = self._outlines
@@ -148,12 +148,12 @@ class InkIndex:
         return int(counts[near[enters(a, b - a, *box)]].sum())
 
     def is_crossed(self, a: complex, b: complex) -> bool:
-        """Whether a line would cross a strong one, or run over lettering."""
+        """True if the segment a .. b crosses a strong line or lettering."""
         start, end, _, counts = self._outlines
         return bool(crosses(start[counts > 1], end[counts > 1], a, b).any())
 
     def count_near(self, boxes: Floats, apart: float) -> npt.NDArray[np.int_]:
-        """How many lines come nearer than ``apart``, mm, to each of some rectangles, shape (m, 4); a strong one counts more."""
+        """Weighted number of lines nearer than ``apart`` mm to each of the rectangles, (m, 4) -> (m,); see ``WORSE``."""
         x0, y0, x1, y1 = boxes.T[:, :, None]
         near = self.near(Box(x0.min(), y0.min(), x1.max(), y1.max()), WIDEST)
         if not len(near):
@@ -164,35 +164,35 @@ class InkIndex:
         return np.asarray(np.logical_or.reduceat(met, first, axis=1) @ np.where(self.strong[near[first]], WORSE, 1))
 
     def lettering_near(self, box: Box, beside: float, above: float) -> Numbers:
-        """Rows of the lettering nearer to a rectangle than ``beside`` on its level, and ``above`` over or under it, mm."""
+        """Rows of the lettering nearer to a rectangle than ``beside`` mm horizontally and ``above`` mm vertically."""
         return find_near(self.written.T, box.inset(-beside, -above, -beside, -above), 0.0)
 
     @property
     def parts(self) -> Flags:
-        """Which segments may part a label from what it names: no bars over letters, no windows."""
+        """Mask, (n,), of the segments that may separate a label from its object: no bars over letters, no windows."""
         return self._parts
 
     @cached_property
     def _outlines(self) -> tuple[Points, Points, Floats, npt.NDArray[np.int_]]:
-        """Lines and sides of lettering: ``a``, ``b``, their edges, what they count."""
+        """Lines and sides of lettering: ``a``, ``b``, bounding boxes (4, n), weights."""
         a, b = np.append(self.a, np.roll(self._corners, 1, axis=1)), np.append(self.b, self._corners)
         return a, b, sides(a, b), np.append(np.where(self.strong, WORSE, 1), np.full(self._corners.size, WORSE))
 
     @property
     def heavy(self) -> Cells:
-        """Cells that lettering must not touch: main lines, curves, axes, fills, other lettering, and the neighbours of these.
+        """Cells that lettering must not touch: main lines, curves, axes, fills, other lettering, and their neighbours.
 
-        Main lines are up to a millimetre wide: their neighbours count as inked too.
+        Neighbours count as inked because main lines are up to a millimetre wide.
         """
         return self._current(self._heavy_cells)
 
     @property
     def light(self) -> Cells:
-        """Cells of thin lines, which it had better avoid."""
+        """Cells of thin lines, which lettering should avoid."""
         return self._current(self._light_cells)
 
     def _current(self, make: Callable[..., Cells]) -> Cells:
-        """Cells as they were made, with what was drawn since then."""
+        """Cached cells, updated with the ink added since they were made."""
         counts = len(self.a), len(self.written), len(self._filled)
         if (known := self._made.get(make.__name__)) is None:
             cells = make()
@@ -205,7 +205,7 @@ class InkIndex:
         return cells
 
     def _heavy_cells(self, lines: int = 0, texts: int = 0, fills: int = 0) -> Cells:
-        """Those of what is drawn from these numbers on."""
+        """Forbidden cells of the segments, texts and fills from these numbers on."""
         cells = self._cells(self._heavy, lines)
         cells.add_boxes(np.vstack((self.written[texts:], self._filled[fills:])))
         cells.widen()
@@ -221,27 +221,27 @@ class InkIndex:
 
 
 def _is_short(mark: Mark) -> bool:
-    """Whether nothing would be left of a symbol or of hatching under a letter: a line, a circle no longer than it."""
+    """True if a letter would hide a mark of a symbol or hatching: a line or circle no longer than ``SHORT``."""
     if mark.by is None or mark.by.role not in ("symbol", "hatch"):
         return False
     return (isinstance(mark, Line) and abs(mark.b - mark.a) <= SHORT) or (isinstance(mark, Arc) and 2 * mark.radius <= SHORT)
 
 
 def sample(a: Any, b: Any, step: float) -> Points:
-    """Points along segments from ``a`` to ``b``, shape (n,), their ends among them, no farther apart than ``step`` mm."""
+    """Points along segments from ``a`` to ``b``, complex (n,), with their ends, at most ``step`` mm apart."""
     count = (np.abs(b - a) / step).astype(int) + 2
     share = (np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count - 1, count)
     return np.asarray(np.repeat(a, count) + share * np.repeat(b - a, count))
 
 
 def sides(a: Any, b: Any) -> Floats:
-    """Left, lower, right and upper edges of segments, (4, n)."""
+    """Bounding boxes of segments a .. b, complex (n,): left, lower, right and upper edges, (4, n)."""
     low, high = ((of(a.real, b.real), of(a.imag, b.imag)) for of in (np.minimum, np.maximum))
     return np.array([*low, *high])
 
 
 def find_near(edges: Floats, box: Box, reach: float) -> npt.NDArray[np.intp]:
-    """Numbers of those of some edges, (4, n), that may be within ``reach`` of a rectangle."""
+    """Indices of the bounding boxes, (4, n), within ``reach`` of a rectangle along both axes."""
     x0, y0, x1, y1 = edges
     # The method: np.flatnonzero costs five calls more, and this is asked thousands of times.
     near = (x0 <= box.x1 + reach) & (x1 >= box.x0 - reach) & (y0 <= box.y1 + reach) & (y1 >= box.y0 - reach)
@@ -249,7 +249,7 @@ def find_near(edges: Floats, box: Box, reach: float) -> npt.NDArray[np.intp]:
 
 
 def _thin(points: Any) -> Any:
-    """A curve of hundreds of points by fewer chords: no point but the last is nearer than a millimetre to the one before."""
+    """Thin a polyline of 50 points or more, complex (n,) mm, to one point per millimetre of arc length; both ends stay."""
     if len(points) < 50:
         return points
     way = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(points)))))
@@ -258,7 +258,7 @@ def _thin(points: Any) -> Any:
 
 
 def distance(a: Any, b: Any, p: complex) -> Floats:
-    """Distances of a point to segments."""
+    """Distances of a point to segments a .. b, complex (n,) -> (n,)."""
     d = b - a
     length2 = np.maximum(np.abs(d) ** 2, 1e-18)
     t = np.minimum(np.maximum(((p - a) * np.conj(d)).real / length2, 0.0), 1.0)
@@ -266,7 +266,7 @@ def distance(a: Any, b: Any, p: complex) -> Floats:
 
 
 def enters(a: Any, d: Any, x0: Any, y0: Any, x1: Any, y1: Any) -> Flags:
-    """Whether segments pass through rectangles: by their parameter's range between each pair of sides."""
+    """Mask: does a + t d, 0 <= t <= 1, meet the rectangle? Slab method; arguments broadcast."""
     first, last = 0.0, 1.0
     for start, step, low, high in ((np.real(a), np.real(d), x0, x1), (np.imag(a), np.imag(d), y0, y1)):
         safe = np.where(np.abs(step) < 1e-12, 1e-12, step)  # along the sides: far off at both ends, or between them
@@ -276,7 +276,7 @@ def enters(a: Any, d: Any, x0: Any, y0: Any, x1: Any, y1: Any) -> Flags:
 
 
 def crosses(a: Any, b: Any, p: Any, q: Any) -> Flags:
-    """Whether segments cross the way from ``p`` to ``q``; touching its ends does not count."""
+    """Mask: do segments a .. b cross p .. q? Touching does not count; arguments broadcast."""
     def side(u: Any, v: Any, w: Any) -> Any:
         return ((v - u) * np.conj(w - u)).imag
 
@@ -284,11 +284,11 @@ def crosses(a: Any, b: Any, p: Any, q: Any) -> Flags:
 
 
 _FIRST_BEYOND = np.array([0, 0, 1, 1])[:, None]
-"""A rectangle's cells: from the one its lower left corner is in to the one after that of its upper right corner."""
+"""Added to the cells of two corners: a range of cells ends after that of the upper right one."""
 
 
 class Cells:
-    """Cells of an ``area``, ``side`` mm wide; ``taken``, shape (nx, ny), are those with ink."""
+    """Occupancy grid of an ``area`` with cells of ``side`` mm; ``taken``, bool (nx, ny): cells with ink."""
 
     def __init__(self, area: Box, side: float) -> None:
         self.side = side
@@ -297,18 +297,18 @@ class Cells:
         self._last = np.array(self.taken.shape * 2)[:, None]
 
     def add_points(self, z: Points) -> None:
-        """The cells of some points, shape (n,), are taken."""
+        """Take the cells of points, complex (n,)."""
         i, j = (((v - low) / self.side).astype(int) for v, low in zip((z.real, z.imag), self._corner[:2, 0], strict=True))
         there = (i >= 0) & (i < self.taken.shape[0]) & (j >= 0) & (j < self.taken.shape[1])
         self.taken[i[there], j[there]] = True
 
     def add_boxes(self, boxes: npt.NDArray[np.float64]) -> None:
-        """Those of some rectangles (x0, y0, x1, y1; shape (n, 4)) are."""
+        """Take the cells of rectangles x0, y0, x1, y1, (n, 4)."""
         for i0, j0, i1, j1 in self._spans(boxes.T).T.tolist():
             self.taken[i0:i1, j0:j1] = True
 
     def widen(self) -> None:
-        """The neighbours of what is taken are taken, too."""
+        """Take the neighbours of the taken cells, too."""
         taken = self.taken.copy()
         self.taken[1:] |= taken[:-1]
         self.taken[:-1] |= taken[1:]
@@ -317,17 +317,17 @@ class Cells:
 
     @cached_property
     def table(self) -> npt.NDArray[np.int32]:
-        """How many cells are taken to the left of and below each corner of the cells, shape (nx + 1, ny + 1)."""
+        """Summed-area table of the taken cells, (nx + 1, ny + 1)."""
         return sum_area(self.taken)
 
     def count_under(self, sides: npt.NDArray[np.float64]) -> npt.NDArray[np.int32]:
-        """Taken cells under rectangles; ``sides`` are their x0, y0, x1, y1, shape (4, n)."""
+        """Number of taken cells under rectangles; ``sides``: x0, y0, x1, y1, (4, n) -> (n,)."""
         i0, j0, i1, j1 = self._spans(sides)
         return np.asarray(self.table[i1, j1] - self.table[i0, j1] - self.table[i1, j0] + self.table[i0, j0])
 
     def count_lattice(self, x0: npt.NDArray[np.float64], y0: npt.NDArray[np.float64], width: float, height: float,
                 ) -> npt.NDArray[np.int32]:
-        """The same under rectangles of one size with their left edges at ``x0``, (n,), the lower ones at ``y0``, (m,): (n, m)."""
+        """Number of taken cells, (n, m), under rectangles of one size; left edges ``x0``, (n,), lower edges ``y0``, (m,)."""
         i0, _, i1, _ = self._spans(np.array([x0, x0, x0 + width, x0]))
         _, j0, _, j1 = self._spans(np.array([y0, y0, y0, y0 + height]))
         i, j = i0.min(), j0.min()  # of the part they are in: it is asked once, and the whole sheet is many times as large
@@ -336,7 +336,7 @@ class Cells:
         return np.asarray(band[:, j1 - j] - band[:, j0 - j])
 
     def include(self, others: Cells) -> None:
-        """What is taken of other cells of the same area is taken, too."""
+        """Take the cells that are taken in another grid of the same area."""
         self.taken |= others.taken
         vars(self).pop("table", None)
 
@@ -346,7 +346,7 @@ class Cells:
 
 
 def sum_area(taken: npt.NDArray[np.bool_]) -> npt.NDArray[np.int32]:
-    """Summed-area table of cells."""
+    """Summed-area table, (nx + 1, ny + 1), of a mask (nx, ny)."""
     table = np.zeros((taken.shape[0] + 1, taken.shape[1] + 1), np.int32)
     np.cumsum(taken, axis=1, dtype=np.int32, out=table[1:, 1:])
     for i in range(1, len(table)):  # row upon row: three times quicker than another cumsum, which walks down columns

@@ -39,7 +39,7 @@ _OVERLAP = 0.25  # mm an index may reach into the cell of its base, or the next 
 
 
 class LetterRun(NamedTuple):
-    """Plain letters on one baseline; ``at`` is its left end relative to the whole lettering, mm."""
+    """Plain letters on one baseline; ``at``: its left end relative to the whole lettering, mm."""
 
     at: complex
     text: str
@@ -47,7 +47,7 @@ class LetterRun(NamedTuple):
 
 
 class VectorBar(NamedTuple):
-    """A stroke over a letter, mm."""
+    """Overbar of a letter from ``a`` to ``b``, mm."""
 
     a: complex
     b: complex
@@ -63,14 +63,14 @@ class Lettering(NamedTuple):
     bars: tuple[VectorBar, ...]
 
     def over_rule(self, row: float) -> float:
-        """Height of its baseline over the rule under its row of a table, mm: an index that hangs low lifts its letters off it."""
+        """Height of the baseline over the rule under a table row ``row`` mm high; a low index lifts it."""
         size = max((run.height for run in self.runs), default=0.0)
         free = (row - self.ascent - self.descent) / 2
         return max((row - size) / 2, self.descent + min(OVER_RULE, free))
 
 
 class Glyph(NamedTuple):
-    """One letter in heights of a capital: advance and slanted centre lines."""
+    """One letter in heights of a capital: advance, slanted centre lines, bounding box of the ink."""
 
     advance: float
     strokes: tuple[Points, ...]
@@ -94,7 +94,7 @@ def slant() -> float:
 
 @cache
 def glyph(char: str) -> Glyph:
-    """The letter of a character.
+    """Glyph of a character.
 
     Raises
     ------
@@ -119,25 +119,25 @@ def glyph(char: str) -> Glyph:
 
 @lru_cache(maxsize=8192)
 def lacking(text: str) -> str:
-    """Characters of ``text`` that cannot be lettered, each once; an overbar needs a letter before it."""
+    """Characters of ``text`` without a glyph, each once; an overbar needs a letter before it."""
     known = _font()["glyphs"]
     return "".join(dict.fromkeys(c for before, c in zip("\0" + text, text, strict=False)
                                  if c not in known and not (c == BAR and before in known)))  # fmt: skip
 
 
 def advance(text: str, height: float) -> float:
-    """Distance from the origin of the first letter of ``text`` to the origin of what would follow, mm."""
+    """Advance width of ``text``, mm: from the origin of its first letter to that of the next text."""
     return height * _advance(text)
 
 
 @lru_cache(maxsize=8192)
 def _advance(text: str) -> float:
-    """Distance :func:`advance` of letters 1 mm high."""
+    """Advance width of letters 1 mm high."""
     return sum(glyph(c).advance for c in text)
 
 
 def strokes(text: str, height: float) -> list[Points]:
-    """Centre lines of a run of letters, mm, the left end of the baseline at 0; the pen is ``height``/10 wide."""
+    """Centre lines of a run of letters, complex (n,) mm, left end of the baseline at 0; the pen is ``height``/10 wide."""
     out: list[Points] = []
     x = 0.0
     for char in text:
@@ -148,33 +148,33 @@ def strokes(text: str, height: float) -> list[Points]:
 
 
 def widened(points: Points, wide: float) -> Points:
-    """Points of letters so many times as wide, from the left end of their baseline."""
+    """Stretch points, complex (n,), along the baseline by the factor ``wide``."""
     return np.asarray(wide * points.real + 1j * points.imag)
 
 
 def plain(text: str) -> str:
-    """Markup that sets ``text`` literally, whatever signs it holds."""
+    """Escape ``text`` as markup that sets it literally."""
     return text.replace("\\", "\\\\").replace("_", "\\_").replace("^", "\\^")
 
 
 def index_size(height: float) -> float:
-    """Height of an index: the next smaller of the standard's sizes; 0.7 of a height that is none of them."""
+    """Height of an index, mm: the next smaller standard height; 0.7 of a height that is not standard."""
     if height in SIZES[1:]:
         return SIZES[SIZES.index(height) - 1]
     return 0.7 * height
 
 
 def fitted(markup: str, room: float, height: float, least: float = 2.5) -> Lettering:
-    """Lettering in the largest size of the standard up to ``height`` with which it is no wider than ``room``, mm.
+    """Lay out markup at the largest standard height up to ``height`` with which it is no wider than ``room``, mm.
 
-    Below ``least`` mm nobody reads it: where even that is too wide, it is what comes back.
+    Not below ``least`` mm, which is used even if too wide: smaller letters are not legible.
     """
     sizes = [size for size in SIZES if least <= size <= height] or [height]
     return next((laid for size in reversed(sizes) if (laid := letter(markup, size)).width <= room), letter(markup, sizes[0]))
 
 
 class _Setter:
-    """Sets markup from left to right; the state is the place where the next letter goes."""
+    """Typesetter of markup, from left to right; collects runs and bars."""
 
     def __init__(self, markup: str) -> None:
         self.source = markup
@@ -185,7 +185,7 @@ class _Setter:
         return ValueError(f"lettering '{self.source}': {why}")
 
     def set(self, markup: str, at: complex, height: float) -> complex:
-        """Set ``markup`` from ``at``; returns where the next letter would go."""
+        """Set ``markup`` from ``at``; returns the origin of the next letter."""
         i, pen, text, start = 0, at, "", at
         while i < len(markup):
             c = markup[i]
@@ -216,7 +216,7 @@ class _Setter:
             self.runs.append(LetterRun(start, text, height))
 
     def indices(self, markup: str, i: int, pen: complex, height: float) -> tuple[int, complex]:
-        """Set the index at ``i`` and one of the other kind right after it; returns where the markup and the line go on."""
+        """Set the index at ``i`` and one of the other kind right after it; returns the positions to continue in markup and line."""
         small = index_size(height)
         bodies: dict[float, str] = {}  # by the lift of the baseline
         while i < len(markup) and markup[i] in "_^":
@@ -234,7 +234,7 @@ class _Setter:
         return i, complex(max(ends), pen.imag)
 
     def body(self, markup: str, i: int) -> tuple[str, int]:
-        """What an index sign at ``i`` - 1 governs."""
+        """Markup governed by the index sign at ``i`` - 1, and the position after it."""
         if i < len(markup) and markup[i] == "{":
             depth = 0
             for j in range(i, len(markup)):
@@ -251,7 +251,7 @@ class _Setter:
         return markup[i:j], j
 
     def bar(self, char: str, pen: complex, height: float) -> None:
-        """Bar over the letter that ends at ``pen``; it continues the bar over the letter before."""
+        """Add a bar over the letter that ends at ``pen``; it extends the bar over the letter before."""
         g = glyph(char)
         y = max(g.top, 0.7) + _BAR_ABOVE
         lean = complex(slant() * y, y)
@@ -266,7 +266,7 @@ class _Setter:
 
 @lru_cache(maxsize=8192)
 def _extents(text: str) -> tuple[float, float, float]:
-    """Right, upper and lower end of the ink of a run of letters 1 mm high, from the left end of its baseline."""
+    """Right, upper and lower edge of the ink of a run 1 mm high, mm from the left end of its baseline."""
     right, top, bottom, x = -inf, -inf, inf, 0.0
     for g in map(glyph, text):
         if g.strokes:
@@ -298,18 +298,18 @@ def letter(markup: str, height: float) -> Lettering:
 
 
 def size_for(lines: Iterable[str], room: float, height: float, least: float = 2.5) -> float:
-    """The largest size of the standard up to ``height``, mm, with which no line is wider than ``room``; ``least`` where none is."""
+    """Largest standard height up to ``height``, mm, with which no line is wider than ``room``; ``least`` if there is none."""
     texts = list(lines)
     sizes = [size for size in reversed(SIZES) if least <= size <= height]
     return next((size for size in sizes if all(letter(text, size).width <= room for text in texts)), least)
 
 
 SIGNS = r"(?= [+−] | = (?!0$))"
-"""Where a long formula may be broken: a last "= 0" stands alone nowhere."""
+"""Signs before which a long formula may be broken, but not before a final "= 0"."""
 
 
 def broken(text: str, width: float, height: float, signs: str = SIGNS) -> list[str]:
-    """A formula in lines no wider than ``width``, mm, where its ``signs`` let it be broken, but not at a no-break space."""
+    """Break a formula before its ``signs`` into lines no wider than ``width`` mm, but not at a no-break space."""
     lines = [""]
     for piece in (part.replace("\u00a0", " ") for part in re.split(signs, text)):
         if lines[-1] and letter(lines[-1] + piece, height).width > width:

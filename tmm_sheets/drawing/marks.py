@@ -1,6 +1,6 @@
 """The display list: marks in millimetres of the sheet, x right, y up, origin in the lower left corner of the paper.
 
-All a backend knows of looks is the name of a line type (``templates/linetypes.toml``). Points are complex numbers.
+The look of a mark is the name of a line type (``templates/linetypes.toml``). Points are complex numbers.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ Points = npt.NDArray[np.complex128]
 
 
 Role = Literal["vector", "construction", "point", "curve", "axis", "link", "symbol", "dimension", "hatch", "text", "table", "frame"]
-"""What a mark is on the sheet."""
+"""Roles of marks on the sheet."""
 
 
 class Provenance(NamedTuple):
-    """Where a mark comes from.
+    """Origin of a mark.
 
-    ``step`` is "plan/name" of the construction step that left it, ``position`` the label of the position, ``frame`` the number of
-    the :class:`PlacedFrame` it was drawn in (-1: none). ``name`` is what it is called where the step's own name does not say it: a
-    vector by its ends, a link by its points.
+    ``step``: "plan/name" of the construction step; ``position``: label of the position; ``frame``: number of the
+    :class:`PlacedFrame` it was drawn in (-1: none). ``name``: its own name if that of the step does not fit: of a vector its ends,
+    of a link its points.
     """
 
     role: Role
@@ -37,10 +37,10 @@ class Provenance(NamedTuple):
 
 
 class PlacedFrame(NamedTuple):
-    """Place of a plan on the sheet: a point z of the plan lies at origin + turned(mirrored(z/mu)), mm.
+    """Placement of a plan on the sheet: a point z of the plan lies at origin + turned(mirrored(z/mu)), mm.
 
-    ``mu`` along both axes, unit of the plan per mm; ``turn`` counter-clockwise, rad; ``mirror``: the plan's y axis is turned over
-    first.
+    ``mu``: along both axes, unit of the plan per mm; ``turn``: counter-clockwise, rad; ``mirror``: the plan's y axis is flipped
+    before the turn.
     """
 
     view: int
@@ -52,13 +52,13 @@ class PlacedFrame(NamedTuple):
     mirror: bool = False
 
     def __call__(self, z: Any) -> Any:
-        """Point of the sheet of a point of the plan, mm."""
+        """Points of the sheet, complex mm, of points of the plan, any shape."""
         w = np.real(z) / self.mu[0] + 1j * np.imag(z) / self.mu[1]
         return self.origin + complex(np.exp(1j * self.turn)) * (np.conj(w) if self.mirror else w)
 
 
 class Line(NamedTuple):
-    """A straight stroke; ``gaps`` are the shares of its length, from where to where, at which lettering interrupts it."""
+    """A straight stroke; ``gaps``: stretches (start, end) at which lettering interrupts it, as shares of its length."""
 
     a: complex
     b: complex
@@ -69,9 +69,9 @@ class Line(NamedTuple):
 
 
 class Arc(NamedTuple):
-    """A circular arc from angle ``start`` counter-clockwise to ``end`` (rad); a full circle when they differ by 2 pi.
+    """A circular arc from angle ``start`` counter-clockwise to ``end``, rad; a full circle if they differ by 2 pi.
 
-    ``gaps`` as those of a line.
+    ``gaps``: as of a line.
     """
 
     centre: complex
@@ -96,10 +96,7 @@ class Polyline(NamedTuple):
 
 
 class Text(NamedTuple):
-    """One run of plain text; ``at`` is the left end of the baseline, ``height`` that of a capital letter, mm.
-
-    Letters are ``wide`` times as wide as usual.
-    """
+    """One run of plain text; ``at``: left end of the baseline; ``height``: of a capital letter, mm; ``wide``: stretch along it."""
 
     at: complex
     text: str
@@ -123,7 +120,7 @@ Mark = Line | Arc | Polyline | Text | Fill
 
 
 class View(NamedTuple):
-    """A view of a sheet under its ``name``: the marks of the ``spans`` (first, end), drawn in ``box`` or near it."""
+    """A named view of a sheet: the marks of the ``spans`` (first, end), drawn in or near ``box``."""
 
     name: str
     box: Box
@@ -131,11 +128,11 @@ class View(NamedTuple):
 
 
 class Dimension(NamedTuple):
-    """Marks ``first`` .. ``end`` - 1 are a dimension of ``a`` .. ``b``, of a radius from the centre ``a`` to the circle at ``b``.
+    """A dimension, marks ``first`` .. ``end`` - 1: of ``a`` .. ``b``, or of a radius from the centre ``a`` to the circle at ``b``.
 
-    Of an angle with its ``vertex``, ``a`` and ``b`` are the ends of the arc. ``line`` is a point of the dimension line, ``text``
-    the markup of its lettering, ``middle`` the middle of it; ``factor`` is what it measures per mm of the sheet. ``label`` are the
-    marks of lettering that looked for its place, from where to where.
+    Of an angle with its ``vertex``, ``a`` and ``b`` are the ends of the arc. ``line``: a point of the dimension line; ``text``:
+    markup of its lettering; ``middle``: the middle of that; ``factor``: measured size per mm of the sheet; ``label``: marks (first,
+    end) of lettering that was placed by search.
     """
 
     kind: Literal["linear", "radius", "angle"]
@@ -152,9 +149,9 @@ class Dimension(NamedTuple):
 
 
 class FormField(NamedTuple):
-    """A line to be filled in: marks ``first`` .. ``end`` - 1 are what stands there, none where it is empty.
+    """A line of a form to be filled in; its content are the marks ``first`` .. ``end`` - 1, no marks if it is empty.
 
-    ``name`` is the same in every language, ``at`` the middle of the baseline.
+    ``name``: the same in every language; ``at``: middle of the baseline.
     """
 
     name: str
@@ -166,7 +163,7 @@ class FormField(NamedTuple):
 
 
 class Form(NamedTuple):
-    """Marks ``first`` .. ``end`` - 1 are a printed form with its fields, such as the title block."""
+    """A printed form with its fields, such as the title block: marks ``first`` .. ``end`` - 1."""
 
     name: str
     first: int
@@ -176,7 +173,7 @@ class Form(NamedTuple):
 
 @dataclass(frozen=True)
 class Drawing:
-    """A finished sheet: marks on paper of ``width`` x ``height`` mm, and which of them are views, dimensions, forms."""
+    """A finished sheet of ``width`` x ``height`` mm: its marks, and which of them are views, dimensions and forms."""
 
     width: float
     height: float
@@ -191,7 +188,7 @@ class Drawing:
 
 
 def moved(mark: Mark, by: complex) -> Mark:
-    """A mark moved over the paper."""
+    """The mark translated by ``by``, complex mm."""
     if isinstance(mark, Line):
         return mark._replace(a=mark.a + by, b=mark.b + by)
     if isinstance(mark, Arc):
@@ -202,7 +199,7 @@ def moved(mark: Mark, by: complex) -> Mark:
 
 
 def flat(mark: Mark, step: float = 0.5) -> Points:
-    """A mark's line as points: ends of lines, vertices of polylines, arcs cut into chords of at most ``step`` mm."""
+    """Line of a mark as a polyline, complex (n,) mm; arcs in chords of at most ``step`` mm, of a text its start only."""
     if isinstance(mark, Line):
         return np.array([mark.a, mark.b])
     if isinstance(mark, Arc):
@@ -217,6 +214,6 @@ def flat(mark: Mark, step: float = 0.5) -> Points:
 
 
 def bounds(marks: Iterable[Mark]) -> Box:
-    """Smallest rectangle round the lines of the marks (texts count with their start point only)."""
+    """Bounding box of the lines of the marks; texts count with their start only."""
     points = np.concatenate([flat(m) for m in marks])
     return Box(points.real.min(), points.imag.min(), points.real.max(), points.imag.max())

@@ -1,6 +1,6 @@
 """Formats of paper (GOST 2.301), the frame on them, the corner of the turned designation (GOST 2.104); sheets cut into pages.
 
-A sheet cut into pages for a small printer, to be glued together: crop marks, overlap lines, row and column.
+Pages for a small printer, to be glued together, have crop marks, overlap lines, row and column.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ MAIN = {"A0": (841.0, 1189.0), "A1": (594.0, 841.0), "A2": (420.0, 594.0), "A3":
 SIDES = MAIN | {"A1x3": (841.0, 1783.0), "A1x4": (841.0, 2378.0), "A2x3": (594.0, 1261.0), "A2x4": (594.0, 1682.0),
                 "A2x5": (594.0, 2102.0), "A3x3": (420.0, 891.0), "A3x4": (420.0, 1189.0), "A3x5": (420.0, 1486.0),
                 "A3x6": (420.0, 1783.0), "A3x7": (420.0, 2080.0)}  # fmt: skip
-"""The same of these and of the derived ones, short sides of a main one side by side, as the standard has rounded them."""
+"""Short and long side of the main and the derived formats (main ones side by side), mm, as the standard rounds them."""
 LONG, SHORT = 70.0, 14.0
 """Sides of field 26, the turned designation, mm."""
 
 
 class Paper(NamedTuple):
-    """A sheet of paper, mm; ``name`` is that of its format."""
+    """A sheet of paper: name of its format, width and height in mm."""
 
     name: str
     width: float
@@ -35,7 +35,7 @@ class Paper(NamedTuple):
 
     @property
     def outline(self) -> Box:
-        """The whole of it."""
+        """Rectangle of the whole paper."""
         return Box(0.0, 0.0, self.width, self.height)
 
     @property
@@ -45,7 +45,7 @@ class Paper(NamedTuple):
 
     @property
     def designation(self) -> Box:
-        """Place of field 26: the upper left corner, over a title block along the short side the upper right one."""
+        """Box of field 26: in the upper left corner; on upright paper in the upper right one."""
         frame = self.frame
         if self.width < self.height:
             return Box(frame.x1 - SHORT, frame.y1 - LONG, frame.x1, frame.y1)
@@ -58,7 +58,7 @@ class Paper(NamedTuple):
 
     @property
     def other_way(self) -> Paper:
-        """The same paper, upright if it lies."""
+        """Paper of this format in the other orientation."""
         return Paper(self.name, self.height, self.width)
 
 
@@ -69,7 +69,7 @@ def paper(name: str, portrait: bool = False) -> Paper:
 
 
 A1 = paper("A1")
-"""What sheets are composed for."""
+"""Paper that sheets are composed for."""
 
 
 PAPERS = {"a4": (210.0, 297.0), "a3": (297.0, 420.0)}
@@ -82,9 +82,9 @@ EDGE = 0.5  # mm within which a line counts as the edge of the paper
 
 
 class Tile(NamedTuple):
-    """One page: its place in the grid, counted from 1 at the top left, the part of the sheet it shows, its own marks.
+    """One page: its row and column, from 1 at the top left, the part of the sheet it shows, its own marks.
 
-    ``shift`` takes a place on the sheet to its place on the page.
+    ``shift`` leads from a point of the sheet to that of the page.
     """
 
     row: int
@@ -95,7 +95,7 @@ class Tile(NamedTuple):
 
 
 def tiles(drawing: Drawing, paper: str = "a4", overlap: float = OVERLAP, bar: bool = False) -> list[Tile]:
-    """Pages of a drawing from left to right, row by row from the top; ``bar`` puts the control bar on each of them.
+    """Cut a drawing into pages, from left to right, row by row from the top; ``bar`` adds the control bar to each.
 
     Raises
     ------
@@ -135,7 +135,7 @@ def tiles(drawing: Drawing, paper: str = "a4", overlap: float = OVERLAP, bar: bo
 
 
 def control_bar(canvas: Canvas, at: complex, along: complex = 1) -> None:
-    """Bar of 100 mm to be measured on the print: what it is shorter or longer by, the whole sheet is."""
+    """Draw a bar of 100 mm: its error on the print is that of the whole sheet."""
     end = at + BAR * along
     canvas.line(at, end, "thin")
     for i in range(11):
@@ -152,7 +152,7 @@ def with_bar(drawing: Drawing) -> Drawing:
 
 
 def without_outline(drawing: Drawing) -> Drawing:
-    """The drawing without the lines along the edge of the paper, which no plotter reaches on paper of just that size."""
+    """The drawing without the outline of the paper, which a plotter cannot reach on paper of that size."""
     return _with(drawing, tuple(m for m in drawing.marks if not _on_edge(m, drawing)))
 
 
@@ -161,7 +161,7 @@ def _with(drawing: Drawing, marks: tuple[Mark, ...]) -> Drawing:
 
 
 def _on_edge(mark: Mark, drawing: Drawing) -> bool:
-    """Whether a mark is the rectangle round the whole paper."""
+    """True if a mark is the outline of the paper."""
     if not isinstance(mark, Polyline):
         return False
     box = bounds([mark])

@@ -1,4 +1,4 @@
-"""What a plotter can do, read from ``templates/plotters/*.toml`` or from a file of the user's own."""
+"""Capabilities of a plotter, read from ``templates/plotters/*.toml`` or from a file of the user's own."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from tmm_sheets.resources import template
 from tmm_sheets.words import tell
 
 DEFAULT = "a1"
-NEAR = 0.05  # mm: a pen so much thinner or thicker than a line still draws it in one pass; its edges are then off by half of that
+NEAR = 0.05  # mm: a pen thinner or thicker than a line by this draws it in one pass; its edges are then off by half of that
 LARGEST = 10_000.0  # mm
 
 
 @dataclass(frozen=True)
 class Pen:
-    """A pen of the carousel: its number there and the width of its line, mm."""
+    """A pen: its number in the carousel and the width of its line, mm."""
 
     number: int
     width: float
@@ -29,7 +29,7 @@ class Pen:
 
 @dataclass(frozen=True)
 class Plotter:
-    """A plotter. ``reach`` is in its own axes, mm; ``speed`` in cm/s, 0 for the machine's own.
+    """A plotter. ``reach``: in its own axes, mm; ``speed``: cm/s, 0 for that of the machine.
 
     A printer that makes lines of any width (``language`` hpgl2) has no pens.
     """
@@ -42,9 +42,9 @@ class Plotter:
     pens: tuple[Pen, ...]
 
     def pen(self, width: float) -> Pen:
-        """The pen for lines of ``width`` mm: the nearest if it is near enough, or the thickest that is thinner, or the finest.
+        """Pen for lines of ``width`` mm: the nearest within ``NEAR``, else the thickest that is thinner, else the finest.
 
-        The ink of a thinner pen is brought to the width by parallel passes.
+        A thinner pen draws the line in parallel passes.
         """
         if not self.pens:
             return Pen(1, round(width, 3))
@@ -66,12 +66,12 @@ def names() -> list[str]:
 
 @cache
 def plotter(name: str = DEFAULT) -> Plotter:
-    """The plotter of that name, or of the file at that path.
+    """Read a plotter by its shipped name, or from the file at that path.
 
     Raises
     ------
     ValueError
-        When there is none, or when its file does not say what it must; the message names file and key.
+        When there is none, or a key is missing or wrong; the message names file and key.
     OSError
         When the file cannot be read.
     """

@@ -1,6 +1,6 @@
 """Line types and layers of the sheets, read from ``templates/linetypes.toml`` and ``templates/layers.toml``.
 
-What lies on a layer is of one role and one line type.
+All marks on a layer have one role and one line type.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from tmm_sheets.words import tr
 
 @dataclass(frozen=True)
 class LineType:
-    """How a line looks: ``width`` in mm; ``pattern`` dash, -gap, dash ... in mm, empty for a solid line.
+    """A line type: ``width`` in mm; ``pattern``: dash, -gap, dash ... in mm, empty for a solid line.
 
-    ``layer`` is what it adds to the name of a layer (see :mod:`~tmm_sheets.drawing.styles`), ``description`` says it in words;
-    ``colour`` (AutoCAD colour index) and ``linetype`` are what a DXF file calls it.
+    ``layer``: suffix of the names of its layers; ``description``: in words; ``colour`` (AutoCAD colour index) and ``linetype``:
+    those of DXF files.
     """
 
     name: str
@@ -46,7 +46,7 @@ def _line_type(name: str, **row: Any) -> LineType:
 
 
 def line_type(name: str) -> LineType:
-    """The line type of that name.
+    """Line type by its name.
 
     Raises
     ------
@@ -61,11 +61,11 @@ def line_type(name: str) -> LineType:
 
 
 BY_STYLE = {"main": "symbol", "thin": "symbol", "centre": "axis", "hidden": "link", "twodot": "link"}
-"""Roles of marks that tell none, by line type; other line types are called after the role."""
+"""Roles of marks without provenance, by line type; other line types are named after the role."""
 
 
 class LayerStyle(NamedTuple):
-    """A layer: ``name`` is the same in every language, ``style`` is its line type."""
+    """A layer: ``name``, the same in every language, role and line type (``style``)."""
 
     name: str
     role: str
@@ -73,7 +73,7 @@ class LayerStyle(NamedTuple):
 
     @property
     def description(self) -> str:
-        """What lies on it, in the language of the paper."""
+        """Description of its marks, in the language of the paper."""
         row, line = roles()[self.role], line_type(self.style).description
         description = row["description"]
         if self.style == row["style"]:
@@ -83,13 +83,13 @@ class LayerStyle(NamedTuple):
 
 @cache
 def roles() -> Mapping[str, Mapping[str, str]]:
-    """Rows of the file: by role its description and its usual line type."""
+    """Rows of ``templates/layers.toml``: by role its description and its usual line type."""
     return MappingProxyType(tomllib.loads(template("layers.toml").read_text(encoding="utf-8")))
 
 
 @cache
 def layers() -> Mapping[tuple[str, str], LayerStyle]:
-    """Every layer there may be, by role and line type; the role's usual one first."""
+    """All layers by role and line type; the role's usual one first."""
     found = {}
     for role, row in roles().items():
         usual = row["style"]
@@ -100,7 +100,7 @@ def layers() -> Mapping[tuple[str, str], LayerStyle]:
 
 
 def layer(mark: Mark) -> LayerStyle:
-    """The layer of a mark.
+    """Layer of a mark.
 
     Raises
     ------

@@ -12,7 +12,7 @@ from tmm_sheets.drawing.canvas import Canvas, in_role
 HINGE = 1.6
 """Radius of a hinge's circle, mm."""
 CORNER, STRAIGHT = 5.0, 0.1
-"""How far the mark of a rigid angle reaches along its sides, mm; sine of the angle below which they are one line."""
+"""Length of the mark of a rigid angle along its sides, mm; sine of the angle below which these count as one line."""
 BLOCK = (10.0, 6.0)
 """Length and width of a sliding block, mm."""
 
@@ -41,7 +41,7 @@ def pivot(canvas: Canvas, at: complex, down: complex = -1j, style: str = "main")
 
 @in_role("link")
 def bar(canvas: Canvas, points: Iterable[complex], hinges: Iterable[complex], style: str = "main", radius: float = HINGE) -> None:
-    """Link line through points; it is interrupted inside every hinge circle it passes or ends at."""
+    """Link line through points, interrupted inside every hinge circle that it passes or ends at."""
     p = list(points)
     circles = list(hinges)
     for a, b in pairwise(p):
@@ -67,7 +67,7 @@ def bar(canvas: Canvas, points: Iterable[complex], hinges: Iterable[complex], st
 
 @in_role("symbol")
 def rigid_corner(canvas: Canvas, at: complex, u: complex, v: complex, style: str = "main") -> None:
-    """Rigid angle of one link, filled between the lines along ``u`` and ``v``; nothing where they lie along each other."""
+    """Rigid angle of one link, filled between its lines along ``u`` and ``v``; nothing if these are parallel."""
     u, v = u / abs(u), v / abs(v)
     if abs((u.conjugate() * v).imag) > STRAIGHT:
         canvas.fill((at + HINGE * u, at + CORNER * u, at + CORNER * v, at + HINGE * v), style)
@@ -101,13 +101,13 @@ _QUARTER = ((1.0, 0.0), (0.9239, 0.3827), (0.7071, 0.7071), (0.3827, 0.9239), (0
 
 
 def half_arrow(radius: float) -> float:
-    """Half the angle of a curved arrow of that radius, mm, in rad."""
+    """Half the angle of a curved arrow of the radius, mm, in rad."""
     return min(0.35 * pi, 9.0 / radius)
 
 
 @in_role("symbol")
 def rotation_arrow(canvas: Canvas, about: complex, radius: float, towards: complex, sense: float, text: str) -> None:
-    """Curved arrow of an angular velocity or acceleration round ``about``, open towards the label's direction."""
+    """Curved arrow of an angular velocity or acceleration about a point, with its label in the direction ``towards``."""
     middle, half = phase(towards), half_arrow(radius)
     s = copysign(1.0, sense)
     canvas.arc_arrow(about, radius, middle - s * half, middle + s * half, "axis")

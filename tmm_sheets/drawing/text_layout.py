@@ -13,26 +13,26 @@ from typing import NamedTuple
 from tmm_sheets.drawing.lettering import SIZES, letter
 
 GAP, LEAST = 2.0, 1.0
-"""What a column is wider than its widest text, where there is room and at least, mm."""
+"""Excess of a column over its widest text, mm: if there is room, and at least."""
 INDICES = 1.8
-"""Height of a row in heights of its letters with which indices above and below keep clear of its lines."""
+"""Least height of a row, in heights of its letters, with which indices keep clear of its lines."""
 
 
 def size_in(row: float) -> float:
-    """Size of the letters in rows of a height, mm: 3.5 where their indices have room, 2.5 in lower ones."""
+    """Height of the letters in a row, mm: 3.5 if their indices have room, else 2.5."""
     return 3.5 if row >= INDICES * 3.5 else 2.5
 
 
 def needs(rows: Sequence[Sequence[str]], height: float, gap: float = GAP) -> list[float]:
-    """Widths that the columns need, mm, with letters of a height."""
+    """Widths of the columns, mm: their widest cell in letters of ``height`` mm, and ``gap``."""
     return [max(letter(cell, height).width for cell in column) + gap for column in zip(*rows, strict=True)]
 
 
 def parted(rows: Sequence[Sequence[str]], width: float, height: float) -> list[list[list[str]]]:
-    """Parts of a table for a place of this size, mm, one under another; each begins with the column of names.
+    """Split a table into parts, one under another, that fit in ``width`` x ``height`` mm; each begins with the column of names.
 
-    There are as few as give every text room in letters of 2.5 mm. Where these have no room under one another there is one part,
-    with every second column, or every third; the last one is always there.
+    As few parts as give every text room in letters of 2.5 mm. If these do not fit under one another: one part with every second
+    column, or every third, and always the last.
     """
     columns, lowest = len(rows[0]) - 1, INDICES * 2.5 * len(rows)
     for n in range(1, max(int(height / lowest + 1e-9), 1) + 1):
@@ -49,9 +49,10 @@ def parted(rows: Sequence[Sequence[str]], width: float, height: float) -> list[l
 
 
 def widened(widths: Sequence[float], rows: Sequence[Sequence[str]], height: float) -> list[float]:
-    """Widths of the same sum where those columns whose texts do not fit take what they need from those that have it to spare.
+    """Redistribute the widths of columns, mm: those whose texts do not fit take width from those that have it to spare.
 
-    Where there is not enough to spare with letters of this height, the next smaller ones of the standard down to 2.5 mm decide.
+    The sum stays. If there is not enough to spare with letters of ``height``, the next smaller standard height decides, down to
+    2.5 mm.
     """
     for size, gap in product((size for size in reversed(SIZES) if 2.5 <= size <= height), (GAP, LEAST)):
         need = needs(rows, size, gap)
@@ -68,15 +69,15 @@ def widened(widths: Sequence[float], rows: Sequence[Sequence[str]], height: floa
 TOGETHER = "\u00a0"
 """Space at which no line ends: between a number and its unit."""
 NARROWEST = 0.7
-"""Letters that are too long for their place are so many times as wide at least, as CAD programs have them."""
+"""Least stretch of letters along the line, as CAD programs have it."""
 LEADING = 8.0
-"""Distance of the lines of a title, mm."""
+"""Distance between the baselines of a title, mm."""
 MIN_TITLE_HEIGHT_MM = 2.5
-"""Height below which nobody reads a title, mm."""
+"""Height below which a title is not legible, mm."""
 
 
 class Heading(NamedTuple):
-    """Lines of a title, the height of their letters, mm, and how many times as wide as usual these are."""
+    """Lines of a title, the height of their letters, mm, and their stretch along the line, 1.0 for none."""
 
     lines: list[str]
     height: float
@@ -84,7 +85,7 @@ class Heading(NamedTuple):
 
 
 def heading(text: str, width: float, height: float, most: int = 1) -> Heading:
-    """A title no wider than ``width``, mm, on ``most`` lines, in letters of the ``height`` if they can be."""
+    """Lay out a title no wider than ``width`` mm on at most ``most`` lines, in letters of ``height`` mm if they fit."""
     sizes = [size for size in reversed(SIZES) if MIN_TITLE_HEIGHT_MM <= size <= height] or [height]
     for size in sizes:
         broken = [wrapped(text, size, count) for count in range(1, most + 1)]
@@ -96,7 +97,7 @@ def heading(text: str, width: float, height: float, most: int = 1) -> Heading:
 
 
 def wrapped(text: str, height: float, count: int) -> list[str]:
-    """The text broken between words into ``count`` lines of about one length; ``TOGETHER`` is a space that is not broken."""
+    """Break text between words into at most ``count`` lines of similar length; it is not broken at ``TOGETHER``."""
     words = text.split(" ")
     widths = [letter(word, height).width for word in words]
     space = letter("н н", height).width - 2 * letter("н", height).width

@@ -24,31 +24,31 @@ if TYPE_CHECKING:
     from tmm_sheets.drawing.canvas import Canvas
 
 TURNS = {0.0: 1 + 0j, pi / 2: 1j, pi: -1 + 0j}
-"""Directions of lettering by its angle, exact."""
+"""Exact directions of lettering by angle, rad."""
 CAPTION = 2.5
 DOTS, MOST = "...", 4
 NARROWER = (0.95, 0.9, 0.85, 0.8, 0.75, NARROWEST)
-"""Text too long for a cell in the least size has letters so many times as wide, as CAD programs have, and no narrower ones."""
+"""Stretches of letters, tried in turn, if a text is too long for its cell at the least height, as CAD programs have."""
 PITCH = 1.7  # between lines of type B lettering, in letter heights
 SIDE, ENDS = 1.0, 1.25  # least distance of lettering to the lines at its sides, above and below, mm
-BESIDE = 0.5  # the same of the printed words, whose cells are as wide as the standard wants them
-NAME_SIDE = 0.7  # of names, which are long for their cell
+BESIDE = 0.5  # least distance of the printed words at their sides, mm: their cells have the widths of the standard
+NAME_SIDE = 0.7  # that of names, which are long for their cell, mm
 NAME_WIDTH, NAME_HEIGHT = 23 - 2 * NAME_SIDE, 4.5
 NAME_NARROWER = (*NARROWER, 0.65, 0.6, 0.55, 0.5)
-"""The same of names: narrow letters are better than a person without initials."""
+"""Stretches of the letters of names: narrow letters are better than a name without initials."""
 
 FIELDS = frozenset({
     "designation", "title", "project", "letter", "mass", "scale", "developed", "checked", "technical_control", "supervisor",
     "norm_control", "approved", "institution", "group",
 })  # fmt: skip
-"""What :func:`draw_frame` understands."""
+"""Names of the fields of :func:`draw_frame`."""
 ROLES = {
     "Drawn": "developed", "Checked": "checked", "T. contr.": "technical_control", "": "supervisor", "N. contr.": "norm_control",
     "Approved": "approved",
 }  # fmt: skip
-"""Names (field 11) by the role printed in field 10; the row without one is left to the department."""
+"""Field for the name (field 11) by the role printed in field 10; the department assigns the row without a role."""
 WHO = frozenset({"2", "9", "11", "12", "13"})
-"""Fields that tell who drew a sheet and under which designation; with them goes the role of the row that is the department's."""
+"""Numbers of the fields with persons, institution and designation; the role in the department's row belongs to them."""
 
 
 @cache
@@ -58,7 +58,7 @@ def _forms() -> dict[str, Any]:
 
 
 def block(form: str, paper: Paper = A1) -> Box:
-    """Place of a title block on the sheet.
+    """Box of a title block on the sheet.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def block(form: str, paper: Paper = A1) -> Box:
 
 
 def who_cells(forms: Sequence[Form], paper: Paper = A1) -> tuple[Box, ...]:
-    """Cells of a sheet's forms that tell who drew it and under which designation; none where it has no title block."""
+    """Cells of a sheet's forms with persons, institution and designation; empty if it has no title block."""
     names = {field.name for form in forms if form.name == "title_block" for field in form.fields}
     if not names:
         return ()
@@ -85,12 +85,12 @@ def who_cells(forms: Sequence[Form], paper: Paper = A1) -> tuple[Box, ...]:
 
 def draw_frame(canvas: Canvas, fields: Mapping[str, str], form: str, sheet_number: int, sheet_count: int,
                paper: Paper = A1) -> tuple[Box, ...]:
-    """Draw the sheet's outline, frame, title block and turned designation.
+    """Draw the sheet's outline, frame, title block and rotated designation.
 
     Parameters
     ----------
     fields
-        Plain text by the names of :data:`FIELDS`; what is absent stays empty, mass and scale get a dash (a sheet of
+        Plain text by the names of :data:`FIELDS`; absent ones stay empty, mass and scale get a dash (a sheet of
         plans has no mass and as many scales as views).
     form
         "1" or "2a".
@@ -99,12 +99,12 @@ def draw_frame(canvas: Canvas, fields: Mapping[str, str], form: str, sheet_numbe
 
     Returns
     -------
-    The boxes of the title block and of the turned designation, closed to anything else.
+    The boxes of the title block and of the rotated designation, which nothing else may enter.
 
     Raises
     ------
     ValueError
-        when ``fields`` has a name that is none of them.
+        when ``fields`` has an unknown name.
     """
     if unknown := sorted(set(fields) - FIELDS):
         raise ValueError(f"title block fields unknown: {', '.join(unknown)}; known are {', '.join(sorted(FIELDS))}")
@@ -128,7 +128,7 @@ def draw_frame(canvas: Canvas, fields: Mapping[str, str], form: str, sheet_numbe
 
 
 def _rules(canvas: Canvas, place: Box, form: Mapping[str, Any]) -> None:
-    """The lines of a title block."""
+    """Draw the lines of a title block."""
     origin = complex(place.x0, place.y0)
     for style, rows in (("main", form["thick"]), ("thin", form["thin"])):
         for x0, y0, x1, y1 in rows:
@@ -137,7 +137,7 @@ def _rules(canvas: Canvas, place: Box, form: Mapping[str, Any]) -> None:
 
 def _fill(canvas: Canvas, place: Box, cells: list[Any], fields: Mapping[str, str],
           values: Mapping[str, tuple[dict[str, str], tuple[float, ...]]]) -> list[FormField]:
-    """The printed words of a title block, and what is written into its cells: the fields are returned."""
+    """Letter the printed words of a title block and its fields; returns the fields."""
     names = _name_sizes(fields)
     role, found = "", list[FormField]()
     for number, kind, word, x0, y0, x1, y1 in cells:
@@ -161,19 +161,19 @@ def _fill(canvas: Canvas, place: Box, cells: list[Any], fields: Mapping[str, str
 
 
 def _word(text: str) -> str:
-    """A printed word of the form; the row without one is the department's: most have the head of the project there."""
+    """Translation of a printed word of the form; empty if there is none."""
     return tr_in("title block", text) if text else ""
 
 
 PATRONYMIC = re.compile(r"(ич|вна|чна)$")
-"""End of a patronymic: where a name has one its surname stands first."""
+"""Ending of a patronymic; a name with one begins with the surname."""
 
 
 def short_name(name: str) -> str:
-    """A name as long as its cell has room for with the least letters; its initials always stay.
+    """Shorten a name to the width of its cell in the smallest letters; initials always stay.
 
-    Where it is too long first with first names as initials and without spaces between these, then in narrower letters, as narrow
-    ones as names may have at last; what is too long even so has dots in its surname.
+    Tried in turn: first names as initials without spaces, narrower letters, the narrowest permitted for names, and finally dots in
+    the surname.
     """
     words = name.split()
     surname = _surname(words)
@@ -192,14 +192,14 @@ def _surname(words: list[str]) -> str:
 
 
 def _name_sizes(fields: Mapping[str, str]) -> tuple[float, ...]:
-    """Permitted heights of the names, all of them in one: the larger only where all of them fit."""
+    """Permitted heights of the names, mm; the larger only if all names fit in it."""
     names = [letter(plain(fields.get(role, "")), 3.5) for role in ROLES.values()]
     large = all(name.width <= NAME_WIDTH and 3.5 + 2 * _rise(name, 3.5) <= NAME_HEIGHT for name in names)
     return (3.5, 2.5) if large else (2.5,)
 
 
 def _values(fields: Mapping[str, str], number: int, count: int) -> dict[str, tuple[dict[str, str], tuple[float, ...]]]:
-    """What is filled in by its name, and permitted letter heights, by number of the field."""
+    """Texts by name, and permitted letter heights, mm, by number of the field."""
     def given(*names: str, empty: str = "") -> dict[str, str]:
         return {name: fields.get(name, empty) for name in names}
 
@@ -221,7 +221,7 @@ def _rectangle(canvas: Canvas, box: Box, style: str) -> None:
 
 
 def _left(canvas: Canvas, cell: Box, text: str) -> float:
-    """A printed word at the left of its cell; returns the width it takes."""
+    """Letter a printed word at the left of its cell; returns the width it takes, mm."""
     if not text:
         return 0.0
     return canvas.text(complex(cell.x0 + SIDE, cell.centre.imag - CAPTION / 2), plain(text), CAPTION).width + SIDE
@@ -240,15 +240,15 @@ def _wrap(text: str, height: float, width: float) -> list[str]:
 
 
 def _rise(laid: Lettering, size: float) -> float:
-    """How far marks over capitals (Й, Ö) rise above the line; what is round or a bracket does not count."""
+    """Height of accents (Й, Ö) above the capitals, mm; round letters and brackets do not count."""
     return laid.ascent - size if laid.ascent > 1.1 * size + 1e-9 else 0.0
 
 
 def _fitted(parts: Mapping[str, str], sizes: tuple[float, ...], width: float, height: float, narrower: tuple[float, ...]) -> tuple[
         float, float, dict[str, list[str]]]:
-    """Letter height, how wide the letters are, and lines of each part: the largest size at which they fit, in up to four lines.
+    """Letter height, stretch and lines of each part: the largest of ``sizes`` at which they fit, in up to four lines.
 
-    What is too long for the smallest size, which must stay readable, has narrower letters, and ends in dots if that is not enough.
+    A text too long for the smallest height gets ``narrower`` letters, and ends in dots if that is not enough.
     """
     for size, wide in (*((size, 1.0) for size in sizes), *((sizes[-1], wide) for wide in narrower)):
         room = int((height / size - 1) / PITCH + 1 + 1e-9)  # lines
@@ -265,7 +265,7 @@ def _fitted(parts: Mapping[str, str], sizes: tuple[float, ...], width: float, he
 
 
 def _shortened(wrapped: Mapping[str, list[str]], size: float, width: float, room: int) -> dict[str, list[str]]:
-    """Parts cut down to so many lines together, the longest first, and to the width; what is left out shows as dots."""
+    """Cut parts down to ``room`` lines together, the longest first, and to ``width``; dots mark omissions."""
     count = {name: len(lines) for name, lines in wrapped.items()}
     while sum(count.values()) > room:
         count[max(count, key=lambda name: count[name])] -= 1
@@ -274,7 +274,7 @@ def _shortened(wrapped: Mapping[str, list[str]], size: float, width: float, room
 
 
 def _cut(line: str, size: float, width: float, whole: bool) -> str:
-    """A line no wider than it may be, with dots where something is left out of it or after it (not ``whole``)."""
+    """Cut a line to ``width`` mm, with dots if something of it or after it (not ``whole``) is omitted."""
     end = "" if whole else DOTS
     while line and letter(plain(line + end), size).width > width:
         line, end = line[:-1].rstrip(), DOTS
@@ -283,9 +283,9 @@ def _cut(line: str, size: float, width: float, whole: bool) -> str:
 
 def _lines(canvas: Canvas, cell: Box, parts: Mapping[str, str], sizes: tuple[float, ...], angle: float = 0.0,
            side: float = SIDE, narrower: tuple[float, ...] = NARROWER) -> list[FormField]:
-    """Lettering in the middle of a cell.
+    """Letter ``parts``, texts by name that each begin a line, in the middle of a cell.
 
-    ``parts`` are texts by name, each begins a line. Returns the lines; a part without text has an empty one below the others.
+    Returns the lines as fields; a part without text has an empty one below the others.
     """
     along, across = (cell.height, cell.width) if angle == pi / 2 else (cell.width, cell.height)
     size, wide, wrapped = _fitted(parts, sizes, along - 2 * side, across - (2 * ENDS if across > 5 else 0.5), narrower)

@@ -1,4 +1,4 @@
-"""The record of a project as one JSON document; what it says is told in docs/record.md."""
+"""The record of a project as one JSON document; docs/record.md is made from the docstrings here."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ if TYPE_CHECKING:
     from tmm_sheets.sheets.composed import Composed
 
 
-def written(value: Any) -> Any:
-    """A value for JSON."""
+def to_json(value: Any) -> Any:
+    """A value as JSON: complex numbers as [x, y], NaN as None, a curve by its points, slopes and law."""
     if isinstance(value, complex) and isfinite(value.real) and isfinite(value.imag):  # ends of helper lines: most of all values
         return [value.real, value.imag]
     if isinstance(value, Curve):
-        return {name: written(getattr(value, name)) for name in ("x", "y", "left", "right")} | {"law": value.law}
+        return {name: to_json(getattr(value, name)) for name in ("x", "y", "left", "right")} | {"law": value.law}
     if isinstance(value, tuple | list):
-        return [written(v) for v in value]
+        return [to_json(v) for v in value]
     if isinstance(value, str | bool) or value is None:
         return value
     array = np.asarray(value)
@@ -56,8 +56,8 @@ def _defined(found: Any) -> Any:
     return found if isfinite(found) else None
 
 
-def shape(value: Any, positions: int) -> dict[str, Any]:
-    """What a value is: "over" none, positions or curve, and the "type" of its numbers."""
+def value_kind(value: Any, positions: int) -> dict[str, Any]:
+    """Extent and type of a value: "over" none, positions or curve, and the "type" of its numbers."""
     if isinstance(value, Curve):
         return {"over": "curve", "type": "real"}
     if isinstance(value, str):
@@ -67,7 +67,7 @@ def shape(value: Any, positions: int) -> dict[str, Any]:
     return {"over": over, "type": {"c": "complex", "i": "integer", "u": "integer", "b": "integer"}.get(array.dtype.kind, "real")}
 
 
-def given(x: Any, positions: int) -> dict[str, Any]:
+def given_argument(x: Any, positions: int) -> dict[str, Any]:
     """A given number, point or row, as an argument of a step.
 
     Keys
@@ -78,14 +78,14 @@ def given(x: Any, positions: int) -> dict[str, Any]:
     criterion : by what a search chose it; whole numbers and words then have the type ``choice``
     """
     if isinstance(x, Given):
-        found = {"given": written(x.value), **shape(x.value, positions), **_origin(x)}
+        found = {"given": to_json(x.value), **value_kind(x.value, positions), **_origin(x)}
         if x.over != "positions":  # what the row itself says of nodes and tables goes before its length
             found["over"] = x.over
         if not x.choice:
             return found
         # Whole numbers and words that a search found; of an angle or a point its own type says how to read it.
         return found | {"criterion": x.choice} | ({"type": "choice"} if found["type"] in ("integer", "choice") else {})
-    return {"given": written(x), **shape(x, positions), **_origin(x)}
+    return {"given": to_json(x), **value_kind(x, positions), **_origin(x)}
 
 
 def _origin(x: Any) -> Mapping[str, str]:
@@ -102,12 +102,12 @@ _LETTERS = {
 _BARRED = re.compile("(.)\u0305")
 _CYRILLIC = re.compile(r"[А-Яа-яЁёІіЇїЄє][А-Яа-яЁёІіЇїЄє .]*")
 _NUMBERED = re.compile(r"([^\W\d_]+)([\d,]+)([′″]*)")
-TOLD = ("number", "length", "ordinate", "angle", "inclination")
-"""Kinds of results whose formulas are told; a point is told by its sentence."""
+FORMULA_KINDS = ("number", "length", "ordinate", "angle", "inclination")
+"""Kinds of steps with a formula; a point has its sentence only."""
 
 
-def letters(markup: str) -> str:
-    """Lettering markup, or the name of a step, in LaTeX."""
+def to_latex(markup: str) -> str:
+    """Lettering markup, or the name of a step, as LaTeX."""
     if "_" not in markup and (numbered := _NUMBERED.fullmatch(markup)):
         markup = f"{numbered[1]}_{{{numbered[2]}}}{numbered[3]}"
     text = markup.replace("\\", "").replace("%", r"\%").replace("#", r"\#").replace("&", r"\&")
@@ -118,44 +118,44 @@ def letters(markup: str) -> str:
     return "".join(f"\\{_LETTERS[c]} " if c in _LETTERS else c for c in text).strip()
 
 
-def tree_of(step: Step) -> expression.Expression | None:
-    """The formula of a step that is told by one; None for a move of ruler and compass and for a number handed on."""
-    if step.rule.gives not in TOLD:
+def formula_of(step: Step) -> expression.Expression | None:
+    """Formula of a step; None for a construction by ruler and compass and for a number passed on."""
+    if step.rule.gives not in FORMULA_KINDS:
         return None
     tree = step.rule.tree(len(step.args))
     return None if isinstance(tree, expression.Argument) or (isinstance(tree, expression.Operation) and tree.function) else tree
 
 
-def symbols(step: Step, tree: expression.Expression) -> str:
-    """The formula with letters."""
-    return f"{letters(step.symbol or step.name)} = {expression.latex(tree, [_letter(a) for a in step.args])}"
+def formula_in_letters(step: Step, tree: expression.Expression) -> str:
+    """The formula of a step in letters, LaTeX."""
+    return f"{to_latex(step.symbol or step.name)} = {expression.latex(tree, [_argument_latex(a) for a in step.args])}"
 
 
-def numbers(step: Step, tree: expression.Expression, k: int) -> str:
-    """The formula with the numbers of a position; empty where one of them has none."""
+def formula_in_numbers(step: Step, tree: expression.Expression, k: int) -> str:
+    """The formula with the numbers of position ``k``, LaTeX; empty if one of them is undefined."""
     values = [value_at(a, k) for a in (*step.args, step)]
     if any(np.ndim(v) or isinstance(v, str) or not isinstance(v, int | float | complex | np.number) for v in values):
         return ""
-    *texts, value = map(_number, values)
+    *texts, value = map(_number_latex, values)
     return f"{expression.latex(tree, texts)} = {value}"
 
 
-def _letter(a: Any) -> str:
+def _argument_latex(a: Any) -> str:
     named = getattr(a, "symbol", "") or getattr(a, "name", "")
-    return letters(named) if named else _number(a) if np.ndim(a) == 0 else "\\ldots"
+    return to_latex(named) if named else _number_latex(a) if np.ndim(a) == 0 else "\\ldots"
 
 
-def _number(x: Any) -> str:
+def _number_latex(x: Any) -> str:
     if isinstance(x, complex | np.complexfloating):
-        return f"\\left({_number(x.real)};\\, {_number(x.imag)}\\right)"
+        return f"\\left({_number_latex(x.real)};\\, {_number_latex(x.imag)}\\right)"
     text = f"{float(x):.6g}"
     mantissa, _, power = text.partition("e")
     return f"{mantissa} \\cdot 10^{{{int(power)}}}" if power else text
 
 
 _encoded = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode
-MOST = 72
-"""Most positions that are told in words: as many as a sheet shows."""
+MAX_SENTENCES = 72
+"""Most positions with sentences: as many as a sheet shows."""
 SCHEMA = 1
 """Version of the record; it may grow under it."""
 
@@ -203,17 +203,17 @@ def record(project: Project, numbers: Iterable[int] = ()) -> tuple[dict[str, Any
         "rules": book.rules,
         "steps": _steps(book, scales),
         "results": dict(_results(behind, book)),
-        # in an order of their own: which was first depends on what is kept
+        # sorted: which search was first depends on what is cached
         "searches": [{"purpose": s.purpose, "plans": s.plans, "steps": s.steps}
                      for s in sorted(project.searches, key=attrgetter("purpose"))],
-        "sheets": [recorded_sheet(n, composed, book.steps) for n, composed in attempt.drawn.items()],
+        "sheets": [sheet_record(n, composed, book.steps) for n, composed in attempt.drawn.items()],
         **({"not_computed": {name: str(reason) for name, reason in lost.items()}} if lost else {}),
     }  # fmt: skip
     return found, together(lost, "recorded", others=True) if lost else None
 
 
 def as_json(found: dict[str, Any]) -> str:
-    """The document, a line for each plan, rule, step, result, frame and mark."""
+    """The document as text, a line for each plan, rule, step, result, frame and mark."""
     return _lines(found, 0)
 
 
@@ -231,7 +231,7 @@ def _sheet(value: dict[str, Any], level: int) -> str:
 
 
 def book_of(project: Project) -> StepIndex:
-    """The plans of a project that are drawn or told, all their steps with them."""
+    """Plans of a project with an evaluated step, and all their steps."""
     return StepIndex(plan for of_part in project.plans.values() for plan in (of_part or {}).values()
                 if any(step.evaluated for step in (*plan, *plan.auxiliaries.values())))
 
@@ -245,16 +245,16 @@ def _plan(project: Project, book: StepIndex, name: str) -> dict[str, Any]:
         found["pole"] = book.id(plan[plan.pole])
     found["positions"] = list(labels)
     if cycle is not None and labels == cycle.labels:
-        found |= {"phi": written(cycle.phi), "closes": labels[0]}
+        found |= {"phi": to_json(cycle.phi), "closes": labels[0]}
     return found | {"steps": book.of[name]}
 
 
 def _steps(book: StepIndex, scales: dict[str, Scale]) -> dict[str, Any]:
-    said = {name: _Telling(plan, scales.get(plan.name)) for name, plan in book.plans.items()}
-    return {key: _step(book, said[book.plan(step)], key, step) for key, step in book.steps.items()}
+    texts = {name: _StepTexts(plan, scales.get(plan.name)) for name, plan in book.plans.items()}
+    return {key: _step(book, texts[book.plan(step)], key, step) for key, step in book.steps.items()}
 
 
-def _step(book: StepIndex, telling: _Telling, key: str, step: Step) -> dict[str, Any]:
+def _step(book: StepIndex, texts: _StepTexts, key: str, step: Step) -> dict[str, Any]:
     """One step of a plan.
 
     Keys
@@ -269,30 +269,30 @@ def _step(book: StepIndex, telling: _Telling, key: str, step: Step) -> dict[str,
     sentence, formula, helpers : by position label: the sentence, the formula in LaTeX with letters and with numbers, the helper
         lines in the unit of the plan; of plans with more than 72 positions, and of nodes of a quadrature, the first only
     """
-    plan, value = telling.plan, step.value
+    plan, value = texts.plan, step.value
     n = len(plan.labels)
     found: dict[str, Any] = {
         "plan": book.plan(step), "name": step.name, **({"symbol": step.symbol} if step.symbol else {}), "rule": book.rule(step),
-        "kind": step.rule.gives, "unit": unit(step, plan), **shape(value, n),
-        "args": [_argument(book, a, n) for a in step.args], "value": written(value),
+        "kind": step.rule.gives, "unit": unit(step, plan), **value_kind(value, n),
+        "args": [_argument(book, a, n) for a in step.args], "value": to_json(value),
     }  # fmt: skip
-    return found | telling.told(step)
+    return found | texts.of_step(step)
 
 
 def _argument(book: StepIndex, a: Any, n: int) -> dict[str, Any]:
     step: Step | None = a if isinstance(a, Step) else getattr(a, "step", None)
-    return given(a, n) if step is None else {"step": book.id(step)}
+    return given_argument(a, n) if step is None else {"step": book.id(step)}
 
 
 def unit(step: Step, plan: Plan) -> str:
-    """Unit of a step: that of its rule, of its kind, or of its plan; empty for a direction and a bare ratio."""
+    """Unit of a step: of its rule, its kind or its plan; empty for a direction and a bare ratio."""
     kind = step.rule.gives
     if step.rule.unit:
         return "" if step.rule.unit == "1" else step.rule.unit
     return {"angle": "rad", "inclination": "rad", "direction": "", "number": ""}.get(kind, plan.unit)
 
 
-class _Telling:
+class _StepTexts:
     """Sentences, formulas and helper lines of the steps of a plan."""
 
     def __init__(self, plan: Plan, scale: Scale | None) -> None:
@@ -301,30 +301,30 @@ class _Telling:
         self.unit = plan.unit if scale is None else "mm"
         self.sizes = protocol.sizes_of(plan)
 
-    def told(self, step: Step) -> dict[str, Any]:
-        """What is said of a step, by the labels of the positions.
+    def of_step(self, step: Step) -> dict[str, Any]:
+        """Sentence, formula and helper lines of a step by position label.
 
-        Of one made of rows that are not over the positions it is said once, without a label; of more positions than any sheet shows
-        and of nodes, which have no labels, only the first is told.
+        One entry with an empty label if an argument is a row not over the positions; the first position only if there are more
+        than ``MAX_SENTENCES``, or for nodes, which have no labels.
         """
         labels = self.plan.labels
-        if len(labels) > MOST or not any(labels):
+        if len(labels) > MAX_SENTENCES or not any(labels):
             labels = labels[:1]
         lengths = {np.shape(value_of(a))[0] for a in (*step.args, step) if _is_row(value_of(a))}
         if lengths - {len(self.plan.labels)}:
             labels = ("",)
-        tree = tree_of(step)
+        tree = formula_of(step)
         sentence, shown, lines = {}, {}, {}
         with np.errstate(invalid="ignore", divide="ignore"):
             for k, label in enumerate(labels):
                 sentence[label] = protocol.sentence(step, k, self.to_mm, self.unit, self.sizes)
-                if tree is not None and (text := numbers(step, tree, k)):
+                if tree is not None and (text := formula_in_numbers(step, tree, k)):
                     shown[label] = text
                 if found := _helpers(step, k):
                     lines[label] = found
         told: dict[str, Any] = {"sentence": sentence}
         if tree is not None:
-            told["formula"] = {"symbols": symbols(step, tree), "numbers": shown}
+            told["formula"] = {"symbols": formula_in_letters(step, tree), "numbers": shown}
         return told | ({"helpers": lines} if lines else {})
 
 
@@ -342,10 +342,10 @@ def _helpers(step: Step, k: int) -> list[dict[str, Any]]:
 
 
 def _helper(h: Helper) -> dict[str, Any]:
-    found = {"kind": h.kind, "a": written(complex(h.a))}
+    found = {"kind": h.kind, "a": to_json(complex(h.a))}
     if h.kind != "circle":
-        found["b"] = written(complex(h.b))
-    return found if h.kind == "line" else found | {"radius": written(float(h.radius))}
+        found["b"] = to_json(complex(h.b))
+    return found if h.kind == "line" else found | {"radius": to_json(float(h.radius))}
 
 
 def _results(behind: Mapping[str, Any], book: StepIndex) -> Iterable[tuple[str, dict[str, Any]]]:
@@ -355,14 +355,14 @@ def _results(behind: Mapping[str, Any], book: StepIndex) -> Iterable[tuple[str, 
             yield path, {"step": book.id(told.step), **part, **({"at": list(told.at)} if told.at else {})}
 
 
-DIGITS = 6
+MM_DECIMALS = 6
 """Decimals of a millimetre."""
-BY_STYLE = {"construction": "construction", "hatch": "hatch", "axis": "axis", "centre": "axis", "curve": "curve",
-            "vector": "vector", "text": "text"}
-"""Role of a mark that nobody has given one, by its line type; others are parts of symbols."""
+ROLE_BY_STYLE = {"construction": "construction", "hatch": "hatch", "axis": "axis", "centre": "axis", "curve": "curve",
+                 "vector": "vector", "text": "text"}
+"""Role of a mark without provenance, by line type; others are parts of symbols."""
 
 
-def recorded_sheet(number: int, composed: Composed, known: Container[str]) -> dict[str, Any]:
+def sheet_record(number: int, composed: Composed, known: Container[str]) -> dict[str, Any]:
     """One drawn sheet; ``known`` are the ids of the recorded steps.
 
     Keys
@@ -391,12 +391,12 @@ def recorded_sheet(number: int, composed: Composed, known: Container[str]) -> di
 
 
 def _name(part: Part) -> str:
-    """Name of a view: what stands over it, without lettering markup, or how the arrangement calls it."""
+    """Name of a view: its title without lettering markup, or its name in the arrangement."""
     return re.sub(r"[_^]\{?|[{}]", "", part.title) or part.draw
 
 
 def called(view: str) -> str:
-    """What a view without a title is called in the language of the sheets; empty for one that has a title."""
+    """Name of a view without a title in the language of the sheets; empty if it has one."""
     from tmm_sheets.sheets.views import VIEWS
 
     return tr(VIEWS[view].name) if view in VIEWS and VIEWS[view].name else ""
@@ -421,7 +421,8 @@ def _mark(number: int, mark: Mark, view: str, block: bool, known: Container[str]
     by = mark.by
     if by is not None and by.frame >= 0:
         found["frame"] = by.frame
-    found |= {"role": _role(mark, block), "style": "text" if isinstance(mark, Text) else mark.style, "geometry": geometry(mark)}
+    found |= {"role": _role(mark, block), "style": "text" if isinstance(mark, Text) else mark.style,
+              "geometry": mark_geometry(mark)}  # fmt: skip
     if by is not None and by.step in known:
         found["step"] = by.step
         if by.position:
@@ -436,15 +437,15 @@ def _role(mark: Mark, block: bool) -> str:
         return "text"
     if mark.by is not None:
         return mark.by.role
-    return "frame" if block else BY_STYLE.get(mark.style, "symbol")
+    return "frame" if block else ROLE_BY_STYLE.get(mark.style, "symbol")
 
 
-def geometry(mark: Mark) -> dict[str, Any]:
-    """Shape of a mark, mm and rad."""
+def mark_geometry(mark: Mark) -> dict[str, Any]:
+    """Geometry of a mark, mm and rad."""
     if isinstance(mark, Line):
         return {"line": [_point(mark.a), _point(mark.b)]}
     if isinstance(mark, Arc):
-        centre, radius = _point(mark.centre), round(float(mark.radius), DIGITS)
+        centre, radius = _point(mark.centre), round(float(mark.radius), MM_DECIMALS)
         if abs(mark.end - mark.start) >= 2 * 3.141592653589:
             return {"circle": {"centre": centre, "radius": radius}}
         return {"arc": {"centre": centre, "radius": radius, "from": round(float(mark.start), 9), "to": round(float(mark.end), 9)}}
@@ -457,7 +458,7 @@ def geometry(mark: Mark) -> dict[str, Any]:
 
 
 def _point(z: complex) -> list[float]:
-    return [round(float(z.real), DIGITS), round(float(z.imag), DIGITS)]
+    return [round(float(z.real), MM_DECIMALS), round(float(z.imag), MM_DECIMALS)]
 
 
 def _points(points: Points) -> list[list[float]]:

@@ -1,6 +1,6 @@
-"""The steps of a project under their ids, the rules they use, and the paths of ``solve --json`` with the steps behind them.
+"""Steps of a project by id, the rules they use, and the paths of ``solve --json`` with the steps behind them.
 
-Arguments stand before what is made of them.
+Arguments stand before the steps made of them.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from tmm_sheets.words import tr
 
 
 def chain(steps: Iterable[Step], seen: set[int] | None = None) -> Iterator[Step]:
-    """The steps with all that they are made of, also by numbers that were found, each once, arguments first."""
+    """Steps with all their ancestors, also through numbers that a search found, each once, arguments first."""
     return ordered(steps, parents, seen)
 
 
 class StepIndex:
-    """Plans by their ids, steps by theirs ("plan/name"), rules by their keys.
+    """Plans by id, steps by id ("plan/name"), rules by key.
 
-    Steps that belong to no plan (a number that spares rounding) stand in the plan of the first step made of them.
+    A step without a plan (a number that avoids rounding) belongs to the plan of the first step made of it.
     """
 
     def __init__(self, plans: Iterable[Plan]) -> None:
@@ -48,7 +48,7 @@ class StepIndex:
                 self._enter(step)
 
     def _adopt(self, steps: Iterable[Step], plan: str) -> None:
-        """Steps without a plan go to the plan that uses them."""
+        """Assign steps without a plan to the plan that uses them."""
         for step in chain(steps):
             self._plan_of.setdefault(id(step), plan)
 
@@ -60,7 +60,7 @@ class StepIndex:
         self.of[plan].append(found)
 
     def id(self, step: Step) -> str:
-        """Id of a step; KeyError for one that is not recorded."""
+        """Id of a step; raises KeyError if it is not recorded."""
         return self._ids[id(step)]
 
     def __contains__(self, step: Step) -> bool:
@@ -71,9 +71,9 @@ class StepIndex:
         return self._plan_of[id(step)]
 
     def rule(self, step: Step) -> str:
-        """Key of the rule of a step, which is entered among the rules when it is met first.
+        """Key of the rule of a step; the rule is added to ``rules`` on first use.
 
-        A rule that takes any number of arguments has a formula for each number of them.
+        A variadic rule has a formula, and a key, for each number of arguments.
         """
         known = self._keys.get((id(step.rule), len(step.args)))
         if known is None:
@@ -84,7 +84,7 @@ class StepIndex:
 
 
 def rule_json(step: Step) -> dict[str, Any]:
-    """The rule of a step for its number of arguments: what it takes and gives, and its primitive or its formula."""
+    """Rule of a step as JSON, for its number of arguments: kinds it takes and gives, and its primitive or formula."""
     rule, count = step.rule, len(step.args)
     tree = rule.tree(count)
     takes = [*rule.takes[:count], *(a.rule.gives if isinstance(a, Step) else "number" for a in step.args[len(rule.takes):])]
@@ -115,14 +115,14 @@ def _free(name: str, taken: dict[str, Any]) -> str:
 
 
 SECTIONS = ("cycle", "positions", "velocities", "accelerations", "forces", "flywheel", "gear", "reducer", "train", "cam")
-"""Parts of the results whose numbers are steps."""
+"""Parts of the results whose numbers come from steps."""
 
 WITHOUT_STEPS = ("labels",)
-"""Keys of texts: names of positions."""
+"""Keys of results that are texts: labels of positions."""
 
 
 def leaves(tree: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Numeric leaves of a results tree by their paths: what :class:`Told` says, or a bare number that has no step."""
+    """Numeric leaves of a results tree by path: a :class:`Reported` step, or a bare number without one."""
     for name in SECTIONS:
         if name in tree:
             yield from _leaves(name, tree[name])

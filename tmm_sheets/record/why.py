@@ -1,4 +1,4 @@
-"""Why a result is what it is: the steps from the given numbers to it, one a line."""
+"""Explain a result: the steps from the given numbers to it, one a line."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ if TYPE_CHECKING:
 
 
 _ABOUT = ("schema", "project", "variant", "structure", "condition", "scales")
-"""Sections of the results that tell about the whole project: read, counted or chosen, not constructed."""
+"""Sections of the results about the whole project: read, counted or chosen, not constructed."""
 
 
 def lines(project: Project, result: str) -> Iterator[str]:
-    """The chain of a result, arguments first: name, letters, value with its unit, and what it is from.
+    """Lines of the chain of a result, arguments first: name, letters, value with its unit, and origin.
 
-    Values over positions are told for the position of the result, or that of the force analysis.
+    Of values over positions the line has that at the position of the result, or of the force analysis.
 
     Raises
     ------
     BadInput
-        when the project has no such result; near names are told.
+        when the project has no such result; the message suggests similar names.
     CannotBuild
         when its part cannot be computed.
     """
@@ -67,7 +67,7 @@ def lines(project: Project, result: str) -> Iterator[str]:
 
 
 def _no_part(project: Project, result: str, part: str) -> BadInput:
-    """That a project has no such part; what was left out before the name of a result is found in the others."""
+    """Error for a part that the project does not have; suggests similar results and parts."""
     try:
         known = [name for name, _ in leaves(results.told(project, None, refused={}))]
     except CannotBuild:
