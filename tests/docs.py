@@ -131,7 +131,7 @@ def common() -> dict[str, str]:
 
 
 def option_list(rows: Iterable[tuple[str, str]]) -> str:
-    return listed((f"`{names}`", " ".join(says.split())) for names, says in rows)
+    return listed((f"`{names}`", re.sub(r"(\[[^]]+\])", r"`\1`", " ".join(says.split()))) for names, says in rows)
 
 
 def common_options() -> str:

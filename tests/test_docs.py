@@ -32,6 +32,11 @@ def test_readmes_are_short():
     assert all(len(TEXTS[paper].encode()) <= 8000 for paper in ("README.md", "README.ru.md"))
 
 
+def test_docs_stay_short():
+    """What is said twice is said once; 45,000 words were not read."""
+    assert sum(len(text.split()) for paper, text in TEXTS.items() if re.fullmatch(r"docs/[\w-]+\.md", paper)) <= 33_500
+
+
 def test_the_two_commands_and_the_picture_come_first():
     for paper in ("README.md", "README.ru.md"):
         first = TEXTS[paper].split("\n##")[0]
