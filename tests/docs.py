@@ -34,7 +34,7 @@ from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import messages, units, variant
 from tmm_sheets.task.cam_table import FOLLOWER_KEYS
 from tmm_sheets.task.keys import Key, keys_of, spaced
-from tmm_sheets.task.names import GROUP_KEYS
+from tmm_sheets.task.names import GROUPS
 
 ROOT = Path(__file__).parents[1]
 PAPERS = (ROOT / "README.md", ROOT / "README.ru.md", *sorted((ROOT / "docs").glob("**/*.md")))
@@ -97,7 +97,7 @@ TOP = ("schema", "points", "given", "scales")
 
 def groups() -> str:
     rows = ((f"{kind}", PAIRS[kind - 1], code("links", *must), code(*may) or "–")
-            for kind, (must, may) in GROUP_KEYS.items())
+            for kind, (must, may, *_) in GROUPS.items())
     return table(("kind", "pairs", "needs", "may have"), *rows)
 
 

@@ -99,10 +99,10 @@ FIVE = "lugansk/shaper lugansk/engine press sixbar/3:2 sixbar/6:3"
 STUDENTS = f"tests.compare.hypotheses {FIVE}"
 FIGURES = {
     "methods": Figure("tmm_sheets bench --summary", methods),
-    "peers": Figure("tmm_sheets bench --peers --summary", peers, long=True),
+    "peers": Figure("tests.bench.peers --summary", peers, long=True),
     "stress": Figure("tmm_sheets stress", invariants),
-    "cost": Figure("tmm_sheets bench --cost lugansk/shaper", cost),
-    "whole": Figure("tmm_sheets bench --whole lugansk/shaper", lambda said: columns(said, 0, 3, 4, 5)),
+    "cost": Figure("tests.bench.costs lugansk/shaper", cost),
+    "whole": Figure("tests.bench.whole lugansk/shaper", lambda said: columns(said, 0, 3, 4, 5)),
     "students": Figure(f"{STUDENTS} --students 8 --seed 441", last(2), long=True),
     "sound": Figure(f"{STUDENTS} --sound --students 5 --seed 445", last(1), long=True),
     "cad": Figure("tests.compare.cad_plants 12", last(1), long=True),

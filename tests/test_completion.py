@@ -55,7 +55,6 @@ def test_projects(offered, tmp_path, monkeypatch):
     assert offered("tmm-sheets build lugansk/shaper pre") == ["press"]
     assert offered("tmm-sheets check sub/") == ["sub/other.toml"]
     assert offered("tmm-sheets check ./m") == ["./mine.toml"]
-    assert offered("tmm-sheets bench --cost pre") == ["press"]
     (tmp_path / "sheet1.plt").touch()
     assert "sheet1.plt" in offered("tmm-sheets plot ")
 

@@ -262,7 +262,7 @@ def test_no_link_of_the_site_is_dead():
 
 
 NOT_RUN = {
-    "bench --peers": "needs other packages", "--views": "needs a drawing laid out so; tests/compare/test_image_views.py has some",
+    "--views": "needs a drawing laid out so; tests/compare/test_image_views.py has some",
     "watch": "goes on until Ctrl-C", "serve": "goes on until Ctrl-C; tests/page asks it",
     "--dask": "needs a cluster; tests/output/test_batch.py has one",
 }

@@ -81,8 +81,8 @@ RULES = {
 """What each room may import besides itself and the neutral modules; a row holds for all below it that has none of its own."""
 
 LIBRARIES = {
-    "ezdxf": "backends.dxf backends.dxf_frame_making lab.bench.plain compare.cad.cad_file",
-    "reportlab": "backends.pdf lab.bench.plain compare.story_pdf",
+    "ezdxf": "backends.dxf backends.dxf_frame_making compare.cad.cad_file",
+    "reportlab": "backends.pdf compare.story_pdf",
     "matplotlib": "backends.png lab.bench.records optimising.picture",
     "pydantic": "task.values task.schema task.messages task.variant task.title_entries task.keys "
                 "task.family_folder task.family_tables",

@@ -269,12 +269,11 @@ class Opened:
         CannotBuild
             when it cannot be drawn.
         """
-        from tmm_sheets.output.building import chosen
         from tmm_sheets.output.view_pictures import Picture
         from tmm_sheets.sheets import sheet
 
         with self._on_paper():
-            (n,) = chosen(self.project.variant, (number,))
+            (n,) = self.project.variant.chosen((number,))
             return Picture(sheet.compose(self.project, n))
 
     @property
@@ -304,10 +303,8 @@ class Opened:
         ``sheets`` are those that are in it, all unless told; it opens with ``plan``.
         """
         from tmm_sheets.living import page
-        from tmm_sheets.output.building import chosen
-
         with self._on_paper():
-            return Page(page.page(self.project, chosen(self.project.variant, tuple(sheets)), plan)[0])
+            return Page(page.page(self.project, self.project.variant.chosen(sheets), plan)[0])
 
     def build(self, folder: Path | str, *, formats: Sequence[str] = ("dxf", "pdf"), sheets: Iterable[int] = (),
               force: bool = False) -> tuple[Path, ...]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -43,16 +42,12 @@ def _files() -> list[str]:
 
 def entries() -> tuple[ShippedProject, ...]:
     """Every shipped project with its title, variant and sheets; only the heading of each file is looked at."""
-    return tuple(_entries())
-
-
-def _entries() -> Iterator[ShippedProject]:
+    found = []
     for name in shipped():
         with suppress(BadInput, OSError, ValueError, LookupError, TypeError, AttributeError):  # a family is not finished yet
             table = _heading(name)
-            yield ShippedProject(name, table["title"], table.get("variant", ""), tuple(table.get("sheets", ())))
-
-
+            found.append(ShippedProject(name, table["title"], table.get("variant", ""), tuple(table.get("sheets", ()))))
+    return tuple(found)
 def found(word: str) -> tuple[ShippedProject, ...]:
     """Shipped projects that have a word, or part of one, in their names, titles or variants, in any language."""
     wanted = word.casefold()
@@ -98,7 +93,10 @@ def located(project: str) -> Path:
     path = files.named(project)
     if os.path.lexists(path):
         return path
-    hint = spelling.hint(project, (*map(str, files_beside(path)), *shipped()), 3)
+    beside: list[Path] = []
+    with suppress(OSError):
+        beside = sorted(path.parent.glob(f"*{SUFFIX}"))
+    hint = spelling.hint(project, (*map(str, beside), *shipped()), 3)
     if not hint:
         listing = tell("{command} shows the shipped projects").format(command=quoting.command("list"))
         near = [e.name for e in found(project)[:3]]
@@ -106,14 +104,6 @@ def located(project: str) -> Path:
     if project.endswith(SUFFIX):
         raise BadInput(Problem(tell("no such file"), project, hint=hint))
     raise BadInput(tell('unknown project "{project}": neither a shipped name nor a file').format(project=project), hint=hint)
-
-
-def files_beside(path: Path) -> list[Path]:
-    """Project files in the folder of a path, as they are typed from here."""
-    try:
-        return sorted(path.parent.glob(f"*{SUFFIX}"))
-    except OSError:
-        return []
 
 
 def _path(name: str) -> Path:

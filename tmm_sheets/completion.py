@@ -246,10 +246,9 @@ def plotters(context: click.Context, incomplete: str) -> Items:
 
 def formats(context: click.Context, incomplete: str) -> Items:
     """Formats of drawings, several with commas between; of the note those that it has."""
+    from tmm_sheets.files import ENDINGS
     from tmm_sheets.note.note import PACKAGES
-    from tmm_sheets.output.building import BACKENDS
-
-    return _listed(tuple(PACKAGES if context.info_name == "note" else BACKENDS), incomplete)
+    return _listed(tuple(PACKAGES if context.info_name == "note" else ENDINGS), incomplete)
 
 
 def parts(context: click.Context, incomplete: str) -> Items:

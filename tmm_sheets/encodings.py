@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import unicodedata
 from typing import NamedTuple
+from unicodedata import category, normalize
 
 from tmm_sheets.words import tell
 
@@ -92,14 +92,14 @@ def cleaned(text: str) -> str:
     """The same with composed letters (NFC), every kind of space as a plain one, and no signs without width."""
     if text.isascii():
         return text
-    return unicodedata.normalize("NFC", text).translate(_PLAIN)
+    return normalize("NFC", text).translate(_PLAIN)
 
 
 class _Plain(dict[int, str]):
     """What each character is read as, by its code; found when it is first met."""
 
     def __missing__(self, code: int) -> str:
-        kind = unicodedata.category(chr(code))
+        kind = category(chr(code))
         self[code] = " " if kind in ("Zs", "Zl", "Zp") else "" if kind == "Cf" or code in _VARIATIONS else chr(code)
         return self[code]
 

@@ -31,6 +31,8 @@ LARGEST = 500_000_000
 """Bytes of the largest file that is read."""
 URL = re.compile(r"([a-z][a-z0-9+.-]+):/+")
 """How a place in an object store begins; one letter is a drive of Windows."""
+ENDINGS = {"dxf": "dxf", "pdf": "pdf", "svg": "svg", "png": "png", "hpgl": "plt"}
+"""Formats of drawings, each written by the module of its name in ``backends``, and what names of their files end in."""
 _root: ContextVar[Path | None] = ContextVar("root", default=None)
 _SPECIAL = (
     (stat.S_ISFIFO, marked("expected a file, this is a pipe")), (stat.S_ISSOCK, marked("expected a file, this is a socket")),
@@ -291,6 +293,11 @@ def name_of(text: str, spaced: bool = False) -> str:
     signs, ends = (r'[\\/:*?"<>|\x00-\x1f]+', " .-_") if spaced else (r"[^\w@.+=-]+", "-.")
     name = re.sub(signs, "-", text).strip(ends).encode()[:LONGEST_NAME].decode(errors="ignore").strip(ends)
     return re.sub(r"^([^.]*)", r"\1_", name) if _RESERVED.fullmatch(name) else name
+
+
+def folder_name(stem: str) -> str:
+    """Name of a folder for what is called so, see :attr:`~tmm_sheets.task.variant.Variant.stem`."""
+    return name_of(stem) or "project"
 
 
 def alike(name: str) -> str:

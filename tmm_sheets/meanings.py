@@ -56,27 +56,18 @@ def meaning_of(markup: str, language: str, section: str = "") -> str:
 
 
 def _meaning(markup: str, table: Mapping[str, str]) -> str:
-    plain = bare(markup)
+    plain, found, longest = bare(markup), "", -1
     for key, meaning in table.items():
         if key.startswith("~"):
             if m := re.fullmatch(key[1:], plain):
                 return m.expand(meaning)
-        elif bare(key) == plain:
-            return meaning
-    found = ""
-    longest = -1
-    for key, meaning in table.items():
+            continue
         head, star, tail = bare(key).partition("*")
-        if (
-            star
-            and not key.startswith("~")
-            and plain.startswith(head)
-            and plain.endswith(tail)
-            and len(plain) > len(head) + len(tail)
-            and len(head) > longest
-        ):
-            longest = len(head)
-            found = meaning.replace("*", plain[len(head) : len(plain) - len(tail)])
+        if not star and head == plain:
+            return meaning
+        middle = plain[len(head) : len(plain) - len(tail)]
+        if star and middle and len(head) > longest and plain.startswith(head) and plain.endswith(tail):
+            found, longest = meaning.replace("*", middle), len(head)
     return found
 
 

@@ -92,7 +92,8 @@ class Bar(Progress):
         """What the bar shows after so many seconds."""
         full = WIDTH * self.done // self.total
         rate = self.done / seconds
-        left = round((self.total - self.done) / rate)
+        minutes, left = divmod(round((self.total - self.done) / rate), 60)
+        time = f"{minutes // 60}:{minutes % 60:02}:{left:02}" if minutes >= 60 else f"{minutes}:{left:02}"
         told = (
             tell("{bar} {done}/{total}, {rate:.2g}/s, {time} left, {n} failed")
             if self.failed
@@ -103,14 +104,9 @@ class Bar(Progress):
             done=self.done,
             total=self.total,
             rate=rate,
-            time=_clock(left),
+            time=time,
             n=self.failed,
         )
-
-
-def _clock(seconds: int) -> str:
-    hours, rest = divmod(seconds, 3600)
-    return f"{hours}:{rest // 60:02}:{rest % 60:02}" if hours else f"{rest // 60}:{rest % 60:02}"
 
 
 class Stopwatch:

@@ -119,15 +119,9 @@ def write_npz(tree: dict[str, Any], file: IO[bytes]) -> None:
 
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         for path, value in leaves(tree):
-            array = row(value)
-            if array is None:
-                own = plain_numbers(value)
-                array = np.asarray(np.nan if own is None else own)
-                if array.dtype.kind == "O":
-                    array = np.array(own, dtype=float)  # null among numbers is NaN
             entry = zipfile.ZipInfo(f"{path}.npy", date_time=(1980, 1, 1, 0, 0, 0))
             with archive.open(entry, "w", force_zip64=True) as out:
-                np.lib.format.write_array(out, array, allow_pickle=False)
+                np.lib.format.write_array(out, np.asarray(_array(value)), allow_pickle=False)
 
 
 def write_csv(tree: dict[str, Any], file: IO[bytes]) -> None:
@@ -263,6 +257,7 @@ def _array(value: Any) -> Any:
     if array is not None:
         return array
     own = plain_numbers(value)
-    if isinstance(own, list) and any(x is None for x in own):
-        return np.array(own, dtype=float)
-    return float("nan") if own is None else np.asarray(own) if isinstance(own, list) else own
+    if not isinstance(own, list):
+        return float("nan") if own is None else own
+    array = np.asarray(own)
+    return np.array(own, dtype=float) if array.dtype.kind == "O" else array

@@ -69,7 +69,9 @@ def told(
     lost: dict[str, CannotBuild] = {}
     scales: dict[str, Any] = {}
     if set(asked) & {*LINKAGE, "flywheel"}:
-        tree["structure"] = _structure(project)
+        m = project.mechanism
+        groups = [{"links": list(g.links), "class": g.kind.grade, "order": g.kind.order, "kind": g.kind.number} for g in m.groups]
+        tree["structure"] = {"W": m.mobility, "class": m.grade, "groups": groups, "formula": m.structure}
     linkage = [name for name in LINKAGE if name in asked]
     if linkage:
         _put_linkage(project, tree, linkage, _study(project, phi, positions, linkage, lost), lost)
@@ -119,7 +121,14 @@ def _put_linkage(project: Project, tree: dict[str, Any], asked: list[str], found
     if found is None:
         return
     study, chosen = found
-    tree["cycle"] = _cycle(project, study)
+    angle, crank = study.positions.angle, study.mechanism.crank.link
+    tree["cycle"] = {
+        "labels": list(study.labels),
+        "phi": Reported(angle) if isinstance(angle, Step) else study.positions.phi,
+        "omega1": Reported(study.velocities.omega[crank]),
+        "epsilon1": Reported(study.accelerations.epsilon[crank]),
+        **({} if study.mechanism.drive is None else {"input": Reported(study.place_of_input)}),
+    }
     for name in asked:
         with _losing(lost, name):
             tree[name] = _SECTIONS[name](project, study, chosen)
@@ -284,49 +293,20 @@ def _short(value: Any) -> str:
 # --- parts ----------------------------------------------------------------------------------------------------------
 
 
-def _structure(project: Project) -> dict[str, Any]:
-    m = project.mechanism
-    return {
-        "W": m.mobility,
-        "class": m.grade,
-        "groups": [{"links": list(g.links), "class": g.kind.grade, "order": g.kind.order, "kind": g.kind.number} for g in m.groups],
-        "formula": m.structure,
-    }
-
-
 def _study(project: Project, phi: tuple[float, ...] | None, positions: int | None, asked: list[str],
            lost: dict[str, CannotBuild]) -> tuple[Study, list[int]] | None:
     """Linkage at the angles asked for, and the positions the forces are told for; None when it does not assemble."""
-    with _losing(lost, *asked):
-        return _study_of(project, phi, positions)
-    return None
-
-
-def _study_of(project: Project, phi: tuple[float, ...] | None, positions: int | None) -> tuple[Study, list[int]]:
     import numpy as np
 
-    cycle = project.cycle
-    if phi is not None:
-        turned: Any = cycle.sense * (np.asarray(phi, dtype=float) - cycle.start)
-    elif positions is not None:
-        turned = project.parts_of_cycle(positions)
-    else:
-        return project.study, [project.force_index]
-    labels = tuple(str(i) for i in range(len(turned)))
-    return project.study_at(turned, labels, ""), list(range(len(turned)))
-
-
-def _cycle(project: Project, study: Study) -> dict[str, Any]:
-    angle, crank = study.positions.angle, study.mechanism.crank.link
-    return {
-        "labels": list(study.labels),
-        "phi": Reported(angle) if isinstance(angle, Step) else study.positions.phi,
-        "omega1": Reported(study.velocities.omega[crank]),
-        "epsilon1": Reported(study.accelerations.epsilon[crank]),
-        **({} if study.mechanism.drive is None else {"input": Reported(study.place_of_input)}),
-    }
-
-
+    with _losing(lost, *asked):
+        if phi is None and positions is None:
+            return project.study, [project.force_index]
+        cycle = project.cycle
+        turned: Any = (project.parts_of_cycle(positions) if positions is not None else
+                       cycle.sense * (np.asarray(phi, dtype=float) - cycle.start))
+        labels = tuple(str(i) for i in range(len(turned)))
+        return project.study_at(turned, labels, ""), list(range(len(turned)))
+    return None
 @dataclass(frozen=True)
 class Spread(Reported):
     """A step told for some of ``count`` positions, all unless ``rows`` says which; the same for each where it depends on none."""

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import in_a_row, listed, of_reader
-from tmm_sheets.task import edited_text, title_entries, toml_file, units
+from tmm_sheets.task import edited_text, title_entries, units
+from tmm_sheets.task.toml_lines import dotted, nodes
 from tmm_sheets.words import of_file, tell, tell_n
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.project import Project
     from tmm_sheets.task.title_entries import Names
-    from tmm_sheets.task.toml_lines import KeyPath
     from tmm_sheets.task.variant import Variant
 
 _QUIET = ("schema", "project", "title_block", "paper", "note")
@@ -31,8 +31,8 @@ def text(variant: Variant, names: Names) -> str:
              tell("sheets: {sheets}").format(sheets=", ".join(f"{i} {name}" for i, name in enumerate(variant.sheets, 1)))]
     if not (paper := names.paper(variant)).usual:
         lines.append(tell("paper: {format}, {orientation}").format(format=paper.format, orientation=paper.orientation))
-    lines += ["", tell("Title block"), *_table(_entered(variant, names)),
-              "  " + _precedence(variant)]
+    entered = [(name, of_file(told.text, tell), told.where if told.text else "") for name, told in names.entries(variant).items()]
+    lines += ["", tell("Title block"), *_table(entered), "  " + _precedence(variant)]
     lines += ["", tell("Inputs"), *_table(list(_inputs(variant)))]
     if variant.synthesis is not None:
         from tmm_sheets.project import Project
@@ -46,16 +46,10 @@ def text(variant: Variant, names: Names) -> str:
     return "\n".join(lines)
 
 
-def _entered(variant: Variant, names: Names) -> list[tuple[str, str, str]]:
-    """What stands in the title blocks, and who says so."""
-    return [(name, of_file(entry.text, tell), entry.where if entry.text else "") for name, entry in names.entries(variant).items()]
-
-
 def _precedence(variant: Variant) -> str:
     """Which of several texts for the title block goes."""
-    order = tell("an option of build, note and plot goes first, then {file}, {beside}, {user}")
-    if variant.shipped:
-        order = tell("an option of build, note and plot goes first, then {beside}, {user}, {file}")
+    order = (tell("an option of build, note and plot goes first, then {beside}, {user}, {file}") if variant.shipped else
+             tell("an option of build, note and plot goes first, then {file}, {beside}, {user}"))
     return order.format(file=variant.called, beside=title_entries.beside_of(variant), user=title_entries.user_file() or "–")
 
 
@@ -124,21 +118,11 @@ SAME = 1e-5
 
 
 def _inputs(variant: Variant) -> Iterator[tuple[str, str, str]]:
-    for key, value in variant.data.items():
-        if key not in _QUIET:
-            yield from _leaves(variant, (key,), value)
-
-
-def _leaves(variant: Variant, path: KeyPath, value: Any) -> Iterator[tuple[str, str, str]]:
-    if isinstance(value, dict):
-        for key, inner in value.items():
-            yield from _leaves(variant, (*path, key), inner)
-    elif isinstance(value, list) and value and isinstance(value[0], dict):
-        for i, inner in enumerate(value):
-            yield from _leaves(variant, (*path, i), inner)
-    else:
-        written = str(value).lower() if isinstance(value, bool) else str(value)
-        yield toml_file.called(path), ", ".join(map(str, value)) if isinstance(value, list) else written, variant.source(*path)
+    for path, value in nodes(variant.data):
+        tables = isinstance(value, dict) or (isinstance(value, list) and value and isinstance(value[0], dict))
+        if path[0] not in _QUIET and not tables and not isinstance(path[-1], int):
+            written = str(value).lower() if isinstance(value, bool) else str(value)
+            yield dotted(path, 1), ", ".join(map(str, value)) if isinstance(value, list) else written, variant.source(*path)
 
 
 def _structure(m: Mechanism) -> Iterator[str]:

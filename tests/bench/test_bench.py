@@ -10,11 +10,12 @@ from time import sleep
 import numpy as np
 import pytest
 
+from tests.bench import costs, plain, whole
 from tests.methods.linkage import shaper_truth, statics
 from tests.methods.linkage import truth as other
 from tmm_sheets.__main__ import run
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.lab.bench import costs, diagrams, emission, linkages, plain, profiles, truth, whole
+from tmm_sheets.lab.bench import diagrams, emission, linkages, profiles, truth
 from tmm_sheets.lab.bench.records import Bench, BenchRecord, as_json, fastest, table
 from tmm_sheets.lab.bench.records import diagrams as drawn_fields
 
@@ -182,9 +183,6 @@ def test_command(tmp_path, monkeypatch, capsys, records):
     assert len(json.loads(capsys.readouterr().out)["records"]) == 3
     assert run(["bench", "--summary"]) == 0
     assert "| linkages | positions of the four-bar | 12 .. 24 positions |" in capsys.readouterr().out
-    assert run(["bench", "--cost", "lugansk/shaper", "--quick"]) == 2
-
-
 def test_without_mpmath(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "mpmath", None)
     assert run(["bench", "--quick"]) == 2

@@ -7,11 +7,10 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
+from tests.bench import peer_programs, peers
+from tests.bench.peer_programs import PeerProgram, Turn
 from tests.methods.linkage import truth as other
-from tmm_sheets.__main__ import run
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.lab.bench import peer_programs, peers, records
-from tmm_sheets.lab.bench.peer_programs import PeerProgram, Turn
 from tmm_sheets.lab.bench.records import Bench, as_json
 
 NAMES = [name for name, _ in peers.MECHANISMS]
@@ -121,18 +120,16 @@ def test_without_a_peer(monkeypatch, program):
         "not installed: pip install 'kinepy>=0.1' 'mechanism>=1.1' 'mpmath>=1.3' 'pylinkage>=1.0'"}
 
 
-def test_table_command_and_diagrams(tmp_path, monkeypatch, capsys):
+def test_table(monkeypatch, capsys):
     found = [replace(r, seconds=12e-6) for r in measured(peers.Ours)[:3]]
-    monkeypatch.setattr("tmm_sheets.lab.bench.records.compare", lambda quick, say: found)
-    assert run(["bench", "--peers", "--quick", "--json", str(tmp_path / "p.json"), "--plot", str(tmp_path)]) == 0
+    monkeypatch.setattr(peers, "rows", lambda bench: bench.records.extend(found))
+    monkeypatch.setattr("sys.argv", ["peers"])
+    peers.main()
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].split() == ["four-bar", *peers.Ours.name.split()]
     assert lines[1].split()[:4] == ["positions", "12", "1", "us"]
-    assert len(json.loads((tmp_path / "p.json").read_text())["records"]) == 3
-    assert (tmp_path / "peers-four-bar.svg").exists()
-    assert run(["bench", "--peers", "--summary"]) == 0
+    monkeypatch.setattr("sys.argv", ["peers", "--summary"])
+    peers.main()
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "us for a position at 12 positions; largest relative error"
     assert f"| four-bar | positions | 1; {found[0].error:.0e} |" in lines
-    assert run(["bench", "--peers", "--cost", "lugansk/shaper"]) == 2
-    assert set(records.diagrams(found)) == {"peers-four-bar.svg"}

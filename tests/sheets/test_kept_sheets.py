@@ -14,7 +14,6 @@ from tests.few import few, seldom
 from tests.project_files import FOUR_BAR, write
 from tmm_sheets import catalogue, kept, words
 from tmm_sheets.__main__ import run
-from tmm_sheets.output.building import BACKENDS
 from tmm_sheets.project import Project
 from tmm_sheets.remarks import Remark
 from tmm_sheets.sheets import answered, composing, sheet
@@ -63,7 +62,7 @@ def test_it_is_the_sheet_itself(name, n):
     found = sheet.loaded(sheet.stored(made))
     assert same(made, found)
     for form in ("dxf", "pdf", "svg"):
-        writer = import_module(BACKENDS[form])
+        writer = import_module(f"tmm_sheets.backends.{form}")
         assert writer.render(found.drawing) == writer.render(made.drawing)
 
 

@@ -184,7 +184,12 @@ class LiveSheet:
     def _attribute(self, kind: str, f: FormField, owner: str) -> str:
         tag, value = f.name.upper(), self._value(f)
         prompt = f"3\n{f.name.replace('_', ' ')}\n" if kind == "ATTDEF" else ""
-        letters = _centred(f, value, self.style, self._wide(f))
+        wide = self._wide(f)
+        # About the middle of its baseline; the left end is told too, as a matter of form.
+        left = f.at - _direction(f.angle) * _length(value, f.height) * wide / 2
+        angle = f"50\n{short(degrees(f.angle) % 360)}\n" if f.angle else ""
+        letters = (f"{place(10, left)}40\n{f.height:g}\n1\n{_escaped(value)}\n{angle}{_width(wide)}7\n{self.style}\n72\n1\n"
+                   f"{place(11, f.at)}")
         return (f"0\n{kind}\n5\n{next(self.handles):X}\n{head('AcDbText', owner, TEXT_LAYER)}{letters}"
                 f"100\nAcDb{'AttributeDefinition' if prompt else 'Attribute'}\n280\n0\n{prompt}2\n{tag}\n70\n0\n74\n0\n280\n1\n")
 
@@ -267,11 +272,6 @@ def _escaped(text: str) -> str:
     return text.replace("%%", "%%%%%%").replace("^", "^ ").replace(BAR, "").replace("\u00a0", " ")
 
 
-def _look(mark_height: float) -> str:
-    pen = weight(PEN * mark_height)
-    return "" if pen == weight(line_type("text").width) else f"370\n{pen}\n"
-
-
 def _text(handle: int, owner: str, on: str, mark: Text, style: str, more: str = "") -> str:
     """A run as TEXT from its left end; two letters and more are fitted to their length, whatever the font."""
     look, said, run = _form(mark.text, mark.height, mark.angle, mark.wide)
@@ -285,8 +285,10 @@ def _form(text: str, height: float, angle: float, wide: float) -> tuple[str, str
     """What a run has wherever it stands: tags of its pen, tags of its letters, the way from its beginning to its end, mm."""
     if missing := lacking(text):
         raise ValueError(f"the drawing font has no character '{missing[0]}' (U+{ord(missing[0]):04X})")
+    pen = weight(PEN * height)
+    look = "" if pen == weight(line_type("text").width) else f"370\n{pen}\n"
     turned = f"50\n{short(degrees(angle) % 360)}\n" if angle else ""
-    return (_look(height), f"40\n{height:g}\n1\n{_escaped(text)}\n{turned}{_width(wide)}",
+    return (look, f"40\n{height:g}\n1\n{_escaped(text)}\n{turned}{_width(wide)}",
             _direction(angle) * _length(text, height) * wide)
 
 
@@ -300,13 +302,6 @@ def _length(text: str, height: float) -> float:
 
 def _width(wide: float) -> str:
     return "" if wide == 1.0 else f"41\n{short(wide)}\n"
-
-
-def _centred(f: FormField, value: str, style: str, wide: float) -> str:
-    """Tags of lettering about the middle of its baseline; its left end is told too, as a matter of form."""
-    left = f.at - _direction(f.angle) * _length(value, f.height) * wide / 2
-    angle = f"50\n{short(degrees(f.angle) % 360)}\n" if f.angle else ""
-    return f"{place(10, left)}40\n{f.height:g}\n1\n{_escaped(value)}\n{angle}{_width(wide)}7\n{style}\n72\n1\n{place(11, f.at)}"
 
 
 def made_of(width: float, height: float) -> dict[str, Any]:

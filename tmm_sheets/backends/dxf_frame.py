@@ -71,10 +71,10 @@ class DxfFrame(NamedTuple):
         always = {role.upper() for role in roles()}
         used = [self._layer(on, f"{next(handles):X}") for on in layers().values() if on.name in parts.layers or on.name in always]
         told = {TITLE: " ".join(title.splitlines()), AUTHOR: " ".join(author.splitlines()), STYLE: style,
-                HANDSEED: f"{next(handles):X}", EXTENTS: box, LAYERS: _joined(used), VIEWS: _joined(parts.views),
-                RECORDS: _joined(parts.records),
-                BLOCKS: _joined(parts.blocks), BODY: _joined(parts.entities), GROUPED: _joined(parts.grouped),
-                GROUPS: _joined(parts.groups)}  # fmt: skip
+                HANDSEED: f"{next(handles):X}", EXTENTS: box, LAYERS: "".join(used), VIEWS: "".join(parts.views),
+                RECORDS: "".join(parts.records),
+                BLOCKS: "".join(parts.blocks), BODY: "".join(parts.entities), GROUPED: "".join(parts.grouped),
+                GROUPS: "".join(parts.groups)}  # fmt: skip
         pieces = re.split(f"({'|'.join(map(re.escape, told))})", self.text)
         return "".join(told.get(piece, piece) for piece in pieces)
 
@@ -82,10 +82,6 @@ class DxfFrame(NamedTuple):
         look = line_type(layer.style)
         return self.layer.format(handle=handle, name=layer.name, description=layer.description, colour=look.colour,
                                  linetype=look.linetype, weight=weight(look.width))
-
-
-def _joined(texts: Iterable[str]) -> str:
-    return "".join(texts)
 
 
 WEIGHTS = (0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100, 106, 120, 140, 158, 200, 211)

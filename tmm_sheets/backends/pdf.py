@@ -72,7 +72,9 @@ def render_all(drawings: Sequence[Drawing], date: int | None = None) -> bytes:
         page.showPage()
         made = page._doc.Pages.pages[-1]
         made.Contents = pdfdoc.PDFStream(content=made.stream, filters=[_FastFlate()])
-        made.Resources = _resources(page, names)
+        made.Resources = resources = pdfdoc.PDFResourceDictionary()
+        resources.basicFonts()
+        resources.Properties = {name: pdfdoc.PDFObjectReference(name) for name in names.values()}
     page.save()
     return buffer.getvalue()
 
@@ -90,13 +92,6 @@ def _layers(page: Canvas) -> dict[str, str]:
     catalog.__NoDefault__ = [*catalog.__NoDefault__, "OCProperties"]
     catalog.OCProperties = pdfdoc.PDFDictionary({"OCGs": pdfdoc.PDFArray(references), "D": shown})
     return names
-
-
-def _resources(page: Canvas, names: Mapping[str, str]) -> Any:
-    found = pdfdoc.PDFResourceDictionary()
-    found.basicFonts()
-    found.Properties = {name: pdfdoc.PDFObjectReference(name) for name in names.values()}
-    return found
 
 
 def _bookmarks(page: Canvas, drawing: Drawing, n: int) -> None:

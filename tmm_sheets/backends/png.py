@@ -57,13 +57,8 @@ def picture(
         (b"IDAT", data + packer.flush()),
         (b"IEND", b""),
     ]
-    return b"\x89PNG\r\n\x1a\n" + b"".join(map(_chunk, *zip(*chunks, strict=True)))
-
-
-def _chunk(kind: bytes, data: bytes) -> bytes:
-    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body)) for kind, body in chunks)
 def _filtered(bands: Iterable[npt.NDArray[np.uint8]]) -> Iterator[bytes]:
     """Rows as the file wants them, each as its difference from the row above (filter 2): blank paper becomes zeros."""
     above: npt.NDArray[np.uint8] | None = None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tmm_sheets import catalogue, encodings, files, kept, quoting, words
+from tmm_sheets import catalogue, encodings, files, quoting, words
 from tmm_sheets.cli.options import (
     CORRECTED,
     DASK,
@@ -23,13 +23,14 @@ from tmm_sheets.cli.options import (
     plotter,
     put,
     read_variant,
+    refuse,
     title_names,
     titled,
 )
 from tmm_sheets.errors import BadInput, CannotBuild, Problem, reason_of, told_of
 from tmm_sheets.localized_cli import argument, command, option
 from tmm_sheets.progress import Bar, Progress
-from tmm_sheets.words import tell
+from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.plotters import Plotter
@@ -74,34 +75,28 @@ def run_build(
     show_files: bool, explain: bool,
 ) -> None:
     """Draw the sheets of one PROJECT or of several; what has not changed since the last time is not made again."""
-    if not projects and not families and not lists:
-        raise click.UsageError(tell("Missing argument 'PROJECT'; or give --all FAMILY, or --list FILE."))
-    if one_file and "pdf" not in formats:
-        raise click.UsageError(tell("--one-file is for PDF: add pdf to --format"))
+    single = len(projects) == 1 and not families and not lists
+    refuse(
+        (not (projects or families or lists), marked("Missing argument 'PROJECT'; or give --all FAMILY, or --list FILE.")),
+        (one_file and "pdf" not in formats, marked("--one-file is for PDF: add pdf to --format")),
+        (single and (jobs is not None or scheduler is not None), marked("--jobs and --dask are for several projects")),
+        (single and with_note and archive, marked("--with-note writes into a folder: leave --zip out")),
+        (single and views and archive, marked("--views writes into a folder: leave --zip out")),
+        (not single and (views or show_files), marked("--views and --open are for one project")),
+        (not single and with_note, marked("--with-note is for one project")),
+        (not single and explain, marked("--explain is for one project")),
+    )
     from tmm_sheets.output.build_store import place
     from tmm_sheets.output.building import Order
 
     output = None if output is None else place(output)
     settings: dict[str, dict[str, Any]] = {"png": {"dpi": dpi}, "hpgl": {"machine": machine}, "dxf": {"text": text},
                                            "pdf": {"date": files.source_date()}}  # fmt: skip
-    order = Order(sheets, formats, settings, corrected, force, archive, one_file, words.asked(), words.reader(), kept.used(),
-                  title_names())
-    if len(projects) == 1 and not families and not lists:
-        if jobs is not None or scheduler is not None:
-            raise click.UsageError(tell("--jobs and --dask are for several projects"))
-        if with_note and archive:
-            raise click.UsageError(tell("--with-note writes into a folder: leave --zip out"))
-        if views and archive:
-            raise click.UsageError(tell("--views writes into a folder: leave --zip out"))
+    order = Order(sheets, formats, settings, corrected, force, archive, one_file, names=title_names())
+    if single:
         build_one(projects[0], order, output, explain, with_note, views, show_files)
-        return
-    if views or show_files:
-        raise click.UsageError(tell("--views and --open are for one project"))
-    if with_note:
-        raise click.UsageError(tell("--with-note is for one project"))
-    if explain:
-        raise click.UsageError(tell("--explain is for one project"))
-    _build_many(projects, families, lists, order, output or Path("out"), jobs, scheduler)
+    else:
+        _build_many(projects, families, lists, order, output or Path("out"), jobs, scheduler)
 
 
 def _build_many(
@@ -205,11 +200,10 @@ def build_one(project: str, order: Order, output: Path | None, explain: bool = F
 def _pictures(opened: Project, order: Order) -> dict[str, bytes]:
     """Pictures of the views of the sheets that were asked for and can be drawn."""
     from tmm_sheets.output import view_pictures
-    from tmm_sheets.output.building import chosen
     from tmm_sheets.sheets import sheet
 
     formats = [form for form in order.formats if form in view_pictures.FORMATS] or ["svg"]
-    drawn = sheet.attempt(opened, chosen(opened.variant, order.sheets)).drawn
+    drawn = sheet.attempt(opened, opened.variant.chosen(order.sheets)).drawn
     dpi = order.settings["png"]["dpi"]
     return {name: data for n, composed in drawn.items() for name, data in view_pictures.of_sheet(n, composed, formats, dpi)}
 
@@ -233,9 +227,7 @@ def run_watch(project: str, corrected: bool, sheets: tuple[int, ...], formats: t
     click.echo(tell("watching {file}, Ctrl-C ends it").format(file=path), err=True)
     for _ in files.saved((path, path.parent / title_entries.FILE)):
         try:
-            order = Order(sheets, formats, {}, corrected, language=words.asked(), reader=words.reader(), kept=kept.used(),
-                          names=title_names())
-            build_one(project, order, output)
+            build_one(project, Order(sheets, formats, {}, corrected, names=title_names()), output)
         except BrokenPipeError:
             raise  # nobody listens
         except Exception as e:
@@ -266,8 +258,7 @@ def run_roster(table: Path, task: str, corrected: bool, formats: tuple[str, ...]
     output = place(output)
     build_store.check(output)
     settings: dict[str, dict[str, Any]] = {"pdf": {"date": files.source_date()}}
-    order = Order((), formats, settings, corrected, force, False, False, words.asked(), words.reader(), kept.used(),
-                  title_names())
+    order = Order((), formats, settings, corrected, force, names=title_names())
     works = [batch.Task(s.project, s.folder, s.student, s.group) for s in students]
     came, stopped = come_of(batch.on(works, order, output, jobs, scheduler), len(works))
     done = {outcome.folder: outcome for outcome in came}

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from tmm_sheets import files
-from tmm_sheets.cli.options import CORRECTED, NO_CACHE, PROJECT, folder_of, open_project
+from tmm_sheets.cli.options import CORRECTED, NO_CACHE, PROJECT, folder_of, open_project, refuse
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.localized_cli import command, option
 from tmm_sheets.progress import Progress
-from tmm_sheets.words import tell
+from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
-    from tmm_sheets.compare.marking import MarkingScheme
     from tmm_sheets.compare.report import Kind, Report
     from tmm_sheets.project import Project
 
@@ -52,21 +50,22 @@ def run_compare(
     pencil: float, reading: float, target: str | None, pages: tuple[Path, ...], output: Path | None,
 ) -> None:
     """Compare a hand drawing of PROJECT with the exact one: measured lengths, a photograph or a CAD drawing."""
-    if sum((template, measured is not None, image is not None, dxf is not None, group is not None)) != 1:
-        raise click.UsageError(tell("give one of --template, --measured FILE, --image FILE, --dxf FILE and --group FOLDER"))
-    if marks is not None and template:
-        raise click.UsageError(tell("--marks goes with what is compared"))
-    if everything and not template:
-        raise click.UsageError(tell("--all goes with --template"))
-    if read_numbers and image is None:
-        raise click.UsageError(tell("--read-numbers goes with --image FILE"))
-    _check_pages(pages)
+    refuse(
+        (sum((template, measured is not None, image is not None, dxf is not None, group is not None)) != 1,
+         marked("give one of --template, --measured FILE, --image FILE, --dxf FILE and --group FOLDER")),
+        (marks is not None and template, marked("--marks goes with what is compared")),
+        (everything and not template, marked("--all goes with --template")),
+        (read_numbers and image is None, marked("--read-numbers goes with --image FILE")),
+    )
+    for path in pages:
+        if path.suffix.lower() not in (".html", ".pdf"):
+            raise click.UsageError(tell("--report {file}: expected a name that ends in .html or .pdf").format(file=path))
 
-    scheme = None
-    if marks is not None:
-        from tmm_sheets.compare import marking
+    from tmm_sheets.api import compared
+    from tmm_sheets.compare import group as whole
+    from tmm_sheets.compare import marking
 
-        scheme = marking.read(marks)
+    scheme = None if marks is None else marking.read(marks)
     opened = open_project(project, corrected)
     folder = folder_of(opened.variant, output)
     with Progress() as progress:
@@ -75,22 +74,23 @@ def run_compare(
 
             report = by_ruler.template(opened, folder, everything, progress.doing)
         elif group is not None:
-            report = _of_group(group, opened, corrected, scheme, pencil, reading, progress.doing)
-        else:
-            from tmm_sheets.api import compared
+            def judged(kind: Kind, project: Project, sheet: int | None, path: Path) -> Report:
+                return compared(project, kind, path, sheet, None, pencil, reading)
 
+            name = opened.variant.called
+            report = whole.compare(group, name, lambda other: opened if other == name else open_project(other, corrected), judged,
+                                   scheme, progress.doing)
+        else:
             kinds: dict[Kind, Path | None] = {"measured": measured, "image": image, "dxf": dxf}
-            ((kind, path),) = [(kind, path) for kind, path in kinds.items() if path is not None]
+            ((kind, drawing),) = [(kind, file) for kind, file in kinds.items() if file is not None]
             try:
-                report = compared(opened, kind, path, sheet, views, pencil, reading, read_numbers, progress.doing)
+                report = compared(opened, kind, drawing, sheet, views, pencil, reading, read_numbers, progress.doing)
             except CannotBuild as e:
                 files.write_all({folder / name: data for name, data in e.files.items()})
                 for name in e.files:
                     click.echo(folder / name, err=True)
                 raise
             if scheme is not None:
-                from tmm_sheets.compare import group as whole
-
                 report = whole.marked(report, scheme)
     made = {folder / name: data for name, data in report.files.items()}
     if target is not None and target != "-":
@@ -108,24 +108,3 @@ def run_compare(
         click.echo(report.as_json())
     for path in made:
         click.echo(path, err=target == "-")
-
-
-def _of_group(group: Path, opened: Project, corrected: bool, scheme: MarkingScheme | None, pencil: float, reading: float,
-              say: Callable[[str], None]) -> Report:
-    """The report on the work of a whole group."""
-    from tmm_sheets.api import compared
-    from tmm_sheets.compare import group as whole
-
-    def judged(kind: Kind, project: Project, sheet: int | None, path: Path) -> Report:
-        return compared(project, kind, path, sheet, None, pencil, reading)
-
-    name = opened.variant.called
-    return whole.compare(group, name, lambda other: opened if other == name else open_project(other, corrected), judged,
-                         scheme, say)
-
-
-def _check_pages(pages: tuple[Path, ...]) -> None:
-    """Refuse reports of another kind than can be written."""
-    for path in pages:
-        if path.suffix.lower() not in (".html", ".pdf"):
-            raise click.UsageError(tell("--report {file}: expected a name that ends in .html or .pdf").format(file=path))

@@ -18,30 +18,15 @@ from tmm_sheets.words import tell
 @option("--plot", "folder", type=click.Path(path_type=Path), metavar="DIR", help="Also draw log-log diagrams, SVG.")
 @option("--quick", is_flag=True, help="A few small runs only: tries the benchmark out.")
 @option("--summary", is_flag=True, help="The first and the last run of each method only, in Markdown.")
-@option("--peers", is_flag=True, help="Instead: the same linkages by other programs, those of the extra [peers].")
-@option("--cost", metavar="PROJECT", help="Instead: what one sheet or one number of PROJECT costs against the whole.")
-@option("--whole", metavar="PROJECT", help="Instead: all sheets of PROJECT against plain calls of the libraries.")
-def run_bench(target: str | None, folder: Path | None, quick: bool, summary: bool, peers: bool, cost: str | None,
-              whole: str | None) -> None:
+def run_bench(target: str | None, folder: Path | None, quick: bool, summary: bool) -> None:
     """Measure every method: error against a truth of 30 digits or more, and time."""
-    if cost is not None or whole is not None:
-        if any((target, folder, quick, summary, peers, cost and whole)):
-            raise click.UsageError(tell("--cost and --whole go alone"))
-        click.echo(_prices(cost, whole))
-        return
     from tmm_sheets.lab.bench import records
 
     if folder is not None:
         files.check_folder(folder)
     with Progress() as progress:
-        measure = records.compare if peers else records.run
-        found = measure(quick, progress.doing)
-    if peers:
-        from tmm_sheets.lab.bench import peers as by_others
-
-        text = (by_others.summary if summary else by_others.table)(found)
-    else:
-        text = (records.summary if summary else records.table)(found)
+        found = records.run(quick, progress.doing)
+    text = (records.summary if summary else records.table)(found)
     click.echo(text, err=target == "-")
     made: dict[Path, bytes] = {}
     if target == "-":
@@ -51,18 +36,6 @@ def run_bench(target: str | None, folder: Path | None, quick: bool, summary: boo
     if folder is not None:
         made |= {folder / name: data for name, data in records.diagrams(found).items()}
     files.write_all(made)
-
-
-def _prices(cost: str | None, whole: str | None) -> str:
-    """What parts of a project cost against the whole, or the whole against plain calls of the libraries."""
-    with Progress() as progress:
-        if cost is not None:
-            from tmm_sheets.lab.bench import costs
-
-            return costs.table(cost, progress.doing)
-        from tmm_sheets.lab.bench import whole as sheets
-
-        return sheets.table(sheets.measure(str(whole), progress.doing))
 
 
 @command("stress")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from tmm_sheets import kept, spelling, words
+from tmm_sheets import files, kept, spelling, words
 from tmm_sheets.localized_cli import argument, option
 from tmm_sheets.words import tell
 
@@ -18,9 +18,6 @@ if TYPE_CHECKING:
     from tmm_sheets.task.title_entries import Names
     from tmm_sheets.task.variant import Variant
 
-
-FORMATS = ("dxf", "pdf", "svg", "png", "hpgl")
-"""Formats of drawings."""
 
 PAPERS = ("A0", "A1", "A2", "A3", "A1x3", "A1x4", "A2x3", "A2x4", "A2x5", "A3x3", "A3x4", "A3x5", "A3x6", "A3x7")
 """Formats of paper."""
@@ -46,6 +43,19 @@ def among(known: tuple[str, ...]) -> Callable[[click.Context, click.Parameter, s
         return parts
 
     return split
+
+
+def refuse(*wrong: tuple[object, str]) -> None:
+    """Refuse options that do not go together: the first row that is so tells why, a text of the catalogues.
+
+    Raises
+    ------
+    click.UsageError
+        when there is one.
+    """
+    for is_so, said in wrong:
+        if is_so:
+            raise click.UsageError(tell(said))
 
 
 def plotter(context: click.Context, parameter: click.Parameter, value: str | None) -> Plotter | None:
@@ -98,8 +108,8 @@ def on_paper(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def formats_of(default: str) -> Callable[..., Any]:
     """Decorator: the option for formats of drawings."""
-    return option("--format", "formats", default=default, show_default=True, callback=among(FORMATS), metavar="F,F",
-                  help=f"Formats: {', '.join(FORMATS)}.")  # fmt: skip
+    return option("--format", "formats", default=default, show_default=True, callback=among(tuple(files.ENDINGS)), metavar="F,F",
+                  help=f"Formats: {', '.join(files.ENDINGS)}.")  # fmt: skip
 
 
 PROJECT = argument("project")
@@ -141,9 +151,7 @@ def title_names() -> Names:
 
 def folder_of(variant: Variant, output: Path | None) -> Path:
     """Folder of a project's files: the one asked for, or one of its own."""
-    from tmm_sheets.output.building import folder_name
-
-    return output if output is not None else Path("out") / folder_name(variant.stem)
+    return output if output is not None else Path("out") / files.folder_name(variant.stem)
 
 
 def put(folder: Path, made: Mapping[str, bytes], force: bool) -> tuple[tuple[Path, ...], list[str]]:

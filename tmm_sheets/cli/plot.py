@@ -10,11 +10,11 @@ import click
 
 from tmm_sheets import files
 from tmm_sheets.box import Box
-from tmm_sheets.cli.options import CORRECTED, NO_CACHE, SHEETS, TITLE, folder_of, on_paper, open_project, plotter, titled
+from tmm_sheets.cli.options import CORRECTED, NO_CACHE, SHEETS, TITLE, folder_of, on_paper, open_project, plotter, refuse, titled
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.localized_cli import argument, command, option
 from tmm_sheets.progress import Progress
-from tmm_sheets.words import tell
+from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.plotters import Plotter
@@ -61,8 +61,7 @@ def run_plot(
     output: Path | None,
 ) -> None:
     """Put the sheets of PROJECT on paper, 1:1, or send a FILE made before (.plt, .pdf)."""
-    if machine is not None and tile is not None:
-        raise click.UsageError(tell("--tile cuts a PDF; a plotter takes a sheet in parts with --window"))
+    refuse((machine is not None and tile is not None, marked("--tile cuts a PDF; a plotter takes a sheet in parts with --window")))
     from tmm_sheets.output import plot as plotting
 
     finished = project.lower().endswith(plotting.FILES)
@@ -109,10 +108,9 @@ def _plots(opened: Project, sheets: tuple[int, ...], look: PlotLook, folder: Pat
         dict[Path, Job], CannotBuild | None]:
     """Plots of the sheets asked for by their files, and what is to be said of those that cannot be drawn."""
     from tmm_sheets.output import plot as plotting
-    from tmm_sheets.output.building import chosen
     from tmm_sheets.sheets import pages, sheet
 
-    attempt = sheet.every(opened, progress.doing, chosen(opened.variant, sheets))
+    attempt = sheet.every(opened, progress.doing, opened.variant.chosen(sheets))
     problem = attempt.problem()
     jobs: list[Job] = []
     for n, composed in attempt.drawn.items():

@@ -17,11 +17,12 @@ from tmm_sheets.cli.options import (
     among,
     open_project,
     read_variant,
+    refuse,
     title_names,
 )
 from tmm_sheets.errors import CannotBuild, together
 from tmm_sheets.localized_cli import argument, command, option
-from tmm_sheets.words import tell
+from tmm_sheets.words import marked, tell
 
 
 @command("check")
@@ -52,8 +53,7 @@ def run_check(project: str, corrected: bool, scheme: Path | None) -> None:
 @option("--force", is_flag=True, help="With -o: overwrite a file that says something else.")
 def run_show(project: str, corrected: bool, as_file: bool, output: Path | None, force: bool) -> None:
     """Show inputs with units and source, links, pairs, mobility W, Assur groups, formula of structure."""
-    if output is not None and not as_file:
-        raise click.UsageError(tell("-o goes with --file"))
+    refuse((output is not None and not as_file, marked("-o goes with --file")))
     variant = read_variant(project, corrected, drawn=False)
     if output is not None:
 
@@ -97,8 +97,7 @@ def run_solve(
     positions: int | None, parts: tuple[str, ...] | None,
 ) -> None:
     """Compute the numbers of PROJECT; nothing is drawn."""
-    if phi is not None and positions is not None:
-        raise click.UsageError(tell("give either --phi or --positions, not both"))
+    refuse((phi is not None and positions is not None, marked("give either --phi or --positions, not both")))
     from tmm_sheets import result_files, results
 
     opened, refused = open_project(project, corrected, drawn=False), dict[str, CannotBuild]()
@@ -155,11 +154,10 @@ def run_protocol(project: str, corrected: bool, name: str | None, everything: bo
 @NO_CACHE
 def run_record(project: str, corrected: bool, sheets: tuple[int, ...], target: str) -> None:
     """Write the record of PROJECT as JSON: every number with its step, every mark with what it shows."""
-    from tmm_sheets.output.building import chosen
     from tmm_sheets.record import recording
 
     opened = open_project(project, corrected)
-    found, problem = recording.record(opened, chosen(opened.variant, sheets))
+    found, problem = recording.record(opened, opened.variant.chosen(sheets))
     text = recording.as_json(found)
     if target == "-":
         click.echo(text)

@@ -7,11 +7,11 @@ from pathlib import Path
 import click
 
 from tmm_sheets import catalogue, files, quoting, words
-from tmm_sheets.cli.options import CORRECTED, read_variant, title_names, titled
+from tmm_sheets.cli.options import CORRECTED, read_variant, refuse, title_names, titled
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.localized_cli import argument, command, option
 from tmm_sheets.progress import Progress
-from tmm_sheets.words import tell
+from tmm_sheets.words import marked, tell
 
 
 @command("list")
@@ -49,8 +49,8 @@ def run_list(word: str | None, as_json: bool) -> None:
 @option("--force", is_flag=True, help="Overwrite a file that says something else.")
 def run_new(name: str, source: str | None, groups: str | None, parts: str | None, corrected: bool, force: bool) -> None:
     """Write a project file NAME.toml to begin with; what is not told (task, student, group) is asked."""
-    if source is not None and (groups is not None or parts is not None):
-        raise click.UsageError(tell("--from takes the whole of a project: leave --groups and --parts out"))
+    refuse((source is not None and (groups is not None or parts is not None),
+            marked("--from takes the whole of a project: leave --groups and --parts out")))
     from tmm_sheets.task import new_file, title_entries, variant
 
     path = Path(name if name.endswith(catalogue.SUFFIX) else f"{name}{catalogue.SUFFIX}")
@@ -58,8 +58,7 @@ def run_new(name: str, source: str | None, groups: str | None, parts: str | None
     files.refuse_present(path, force)
     if source is None and groups is None and parts is None:
         source = _asked(tell("Task: a shipped project, such as lugansk/shaper, or a project file"))
-        if not source:
-            raise click.UsageError(tell("give a task: --from PROJECT, --groups K,K or --parts P,P"))
+        refuse((not source, marked("give a task: --from PROJECT, --groups K,K or --parts P,P")))
     tables, read = "", None
     if source is not None:
         read = read_variant(source, corrected, drawn=False)

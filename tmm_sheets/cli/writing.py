@@ -18,11 +18,12 @@ from tmm_sheets.cli.options import (
     open_project,
     put,
     read_variant,
+    refuse,
     titled,
 )
 from tmm_sheets.localized_cli import argument, command, option
 from tmm_sheets.progress import Progress
-from tmm_sheets.words import tell
+from tmm_sheets.words import marked, tell
 
 NOTE_FORMATS = ("pdf", "docx")
 """Formats of the explanatory note."""
@@ -69,10 +70,8 @@ def run_note(project: str, corrected: bool, formats: tuple[str, ...], output: Pa
 def run_page(project: str, corrected: bool, sheets: tuple[int, ...], plan: str, output: Path | None) -> None:
     """Write the living sheet of PROJECT: one page without network, in which its plans are drawn, turned, changed and asked."""
     from tmm_sheets.living.page import page as living_page
-    from tmm_sheets.output.building import chosen
-
     opened = open_project(project, corrected)
-    found, problem = living_page(opened, chosen(opened.variant, sheets), plan)
+    found, problem = living_page(opened, opened.variant.chosen(sheets), plan)
     path = output if output is not None else folder_of(opened.variant, None) / "page.html"
     files.write_all({path: found.encode()})
     click.echo(path)
@@ -94,8 +93,7 @@ def run_serve(project: str | None, corrected: bool, followed: Path | None, host:
     from tmm_sheets.page import serving
 
     serving.check_packages()
-    if project is not None and followed is not None:
-        raise click.UsageError(tell("give either PROJECT or --watch FILE, not both"))
+    refuse((project is not None and followed is not None, marked("give either PROJECT or --watch FILE, not both")))
     from tmm_sheets.page import doors
 
     opens = (doors.followed_file(followed) if followed is not None else

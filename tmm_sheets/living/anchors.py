@@ -45,7 +45,8 @@ def hung(record: Mapping[str, Any], sheet: Mapping[str, Any], known: Mapping[str
         if plan is None or not plan["positions"] or not any(key in known for key in plan["steps"]):
             continue
         marks = [m for m in sheet["marks"] if m.get("frame") == frame["id"]]
-        label = frame["position"] or _highlighted(marks)
+        thick = [m["position"] for m in marks if m.get("position") and m["style"] == "main"]
+        label = frame["position"] or max(sorted(set(thick)), key=thick.count, default="")
         if label in plan["positions"]:
             place = str([frame[name] for name in ("origin", "mu", "turn", "mirror")])
             found.setdefault((frame["view"], place), []).append(_Frame(record, plan, frame, label, marks, known))
@@ -55,12 +56,6 @@ def hung(record: Mapping[str, Any], sheet: Mapping[str, Any], known: Mapping[str
         if sum(m["kind"] != "text" for m in marks) > 2 and any(m["role"] in ("link", "vector", "point") for m in marks):
             views.append({"view": view, "plan": frames[0].plan["id"], "position": frames[0].label, "marks": marks})
     return views
-
-
-def _highlighted(marks: list[dict[str, Any]]) -> str:
-    """The position whose links are drawn with thick lines."""
-    labels = [m["position"] for m in marks if m.get("position") and m["style"] == "main"]
-    return max(sorted(set(labels)), key=labels.count, default="")
 
 
 Place = tuple[str, complex, list[str], list[Any] | None]
@@ -111,15 +106,14 @@ class _Frame:
             still = mark["role"] in ("axis", "curve") and "position" not in mark
             if mark.get("position") != self.label and not still and not (mark["role"] == "construction" and "position" not in mark):
                 continue
-            told = self._curve(mark) if mark["role"] == "curve" else self._mark(mark)
+            key, told = mark.get("step"), None
+            if mark["role"] != "curve":
+                told = self._mark(mark)
+            elif key in self.points and self.steps[key]["over"] == "positions":
+                told = {"kind": "path", "of": key}
             if told is not None:
                 yield {"id": mark["id"], "style": mark["style"], "role": mark["role"], "origin": self.frame["origin"],
                        "mu": self.frame["mu"], "turn": self.frame["turn"], "mirror": self.frame["mirror"], **told}
-
-    def _curve(self, mark: dict[str, Any]) -> dict[str, Any] | None:
-        """The path of a point."""
-        key = mark.get("step")
-        return {"kind": "path", "of": key} if key in self.points and self.steps[key]["over"] == "positions" else None
 
     def _mark(self, mark: dict[str, Any]) -> dict[str, Any] | None:
         shape, (kind, points) = mark["geometry"], _points(mark["geometry"])
@@ -266,7 +260,8 @@ def markers(project: Project, record: Mapping[str, Any], sheet: Mapping[str, Any
         if frame["plan"].startswith(OTHERS):
             continue
         marks = [m for m in sheet["marks"] if m.get("frame") == frame["id"]]
-        of, mu = ("cam", _cam_scale(project, frame)) if frame["plan"].startswith("cam") else ("crank", _crank_scale(project, frame))
+        of = "cam" if frame["plan"].startswith("cam") else "crank"
+        mu = _scale(project, of, frame)
         axis = exp(1j * frame["turn"])
         for mark in (m for m in marks if m["role"] == "curve" and "position" not in m):
             points = [complex(*z) for z in mark["geometry"].get("polyline", mark["geometry"].get("line", ()))]
@@ -284,22 +279,21 @@ def _ascending(points: list[complex], axis: complex) -> bool:
     return len(steps) > 0 and min(steps) > -1e-6 and sum(steps) > 1
 
 
-def _crank_scale(project: Project, frame: Mapping[str, Any]) -> float:
-    """Radians of the crank in a millimetre along the axis of a frame; 0 where it is no axis of angles."""
-    if frame["mu"][0] == frame["mu"][1] == 1.0:
-        return float(project.flywheel.scales.angle.mu) if "flywheel" in vars(project) else 0.0
-    return float(frame["mu"][0]) if frame["mu"][0] != frame["mu"][1] else 0.0
-
-
-def _cam_scale(project: Project, frame: Mapping[str, Any]) -> float:
+def _scale(project: Project, of: str, frame: Mapping[str, Any]) -> float:
+    """Radians of the crank or the cam in a millimetre along the axis of a frame; 0 where it is no axis of angles."""
     if frame["plan"] in ON_PAPER:
         return float(project.cam.motion.scales.phi.mu)
+    if of == "crank" and frame["mu"][0] == frame["mu"][1] == 1.0:
+        return float(project.flywheel.scales.angle.mu) if "flywheel" in vars(project) else 0.0
     return float(frame["mu"][0]) if frame["mu"][0] != frame["mu"][1] else 0.0
 
 
 def _passes(project: Project, of: str, points: list[complex], there: Mapping[str, complex]) -> Iterator[list[float]]:
     """Angles at which a curve passes the places of the numbered positions, and the numbers of its own points there."""
-    turned, whole = _angles(project, of)
+    if of == "cam":
+        turned, whole = project.cam.law.positions, 2 * np.pi
+    else:
+        turned, whole = project.cycle.turned, float(project.cycle.period)
     last = -1
     for label, angle in zip(there, turned, strict=False):
         away = np.abs(np.array(points[last + 1:]) - there[label])
@@ -323,10 +317,3 @@ def _places(sheet: Mapping[str, Any], frame: Mapping[str, Any]) -> dict[str, com
                 z = complex(*shape["centre"]) if kind == "circle" else complex(*np.mean(shape, axis=0))
                 there.setdefault(m["position"], z)
     return there
-
-
-def _angles(project: Project, of: str) -> tuple[tuple[float, ...], float]:
-    """Angles turned to the numbered positions, rad, and that of the cycle."""
-    if of == "cam":
-        return tuple(map(float, project.cam.law.positions)), 2 * np.pi
-    return tuple(map(float, project.cycle.turned)), float(project.cycle.period)

@@ -90,7 +90,7 @@ def motion(project: Project, index: StepIndex) -> MotionProgram:
     study, cycle = _studied(project), project.cycle
     positions = len(study.turned)
     own = [step for plan in study.plans.values() for step in (*plan.auxiliaries.values(), *plan)]
-    wheel = _uneven(project, study)
+    wheel = UnevenCrank(project, study) if study.running is not None else None
     reduced = list(wheel.steps.values()) if wheel is not None else []
     search = Searches(project, study, [*own, *reduced], wheel.sides if wheel is not None else {})
     rows = dict(search.inputs)
@@ -130,15 +130,9 @@ def motion(project: Project, index: StepIndex) -> MotionProgram:
         programs["wheel"] = written(wheel.steps)
     factors = {one["diagram"]: {"name": one["diagram"], "symbol": one["symbol"], "unit": "", "value": 1.0}
                for made in programs.values() for one in made.inputs if "diagram" in one}
-    return MotionProgram(programs, wheel.told if wheel is not None else {}, [*map(_told_given, chosen.values()), *factors.values()],
+    givens = [{"name": g.name, "symbol": g.symbol, "unit": g.unit, "value": told(value_of(g))} for g in chosen.values()]
+    return MotionProgram(programs, wheel.told if wheel is not None else {}, [*givens, *factors.values()],
                          ends, float(cycle.start), float(cycle.sense), float(cycle.period), search.told)
-
-
-def _uneven(project: Project, study: Study) -> UnevenCrank | None:
-    if study.running is None:
-        return None
-
-    return UnevenCrank(project, study)
 
 
 def _fixed(step: Step) -> dict[str, Any]:
@@ -233,10 +227,6 @@ def _givens(wanted: Iterable[Step], stop: set[int]) -> dict[str, _Told]:
                 if number or isinstance(a, GivenNumber | GivenPoint):
                     found.setdefault(a.name, a)
     return found
-
-
-def _told_given(g: _Told) -> dict[str, Any]:
-    return {"name": g.name, "symbol": g.symbol, "unit": g.unit, "value": told(value_of(g))}
 
 
 class UnevenCrank:

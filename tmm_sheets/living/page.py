@@ -20,12 +20,12 @@ from tmm_sheets import results, spelling, words
 from tmm_sheets.drawing.styles import line_types
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.living.anchors import hung, markers
-from tmm_sheets.living.motion import MotionProgram, WrittenPlan, motion
+from tmm_sheets.living.motion import MotionProgram, motion
 from tmm_sheets.note import phrases
 from tmm_sheets.record import recording
 from tmm_sheets.record.recording import called
 from tmm_sheets.resources import template
-from tmm_sheets.task import units
+from tmm_sheets.task import edited_text, units
 from tmm_sheets.task.toml_lines import KeyPath, scan
 from tmm_sheets.words import tell, tr
 
@@ -64,9 +64,11 @@ def page(project: Project, numbers: Iterable[int] = (), plan: str = "") -> tuple
         sheet["markers"] = markers(project, record, sheet)
     _check_plan(record, plan)
     variant = project.variant
+    drawn = sorted({frame["view"] for sheet in record["sheets"] for frame in sheet["frames"]})
+    views = {view: name for view in drawn if (name := called(view))}  # of those without a title
     record |= {
         "styles": {name: {"width": s.width, "pattern": [abs(x) for x in s.pattern]} for name, s in line_types().items()},
-        "opens": plan, "words": page_words() | {"units": _units(record), "views": _views(record)}, "file": variant.text,
+        "opens": plan, "words": page_words() | {"units": _units(record), "views": views}, "file": variant.text,
         "filename": re.sub(r"[^\w.+-]+", "-", variant.stem).strip("-") + ".toml",
     }  # fmt: skip
     return _written(record, made), problem
@@ -99,29 +101,18 @@ def _units(record: Mapping[str, Any]) -> dict[str, str]:
     return {name: phrases.unit(name, words.paper()) for name in sorted(names) if name}
 
 
-def _views(record: Mapping[str, Any]) -> dict[str, str]:
-    """What views without a title are called, by the names that arrangements have for them."""
-    drawn = sorted({frame["view"] for sheet in record["sheets"] for frame in sheet["frames"]})
-    return {view: name for view in drawn if (name := called(view))}
-
-
 def _written(record: Mapping[str, Any], made: MotionProgram | None) -> str:
     """The file: style, data and modules in their places of the template."""
     packed = gzip.compress(json.dumps(record, ensure_ascii=False, separators=(",", ":")).encode(), 9, mtime=0)
+    programs = ",\n".join(f"{name}: {one.source.text}" for name, one in (made.programs.items() if made is not None else ()))
     parts = {
         "lang": str(record["lang"]), "title": escape(", ".join(filter(None, (record["project"], record["variant"])))),
         "style": _text("page.css"), "font": b64encode(template("fonts/TMMSheetsB.ttf").read_bytes()).decode(),
         "record": b64encode(packed).decode(),
-        "programs": _programs(made.programs if made is not None else {}),
+        "programs": f"{{\n{programs}\n}}".replace("</", "<\\/"),
         "modules": "\n".join(_text(f"{name}.js") for name in MODULES),
     }  # fmt: skip
     return re.sub(r"<!--(\w+)-->", lambda m: parts[m[1]], _text("page.html"))
-
-
-def _programs(programs: Mapping[str, WrittenPlan]) -> str:
-    """The programs as an object of functions by their names."""
-    told = ",\n".join(f"{name}: {written.source.text}" for name, written in programs.items())
-    return f"{{\n{told}\n}}".replace("</", "<\\/")
 
 
 def _text(name: str) -> str:
@@ -133,24 +124,16 @@ WIDEST = 4.0
 HALVINGS = 7
 
 
-def path_of(name: str) -> KeyPath:
-    """Keys of a given number in the project file."""
-    return tuple(int(part) if part.isdigit() else part for part in re.findall(r"[^.\[\]]+", name))
-
-
 def slider(variant: Variant, lines: Mapping[KeyPath, int], name: str) -> dict[str, Any]:
     """Line of a given number, its unit with the factor to SI, and limits of what the schema takes, SI; nothing of one left out.
 
     ``low`` and ``high`` are told where there are any.
     """
-    path = path_of(name)
+    path = edited_text.key_path(name)
     if path not in lines:
         return {}
     told: dict[str, Any] = {"line": lines[path]}
-    try:
-        written = reduce(getitem, path, variant.data)  # type: ignore[arg-type]
-    except (KeyError, IndexError, TypeError):
-        return told
+    written = edited_text.at(variant.data, name)
     number, unit = units.split(written[0] if isinstance(written, list) and written else written)
     factor = units.si(f"1 {unit}") if unit else 1.0
     if not number or not factor:

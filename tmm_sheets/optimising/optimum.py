@@ -7,7 +7,7 @@ that is written gives the very numbers that are told.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -201,7 +201,6 @@ def optimum(project: Project, changed: Callable[[Mapping[str, Any]], Project], v
     known = _Known(project, positions)
     wishes = wish(aim, known.names), tuple(bound(text, known.names) for text in subject_to)
     names = _names(*wishes)
-
     def found(way: _Whole) -> Optimum:
         return _Asked(some, *wishes, most, way, tries, say).run()
 
@@ -279,12 +278,9 @@ class _Quick(_Whole):
         except CannotBuild:
             return
         self.rows = [*map(value_of, rows)]
-        self.ready = len(self.told) == len(names) and all(map(self.agrees, self._ends()))
-
-    def _ends(self) -> list[tuple[float, ...]]:
         low, high = tuple(v.low for v in self.some), tuple(v.high for v in self.some)
-        return [low, high, (low[0], *high[1:]), tuple(v.at(0.5) for v in self.some)]
-
+        ends = [low, high, (low[0], *high[1:]), tuple(v.at(0.5) for v in self.some)]
+        self.ready = len(self.told) == len(names) and all(map(self.agrees, ends))
     def values(self, numbers: Sequence[float]) -> Values:
         """The results of some numbers; NaN where they have none."""
         given = {v.name: v.si(x) for v, x in zip(self.some, numbers, strict=True)}
@@ -399,8 +395,10 @@ def search(ask: Callable[[Point], Key], dimensions: int, tries: int) -> None:
         return ask(x)
 
     try:
-        first = [*_spread(dimensions, tries)]
-        size = 1 / (round(len(first) ** (1 / dimensions)) - 1)
+        # All over the box, its corners with them: a quarter of the tries, 17 along a line at most.
+        along = min(17, max(3, int((tries / 4) ** (1 / dimensions))))
+        first = [np.array(at) for at in product(np.linspace(0.0, 1.0, along), repeat=dimensions)]
+        size = 1 / (along - 1)
         asked = sorted(((counted(x), n) for n, x in enumerate(first)))
         best = asked[0][0], first[asked[0][1]]
         for _, n in asked[:STARTS]:
@@ -410,13 +408,6 @@ def search(ask: Callable[[Point], Key], dimensions: int, tries: int) -> None:
         _steps(counted, *best)
     except Enough:
         pass
-
-
-def _spread(dimensions: int, tries: int) -> Iterator[Point]:
-    """Points all over the box, its corners with them: a quarter of the tries, 17 along a line at most."""
-    along = min(17, max(3, int((tries / 4) ** (1 / dimensions))))
-    for at in product(np.linspace(0.0, 1.0, along), repeat=dimensions):
-        yield np.array(at)
 
 
 def _steps(ask: Callable[[Point], Key], key: Key, at: Point) -> None:

@@ -26,10 +26,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from tmm_sheets import catalogue, files, kept, quoting, spelling, words
 from tmm_sheets.errors import BadInput, CannotBuild, Stopped, told_of
 from tmm_sheets.output.build_store import current, outlet, put, record_of
-from tmm_sheets.output.building import Order, build, folder_name, with_room
+from tmm_sheets.output.building import Order, build, with_room
 from tmm_sheets.program import fingerprint, program
 from tmm_sheets.task import title_entries
-from tmm_sheets.task.title_entries import Names
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -87,9 +86,10 @@ def _one(task: Task, order: Order, parent: Path) -> Outcome:
     try:
         variant = with_room(catalogue.read(project, order.corrected))
         warnings = tuple(variant.warnings)
-        names = _names(task, order)
+        own = {key: text for key, text in (("student", task.student), ("group", task.group)) if text}
+        names = replace(order.names, options={**order.names.options, **own})
         variant = names.filled(variant)
-        folder = parent / (task.folder or folder_name(variant.stem))
+        folder = parent / (task.folder or files.folder_name(variant.stem))
         built = build(variant, order, order.outlet(folder))
         handed = dict[str, bool]()
         if task.student:
@@ -103,23 +103,12 @@ def _one(task: Task, order: Order, parent: Path) -> Outcome:
                    handed=tuple(handed.items()))
 
 
-def _names(task: Task, order: Order) -> Names:
-    """Names on the sheets of one task: the student's go before those of the order."""
-    own = {key: text for key, text in (("student", task.student), ("group", task.group)) if text}
-    return replace(order.names, options={**order.names.options, **own})
-
-
-def several(tasks: Sequence[Task], order: Order, parent: Path) -> list[Outcome]:
-    """Build some projects one after the other: the work of one worker."""
-    return [one(task, order, parent) for task in tasks]
-
-
 _ending = threading.Event()
 """In a process of the pool: no more projects are begun."""
 
 
-def _until_the_end(tasks: Sequence[Task], order: Order, parent: Path) -> list[Outcome]:
-    """The same in a process of the pool, up to the project in work when the batch is told to end."""
+def several(tasks: Sequence[Task], order: Order, parent: Path) -> list[Outcome]:
+    """Build some projects one after the other: the work of one worker, up to the project in work when the batch is told to end."""
     return [one(task, order, parent) for task in tasks if not _ending.is_set()]
 
 
@@ -184,7 +173,7 @@ def carry_out(works: Sequence[Task], order: Order, parent: Path, workers: int) -
     told, end = context.Pipe(duplex=False)
     with told, end, _signals(lambda: end.send_bytes(b".")) as signals:
         with ProcessPoolExecutor(workers, context, initializer=_start, initargs=(told,)) as pool:
-            tasks = {pool.submit(_until_the_end, chunk, order, parent): chunk for chunk in chunks}
+            tasks = {pool.submit(several, chunk, order, parent): chunk for chunk in chunks}
             for task in as_completed(tasks):
                 try:
                     yield from task.result()
@@ -284,10 +273,10 @@ def folders(names: Iterable[str]) -> dict[str, str]:
     """
     own = [name for name in names if not catalogue.is_shipped(name)]
     parts = {name: (*Path(os.path.abspath(name)).parts[1:-1], Path(name).stem) for name in own}
-    taken = Counter(files.alike(folder_name(name)) for name in names if name not in parts)
+    taken = Counter(files.alike(files.folder_name(name)) for name in names if name not in parts)
     depth = dict.fromkeys(own, 1)
     while True:
-        found = {name: folder_name("-".join(parts[name][-depth[name]:])) for name in own}
+        found = {name: files.folder_name("-".join(parts[name][-depth[name]:])) for name in own}
         count = taken + Counter(map(files.alike, found.values()))
         longer = [name for name in own if count[files.alike(found[name])] > 1 and depth[name] < len(parts[name])]
         if not longer:
@@ -295,7 +284,7 @@ def folders(names: Iterable[str]) -> dict[str, str]:
         for name in longer:
             depth[name] += 1
     alike = [name for name in own if count[files.alike(found[name])] > 1]
-    found |= {name: folder_name(parts[name][-1]) for name in alike}
+    found |= {name: files.folder_name(parts[name][-1]) for name in alike}
     used = {*taken, *(files.alike(found[name]) for name in own if name not in alike)}
     for name in alike:
         numbered = (found[name] + (f"-{n}" if n > 1 else "") for n in count_up(1))

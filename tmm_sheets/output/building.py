@@ -9,7 +9,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from tmm_sheets import files, words
+from tmm_sheets import files, kept, words
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.output.build_store import (
     BuildRecord,
@@ -34,12 +34,6 @@ if TYPE_CHECKING:
 
 TOGETHER, APART = "kinematics_forces_wide", ("kinematics", "forces")
 """Arrangements of what a linkage is and what acts on it, on one sheet and on two."""
-BACKENDS = {form: f"tmm_sheets.backends.{form}" for form in ("dxf", "pdf", "svg", "png", "hpgl")}
-"""Formats of drawings and the modules that write them, each imported only when asked for."""
-
-SUFFIXES = {"hpgl": "plt"}
-"""Ends of file names that are not the name of the format."""
-
 ONE_FILE = "sheets.pdf"
 """Name of the PDF with all sheets."""
 
@@ -70,16 +64,16 @@ class Order:
     force: bool = False
     archive: bool = False
     one_file: bool = False
-    language: str = ""
-    reader: str = words.MESSAGES
-    kept: bool = True
+    language: str = field(default_factory=words.asked)
+    reader: str = field(default_factory=words.reader)
+    kept: bool = field(default_factory=kept.used)
     names: Names = field(default_factory=Names)
 
     def targets(self, pages: Mapping[int, int]) -> list[Target]:
         """The files of sheets on so many pages, format by format."""
         found = []
         for form in self.formats:
-            end = SUFFIXES.get(form, form)
+            end = files.ENDINGS[form]
             if form == "pdf" and self.one_file:
                 found.append(Target(form, tuple(pages), ONE_FILE))
                 continue
@@ -109,17 +103,8 @@ class Built:
     warnings: tuple[str, ...] = ()
 
 
-def folder_name(stem: str) -> str:
-    """Name of a folder for what is called so, see :attr:`~tmm_sheets.task.variant.Variant.stem`."""
-    return files.name_of(stem) or "project"
-
-
-def _quiet(what: str) -> None:
-    pass
-
-
 def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | None = None,
-          say: Callable[[str], None] = _quiet) -> Built:
+          say: Callable[[str], None] = lambda what: None) -> Built:
     """Build what is not current; a sheet that cannot be drawn costs no other one.
 
     Raises
@@ -134,11 +119,15 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     watch = watch or Stopwatch()
     words.set_paper(order.language or words.of_project(variant.project.language))
     opened = Project(variant)
-    numbers = chosen(variant, order.sheets)
+    numbers = variant.chosen(order.sheets)
     outlet.check()
     # On other paper than A1 only the views tell on how many pages a sheet is.
     known = None if variant.paper.usual else _drawn(opened, numbers, _watching(watch, say), others=False)
-    paged = _paged(opened, known[0]) if known else {}
+    paged = {}
+    if known:
+        from tmm_sheets.sheets import pages
+
+        paged = {n: pages.on_paper(opened, n, composed) for n, composed in known[0].items()}
     wanted = order.targets({n: len(paged[n][0]) if n in paged else 1 for n in numbers})
     outlet.sweep(target.name for target in wanted)
     work = _work(variant, order, outlet, numbers, wanted, watch)
@@ -149,11 +138,13 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     failed = set(work.sheets) - set(drawn)
     done = [target for target in work.wanted if not failed.issuperset(target.sheets)]
     if problem is not None:
-        problem = _with_stale(problem, [target.name for target in work.wanted if target not in done], outlet)
+        stale = [target.name for target in work.wanted if target not in done and outlet.read(target.name) is not None]
+        left = tell("{files}: left as they were made before, from other inputs").format(files=", ".join(stale))
+        problem = CannotBuild(str(problem), left) if stale else problem
     drawings = {n: composed.drawing for n, composed in drawn.items()}
     leaves = {n: paged[n][0] if n in paged else [drawing] for n, drawing in drawings.items()}
     made, beside = _rendered(leaves, [target for target in work.due if target in done], order, outlet, watch, say)
-    done, kept = _settled(done, work, made, outlet)
+    done, by_hand = _settled(done, work, made, outlet)
     if made or whole_passed:
         # A file without one of its sheets is not current.
         made_from = {target.name: work.made_from[target] if failed.isdisjoint(target.sheets) else "" for target in done}
@@ -162,7 +153,7 @@ def build(variant: Variant, order: Order, outlet: Outlet, watch: Stopwatch | Non
     paths = tuple(outlet.path(target.name) for target in done)
     sizes = {outlet.path(name): len(data) for name, data in made.items()}
     larger = [tell("sheet {n}: {what}").format(n=n, what=what) for n, (_, told) in paged.items() for what in told]
-    return Built(paths, sizes, drawings, opened, problem, (*kept, *larger, *_warnings(drawn)))
+    return Built(paths, sizes, drawings, opened, problem, (*by_hand, *larger, *_warnings(drawn)))
 
 
 @dataclass(frozen=True)
@@ -209,7 +200,7 @@ def _work(variant: Variant, order: Order, outlet: Outlet, numbers: list[int], wa
 
 def _settled(done: list[Target], work: _Work, made: dict[str, bytes], outlet: Outlet) -> tuple[list[Target], list[str]]:
     """The files under their names at last, and which were changed by hand: not one that is just as it would be made now."""
-    settled, kept = [], []
+    settled, by_hand = [], []
     for target in done:
         name = work.stand_in.get(target.name)
         if name is not None and target.name in made and made[target.name] == outlet.read(name):
@@ -217,9 +208,9 @@ def _settled(done: list[Target], work: _Work, made: dict[str, bytes], outlet: Ou
             work.made_from[target._replace(name=name)] = work.made_from[target]
             target = target._replace(name=name)
         elif name is not None:
-            kept.append(of_hand(name, target.name))
+            by_hand.append(of_hand(name, target.name))
         settled.append(target)
-    return settled, kept
+    return settled, by_hand
 
 
 def _rendered(drawings: Mapping[int, Sequence[Drawing]], due: Sequence[Target], order: Order, outlet: Outlet, watch: Stopwatch,
@@ -230,7 +221,7 @@ def _rendered(drawings: Mapping[int, Sequence[Drawing]], due: Sequence[Target], 
     for form in dict.fromkeys(target.form for target in due):
         settings = order.settings.get(form, {})
         with watch.phase(tell("import of the {form} writer").format(form=form)):
-            writer = import_module(BACKENDS[form])
+            writer = import_module(f"tmm_sheets.backends.{form}")
         together = form == "pdf" and order.one_file
         for target in (t for t in due if t.form == form):
             which = tell("all sheets") if together else tell("sheet {n}").format(n=target.sheets[0])
@@ -283,23 +274,6 @@ def _drawn(opened: Project, asked: list[int], around: Callable[[int], AbstractCo
     return found.drawn, problem
 
 
-def _paged(opened: Project, drawn: Mapping[int, Composed]) -> dict[int, tuple[list[Drawing], list[str]]]:
-    """Sheets on the paper that the project asks for, with what is to be said of it."""
-    from tmm_sheets.sheets import pages
-
-    return {n: pages.on_paper(opened, n, composed) for n, composed in drawn.items()}
-
-
-def _with_stale(problem: CannotBuild, names: list[str], outlet: Outlet) -> CannotBuild:
-    """Also say which files of sheets that cannot be drawn now are left from an earlier build."""
-    left = [name for name in names if outlet.read(name) is not None]
-    return (
-        CannotBuild(str(problem), tell("{files}: left as they were made before, from other inputs").format(files=", ".join(left)))
-        if left
-        else problem
-    )
-
-
 def _refuse_idle_scales(variant: Variant, drawn: Mapping[int, Composed]) -> None:
     """A scale factor for a plan that no sheet has is a slip of the pen."""
     used = {name for composed in drawn.values() for name in composed.scales}
@@ -321,20 +295,3 @@ def with_room(variant: Variant) -> Variant:
             named = [*APART, *(name for name in variant.sheets if name != TOGETHER)]
             return variant.model_copy(update={"project": variant.project.model_copy(update={"sheets": tuple(named)})})
     return variant
-
-
-def chosen(variant: Variant, sheets: tuple[int, ...]) -> list[int]:
-    """Numbers of the sheets asked for, all of them for none.
-
-    Raises
-    ------
-    BadInput
-        when one is not there.
-    """
-    count = len(variant.drawable())
-    for n in sheets:
-        if not 1 <= n <= count:
-            refusal = tell("no sheet {n}: {project} has sheets 1 to {count}")
-            raise BadInput(refusal.format(n=n, project=variant.called, count=count),
-                           hint=", ".join(f"{i} {name}" for i, name in enumerate(variant.sheets, 1)))  # fmt: skip
-    return sorted(set(sheets)) or list(range(1, count + 1))

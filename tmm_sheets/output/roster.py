@@ -190,7 +190,8 @@ def _machine(called: str, varied: bool) -> str:
     word = called.casefold()
     by_name, by_title = dict[str, None](), dict[str, None]()
     for e in catalogue.entries():
-        machine = _of_family(e.name)
+        family = families.of(e.name)
+        machine = "" if family is None else e.name.partition(family.rules.separator)[0]
         if machine or not varied:
             name, titles = machine or e.name, [title.casefold() for title in every(e.title)]
             by_name |= {name: None} if word == name.rpartition("/")[2].casefold() else {}
@@ -199,12 +200,6 @@ def _machine(called: str, varied: bool) -> str:
     if len(meant) > 1:
         raise _Wrong("task", tell('"{task}" may be several').format(task=called), either(meant))
     return meant[0] if meant else called
-
-
-def _of_family(name: str) -> str:
-    """The machine of a project's name, without its variant or cipher; empty where it is of no family."""
-    family = families.of(name)
-    return "" if family is None else name.partition(family.rules.separator)[0]
 
 
 # --- what was made ----------------------------------------------------------------------------------------------------------

@@ -14,7 +14,6 @@ from tmm_sheets.box import Box
 from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.marks import Arc, Drawing, Line, Mark, Polyline, Text, flat, moved
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.output.building import BACKENDS, SUFFIXES, folder_name
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
@@ -37,7 +36,7 @@ class Picture:
 
     def rendered(self, form: str, **settings: Any) -> bytes:
         """The bytes of a file of a format (svg, png, pdf, dxf, hpgl); ``settings`` are those of its writer, such as ``dpi``."""
-        return import_module(BACKENDS[form]).render(self.drawing, **settings)  # type: ignore[no-any-return]
+        return import_module(f"tmm_sheets.backends.{form}").render(self.drawing, **settings)  # type: ignore[no-any-return]
 
     @property
     def svg(self) -> str:
@@ -56,10 +55,10 @@ class Picture:
             for a name that ends in no format of drawings.
         """
         path = Path(path)
-        form = {"plt": "hpgl"}.get(suffix := path.suffix.lower().lstrip("."), suffix)
-        if form not in BACKENDS:
+        form = next((form for form, end in files.ENDINGS.items() if path.suffix.lower() in (f".{form}", f".{end}")), "")
+        if not form:
             raise BadInput(tell("{file}: expected a name that ends in one of {endings}").format(
-                file=path, endings=", ".join(f".{SUFFIXES.get(form, form)}" for form in BACKENDS)))
+                file=path, endings=", ".join(f".{end}" for end in files.ENDINGS.values())))
         files.write_all({path: self.rendered(form, **settings)})
         return path
 
@@ -78,7 +77,7 @@ def of_sheet(n: int, composed: Composed, formats: Sequence[str], dpi: float) -> 
 
     for view in views(composed):
         if view.draw != FRAME:
-            stem = f"sheet{n}-{_named(view.drawing.title)}"
+            stem = f"sheet{n}-" + re.sub(r"-+", "-", files.folder_name(view.drawing.title))[:80].strip("-.")
             for form in formats:
                 yield f"{stem}.{form}", view.rendered(form, **({"dpi": dpi} if form == "png" else {}))
 
@@ -165,7 +164,3 @@ def _cut(whole: Drawing, marks: Sequence[Mark]) -> Drawing | None:
     box = Box.around(np.concatenate(points), MARGIN)
     shown = tuple(moved(m, -complex(box.x0, box.y0)) for m in marks)
     return replace(whole, width=box.width, height=box.height, marks=shown, views=(), dimensions=(), forms=())
-
-
-def _named(title: str) -> str:
-    return re.sub(r"-+", "-", folder_name(title))[:80].strip("-.")

@@ -48,10 +48,11 @@ def compare(asked: Mapping[str, str], say: Say) -> Message:
 
 
 def _picture(project: Project, n: int, path: Path, told: Callable[[str], None]) -> Message:
+    from tmm_sheets.backends import svg
     from tmm_sheets.compare.photo import image, overlay
     from tmm_sheets.compare.photo.photo_report import image_report
     from tmm_sheets.compare.photo.sheet_map import PAPER
-
+    from tmm_sheets.sheets import sheet
     try:
         e = image.examine(project, n, path, None, PENCIL, told)
     except CannotBuild as refused:
@@ -61,7 +62,8 @@ def _picture(project: Project, n: int, path: Path, told: Callable[[str], None]) 
         return {"refused": str(refused), "theirs": _inline("image/png", shown)}
     report = image_report(project.variant.project.name, n, path, e.found, e.findings, e.extra, PENCIL, e.notes, e.readings, e.built)
     theirs = overlay.piece(e.found.ink, e.found.level, PAPER, PIXELS)
-    return _found(report) | {"theirs": _inline("image/png", theirs), "ours": _sheet(project, n), "sheet": n}
+    return _found(report) | {"theirs": _inline("image/png", theirs), "sheet": n,
+                             "ours": _inline("image/svg+xml", svg.render(sheet.compose(project, n)))}
 
 
 def _drawing(project: Project, n: int | None, path: Path, told: Callable[[str], None]) -> Message:
@@ -76,13 +78,6 @@ def _drawing(project: Project, n: int | None, path: Path, told: Callable[[str], 
     exact = svg.render(replace(e.blank, marks=tuple(Polyline(z, "thin") for z in e.exact)))
     pictures = {"theirs": _inline("image/svg+xml", theirs), "ours": _inline("image/svg+xml", exact)}
     return _found(e.report) | pictures | {"sheet": e.sheet}
-
-
-def _sheet(project: Project, n: int) -> Message:
-    from tmm_sheets.backends import svg
-    from tmm_sheets.sheets import sheet
-
-    return _inline("image/svg+xml", svg.render(sheet.compose(project, n)))
 
 
 def _inline(kind: str, data: bytes) -> Message:

@@ -11,7 +11,7 @@ import re
 import socket
 from asyncio import CancelledError
 from collections import defaultdict
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from hmac import compare_digest
@@ -35,7 +35,7 @@ from tmm_sheets.output import batch
 from tmm_sheets.page import compared, jobs
 from tmm_sheets.page.workers import Job, Lane, Languages, Limits, Workers
 from tmm_sheets.resources import template
-from tmm_sheets.task import keys, toml_file, variant
+from tmm_sheets.task import keys, toml_file
 from tmm_sheets.words import LANGUAGES, marked, reader, tell
 
 AT_ONCE, FRONT, _, BEHIND = (Limits(10 if lane == "at once" else 30, lane=lane) for lane in get_args(Lane))
@@ -65,18 +65,13 @@ def app(token: str, host: str, shown: Shown, processes: int | None = None) -> Gu
             return Response(status_code=404)
         return Response(ways[name].read_bytes(), media_type=TYPES[ways[name].suffix])
 
-    async def words_of(request: Request) -> Response:
-        _languages(request.query_params).speak_here()
-        return JSONResponse(served_words())
+    def telling(make: Callable[[], object]) -> Callable[[Request], Awaitable[Response]]:
+        async def answer(request: Request) -> Response:
+            _languages(request.query_params).speak_here()
+            confine(Path())  # in what comes of this request: the work can open no other tasks
+            return JSONResponse(make())
 
-    async def tasks(request: Request) -> Response:
-        _languages(request.query_params).speak_here()
-        confine(Path())  # in what comes of this request: the work can open no other tasks
-        return JSONResponse(manuals())
-
-    async def keys_of(request: Request) -> Response:
-        _languages(request.query_params).speak_here()
-        return JSONResponse(keys.tables())
+        return answer
 
     async def opened(request: Request) -> Response:
         return JSONResponse(shown.now())
@@ -113,7 +108,8 @@ def app(token: str, host: str, shown: Shown, processes: int | None = None) -> Gu
         return HTMLResponse(page, headers={"content-security-policy": _own_policy(page)})
 
     return Guard(Starlette(routes=[
-        Route("/", file), Route("/page/{name}", file), Route("/words", words_of), Route("/tasks", tasks), Route("/keys", keys_of),
+        Route("/", file), Route("/page/{name}", file), Route("/words", telling(served_words)), Route("/tasks", telling(manuals)),
+        Route("/keys", telling(keys.tables)),
         Route("/opened", opened), Route("/saved", saved), Route("/living", living, methods=["POST"]),
         Route("/{job}", work, methods=["POST"]),
     ]), token, host, FILES)  # fmt: skip
@@ -412,7 +408,7 @@ class Shown:
         text = self.text
         if self.followed is not None:
             try:
-                text = toml_file.text_of(self.followed, variant.LARGEST)[0]
+                text = toml_file.text_of(self.followed)[0]
             except BadInput:
                 text = ""
         return {"name": self.name, "text": text, "followed": self.followed is not None}
@@ -437,11 +433,11 @@ def shown_project(project: str, corrected: bool) -> Shown:
         found = catalogue.read(project, corrected)
         return Shown(found.stem, found.text)
     path = catalogue.located(project)
-    return Shown(path.stem, toml_file.text_of(path, variant.LARGEST)[0])
+    return Shown(path.stem, toml_file.text_of(path)[0])
 
 
 def followed_file(path: Path) -> Shown:
     """A file that is worked on elsewhere."""
     path = catalogue.located(str(path))
-    toml_file.text_of(path, variant.LARGEST)
+    toml_file.text_of(path)
     return Shown(path.stem, "", path)

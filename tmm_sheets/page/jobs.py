@@ -12,9 +12,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tmm_sheets import catalogue, progress, words
+from tmm_sheets import catalogue, files, progress, words
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
-from tmm_sheets.output.building import folder_name, with_room
+from tmm_sheets.output.building import with_room
 from tmm_sheets.page.workers import Message, Say, told
 from tmm_sheets.project import Project
 from tmm_sheets.words import tell
@@ -22,7 +22,6 @@ from tmm_sheets.words import tell
 if TYPE_CHECKING:
     from tmm_sheets.task.variant import Variant
 
-FORMATS = ("dxf", "pdf", "svg", "png", "hpgl")
 TILES = ("a4", "a3")
 TITLES = ("student", "group", "supervisor", "institution", "designation")
 """What title blocks are filled in with."""
@@ -33,7 +32,7 @@ LONGEST_NAME = 60
 
 def file_of(name: str) -> str:
     """What a project file of the page is called here, whatever it is called there."""
-    return folder_name(name.removesuffix(catalogue.SUFFIX))[:LONGEST_NAME].strip("-.") + catalogue.SUFFIX
+    return files.folder_name(name.removesuffix(catalogue.SUFFIX))[:LONGEST_NAME].strip("-.") + catalogue.SUFFIX
 
 
 def text_of(asked: Mapping[str, str]) -> str:
@@ -52,10 +51,8 @@ def opened(asked: Mapping[str, str]) -> Project:
 
 def sheet_number(asked: Mapping[str, str], project: Project) -> int:
     """The sheet asked for, the first where none is."""
-    from tmm_sheets.output.building import chosen
-
     n = asked.get("sheet", "")
-    return chosen(project.variant, (int(n) if n.isdecimal() and len(n) < 6 else -1,) if n else ())[0]
+    return project.variant.chosen((int(n) if n.isdecimal() and len(n) < 6 else -1,) if n else ())[0]
 
 
 def shipped(asked: Mapping[str, str]) -> Variant:
@@ -75,7 +72,7 @@ def shipped(asked: Mapping[str, str]) -> Variant:
 def project(asked: Mapping[str, str], say: Say) -> Message:
     """The file of a shipped project, and what is doubtful in its numbers."""
     found = shipped(asked)
-    return {"name": folder_name(found.stem), "text": found.text, "warnings": list(found.warnings)}
+    return {"name": files.folder_name(found.stem), "text": found.text, "warnings": list(found.warnings)}
 
 
 def scheme(asked: Mapping[str, str], say: Say) -> Message:
@@ -157,7 +154,7 @@ def _commands(asked: Mapping[str, str], file: str) -> Iterator[tuple[str, ...]]:
     names = [f"--{key}={asked[key]}" for key in TITLES if asked.get(key)]
     sheets = [f"--sheet={n}" for n in asked.get("sheets", "").split(",") if n.isdecimal()]
     out = ("-o", str(MADE))
-    if formats := [form for form in FORMATS if form in wanted]:
+    if formats := [form for form in files.ENDINGS if form in wanted]:
         yield "build", file, *names, *sheets, f"--format={','.join(formats)}", *out, *(
             ["--one-file"] if "one-file" in wanted and "pdf" in formats else [])
     if noted := [form for form in ("pdf", "docx") if f"note-{form}" in wanted]:

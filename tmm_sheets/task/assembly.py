@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from math import cos, pi, sin
 from typing import TYPE_CHECKING, Any
@@ -33,7 +33,8 @@ from tmm_sheets.methods.linkage.loads import (
     turning_motion,
 )
 from tmm_sheets.task import synthesis_refs
-from tmm_sheets.task.schema import ForceTable, GroupTable, InputTable, LinkTable, MomentTable
+from tmm_sheets.task.schema import ForceTable, GroupTable, LinkTable, MomentTable
+from tmm_sheets.task.toml_lines import dotted
 from tmm_sheets.task.variant import Variant
 from tmm_sheets.words import tell, tr
 
@@ -88,18 +89,13 @@ def mechanism_of(variant: Variant, synthesis: Synthesis | None = None) -> Mechan
         return mechanism
     from tmm_sheets.methods.linkage.drive import driven
 
-    return driven(replace(mechanism, drive=_drive(of, variant.input, groups)))
-
-
-def _drive(of: Givens, given: InputTable, groups: Iterable[StructuralGroup]) -> Drive:
-    """The slider or cylinder that drives the crank."""
-    group = next(g for g in groups if given.link in g.links)
+    given = variant.input
     place = (of.number(given.start, "s_0", "m", "input", "start"), of.number(given.end, "s_{n}", "m", "input", "end"))
-    return Drive(given.link, group, place, of.number(given.speed, "V", "m/s", "input", "speed"),
-                 of.number(given.acceleration, "a", "m/s2", "input", "acceleration"),
-                 of.number(given.side, "", "", "input", "side"))
-
-
+    drive = Drive(given.link, next(g for g in groups if given.link in g.links), place,
+                  of.number(given.speed, "V", "m/s", "input", "speed"),
+                  of.number(given.acceleration, "a", "m/s2", "input", "acceleration"),
+                  of.number(given.side, "", "", "input", "side"))
+    return driven(replace(mechanism, drive=drive))
 def points_of_synthesis(variant: Variant) -> dict[str, str]:
     """Names of the file for the points that the formulas of the synthesis call A, B, C, D and S, where they differ."""
     crank = variant.crank
@@ -127,11 +123,11 @@ class Givens:
 
     def number(self, value: float, symbol: str, unit: str, *path: str | int) -> GivenNumber:
         """A number in SI; ``symbol`` is its letter in lettering markup."""
-        return GivenNumber(value, place(path), symbol, unit, self._source(path))
+        return GivenNumber(value, dotted(path), symbol, unit, self._source(path))
 
     def point(self, at: tuple[float, float], symbol: str, *path: str | int) -> GivenPoint:
         """A point, m."""
-        return GivenPoint(complex(*at), place(path), symbol, "m", self._source(path))
+        return GivenPoint(complex(*at), dotted(path), symbol, "m", self._source(path))
 
     def length(self, value: float, symbol: str, *path: str | int) -> float:
         """A length, m: a given one, or a step of the synthesis."""
@@ -139,18 +135,10 @@ class Givens:
         if match is None or self.synthesis is None:
             return self.number(value, symbol, "m", *path)
         name = match["name"] or synthesis_refs.PLACES.get((path[0], path[-1]), "")
-        return FoundNumber(value, self.synthesis.written(place(path), name, synthesis_refs.share(match), symbol))
+        return FoundNumber(value, self.synthesis.written(dotted(path), name, synthesis_refs.share(match), symbol))
 
     def _source(self, path: tuple[str | int, ...]) -> str:
         return self.variant.source(*path) or self.variant.source(*path[:-1])
-
-
-def place(path: Iterable[str | int]) -> str:
-    """A key path as text."""
-    text = ""
-    for part in path:
-        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
-    return text
 
 
 def _link(of: Givens, i: int, p: LinkTable) -> Link:
@@ -160,6 +148,8 @@ def _link(of: Givens, i: int, p: LinkTable) -> Link:
     return Link(p.name, p.title, mass, p.centre, inertia, pivot)
 
 
+AGAINST = {"against motion": -1.0, "along motion": 1.0}
+"""Signs of loads that follow a motion."""
 SENSES = {"+x": 1 + 0j, "-x": -1 + 0j, "+y": 1j, "-y": -1j}
 
 
@@ -189,7 +179,7 @@ def _diagrams(of: Givens, plan: Plan, load: ForceTable | MomentTable, tables: Se
         if given is None or acting is None:
             continue
         key = "value" if load.value is not None else "table" if load.tables is None else f"tables[{n}]"
-        name, symbol = f"{place(path)}.{key}", f"{load.name[0]}_{{{load.name[1:]}}}"
+        name, symbol = f"{dotted(path)}.{key}", f"{load.name[0]}_{{{load.name[1:]}}}"
         unit = "Pa" if rule is PISTON else "N" if isinstance(load, ForceTable) else "N*m"
         source = of.variant.source(*path, key.partition("[")[0])
         y = (Given(given[1][0], name, symbol, unit, source, "none") if load.value is not None and rule is None
@@ -214,35 +204,31 @@ def _force(of: Givens, plan: Plan, i: int, f: ForceTable, mechanism: Mechanism, 
                                          of.number(f.ambient, "p_0", "Pa", "force", i, "ambient"))
     diagrams = _diagrams(of, plan, f, tables, PISTON if numbers else None, numbers, "force", i)
     strokes = f.over == "stroke" and (f.sense is not None or (c is not None and f.point == c.output))
-    if isinstance(f.direction, float) and _steady(f) and not strokes:
+    toward: complex | None = unit(f.direction) if isinstance(f.direction, float) else None
+    motion = None
+    if toward is not None and _steady(f) and not strokes:
         law, jumps = steady_law(f.value or 0.0)
-        toward = unit(f.direction)
-        return Applied(f.name, f.link, f.point, toward, law, jumps, None, diagrams, _along(of, i, toward))
-    if f.over == "angle":
-        if not isinstance(f.direction, float) or tables[0] is None:
+    elif f.over == "angle":
+        if toward is None or tables[0] is None:
             raise CannotBuild(tell("force {name}: a diagram over the angle needs a fixed direction").format(name=f.name),
                               tell('for example direction = "-90 deg"'))
         law, jumps = angle_law(tables[0], None if cycle.swings else cycle.period, f.curve == "smooth")
-        return Applied(f.name, f.link, f.point, unit(f.direction), law, jumps, None, diagrams, _along(of, i, unit(f.direction)))
-    if cycle.swings:
-        raise CannotBuild(*_no_strokes(f.name))
-    if named is None:
-        raise CannotBuild(
-            tell("force {name}: which way are its working strokes?").format(name=f.name), tell('add for example sense = "+x"')
-        )
-    told = ("force", i, "sense") if f.sense is not None else ("cycle", "working_sense")
-    sense = GivenPoint(_way(mechanism, f.link, named, f.name), place(told), "", "",
-                       of.variant.source(*told))
-    motion = straight_motion(mechanism, cycle, f.point, sense, cycle.strokes, f.first)
-    toward = unit(f.direction) if isinstance(f.direction, float) else sense
-    against = {"against motion": -1.0, "along motion": 1.0}.get(str(f.direction))
-    motion = motion.within(f.from_, f.to)
-    laws, signs = _by_run(motion, f.stroke, tables, against, f.name)
-    always = against is None and f.tables is not None
-    law, jumps = stroke_law(motion, laws, signs, f.curve == "smooth", always)
-    return Applied(f.name, f.link, f.point, toward, law, jumps, motion, diagrams, _along(of, i, toward))
-
-
+    else:
+        if cycle.swings:
+            raise CannotBuild(*_no_strokes(f.name))
+        if named is None:
+            raise CannotBuild(
+                tell("force {name}: which way are its working strokes?").format(name=f.name), tell('add for example sense = "+x"')
+            )
+        told = ("force", i, "sense") if f.sense is not None else ("cycle", "working_sense")
+        sense = GivenPoint(_way(mechanism, f.link, named, f.name), dotted(told), "", "", of.variant.source(*told))
+        motion = straight_motion(mechanism, cycle, f.point, sense, cycle.strokes, f.first).within(f.from_, f.to)
+        toward = sense if toward is None else toward
+        against = AGAINST.get(str(f.direction))
+        laws, signs = _by_run(motion, f.stroke, tables, against, f.name)
+        law, jumps = stroke_law(motion, laws, signs, f.curve == "smooth", against is None and f.tables is not None)
+    along = GivenPoint(toward, f"force[{i}].direction", "", "", of.variant.source("force", i, "direction"))
+    return Applied(f.name, f.link, f.point, toward, law, jumps, motion, diagrams, along)
 def _no_strokes(name: str) -> tuple[str, str]:
     """What to say of a load that follows strokes where there are none."""
     return (tell("{name}: the crank only swings, there are no strokes").format(name=name),
@@ -253,11 +239,6 @@ def _steady(load: ForceTable | MomentTable) -> bool:
     """Whether a load is the same all the time, whatever moves."""
     whole = isinstance(load, MomentTable) or (load.bore is None and (load.from_, load.to) == (0.0, 1.0))
     return load.value is not None and load.stroke == "both" and whole
-
-
-def _along(of: Givens, i: int, toward: complex) -> GivenPoint:
-    """Direction of a force."""
-    return GivenPoint(toward, f"force[{i}].direction", "", "", of.variant.source("force", i, "direction"))
 
 
 def _way(mechanism: Mechanism, link: str, named: str, force: str) -> complex:
@@ -284,31 +265,29 @@ def _along_guide(mechanism: Mechanism, named: str, force: str) -> complex:
 
 
 def _moment(of: Givens, plan: Plan, i: int, m: MomentTable, mechanism: Mechanism, cycle: Cycle) -> Applied:
-    sense = -1 if m.sense == "clockwise" else 1
-    tables = m.diagrams()
+    tables: Sequence[Table | None] = m.diagrams()
     fixed = {"clockwise": -1.0, "counter-clockwise": 1.0}.get(m.direction)
+    sign = None if fixed is None else GivenNumber(fixed, f"moment[{i}].direction")
+    numbers: tuple[GivenNumber | None, ...] = ()
+    rule, motion = None, None
     if fixed is not None and _steady(m):
         law, jumps = steady_law(fixed * (m.value or 0.0))
-        return Applied(m.name, m.link, None, 1 + 0j, law, jumps, None, _diagrams(of, plan, m, tables, None, (), "moment", i),
-                       sign=GivenNumber(fixed, f"moment[{i}].direction"))
-    if m.over == "angle":
+    elif m.over == "angle":
         if fixed is None or tables[0] is None:
             raise CannotBuild(tell("moment {name}: a diagram over the angle needs a fixed direction").format(name=m.name),
                               tell('for example direction = "clockwise"'))
         table = (tables[0][0], [fixed * y for y in tables[0][1]])
         law, jumps = angle_law(table, None if cycle.swings else cycle.period, m.curve == "smooth")
-        signed = (GivenNumber(fixed, f"moment[{i}].direction"),)
-        return Applied(m.name, m.link, None, 1 + 0j, law, jumps, None,
-                       _diagrams(of, plan, m, (table,), OPPOSED, signed, "moment", i))
-    if cycle.swings:
-        raise CannotBuild(*_no_strokes(m.name))
-    motion = turning_motion(mechanism, cycle, m.link, sense, m.first)
-    against = {"against motion": -1.0, "along motion": 1.0}.get(m.direction)
-    laws, signs = _by_run(motion, m.stroke, tables, against, m.name)
-    signs = [s * (fixed if fixed is not None else sense) for s in signs]
-    law, jumps = stroke_law(motion, laws, signs, m.curve == "smooth")
-    return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion, _diagrams(of, plan, m, tables, None, (), "moment", i),
-                   sign=None if fixed is None else GivenNumber(fixed, f"moment[{i}].direction"))
+        tables, rule, numbers, sign = (table,), OPPOSED, (sign,), None
+    else:
+        if cycle.swings:
+            raise CannotBuild(*_no_strokes(m.name))
+        sense = -1 if m.sense == "clockwise" else 1
+        motion = turning_motion(mechanism, cycle, m.link, sense, m.first)
+        laws, signs = _by_run(motion, m.stroke, tables, AGAINST.get(m.direction), m.name)
+        law, jumps = stroke_law(motion, laws, [s * (sense if fixed is None else fixed) for s in signs], m.curve == "smooth")
+    return Applied(m.name, m.link, None, 1 + 0j, law, jumps, motion, _diagrams(of, plan, m, tables, rule, numbers, "moment", i),
+                   sign=sign)
 
 
 def _by_run(motion: OutputMotion, stroke: str, tables: Sequence[Table | None], against: float | None, name: str) -> tuple[

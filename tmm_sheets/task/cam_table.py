@@ -120,7 +120,14 @@ def check_cam(data: dict[str, Any]) -> Iterator[Found]:
     follower = cam.get("follower")
     if isinstance(follower, str) and follower in FOLLOWER_KEYS:
         yield from _of_follower(cam, follower)
-    yield from _of_laws(cam)
+    for law, table in (("law", "table"), ("fall_law", "fall_table")):
+        if cam.get(law) == "table" and table not in cam:
+            said = tell('missing; {law} = "table" needs it, for example {table} = {example}')
+            yield ("cam", table), said.format(law=law, table=table, example=EXAMPLES[table]), ""
+        if cam.get(law) == LAW and LAW not in cam:
+            yield ("cam", law), tell("needs the table displacements"), ""
+        if table in cam and cam.get(law) != "table":
+            yield ("cam", table), tell('is read with {law} = "table" only').format(law=law), ""
     if "centre" in cam and "base_radius" in cam:
         yield ("cam", "centre"), tell("a given base_radius tells where the axis is"), tell("leave one of them out")
     if "centre_distance" in cam and "base_radius" not in cam:
@@ -149,19 +156,3 @@ def _of_follower(cam: dict[str, Any], follower: str) -> Iterator[Found]:
             )
     if follower == "flat" and cam.get("closure") == "geometric":
         yield ("cam", "closure"), tell('expected "force": the second disc of a geometric closure needs a roller'), ""
-
-
-def _of_laws(cam: dict[str, Any]) -> Iterator[Found]:
-    for law, table in (("law", "table"), ("fall_law", "fall_table")):
-        if cam.get(law) == "table" and table not in cam:
-            yield (
-                ("cam", table),
-                tell('missing; {law} = "table" needs it, for example {table} = {example}').format(
-                    law=law, table=table, example=EXAMPLES[table]
-                ),
-                "",
-            )
-        if cam.get(law) == LAW and LAW not in cam:
-            yield ("cam", law), tell("needs the table displacements"), ""
-        if table in cam and cam.get(law) != "table":
-            yield ("cam", table), tell('is read with {law} = "table" only').format(law=law), ""

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, MutableMapping
+from functools import reduce
 from itertools import pairwise
+from operator import getitem
 from typing import Any
 
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import units
+from tmm_sheets.task.toml_lines import dotted, nodes
 from tmm_sheets.words import tell
 
 
@@ -23,27 +26,20 @@ def key_path(name: str) -> tuple[str | int, ...]:
     return tuple(int(part) if part.isdigit() else part for part in re.findall(r"[^.\[\]]+", name.replace("__", ".")))
 
 
-def numbers(table: Any, name: str = "") -> Iterator[tuple[str, Any]]:
+def numbers(data: dict[str, Any]) -> Iterator[tuple[str, Any]]:
     """Numbers of the tables of a project file that something is computed from, with their units, by their names."""
-    if isinstance(table, Mapping):
-        for key, value in table.items():
-            if name or key != "given":  # what a task prints is shown only
-                yield from numbers(value, f"{name}.{key}" if name else key)
-    elif isinstance(table, list):
-        for n, value in enumerate(table):
-            yield from numbers(value, f"{name}[{n}]")
-    elif units.split(table)[0] and name != "schema" and (units.split(table)[1] == "" or units.quantity_of(units.split(table)[1])):
-        yield name, table
+    for path, value in nodes(data):
+        number, unit = units.split(value)
+        if number and path[0] not in ("given", "schema") and (unit == "" or units.quantity_of(unit)):  # [given] is shown only
+            yield dotted(path), value
 
 
 def at(table: Any, name: str) -> Any:
     """What stands at a name in the tables of a project file; None where nothing does."""
-    for part in key_path(name):
-        try:
-            table = table[part]
-        except (IndexError, KeyError, TypeError):
-            return None
-    return table
+    try:
+        return reduce(getitem, key_path(name), table)
+    except (IndexError, KeyError, TypeError):
+        return None
 
 
 def changed(text: str, changes: Mapping[str, Any]) -> str:

@@ -37,9 +37,10 @@ def known() -> tuple[str, ...]:
 def of(project: str) -> FolderFamily | None:
     """The family that a project name belongs to."""
     folder = folder_of(project)
-    return _read(folder) if folder is not None else None
-
-
+    if folder is None:
+        return None
+    file = folder / FILE
+    return _kept(folder, file.stat().st_mtime_ns if file.is_file() else 0)
 def folder_of(project: str) -> Path | None:
     """The folder of the family that a project name belongs to."""
     family, sign, _ = project.partition("/")
@@ -148,11 +149,6 @@ def _installed() -> tuple[tuple[str, Path], ...]:
     told = ((entry.name, entry.load()) for entry in entry_points(group=GROUP))
     found = ((name, Path(there.__path__[0]) if hasattr(there, "__path__") else Path(there)) for name, there in told)
     return tuple((name, folder) for name, folder in found if (folder / FILE).is_file())
-
-
-def _read(folder: Path) -> FolderFamily:
-    file = folder / FILE
-    return _kept(folder, file.stat().st_mtime_ns if file.is_file() else 0)
 
 
 @lru_cache(32)

@@ -30,10 +30,6 @@ if TYPE_CHECKING:
     from tmm_sheets.task.variant import Variant
 
 FILE = "family.toml"
-LARGEST = 1_000_000
-"""Bytes of the largest such file, and of a scheme."""
-
-
 class DerivedTable(Table):
     """What follows from a machine's table."""
 
@@ -136,7 +132,7 @@ class FolderFamily:
     def __init__(self, folder: Path) -> None:
         self.folder, self.name = folder, folder.resolve().name
         file = str(folder / FILE)
-        _, data, lines = toml_file.read(folder / FILE, LARGEST, tell("a family of tasks is a folder with family.toml"))
+        _, data, lines = toml_file.read(folder / FILE, tell("a family of tasks is a folder with family.toml"))
         try:
             self.rules = FamilyTable.model_validate(data)
         except ValidationError as e:
@@ -195,33 +191,19 @@ class FolderFamily:
                 tell("write for example {name}").format(name=self._example(called))))
         return called, cipher
 
-    def _about(self, called: str, cipher: Cipher) -> dict[str, Choice]:
-        about = {"name": self._named(called, cipher.text), "cipher": cipher.text, "machine": called,
-                 "title": self.rules.machine[called].title or called, "digits": "".join(cipher.digits.values())}
-        return {key: Choice(text) for key, text in about.items()}
-
     # --- project files ----------------------------------------------------------------------------------------------------
 
-    def text(self, name: str, corrected: bool = False) -> tuple[str, tuple[Doubt, ...], tuple[str, ...]]:
-        """The project file of a machine and a cipher, the misprints in it, and what else is told of it.
-
-        Raises
-        ------
-        BadInput
-            when there is no such machine or cipher, or something is wrong in the folder.
-        """
-        pieces, doubts, remarks = self._filled_in(name, corrected)
-        return "".join(text for _, text in pieces), doubts, remarks
-
     def _filled_in(self, name: str, corrected: bool) -> tuple[list[tuple[str, str]], tuple[Doubt, ...], tuple[str, ...]]:
-        """The same in pieces, each with the file it comes from: a line of a scheme makes a line of it."""
+        """The project file of a machine and a cipher in pieces, each with the file whose lines it has; misprints and remarks."""
         called, cipher = self._parts(name)
         machine = self.rules.machine[called]
         rows = {row.key: row for table in machine.tables for row in family_tables.read(self._file(table), self.form.letters)}
         doubts = tuple(self._doubts(machine, rows, cipher, corrected))
         doubtful = {doubt.key: doubt for doubt in doubts}
         values = {key: self._choice(called, row, cipher, doubtful.get(key)) for key, row in rows.items()}
-        values |= self._about(called, cipher)
+        about = {"name": self._named(called, cipher.text), "cipher": cipher.text, "machine": called,
+                 "title": machine.title or called, "digits": "".join(cipher.digits.values())}
+        values |= {key: Choice(text) for key, text in about.items()}
         values |= self._derived(called, machine, values)
         remarks = tuple(self._remarks(called, machine, cipher, values))
         values |= {f"{key}{SOURCE}": Choice(own.source) for key, own in values.items()}
@@ -296,7 +278,7 @@ class FolderFamily:
 
     def _filled(self, scheme: str, values: Mapping[str, Choice]) -> str:
         path = self._file(scheme)
-        text, _ = toml_file.text_of(path, LARGEST)
+        text, _ = toml_file.text_of(path)
         try:
             return filled(text, values)
         except ValueError:

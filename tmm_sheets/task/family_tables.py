@@ -30,10 +30,6 @@ from tmm_sheets.words import marked, tell
 
 ABOUT = ("table", "symbol")
 """Columns of what a quantity is called in the manual."""
-LARGEST = 10_000_000
-"""Bytes of the largest table that is read."""
-
-
 @dataclass(frozen=True)
 class Choice:
     """A value of a project: as it is written there, and where it comes from."""
@@ -113,7 +109,7 @@ def read(path: Path, digits: str) -> list[Row]:
 
 @lru_cache(64)
 def _read(path: Path, digits: str, changed: int) -> tuple[Row, ...]:
-    text, _ = toml_file.text_of(path, LARGEST)
+    text, _ = toml_file.text_of(path, most=csv_tables.LARGEST)
     rows = [*(_of_toml(text, str(path)) if path.suffix == ".toml" else _of_csv(text, str(path)))]
     for row in rows:
         if unknown := [letter for letter in row.digit if letter not in digits]:

@@ -67,9 +67,8 @@ def keys_of(model: type[schema.Table]) -> Iterator[Key]:
     hints = get_type_hints(model, include_extras=True)
     for name, field in model.model_fields.items():
         takes = value(hints[name])
-        yield Key(field.alias or name, takes, units_of(hints[name]), default(hints[name], field), meaning(model, name, takes))
-
-
+        units_of = tuple(spaced(unit) for q in quantities(hints[name]) for unit in q.units if unit and unit.isascii())
+        yield Key(field.alias or name, takes, units_of, default(hints[name], field), meaning(model, name, takes))
 @cache
 def meanings(model: type[schema.Table]) -> dict[str, str]:
     """What the strings under the keys of a table say, by key."""
@@ -132,7 +131,8 @@ def restricted(base: Any, validators: tuple[Any, ...]) -> str:
         elif "word" in given:
             said.append(either([f'`"{given["word"]}"`', tell(given["quantity"].name) if "quantity" in given else value(base)]))
         elif "wording" in given:
-            said.append(without_article(tell(given["wording"])))
+            expected = tell(given["wording"]).removeprefix(tell("expected {what}").partition("{")[0])
+            said.append(re.sub(r"^an? ", "", expected))
         elif "quantity" in given and not any(isinstance(o, AfterValidator) for o in validators):
             said.append(tell(given["quantity"].name))
         elif "least" in given:
@@ -145,22 +145,11 @@ def restricted(base: Any, validators: tuple[Any, ...]) -> str:
 
 def heading(validator: Any) -> str:
     """First line of a validator's docstring, as part of a sentence."""
-    return first_lower((inspect.getdoc(validator) or "").split("\n")[0].rstrip("."))
-
-
+    first = (inspect.getdoc(validator) or "").split("\n")[0].rstrip(".")
+    return re.sub(r"^(An? )?([A-Z])", lambda m: m[2].lower(), first)
 def made_with(validator: Any) -> Mapping[str, Any]:
     """What a validator holds in its closure: quantity, wording, least, word; nothing for a named function."""
     return inspect.getclosurevars(validator.func).nonlocals
-
-
-def without_article(text: str) -> str:
-    """What was expected, without that word, and in English without an article."""
-    return re.sub(r"^an? ", "", text.removeprefix(tell("expected {what}").partition("{")[0]))
-
-
-def first_lower(text: str) -> str:
-    """A sentence's beginning as it stands in another one."""
-    return re.sub(r"^(An? )?([A-Z])", lambda m: m[2].lower(), text)
 
 
 def default(hint: Any, field: FieldInfo) -> str:
@@ -181,11 +170,6 @@ def default(hint: Any, field: FieldInfo) -> str:
 def unit(hint: Any) -> str:
     """SI unit of a key; empty for a pure number."""
     return next((name for q in quantities(hint) for name, f in q.units.items() if f.si("1") == 1), "")
-
-
-def units_of(hint: Any) -> tuple[str, ...]:
-    """Units that a key may be written in."""
-    return tuple(spaced(name) for q in quantities(hint) for name in q.units if name and name.isascii())
 
 
 def quantities(hint: Any) -> list[units.Quantity]:

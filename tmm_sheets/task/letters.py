@@ -8,12 +8,13 @@ from collections.abc import Iterator
 from typing import Any
 
 from tmm_sheets.encodings import cleaned
-from tmm_sheets.task.toml_lines import Found, KeyPath
+from tmm_sheets.task.toml_lines import Found, nodes
 from tmm_sheets.task.units import Refused
 from tmm_sheets.words import marked, tell
 
 _USUAL = re.compile(r"[ -~А-яЁё°–—№«»]*")
-_NOT_DRAWN = {("project", "name"), ("project", "variant")}
+_READ_ELSEWHERE = {("project", "name"), ("project", "variant"), ("project", "title")}
+"""Texts that are not drawn, and the title."""
 LONGEST = 200
 """Characters of the longest text of a title block: no cell has room for more."""
 _HINT = marked("it has those of Russian and other Cyrillic alphabets, Latin ones with all accents of Europe, and Greek")
@@ -48,9 +49,11 @@ def title_text(text: str) -> str:
 
 def check_letters(data: dict[str, Any]) -> Iterator[Found]:
     """Every text and key with a letter the drawing font lacks; texts of title blocks are read by :func:`title_text`."""
-    for path, text in _texts(data, ()):
-        if path not in _NOT_DRAWN and path[:1] != ("title_block",) and path != ("project", "title") and (lacks := _lacking(text)):
-            yield path, lacks, tell(_HINT)
+    for path, value in nodes(data):
+        if path not in _READ_ELSEWHERE and path[0] != "title_block":
+            for text in (path[-1], value):
+                if isinstance(text, str) and (lacks := _lacking(text)):
+                    yield path, lacks, tell(_HINT)
 
 
 def _lacking(text: str) -> str:
@@ -66,15 +69,3 @@ def _lacking(text: str) -> str:
 def _told(char: str) -> str:
     shown = f'"{char}" ' if char.isprintable() else ""
     return f"{shown}({' '.join(filter(None, (f'U+{ord(char):04X}', unicodedata.name(char, ''))))})"
-
-
-def _texts(value: Any, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:
-    if isinstance(value, str):
-        yield path, value
-    elif isinstance(value, list):
-        for i, v in enumerate(value):
-            yield from _texts(v, (*path, i))
-    elif isinstance(value, dict):
-        for k, v in value.items():
-            yield (*path, k), k
-            yield from _texts(v, (*path, k))

@@ -106,9 +106,8 @@ def _fields(whole: type[Table], path: KeyPath) -> tuple[type[Table], str]:
 
 
 def _keys(whole: type[Table], path: KeyPath) -> list[str]:
-    model, key = _fields(whole, path)
-    inner = next((f.annotation for n, f in model.model_fields.items() if (f.alias or n) == key), None)
-    model = table_of(inner) or model
+    """Keys of the table at a path."""
+    model, _ = _fields(whole, (*path, ""))
     return [f.alias or n for n, f in model.model_fields.items()]
 
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import Any
+from itertools import cycle
+from typing import Any, NamedTuple
 
 from tmm_sheets import spelling
 from tmm_sheets.construction.indices import pair_index
@@ -16,22 +17,32 @@ from tmm_sheets.task.schema import CrankTable
 from tmm_sheets.task.toml_lines import Found, KeyPath
 from tmm_sheets.words import both, marked, tell, tell_n
 
-GROUP_KEYS: dict[int, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    1: (("outer", "inner", "lengths"), ("side", "branch", "at")),
-    2: (("outer", "inner", "length", "guide"), ("side", "branch", "at")),
-    3: (("outer",), ("offset", "side")),
-    4: (("guides", "inner"), ()),
-    5: (("outer", "guide", "slot", "inner"), ()),
-    6: (("leg", "sides", "angle", "direction"), ("at",)),
+
+class GroupKeys(NamedTuple):
+    """Keys that an Assur group must and may have besides kind and links; what its links are.
+
+    ``outer`` is the number of its outer turning pairs; of its ``links`` some slide on its guides, and its inner point is on some.
+    """
+
+    must: tuple[str, ...]
+    may: tuple[str, ...]
+    outer: int
+    links: int = 2
+    sliding: slice = slice(0)
+    inner: slice = slice(0)
+
+
+GROUPS = {
+    1: GroupKeys(("outer", "inner", "lengths"), ("side", "branch", "at"), 2, inner=slice(2)),
+    2: GroupKeys(("outer", "inner", "length", "guide"), ("side", "branch", "at"), 1, sliding=slice(1, 2), inner=slice(2)),
+    3: GroupKeys(("outer",), ("offset", "side"), 2),
+    4: GroupKeys(("guides", "inner"), (), 0, sliding=slice(2), inner=slice(2)),
+    5: GroupKeys(("outer", "guide", "slot", "inner"), (), 1, sliding=slice(2), inner=slice(1, 2)),
+    6: GroupKeys(("leg", "sides", "angle", "direction"), ("at",), 0, links=4),
 }
-"""Keys an Assur group must and may have besides kind and links, by kind: RRR, RRP, RPR, PRP, RPP, class III."""
-
-OUTER_POINTS = {1: 2, 2: 1, 3: 2, 4: 0, 5: 1, 6: 0}
-"""Number of outer turning pairs, by kind."""
-
-TRIAD = 6
-"""The kind of class III."""
-
+"""Groups by kind: RRR, RRP, RPR, PRP, RPP, class III."""
+ANY_GROUP = {key for group in GROUPS.values() for key in (*group.must, *group.may)}
+"""Keys that some kinds of groups have."""
 FRAME = "0"
 
 _LETTERS = "A-Za-zА-Яа-яЁёЄєІіЇїҐґΑ-Ωα-ω"
@@ -72,19 +83,27 @@ def _words(value: Any) -> list[str]:
 
 
 def _keys_of_kind(path: KeyPath, group: dict[str, Any], kind: int) -> Iterator[Found]:
-    """Keys that a group of this kind lacks or has too many."""
-    must, may = GROUP_KEYS.get(kind, ((), tuple(group)))
-    known = tell("kind {kind} has links, {names}").format(kind=kind, names=', '.join(must + may))
-    for key in must:
+    """Keys that a group of this kind lacks or has too many, and wrong numbers of points and links."""
+    own = GROUPS[kind]
+    known = tell("kind {kind} has links, {names}").format(kind=kind, names=", ".join((*own.must, *own.may)))
+    for key in own.must:
         if key not in group:
             yield path, tell('a group of kind {kind} needs "{key}"').format(kind=kind, key=key), known
     for key in group:
-        if key not in ("kind", "links", *must, *may) and any(key in m + n for m, n in GROUP_KEYS.values()):
+        if key not in (*own.must, *own.may) and key in ANY_GROUP:
             yield (*path, key), tell("a group of kind {kind} has none").format(kind=kind), known
+    if isinstance(group.get("outer"), list) and len(group["outer"]) != own.outer:
+        said = tell_n("expected {n} point for a group of kind {kind}", "expected {n} points for a group of kind {kind}", own.outer)
+        yield (*path, "outer"), said.format(n=own.outer, kind=kind), ""
+    if (links := _words(group.get("links"))) and len(links) != own.links:
+        yield ((*path, "links"), tell("expected {n} links for a group of kind {kind}").format(n=own.links, kind=kind),
+               tell("the triangle first, then its three legs") if own.links > 2 else "")
 
 
 class _Names:
     """Walks through the file in the order in which the mechanism is put together."""
+
+    no_point = marked('unknown point of link {link} "{name}"')
 
     def __init__(self, data: dict[str, Any]) -> None:
         self.data = data
@@ -103,11 +122,8 @@ class _Names:
         for path, group in _tables(self.data, "group"):
             yield from self.group(path, group)
             yield from self.attach()
-        yield from self.left_over()
-        yield from self.input()
-        yield from self.links()
-        yield from self.uses()
-        yield from self.meshes()
+        for others in (self.left_over, self.input, self.links, self.uses, self.meshes):
+            yield from others()
 
     def meshes(self) -> Iterator[Found]:
         """Two wheels mesh once."""
@@ -189,37 +205,31 @@ class _Names:
                 )
 
     def group(self, path: KeyPath, group: dict[str, Any]) -> Iterator[Found]:
-        given = group.get("kind")
-        kind = given if isinstance(given, int) and given in GROUP_KEYS and not isinstance(given, bool) else 0
-        yield from _keys_of_kind(path, group, kind)
-        outer, links = _words(group.get("outer")), _words(group.get("links"))
-        if kind and isinstance(group.get("outer"), list) and len(group["outer"]) != OUTER_POINTS[kind]:
-            count = OUTER_POINTS[kind]
-            yield (
-                (*path, "outer"),
-                tell_n(
-                    "expected {n} point for a group of kind {kind}", "expected {n} points for a group of kind {kind}", count
-                ).format(n=count, kind=kind),
-                "",
-            )
-        count = 4 if kind == TRIAD else 2
-        if kind and links and len(links) != count:
-            yield ((*path, "links"), tell("expected {n} links for a group of kind {kind}").format(n=count, kind=kind),
-                   tell("the triangle first, then its three legs") if kind == TRIAD else "")
-        if kind == TRIAD:
-            yield from self.triad(path, group, links)
-            return
+        kind = group.get("kind")
+        own = GROUPS.get(kind) if type(kind) is int else None
+        outer, links, guides = (_words(group.get(key)) for key in ("outer", "links", "guides"))
+        if own is not None:
+            yield from _keys_of_kind(path, group, kind)  # type: ignore[arg-type]
+            if own.links > 2:
+                yield from self.triad(path, group, links)
+                return
         for i, name in enumerate(outer):
             yield from self.known((*path, "outer", i), name, self.points, marked('unknown point "{name}"'))
         yield from self.guide_use((*path, "guide"), group.get("guide"))
-        for i, name in enumerate(_words(group.get("guides"))):
+        for i, name in enumerate(guides):
             yield from self.guide_use((*path, "guides", i), name)
         yield from self.new_links(path, links)
-        self.join(kind, links, outer)
-        self.slide(kind, links, [group["guide"]] if isinstance(group.get("guide"), str) else _words(group.get("guides")))
-        if kind in (1, 2, 4, 5):
-            inner_links = links[1:] if kind == 5 else links
-            yield from self.define((*path, "inner"), group.get("inner"), *inner_links)
+        for i, link in enumerate(links):
+            self.on.setdefault(link, set()).update(outer[i : i + 1])
+        if kind == 3 and len(links) == len(outer) == 2:
+            # The rocker's line passes through the pin of the slider block: it may give a direction, but is no point of the rocker.
+            self.aims[links[1]] = {outer[0]}
+        if own is not None:
+            # A link that slides along a guide has its direction: it may be given as that "towards" which a point lies.
+            for link, guide in zip(links[own.sliding], cycle([group["guide"]] if isinstance(group.get("guide"), str) else guides)):
+                self.aims.setdefault(link, set()).add(guide)
+            if "inner" in own.must:
+                yield from self.define((*path, "inner"), group.get("inner"), *links[own.inner])
 
     def triad(self, path: KeyPath, group: dict[str, Any], links: list[str]) -> Iterator[Found]:
         """A triangle on three legs: its corners are points of it and of rods and sliders."""
@@ -273,90 +283,65 @@ class _Names:
                 return
             for key, known in (("through", self.on[link]), ("towards", self.on[link] | self.aims.get(link, set()))):
                 if isinstance(guide.get(key), str):
-                    yield from self.known(path, guide[key], known, marked('unknown point of link {link} "{name}"'), link=link)
-
-    def join(self, kind: int, links: list[str], outer: list[str]) -> None:
-        for i, link in enumerate(links):
-            self.on.setdefault(link, set())
-            if i < len(outer):
-                self.on[link].add(outer[i])
-        if kind == 3 and len(links) == len(outer) == 2:
-            # The rocker's line passes through the pin of the slider block: it may give a direction, but is no point of the rocker.
-            self.aims[links[1]] = {outer[0]}
-
-    def slide(self, kind: int, links: list[str], guides: list[str]) -> None:
-        """A link that slides along a guide has its direction: it may be given as that "towards" which a point lies."""
-        sliding = {2: links[1:], 4: links, 5: links}.get(kind, [])
-        for link, guide in zip(sliding, guides if kind == 4 else guides * len(sliding), strict=False):
-            self.aims.setdefault(link, set()).add(guide)
+                    yield from self.known(path, guide[key], known, self.no_point, link=link)
 
     def attach(self) -> Iterator[Found]:
         """Take in the further points whose link and base points are there by now."""
-        progress = True
-        while progress:
-            progress = False
-            for item in list(self.waiting):
-                path, point = item
-                link, start, towards = point.get("link"), point.get("from"), point.get("towards")
-                if not (isinstance(link, str) and isinstance(start, str) and isinstance(towards, str)) or link not in self.on:
-                    continue
-                if start in self.on[link] and towards in self.on[link] | self.aims.get(link, set()):
-                    self.waiting.remove(item)
-                    progress = True
-                    if start == towards:
-                        yield (*path, "towards"), tell('expected another point than "from"'), ""
-                    yield from self.define((*path, "name"), point.get("name"), link)
+        while (item := next(filter(self.hangs, self.waiting), None)) is not None:
+            self.waiting.remove(item)
+            path, point = item
+            if point["from"] == point["towards"]:
+                yield (*path, "towards"), tell('expected another point than "from"'), ""
+            yield from self.define((*path, "name"), point.get("name"), point["link"])
+
+    def hangs(self, item: tuple[KeyPath, dict[str, Any]]) -> bool:
+        """Whether the link and the base points of a further point are there."""
+        link, start, towards = (item[1].get(key) for key in ("link", "from", "towards"))
+        if not (isinstance(link, str) and isinstance(start, str) and isinstance(towards, str)) or link not in self.on:
+            return False
+        return start in self.on[link] and towards in self.on[link] | self.aims.get(link, set())
 
     def left_over(self) -> Iterator[Found]:
         for path, point in self.waiting:
-            link = point.get("link")
+            link, name = point.get("link"), point.get("name")
             if not isinstance(link, str):
                 continue
             yield from self.known((*path, "link"), link, set(self.on), marked('unknown link "{name}"'))
             here = self.on.get(link, self.points)
-            yield from self.known(
-                (*path, "from"), point.get("from"), here, marked('unknown point of link {link} "{name}"'), link=link
-            )
-            aims = here | self.aims.get(link, set())
-            yield from self.known(
-                (*path, "towards"), point.get("towards"), aims, marked('unknown point of link {link} "{name}"'), link=link
-            )
-            name = point.get("name")
+            for key, among in (("from", here), ("towards", here | self.aims.get(link, set()))):
+                yield from self.known((*path, key), point.get(key), among, self.no_point, link=link)
             if isinstance(name, str):
                 self.points.add(name)
                 self.on.setdefault(link, set()).add(name)
 
     def input(self) -> Iterator[Found]:
         """A crank turns as it is told, or as a slider or a cylinder on its pin drives it."""
-        crank, given = _table(self.data, "crank"), _table(self.data, "input")
+        crank, given, driven = _table(self.data, "crank"), _table(self.data, "input"), "input" in self.data
         begins = _table(self.data, "cycle").get("start") == "input"
         balancing = _table(self.data, "balancing").get("kind")
-        if balancing in ("moment", "gear force", "input force") and (balancing == "input force") != ("input" in self.data):
-            yield ("balancing", "kind"), tell("what drives the mechanism is its [input]") if "input" in self.data else tell(
-                "there is no [input]"), tell('write kind = "input force"') if "input" in self.data else tell(
-                    'write kind = "moment" or "gear force"')
-        if "input" not in self.data:
-            for key in ("speed", "sense") if crank else ():
-                if key not in crank:
-                    yield ("crank", key), tell("missing; expected {what}").format(
-                        what=tell(str(CrankTable.model_fields[key].description))), ""
-            if begins:
-                yield ("cycle", "start"), tell("there is no [input]"), tell(
-                    "tell in [input] which slider or cylinder drives the crank")
-            return
-        for key in ("speed", "sense", "angular_acceleration"):
-            if key in crank:
-                yield ("crank", key), tell("the [input] tells how the crank moves"), tell("leave it out")
-        for key in ("friction", "flywheel"):
-            if key in self.data:
-                yield (key,), tell("[{name}] needs a crank whose turning is given, not an [input]").format(name=key), tell(
-                    "leave it out")
-        if not begins:
-            yield ("cycle",), tell("the cycle is the stroke of [input]"), tell('write start = "input"')
-        if given.get("start") == given.get("end") and "start" in given:
-            yield ("input", "end"), tell("the stroke ends where it begins"), ""
+        by_force = balancing == "input force"
+        wrong: list[tuple[Any, KeyPath, str, str]] = [
+            (driven and balancing in ("moment", "gear force"), ("balancing", "kind"),
+             marked("what drives the mechanism is its [input]"), marked('write kind = "input force"')),
+            (by_force and not driven, ("balancing", "kind"), marked("there is no [input]"),
+             marked('write kind = "moment" or "gear force"')),
+            (begins and not driven, ("cycle", "start"), marked("there is no [input]"),
+             marked("tell in [input] which slider or cylinder drives the crank")),
+            *((driven and key in crank, ("crank", key), marked("the [input] tells how the crank moves"), marked("leave it out"))
+              for key in ("speed", "sense", "angular_acceleration")),
+            *((driven and key in self.data, (key,), marked("[{name}] needs a crank whose turning is given, not an [input]"),
+               marked("leave it out")) for key in ("friction", "flywheel")),
+            (driven and not begins, ("cycle",), marked("the cycle is the stroke of [input]"), marked('write start = "input"')),
+            ("start" in given and given["start"] == given.get("end"), ("input", "end"),
+             marked("the stroke ends where it begins"), ""),
+        ]
+        yield from ((path, tell(said).format(name=path[0]), tell(hint)) for is_so, path, said, hint in wrong if is_so)
+        for key in ("speed", "sense") if crank and not driven else ():
+            if key not in crank:
+                yield ("crank", key), tell("missing; expected {what}").format(
+                    what=tell(str(CrankTable.model_fields[key].description))), ""
         link, drives = given.get("link"), list(self.drives(crank.get("pin")))
-        if isinstance(link, str) and link not in drives:
+        if driven and isinstance(link, str) and link not in drives:
             said = tell('link "{link}" drives no crank: expected the slider of a group of kind 2 or a link of one of kind 3 '
                         "without offset, on the crank pin and the frame")
             yield (("input", "link"), said.format(link=link),
@@ -399,7 +384,7 @@ class _Names:
             yield from self.known((*path, "link"), link, moving, marked('unknown link "{name}"'))
             if path[0] == "force" and isinstance(link, str) and link in self.on:
                 yield from self.known(
-                    (*path, "point"), force.get("point"), self.on[link], marked('unknown point of link {link} "{name}"'), link=link
+                    (*path, "point"), force.get("point"), self.on[link], self.no_point, link=link
                 )
             yield from self.symbol((*path, "name"), force.get("name"), taken)
         yield from self.symbol(("balancing", "name"), _table(self.data, "balancing").get("name"), taken)

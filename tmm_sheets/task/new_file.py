@@ -43,6 +43,12 @@ class Driven:
         return complex(min(x) + max(x), min(y) + max(y)) / 2
 
     @property
+    def along(self) -> complex:
+        """Direction of a guide that the path does not run along: the x axis, or one that a flat path leaves."""
+        flat = max(z.imag for z in self.path) - min(z.imag for z in self.path) < 0.2 * self.reach
+        return rect(1, pi / 3 if flat else 0.0)
+
+    @property
     def reach(self) -> float:
         """How far the path goes from its middle."""
         return max(abs(z - self.middle) for z in self.path)
@@ -109,9 +115,7 @@ def _rod_and_rocker(made: _Tables, on: Driven) -> Driven:
 
 
 def _rod_and_slider(made: _Tables, on: Driven) -> Driven:
-    r, m = on.reach, on.middle
-    flat = max(z.imag for z in on.path) - min(z.imag for z in on.path) < 0.2 * r
-    along, length, point = rect(1, pi / 3 if flat else 0.0), _whole(4 * r), made.letter()
+    m, along, length, point = on.middle, on.along, _whole(4 * on.reach), made.letter()
     guide = made.guide(_place(m), phase(along))
     made.group(2, tell("kind 2: a rod and a slider"),
                f'outer = ["{on.point}"]\ninner = "{point}"\nlength = {_mm(length)}\nguide = "{guide}"\n')
@@ -147,9 +151,7 @@ def _two_blocks(made: _Tables, on: Driven) -> Driven:
 
 
 def _slot_and_slider(made: _Tables, on: Driven) -> Driven:
-    m, point = on.middle, made.letter()
-    flat = max(z.imag for z in on.path) - min(z.imag for z in on.path) < 0.2 * on.reach
-    along = rect(1, pi / 3 if flat else 0.0)
+    m, point, along = on.middle, made.letter(), on.along
     guide = made.guide(_place(m - 3j * on.reach), phase(along))
     made.group(5, tell("kind 5: a block on the point before, in the slot of a slider"),
                f'outer = ["{on.point}"]\ninner = "{point}"\nguide = "{guide}"\nslot = "90 deg"\n')

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from math import inf
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -78,6 +79,39 @@ class Table(BaseModel):
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=False)
+
+
+Rule = tuple[str, Callable[[Any], Any]]
+"""What is said of a table, and whether, or (with what is filled in) of what, it is to be said."""
+
+
+class RuledTable(Table):
+    """A table whose keys go together by rules: the first that is broken is told."""
+
+    rules: ClassVar[tuple[Rule, ...]]
+
+    @model_validator(mode="after")
+    def _follows_rules(self) -> Self:
+        for said, broken in self.rules:
+            if found := broken(self):
+                raise ValueError(tell(said).format(**found) if isinstance(found, dict) else tell(said))
+        return self
+
+
+def _told(table: Table, *keys: str) -> list[str]:
+    """Those of some keys that a table has."""
+    return [key for key in keys if getattr(table, key) is not None]
+
+
+def _lacking(table: Table, *keys: str) -> list[str]:
+    """Those of some keys that a table has not."""
+    return [key for key in keys if getattr(table, key) is None]
+
+
+def _listed(name: str, keys: Iterable[str], say: Callable[[list[str]], str] = ", ".join) -> dict[str, str]:
+    """Some keys to be filled in under a name; nothing of none."""
+    found = [*keys]
+    return {name: say(found)} if found else {}
 
 
 class HeadingTable(Table):
@@ -196,7 +230,7 @@ class GuideTable(Table):
     """with `link`: another of its points; for a guide on a slider also the guide the slider runs on"""
 
 
-class LegTable(Table):
+class LegTable(RuledTable):
     """``[[group.leg]]``: a leg of a group of kind 6.
 
     A rod (``outer``, ``length``), a slider (``guide``) or a slider block (``outer``, ``slot``).
@@ -214,19 +248,16 @@ class LegTable(Table):
     from the first corner to the second; for the second leg only
     """
 
-    @model_validator(mode="after")
-    def _one_form(self) -> Self:
-        given = tuple(k for k in ("outer", "length", "guide", "slot") if getattr(self, k) is not None)
-        if given not in (("outer", "length"), ("guide",), ("outer", "slot")):
-            raise ValueError(tell("expected a leg with outer and length, with guide, or with outer and slot, not {given}").format(
-                given=both(list(given)) or tell("none of these")))
-        return self
+    rules = ((
+        marked("expected a leg with outer and length, with guide, or with outer and slot, not {given}"),
+        lambda leg: (given := _told(leg, "outer", "length", "guide", "slot")) not in (
+            ["outer", "length"], ["guide"], ["outer", "slot"]) and {"given": both(given) or tell("none of these")}),)
 
 
-class GroupTable(Table):
+class GroupTable(RuledTable):
     """``[[group]]``: an Assur group of two links (class II, order 2) or four (kind 6, class III), in the order they can be drawn.
 
-    Which keys a kind has: :data:`tmm_sheets.task.names.GROUP_KEYS`.
+    Which keys a kind has: :data:`tmm_sheets.task.names.GROUPS`.
     """
 
     kind: Literal[1, 2, 3, 4, 5, 6] = Field(description=marked("kind of the group, 1 (RRR) to 5 (RPP), or 6 (class III)"))
@@ -271,11 +302,8 @@ class GroupTable(Table):
     `branch = "follow"` is on its `side`, that of position 0 unless given (0 where position 0 is a dead position)
     """
 
-    @model_validator(mode="after")
-    def _at_of_what(self) -> Self:
-        if self.at is not None and self.kind != 6 and self.branch != "follow":
-            raise ValueError(tell('"at" tells where a group that follows is on its side; write branch = "follow", or leave it out'))
-        return self
+    rules = ((marked('"at" tells where a group that follows is on its side; write branch = "follow", or leave it out'),
+              lambda group: group.at is not None and group.kind != 6 and group.branch != "follow"),)
 
 
 class PointTable(Table):
@@ -291,7 +319,7 @@ class PointTable(Table):
     """turns it from that line: the link may be a plate"""
 
 
-class LinkTable(Table):
+class LinkTable(RuledTable):
     """``[[link]]``: mass and moment of inertia of a link; links that are not listed have none."""
 
     name: Name = Field(description=marked("number of the link"))
@@ -306,14 +334,11 @@ class LinkTable(Table):
     pivot_inertia: Inertia | None = None
     """about the fixed point the link turns about, where the task gives it beside `inertia`: the energy is taken with it"""
 
-    @model_validator(mode="after")
-    def _mass_has_centre(self) -> Self:
-        if self.mass > 0 and self.centre is None:
-            raise ValueError(tell('expected "centre", the point where the mass is; write for example centre = "S3"'))
-        return self
+    rules = ((marked('expected "centre", the point where the mass is; write for example centre = "S3"'),
+              lambda link: link.mass > 0 and link.centre is None),)
 
 
-class CycleTable(Table):
+class CycleTable(RuledTable):
     """``[cycle]``: the numbered positions of the mechanism, from a dead position or from a crank angle."""
 
     start: Start = Field(
@@ -349,50 +374,34 @@ class CycleTable(Table):
     diagrams: tuple[Name, ...] = ()
     """points (S, V, a) and links (ψ, ω, ε) whose kinematic diagrams are drawn; left out: the output"""
 
-    @model_validator(mode="after")
-    def _start_has_its_keys(self) -> Self:
-        if self.start == "input" and (
-                lost := sorted(self.model_fields_set & {"end", "extra", "turns", "output", "working_sense"})):
-            raise ValueError(tell('{keys}: not with start = "input": the stroke of [input] is the whole cycle').format(
-                keys=", ".join(lost)))
-        if self.start != "dead":
-            if self.positions is None:
-                raise ValueError(
-                    tell("a crank angle as start needs positions, the equal parts of a turn, for example positions = 12")
-                )
-            return self
-        absent = [k for k in ("output", "working_sense", "working", "idle") if getattr(self, k) is None]
-        if absent:
-            raise ValueError(tell('start = "dead" needs {absent} as well').format(absent=", ".join(absent)))
-        if lost := [k for k in ("zero", "extra") if k in self.model_fields_set]:
-            only = tell('{keys}: only with a crank angle as start, for example start = "90 deg"')
-            raise ValueError(only.format(keys=", ".join(lost)))
-        if self.division == "nominal" and self.coefficient is None:
-            raise ValueError(tell('division = "nominal" needs the coefficient K, for example coefficient = 1.5'))
-        return self
+    rules = (
+        (marked('{keys}: not with start = "input": the stroke of [input] is the whole cycle'),
+         lambda cycle: cycle.start == "input" and _listed("keys", sorted(
+             cycle.model_fields_set & {"end", "extra", "turns", "output", "working_sense"}))),
+        (marked("a crank angle as start needs positions, the equal parts of a turn, for example positions = 12"),
+         lambda cycle: cycle.start != "dead" and cycle.positions is None),
+        (marked('start = "dead" needs {absent} as well'),
+         lambda cycle: cycle.start == "dead" and _listed("absent", _lacking(cycle, "output", "working_sense", "working", "idle"))),
+        (marked('{keys}: only with a crank angle as start, for example start = "90 deg"'),
+         lambda cycle: cycle.start == "dead" and _listed("keys", (k for k in ("zero", "extra") if k in cycle.model_fields_set))),
+        (marked('division = "nominal" needs the coefficient K, for example coefficient = 1.5'),
+         lambda cycle: cycle.start == "dead" and cycle.division == "nominal" and cycle.coefficient is None),
+        (marked("a crank that swings to an end needs a crank angle as start"),
+         lambda cycle: cycle.end is not None and cycle.start == "dead"),
+        (marked("a crank that only swings has no strokes and no second turn: leave output, working_sense and turns out"),
+         lambda cycle: cycle.end is not None and (cycle.turns != 1 or _told(cycle, "output", "working_sense"))),
+        (marked("expected 4 positions or more: positions, or working and idle together"), lambda cycle: cycle.parts < 4),
+        (marked("expected either positions or working and idle, not both"),
+         lambda cycle: cycle.positions is not None and _told(cycle, "working", "idle")),
+        (marked("expected {most} positions of a cycle at most, in all turns and extra together, not {count}"),
+         lambda cycle: (count := cycle.parts * cycle.turns + len(cycle.extra)) > 2 * MOST_PARTS
+         and {"most": 2 * MOST_PARTS, "count": count}),
+    )
 
-    @model_validator(mode="after")
-    def _swings(self) -> Self:
-        if self.end is None:
-            return self
-        if self.start == "dead":
-            raise ValueError(tell("a crank that swings to an end needs a crank angle as start"))
-        if self.turns != 1 or self.output is not None or self.working_sense is not None:
-            raise ValueError(tell(
-                "a crank that only swings has no strokes and no second turn: leave output, working_sense and turns out"))
-        return self
-
-    @model_validator(mode="after")
-    def _whole_turn(self) -> Self:
-        count = self.positions if self.positions is not None else (self.working or 0) + (self.idle or 0)
-        if count < 4:
-            raise ValueError(tell("expected 4 positions or more: positions, or working and idle together"))
-        if self.positions is not None and (self.working or self.idle):
-            raise ValueError(tell("expected either positions or working and idle, not both"))
-        if (whole := count * self.turns + len(self.extra)) > 2 * MOST_PARTS:
-            said = tell("expected {most} positions of a cycle at most, in all turns and extra together, not {count}")
-            raise ValueError(said.format(most=2 * MOST_PARTS, count=whole))
-        return self
+    @property
+    def parts(self) -> int:
+        """Parts of one turn."""
+        return self.positions if self.positions is not None else (self.working or 0) + (self.idle or 0)
 
 
 class ForcesTable(Table):
@@ -402,14 +411,37 @@ class ForcesTable(Table):
     """free fall; 0 for a mechanism in a horizontal plane"""
 
 
-def _one_diagram(given: list[str]) -> str:
-    """What to say when a load has another number of diagrams than one."""
-    if given:
-        return tell("expected one of value, table and tables, not {given}").format(given=both(given))
-    return tell("expected one of value, table and tables, not none")
+class LoadTable(RuledTable):
+    """What forces and moments have in common: one law, of a constant or of diagrams."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        (marked("expected one of value, table and tables, not {given}"),
+         lambda load: len(given := _told(load, "value", "table", "tables")) > 1 and {"given": both(given)}),
+        (marked("expected one of value, table and tables, not none"),
+         lambda load: not _told(load, "value", "table", "tables")),
+    )
+
+    @property
+    def quantity(self) -> units.Quantity:
+        """What its ordinates are."""
+        return units.MOMENT
+
+    @model_validator(mode="after")
+    def _diagrams_can_be_read(self) -> Self:
+        self.diagrams()
+        return self
+
+    def diagrams(self) -> tuple[tuple[list[float], list[float]] | None, ...]:
+        """The law as diagrams in SI, one for each stroke in turn; a constant is a diagram of one point."""
+        load: Any = self
+        if load.value is not None:
+            return (([0.0], [load.value]),)
+        argument = units.NUMBER if load.over == "stroke" else units.ANGLE
+        given = load.tables if load.tables is not None else (load.table or (),)
+        return tuple(diagram(pairs, argument, self.quantity) if pairs else None for pairs in given)
 
 
-class ForceTable(Table):
+class ForceTable(LoadTable):
     """``[[force]]``: a technological force at a point of a link: one of ``value``, ``table`` and ``tables``.
 
     Strokes lie between the true extremes of the way, however often the point turns back; inside them a force against the motion
@@ -454,22 +486,16 @@ class ForceTable(Table):
     """where it ends"""
     accepted: bool = Field(default=False, description=marked('true: our own assumption, marked so on the sheet'))
 
-    @model_validator(mode="after")
-    def _one_law(self) -> Self:
-        given = [k for k in ("value", "table", "tables") if getattr(self, k) is not None]
-        if len(given) != 1:
-            raise ValueError(_one_diagram(given))
-        if not self.from_ < self.to:
-            raise ValueError(tell('expected "from" before "to", not {start} and {end}').format(start=self.from_, end=self.to))
-        self.diagrams()
-        return self
+    rules = (*LoadTable.rules, (marked('expected "from" before "to", not {start} and {end}'),
+                                lambda force: not force.from_ < force.to and {"start": force.from_, "end": force.to}))
 
-    def diagrams(self) -> tuple[tuple[list[float], list[float]] | None, ...]:
-        """The law as diagrams in SI, one for each stroke in turn; a constant is a diagram of one point."""
-        return _diagrams(self, units.PRESSURE if self.bore is not None else units.FORCE)
+    @property
+    def quantity(self) -> units.Quantity:
+        """Pressure on a piston, or the force itself."""
+        return units.PRESSURE if self.bore is not None else units.FORCE
 
 
-class MomentTable(Table):
+class MomentTable(LoadTable):
     """``[[moment]]``: a technological moment on a link: one of ``value``, ``table`` and ``tables``."""
 
     name: Name = Field(description=marked('symbol of the moment, for example "M5"'))
@@ -496,28 +522,12 @@ class MomentTable(Table):
     accepted: bool = False
     """true: our own assumption, marked so on the sheet"""
 
-    @model_validator(mode="after")
-    def _one_law(self) -> Self:
-        given = [k for k in ("value", "table", "tables") if getattr(self, k) is not None]
-        if len(given) != 1:
-            raise ValueError(_one_diagram(given))
-        self.diagrams()
-        return self
 
-    def diagrams(self) -> tuple[tuple[list[float], list[float]] | None, ...]:
-        """The law as diagrams in SI, one for each stroke in turn; a constant is a diagram of one point."""
-        return _diagrams(self, units.MOMENT)
+GEAR_FORCE = ("teeth", "module", "pressure_angle", "mate")
+"""Keys of ``[balancing]`` that a gear pair on the crank shaft has."""
 
 
-def _diagrams(load: ForceTable | MomentTable, quantity: units.Quantity) -> tuple[tuple[list[float], list[float]] | None, ...]:
-    if load.value is not None:
-        return (([0.0], [load.value]),)
-    argument = units.NUMBER if load.over == "stroke" else units.ANGLE
-    given = load.tables if load.tables is not None else (load.table or (),)
-    return tuple(diagram(pairs, argument, quantity) if pairs else None for pairs in given)
-
-
-class BalancingTable(Table):
+class BalancingTable(RuledTable):
     """``[balancing]``: what drives the crank: a pure moment, the force of a gear pair on its shaft, or the force on an input."""
 
     kind: Literal["moment", "gear force", "input force"] = Field(description=marked('"moment", "gear force" or "input force"'))
@@ -532,19 +542,16 @@ class BalancingTable(Table):
     mate: Angle | None = None
     """direction from the crank pivot to the centre of the other wheel"""
 
-    @model_validator(mode="after")
-    def _gear_is_whole(self) -> Self:
-        keys = ("teeth", "module", "pressure_angle", "mate")
-        absent = [k for k in keys if getattr(self, k) is None]
-        if self.kind == "gear force" and absent:
-            raise ValueError(tell('kind = "gear force" needs {absent} as well').format(absent=", ".join(absent)))
-        if self.kind != "gear force" and len(absent) < len(keys):
-            raise ValueError(tell('kind = "{kind}" has no {names}').format(
-                kind=self.kind, names=", ".join(k for k in keys if k not in absent)))
-        return self
+    rules = (
+        (marked('kind = "gear force" needs {absent} as well'),
+         lambda given: given.kind == "gear force" and _listed("absent", _lacking(given, *GEAR_FORCE))),
+        (marked('kind = "{kind}" has no {names}'),
+         lambda given: given.kind != "gear force" and (names := _told(given, *GEAR_FORCE))
+         and {"kind": given.kind, "names": ", ".join(names)}),
+    )
 
 
-class FrictionTable(Table):
+class FrictionTable(RuledTable):
     """``[friction]``: friction in the kinematic pairs, which the force plans then count; without the table there is none."""
 
     turning: Fraction = 0.0
@@ -556,13 +563,12 @@ class FrictionTable(Table):
     friction
     """
 
-    @model_validator(mode="after")
-    def _turning_has_journals(self) -> Self:
-        if self.turning and not self.radii:
-            raise ValueError(tell('turning needs the radii of the journals, for example radii = { A = "25 mm" }'))
-        if self.radii and not self.turning:
-            raise ValueError(tell("radii need turning, the coefficient of friction, for example turning = 0.1"))
-        return self
+    rules = (
+        (marked('turning needs the radii of the journals, for example radii = { A = "25 mm" }'),
+         lambda friction: friction.turning and not friction.radii),
+        (marked("radii need turning, the coefficient of friction, for example turning = 0.1"),
+         lambda friction: friction.radii and not friction.turning),
+    )
 
 
 class MotorTable(Table):
@@ -583,7 +589,11 @@ class MotorTable(Table):
     """true: our own assumption, marked so on the sheet"""
 
 
-class FlywheelTable(Table):
+SIZES = ("density", "width_ratio", "thickness_ratio")
+"""Keys of ``[flywheel]`` that its sizes follow from."""
+
+
+class FlywheelTable(RuledTable):
     """``[flywheel]``: how even the rotation must be, or the flywheel that there is; and what it is made of."""
 
     method: Literal["wittenbauer", "mertsalov"] = Field(description=marked('"wittenbauer" or "mertsalov"'))
@@ -613,21 +623,17 @@ class FlywheelTable(Table):
     motor: MotorTable | None = None
     """table `[flywheel.motor]`; left out: no motor is checked"""
 
-    @model_validator(mode="after")
-    def _one_is_asked(self) -> Self:
-        if (self.delta is None) == (self.inertia is None):
-            raise ValueError(tell('expected either delta, for example delta = 0.025, or the inertia of a flywheel that there is, '
-                                  'for example inertia = "3 kg m2"'))
-        sizes = ("density", "width_ratio", "thickness_ratio")
-        absent = [k for k in sizes if getattr(self, k) is None]
-        if absent and (self.inertia is None or len(absent) < len(sizes)):
-            raise ValueError(tell("the sizes of the flywheel need {absent} as well").format(absent=both(absent)))
-        if self.efficiency is not None and self.motor is not None:
-            raise ValueError(tell("[flywheel.motor] has an efficiency of its own: leave efficiency out"))
-        return self
+    rules = (
+        (marked('expected either delta, for example delta = 0.025, or the inertia of a flywheel that there is, '
+                'for example inertia = "3 kg m2"'), lambda wheel: (wheel.delta is None) == (wheel.inertia is None)),
+        (marked("the sizes of the flywheel need {absent} as well"),
+         lambda wheel: (wheel.inertia is None or _told(wheel, *SIZES)) and _listed("absent", _lacking(wheel, *SIZES), both)),
+        (marked("[flywheel.motor] has an efficiency of its own: leave efficiency out"),
+         lambda wheel: wheel.efficiency is not None and wheel.motor is not None),
+    )
 
 
-class GearTable(Table):
+class GearTable(RuledTable):
     """``[gear]``: a pair of involute spur gears."""
 
     teeth: Annotated[tuple[Teeth, Teeth], or_word("reducer")] = Field(description=marked("tooth numbers, for example [14, 28]"))
@@ -662,44 +668,34 @@ class GearTable(Table):
     profile: Literal["fillet", "rack"] = "fillet"
     """`fillet`: a fillet of constant radius; `rack`: as a rack cuts the teeth, with undercut where it happens"""
 
-    @model_validator(mode="after")
-    def _module_from_one_place(self) -> Self:
-        teeth: Any = self.teeth
-        if teeth != "reducer":
-            if self.module is None:
-                raise ValueError(tell('expected "module" too, for example module = "3.5 mm"'))
-        else:
-            given = [k for k in ("module", "addendum", "addenda", "clearance") if getattr(self, k) is not None]
-            if given:
-                raise ValueError(tell('teeth = "reducer" takes {given} from [reducer]').format(given=", ".join(given)))
-        return self
-
-    @model_validator(mode="after")
-    def _one_way_to_the_shifts(self) -> Self:
-        if self.centre_distance is not None and "shift" in self.model_fields_set:
-            raise ValueError(tell("expected either shift or centre_distance; x1 goes with the latter as first_shift"))
-        if self.first_shift is not None and self.centre_distance is None:
-            raise ValueError(tell("first_shift goes with centre_distance; without it write shift = [x1, x2]"))
-        if self.addendum is not None and self.addenda is not None:
-            raise ValueError(tell("expected either addendum or addenda"))
-        return self
-
-    @model_validator(mode="after")
-    def _ring_can_be(self) -> Self:
-        if self.mesh == "external":
-            return self
-        teeth: Any = self.teeth
-        if teeth == "reducer":
-            raise ValueError(tell('the simple stage of [reducer] meshes outside: mesh = "internal" needs tooth numbers'))
-        if teeth[1] <= teeth[0]:
-            raise ValueError(tell("the ring is wheel 2: expected teeth with a larger second number, not {teeth}").format(
-                teeth=list(teeth)))
-        if self.profile == "rack":
-            raise ValueError(tell('no rack cuts a ring: leave profile = "rack" out'))
-        return self
+    rules = (
+        (marked('expected "module" too, for example module = "3.5 mm"'),
+         lambda gear: gear.teeth != "reducer" and gear.module is None),
+        (marked('teeth = "reducer" takes {given} from [reducer]'),
+         lambda gear: gear.teeth == "reducer" and _listed("given", _told(gear, "module", "addendum", "addenda", "clearance"))),
+        (marked("expected either shift or centre_distance; x1 goes with the latter as first_shift"),
+         lambda gear: gear.centre_distance is not None and "shift" in gear.model_fields_set),
+        (marked("first_shift goes with centre_distance; without it write shift = [x1, x2]"),
+         lambda gear: gear.first_shift is not None and gear.centre_distance is None),
+        (marked("expected either addendum or addenda"), lambda gear: gear.addendum is not None and gear.addenda is not None),
+        (marked('the simple stage of [reducer] meshes outside: mesh = "internal" needs tooth numbers'),
+         lambda gear: gear.mesh == "internal" and gear.teeth == "reducer"),
+        (marked("the ring is wheel 2: expected teeth with a larger second number, not {teeth}"),
+         lambda gear: gear.mesh == "internal" and gear.teeth[1] <= gear.teeth[0] and {"teeth": list(gear.teeth)}),
+        (marked('no rack cuts a ring: leave profile = "rack" out'),
+         lambda gear: gear.mesh == "internal" and gear.profile == "rack"),
+    )
 
 
-class SynthesisTable(Table):
+CONDITIONS = {"quick return": (("coefficient", "stroke", "centre_distance"), ("centre_ratio",)),
+              "engine": (("mean_velocity", "rod_ratio"), ("centre_ratio",)),
+              "geneva": (("slots", "centre_distance", "roller"), ())}
+"""Keys of ``[synthesis]`` that its kinds must and may have."""
+ANY_CONDITION = {key for must, may in CONDITIONS.values() for key in (*must, *may)}
+"""Keys that some kinds have."""
+
+
+class SynthesisTable(RuledTable):
     """``[synthesis]``: conditions from which lengths are found.
 
     Where one is used, ``"synthesis l_AB"`` or ``"0.5 synthesis l_CD"`` stands instead of a length.
@@ -730,20 +726,22 @@ class SynthesisTable(Table):
     round: Length | None = None
     """found lengths are rounded to this step; left out: not at all"""
 
-    @model_validator(mode="after")
-    def _conditions_of_the_kind(self) -> Self:
-        own = {"quick return": ("coefficient", "stroke", "centre_distance"), "engine": ("mean_velocity", "rod_ratio"),
-               "geneva": ("slots", "centre_distance", "roller")}
-        has = {key for keys in own.values() for key in keys if getattr(self, key) is not None}
-        has |= {"centre_ratio"} if self.centre_ratio is not None and self.kind == "geneva" else set()
-        if absent := [key for key in own[self.kind] if key not in has]:
-            raise ValueError(tell('kind = "{kind}" needs {absent} as well').format(kind=self.kind, absent=", ".join(absent)))
-        if extra := sorted(has - set(own[self.kind])):
-            raise ValueError(tell('kind = "{kind}" has no {names}').format(kind=self.kind, names=", ".join(extra)))
-        return self
+    rules = (
+        (marked('kind = "{kind}" needs {absent} as well'),
+         lambda given: (absent := _lacking(given, *CONDITIONS[given.kind][0])) and {
+             "kind": given.kind, "absent": ", ".join(absent)}),
+        (marked('kind = "{kind}" has no {names}'),
+         lambda given: (extra := sorted({*_told(given, *ANY_CONDITION)}.difference(*CONDITIONS[given.kind]))) and {
+             "kind": given.kind, "names": ", ".join(extra)}),
+    )
 
 
-class ReducerTable(Table):
+def _driven_by(said: str, drivers: tuple[str, ...], *schemes: str) -> Rule:
+    """That some schemes of a reducer have these drivers only."""
+    return said, lambda reducer: reducer.scheme in schemes and reducer.driver not in (None, *drivers) and {"scheme": reducer.scheme}
+
+
+class ReducerTable(RuledTable):
     """``[reducer]``: a planetary reducer with a simple stage; tooth numbers that are not given are searched.
 
     Wheels are numbered from the input on, those of the simple stage first where it stands ``before`` the planetary one:
@@ -792,37 +790,24 @@ class ReducerTable(Table):
     strict_internal: bool = False
     """true: no interference in internal pairs"""
 
-    @model_validator(mode="after")
-    def _ratio_is_known(self) -> Self:
-        if (self.ratio is None) == (self.output_speed is None):
-            raise ValueError(tell("expected either ratio or output_speed"))
-        if self.stages == 2 and self.scheme != "single row":
-            raise ValueError(tell('stages = 2 goes with scheme = "single row" only'))
-        if self.simple_ratio is not None and not self.simple_ratio[0] <= self.simple_ratio[1]:
-            raise ValueError(tell("expected a simple_ratio that rises, for example [1.5, 4]"))
-        return self
-
-    @model_validator(mode="after")
-    def _simple_stage_has_its_keys(self) -> Self:
-        own = [k for k in ("simple_module", "simple_ratio") if getattr(self, k) is not None]
-        if self.simple == "none" and own:
-            raise ValueError(tell('simple = "none" has no {keys}').format(keys=", ".join(own)))
-        if self.simple != "none" and self.simple_module is None:
-            raise ValueError(tell('expected "simple_module" too, for example simple_module = "10 mm"'))
-        return self
-
-    @model_validator(mode="after")
-    def _driver_fits(self) -> Self:
-        can = {"single row": ("sun", "ring"), "external-internal": ("sun",)}.get(self.scheme, ("carrier",))
-        if self.driver is not None and self.driver not in can:
-            said = {"sun": marked('scheme = "{scheme}" is driven by the sun'),
-                    "carrier": marked('scheme = "{scheme}" is driven by the carrier'),
-                    "ring": marked('scheme = "{scheme}" is driven by the sun or the ring')}  # fmt: skip
-            raise ValueError(tell(said[can[-1]]).format(scheme=self.scheme))
-        return self
+    rules = (
+        (marked("expected either ratio or output_speed"),
+         lambda reducer: (reducer.ratio is None) == (reducer.output_speed is None)),
+        (marked('stages = 2 goes with scheme = "single row" only'),
+         lambda reducer: reducer.stages == 2 and reducer.scheme != "single row"),
+        (marked("expected a simple_ratio that rises, for example [1.5, 4]"),
+         lambda reducer: reducer.simple_ratio is not None and not reducer.simple_ratio[0] <= reducer.simple_ratio[1]),
+        (marked('simple = "none" has no {keys}'),
+         lambda reducer: reducer.simple == "none" and _listed("keys", _told(reducer, "simple_module", "simple_ratio"))),
+        (marked('expected "simple_module" too, for example simple_module = "10 mm"'),
+         lambda reducer: reducer.simple != "none" and reducer.simple_module is None),
+        _driven_by(marked('scheme = "{scheme}" is driven by the sun'), ("sun",), "external-internal"),
+        _driven_by(marked('scheme = "{scheme}" is driven by the carrier'), ("carrier",), "two external", "two internal"),
+        _driven_by(marked('scheme = "{scheme}" is driven by the sun or the ring'), ("sun", "ring"), "single row"),
+    )
 
 
-class MeshTable(Table):
+class MeshTable(RuledTable):
     """``[[train.mesh]]``: two wheels in mesh, one of them about the main axis."""
 
     sun: WheelName | None = None
@@ -833,16 +818,24 @@ class MeshTable(Table):
     carrier: CarrierName | None = None
     """the carrier of the planet, `"H"` or `"H1"`; left out: its axis stands still"""
 
-    @model_validator(mode="after")
-    def _sun_or_ring(self) -> Self:
-        if (self.sun is None) == (self.ring is None):
-            raise ValueError(tell("expected either sun or ring"))
-        if self.planet in (self.sun, self.ring):
-            raise ValueError(tell("a wheel does not mesh with itself"))
-        return self
+    rules = (
+        (marked("expected either sun or ring"), lambda mesh: (mesh.sun is None) == (mesh.ring is None)),
+        (marked("a wheel does not mesh with itself"), lambda mesh: mesh.planet in (mesh.sun, mesh.ring)),
+    )
 
 
-class TrainTable(Table):
+def _members_once(key: str, names: Callable[[Any], list[str]]) -> tuple[Rule, Rule]:
+    """That a key of ``[train]`` names wheels and carriers that are there, each once."""
+    return (
+        (marked("{key} has {unknown}; here are {known}"),
+         lambda train: (unknown := [name for name in names(train) if name not in train.members]) and {
+             "key": key, "unknown": ", ".join(unknown), "known": ", ".join(sorted(train.members))}),
+        (marked("{key}: a wheel or carrier stands there twice"),
+         lambda train: len({*names(train)}) < len(names(train)) and {"key": key}),
+    )
+
+
+class TrainTable(RuledTable):
     """``[train]``: a train of gears of given tooth numbers, with speeds given at any of its links."""
 
     module: Length = Field(description=marked('module, for example "2 mm"'))
@@ -857,24 +850,26 @@ class TrainTable(Table):
     """number of planets on each carrier, for the picture"""
     mesh: tuple[MeshTable, ...] = Field(min_length=1, description=marked("the meshes, tables [[train.mesh]]"))
 
-    @model_validator(mode="after")
-    def _names_are_known(self) -> Self:
-        wheels = {name for m in self.mesh for name in (m.sun or m.ring, m.planet) if name}
-        if wheels != set(self.teeth):
-            raise ValueError(tell("expected teeth of the wheels {wheels}, not of {teeth}").format(
-                wheels=", ".join(sorted(wheels)), teeth=", ".join(sorted(self.teeth))))
-        known = wheels | {m.carrier for m in self.mesh if m.carrier}
-        for key, names in (("speeds", list(self.speeds)), ("shafts", [name for shaft in self.shafts for name in shaft])):
-            unknown = [name for name in names if name not in known]
-            if unknown:
-                raise ValueError(tell("{key} has {unknown}; here are {known}").format(
-                    key=key, unknown=", ".join(unknown), known=", ".join(sorted(known))))
-            if len(set(names)) < len(names):
-                raise ValueError(tell("{key}: a wheel or carrier stands there twice").format(key=key))
-        return self
+    rules = (
+        (marked("expected teeth of the wheels {wheels}, not of {teeth}"),
+         lambda train: train.wheels != {*train.teeth} and {
+             "wheels": ", ".join(sorted(train.wheels)), "teeth": ", ".join(sorted(train.teeth))}),
+        *_members_once("speeds", lambda train: [*train.speeds]),
+        *_members_once("shafts", lambda train: [name for shaft in train.shafts for name in shaft]),
+    )
+
+    @property
+    def wheels(self) -> set[str]:
+        """Wheels that mesh."""
+        return {name for m in self.mesh for name in (m.sun or m.ring, m.planet) if name}
+
+    @property
+    def members(self) -> set[str]:
+        """These and the carriers."""
+        return self.wheels | {m.carrier for m in self.mesh if m.carrier}
 
 
-class CamTable(Table):
+class CamTable(RuledTable):
     """``[cam]``: a disc cam and its follower.
 
     Which keys belong to which follower: :data:`tmm_sheets.task.cam_table.FOLLOWER_KEYS`.
@@ -954,15 +949,13 @@ class CamTable(Table):
     def _phases_of_the_displacements(cls, data: Any) -> Any:
         return cam_table.filled(data)
 
-    @model_validator(mode="after")
-    def _phases_fit(self) -> Self:
-        if self.rise <= 0 or self.fall <= 0:
-            raise ValueError(tell("expected a rise and a fall greater than 0 deg"))
-        if min(self.rise, self.fall) < units.parse("0.1 deg", units.ANGLE):
-            raise ValueError(tell("expected a rise and a fall of 0.1 deg or more"))
-        if self.rise + self.upper_dwell + self.fall > units.parse("360.000001 deg", units.ANGLE):
-            raise ValueError(tell("expected rise, upper_dwell and fall of 360 deg together or less"))
-        return self
+    rules = (
+        (marked("expected a rise and a fall greater than 0 deg"), lambda cam: cam.rise <= 0 or cam.fall <= 0),
+        (marked("expected a rise and a fall of 0.1 deg or more"),
+         lambda cam: min(cam.rise, cam.fall) < units.parse("0.1 deg", units.ANGLE)),
+        (marked("expected rise, upper_dwell and fall of 360 deg together or less"),
+         lambda cam: cam.rise + cam.upper_dwell + cam.fall > units.parse("360.000001 deg", units.ANGLE)),
+    )
 
     def place(self, key: str) -> str:
         """The key of the file in which the number of a key stands."""

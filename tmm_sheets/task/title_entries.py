@@ -34,8 +34,6 @@ PAPER = ("format", "orientation")
 """Keys of ``[paper]``."""
 FILE = "tmm-sheets.toml"
 """Name of a settings file."""
-LARGEST = 1_000_000
-"""Bytes of the largest settings file that is read."""
 NOBODY, BLANK = "Кафедра ТММ", "___"
 """What shipped projects say where something is to be filled in: the department, and part of any such text."""
 
@@ -165,7 +163,7 @@ def of_file(path: Path) -> dict[str, TitleEntry]:
     """
     file = str(path)
     try:
-        _, data, lines = toml_file.read(path, LARGEST)
+        _, data, lines = toml_file.read(path)
     except toml_file.NoSuchFile:
         return {}
     try:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator
 from decimal import Decimal
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -16,18 +15,22 @@ from typing import Any, NamedTuple
 from tmm_sheets import encodings, files, spelling
 from tmm_sheets.errors import BadInput, Problem, reason_of
 from tmm_sheets.task.messages import of_parser
-from tmm_sheets.task.toml_lines import KeyPath, TomlLines, check_keys, scan
+from tmm_sheets.task.toml_lines import KeyPath, TomlLines, check_keys, dotted, nodes, scan
 from tmm_sheets.words import tell
 
 DIGITS, BITS = 4301, 63
 """Digits of the shortest whole number that Python does not read; bits of the longest one that TOML has, beside its sign."""
 
 
+LARGEST = 1_000_000
+"""Bytes, and characters, of the largest file that is read: shipped project files have 8,000 at most."""
+
+
 class NoSuchFile(BadInput):
     """There is no file of this name."""
 
 
-def text_of(path: Path, most: int, hint: str = "") -> tuple[str, str]:
+def text_of(path: Path, hint: str = "", most: int = LARGEST) -> tuple[str, str]:
     """Text of a file of at most ``most`` bytes, and what is to be said of its encoding.
 
     Raises
@@ -53,9 +56,9 @@ def text_of(path: Path, most: int, hint: str = "") -> tuple[str, str]:
     return encodings.cleaned(text), note
 
 
-def read(path: Path, most: int = 1_000_000, hint: str = "") -> tuple[str, dict[str, Any], TomlLines]:
+def read(path: Path, hint: str = "") -> tuple[str, dict[str, Any], TomlLines]:
     """Text of a file, its tables and where its keys stand, as :func:`text_of` and :func:`parsed` give them."""
-    text, _ = text_of(path, most, hint)
+    text, _ = text_of(path, hint)
     return text, *parsed(text, str(path))
 
 
@@ -77,22 +80,10 @@ def parsed(text: str, file: str) -> tuple[dict[str, Any], TomlLines]:
     except ValueError:  # Python reads no whole number of more than 4300 digits
         line = next((n for n, row in enumerate(text.split("\n"), 1) if re.search(rf"[0-9_]{{{DIGITS}}}", row)), None)
         raise BadInput(Problem(tell("the number has too many digits"), file, line)) from None
-    long = [path for path, value in _values(data) if isinstance(value, int) and value.bit_length() > BITS]
+    long = [path for path, value in nodes(data) if isinstance(value, int) and value.bit_length() > BITS]
     if long:
         raise BadInput(problem(file, lines, path, tell("the number has too many digits")) for path in long)
     return data, lines
-
-
-def _values(data: dict[str, Any]) -> Iterator[tuple[KeyPath, Any]]:
-    """What stands in tables and lists, each with its path."""
-    pending: list[tuple[KeyPath, Any]] = [((), data)]
-    while pending:
-        path, value = pending.pop()
-        inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else None
-        if inner is None:
-            yield path, value
-        else:
-            pending += [((*path, key), one) for key, one in inner]
 
 
 def syntax(message: str, text: str, file: str) -> Problem:
@@ -115,12 +106,7 @@ def syntax(message: str, text: str, file: str) -> Problem:
 
 def problem(file: str, lines: TomlLines, path: KeyPath, message: str, hint: str = "") -> Problem:
     """A problem placed at a key of a file."""
-    return Problem(message, file, lines.line(path), called(path), hint)
-
-
-def called(path: KeyPath) -> str:
-    """A key as messages name it, lists counted from 1: ``group[1].length``."""
-    return "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in path).removeprefix(".")
+    return Problem(message, file, lines.line(path), dotted(path, 1), hint)
 
 
 # --- values without their quotes ---------------------------------------------------------------------------------------

@@ -9,23 +9,24 @@ from __future__ import annotations
 import re
 import tomllib
 from bisect import bisect_right
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 KeyPath = tuple[str | int, ...]
 Found = tuple[KeyPath, str, str]
 """What is wrong with a value: its key path, message, hint."""
 
-_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 DEEPEST = 16
 """So many keys and places in lists lead to a value at most."""
 _LONG_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){16}""")
-_BARE_VALUE = re.compile(r"[^,\]}\n#]+")
-_STRINGS = (
-    re.compile(r'"""(?:\\.|[^\\])*?"{3,5}', re.DOTALL),
-    re.compile(r"'''.*?'{3,5}", re.DOTALL),
-    re.compile(r'"(?:\\.|[^"\\\n])*"'),
-    re.compile(r"'[^'\n]*'"),
-)
+_OF_A_LINE = r'"(?:\\.|[^"\\\n])*"' r"|'[^'\n]*'"
+_OF_LINES = r'"""(?:\\.|[^\\])*?"{3,5}' r"|'''.*?'{3,5}"
+_KEY = re.compile(rf"[ \t]*({_OF_A_LINE}|[A-Za-z0-9_-]+)[ \t]*(\.?)")
+_VALUE = re.compile(rf"(?s:{_OF_LINES})|{_OF_A_LINE}|[^,\]}}\n#]*")
+_EQUALS = re.compile(r"=[ \t]*")
+_COMMENT = re.compile(r"#([^\n]*)")
+_SPACE = re.compile(rf"(?:[ \t\n]|{_COMMENT.pattern})*")
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,18 @@ class TomlLines:
     def comment(self, path: KeyPath) -> str:
         """Comment behind the value of a key path, without its sign; empty when there is none."""
         return self.comments.get(self.ends.get(path, 0), "")
+
+
+def nodes(data: Any, path: KeyPath = ()) -> Iterator[tuple[KeyPath, Any]]:
+    """Everything that is in tables and lists, tables and lists too, each with its path, the outer before the inner."""
+    for key, value in data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ():
+        yield (*path, key), value
+        yield from nodes(value, (*path, key))
+
+
+def dotted(path: Iterable[str | int], first: int = 0) -> str:
+    """A key path as text, places in lists counted from ``first``: ``group[1].length``."""
+    return "".join([f"[{part + first}]" if isinstance(part, int) else f".{part}" for part in path]).removeprefix(".")
 
 
 def check_keys(text: str) -> None:
@@ -80,31 +93,32 @@ class _Scanner:
         self.tables: dict[KeyPath, int] = {}
 
     def run(self) -> TomlLines:
-        prefix: KeyPath = ()
-        while True:
-            self.skip()
-            if self.pos >= len(self.text):
-                return self.found
+        table: KeyPath = ()
+        while self.space() < len(self.text):
             if self.text[self.pos] == "[":
-                prefix = self.header()
+                table = self.header()
             else:
-                self.pair(prefix)
+                self.pair(table)
+        return self.found
 
-    def here(self) -> int:
-        return bisect_right(self.starts, self.pos)
+    def line(self, at: int | None = None) -> int:
+        """Line of a place, of the next sign unless told."""
+        return bisect_right(self.starts, self.pos if at is None else at)
 
-    def skip(self, signs: str = " \t\n") -> None:
-        """Skip blanks and, when line ends are among them, comments, which are kept by their line."""
-        while self.pos < len(self.text):
-            if self.text[self.pos] in signs:
-                self.pos += 1
-            elif self.text[self.pos] == "#" and "\n" in signs:
-                end = self.text.find("\n", self.pos)
-                end = len(self.text) if end < 0 else end
-                self.found.comments[self.here()] = self.text[self.pos + 1 : end].strip()
-                self.pos = end
-            else:
-                return
+    def take(self, pattern: re.Pattern[str]) -> re.Match[str]:
+        """Pass over what comes next."""
+        match = pattern.match(self.text, self.pos)
+        if match is None:
+            raise ValueError(f"line {self.line()}: not valid TOML")
+        self.pos = match.end()
+        return match
+
+    def space(self) -> int:
+        """Pass over blanks, ends of lines and comments, which are kept by their line; returns the place of what comes next."""
+        start = self.pos
+        for comment in _COMMENT.finditer(self.text, start, self.take(_SPACE).end()):
+            self.found.comments[self.line(comment.start())] = comment[1].strip()
+        return self.pos
 
     def keep(self, path: KeyPath, line: int) -> None:
         if len(path) > DEEPEST:
@@ -113,91 +127,59 @@ class _Scanner:
             self.found.lines.setdefault(path[:length], line)
 
     def header(self) -> KeyPath:
-        line = self.here()
-        array = self.text.startswith("[[", self.pos)
-        self.pos += 2 if array else 1
-        keys = self.keys()
-        self.pos += 2 if array else 1
-        path = self.resolved(keys[:-1]) + keys[-1:]
-        if array:
+        """Name of a table, with its place where it is one of several, and those of the tables that it is in."""
+        line, brackets = self.line(), 2 if self.text.startswith("[[", self.pos) else 1
+        self.pos += brackets
+        *above, last = self.keys()
+        self.pos += brackets
+        path: KeyPath = ()
+        for key in above:
+            path = self.placed((*path, key))
+        path = (*path, last)
+        if brackets == 2:
             self.tables[path] = self.tables.get(path, -1) + 1
-            self.keep(path, line)
-            path = (*path, self.tables[path])
-        elif path in self.tables:
-            path = (*path, self.tables[path])
+        self.keep(path, line)
+        path = self.placed(path)
         self.keep(path, line)
         return path
 
-    def resolved(self, keys: KeyPath) -> KeyPath:
-        """Key path of a header with the indices of the arrays of tables it passes through."""
-        path: KeyPath = ()
-        for key in keys:
-            path = (*path, key)
-            if path in self.tables:
-                path = (*path, self.tables[path])
-        return path
+    def placed(self, path: KeyPath) -> KeyPath:
+        """A key path with the place of the last table of that name, if there are several."""
+        return (*path, self.tables[path]) if path in self.tables else path
 
     def keys(self) -> KeyPath:
         found: list[str | int] = []
-        while True:
-            self.skip(" \t")
-            if self.text[self.pos] in "\"'":
-                quoted = self.string()
-                found.append(str(tomllib.loads(f"k = {quoted}")["k"]))
-            else:
-                match = _BARE_KEY.match(self.text, self.pos)
-                if match is None:
-                    raise ValueError(f"line {self.here()}: not a key of valid TOML")
-                found.append(match.group())
-                self.pos = match.end()
-            self.skip(" \t")
-            if self.text[self.pos] != ".":
-                return tuple(found)
-            self.pos += 1
+        more = "."
+        while more:
+            key, more = self.take(_KEY).groups()
+            found.append(tomllib.loads(f"k = {key}")["k"] if key[0] in "\"'" else key)
+        return tuple(found)
 
-    def pair(self, prefix: KeyPath) -> None:
-        line = self.here()
-        path = prefix + self.keys()
-        self.pos += 1  # the sign of equality
-        self.skip(" \t")
+    def pair(self, table: KeyPath) -> None:
+        line = self.line()
+        path = table + self.keys()
         self.keep(path, line)
+        self.take(_EQUALS)
         self.value(path)
-        self.found.ends[path] = self.here()
 
     def value(self, path: KeyPath) -> None:
-        sign = self.text[self.pos]
-        if sign == "[":
-            self.members(path, "]")
-        elif sign == "{":
-            self.members(path, "}")
-        elif sign in "\"'":
-            self.string()
+        close = {"[": "]", "{": "}"}.get(self.text[self.pos])
+        if close:
+            self.members(path, close)
         else:
-            match = _BARE_VALUE.match(self.text, self.pos)
-            self.pos = match.end() if match else self.pos + 1
+            self.take(_VALUE)
+        self.found.ends[path] = self.line()
 
     def members(self, path: KeyPath, close: str) -> None:
         self.pos += 1
         index = 0
-        while True:
-            self.skip()
-            if self.text[self.pos] == close:
-                self.pos += 1
-                return
+        while self.text[self.space()] != close:
             if self.text[self.pos] == ",":
                 self.pos += 1
             elif close == "}":
                 self.pair(path)
             else:
-                self.keep((*path, index), self.here())
+                self.keep((*path, index), self.line())
                 self.value((*path, index))
-                self.found.ends[*path, index] = self.here()
                 index += 1
-
-    def string(self) -> str:
-        for pattern in _STRINGS:
-            match = pattern.match(self.text, self.pos)
-            if match:
-                self.pos = match.end()
-                return match.group()
-        raise ValueError(f"line {self.here()}: not a string of valid TOML")
+        self.pos += 1

@@ -242,6 +242,21 @@ class Variant(Table):
                                                hint=tell("leave sheets out: then the file's tables tell which there are"))))
         return self.sheets
 
+    def chosen(self, sheets: Iterable[int]) -> list[int]:
+        """Numbers of the sheets asked for, all of them for none.
+
+        Raises
+        ------
+        BadInput
+            when one is not there.
+        """
+        count, wanted = len(self.drawable()), [*sheets]
+        for n in wanted:
+            if not 1 <= n <= count:
+                refusal = tell("no sheet {n}: {project} has sheets 1 to {count}")
+                raise BadInput(refusal.format(n=n, project=self.called, count=count),
+                               hint=", ".join(f"{i} {name}" for i, name in enumerate(self.sheets, 1)))  # fmt: skip
+        return sorted({*wanted}) or list(range(1, count + 1))
     @property
     def _called_for(self) -> tuple[str, ...]:
         gears = "_".join(name for name in ("gear", "reducer") if getattr(self, name) is not None)
@@ -296,8 +311,6 @@ class Variant(Table):
 _TOLD = frozenset({*Variant.model_fields, "text", "data"})
 _FOLLOW = frozenset({"sheets", "parts", "loaded"})
 _SECTIONS = ("flywheel", "gear", "reducer", "train", "cam")
-LARGEST = 1_000_000
-"""Bytes, and characters, of the largest project file that is read: the shipped ones have 8,000 at most."""
 ROOM_OF_GROUPS = 4
 """So many Assur groups have no room on one sheet beside the kinematics: their forces get a sheet of their own."""
 
@@ -313,7 +326,7 @@ def read(path: Path | str) -> Variant:
         with every problem of the file: line, field, what was expected, what to try.
     """
     hint = tell("{command} shows the shipped projects").format(command=quoting.command("list"))
-    text, note = toml_file.text_of(Path(path), LARGEST, hint)
+    text, note = toml_file.text_of(Path(path), hint)
     return parse(text, str(path), (note,) if note else ())
 
 
@@ -325,15 +338,18 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
     BadInput
         naming file, line and key of everything that is wrong.
     """
-    if len(text) > LARGEST:
+    if len(text) > toml_file.LARGEST:
         raise BadInput(Problem(tell("{n} characters are no project file: expected {most} at most").format(
-            n=len(text), most=LARGEST), file))
+            n=len(text), most=toml_file.LARGEST), file))
     readable, bare = quoted(text)
     try:
         data, lines = toml_file.parsed(readable, file)
     except BadInput as e:
         raise BadInput([*(_of_bare(one, file) for one in bare.values()), *e.problems]) from None
-    data, found = _with_synthesis(_with_cycle(freed(data)), file)
+    data = freed(data)
+    if "crank" in data:  # a turn is divided unless the file says how; the x axis itself is often a dead position
+        data.setdefault("cycle", {"start": "0 deg", "positions": 12, "force_position": "1"})
+    data, found = _with_synthesis(data, file)
     problems = [toml_file.problem(file, lines, *one) for one in found]
     variant = None
     try:
@@ -360,13 +376,6 @@ def parse(text: str, file: str, warnings: tuple[str, ...] = (), misprints: tuple
     variant._warnings = warnings
     variant._misprints = misprints
     return variant
-
-
-def _with_cycle(data: dict[str, Any]) -> dict[str, Any]:
-    """A mechanism whose file numbers no positions has twelve, from the x axis on; the axis itself is often a dead position."""
-    if "crank" not in data or "cycle" in data:
-        return data
-    return data | {"cycle": {"start": "0 deg", "positions": 12, "force_position": "1"}}
 
 
 def _with_synthesis(data: dict[str, Any], file: str) -> tuple[dict[str, Any], list[tuple[KeyPath, str, str]]]:

@@ -147,7 +147,7 @@ def test_ciphers_with_more_than_digits(folder):
     assert [(c.text, c.digits) for c in both] == [("25-Т-27", {"a": "2", "b": "7"})] * 2
     assert next(family.every("pump")) == "department/pump@00-Т-00"
     with pytest.raises(BadInput, match="needs a cipher"):
-        family.text("department/pump")
+        family.read("department/pump")
 
 
 def test_a_table_in_toml(tmp_path):

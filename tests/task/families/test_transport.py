@@ -83,7 +83,7 @@ def test_what_is_no_cipher_is_told(text):
 def test_both_alphabets_give_one_project():
     for a, b in (("diesel@01-Т-27", "diesel@01-T-27"), ("crusher@12-СДМ-1908", "crusher@12-CДM-1908"),
                  ("press@05-ЭПС-123", "press@05-EPS-123")):  # fmt: skip
-        assert TRANSPORT.text(f"transport/{a}") == TRANSPORT.text(f"transport/{b}")
+        assert TRANSPORT.read(f"transport/{a}").text == TRANSPORT.read(f"transport/{b}").text
 
 
 def test_names_are_answered():
@@ -195,7 +195,7 @@ def test_a_machine_that_does_not_assemble_is_told(machine, key, factor):
     n = numbers(machine, (0, 0, 0))
     assert turned(machine, n).max() < 0
     assert turned(machine, n | {key: factor * n[key]}).max() > 0
-    text, *_ = TRANSPORT.text(f"transport/{machine}@00-{SPECIALITY[machine]}-000")
+    text = TRANSPORT.read(f"transport/{machine}@00-{SPECIALITY[machine]}-000").text
     spoiled = re.sub(rf"\b{n[key]:g}(\.0)?(?= m\b.*{key}:)", f"{factor * n[key]:g}", text)
     assert spoiled != text
     with pytest.raises(CannotBuild, match="does not assemble"):
@@ -204,7 +204,7 @@ def test_a_machine_that_does_not_assemble_is_told(machine, key, factor):
 
 def crosses(code):
     """Whether it is told of a press that its toggle goes through the straight line."""
-    *_, warnings = TRANSPORT.text(f"transport/press@01-ЭПС-{''.join(map(str, code))}")
+    warnings = TRANSPORT.read(f"transport/press@01-ЭПС-{''.join(map(str, code))}").warnings
     return any("two lowest positions" in w for w in warnings)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from math import pi
 from typing import Any
 
@@ -45,6 +45,17 @@ class Integrand:
         with mp.workdps(DIGITS):
             return max(float(abs(self.integral(mp.mpf(x)))) for x in (*np.linspace(0, TURN, 721).tolist(), *self.borders))
 
+    def chords(self, borders: tuple[float, ...], n: int) -> tuple[Floats, Floats]:
+        """Ends of ``n`` chords and of those at borders, and the integral that is constructed there."""
+        edges = _edges(n, borders)
+        return edges, _chords(self.f, edges)
+
+    def error(self, n: int, found: tuple[Floats, Floats]) -> float:
+        """Largest error of what :meth:`chords` gives, as a share of the integral's size."""
+        edges, values = (part.tolist() for part in found)
+        with mp.workdps(DIGITS):
+            return max(float(abs(v - self.integral(mp.mpf(x)))) for x, v in zip(edges, values, strict=True)) / self.size
+
 
 ON, OFF, PEAK, WIDTH = 0.31, 3.44, 2.05, 0.4
 
@@ -80,19 +91,7 @@ def _integration(bench: Bench) -> None:
     ways = [(SMOOTH, "equal intervals", ()), (JUMPS, "equal intervals", ()), (JUMPS, "jumps as borders", JUMPS.borders),
             (PEAKED, "equal intervals", ()), (PEAKED, "peak as border", PEAKED.borders)]
     for g, way, borders in ways:
-
-        def error(found: tuple[Floats, Floats], g: Integrand = g) -> float:
-            edges, values = (part.tolist() for part in found)
-            with mp.workdps(DIGITS):
-                return max(float(abs(v - g.integral(mp.mpf(x)))) for x, v in zip(edges, values, strict=True)) / g.size
-
-        for n in bench.upto(CHORDS, 24):
-
-            def run(g: Integrand = g, borders: tuple[float, ...] = borders, n: int = n) -> tuple[Floats, Floats]:
-                edges = _edges(n, borders)
-                return edges, _chords(g.f, edges)
-
-            bench.row(("graphical integration", f"{g.name}, {way}", "chords"), n, run, error)
+        bench.rows(("graphical integration", f"{g.name}, {way}", "chords"), CHORDS, 24, partial(g.chords, borders), g.error)
 
 
 # --- excess work of the moment 1/2 - sin^2: the sine of twice the angle over 4, so the span is exactly 1/2 -------------
@@ -122,8 +121,7 @@ def _excess(bench: Bench) -> None:
     ways = (("extremes among the ends of the chords", at_nodes), ("smooth curve, extremes between", on_curve),
             ("limit: 4 Gauss points for each interval", converged))
     for name, way in ways:
-        for n in bench.upto(CHORDS, 24):
-            bench.row(("excess work", name, "chords"), n, partial(way, n), lambda found: abs(found - 0.5) / 0.5)
+        bench.rows(("excess work", name, "chords"), CHORDS, 24, way, lambda n, found: abs(found - 0.5) / 0.5)
 
 
 # --- flywheel of the shaper: constant force on the working stroke, everything in closed form --------------------------
@@ -185,6 +183,7 @@ _FORCE = 2800.0
 """The shaper's cutting force, N."""
 
 
+@cache
 def _of(n: int) -> Project:
     """The shaper with that many positions, a multiple of five, three fifths of them on the working stroke."""
     shipped = catalogue.read("lugansk/shaper")
@@ -193,34 +192,24 @@ def _of(n: int) -> Project:
     return Project(shipped.model_copy(update={"cycle": cycle}))
 
 
-def _wheel(method: type[Flywheel], p: Project) -> Flywheel:
+def _inertia(method: type[Flywheel], name: str, n: int) -> float:
+    """What a method comes to with that many positions: ``J_first``, or ``J_first_converged`` of its limit."""
+    p = _of(n)
     assert p.variant.flywheel is not None
-    return method(p.reduced, p.variant.flywheel)
-
-
-def _drawn(method: type[Flywheel], p: Project) -> float:
-    return _wheel(method, p).J_first
-
-
-def _converged(method: type[Flywheel], p: Project) -> float:
-    return _wheel(method, p).J_first_converged
+    return float(getattr(method(p.reduced, p.variant.flywheel), name))
 
 
 def _flywheel(bench: Bench) -> None:
     methods: tuple[tuple[str, type[Flywheel]], ...] = (("Wittenbauer", Wittenbauer), ("Mertsalov", Mertsalov))
-    goals = {name: _Shaper(_of(10)).first(name == "Mertsalov") for name, _ in methods}
-    for n in bench.upto(POSITIONS, 20):
-        p = _of(n)
-        for name, method in methods:
+    for name, method in methods:
+        goal = _Shaper(_of(10)).first(name == "Mertsalov")
 
-            def error(found: float, name: str = name) -> float:
-                return float(abs((found - goals[name]) / goals[name]))
+        def error(n: int, found: float, goal: Any = goal) -> float:
+            return float(abs((found - goal) / goal))
 
-            bench.row(("flywheel", f"{name}, construction", "positions"), n,
-                      partial(_drawn, method, p), error)
-            if n == POSITIONS[0]:
-                bench.row(("flywheel", f"{name}, limit", "positions"), n,
-                          partial(_converged, method, p), error)
+        drawn, converged = (partial(_inertia, method, key) for key in ("J_first", "J_first_converged"))
+        bench.rows(("flywheel", f"{name}, construction", "positions"), POSITIONS, 20, drawn, error)
+        bench.rows(("flywheel", f"{name}, limit", "positions"), POSITIONS[:1], 20, converged, error)
 
 
 def rows(bench: Bench) -> None:

@@ -7,8 +7,8 @@ from importlib import import_module
 
 from tmm_sheets import catalogue
 from tmm_sheets.drawing.marks import Drawing
+from tmm_sheets.files import ENDINGS
 from tmm_sheets.lab.bench.records import Bench
-from tmm_sheets.output.building import BACKENDS
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.sheet import compose
 
@@ -16,10 +16,6 @@ DPI = 100
 FEW = 100
 """Marks of a sheet in a quick run."""
 NAMES = {"png": f"png, {DPI} dots per inch"}
-
-
-def _size(data: bytes) -> str:
-    return f"{len(data) / 1000:.0f} kB"
 
 
 def rows(bench: Bench) -> None:
@@ -32,9 +28,9 @@ def rows(bench: Bench) -> None:
         drawings.append(Drawing(drawing.width, drawing.height, drawing.title, drawing.marks[:FEW]) if bench.quick else drawing)
     drawings.sort(key=lambda d: len(d.marks))
     ends = drawings if len(drawings) == 1 else [drawings[0], drawings[-1]]
-    for form, module in BACKENDS.items():
+    for form in ENDINGS:
         settings = {"dpi": DPI} if form == "png" else {}
-        render = partial(import_module(module).render, **settings)
+        render = partial(import_module(f"tmm_sheets.backends.{form}").render, **settings)
         for drawing in ends:
             bench.row(("files", NAMES.get(form, form), "marks"), len(drawing.marks),
-                      partial(render, drawing), None, _size)
+                      partial(render, drawing), None, lambda data: f"{len(data) / 1000:.0f} kB")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cached_property, partial
 from math import pi
 from typing import Any
@@ -56,24 +56,21 @@ def shaper() -> Mechanism:
 MECHANISMS: tuple[tuple[str, Callable[[], Mechanism]], ...] = (
     ("four-bar", four_bar), ("slider-crank", slider_crank), ("six-bar", shaper),
 )
-PLANS = ("positions", "velocities", "accelerations", "forces")
-
+QUANTITIES = {"positions": {"points": ("points", "z")}, "velocities": {"points": ("points", "v"), "links": ("omega", "omega")},
+              "accelerations": {"points": ("points", "a"), "links": ("epsilon", "epsilon")}}
+"""What the plans give, by kinds of comparable size: its name in the plan, and in the truth."""
+PLANS = (*QUANTITIES, "forces")
 Values = dict[str, Any]
 
 
 def _values(study: Study, plan: str) -> dict[str, Values]:
     """What a plan gives, by kinds of comparable size."""
-    if plan == "positions":
-        return {"points": {k: s.value for k, s in study.positions.points.items()}}
-    if plan == "velocities":
-        v = study.velocities
-        return {"points": {k: s.value for k, s in v.points.items()}, "links": {k: s.value for k, s in v.omega.items()}}
-    if plan == "accelerations":
-        a = study.accelerations
-        return {"points": {k: s.value for k, s in a.points.items()}, "links": {k: s.value for k, s in a.epsilon.items()}}
-    balancing = study.forces.balancing
-    assert balancing is not None  # every linkage here is driven by a moment
-    return {"reactions": {k: s.value for k, s in study.forces.reactions.items()}, "balancing": {"": balancing.value}}
+    if plan == "forces":
+        balancing = study.forces.balancing
+        assert balancing is not None  # every linkage here is driven by a moment
+        return {"reactions": {k: s.value for k, s in study.forces.reactions.items()}, "balancing": {"": balancing.value}}
+    made = getattr(study, plan)
+    return {kind: {k: s.value for k, s in getattr(made, name).items()} for kind, (name, _) in QUANTITIES[plan].items()}
 
 
 def study_of(m: Mechanism, turned: npt.NDArray[np.float64]) -> Study:
@@ -81,15 +78,11 @@ def study_of(m: Mechanism, turned: npt.NDArray[np.float64]) -> Study:
     return Study(m, even_cycle(m, 0.0, 1), turned, ("",), GRAVITY, tuple, None)
 
 
-def _blocks(n: int) -> Iterator[tuple[int, npt.NDArray[np.float64]]]:
-    for start in range(0, n, BLOCK):
-        yield start, np.asarray(2 * pi / n * np.arange(start, min(start + BLOCK, n)), dtype=np.float64)
-
-
 def _run(m: Mechanism, n: int, plan: str, keep: npt.NDArray[np.int64]) -> dict[tuple[str, str], npt.NDArray[Any]]:
     """A plan for ``n`` positions; the results at the positions in ``keep`` are returned, by kind and name."""
     found: dict[tuple[str, str], list[Any]] = {}
-    for start, turned in _blocks(n):
+    for start in range(0, n, BLOCK):
+        turned = np.asarray(2 * pi / n * np.arange(start, min(start + BLOCK, n)), dtype=np.float64)
         here = keep[(keep >= start) & (keep < start + len(turned))] - start
         for kind, values in _values(study_of(m, turned), plan).items():
             for name, value in values.items():
@@ -114,12 +107,7 @@ class _Truth:
         if plan == "forces":
             forces, moment = truth.reactions(self.mechanism, moved, GRAVITY)
             return {"reactions": forces, "balancing": {"": moment}}
-        if plan == "positions":
-            return {"points": moved.z}
-        if plan == "velocities":
-            return {"points": moved.v, "links": moved.omega}
-        return {"points": moved.a, "links": moved.epsilon}
-
+        return {kind: getattr(moved, name) for kind, (_, name) in QUANTITIES[plan].items()}
     def error(self, plan: str, found: dict[tuple[str, str], Any]) -> float:
         """Largest error of any kind, relative to the largest value of that kind."""
         off: dict[str, float] = {}

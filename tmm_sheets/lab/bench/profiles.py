@@ -105,10 +105,6 @@ def _shaper_cam(parts: int = 8) -> RollerCam:
     return found
 
 
-def _least_radius(parts: int) -> float:
-    return _shaper_cam(parts).zone.r0
-
-
 def _at_points(c: RollerCam, n: int) -> float:
     """r0 with the ruler put through numbered points of the curve instead of touching it between them."""
     x = np.linspace(0, 1, n + 1)
@@ -129,40 +125,47 @@ def _cut_by_discs(c: RollerCam, n: int) -> Any:
     return shapely.difference(_polygon(centres), shapely.union_all(discs))
 
 
+POSITIONS = (36, 72, 180, 360, 720, 1440, 2880)
+"""Angles of a turn of the cam."""
+
+
 def _cams(bench: Bench) -> None:
     c = _shaper_cam()
     true = SineCam(c)
     r0 = true.r0()
-    for parts in (4, 6, 8, 10, 12):
-        bench.row(("cam", "r0 by tangents", "parts of a phase"), parts, partial(_least_radius, parts),
-                  lambda found: float(abs(found - r0) / r0))
-    for parts in bench.upto((8, 16, 32, 64, 128, 256, 512), 32):
-        bench.row(("cam", "r0, ruler through numbered points", "parts of a phase"), parts,
-                  partial(_at_points, c, parts), lambda found: float(abs(found - r0) / r0))
-    counts = bench.upto((36, 72, 180, 360, 720, 1440, 2880), 72)
-    for n in counts:
-        phi = 2 * pi / n * np.arange(n)
-        some = np.unique(np.linspace(0, n - 2, CHECKED).astype(int))
 
-        def points(phi: Any = phi) -> Any:
-            return c.at(phi).plan["F"].value
+    def off(parts: int, found: float) -> float:
+        return float(abs(found - r0) / r0)
 
-        def at_points(found: Any, phi: Any = phi, some: Any = some) -> float:
-            with mp.workdps(DIGITS):
-                return _away(found[some], [true.profile(mp.mpf(x)) for x in phi[some].tolist()]) * 1e3
+    bench.rows(("cam", "r0 by tangents", "parts of a phase"), (4, 6, 8, 10, 12), 12,
+               lambda parts: _shaper_cam(parts).zone.r0, off)
+    bench.rows(("cam", "r0, ruler through numbered points", "parts of a phase"), (8, 16, 32, 64, 128, 256, 512), 32,
+               partial(_at_points, c), off)
 
-        def between(found: Any, phi: Any = phi, some: Any = some) -> float:
-            with mp.workdps(DIGITS):
-                middles = [complex(true.profile(mp.mpf(x))) for x in ((phi[some] + phi[some + 1]) / 2).tolist()]
-            return max(_from_chord(m, complex(found[k]), complex(found[k + 1])) for m, k in zip(middles, some, strict=True)) * 1e3
+    def points(n: int) -> Any:
+        return c.at(np.asarray(2 * pi / n * np.arange(n), dtype=np.float64)).plan["F"].value
+    def some(n: int, beside: float) -> tuple[Any, list[Any]]:
+        """Numbers of some positions, and the true points there, or that share of a position beside them."""
+        k = np.unique(np.linspace(0, n - 2, CHECKED).astype(int))
+        return k, [true.profile(mp.mpf(x)) for x in (2 * pi / n * (k + beside)).tolist()]
 
-        bench.row(("cam", "profile, points (mm)", "positions"), n, points, at_points)
-        bench.row(("cam", "profile, chords between the points (mm)", "positions"), n, points, between)
+    def at_points(n: int, found: Any) -> float:
+        with mp.workdps(DIGITS):
+            k, goals = some(n, 0.0)
+            return _away(found[k], goals) * 1e3
+
+    def between(n: int, found: Any) -> float:
+        with mp.workdps(DIGITS):
+            k, goals = some(n, 0.5)
+        chords = zip(map(complex, goals), found[k].tolist(), found[k + 1].tolist(), strict=True)
+        return 1e3 * max(_from_chord(goal, a, b) for goal, a, b in chords)
+
+    bench.rows(("cam", "profile, points (mm)", "positions"), POSITIONS, 72, points, at_points)
+    bench.rows(("cam", "profile, chords between the points (mm)", "positions"), POSITIONS, 72, points, between)
     with mp.workdps(DIGITS):
         goals = np.array([complex(true.profile(2 * mp.pi * (k + mp.mpf(1) / 3) / 60)) for k in range(60)]) * 1e3
-    for n in (m for m in counts if m <= 1440):
-        bench.row(("cam", "envelope of roller discs cut out (shapely, mm)", "positions"), n,
-                  partial(_cut_by_discs, c, n), lambda shape: _edge_of(shape, goals))
+    bench.rows(("cam", "envelope of roller discs cut out (shapely, mm)", "positions"), POSITIONS[:-1], 72,
+               partial(_cut_by_discs, c), lambda n, shape: _edge_of(shape, goals))
 
 
 # --- involute by unrolling ----------------------------------------------------------------------------------------------
@@ -216,8 +219,7 @@ def _involutes(bench: Bench) -> None:
         ("points (mm)", unrolled, off), ("chords between the points (mm)", unrolled, between),
         ("arcs stepped off as chords (mm)", stepped, off))
     for name, way, error in ways:
-        for parts in bench.upto((2, 4, 8, 16, 32, 64, 128), 8):
-            bench.row(("involute by unrolling", name, "unrolling steps"), parts, partial(way, parts), partial(error, parts))
+        bench.rows(("involute by unrolling", name, "unrolling steps"), (2, 4, 8, 16, 32, 64, 128), 8, way, error)
 
 
 # --- tooth cut by a rack --------------------------------------------------------------------------------------------------
@@ -254,19 +256,18 @@ def _racks(bench: Bench) -> None:
         low = mp.sqrt(mp.mpf(RACK.rb) ** 2 + mp.mpf(RACK.involute_from()) ** 2)
         goals = [_flank_at(low + (TIP - low) * mp.mpf(k + 1) / 41) for k in range(40)]
     inside = np.array([complex(g) for g in goals]) * turned * 1e3
-    for n in bench.upto((20, 60, 120, 300, 600), 60):
+    counts = (20, 60, 120, 300, 600)
 
-        def touched(n: int = n) -> Complex:
-            return flank(RACK, TIP, n, inf)[1:]
+    def touched(n: int) -> Complex:
+        return flank(RACK, TIP, n, inf)[1:]
 
-        def off(found: Complex) -> float:
-            with mp.workdps(DIGITS):
-                radii = [abs(mp.mpc(p)) for p in found.tolist()]
-                return _away(found, [_flank_at(r) for r in radii]) * 1e3
+    def off(n: int, found: Complex) -> float:
+        with mp.workdps(DIGITS):
+            return _away(found, [_flank_at(abs(mp.mpc(p))) for p in found.tolist()]) * 1e3
 
-        bench.row(("rack generation", "points of contact (mm)", "rack positions"), n, touched, off)
-        bench.row(("rack generation", "positions cut out (shapely, mm)", "rack positions"), n, partial(_cut_by_rack, n),
-                  lambda shape: _edge_of(shape, inside))
+    bench.rows(("rack generation", "points of contact (mm)", "rack positions"), counts, 60, touched, off)
+    bench.rows(("rack generation", "positions cut out (shapely, mm)", "rack positions"), counts, 60, _cut_by_rack,
+               lambda n, shape: _edge_of(shape, inside))
 
 
 def rows(bench: Bench) -> None:
@@ -320,10 +321,6 @@ def _best(most: int) -> tuple[int, Fraction]:
     return best
 
 
-def _search(most: int) -> list[ToothSet]:
-    return search(_data(most))
-
-
 def _tooth_searches(bench: Bench) -> None:
     """The height of the chosen set against the least of its tier of deviation.
 
@@ -340,4 +337,4 @@ def _tooth_searches(bench: Bench) -> None:
             return abs(found[0].height - float(goal[1])) / float(goal[1]) if tier == goal[0] else 1.0
 
         note = "" if most <= TRIED else f"compared with the best of {TRIED} teeth: larger wheels make a larger reducer"
-        bench.row(("reducer", "search of tooth numbers", "teeth at most"), most, partial(_search, most), error, note)
+        bench.row(("reducer", "search of tooth numbers", "teeth at most"), most, partial(search, _data(most)), error, note)

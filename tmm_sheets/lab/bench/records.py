@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import gc
 import json
 import platform
 import re
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
+from functools import partial
 from importlib import import_module
 from io import BytesIO
 from math import isfinite
-from time import perf_counter
+from timeit import Timer
 from typing import Any, TypeVar
 
 from tmm_sheets import quoting
@@ -22,8 +21,8 @@ from tmm_sheets.words import tell
 
 Found = TypeVar("Found")
 SCHEMA = 1
-
-
+PATIENCE = 0.15
+"""Seconds after which no further repetition begins."""
 @dataclass(frozen=True)
 class BenchRecord:
     """One run.
@@ -59,11 +58,6 @@ class Bench:
     say: Callable[[str], None] = lambda what: None
     records: list[BenchRecord] = field(default_factory=list)
 
-    @property
-    def patience(self) -> float:
-        """Seconds after which no further repetition begins."""
-        return 0.0 if self.quick else 0.15
-
     def upto(self, values: Iterable[int], most: int) -> list[int]:
         """Values of a parameter, in a quick run only those up to ``most``."""
         return [v for v in values if not self.quick or v <= most]
@@ -72,6 +66,12 @@ class Bench:
             note: str | Callable[[Found], str] = "") -> None:
         """Measure a run and keep its record; see :meth:`record`."""
         self.records.append(self.record(what, value, run, error, note))
+
+    def rows(self, what: tuple[str, str, str], values: Iterable[int], most: int, run: Callable[[int], Found],
+             error: Callable[[int, Found], float]) -> None:
+        """Measure runs of the values of a parameter, in a quick run of those up to ``most``."""
+        for value in self.upto(values, most):
+            self.row(what, value, partial(run, value), partial(error, value))
 
     def record(self, what: tuple[str, str, str], value: float, run: Callable[[], Found], error: Callable[[Found], float] | None,
                note: str | Callable[[Found], str] = "") -> BenchRecord:
@@ -90,7 +90,7 @@ class Bench:
         """
         self.say(f"{what[0]}: {what[1]}, {value:g} {what[2]}")
         try:
-            seconds, found = fastest(run, self.patience)
+            seconds, found = fastest(run, 0.0 if self.quick else PATIENCE)
             off = None if error is None else float(error(found))
         except (CannotBuild, ArithmeticError, ValueError, MemoryError) as e:
             reason = str(e).splitlines()[0] if str(e) else type(e).__name__
@@ -100,34 +100,25 @@ class Bench:
         return BenchRecord(*what, value, off, seconds, note if isinstance(note, str) else note(found))
 
 
-@contextmanager
-def _no_collection() -> Any:
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if enabled:
-            gc.enable()
-
-
 def fastest(run: Callable[[], Found], patience: float) -> tuple[float, Found]:
     """Seconds of the fastest of repeated runs after a warm-up, and what the last one returned.
 
     At least three runs are timed, more until ``patience`` seconds are spent. A run of a quarter of a second or more needs no
     warm-up: it is run twice in all, and so is any run without patience.
     """
-    best, spent, count = float("inf"), 0.0, 0
-    with _no_collection():
-        while count < 2 or (patience and best < 0.25 and (spent < patience or count < 4)):
-            start = perf_counter()
-            found = run()
-            took = perf_counter() - start
-            if count or took > 0.25:
-                best = min(best, took)
-                spent += took
-            count += 1
-    return best, found
+    found: list[Found] = []
+
+    def once() -> None:
+        found[:] = [run()]
+
+    timer, best, spent, count = Timer(once), float("inf"), 0.0, 0  # which lets nobody collect garbage meanwhile
+    while count < 2 or (patience and best < 0.25 and (spent < patience or count < 4)):
+        took = timer.timeit(1)
+        if count or took > 0.25:
+            best = min(best, took)
+            spent += took
+        count += 1
+    return best, found[0]
 
 
 def table(records: Iterable[BenchRecord]) -> str:
@@ -187,11 +178,7 @@ def as_json(records: Iterable[BenchRecord]) -> str:
 
 FIELDS = ("linkages", "diagrams", "profiles", "emission")
 """Modules that measure, in the order of the table."""
-PEERS = ("peers",)
-"""The module that measures other programs."""
-
-
-def run(quick: bool, say: Callable[[str], None], fields: tuple[str, ...] = FIELDS) -> list[BenchRecord]:
+def run(quick: bool, say: Callable[[str], None]) -> list[BenchRecord]:
     """Measure fields.
 
     Parameters
@@ -214,14 +201,9 @@ def run(quick: bool, say: Callable[[str], None], fields: tuple[str, ...] = FIELD
         raise BadInput(tell("bench needs mpmath: the errors are told against a truth of 30 digits and more"),
                        hint=quoting.install("bench")) from None
     bench = Bench(quick, say)
-    for module in fields:
+    for module in FIELDS:
         import_module(f"tmm_sheets.lab.bench.{module}").rows(bench)
     return bench.records
-
-
-def compare(quick: bool, say: Callable[[str], None]) -> list[BenchRecord]:
-    """Measure this program and others on the same mechanisms; see :func:`run`."""
-    return run(quick, say, PEERS)
 
 
 LEAST = 2.0**-54

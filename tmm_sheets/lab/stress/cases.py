@@ -12,8 +12,8 @@ import numpy as np
 from tmm_sheets import quoting
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.lab.stress import change_points
-from tmm_sheets.lab.stress.change_points import folding, in_a_row, scene
-from tmm_sheets.lab.stress.draw import chain, crank_of, loaded
+from tmm_sheets.lab.stress.change_points import folding, hinge_errors, in_a_row, scene
+from tmm_sheets.lab.stress.draw import chain, crank_of, loaded, with_rocker, with_slider
 from tmm_sheets.lab.stress.features import features
 from tmm_sheets.lab.stress.invariants import (
     OneFunction,
@@ -27,8 +27,8 @@ from tmm_sheets.lab.stress.invariants import (
     rigidity,
     statics,
 )
-from tmm_sheets.mechanism.groups import RRP, RRR, TRIAD
-from tmm_sheets.mechanism.model import Guide, Link, Mechanism, StructuralGroup
+from tmm_sheets.mechanism.groups import TRIAD
+from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.numbers import of_reader
 from tmm_sheets.words import tell
 
@@ -140,18 +140,15 @@ def _limited(rng: np.random.Generator) -> tuple[Mechanism, float]:
         if rng.random() < 0.5:
             cos = (r * r + l0 * l0 - (l2 + l3) ** 2) / (2 * r * l0)
             if abs(cos) < 0.98:
-                g = StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (l2, l3), (), side)
-                m = Mechanism(crank, {"A": 0j, "D": l0 * np.exp(1j * psi)}, {}, (g,), (), {n: Link(n) for n in "123"})
+                m = with_rocker(l0 * np.exp(1j * psi), (l2, l3), side, crank)
                 return m, psi + side_of_limit * float(np.arccos(cos))
         else:
             e = float(rng.uniform(-0.3, 0.3)) * r
             sin = (l2 - e) / r
             if abs(sin) < 0.98:
                 through = complex(-1j * np.exp(1j * psi) * e + np.exp(1j * psi) * rng.uniform(-1, 1) * r)
-                g = StructuralGroup(RRP, ("2", "3"), ("B",), "C", (l2,), ("x",), side)
-                m = Mechanism(crank, {"A": 0j}, {"x": Guide("x", "0", through, psi)}, (g,), (), {n: Link(n) for n in "123"})
                 at = float(np.arcsin(sin))
-                return m, psi + (at if side_of_limit > 0 else pi - at)
+                return with_slider(through, psi, l2, side, crank), psi + (at if side_of_limit > 0 else pi - at)
 
 
 def _sharpened(m: Mechanism, angle: float) -> float:
@@ -171,15 +168,13 @@ def _dead(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     sense = 1 if change_points.motion(m, limit + 1e-3) is not None else -1
     gaps = np.concatenate(([0.0], 10.0 ** rng.uniform(-15, 0, 6)))
     phi = limit + sense * gaps
-    true = [change_points.motion(m, float(x)) for x in phi]
-    beyond = np.array([change_points.motion(m, float(x)) is None for x in limit - sense * gaps[1:]])
     s = make(m, np.concatenate((phi, limit - sense * gaps[1:])))
-    known = np.array([t is not None for t in true])
     # Against exact arithmetic: here even the last bit of the crank angle decides rightly.
-    expected = np.concatenate((known, ~beyond))
+    expected = np.array([change_points.motion(m, x) is not None for x in s.phi.tolist()])
     yield "NaN exactly where it cannot assemble", np.where(s.built != expected, 1.0, 0.0)
     # From 1e-15 rad on: the double next to the limit may be nearer to it than two doubles can tell.
-    yield from _compared(s, [None, *true[1:]])
+    for name, residual in _compared(s, phi):
+        yield name, residual[1:]
     yield from geometry(s)
     yield from rigidity(s)
     yield from statics(s, 0.0)
@@ -193,40 +188,32 @@ def _change_points(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     if frame == 2 * max(a, b):
         rocker = frame + crank - rod  # crank + frame = rod + rocker
     rod *= 1 + float(rng.choice((0.0, 0.0, 1e-13, -1e-13, 1e-9)))
-    g = StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (rod, rocker), (), int(rng.choice((1, -1))))
-    links = {n: Link(n) for n in "123"}
-    m = Mechanism(replace(crank_of(rng, size), length=crank), {"A": 0j, "D": complex(frame)}, {}, (g,), (), links)
+    m = with_rocker(frame, (rod, rocker), side=rng.choice((1, -1)), crank=replace(crank_of(rng, size), length=crank))
     near = 10.0 ** rng.uniform(-15, -1, ANGLES // 2)
     s = make(m, np.concatenate((near, pi - near, [0.0, pi])))
     yield from geometry(s)
     yield from assembled(s)
 
 
-def _compared(s: State, true: list[change_points.MotionTruth | None]) -> Iterator[Residual]:
+def _compared(s: State, phi: Any, where: str = "at a dead position") -> Iterator[Residual]:
     """Velocity and acceleration of the first group's hinge against exact arithmetic at the first positions of a state."""
-    pin, n = s.m.crank.speed * s.m.crank.length, len(true)
+    true = [change_points.motion(s.m, x) for x in phi.tolist()]
     v, a = (np.array([np.nan if t is None else getattr(t, name) for t in true]) for name in "va")
-    yield "velocity at a dead position", np.abs(s.v["C"][:n] - v) / np.maximum(np.abs(v), pin)
-    yield "acceleration at a dead position", np.abs(s.a["C"][:n] - a) / np.maximum(np.abs(a), pin * s.m.crank.speed)
-
-
+    return hinge_errors(s, v, a, where)
 def _stroke_ends(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     """Crank and rod in line, folded or stretched, exactly or nearly: the slider or rocker stands still."""
     size = 2.0 ** int(rng.integers(-9, 10))
     r, l2 = (size * float(rng.integers(low, high)) / 16 for low, high in ((1, 16), (32, 64)))
     side, turn = int(rng.choice((1, -1))), float(rng.choice((0.0, pi / 2, pi, -pi / 2, rng.uniform(-pi, pi))))
-    links, crank = {n: Link(n) for n in "123"}, replace(crank_of(rng, size), length=r)
+    crank = replace(crank_of(rng, size), length=r)
     if rng.random() < 0.5:
         e = float(rng.choice((0.0, 0.0, r / 2, -r / 2)))
-        guide = Guide("x", "0", complex(e * 1j * np.exp(1j * turn)), turn)
-        g = StructuralGroup(RRP, ("2", "3"), ("B",), "C", (l2,), ("x",), side)
-        m = Mechanism(crank, {"A": 0j}, {"x": guide}, (g,), (), links)
+        m = with_slider(e * 1j * np.exp(1j * turn), turn, l2, side, crank)
         ends = [float(np.arcsin(e / (l2 + r))), pi + float(np.arcsin(e / (l2 - r)))]
         ends = [turn + (x if side > 0 else pi - x) for x in ends]
     else:
         l0, l3 = (size * float(rng.integers(low, high)) / 16 for low, high in ((48, 64), (48, 64)))
-        g = StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", (l2, l3), (), side)
-        m = Mechanism(crank, {"A": 0j, "D": complex(l0 * np.exp(1j * turn))}, {}, (g,), (), links)
+        m = with_rocker(l0 * np.exp(1j * turn), (l2, l3), side, crank)
         cosines = [(x * x + l0 * l0 - l3 * l3) / (2 * x * l0) for x in (l2 + r, l2 - r)]
         if max(map(abs, cosines)) > 0.98 or r + l0 > l2 + l3:
             return
@@ -234,7 +221,7 @@ def _stroke_ends(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     gaps = np.concatenate(([0.0], 10.0 ** rng.uniform(-16, 0, 5) * rng.choice((1, -1), 5)))
     phi = np.concatenate([end + gaps for end in ends])
     s = make(m, phi)
-    yield from _compared(s, [change_points.motion(m, float(x)) for x in phi])
+    yield from _compared(s, phi)
     still = np.abs(s.v["C"][[0, len(gaps)]]) / (crank.speed * r)
     # The angle of the end is a double, the way beside it is of the second order.
     yield "standstill at the ends of the stroke", still
@@ -247,10 +234,8 @@ def _tangent(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     r, e = size * float(rng.integers(1, 64)) / 16, size * float(rng.integers(-16, 17)) / 16
     side, turn = int(rng.choice((1, -1))), float(rng.choice((0.0, pi / 2, pi, -pi / 2)))
     rod = (r + abs(e)) * (1 + float(rng.choice((0.0, 0.0, 1e-13, -1e-13, 1e-9))))
-    g = StructuralGroup(RRP, ("2", "3"), ("B",), "C", (rod,), ("x",), side)
     through = complex(1j * e) * {0.0: 1, pi / 2: 1j, pi: -1, -pi / 2: -1j}[turn]
-    links = {n: Link(n) for n in "123"}
-    m = Mechanism(replace(crank_of(rng, size), length=r), {"A": 0j}, {"x": Guide("x", "0", through, turn)}, (g,), (), links)
+    m = with_slider(through, turn, rod, side, replace(crank_of(rng, size), length=r))
     near = 10.0 ** rng.uniform(-7, -1, 5)
     top = turn + (-pi / 2 if e > 0 else pi / 2)
     phi = np.concatenate((top + near, top - near, [top]))
@@ -259,8 +244,8 @@ def _tangent(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     yield from rigidity(s)
     yield from assembled(s)
     # A rod longer by half a unit in its last place lifts the half-chord by that over the half-chord: data, not arithmetic.
-    for name, residual in _compared(s, [change_points.motion(m, float(x)) for x in phi[:-1]]):
-        yield name.replace("dead position", "change point"), residual / s.condition[:-1]
+    for name, residual in _compared(s, phi[:-1], "at a change point"):
+        yield name, residual / s.condition[:-1]
 
 
 def _mirrored(m: Mechanism) -> Mechanism:
@@ -287,9 +272,8 @@ def _mirror(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
             yield "picture in a mirror", np.abs(here[point] - np.conj(there[point])) / scale
     mass = sum(link.mass + link.inertia / s.reach**2 for link in m.links.values())
     total = mass * s.sharpest * s.fastest / m.crank.speed
-    yield "picture in a mirror", _share(balancing(s, 0.0) + balancing(other, 0.0), total * grown**2)
-
-
+    scale = total * grown**2
+    yield "picture in a mirror", np.abs(balancing(s, 0.0) + balancing(other, 0.0)) / np.where(scale == 0, 1.0, scale)
 def _triads(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
     """A group of class III, now and then before or behind another group."""
     kinds = (TRIAD.number,)
@@ -300,11 +284,6 @@ def _triads(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
         yield from _everything(m, _around(rng, phi), _gravity(rng, m), make)
     except CannotBuild:
         return  # after a turn it is another way of assembly: refused
-
-
-def _share(x: Any, of: Any) -> Any:
-    """A magnitude as a share of a scale that may be zero, with it."""
-    return np.abs(x) / np.where(of == 0, 1.0, of)
 
 
 SCENES: dict[str, Scene] = {
@@ -419,11 +398,7 @@ def table(worst: dict[str, Worst], seed: int) -> str:
     for row in rows:
         cells = (f"{cell:{'>' if i in NUMBERS else '<'}{w}}" for i, (cell, w) in enumerate(zip(row, widths, strict=False)))
         lines.append("  ".join([*cells, row[6]]))
-    again = quoting.command("stress", "--seed", str(seed), "--case", str(_nearest(worst)))
-    return "\n".join([*lines, tell("one case again: {command}").format(command=again)])
-
-
-def _nearest(worst: dict[str, Worst]) -> int:
-    """The case that is nearest to a bound, or farthest beyond it."""
+    # The case that is nearest to a bound, or farthest beyond it.
     shares = ((inf if isnan(w.value) else w.value / BOUNDS[name][0], w.case) for name, w in worst.items() if name != MEMORY)
-    return max(shares, default=(0.0, 0))[1]
+    again = quoting.command("stress", "--seed", str(seed), "--case", str(max(shares, default=(0.0, 0))[1]))
+    return "\n".join([*lines, tell("one case again: {command}").format(command=again)])

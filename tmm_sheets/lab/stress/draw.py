@@ -143,6 +143,13 @@ class Draft:
         self.guides[name] = Guide(name, "0", through, u)
         return name, through, rect(1, u), "0"
 
+    def add(self, group: StructuralGroup, at: complex | None, *on: list[str]) -> None:
+        """A group, the place of the point that it adds, if any, and the points on its links."""
+        self.groups.append(group)
+        if at is not None:
+            self.at[str(group.inner)] = at
+        self.on |= dict(zip(group.links, on, strict=True))
+
     def lines(self) -> list[tuple[str, str, str]]:
         """Lines on moving links: link, point, another point (or the pin in its slot)."""
         found = [(link, names[0], names[1]) for link, names in self.on.items() if len(names) > 1]
@@ -182,11 +189,7 @@ def rrr(d: Draft, links: tuple[str, str]) -> None:
     want(d.hard in ("narrow", "collinear") or sine(to_p, to_q) > SURE)
     side = 1 if ((d.at[q] - d.at[p]).conjugate() * (c - d.at[p])).imag > 0 else -1
     name = d.new("C")
-    d.groups.append(StructuralGroup(RRR, links, (p, q), name, (abs(to_p), abs(to_q)), (), side))
-    d.at[name] = c
-    d.on[links[0]], d.on[links[1]] = [p, name], [q, name]
-
-
+    d.add(StructuralGroup(RRR, links, (p, q), name, (abs(to_p), abs(to_q)), (), side), c, [p, name], [q, name])
 def rrp(d: Draft, links: tuple[str, str]) -> None:
     """A rod and a slider; the rod nearly across the guide where it is meant to be hard."""
     p, owner = d.moving()
@@ -199,11 +202,7 @@ def rrp(d: Draft, links: tuple[str, str]) -> None:
     rod = c - d.at[p]
     want(abs(rod) > d.size / 4 and (d.hard in ("narrow", "collinear") or sine(rod, 1j * u) > SURE))
     name = d.new("C")
-    d.groups.append(StructuralGroup(RRP, links, (p,), name, (abs(rod),), (guide,), 1 if (rod / u).real > 0 else -1))
-    d.at[name] = c
-    d.on[links[0]], d.on[links[1]] = [p, name], [name]
-
-
+    d.add(StructuralGroup(RRP, links, (p,), name, (abs(rod),), (guide,), 1 if (rod / u).real > 0 else -1), c, [p, name], [name])
 def rpr(d: Draft, links: tuple[str, str]) -> None:
     """A block and its rocker, often with an offset; the slot nearly across the line of the pivots where it is meant to be hard."""
     p, owner = d.moving()
@@ -220,11 +219,8 @@ def rpr(d: Draft, links: tuple[str, str]) -> None:
     if d.hard == "offset":
         share = float(d.rng.choice((0.0, 1e-300, 1e-17, 1e-12, 1e-6)))
     side = d.side()
-    d.groups.append(StructuralGroup(RPR, links, (p, q), None, (), (), side, share * abs(e)))
+    d.add(StructuralGroup(RPR, links, (p, q), None, (), (), side, share * abs(e)), None, [p], [q])
     d.slots[links[1]] = e / abs(e) * complex((1 - share**2) ** 0.5, side * share)
-    d.on[links[0]], d.on[links[1]] = [p], [q]
-
-
 def prp(d: Draft, links: tuple[str, str]) -> None:
     """Two sliders on a hinge; the first guide moves. Guides nearly parallel where it is meant to be hard."""
     one, a, u, owner = d.guide(0j, moving=True)
@@ -241,11 +237,7 @@ def prp(d: Draft, links: tuple[str, str]) -> None:
     c = a + u * (((b - a).conjugate() * v).imag / (u.conjugate() * v).imag)
     want(d.hard == "narrow" or abs(c - a) < 5 * d.size)
     name = d.new("C")
-    d.groups.append(StructuralGroup(PRP, links, (), name, (), (one, two)))
-    d.at[name] = c
-    d.on[links[0]], d.on[links[1]] = [name], [name]
-
-
+    d.add(StructuralGroup(PRP, links, (), name, (), (one, two)), c, [name], [name])
 def rpp(d: Draft, links: tuple[str, str]) -> None:
     """A slider block in a slot of a slider; the slot nearly along the guide where it is meant to be hard."""
     p, owner = d.moving()
@@ -257,11 +249,7 @@ def rpp(d: Draft, links: tuple[str, str]) -> None:
     c = through + u * (((d.at[p] - through).conjugate() * v).imag / (u.conjugate() * v).imag)
     want(d.hard == "narrow" or abs(c - d.at[p]) < 5 * d.size)
     name = d.new("C")
-    d.groups.append(StructuralGroup(RPP, links, (p,), name, (), (guide,), 1, 0.0, slot))
-    d.at[name] = c
-    d.on[links[0]], d.on[links[1]] = [], [name]
-
-
+    d.add(StructuralGroup(RPP, links, (p,), name, (), (guide,), 1, 0.0, slot), c, [], [name])
 BUILD = {1: rrr, 2: rrp, 3: rpr, 4: prp, 5: rpp}
 """How a group of each kind is added to a draft."""
 
@@ -325,6 +313,19 @@ def crank_of(rng: np.random.Generator, size: float) -> Crank:
     speed = 10.0 ** float(rng.uniform(-1, 3))
     uneven = speed**2 * float(rng.uniform(-2, 2)) if rng.random() < 0.5 else 0.0
     return Crank("1", "A", "B", size * float(rng.uniform(0.5, 2)), speed, int(rng.choice((1, -1))), uneven)
+
+
+def with_rocker(pivot: complex, lengths: tuple[float, float], side: float, crank: Crank, **group: Any) -> Mechanism:
+    """A crank about the origin with rod and rocker of these lengths, the rocker about another pivot."""
+    g = StructuralGroup(RRR, ("2", "3"), ("B", "D"), "C", lengths, (), int(side), **group)
+    return Mechanism(crank, {"A": 0j, "D": complex(pivot)}, {}, (g,), (), {n: Link(n) for n in "123"})
+
+
+def with_slider(through: complex, direction: float, length: float, side: float, crank: Crank, **group: Any) -> Mechanism:
+    """A crank about the origin with a rod and a slider on a guide."""
+    g = StructuralGroup(RRP, ("2", "3"), ("B",), "C", (length,), ("x",), int(side), **group)
+    guide = Guide("x", "0", complex(through), direction)
+    return Mechanism(crank, {"A": 0j}, {"x": guide}, (g,), (), {n: Link(n) for n in "123"})
 
 
 def chain(rng: np.random.Generator, hard: str = "", kinds: tuple[int, ...] | None = None) -> tuple[Mechanism, float]:

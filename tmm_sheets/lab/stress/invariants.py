@@ -204,11 +204,6 @@ def _block_reach(s: State, g: StructuralGroup) -> tuple[Any, Any]:
     return np.abs(s.z[g.outer[1]] - s.z[g.outer[0]]) - g.offset, s.reach + g.offset
 
 
-def _on_two_guides(s: State, g: StructuralGroup) -> Iterator[Residual]:
-    """Nothing beside its guides."""
-    return iter(())
-
-
 def _block_in_slot(s: State, g: StructuralGroup) -> Iterator[Residual]:
     yield "closure on guides", np.abs(cross(s.u[g.links[0]], s.z[str(g.inner)] - s.z[g.outer[0]])) / s.reach
 
@@ -232,7 +227,7 @@ def _triangle(s: State, g: StructuralGroup) -> Iterator[Residual]:
 
 LOOPS: dict[GroupKind, Loop] = {
     RRR: Loop(_two_rods, _two_rods_reach), RRP: Loop(_rod_on_guide, _rod_reach), RPR: Loop(_block_on_rocker, _block_reach),
-    PRP: Loop(_on_two_guides), RPP: Loop(_block_in_slot), TRIAD: Loop(_triangle),
+    PRP: Loop(lambda s, g: iter(())), RPP: Loop(_block_in_slot), TRIAD: Loop(_triangle),
 }
 
 

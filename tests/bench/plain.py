@@ -1,7 +1,7 @@
 """The same sheets written the plain way, for ``build`` to beat: one ezdxf call an entity, one of reportlab's canvas a stroke.
 
 Run as ``python plain.py LISTS FOLDER`` in a process of its own, so that it imports the two libraries and nothing of this package.
-``LISTS`` is a pickle that :mod:`tmm_sheets.lab.bench.whole` prepares: nothing is composed here, no letter is laid out.
+``LISTS`` is a pickle that :mod:`tests.bench.whole` prepares: nothing is composed here, no letter is laid out.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What one sheet, one format or one number costs compared with the whole: time, modules, steps and marks.
+"""What one sheet, one format or one number costs compared with the whole: ``python -m tests.bench.costs PROJECT``.
 
 Every row is a command in a fresh process. Times are the least of several runs, of the processor (wall time depends on who else uses
 the machine), the start of the process included. Steps and marks are counted in another process, since that takes time too.
@@ -20,7 +20,6 @@ from typing import Any, NamedTuple
 from tmm_sheets import kept
 from tmm_sheets.errors import BadInput
 from tmm_sheets.explain import HEAVY
-from tmm_sheets.words import tell
 
 RUNS = 3
 NUMBERS = ("positions", "forces", "flywheel", "gear", "cam")
@@ -73,7 +72,7 @@ def _child(program: str, arguments: list[str], folder: Path) -> tuple[dict[str, 
     done, _, took = timed(program, [str(report), *arguments], {**os.environ, kept.FOLDER: ""})  # what is kept costs next to nothing
     if not report.exists():
         raise BadInput(
-            tell("{command}: ended without a report").format(command=" ".join(arguments)), hint=done.stderr.strip()[-300:]
+            "{command}: ended without a report".format(command=" ".join(arguments)), hint=done.stderr.strip()[-300:]
         )
     found = json.loads(report.read_text())
     report.unlink()
@@ -145,22 +144,22 @@ def table(project: str, say: Callable[[str], None]) -> str:
         rows.append((measure(arguments, forced=forced), forced))
     whole = rows[0][0].seconds
     heads = (
-        tell("command"),
-        tell("processor time"),
-        tell("of the whole"),
-        tell("steps evaluated"),
-        tell("marks"),
-        tell("own modules"),
-        tell("large libraries"),
+        "command",
+        "processor time",
+        "of the whole",
+        "steps evaluated",
+        "marks",
+        "own modules",
+        "large libraries",
     )
     lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
     for c, forced in rows:
-        name = f"`{c.command}`" if forced else tell("`{command}`, again: unchanged").format(command=c.command)
+        name = f"`{c.command}`" if forced else (f"`{c.command}`, again: unchanged")
         cells = (
             name,
-            tell("{time:.0f} ms").format(time=1000 * c.seconds),
+            (f"{1000 * c.seconds:.0f} ms"),
             f"{100 * c.seconds / whole:.0f} %",
-            tell("{evaluated} of {steps}").format(evaluated=c.evaluated, steps=c.steps),
+            (f"{c.evaluated} of {c.steps}"),
             str(c.marks),
             str(c.modules),
             ", ".join(c.heavy),
@@ -184,3 +183,8 @@ def timed(program: str, arguments: list[str], environment: Mapping[str, str] | N
     wall, after = perf_counter() - start, os.times()
     processor = after.children_user - before.children_user + after.children_system - before.children_system
     return TimedProcess(done, wall, processor)
+
+
+if __name__ == "__main__":
+    for project in sys.argv[1:]:
+        print(table(project, lambda what: print(what, file=sys.stderr)))

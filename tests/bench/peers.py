@@ -1,4 +1,4 @@
-"""Other programs from PyPI on the same mechanisms, at the same positions, judged by the same truth.
+"""Other programs from PyPI on the same mechanisms, judged by the same truth: ``python -m tests.bench.peers [--quick] [--summary]``.
 
 Every program has its mechanisms set up before the clock starts and gives the points of all hinges at all positions of a turn, as
 arrays: positions alone; velocities with the positions they need; accelerations with both. Each runs in its own fastest way, warmed
@@ -7,8 +7,10 @@ up. What a program cannot express is null with the reason, and so is what fails.
 
 from __future__ import annotations
 
+import argparse
 import contextlib
 import io
+import sys
 import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -17,18 +19,18 @@ from math import pi
 
 import numpy as np
 
+from tests.bench import peer_programs
+from tests.bench.peer_programs import PeerProgram, PointArrays, Turn
 from tmm_sheets.construction.function import Function
 from tmm_sheets.construction.program import depending
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.lab.bench import peer_programs, truth
+from tmm_sheets.lab.bench import truth
 from tmm_sheets.lab.bench.linkages import CRANK, ROCKER_DYAD, SLIDER_DYAD, SLIDER_GUIDE, shaper, study_of
-from tmm_sheets.lab.bench.peer_programs import PeerProgram, PointArrays, Turn
 from tmm_sheets.lab.bench.records import Bench, BenchRecord, told
 from tmm_sheets.mechanism.groups import RRP
 from tmm_sheets.mechanism.model import Guide, Link, LinkPoint, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.study import Study
 from tmm_sheets.version import __version__
-from tmm_sheets.words import tell
 
 COUNTS = (12, 360, 10_000)
 QUANTITIES = ("positions", "velocities", "accelerations")
@@ -163,12 +165,12 @@ def _rows_of(bench: Bench, program: type[PeerProgram], mechanism: str, m: Mechan
             what = (f"peers: {mechanism}", f"{quantity}, {name}", "positions")
             if _too_long(bench, what, turn.n):
                 found = BenchRecord(
-                    *what, turn.n, None, None, tell("left out at {n:g} positions: it would take too long").format(n=turn.n)
+                    *what, turn.n, None, None, (f"left out at {turn.n:g} positions: it would take too long")
                 )
             elif quantity in runs:
                 found = bench.record(what, turn.n, partial(_guarded, runs[quantity]), partial(judge.error, quantity))
             else:
-                found = BenchRecord(*what, turn.n, None, None, reason or tell("it does not give them"))
+                found = BenchRecord(*what, turn.n, None, None, reason or ("it does not give them"))
             bench.records.append(PeerRecord(**vars(found), mechanism=mechanism, quantity=quantity, program=name))
 
 
@@ -240,8 +242,8 @@ def summary(records: Iterable[BenchRecord]) -> str:
     for (mechanism, quantity, n), by_program in found.items():
         rows.setdefault((mechanism, quantity), []).append(by_program)
         counts[f"{n:,.0f}"] = None
-    lines = [tell("us for a position at {counts} positions; largest relative error").format(counts=' / '.join(counts)), "",
-             tell("| mechanism | | {programs} |").format(programs=' | '.join(programs)), "|---" * (len(programs) + 2) + "|"]
+    lines = ["us for a position at {counts} positions; largest relative error".format(counts=' / '.join(counts)), "",
+             "| mechanism | | {programs} |".format(programs=' | '.join(programs)), "|---" * (len(programs) + 2) + "|"]
     for (mechanism, quantity), several in rows.items():
         cells = [_summed_up([by_program.get(p) for by_program in several]) for p in programs]
         lines.append(f"| {mechanism} | {quantity} | {' | '.join(cells)} |")
@@ -256,3 +258,18 @@ def _summed_up(several: list[PeerRecord | None]) -> str:
                        for r in several)
     errors = list(dict.fromkeys(f"{r.error:.0e}" for r in (done[0], done[-1])))
     return f"{times}; {' .. '.join(errors)}"
+
+
+def main() -> None:
+    """Measure, and print a table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true", help="a few small runs only")
+    parser.add_argument("--summary", action="store_true", help="in Markdown, the first and the last error only")
+    asked = parser.parse_args()
+    bench = Bench(asked.quick, lambda what: print(what, file=sys.stderr))
+    rows(bench)
+    print((summary if asked.summary else table)(bench.records))
+
+
+if __name__ == "__main__":
+    main()

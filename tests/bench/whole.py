@@ -1,4 +1,5 @@
-"""A cold build of all sheets against the same display lists written with plain library calls (:mod:`tmm_sheets.lab.bench.plain`).
+"""A cold build of all sheets against the same display lists written with plain library calls (:mod:`tests.bench.plain`):
+``python -m tests.bench.whole PROJECT``.
 
 The two take turns, each in a fresh process: ``build`` reads the project, solves, composes and writes; the plain writer gets
 finished display lists and only writes. The least wall and processor times of several rounds count, the start of Python included.
@@ -9,23 +10,23 @@ from __future__ import annotations
 
 import os
 import pickle
+import sys
 from collections.abc import Callable
 from dataclasses import asdict, astuple, dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from tests.bench.costs import timed
 from tmm_sheets import kept
 from tmm_sheets.errors import BadInput
-from tmm_sheets.lab.bench.costs import timed
-from tmm_sheets.words import tell
 
 ROUNDS = 7
 PLAIN = str(Path(__file__).with_name("plain.py"))
 PEAK = """
 try:
-    words = open("/proc/self/status").read().split()
-    print(words[words.index("VmHWM:") + 1], file=sys.stderr)
+    words = open"/proc/self/status".read().split()
+    print(words[words.index"VmHWM:" + 1], file=sys.stderr)
 except OSError:
     print("nan", file=sys.stderr)
 """
@@ -153,12 +154,17 @@ def _plain(drawing: Any) -> dict[str, Any]:
 
 def table(found: ColdBuild) -> str:
     """The comparison as a Markdown table, that of docs/accuracy.md."""
-    plain = tell("the same {entities} entities by plain library calls").format(entities=found.entities)
-    rows = [(tell("`build {project}`, cold").format(project=found.project), found.build), (plain, found.plain),
-            (tell("`import ezdxf, reportlab` alone"), found.imports)]  # fmt: skip
-    lines = [tell("| process | wall | of the plain one | processor | of the plain one | memory |"), "|---|---|---|---|---|---|"]
+    plain = (f"the same {found.entities} entities by plain library calls")
+    rows = [((f"`build {found.project}`, cold"), found.build), (plain, found.plain),
+            ("`import ezdxf, reportlab` alone", found.imports)]  # fmt: skip
+    lines = ["| process | wall | of the plain one | processor | of the plain one | memory |", "|---|---|---|---|---|---|"]
     for name, run in rows:
         share = (run.wall / found.plain.wall, run.processor / found.plain.processor)
         lines.append(f"| {name} | {1000 * run.wall:.0f} ms | {share[0]:.2f} | {1000 * run.processor:.0f} ms | {share[1]:.2f} | "
                      f"{run.memory:.0f} MB |")
     return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    for project in sys.argv[1:]:
+        print(table(measure(project, lambda what: print(what, file=sys.stderr))))
