@@ -48,7 +48,7 @@ RULES = {
     "summary": ("mechanism project task", ""),
     "explain": ("construction drawing sheets", "project"),
     "protocols": ("construction sheets", "project"),
-    "record": ("construction drawing project results sheets", ""),
+    "record": ("construction drawing project result_files results sheets", ""),
     "living": ("construction drawing mechanism.groups methods.flywheel methods.linkage note project record results task", ""),
     "sheets": ("construction drawing mechanism.structure", f"project mechanism {METHODS}"),
     "backends": ("drawing", ""),

@@ -50,14 +50,6 @@ def test_a_primitive_is_one_operation():
     assert [p.index for p in tree.parts] == [0, 1, 2, 3, 4]
 
 
-def test_typesetting_keeps_the_order_and_adds_parentheses():
-    tree = expression.trace(lambda m, w, s, j: (m - w**2 / 2 * s) / j, 4)
-    assert expression.latex(tree, ["M", "\\omega", "J'", "J"]) == "\\frac{M - \\frac{\\omega^{2}}{2} \\cdot J'}{J}"
-    numbers = expression.latex(tree, ["5", "-3", "-2", "4"])
-    assert numbers == "\\frac{5 - \\frac{\\left(-3\\right)^{2}}{2} \\cdot \\left(-2\\right)}{4}"
-    assert expression.latex(expression.trace(lambda a, b: a - (a - b), 2), ["a", "b"]) == "a - \\left(a - b\\right)"
-
-
 def test_given_numbers_are_numbers_and_know_their_place():
     length = GivenNumber(0.08, "crank.length", "l_{AB}", "m")
     assert length == 0.08

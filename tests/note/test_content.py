@@ -26,12 +26,13 @@ from tmm_sheets.note.document import (
     Sheet,
     Where,
     numbers,
+    plain_text,
 )
-from tmm_sheets.note.phrases import plain_text
 from tmm_sheets.note.pictures import LETTERS, READABLE, Pictures
 from tmm_sheets.note.reader import Reader
 from tmm_sheets.note.sections import flywheel, forces, reducer
 from tmm_sheets.record.recording import book_of
+from tmm_sheets.sheets.views import VIEWS
 
 
 def headings(note):
@@ -260,12 +261,10 @@ def test_what_is_said_follows_the_record(reader, section, fields, said, unsaid):
     """A sentence about a result stands only where the record bears it out; here the record says the contrary of the shaper's."""
     from importlib import import_module
 
-    scope = import_module(f"tmm_sheets.note.sections.{section}").scope(reader)
-    assert fields.keys() <= scope.fields.keys()
-    assert all(bool(scope.fields[k]) != bool(v) for k, v in fields.items())
-    scope.fields = composing.general(reader).fields | scope.fields | fields
-    numbering = phrases.Numbering(composing.literature())
-    text = " ".join(plain_text(b.text) for b in phrases.Writer("ru", numbering).blocks(section, scope) if isinstance(b, Paragraph))
+    found = import_module(f"tmm_sheets.note.sections.{section}").fields(reader)
+    assert fields.keys() <= found.keys()
+    assert all(bool(found[k]) != bool(v) for k, v in fields.items())
+    text = told(section, reader, found | fields)
     assert said in text
     assert unsaid not in text
 
@@ -311,6 +310,16 @@ def test_no_sentence_breaks_off_before_a_number(language):
         for n, line in enumerate(phrases.text_of(language, name).splitlines(), 1):
             assert not re.search(r"(рис\.|табл\.|таблице|таблиці|fig\.|table)\s*(\]\]|\[\[|$)", line), f"{name}.txt:{n}"
             assert line.count("[[") == line.count("]]"), f"{name}.txt:{n}"
+
+
+def test_templates_ask_for_views_and_plans_that_there_are():
+    """What is found by its path is left out in silence where a project lacks it, so a name spelt wrongly would never be seen."""
+    code = "".join(path.read_text("utf-8") for path in Path(composing.__file__).parents[1].rglob("*.py"))
+    for name in phrases.names("ru"):
+        text = phrases.text_of("ru", name)
+        assert set(re.findall(r"(?:%figure |@figure:)([a-z_]+\.[a-z_]+)", text)) <= VIEWS.keys(), name
+        plans = re.findall(r"(?:%formula\?? |\{#?|%if )([a-z-]+)/", text) + re.findall(r"%formulas (\S+)", text)
+        assert {plan for plan in plans if not re.search(rf"[\"-]{plan.partition('-')[2] or plan}\"", code)} == set(), name
 
 
 @pytest.mark.parametrize("language", ["uk", "en"])
@@ -363,10 +372,10 @@ def undrawn(name):
     return Reader(opened(name), "ru", Pictures({}), {})
 
 
-def said_by(section, reader):
-    scope = section.scope(reader)
-    scope.fields = composing.general(reader).fields | scope.fields
-    blocks = phrases.Writer("ru", phrases.Numbering(composing.literature())).blocks(section.__name__.rpartition(".")[2], scope)
+def told(section, reader, fields):
+    """Running text of a section with some fields."""
+    scope = composing.general(reader).within(fields)
+    blocks = phrases.Writer("ru", phrases.Numbering(composing.literature())).blocks(section, scope)
     return " ".join(plain_text(b.text) for b in blocks if isinstance(b, Paragraph))
 
 
@@ -374,7 +383,8 @@ def test_interference_does_not_contradict_the_conditions():
     """The ring's tip ends on the involute where z5 (z4 s/2 - 1) + 1 - z4^2 s/4 >= 0, s = sin^2 20 deg: nowhere for z4 = 15."""
     s = np.sin(np.radians(20)) ** 2
     assert 15 * s / 2 < 1 < 15**2 * s / 4
-    text = said_by(reducer, undrawn("transport/diesel@01-Т-27"))
+    r = undrawn("transport/diesel@01-Т-27")
+    text = told("reducer", r, reducer.fields(r))
     assert "Условия соосности, сборки и соседства выполнены" in text
     assert "при 15 зубьях сателлита её не устраняет никакое число зубьев колеса 5" in text
     assert "Все условия" not in text
@@ -383,4 +393,4 @@ def test_interference_does_not_contradict_the_conditions():
 @pytest.mark.parametrize("name", ["conveyor", "feeder", "stirrer"])
 def test_a_crank_with_a_moment_of_inertia_counts_once(name):
     r = undrawn(str(Path(__file__).parents[1] / "projects" / f"{name}.toml"))
-    assert flywheel.scope(r).formulas["J"].numbers is not None
+    assert flywheel.fields(r)["J"].numbers is not None

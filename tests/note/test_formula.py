@@ -19,8 +19,9 @@ from tmm_sheets.construction.formula import (
     letters,
     letters_of,
     of_tree,
+    spelt,
 )
-from tmm_sheets.note.alphabets import TYPST, equation, spelt, string
+from tmm_sheets.note.alphabets import TYPST, equation, string
 
 
 @pytest.mark.parametrize(("name", "markup"), [

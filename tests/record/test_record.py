@@ -12,6 +12,7 @@ from tests.record.printed import strangers
 from tests.record.replayer import Replay, number
 from tmm_sheets import catalogue, kept, results
 from tmm_sheets.__main__ import run
+from tmm_sheets.construction import expression
 from tmm_sheets.project import Project
 from tmm_sheets.record import recording
 from tmm_sheets.record.step_index import leaves
@@ -260,3 +261,15 @@ def test_printed_numbers_are_those_of_steps():
     count, none = strangers("lugansk/engine")
     assert count > 800
     assert not none
+
+
+def test_typesetting_keeps_the_order_and_adds_parentheses():
+    tree = expression.trace(lambda m, w, s, j: (m - w**2 / 2 * s) / j, 4)
+    assert recording.latex(tree, ["M", "\\omega", "J'", "J"]) == "\\frac{M - \\frac{\\omega^{2}}{2} \\cdot J'}{J}"
+    numbers = recording.latex(tree, ["5", "-3", "-2", "4"])
+    assert numbers == "\\frac{5 - \\frac{\\left(-3\\right)^{2}}{2} \\cdot \\left(-2\\right)}{4}"
+    assert recording.latex(expression.trace(lambda a, b: a - (a - b), 2), ["a", "b"]) == "a - \\left(a - b\\right)"
+    power = expression.trace(lambda a, b: (a / b) ** 0.2, 2)
+    assert recording.latex(power, ["4", "7.5"]) == "\\left(\\frac{4}{7.5}\\right)^{1/5}"
+    of_function = expression.trace(lambda x: np.maximum(2 * x, 0.0), 1)
+    assert recording.latex(of_function, ["-3"]) == "\\max \\left(2 \\cdot \\left(-3\\right);\\, 0\\right)"

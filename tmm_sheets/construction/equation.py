@@ -28,11 +28,11 @@ from tmm_sheets.construction.formula import (
     Sign,
     Words,
     can_be_written,
+    filled,
     letters,
     letters_of,
     of_tree,
     simplified,
-    with_numbers,
 )
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.numbers import degrees_and_minutes, number
@@ -128,8 +128,8 @@ def of_step(step: Step, k: int = 0, symbol: str = "", own: Mapping[int, Quantity
     ``symbol`` stands instead of its letters. Operands are ``own`` ones by their id(), or made by ``quantity`` from letters, value,
     unit and the step or given number itself.
     """
-    tree = step.rule.formula(len(step.args))
-    if tree is None or isinstance(tree, Argument | Constant) or not can_be_written(tree):
+    tree = tree_of_step(step)
+    if tree is None:
         return ""
 
     def made(x: Any) -> Quantity:
@@ -139,11 +139,27 @@ def of_step(step: Step, k: int = 0, symbol: str = "", own: Mapping[int, Quantity
         symbol = letters_of(name) if isinstance(x, Step) or x.symbol else number(value, 6)
         return own.get(id(x)) or quantity(symbol, value, unit, of=x)
 
-    numbers = {i: float(a) for i, a in enumerate(step.args) if isinstance(a, int | float) and not getattr(a, "name", "")}
-    tree = with_numbers(tree, numbers)
     result = made(step)
-    return equation(tree, [Quantity("", numbers[i]) if i in numbers else made(a) for i, a in enumerate(step.args)],
+    return equation(tree, [Quantity("", float(a)) if _is_bare(a) else made(a) for a in step.args],
                     replace(result, symbol=symbol or result.symbol), in_letters)
+
+
+def tree_of_step(step: Step) -> Expression | None:
+    """The expression of a step as a formula shows it, with its bare numbers as constants; None where its rule is no formula."""
+    tree = step.rule.formula(len(step.args))
+    if tree is None or isinstance(tree, Argument | Constant) or not can_be_written(tree):
+        return None
+    return with_bare_numbers(tree, step)
+
+
+def with_bare_numbers(tree: Expression, step: Step) -> Expression:
+    """An expression of the arguments of a step with those that have no letter as constants."""
+    return filled(tree, [Constant(float(a)) if _is_bare(a) else Argument(i) for i, a in enumerate(step.args)])
+
+
+def _is_bare(a: Any) -> bool:
+    """Whether an argument is a bare number, of the program itself or found before: it has no letter."""
+    return isinstance(a, int | float) and not getattr(a, "name", "")
 
 
 # --- one line -----------------------------------------------------------------------------------------------------

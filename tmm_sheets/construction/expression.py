@@ -5,8 +5,8 @@ there is one definition of each formula: what is computed is what is typeset, to
 that branches, loops until something converges or compares values cannot be read off: it is a :func:`primitive` of the construction.
 
 The tree is ``Argument`` (by its number), ``Constant`` or ``Operation`` (name and operands); :func:`evaluate` computes it,
-:func:`as_json` and :func:`from_json` carry it; :func:`latex` and, in one line, :func:`lettered` write it with any texts in the
-places of the arguments.
+:func:`as_json` and :func:`from_json` carry it; :func:`lettered` writes it in one line with any texts in the places of the
+arguments.
 """
 
 from __future__ import annotations
@@ -200,68 +200,8 @@ def from_json(data: Any, known: Mapping[str, Callable[..., Any]]) -> Expression:
 
 # --- typesetting --------------------------------------------------------------------------------------------------
 
-_BINDING = {"+": 1, "-": 1, "*": 2, "/": 4, "^": 3}
 _ATOM = 4
-
-
-def latex(tree: Expression, texts: Sequence[str]) -> str:
-    r"""LaTeX of a tree, the texts in the places of the arguments, in the order in which the formula has them.
-
-    A text that begins with a minus sign or holds a sum stands in parentheses where it is multiplied, raised or subtracted.
-
-    >>> latex(Argument(0) * Argument(1) ** 2 / 2, ["m", "v"])
-    '\\frac{m \\cdot v^{2}}{2}'
-    """
-    return _latex(tree, texts)[0]
-
-
-def _latex(tree: Expression, texts: Sequence[str]) -> tuple[str, int]:
-    """LaTeX, and how tightly it binds: 1 a sum, 2 a product, 3 a power, 4 what needs no parentheses."""
-    if isinstance(tree, Argument):
-        text = texts[tree.index]
-        return text, 1 if text.startswith(("-", "−")) else _ATOM
-    if isinstance(tree, Constant):
-        return _constant(tree.value)
-    assert isinstance(tree, Operation)
-    parts = [_latex(part, texts) for part in tree.parts]
-    name = tree.name
-    if name == "/":
-        return f"\\frac{{{parts[0][0]}}}{{{parts[1][0]}}}", _ATOM
-    if name == "^":
-        return f"{_held(parts[0], _ATOM)}^{{{parts[1][0]}}}", 3
-    if name == "*":
-        return " \\cdot ".join(_held(p, 2) for p in parts), 2
-    if name in "+-":
-        if len(parts) == 1:
-            return f"-{_held(parts[0], 2)}", 1
-        return f"{parts[0][0]} {name} {_held(parts[1], 2)}", 1
-    if name == "sqrt":
-        return f"\\sqrt{{{parts[0][0]}}}", _ATOM
-    if name == "abs":
-        return f"\\left|{parts[0][0]}\\right|", _ATOM
-    if name == "conj":
-        return f"\\overline{{{parts[0][0]}}}", _ATOM
-    if name == "cross":
-        return f"{_held(parts[0], 2)} \\times {_held(parts[1], 2)}", 2
-    shown = {"re": "\\mathrm{Re}", "im": "\\mathrm{Im}", "atan": "\\mathrm{arctg}", "tan": "\\mathrm{tg}",
-             "atan2": "\\mathrm{arctg}", "asin": "\\arcsin", "acos": "\\arccos"}.get(name, f"\\{name}")  # fmt: skip
-    return f"{shown}\\left({', '.join(p[0] for p in parts)}\\right)", 3
-
-
-def _held(part: tuple[str, int], least: int) -> str:
-    return part[0] if part[1] >= least else f"\\left({part[0]}\\right)"
-
-
-def _constant(value: float | complex) -> tuple[str, int]:
-    if isinstance(value, complex):
-        if value == 1j:
-            return "i", _ATOM
-        return f"{value:g}".replace("j", "i"), 1
-    if value == pi:
-        return "\\pi", _ATOM
-    if value == 2 * pi:
-        return "2\\pi", 2
-    return f"{value:.12g}", 1 if value < 0 else _ATOM
+"""How tightly something binds that needs no parentheses: 1 a sum, 2 a product, 3 a power."""
 
 
 def lettered(tree: Expression, texts: Sequence[str], least: int = 0) -> str:
@@ -277,7 +217,7 @@ def lettered(tree: Expression, texts: Sequence[str], least: int = 0) -> str:
 
 
 def _lettered(tree: Expression, texts: Sequence[str]) -> tuple[str, int]:
-    """One line, and how tightly it binds, as :func:`_latex`; ratios bind as products."""
+    """One line, and how tightly it binds; ratios bind as products."""
     if isinstance(tree, Argument):
         return texts[tree.index], _ATOM
     if isinstance(tree, Constant):

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isclose, pi
-from typing import Any, TypeGuard
+from typing import Any, TypeGuard, TypeVar
 
 from tmm_sheets.construction import expression
 from tmm_sheets.numbers import rounded, written
@@ -122,6 +122,32 @@ class Underlined(Node):
 
     of: Node
     times: int
+
+
+T = TypeVar("T")
+Alphabet = Mapping[type[Node], Callable[..., T]]
+"""How each kind of node is written: from its fields, the nodes among them written already."""
+
+
+def spelt(node: Node, alphabet: Alphabet[T]) -> T:
+    """A formula in an alphabet."""
+
+    def part(value: Any) -> Any:
+        if isinstance(value, Node):
+            return spelt(value, alphabet)
+        return [spelt(x, alphabet) for x in value] if isinstance(value, tuple) else value
+
+    return alphabet[type(node)](*map(part, vars(node).values()))
+
+
+def items(node: Node) -> tuple[Node, ...]:
+    """Parts of a row, or the node alone."""
+    return node.items if isinstance(node, FormulaRow) else (node,)
+
+
+def row(*nodes: Node) -> FormulaRow:
+    """Nodes one after another, rows among them opened."""
+    return FormulaRow(tuple(x for node in nodes for x in items(node)))
 
 
 # --- letters ------------------------------------------------------------------------------------------------------
@@ -317,21 +343,12 @@ def _negated(tree: expression.Expression) -> TypeGuard[expression.Operation]:
     return isinstance(tree, expression.Operation) and tree.name == "-" and len(tree.parts) == 1
 
 
-def with_numbers(tree: expression.Expression, known: Mapping[int, float]) -> expression.Expression:
-    """The tree with some arguments as numbers of the formula itself."""
+def filled(tree: expression.Expression, arguments: Sequence[expression.Expression]) -> expression.Expression:
+    """The tree with others in the places of its arguments."""
     if isinstance(tree, expression.Argument):
-        return expression.Constant(known[tree.index]) if tree.index in known else tree
+        return arguments[tree.index]
     if isinstance(tree, expression.Operation):
-        return expression.Operation(tree.name, tuple(with_numbers(p, known) for p in tree.parts), tree.function)
-    return tree
-
-
-def renumbered(tree: expression.Expression, order: Sequence[int]) -> expression.Expression:
-    """The tree with every argument called by another number."""
-    if isinstance(tree, expression.Argument):
-        return expression.Argument(order[tree.index])
-    if isinstance(tree, expression.Operation):
-        return expression.Operation(tree.name, tuple(renumbered(p, order) for p in tree.parts), tree.function)
+        return expression.Operation(tree.name, tuple(filled(p, arguments) for p in tree.parts), tree.function)
     return tree
 
 
@@ -430,6 +447,7 @@ _ARITHMETIC: dict[str, Callable[[Sequence[Part]], Part]] = {
     "*": lambda parts: (joined("·", [held(p, PRODUCT) for p in parts]), PRODUCT),
     "+": _sum,
     "-": _difference,
+    "cross": lambda parts: (joined("×", [held(p, PRODUCT) for p in parts]), PRODUCT),
     "sqrt": lambda parts: (Root(parts[0][0]), ATOM),
     "abs": lambda parts: (Fenced("|", parts[0][0], "|"), ATOM),
     "conj": lambda parts: (Barred(parts[0][0]), ATOM),
@@ -462,7 +480,7 @@ def joined(sign: str, nodes: Sequence[Node]) -> Node:
     for i, node in enumerate(nodes):
         if i and not (sign == "·" and found and isinstance(found[-1], Figures) and found[-1].source is None and _lettered(node)):
             found.append(Sign(sign))
-        found += node.items if isinstance(node, FormulaRow) else (node,)
+        found += items(node)
     return FormulaRow(tuple(found))
 
 

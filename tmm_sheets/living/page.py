@@ -21,7 +21,7 @@ from tmm_sheets.drawing.styles import line_types
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.living.anchors import hung, markers
 from tmm_sheets.living.motion import MotionProgram, motion
-from tmm_sheets.note import phrases
+from tmm_sheets.note.reader import unit_words
 from tmm_sheets.record import recording
 from tmm_sheets.record.recording import called
 from tmm_sheets.resources import template
@@ -98,7 +98,7 @@ def _units(record: Mapping[str, Any]) -> dict[str, str]:
     givens = record.get("motion", {}).get("givens", [])
     names = {step["unit"] for step in steps} | {a.get("unit", "") for step in steps for a in step["args"]} | {"mm"}
     names |= {name for given in givens for name in (given["unit"], given.get("shown", [""])[0])}
-    return {name: phrases.unit(name, words.paper()) for name in sorted(names) if name}
+    return {name: unit_words(name, words.paper()) for name in sorted(names) if name}
 
 
 def _written(record: Mapping[str, Any], made: MotionProgram | None) -> str:

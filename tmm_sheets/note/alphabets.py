@@ -1,12 +1,11 @@
-"""What formulas are written in: one walk of their tree, an alphabet for each way of writing it."""
+"""What the formulas of a note are written in: an alphabet for each way of writing their trees."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any, TypeVar
 from xml.sax.saxutils import escape
 
 from tmm_sheets.construction.formula import (
+    Alphabet,
     Barred,
     Fenced,
     Figures,
@@ -19,23 +18,8 @@ from tmm_sheets.construction.formula import (
     Sign,
     Underlined,
     Words,
+    spelt,
 )
-
-T = TypeVar("T")
-Alphabet = Mapping[type[Node], Callable[..., T]]
-"""How each kind of node is written: from its fields, the nodes among them written already."""
-
-
-def spelt(node: Node, alphabet: Alphabet[T]) -> T:
-    """A formula in an alphabet."""
-
-    def part(value: Any) -> Any:
-        if isinstance(value, Node):
-            return spelt(value, alphabet)
-        return [spelt(x, alphabet) for x in value] if isinstance(value, tuple) else value
-
-    return alphabet[type(node)](*map(part, vars(node).values()))
-
 
 # --- Typst's mathematics
 

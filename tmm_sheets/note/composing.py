@@ -9,33 +9,18 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import words as catalogues
-from tmm_sheets.construction.formula import letters_of, reworded
+from tmm_sheets.construction.formula import Node, letters_of, reworded
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
-from tmm_sheets.note import phrases
-from tmm_sheets.note.document import (
-    Block,
-    Explained,
-    Figure,
-    Formula,
-    Frame,
-    Heading,
-    Note,
-    NumberedTable,
-    NumberInText,
-    Paragraph,
-    Sheet,
-    Symbol,
-    Text,
-    Where,
-)
+from tmm_sheets.meanings import bare, words
+from tmm_sheets.note.document import Block, Figure, Frame, Heading, Note, NumberedTable, NumberInText, Paragraph, changed
 from tmm_sheets.note.phrases import Numbering, Scope, Writer
 from tmm_sheets.note.pictures import Pictures
-from tmm_sheets.note.reader import Reader
+from tmm_sheets.note.reader import Reader, listed
 from tmm_sheets.note.sections import errata, task
 from tmm_sheets.resources import template
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable
 
     from tmm_sheets.project import Project
 
@@ -88,88 +73,69 @@ def compose(project: Project, say: Callable[[str], None] = lambda _: None) -> No
         when there are no templates of that language, or nothing of the project can be drawn.
     """
     language = catalogues.paper()
-    said = phrases.words(language)
+    said = words(language)
     reader = reader_of(project, say)
     say("note")
     numbering = Numbering(literature())
     writer = Writer(language, numbering)
     parts = _parts(project)
     front_order, sections = _order_of(project)
-    scopes: dict[str, Scope] = {}
     base = general(reader)
+    summary = base
     before: dict[str, list[Block]] = {}
     for name in front_order:
         if name != "abstract":  # which tells of all the others
-            before[name] = writer.blocks(name, _with(task.scope(reader), base) if name == "task" else base)
+            before[name] = writer.blocks(name, base.within(task.fields(reader)) if name == "task" else base)
     body: list[Block] = []
     for section in sections:
         if section["needs"] not in parts:
             continue
         name = section["template"]
         try:
-            found = import_module(f"tmm_sheets.note.sections.{section['module']}").scope(reader)
+            found = import_module(f"tmm_sheets.note.sections.{section['module']}").fields(reader)
         except CannotBuild as e:
             reader.problems.append(str(e))
             continue
         if found is None:
             continue
-        scopes[name] = found
-        body += writer.blocks(name, _with(found, base))
-    summary = dict(base.fields)
-    for name, found in scopes.items():
-        summary[name] = {**dict.fromkeys(found.formulas, True), **found.fields, "is": True}
-    body += writer.blocks("conclusion", Scope(summary))
+        summary = summary.within({name: found})
+        body += writer.blocks(name, base.within(found))
+    body += writer.blocks("conclusion", summary)
     if project.variant.misprints or errata.of(project):
-        body += writer.blocks("errata", errata.scope(reader))
-    body += _sources(language, numbering)
+        body += writer.blocks("errata", base.within(errata.fields(reader)))
+    body += [Heading(1, "", said["literature"])]
+    body += [Paragraph((f"{i}. {numbering.literature[key]}",), "item") for i, key in enumerate(numbering.cited, 1)]
     sheets = reader.pictures.pages()
-    body += _appendices(sheets)
+    body += [replace(s, number=str(i), title=s.title.split(". ", 1)[-1]) for i, s in enumerate(sheets, 1)]
     told = [*(b for blocks in before.values() for b in blocks), *body]
     counts = {
         "figures": sum(isinstance(b, Figure) and not b.further for b in told),
         "tables": sum(isinstance(b, NumberedTable) for b in told),
         "sources": len(numbering.cited),
         "sheets": len(sheets),
-        "formulas": numbering.total.get("formula", 0),
     }
-    before["abstract"] = writer.blocks(
-        "abstract", Scope(summary | {k: NumberInText(str(v), f"note.{k}", v) for k, v in counts.items()} | {"pages": PAGES})
-    )
+    told_counts = {k: NumberInText(str(v), f"note.{k}", v) for k, v in counts.items()}
+    before["abstract"] = writer.blocks("abstract", summary.within({**told_counts, "pages": PAGES}))
     front = [b for name in front_order for b in before[name]]
     reminders = writer.blocks("reminders", base)
     block = project.variant.title_block
-    front, body, reminders = (list(_reworded(blocks, said["indices"])) for blocks in (front, body, reminders))
+
+
+    def in_language(blocks: list[Block]) -> tuple[Block, ...]:
+        return tuple(changed(b, lambda x: reworded(x, said["indices"]) if isinstance(x, Node) else x) for b in blocks)
+
     return Note(
         language,
         f"{catalogues.of_file(project.variant.project.title)}. {said['title']}",
         block.student or "tmm_sheets",
-        tuple(front),
+        in_language(front),
         _title_page(reader),
-        tuple(body),
+        in_language(body),
         _frame(reader),
-        tuple(reminders),
+        in_language(reminders),
         1,
         tuple(dict.fromkeys(reader.problems)),
     )
-
-
-def _reworded(blocks: Iterable[Block], table: dict[str, str]) -> Iterator[Block]:
-    """Blocks with the indices of letters in the language of the note."""
-
-    def text(parts: Text) -> Text:
-        return tuple(Symbol(reworded(x.node, table)) if isinstance(x, Symbol) else x for x in parts)
-
-    for b in blocks:
-        if isinstance(b, Paragraph):
-            yield replace(b, text=text(b.text))
-        elif isinstance(b, Formula):
-            yield replace(b, lines=tuple(reworded(x, table) for x in b.lines))
-        elif isinstance(b, Where):
-            yield replace(b, rows=tuple(Explained(reworded(r.symbol, table), text(r.meaning), r.unit) for r in b.rows))
-        elif isinstance(b, NumberedTable):
-            yield replace(b, rows=tuple(tuple(map(text, row)) for row in b.rows))
-        else:
-            yield b
 
 
 PAGES = NumberInText("\u0001", "note.pages", 0)
@@ -178,18 +144,7 @@ PAGES = NumberInText("\u0001", "note.pages", 0)
 
 def counted(note: Note, pages: int) -> Note:
     """The note with the number of its pages where the abstract tells it."""
-
-    def settled(text: Text) -> Text:
-        return tuple(
-            replace(x, text=str(pages), value=pages) if isinstance(x, NumberInText) and x.text == PAGES.text else x for x in text
-        )
-
-    front = tuple(replace(b, text=settled(b.text)) if isinstance(b, Paragraph) else b for b in note.front)
-    return replace(note, front=front)
-
-
-def _with(found: Scope, base: Scope) -> Scope:
-    return Scope(base.fields | found.fields, found.formulas, found.tables, found.figures, base.letters | found.letters)
+    return replace(note, front=changed(note.front, lambda x: replace(PAGES, text=str(pages), value=pages) if x == PAGES else x))
 
 
 def _parts(project: Project) -> set[str]:
@@ -202,65 +157,49 @@ def _parts(project: Project) -> set[str]:
 
 def general(r: Reader) -> Scope:
     """Fields that every template may use."""
-    parts = _parts(r.project)
-    v = r.project.variant
+    parts, v, said = _parts(r.project), r.project.variant, r.words
+    told = said["phrases"]
+    variant = catalogues.of_file(v.project.variant or "")
+    moment = v.balancing is None or v.balancing.kind == "moment"
     fields: dict[str, Any] = {
         "name": catalogues.of_file(v.project.title),
         "sheets": len(r.pictures.sheets),
         f"manual_{v.note.manual or '000'}": True,
         "institution": catalogues.of_file(v.title_block.institution or ""),
         **{f"has_{p}": True for p in parts},
+        **{f"keys_{p}": text if p in parts else "" for p, text in said["keys"].items()},
+        **{name: listed([text for p, text in said[name].items() if p in parts], told["and"]) for name in ("objects", "aims")},
+        "variant_text": told["variant"].format(variant=variant) if variant else "",
+        "and_forces": told["and_forces"] if "forces" in parts else "",
+        "checked_text": told["checked"] if {"forces", "flywheel"} & parts else "",
+        "way_text": told["way_forces" if "forces" in parts else "way_positions"] if "positions" in parts else "",
+        **said["balancing"]["moment" if moment else "force"],
+        "driven": v.input is not None,
+        "letters": _letters(r),
     }
-    said = phrases.words(r.language)
-    fields |= {f"keys_{p}": said["keys"][p] if p in parts else "" for p in said["keys"]}
-    fields["objects"] = phrases.listed([text for p, text in said["objects"].items() if p in parts], said["phrases"]["and"])
-    fields["aims"] = phrases.listed([text for p, text in said["aims"].items() if p in parts], said["phrases"]["and"])
-    variant = catalogues.of_file(v.project.variant or "")
-    fields["variant_text"] = said["phrases"]["variant"].format(variant=variant) if variant else ""
-    fields["and_forces"] = said["phrases"]["and_forces"] if "forces" in parts else ""
-    fields["checked_text"] = said["phrases"]["checked"] if {"forces", "flywheel"} & parts else ""
-    fields["way_text"] = said["phrases"]["way_forces" if "forces" in parts else "way_positions"] if "positions" in parts else ""
-    moment = v.balancing is None or v.balancing.kind == "moment"
-    fields |= said["balancing"]["moment" if moment else "force"]
-    fields["driven"] = v.input is not None
     if v.crank is not None:
         fields |= {"crank": v.crank.link, "given": v.crank.link}
     if v.input is not None:
         drive = r.project.mechanism.drive
         by = "input_by_place" if drive is not None and drive.slides else "input_by_length"
-        fields |= {"input": v.input.link, "given": v.input.link, "by": said["phrases"][by]}
+        fields |= {"input": v.input.link, "given": v.input.link, "by": told[by]}
     if "positions" in parts:
         fields["label"] = r.label
-    return Scope(fields, letters=_letters(r))
+    return Scope(fields, r)
 
 
 def _letters(r: Reader) -> dict[str, str]:
     """What the letters mean that the project chose itself: forces, moments, what balances them."""
-    said = phrases.words(r.language)
-    v = r.project.variant
-    found = {phrases.bare(letters_of(f.name)): said["loads"]["force"].format(link=f.link) for f in v.force}
-    found |= {phrases.bare(letters_of(m.name)): said["loads"]["moment"].format(link=m.link) for m in v.moment}
+    said, v = r.words, r.project.variant
+    found = [(f.name, said["loads"]["force"].format(link=f.link)) for f in v.force]
+    found += [(m.name, said["loads"]["moment"].format(link=m.link)) for m in v.moment]
     if v.balancing is not None:
-        kind = "moment" if v.balancing.kind == "moment" else "force"
-        found[phrases.bare(letters_of(v.balancing.name))] = said["balancing"][kind]["balancing_nom"]
-    return found
-
-
-def _sources(language: str, numbering: Numbering) -> list[Block]:
-    """The literature in order of citation."""
-    entries: list[Block] = [Heading(1, "", phrases.words(language)["literature"])]
-    for i, key in enumerate(numbering.cited, 1):
-        entries.append(Paragraph((f"{i}. {numbering.literature[key]}",), "item"))
-    return entries
-
-
-def _appendices(sheets: list[Sheet]) -> list[Block]:
-    return [replace(s, number=str(i), title=s.title.split(". ", 1)[-1]) for i, s in enumerate(sheets, 1)]
+        found.append((v.balancing.name, said["balancing"]["moment" if v.balancing.kind == "moment" else "force"]["balancing_nom"]))
+    return {bare(letters_of(name)): meaning for name, meaning in found}
 
 
 def _title_page(r: Reader) -> dict[str, Any]:
-    said = phrases.words(r.language)
-    block = r.project.variant.title_block
+    said, block = r.words, r.project.variant.title_block
     page = said["title_page"]
     return {
         "ministry": page["ministry"],
@@ -281,8 +220,7 @@ def _title_page(r: Reader) -> dict[str, Any]:
 
 
 def _frame(r: Reader) -> Frame:
-    said = phrases.words(r.language)
-    block = r.project.variant.title_block
+    said, block = r.words, r.project.variant.title_block
     fields = {
         "designation": block.designated(said["title_page"]["code"]),
         "student": block.student or "",

@@ -7,11 +7,11 @@ same.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field, fields, is_dataclass, replace
+from typing import Any, ClassVar, Literal
 
-from tmm_sheets.construction.formula import Node
+from tmm_sheets.construction.formula import Node, letters, letters_of
 
 
 @dataclass(frozen=True)
@@ -55,6 +55,28 @@ class Reference:
 
 Inline = str | NumberInText | Symbol | Reference
 Text = tuple[Inline, ...]
+Rows = tuple[tuple[Text, ...], ...]
+"""A table: its head, then its rows."""
+
+
+def lettered(name: str) -> Symbol:
+    """Letters in the text from lettering markup, or from the name of a step."""
+    return Symbol(letters(letters_of(name)))
+
+
+def enumerated(texts: Iterable[Text], sign: str = ", ") -> Text:
+    """Texts one after another with a sign between them."""
+    return tuple(x for i, text in enumerate(texts) for x in ((sign, *text) if i else text))
+
+
+@dataclass(frozen=True)
+class ShownFormula:
+    """A formula as a section offers it to its template: what is shown, and the letters that are to be explained."""
+
+    letters: Node
+    numbers: Node | None = None
+    explained: tuple[tuple[str, str], ...] = ()
+    """letters in markup, each with its unit in words."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +86,11 @@ class Heading:
     level: int
     number: str
     text: str
+
+    @property
+    def said(self) -> str:
+        """Number and title."""
+        return f"{self.number}  {self.text}" if self.number else self.text
 
 
 @dataclass(frozen=True)
@@ -109,7 +136,7 @@ class NumberedTable:
 
     number: str
     title: str
-    rows: tuple[tuple[Text, ...], ...]
+    rows: Rows
     parts: tuple[int, ...] = ()
 
     @property
@@ -142,6 +169,16 @@ class Figure:
         return self.part > 1
 
     @property
+    def file(self) -> str:
+        """Name of its file."""
+        return f"fig-{self.number.replace('.', '-')}" + (f"-{self.part}" if self.further else "")
+
+    @property
+    def on_page(self) -> tuple[float, float]:
+        """Width and height of the drawing on the page before it is turned, mm."""
+        return self.width, self.height
+
+    @property
     def high(self) -> float:
         """Height of the picture as it stands on the page, mm."""
         return self.width if self.turned else self.height
@@ -161,6 +198,21 @@ class Sheet:
     svg: bytes = field(repr=False)
     width: float = 0.0
     height: float = 0.0
+    turned: ClassVar = True
+
+    @property
+    def file(self) -> str:
+        """Name of its file."""
+        return f"sheet-{self.number}"
+
+    @property
+    def on_page(self) -> tuple[float, float]:
+        """Width and height of the drawing on the page before it is turned, mm."""
+        return SHEET, SHEET * self.height / self.width
+
+
+SHEET = 224.0
+"""Width of a sheet on its page, mm."""
 
 
 @dataclass(frozen=True)
@@ -219,13 +271,29 @@ class Note:
         yield from self.body
 
 
-def numbers(blocks: tuple[Block, ...] | list[Block]) -> Iterator[NumberInText]:
+def plain_text(text: Iterable[Inline]) -> str:
+    """Text without its letters."""
+    return "".join(str(x) for x in text if not isinstance(x, Symbol))
+
+
+def changed(value: Any, change: Callable[[Any], Any]) -> Any:
+    """A block, or what stands in one, with every formula and number changed."""
+    if isinstance(value, Node | NumberInText):
+        return change(value)
+    if isinstance(value, tuple):
+        return tuple(changed(x, change) for x in value)
+    if is_dataclass(value) and not isinstance(value, type):
+        return replace(value, **{f.name: changed(getattr(value, f.name), change) for f in fields(value)})
+    return value
+
+
+def numbers(blocks: Iterable[Block]) -> list[NumberInText]:
     """All numbers of the record that some blocks show, those of formulas too."""
-    for block in blocks:
-        if isinstance(block, Paragraph):
-            yield from (x for x in block.text if isinstance(x, NumberInText))
-        elif isinstance(block, NumberedTable):
-            yield from (x for row in block.rows for cell in row for x in cell if isinstance(x, NumberInText))
-        elif isinstance(block, Formula):
-            for line in block.lines:
-                yield from line.numbers()
+    found: list[NumberInText] = []
+
+    def seen(x: Any) -> Any:
+        found.extend(x.numbers() if isinstance(x, Node) else [x])
+        return x
+
+    changed(tuple(blocks), seen)
+    return found

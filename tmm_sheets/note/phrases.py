@@ -1,29 +1,38 @@
 """Phrase templates: the words of a note as data, ``templates/note/<language>/*.txt``; what they may hold is told in docs/note.md.
 
 A template is lines of text with fields in braces, letters between dollar signs and a few commands at the beginning of a line. It
-holds no number: numbers come from the record through the fields.
+holds no number: numbers come from the record through the fields. A field, formula or figure is one that the section has worked out,
+or is found in the record by its path.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cache
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
+from copy import deepcopy
+from dataclasses import dataclass, replace
+from itertools import groupby
 from typing import Any
 
-from tmm_sheets.construction.formula import Fenced, FormulaRow, Fraction, Node, Sign, letters, letters_of
+from tmm_sheets.construction.formula import (
+    Fenced,
+    FormulaRow,
+    Fraction,
+    Node,
+    Sign,
+    items,
+    letters,
+    letters_of,
+    row,
+)
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.meanings import bare as bare
-from tmm_sheets.meanings import folder as folder
-from tmm_sheets.meanings import meaning_of as meaning_of
-from tmm_sheets.meanings import words as words
+from tmm_sheets.meanings import bare, folder, meaning_of, words
 from tmm_sheets.note.alphabets import characters
 from tmm_sheets.note.document import (
     Block,
     Contents,
     Explained,
-    Figure,
     Formula,
     Heading,
     Inline,
@@ -32,12 +41,16 @@ from tmm_sheets.note.document import (
     NumberInText,
     Paragraph,
     Reference,
+    ShownFormula,
     Symbol,
     Text,
     Where,
 )
-from tmm_sheets.task import units
+from tmm_sheets.note.reader import Reader
 from tmm_sheets.words import plural_form, tell
+
+Lines = list[tuple[int, str]]
+"""Lines of a template with their numbers."""
 
 
 def text_of(language: str, name: str) -> str:
@@ -51,36 +64,40 @@ def names(language: str) -> list[str]:
 
 
 @dataclass(frozen=True)
-class ShownFormula:
-    """A formula as a section offers it to its template: what is shown, and the letters that are to be explained."""
-
-    letters: Node
-    numbers: Node | None = None
-    explained: tuple[tuple[str, str], ...] = ()
-    """letters in markup, each with its unit in words."""
-
-
-@dataclass
 class Scope:
-    """What a template may name: fields, formulas, tables, figures, lists for %each."""
+    """What a template may name: ``fields`` of its section, where ``letters`` says what letters mean only there, and the record."""
 
-    fields: dict[str, Any] = field(default_factory=dict)
-    formulas: dict[str, ShownFormula | list[ShownFormula]] = field(default_factory=dict)
-    tables: dict[str, tuple[tuple[Text, ...], ...]] = field(default_factory=dict)
-    figures: dict[str, Figure] = field(default_factory=dict)
-    letters: dict[str, str] = field(default_factory=dict)
-    """what letters mean here and nowhere else, by the letters without markup"""
+    fields: Mapping[str, Any]
+    reader: Reader | None = None
 
     def within(self, fields: Mapping[str, Any]) -> Scope:
-        """The same with some fields more."""
-        own = {k: v for k, v in fields.items() if not isinstance(v, ShownFormula | Figure)}
-        return Scope(
-            self.fields | own,
-            self.formulas | {k: v for k, v in fields.items() if isinstance(v, ShownFormula)},
-            self.tables,
-            self.figures | {k: v for k, v in fields.items() if isinstance(v, Figure)},
-            self.letters,
-        )
+        """The same with some fields more, among them meanings of letters."""
+        letters = {**self.fields.get("letters", {}), **fields.get("letters", {})}
+        return Scope({**self.fields, **fields, "letters": letters}, self.reader)
+
+    def own(self, name: str) -> Any:
+        """A field of the section, with dots one of another section; None for none."""
+        value: Any = self.fields
+        for part in name.split("."):
+            value = value.get(part) if isinstance(value, Mapping) else None
+        return value
+
+    def found(self, name: str, kind: str = "number") -> Any:
+        """A field of the section, or what the record has under that path: number or formula of a step, figures of a view."""
+        value = self.own(name)
+        if value is not None or self.reader is None:
+            return value
+        if kind == "formula":
+            return self.reader.formula_of(name)
+        return self.reader.pictures.figures(name) if kind == "figure" else self.reader.number_of(name)
+
+    def label(self, name: str) -> str:
+        """Label of a figure, table or formula: in a list that of its item, where the items are counted."""
+        return f"{name}-{self.fields['nth']}" if "nth" in self.fields else name
+
+    def known(self) -> str:
+        """Names of the fields, for a message."""
+        return ", ".join(sorted(self.fields)) or "–"
 
 
 class Numbering:
@@ -95,7 +112,6 @@ class Numbering:
         self.labels: dict[str, str] = {}
         self.literature = literature
         self.cited: list[str] = []
-        self.total: dict[str, int] = {}
 
     def heading(self, level: int) -> str:
         """Number of the next section of that level."""
@@ -113,21 +129,13 @@ class Numbering:
 
     def next(self, kind: str, label: str) -> str:
         """Number of the next formula, figure or table of the section."""
-        self.counts[self.section, kind] = self.counts.get((self.section, kind), 0) + 1
-        self.total[kind] = self.total.get(kind, 0) + 1
-        found = self.again(kind)
-        self.labels[f"{kind}:{label}"] = found
+        n = self.counts[self.section, kind] = self.counts.get((self.section, kind), 0) + 1
+        found = self.labels[f"{kind}:{label}"] = f"{self.section}.{n}" if self.section else str(n)
         return found
 
-    def again(self, kind: str) -> str:
-        """Number of the last formula, figure or table."""
-        n = self.counts[self.section, kind]
-        return f"{self.section}.{n}" if self.section else str(n)
-
     def cite(self, key: str) -> str:
-        """Number of a source."""
-        if key not in self.literature:
-            raise KeyError(key)
+        """Number of a source; KeyError for one that the literature does not have."""
+        _ = self.literature[key]
         if key not in self.cited:
             self.cited.append(key)
         return str(self.cited.index(key) + 1)
@@ -147,7 +155,6 @@ class Writer:
         self.numbering = numbering
         self.known: set[tuple[str, str, str]] = set()
         self.template = ""
-        self.pending: set[str] = set()
         self.running: list[Inline] = []
         """the paragraph that is being written: it ends with an empty line or with what is no text"""
 
@@ -160,34 +167,28 @@ class Writer:
             with file and line of what the template asks for and the section does not have.
         """
         self.template = name
-        self.pending = set(re.findall(r"\{@(\w+:[\w-]+)\}", text_of(self.language, name)))
-        self._foresee(name, scope)
-        lines = list(enumerate(text_of(self.language, name).splitlines(), 1))
+        text = text_of(self.language, name)
+        lines = list(enumerate(text.splitlines(), 1))
+        self._foresee(lines, scope, {to for to in _NAMED.findall(text) if to.startswith("@") and not to.startswith("@cite:")})
         try:
             return [*self._made(lines, scope), *self._paragraph()]
         except _Wrong as e:
             path = str(folder(self.language) / f"{name}.txt")
             raise BadInput(Problem(e.what, path, e.line)) from None
 
-    def _foresee(self, name: str, scope: Scope) -> None:
+    def _foresee(self, lines: Lines, scope: Scope, asked: set[str]) -> None:
         """Numbers of what a template refers to before it comes: they are those of a first reading."""
         numbering, known = self.numbering, self.known
-        trial = Numbering(numbering.literature)
-        trial.section, trial.labels = numbering.section, dict.fromkeys(self.pending, "0") | numbering.labels
-        trial.last, trial.part, trial.counts = numbering.last, numbering.part, dict(numbering.counts)
-        self.numbering, self.known = trial, set(known)
-        try:
-            lines = list(enumerate(text_of(self.language, name).splitlines(), 1))
-            for _ in self._made(lines, scope):
-                pass
-        except _Wrong:
-            pass  # told by the reading that counts
-        finally:
-            self.numbering, self.known = numbering, known
-            self.running.clear()
-        numbering.labels |= {k: v for k, v in trial.labels.items() if v != "0"}
+        self.numbering, self.known = deepcopy(numbering), set(known)
+        self.numbering.labels = {to[1:]: "" for to in asked} | numbering.labels
+        with suppress(_Wrong):  # told by the reading that counts
+            list(self._made(lines, scope))
+        foreseen = {k: v for k, v in self.numbering.labels.items() if v}
+        self.numbering, self.known = numbering, known
+        self.running.clear()
+        numbering.labels |= foreseen
 
-    def _made(self, lines: list[tuple[int, str]], scope: Scope) -> Iterator[Block]:
+    def _made(self, lines: Lines, scope: Scope) -> Iterator[Block]:
         i = 0
         while i < len(lines):
             n, line = lines[i]
@@ -211,7 +212,7 @@ class Writer:
 
     def _paragraph(self) -> Iterator[Block]:
         """The paragraph that the lines so far make."""
-        text = tuple(_tidied(self.running))
+        text = _tidied(self.running)
         self.running.clear()
         if text:
             yield Paragraph(text)
@@ -220,63 +221,72 @@ class Writer:
         level = len(line) - len(line.lstrip("="))
         text = line[level:].strip()
         number = self.numbering.unnumbered() if text.startswith("!") else self.numbering.heading(level)
-        return Heading(level, number, "".join(map(str, self.text(text.lstrip("! "), n, scope))))
+        return Heading(level, number, self._plain(text.lstrip("! "), n, scope))
 
-    def _conditional(
-        self, word: str, what: str, inner: list[tuple[int, str]], other: list[tuple[int, str]], scope: Scope
-    ) -> Iterator[Block]:
+    def _conditional(self, word: str, what: str, inner: Lines, other: Lines, scope: Scope) -> Iterator[Block]:
         if word == "if":
-            negated = what.startswith("not ")
             name = what.removeprefix("not ").strip()
-            yield from self._made(inner if bool(_found(scope, name)) != negated else other, scope)
+            there = any(scope.found(name, kind) for kind in ("number", "figure"))
+            yield from self._made(inner if there != what.startswith("not ") else other, scope)
             return
-        made = [block for item in _found(scope, what) or () for block in self._made(inner, scope.within(item))]
+        made = [block for item in scope.own(what) or () for block in self._made(inner, scope.within(item))]
         yield from [*made[:-1], *map(_closed, made[-1:])]
 
     def _command(self, word: str, what: str, n: int, scope: Scope) -> Iterator[Block]:
-        name, _, title = (part.strip() for part in what.partition("|"))
-        if word == "page":
-            yield NewPage()
-        elif word == "contents":
-            yield Contents(what)
-        elif word in ("centre", "right"):
-            yield Paragraph(self.text(what, n, scope), "centre" if word == "centre" else "right")
-        elif word in ("formula", "formula?"):
-            if name not in scope.formulas and word.endswith("?"):
-                return
-            if name not in scope.formulas:
-                raise _Wrong(tell('there is no formula "{name}" here; there are {known}').format(
-                    name=name, known=", ".join(scope.formulas) or "–"), n)
-            yield from self._formula(label(scope, name), scope.formulas[name], scope.letters)
-        elif word == "table":
-            if name not in scope.tables:
-                raise _Wrong(tell('there is no table "{name}" here; there are {known}').format(
-                    name=name, known=", ".join(scope.tables) or "–"), n)
-            rows = scope.tables[name]
-            if len(rows) > 1:
-                yield NumberedTable(self.numbering.next("table", label(scope, name)), "".join(map(str, self.text(title, n, scope))),
-                                rows)
-        elif word == "figure":
-            figure = scope.figures.get(name)
-            if figure is not None:
-                number = self.numbering.again("figure") if figure.further else self.numbering.next("figure", label(scope, name))
-                yield replace(figure, number=number, title="".join(map(str, self.text(title, n, scope))))
-        else:
+        commands: dict[str, Callable[[], Iterable[Block]]] = {
+            "page": lambda: [NewPage()],
+            "contents": lambda: [Contents(what)],
+            "centre": lambda: [Paragraph(self.text(what, n, scope), "centre")],
+            "right": lambda: [Paragraph(self.text(what, n, scope), "right")],
+            "formula": lambda: self._formula(what, n, scope),
+            "formula?": lambda: self._formula(what, 0, scope),
+            "formulas": lambda: self._formulas(what, scope),
+            "table": lambda: self._table(what, n, scope),
+            "figure": lambda: self._figures(what, n, scope),
+        }
+        if word not in commands:
             raise _Wrong(tell('"%{word}" is no command of a template').format(word=word), n)
+        yield from commands[word]()
 
-    def _formula(self, name: str, said: ShownFormula | list[ShownFormula], own: Mapping[str, str]) -> Iterator[Block]:
-        for i, one in enumerate(said if isinstance(said, list) else [said]):
-            number = self.numbering.next("formula", name if not i else f"{name}-{i}")
-            rows = tuple(self._explained(one, own))
-            together = one.numbers is not None and characters(one.letters) + characters(one.numbers) < LONGEST
-            if one.numbers is not None and together:
-                yield Formula((FormulaRow((*items(one.letters), Sign("="), *items(one.numbers))),), f"({number})")
-            else:
-                yield Formula(broken(one.letters), f"({number})")
-            if rows:
-                yield Where(words(self.language)["where"], rows)
-            if one.numbers is not None and not together:
-                yield Formula(broken(FormulaRow((*items(_left(one.letters) or FormulaRow(())), Sign("="), *items(one.numbers)))))
+    def _table(self, what: str, n: int, scope: Scope) -> Iterator[Block]:
+        name, title = map(str.strip, what.split("|"))
+        rows = scope.own(name)
+        if rows is None:
+            raise _Wrong(tell('there is no table "{name}" here; there are {known}').format(name=name, known=scope.known()), n)
+        if len(rows) > 1:
+            yield NumberedTable(self.numbering.next("table", scope.label(name)), self._plain(title, n, scope), rows)
+
+    def _figures(self, what: str, n: int, scope: Scope) -> Iterator[Block]:
+        name, title = map(str.strip, what.split("|"))
+        parts = scope.found(name, "figure") or ()
+        number = self.numbering.next("figure", scope.label(name)) if parts else ""
+        yield from (replace(part, number=number, title=self._plain(title, n, scope)) for part in parts)
+
+    def _formulas(self, plan: str, scope: Scope) -> Iterator[Block]:
+        for said in scope.reader.formulas(plan) if scope.reader is not None else ():
+            yield from self._shown(plan, said, scope)
+
+    def _formula(self, name: str, n: int, scope: Scope) -> Iterator[Block]:
+        """A formula; one that must be there has the number ``n`` of its line."""
+        said = scope.found(name, "formula")
+        if said is not None:
+            yield from self._shown(scope.label(name), said, scope)
+        elif n:
+            raise _Wrong(tell('there is no formula "{name}" here; there are {known}').format(name=name, known=scope.known()), n)
+
+    def _shown(self, name: str, said: ShownFormula, scope: Scope) -> Iterator[Block]:
+        number = self.numbering.next("formula", name)
+        rows = tuple(self._explained(said, scope.fields.get("letters", {})))
+        together = said.numbers is not None and characters(said.letters) + characters(said.numbers) < LONGEST
+        if said.numbers is not None and together:
+            yield Formula((row(said.letters, Sign("="), said.numbers),), f"({number})")
+        else:
+            yield Formula(broken(said.letters), f"({number})")
+        if rows:
+            yield Where(words(self.language)["where"], rows)
+        if said.numbers is not None and not together:
+            left = items(said.letters)
+            yield Formula(broken(row(*left[:left.index(Sign("="))], Sign("="), said.numbers)))
 
     def _explained(self, said: ShownFormula, own: Mapping[str, str]) -> Iterator[Explained]:
         for markup, unit in said.explained:
@@ -302,34 +312,30 @@ class Writer:
         found.append(line[at:])
         return tuple(x for x in found if x != "")
 
+    def _plain(self, line: str, n: int, scope: Scope) -> str:
+        return "".join(map(str, self.text(line, n, scope)))
+
     def _all_there(self, text: str, scope: Scope) -> bool:
         """Whether everything that some words refer to is in the note, and every field they name."""
-        for name in _NAMED.findall(text):
-            if name.startswith("@") and not name.startswith("@cite:"):
-                kind, _, own = name[1:].partition(":")
-                if f"{kind}:{label(scope, own)}" not in self.numbering.labels and name[1:] not in self.numbering.labels:
-                    return False
-            elif not name.startswith(("@", "#")) and _found(scope, name) is None:
-                return False
-        return True
+        return all(scope.found(name) is not None if not name.startswith(("@", "#")) else
+                   name.startswith(("#", "@cite:")) or self._label(name[1:], scope) is not None
+                   for name in _NAMED.findall(text))
 
-    def _field(self, name: str, n: int, scope: Scope) -> list[Inline]:
+    def _label(self, to: str, scope: Scope) -> str | None:
+        """Number of what a reference leads to, in a list that of its item; None for what is not in the note."""
+        kind, _, name = to.partition(":")
+        return self.numbering.labels.get(f"{kind}:{scope.label(name)}", self.numbering.labels.get(to))
+
+    def _field(self, name: str, n: int, scope: Scope) -> Text:
         if name.startswith("@"):
-            return [self._reference(name[1:], n, scope)]
+            return (self._reference(name[1:], n, scope),)
         if name.startswith("#"):
             key, _, forms = name[1:].partition(" ")
-            return [plural_form(forms.split("|"), int(_count(_found(scope, key))), self.language)]
-        value = _found(scope, name)
+            return (plural_form(forms.split("|"), int(_count(scope.found(key))), self.language),)
+        value = scope.found(name)
         if value is None:
-            raise _Wrong(tell('there is no field "{name}" here; there are {known}').format(
-                    name=name, known=", ".join(sorted(scope.fields))), n)
-        if isinstance(value, str | NumberInText | Symbol):
-            return [value]
-        if isinstance(value, int):
-            return [str(value)]
-        if isinstance(value, Node):
-            return [Symbol(value)]
-        return list(value)
+            raise _Wrong(tell('there is no field "{name}" here; there are {known}').format(name=name, known=scope.known()), n)
+        return (str(value),) if isinstance(value, int) else value if isinstance(value, tuple) else (value,)
 
     def _reference(self, to: str, n: int, scope: Scope) -> Reference:
         kind, _, name = to.partition(":")
@@ -339,8 +345,7 @@ class Writer:
                 return Reference(f"[{self.numbering.cite(key)}{', ' + place if place else ''}]")
             except KeyError:
                 raise _Wrong(tell('there is no source "{key}" in literature.toml').format(key=key), n) from None
-        labels = self.numbering.labels
-        found = labels.get(f"{kind}:{label(scope, name)}", labels.get(to))
+        found = self._label(to, scope)
         if found is None:
             raise _Wrong(tell('nothing has the label "{to}"').format(to=to), n)
         return Reference(f"({found})" if kind == "formula" else found, f"{kind}:{found}")
@@ -385,56 +390,21 @@ def broken(node: Node) -> tuple[Node, ...]:
 _BREAKS = (Sign("+"), Sign("−"), Sign("="))
 
 
-def items(node: Node) -> tuple[Node, ...]:
-    """Parts of a row, or the node alone."""
-    return node.items if isinstance(node, FormulaRow) else (node,)
-
-
-def label(scope: Scope, name: str) -> str:
-    """Label of a figure, table or formula: in a list that of its item, where the items are counted."""
-    return f"{name}-{scope.fields['nth']}" if "nth" in scope.fields else name
-
-
-def _left(node: Node) -> Node | None:
-    """What stands before the first sign of equality."""
-    if isinstance(node, FormulaRow):
-        for i, x in enumerate(node.items):
-            if x == Sign("="):
-                return FormulaRow(node.items[:i])
-    return None
-
-
 def _count(value: Any) -> float:
     return value.value if isinstance(value, NumberInText) else len(value) if isinstance(value, list | tuple) else float(str(value))
 
 
-@cache
-def unit(name: str, language: str) -> str:
-    """A unit of the record or of a project file in words; one that the language has no word for as it stands."""
-    return "" if name == "1" else _units(language).get(units.common(name), name)
-
-
-@cache
-def _units(language: str) -> dict[str, str]:
-    """Words for units by their common spelling."""
-    return {units.common(name): said for name, said in words(language)["units"].items()}
-
-
-def _tidied(text: Iterable[Inline]) -> Iterator[Inline]:
+def _tidied(text: Iterable[Inline]) -> Text:
     """The same with one space between words and none at the ends."""
-    joined: list[Inline] = []
-    for x in text:
-        if isinstance(x, str) and joined and isinstance(joined[-1], str):
-            joined[-1] += x
-        else:
-            joined.append(x)
-    for i, x in enumerate(joined):
-        if isinstance(x, str):
-            x = re.sub(" +", " ", x)
-            x = x.lstrip(" ") if not i else x
-            x = x.rstrip(" ") if i == len(joined) - 1 else x
-        if x != "":
-            yield x
+    found: list[Inline] = []
+    for is_words, run in groupby(text, lambda x: isinstance(x, str)):
+        parts = list(run)
+        found += [re.sub(" +", " ", "".join(map(str, parts)))] if is_words else parts
+    if found and isinstance(found[0], str):
+        found[0] = found[0].lstrip(" ")
+    if found and isinstance(found[-1], str):
+        found[-1] = found[-1].rstrip(" ")
+    return tuple(x for x in found if x != "")
 
 
 def _closed(block: Block) -> Block:
@@ -450,18 +420,7 @@ class _Wrong(Exception):
         self.what, self.line = what, line
 
 
-def _found(scope: Scope, name: str) -> Any:
-    value: Any = scope.fields
-    for part in name.split("."):
-        value = value.get(part) if isinstance(value, Mapping) else getattr(value, part, None)
-        if value is None:
-            break
-    if value is None:
-        return name in scope.formulas or name in scope.figures or len(scope.tables.get(name, ())) > 1 or None
-    return value
-
-
-def _split(lines: list[tuple[int, str]], i: int, n: int) -> tuple[list[tuple[int, str]], list[tuple[int, str]], int]:
+def _split(lines: Lines, i: int, n: int) -> tuple[Lines, Lines, int]:
     """What is inside a command up to its %end, what after its %else, and where it goes on."""
     depth, other = 0, -1
     for j in range(i, len(lines)):
@@ -476,13 +435,3 @@ def _split(lines: list[tuple[int, str]], i: int, n: int) -> tuple[list[tuple[int
             end = other if other >= 0 else j
             return lines[i:end], lines[end + 1 : j] if other >= 0 else [], j + 1
     raise _Wrong(tell("this command has no %end"), n)
-
-
-def plain_text(text: Iterable[Inline]) -> str:
-    """Text without its marks."""
-    return "".join(str(x) if not isinstance(x, Symbol) else "" for x in text)
-
-
-def listed(items: Sequence[str], last: str) -> str:
-    """A list in words."""
-    return last.join(filter(None, (", ".join(items[:-1]), *items[-1:])))

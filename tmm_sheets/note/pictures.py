@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
-
-from tmm_sheets.backends import svg
-from tmm_sheets.box import Box
-from tmm_sheets.drawing.marks import Line, Mark, Polyline, Text, flat
-from tmm_sheets.note.document import Figure, Sheet
-
-if TYPE_CHECKING:
-    from tmm_sheets.sheets.composed import Composed
-if TYPE_CHECKING:
-    from tmm_sheets.drawing.marks import Points
-from collections.abc import Iterator
 from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tmm_sheets.backends import svg
+from tmm_sheets.box import Box
 from tmm_sheets.drawing.ink import arcs_inside, letters, polyline_inside, segment_inside
-from tmm_sheets.drawing.marks import Arc, Fill
+from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, Polyline, Text, flat
+from tmm_sheets.note.document import Figure, Sheet
+
+if TYPE_CHECKING:
+    from tmm_sheets.drawing.marks import Points
+    from tmm_sheets.sheets.composed import Composed
 
 BESIDE = 12.0
 """How far from a drawing its lettering stands at most, mm on the sheet; what is farther off is a title or a remark."""
@@ -104,6 +100,19 @@ TITLE, UNDER = 5.0, 25.0
 """Least height of the lettering of titles, and how far under one its picture may begin, mm on the sheet: no cut goes there."""
 
 
+FOCUS = {
+    "gear.engagement": ("gear-involute-1", "gear-involute-2", "gear-tooth-1", "gear-tooth-2", *(
+        f"gear-engagement/{name}" for name in ("a1", "b1", "a2", "b2", "alpha_w", "N1", "N2", "B"))),
+    "energy-mass": ("curve", "energy-mass/points", "energy-mass/a", "energy-mass/b", "energy-mass/ab"),
+    "cam_profile.profile": ("curve", "cam-profile/O"),
+}  # fmt: skip
+"""Steps, plans and roles that are to be seen of a view where the whole is too large to be read: the teeth that touch, the curve."""
+UPPER = {"gear-sliding": 300.0}
+"""Views of which a page takes so much of the upper part, mm of the sheet: graphs that go to infinity below."""
+PARTED = ("cam.motion", "diagrams.motion", "mertsalov.column")
+"""Views that are shown in several pictures one under another where they are too large to be read as one."""
+
+
 class Pictures:
     """The views of some sheets by what draws them: the arrangement's name of a view, or the plan it shows."""
 
@@ -115,10 +124,7 @@ class Pictures:
             drawing = composed.drawing
             for view in drawing.views:
                 marks = tuple(k for a, b in view.spans for k in range(a, b))
-                shares: dict[str, int] = {}
-                for k in marks:
-                    of = drawing.marks[k].of
-                    shares[of] = shares.get(of, 0) + 1
+                shares = Counter(drawing.marks[k].of for k in marks)
                 if marks:
                     self._drawn.setdefault(_drawn_by(composed, marks[0]), []).append((n, marks, True))
                 for of, share in shares.items():
@@ -126,13 +132,11 @@ class Pictures:
                     if of.startswith("velocity plan "):
                         self._views.setdefault("velocity plans", []).append((n, marks, True))
 
-    def position(self, view: str, label: str, own: bool = False) -> Figure | None:
+    def position(self, view: str, label: str, own: bool = False) -> list[Figure]:
         """The view of that kind at a position, also where the plan has several labels: velocity plan 1, 9."""
-        for name in self._views:
-            head, _, labels = name.partition(f"{view} ")
-            if not head and label in labels.split(", "):
-                return self.figure(name, own=own)
-        return None
+        names = (name for name in self._views if name.startswith(f"{view} ") and label in name.removeprefix(f"{view} ").split(", "))
+        name = next(names, None)
+        return self.figures(name, own) if name is not None else []
 
     def sheet_of(self, name: str) -> int | None:
         """Number of the sheet that shows a view; None when none does."""
@@ -144,67 +148,35 @@ class Pictures:
         found = {n for name, views in self._drawn.items() if name.startswith(rooms) for n, *_ in views}
         return [{"number": str(n)} for n in sorted(found) if str(n) != told]
 
-    def figure(self, name: str, focus: Sequence[str] = (), own: bool = False) -> Figure | None:
-        """The view of that name as a figure; None when no sheet shows it.
+    def figures(self, name: str, own: bool = False) -> list[Figure]:
+        """The view of that name as a figure, in parts one of :data:`PARTED`; none when no sheet shows it.
 
-        ``focus`` names steps or plans that are to be seen where the whole view is too large to be read; ``own`` takes the marks
-        of that name only, without what else stands in the view.
+        ``own`` takes the marks of that name only, without what else stands in the view.
         """
-        found = self._views.get(name) or self._drawn.get(name)
+        found = self._drawn.get(name) or self._views.get(name) if name in PARTED else self._views.get(name) or self._drawn.get(name)
         if not found:
-            return None
+            return []
         n = found[0][0]
         main = [x for x in found if x[2]] or found
-        drawing = self.sheets[n].drawing
-        marks = [drawing.marks[k] for view in main if view[0] == n for k in view[1]]
+        marks = [self.sheets[n].drawing.marks[k] for view in main if view[0] == n for k in view[1]]
         if own:
             labels = name.split(" ", 2)[-1]
             own_labels = {labels, *labels.split(", ")}
             marks = [m for m in marks if m.of == name or (m.by is not None and m.by.position in own_labels and m.by.role == "text")]
         box = extent(marks)
+        if name in PARTED:
+            return _parts(name, marks, box)
+        if name in UPPER:
+            box = Box(box.x0, max(box.y0, box.y1 - UPPER[name]), box.x1, box.y1)
+            return [_figure(name, windowed(marks, box.inset(MARGIN)), box)]
         if not readable(box):
             marks = bare(marks)
             box = extent(marks)
-        chosen = [m for m in marks if m.by is not None and _within(m.by.step, m.by.role, focus)]
+        chosen = [m for m in marks if m.by is not None and _within(m.by.step, m.by.role, FOCUS.get(name, ()))]
         if chosen and not readable(box, SMALLEST):
-            window = _cut(_about(extent(chosen), box))
-            return _figure(name, windowed(marks, window, "thin"), window.inset(-MARGIN))
-        return _figure(name, marks, box)
-
-    def top(self, name: str, height: float) -> Figure | None:
-        """All views of that name as one figure, of a high one the upper part, ``height`` mm of the sheet."""
-        found = self._views.get(name)
-        if not found:
-            return None
-        n = found[0][0]
-        drawn = [self.sheets[n].drawing.marks[k] for view in found if view[0] == n and view[2] for k in view[1]]
-        box = extent(drawn)
-        box = Box(box.x0, max(box.y0, box.y1 - height), box.x1, box.y1)
-        return _figure(name, windowed(drawn, box.inset(MARGIN)), box)
-
-    def parts(self, name: str) -> list[Figure]:
-        """The view as several figures, one under another, where it is too large to be read as one."""
-        found = self._drawn.get(name) or self._views.get(name)
-        if not found:
-            return []
-        n = found[0][0]
-        drawing = self.sheets[n].drawing
-        marks = [drawing.marks[k] for view in found if view[0] == n and view[2] for k in view[1]]
-        box = extent(marks)
-        count = 1
-        while count < 4 and not readable(Box(box.x0, box.y0, box.x1, box.y0 + box.height / count)):
-            count += 1
-        if count == 1:
-            return [_figure(name, marks, box)]
-        cuts = _gaps(marks, box, count)
-        made = []
-        for low, high in pairwise(cuts):
-            part = [m for m in marks if low <= _middle(m).imag < high]
-            if part:
-                place = extent(part)
-                place = Box(place.x0, max(place.y0, low - 6), place.x1, min(place.y1, high + 6))
-                made.append(_figure(name, windowed(part, place.inset(MARGIN)), place))
-        return [replace(figure, part=i) for i, figure in enumerate(reversed(made), 1)]
+            box = _cut(_about(extent(chosen), box))
+            return [_figure(name, windowed(marks, box, "thin"), box.inset(-MARGIN))]
+        return [_figure(name, marks, box)]
 
     def pages(self) -> list[Sheet]:
         """The sheets as they stand in the appendices, on A4 each."""
@@ -214,6 +186,21 @@ class Pictures:
             data = svg.picture(drawing.marks, Box(0, 0, drawing.width, drawing.height))
             made.append(Sheet(str(n), drawing.title, f"sheet{n}", data, drawing.width, drawing.height))
         return made
+
+
+def _parts(name: str, marks: Sequence[Mark], box: Box) -> list[Figure]:
+    """A view as several figures, one under another, where it is too large to be read as one."""
+    count = next((n for n in (1, 2, 3) if readable(Box(box.x0, box.y0, box.x1, box.y0 + box.height / n))), 4)
+    if count == 1:
+        return [_figure(name, marks, box)]
+    made = []
+    for low, high in pairwise(_gaps(marks, box, count)):
+        part = [m for m in marks if low <= _middle(m).imag < high]
+        if part:
+            place = extent(part)
+            place = Box(place.x0, max(place.y0, low - 6), place.x1, min(place.y1, high + 6))
+            made.append(_figure(name, windowed(part, place.inset(MARGIN)), place))
+    return [replace(figure, part=i) for i, figure in enumerate(reversed(made), 1)]
 
 
 def _drawn_by(composed: Composed, k: int) -> str:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
-from math import copysign, degrees, floor, isfinite, log10, pi
+from functools import cache, cached_property
+from math import copysign, floor, isfinite, log10, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tmm_sheets.construction import digits, expression, protocol
 from tmm_sheets.construction.digits import DIGITS, Digits, shown
+from tmm_sheets.construction.equation import tree_of_step
 from tmm_sheets.construction.formula import (
     Figures,
     FormulaRow,
@@ -22,21 +23,19 @@ from tmm_sheets.construction.formula import (
     Sign,
     Words,
     arguments,
-    can_be_written,
+    filled,
     letters,
     letters_of,
     of_tree,
-    renumbered,
+    row,
     simplified,
-    with_numbers,
 )
 from tmm_sheets.construction.given import FoundNumber, Given, GivenNumber
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.note import phrases
-from tmm_sheets.note.document import Inline, NumberInText, Symbol, Text
-from tmm_sheets.note.phrases import ShownFormula
+from tmm_sheets.meanings import words
+from tmm_sheets.note.document import Inline, NumberInText, Rows, ShownFormula, Symbol, Text
 from tmm_sheets.numbers import degrees_and_minutes, fixed, is_zero, number
 from tmm_sheets.record.recording import book_of, unit
 from tmm_sheets.task import units
@@ -68,6 +67,20 @@ class NoteQuantity:
     digits: int = DIGITS
 
 
+@dataclass(frozen=True)
+class Column:
+    """Numbers of a table over positions; ``kind`` is the size of their kind, one or one a position, see :meth:`Reader.number`.
+
+    With ``decimals`` all have so many.
+    """
+
+    head: Text
+    values: Any
+    step: str
+    kind: Any = 0.0
+    decimals: int | None = None
+
+
 @dataclass
 class Reader:
     """A project, its record and its sheets, and how a note says them."""
@@ -77,51 +90,99 @@ class Reader:
     pictures: Pictures
     scales: Mapping[str, Scale]
     problems: list[str] = field(default_factory=list)
-    _book: Any = None
+    _formulas: dict[str, ShownFormula | None] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def book(self) -> StepIndex:
-        """Steps and plans as recorded so far."""
-        if self._book is None:
-            self._book = book_of(self.project)
-        return self._book  # type: ignore[no-any-return]
+        """Steps and plans as recorded when they were first asked for."""
+        return book_of(self.project)
 
     def forget(self) -> None:
         """Read the record anew: more has been computed since."""
-        self._book = None
+        self.__dict__.pop("book", None)
+
+    @property
+    def words(self) -> dict[str, Any]:
+        """Single words of the language."""
+        return words(self.language)
+
+    # --- what templates find by its path
 
     def plan(self, name: str) -> Plan | None:
         """A plan of the project, None for one that was not made."""
-        for of_part in self.project.plans.values():
-            if of_part and name in of_part:
-                return of_part[name]
-        return None
+        return next((of_part[name] for of_part in self.project.plans.values() if of_part and name in of_part), None)
+
+    def step(self, path: str) -> Step | None:
+        """The step "plan/name", None for one that was not made."""
+        name, _, own = path.partition("/")
+        plan = self.plan(name) if own else None
+        return plan[own] if plan is not None and own in plan else None
+
+    def formula_of(self, path: str) -> ShownFormula | None:
+        """The formula of the step "plan/name", see :meth:`formula`."""
+        if path not in self._formulas:
+            step = self.step(path)
+            self._formulas[path] = self.formula(step) if step is not None else None
+        return self._formulas[path]
+
+    def number_of(self, path: str) -> NumberInText | None:
+        """The value of the step "plan/name", an angle in degrees and minutes; None for one that was not made."""
+        step = self.step(path)
+        if step is None:
+            return None
+        return self.angle(float(self.value(step)), self.id(step)) if self.unit_of(step) == "rad" else self.of(step)
+
+    def scale(self, plan: str) -> Text | None:
+        """The scale factor of a plan as it is written: letter = number unit; None for a plan that is not drawn."""
+        return scale_text(self.scales[plan]) if plan in self.scales else None
+
+    def sheet(self, *views: str) -> str:
+        """Number of the sheet that shows a view, the first of them that any shows; empty for none."""
+        return next((str(n) for name in views if (n := self.pictures.sheet_of(name)) is not None), "")
+
+    # --- the position that is told in words
 
     @property
     def k(self) -> int:
         """Number of the position that is told in words: that of the force analysis."""
-        if self.project.variant.crank is None or self.project.variant.cycle is None:
+        variant = self.project.variant
+        if variant.crank is None or variant.cycle is None:
             return 0
-        if "forces" in self.project.parts or (self.project.variant.cycle is not None and self.project.variant.cycle.force_position):
+        if "forces" in self.project.parts or variant.cycle.force_position:
             return self.project.force_index
         return min(2, len(self.project.cycle.labels) - 1)
 
     @property
     def label(self) -> str:
         """Label of that position; empty where nothing moves in numbered positions."""
-        if self.project.variant.crank is None or self.project.variant.cycle is None:
-            return ""
-        return str(self.project.cycle.labels[self.k])
+        variant = self.project.variant
+        return "" if variant.crank is None or variant.cycle is None else str(self.project.cycle.labels[self.k])
 
-    def letters_of(self, step: Step) -> str:
-        """Letters of a step in the note: those of ``[symbols]`` in words.toml, or its own."""
-        return str(phrases.words(self.language).get("symbols", {}).get(step.name) or symbol_of(step))
+    def at(self, step: Step) -> int:
+        """Number of that position in the plan of a step: by its label when the plan has others."""
+        if np.ndim(step.value) == 0:
+            return 0
+        labels = self.labels(step)
+        return labels.index(self.label) if self.label in labels else min(self.k, len(step.value) - 1)
+
+    def value(self, step: Any) -> Any:
+        """Value of a step there."""
+        return value_at(step, self.at(step)) if isinstance(step, Step) else value_at(step, self.k)
+
+    def labels(self, step: Step) -> Sequence[str]:
+        """Labels of the positions of the plan of a step."""
+        return self.book.plans[self.book.plan(step)].labels if step in self.book else ()
+
+    def position(self, step: Step) -> str:
+        """Label of the position that is told of a step; empty for one that has no positions."""
+        k, labels = self.at(step), self.labels(step)
+        return labels[k] if np.ndim(step.value) and k < len(labels) else ""
 
     # --- numbers
 
     def unit(self, name: str) -> str:
         """A unit in words."""
-        return phrases.unit(name, self.language)
+        return unit_words(name, self.language)
 
     def number(
         self, value: float, unit: str = "", step: str = "", position: str = "", digits: int = DIGITS, kind: float = 0.0
@@ -139,51 +200,25 @@ class Reader:
             value = value if digits > 0 else 0.0
         return NumberInText(shown(value, digits), step, value, position, digits, self.unit(unit))
 
-    def of(
-        self,
-        step: Step,
-        k: int | None = None,
-        unit_: str | None = None,
-        digits: int = DIGITS,
-        kind: float = 0.0,
-    ) -> NumberInText:
-        """Value of a step at a position; of a vector its magnitude."""
-        at = self.at(step, k)
-        value = value_at(step, at)
-        if isinstance(value, complex | np.complexfloating):
-            value = abs(value)
-        return self.number(
-            float(value), self.unit_of(step) if unit_ is None else unit_, self.id(step), self.position(step, at), digits, kind
-        )
+    def of(self, step: Step, unit: str | None = None) -> NumberInText:
+        """Value of a step at the position that is told; of a vector its magnitude."""
+        value: Any = self.value(step)
+        value = abs(value) if isinstance(value, complex | np.complexfloating) else float(value)
+        return self.number(value, self.unit_of(step) if unit is None else unit, self.id(step), self.position(step))
+
+    def size(self, step: Step, unit: str | None = None) -> NumberInText:
+        """The same without its sign."""
+        found = self.of(step, unit)
+        return replace(found, text=found.text.removeprefix("−"), value=abs(found.value))
 
     def fixed(self, value: float, unit: str, decimals: int, step: str = "", position: str = "") -> NumberInText:
         """A number with a fixed number of decimals: millimetres of a drawing, degrees."""
         value = float(value)
         return NumberInText(fixed(value, decimals), step, value, position, decimals, self.unit(unit))
 
-    def angle(self, value: float, step: str = "", position: str = "") -> NumberInText:
+    def angle(self, value: float, step: str = "") -> NumberInText:
         """An angle in degrees and minutes."""
-        return NumberInText(degrees_and_minutes(float(value)), step, float(value), position)
-
-    def at(self, step: Step, k: int | None) -> int:
-        """Number of a position in the plan of a step: by its label when the plan has others."""
-        k = self.k if k is None and self.project.variant.crank is not None else k or 0
-        value = step.value
-        if np.ndim(value) == 0:
-            return 0
-        plan = self.book.plans.get(self.book.plan(step)) if step in self.book else None
-        if plan is not None and self.project.variant.crank is not None:
-            label = self.project.cycle.labels[k] if k < len(self.project.cycle.labels) else ""
-            if label in plan.labels:
-                return plan.labels.index(label)
-        return min(k, len(value) - 1)
-
-    def position(self, step: Step, k: int) -> str:
-        """Label of a position of the plan of a step."""
-        if step not in self.book or np.ndim(step.value) == 0:
-            return ""
-        labels = self.book.plans[self.book.plan(step)].labels
-        return labels[k] if k < len(labels) else ""
+        return NumberInText(degrees_and_minutes(float(value)), step, float(value))
 
     def id(self, step: Step) -> str:
         """Id of a step: plan/name."""
@@ -195,22 +230,32 @@ class Reader:
 
     def unit_of(self, step: Step) -> str:
         """Unit of a step, as the record writes it."""
-        plan = self.book.plans.get(self.book.plan(step)) if step in self.book else None
-        return unit(step, plan) if plan is not None else step.rule.unit
+        return unit(step, self.book.plans[self.book.plan(step)]) if step in self.book else step.rule.unit
 
-    def quantity(self, step: Step, k: int | None = None, symbol: str = "", unit_: str | None = None) -> NoteQuantity:
+    def letters_of(self, x: Any) -> str:
+        """Letters of a step or a given number in the note: those of ``[symbols]`` in words.toml, or its own."""
+        return str(self.words["symbols"].get(x.name) or (symbol_of(x) if isinstance(x, Step) else x.symbol or x.name))
+
+    def quantity(self, step: Step, symbol: str = "", unit: str | None = None) -> NoteQuantity:
         """A step as an operand."""
-        n = self.of(step, k, unit_)
-        return NoteQuantity(symbol or symbol_of(step), n.value, self.unit_of(step) if unit_ is None else unit_, n.step, n.position)
+        n = self.of(step, unit)
+        return NoteQuantity(symbol or symbol_of(step), n.value, self.unit_of(step) if unit is None else unit, n.step, n.position)
+
+    def measured(self, symbol: str, value: float, unit: str, step: Step) -> NoteQuantity:
+        """An operand that a step gives at the position that is told."""
+        return NoteQuantity(symbol, value, unit, self.id(step), self.label)
 
     def givens(self, unit: str = "") -> list[NoteQuantity]:
         """Given numbers that some step takes, each once, those of a unit or all."""
         found: dict[str, NoteQuantity] = {}
-        for step in self.book.steps.values():
-            for a in step.args:
-                if isinstance(a, GivenNumber) and a.symbol and (not unit or a.unit == unit):
-                    found.setdefault(a.symbol, NoteQuantity(a.symbol, float(a), a.unit, a.name))
+        for a in (a for step in self.book.steps.values() for a in step.args):
+            if isinstance(a, GivenNumber) and a.symbol and (not unit or a.unit == unit):
+                found.setdefault(a.symbol, NoteQuantity(a.symbol, float(a), a.unit, a.name))
         return list(found.values())
+
+    def lengths(self) -> list[NoteQuantity]:
+        """Lengths of the links among them."""
+        return [q for q in self.givens("m") if q.symbol.startswith("l") and q.value]
 
     def length(self, a: str, b: str) -> str:
         """Letters of the length between two points, as it is given or as they follow each other."""
@@ -219,79 +264,45 @@ class Reader:
 
     # --- formulas
 
-    def formula(
-        self,
-        step: Step,
-        k: int | None = None,
-        symbol: str = "",
-        as_unit: str | None = None,
-    ) -> ShownFormula | None:
+    def formula(self, step: Step) -> ShownFormula | None:
         """The formula of a step by its own expression; None when it has none that can be written."""
-        tree = step.rule.formula(len(step.args))
-        if tree is None or isinstance(tree, expression.Argument) or not can_be_written(tree):
+        tree = tree_of_step(step)
+        quantities = [self._operand(a) for a in step.args]
+        value = self.value(step)
+        if tree is None or None in quantities or not _is_number(value):
             return None
-        quantities = []
-        for a in step.args:
-            q = self._operand(a, k)
-            if q is None:
-                return None
-            quantities.append(q)
-        plain = {
-            i: float(a)
-            for i, a in enumerate(step.args)
-            if isinstance(a, int | float) and not isinstance(a, GivenNumber | FoundNumber)
-        }
-        firsts = [next(j for j, b in enumerate(step.args) if b is a) for a in step.args]
-        tree = simplified(with_numbers(renumbered(tree, firsts), plain))
-        head = symbol or self.letters_of(step)
-        if isinstance(tree, expression.Argument | expression.Constant) or not all(
-            _presentable(s) for s in (head, *(quantities[i].symbol for i in arguments(tree)))
-        ):
+        told = [q for q in quantities if q is not None]
+        firsts = (next(j for j, b in enumerate(step.args) if b is a) for a in step.args)
+        tree = simplified(filled(tree, [*map(expression.Argument, firsts)]))
+        head, used = self.letters_of(step), [told[i].symbol for i in arguments(tree)]
+        if isinstance(tree, expression.Argument | expression.Constant) or not all(map(_presentable, (head, *used))):
             return None
-        if _converts(tree) or head in [quantities[i].symbol for i in arguments(tree)]:
+        if _converts(tree) or head in used:
             return None  # the same quantity in another unit
-        value = value_at(step, self.at(step, k))
-        if np.ndim(value) or np.iscomplexobj(value) or not isinstance(value, int | float | np.number | np.ndarray):
-            return None
-        result = self.of(step, k)
-        unit_ = self.unit_of(step) if as_unit is None else as_unit
-        return self.written(head, tree, quantities, NoteQuantity("", result.value, unit_, result.step, result.position))
+        return self.written(head, tree, told, self.quantity(step, head))
 
-    def _operand(self, a: Any, k: int | None) -> NoteQuantity | None:
+    def formulas(self, plan: str) -> list[ShownFormula]:
+        """Formulas of the steps of a plan that have numbers, in their order."""
+        found = (self.formula_of(f"{plan}/{step.name}") for step in self.plan(plan) or ())
+        return [said for said in found if said is not None and said.numbers is not None]
+
+    def _operand(self, a: Any) -> NoteQuantity | None:
         if isinstance(a, Step):
-            value = value_at(a, self.at(a, k))
-            if np.ndim(value) or np.iscomplexobj(value) or not isinstance(value, int | float | np.number | np.ndarray):
-                return None
-            return NoteQuantity(self.letters_of(a), float(value), self.unit_of(a), self.id(a), self.position(a, self.at(a, k)))
-        if isinstance(a, Given):
-            value = a.value if np.ndim(a.value) == 0 else a.value[min(self.k if k is None else k, len(a.value) - 1)]
-            if isinstance(value, str) or not isinstance(value, int | float | np.number):
-                return None
-            return NoteQuantity(self._given(a), float(value), a.unit, a.name)
-        if isinstance(a, GivenNumber):
-            return NoteQuantity(self._given(a), float(a), a.unit, a.name)
-        if isinstance(a, int | float | np.number):
-            return NoteQuantity(number(float(a), 6), float(a))
-        return None
-
-    def _given(self, a: Given | GivenNumber) -> str:
-        return str(phrases.words(self.language).get("symbols", {}).get(a.name) or a.symbol or a.name)
+            value, unit, source = self.value(a), self.unit_of(a), (self.id(a), self.position(a))
+        elif isinstance(a, Given | GivenNumber):
+            of: Any = a.value if isinstance(a, Given) else a
+            value, unit, source = of[min(self.k, len(of) - 1)] if np.ndim(of) else of, a.unit, (a.name, "")
+        else:
+            return NoteQuantity(number(float(a), 6), float(a)) if isinstance(a, int | float | np.number) else None
+        return NoteQuantity(self.letters_of(a), float(value), unit, *source) if _is_number(value) else None
 
     def written(self, symbol: str, tree: expression.Expression, quantities: Sequence[NoteQuantity],
-                result: NoteQuantity | None) -> ShownFormula:
-        """A formula from its expression and the quantities in the places of its arguments; without ``result`` letters only."""
+                result: NoteQuantity) -> ShownFormula:
+        """A formula from its expression and the quantities in the places of its arguments."""
         in_letters = [Operand(letters(q.symbol), None, bool(_SUM.search(q.symbol))) for q in quantities]
-        head = letters(symbol)
-        used = list(dict.fromkeys(arguments(simplified(tree))))
-        explained = [(_of_magnitude(symbol), self.unit(result.unit) if result is not None else "")]
-        explained += [
-            (_of_magnitude(quantities[i].symbol), self.unit(quantities[i].unit))
-            for i in used
-            if not _plain(quantities[i].symbol) and not _TERM.search(quantities[i].symbol)
-        ]
-        formula = FormulaRow((head, Sign("="), *_items(of_tree(tree, in_letters))))
-        if result is None:
-            return ShownFormula(formula, None, tuple(explained))
+        used = [quantities[i] for i in dict.fromkeys(arguments(simplified(tree)))]
+        told = [q for q in used if not _plain(q.symbol) and not _TERM.search(q.symbol)]
+        explained = [(_of_magnitude(q.symbol), self.unit(q.unit)) for q in (replace(result, symbol=symbol), *told)]
         rounded, of_result = digits.chosen(
             tree,
             [q.value for q in quantities],
@@ -301,29 +312,18 @@ class Reader:
             result.digits,
             result.unit == "rad",
         )
-        in_numbers = [self._figures(q, of) for q, of in zip(quantities, rounded, strict=True)]
-        gives = self.result(replace(result, digits=of_result))
-        worked_out = () if isinstance(tree, expression.Argument) else (*_items(of_tree(tree, in_numbers)), Sign("="))
-        return ShownFormula(formula, FormulaRow((*worked_out, *gives)), tuple(explained))
+        in_numbers = [_in_numbers(q, of) for q, of in zip(quantities, rounded, strict=True)]
+        gives = self._result(replace(result, digits=of_result))
+        worked_out = () if isinstance(tree, expression.Argument) else (of_tree(tree, in_numbers), Sign("="))
+        return ShownFormula(row(letters(symbol), Sign("="), of_tree(tree, in_letters)), row(*worked_out, *gives), tuple(explained))
 
-    def _figures(self, q: NoteQuantity, of: Digits) -> Operand:
-        source = NumberInText(shown(q.value, of.number), q.step, q.value, q.position, of.number)
-        node = figures(source) if q.step else Figures(source.text)
-        as_angle = None
-        if q.unit == "rad":
-            text = degrees_and_minutes(q.value, of.angle)
-            as_angle = Figures(text, NumberInText(text, q.step, q.value, q.position))
-        return Operand(node, as_angle, q.value < 0 and source.text != "0")
-
-    def result(self, q: NoteQuantity) -> tuple[Node, ...]:
+    def _result(self, q: NoteQuantity) -> Iterator[Node]:
         """A result with its unit; an angle in degrees and minutes too."""
-        n = NumberInText(shown(q.value, q.digits), q.step, q.value, q.position, q.digits)
-        unit_ = self.unit(q.unit)
-        found: tuple[Node, ...] = (figures(n), *((Words("\u00a0" + unit_),) if unit_ else ()))
+        yield _figures(q, q.digits)
+        if self.unit(q.unit):
+            yield Words("\u00a0" + self.unit(q.unit))
         if q.unit == "rad":
-            text = degrees_and_minutes(q.value)
-            found = (*found, Sign("="), Figures(text, NumberInText(text, q.step, q.value, q.position)))
-        return found
+            yield from (Sign("="), _degrees(q))
 
     def of_turns(self, path: str, turns: str, omega: NoteQuantity) -> ShownFormula | None:
         """Formula of the angular velocity of a speed that the project file gives by its turns; None where it is given in rad/s."""
@@ -332,34 +332,27 @@ class Reader:
             value = value.get(key, {}) if isinstance(value, Mapping) else {}
         number_, name = units.split(value)
         tree: Any = {"1/s": 2 * pi * expression.Argument(0), "rpm": pi * expression.Argument(0) / 30}.get(units.common(name))
-        if tree is None:
-            return None
-        return self.written(omega.symbol, tree, [NoteQuantity(turns, float(number_), name, path)], omega)
+        return None if tree is None else self.written(omega.symbol, tree, [NoteQuantity(turns, float(number_), name, path)], omega)
 
-    def checked(
-        self,
-        symbol: str,
-        build: Callable[..., Any],
-        quantities: Sequence[NoteQuantity],
-        step: Step,
-        k: int | None = None,
-        unit_: str | None = None,
-    ) -> ShownFormula:
-        """A formula in the words of the field for a step that the record computes with vectors: its value must be the step's.
+    def agreed(self, symbol: str, tree: expression.Expression, quantities: Sequence[NoteQuantity],
+               result: NoteQuantity) -> ShownFormula:
+        """A formula in the words of the field for what the record computes otherwise: it must give the ``result`` or its opposite.
 
         Raises
         ------
         Differs
             when the formula does not give what the record has.
         """
-        tree = build(*(expression.Argument(i) for i in range(len(quantities))))
         value = float(np.real(expression.evaluate(tree, [q.value for q in quantities])))
-        n = self.of(step, k)
-        size = max(abs(n.value), 1e-9 * max((abs(q.value) for q in quantities), default=0.0), 1e-12)
-        if isfinite(value) and abs(abs(value) - abs(n.value)) > 1e-6 * size:
-            raise Differs(f"{symbol} of {n.step} is {n.value}, the note's formula gives {value}")
-        given = self.unit_of(step) if unit_ is None else unit_
-        return self.written(symbol, tree, quantities, NoteQuantity("", copysign(n.value, value), given, n.step, n.position))
+        size = max(abs(result.value), 1e-9 * max((abs(q.value) for q in quantities), default=0.0), 1e-12)
+        if isfinite(value) and abs(abs(value) - abs(result.value)) > 1e-6 * size:
+            raise Differs(f"{symbol} of {result.step} is {result.value}, the note's formula gives {value}")
+        return self.written(symbol, tree, quantities, replace(result, value=copysign(result.value, value)))
+
+    def checked(self, symbol: str, build: Callable[..., Any], quantities: Sequence[NoteQuantity], step: Step) -> ShownFormula:
+        """The same for the value of a step, from a function of as many numbers as there are ``quantities``."""
+        tree = build(*map(expression.Argument, range(len(quantities))))
+        return self.agreed(symbol, tree, quantities, self.quantity(step, symbol))
 
     # --- sentences
 
@@ -387,7 +380,7 @@ class Reader:
     def _together(self, first: str, second: str) -> str:
         """Two sentences that end with different letters as one: draw the lines AB, CD; empty where they differ in more."""
         alike, _, letter = second.rpartition(" ")
-        for one, many in phrases.words(self.language)["several"].items():
+        for one, many in self.words["several"].items():
             for begun in (alike, alike[: len(alike) - len(one)] + many):
                 if alike.endswith(one) and re.fullmatch(rf"{re.escape(begun)} [^ .:;]+(, [^ .:;]+)*\.", first):
                     return f"{alike[: len(alike) - len(one)]}{many}{first[len(begun):-1]}, {letter}"
@@ -395,7 +388,7 @@ class Reader:
 
     def quoted(self, text: str) -> str:
         """A text in which names of guides that are words stand between quotation marks, in the language of the note."""
-        said: dict[str, Any] = phrases.words(self.language)
+        said: dict[str, Any] = self.words
         for guide in self.project.variant.guide:
             if re.search(r"[^\W\d_]{3}", guide.name):
                 name = guide.name
@@ -410,10 +403,51 @@ class Reader:
 
     # --- tables
 
-    def head(self, symbol: str, unit_: str = "") -> Text:
+    def head(self, symbol: str, unit: str = "") -> Text:
         """Head of a column: letters, unit."""
-        node = letters(symbol)
-        return (Symbol(node), *((f", {self.unit(unit_)}",) if unit_ else ()))
+        return (Symbol(letters(symbol)), *((f", {self.unit(unit)}",) if unit else ()))
+
+    def over_positions(self, positions: Iterable[tuple[int, str]], columns: Sequence[Column], first: str = "") -> Rows:
+        """A table with a row for each position, its number and its label: the label, then a number in each column."""
+        if not columns:
+            return ()
+        rows = [((first or self.words["position"],), *(c.head for c in columns))]
+        rows += [((label,), *((self._in_column(c, i, label),) for c in columns)) for i, label in positions]
+        return tuple(rows)
+
+    def _in_column(self, c: Column, i: int, label: str) -> NumberInText:
+        value = float(c.values[i])
+        if c.decimals is not None:
+            return self.fixed(value, "", c.decimals, c.step, label)
+        return self.number(value, "", c.step, label, kind=float(np.broadcast_to(c.kind, np.shape(c.values))[i]))
+
+
+@cache
+def unit_words(name: str, language: str) -> str:
+    """A unit of the record or of a project file in words; one that the language has no word for as it stands."""
+    return "" if name == "1" else _units(language).get(units.common(name), name)
+
+
+@cache
+def _units(language: str) -> dict[str, str]:
+    """Words for units by their common spelling."""
+    return {units.common(name): said for name, said in words(language)["units"].items()}
+
+
+def scale_text(scale: Any) -> Text:
+    """A scale factor as it is written."""
+    head, _, rest = str(scale).partition(" = ")
+    return (Symbol(FormulaRow((letters(head), Sign("="), Words(rest)))),)
+
+
+def listed(said: Sequence[str], last: str) -> str:
+    """A list in words."""
+    return last.join(filter(None, (", ".join(said[:-1]), *said[-1:])))
+
+
+def _is_number(value: Any) -> bool:
+    """Whether a value is one real number."""
+    return isinstance(value, int | float | np.number | np.ndarray) and not np.ndim(value) and not np.iscomplexobj(value)
 
 
 def _of_magnitude(symbol: str) -> str:
@@ -441,10 +475,6 @@ def _plain(symbol: str) -> bool:
     return bool(re.fullmatch(r"[\d,.−-]+(·10\^\{.*\})?", symbol))
 
 
-def _items(node: Node) -> tuple[Node, ...]:
-    return node.items if isinstance(node, FormulaRow) else (node,)
-
-
 def symbol_of(step: Step) -> str:
     """Letters of a step's value in lettering markup."""
     return step.symbol or letters_of(step.name)
@@ -453,12 +483,24 @@ def symbol_of(step: Step) -> str:
 _LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789−")
 
 
-def figures(n: NumberInText) -> Node:
+def _figures(q: NoteQuantity, digits: int) -> Node:
     """A number in a formula, its power of ten raised."""
+    n = NumberInText(shown(q.value, digits), q.step, q.value, q.position, digits)
     mantissa, _, power = n.text.partition("·10")
     if not power:
         return Figures(n.text, n)
     return FormulaRow((Figures(mantissa, n), Sign("·"), Scripts(Figures("10"), None, Figures(power.translate(_LOWERED)))))
+
+
+def _degrees(q: NoteQuantity, places: int = 0) -> Figures:
+    """An angle in degrees and minutes in a formula."""
+    text = degrees_and_minutes(q.value, places)
+    return Figures(text, NumberInText(text, q.step, q.value, q.position))
+
+
+def _in_numbers(q: NoteQuantity, of: Digits) -> Operand:
+    node = _figures(q, of.number) if q.step else Figures(shown(q.value, of.number))
+    return Operand(node, _degrees(q, of.angle) if q.unit == "rad" else None, q.value < 0 and shown(q.value, of.number) != "0")
 
 
 # --- sentences of the record with letters set as letters -----------------------------------------------------------
@@ -469,8 +511,8 @@ _LETTER = r"A-Za-zα-ωΑ-Ωϕϑ"
 @cache
 def _marked(language: str) -> re.Pattern[str]:
     """Names between quotation marks, numbers with their units, and letters in the sentences of a language."""
-    opened, closed = map(re.escape, phrases.words(language)["quoted"].split("{name}"))
-    units = "|".join(sorted(map(re.escape, phrases.words(language)["units"].values()), key=len, reverse=True))
+    opened, closed = map(re.escape, words(language)["quoted"].split("{name}"))
+    units = "|".join(sorted(map(re.escape, words(language)["units"].values()), key=len, reverse=True))
     return re.compile(
         rf"(?P<name>{opened}.*?{closed})|(?P<number>[−]?\d+(?:[,.]\d+)?(?:e[−-]?\d+)?(?![{_LETTER}\d_′″])(?: (?:{units})(?!\w))?°?)"
         rf"|(?P<word>[{_LETTER}∞](?:_\w+|[{_LETTER}\d_′″*'̅]|(?<=[FM])и(?=\d))*(?:\^\S)?)"
@@ -527,8 +569,3 @@ def named(word: str) -> str:
 def _bare(sentence: str) -> bool:
     """A sentence that only hands a number on: ω0 = 0."""
     return re.fullmatch(r"\S+ = [^ ]+( [^ ]+)?\.", sentence) is not None
-
-
-def in_degrees(value: float) -> float:
-    """Degrees of an angle in rad, 0 to 360."""
-    return degrees(value) % 360

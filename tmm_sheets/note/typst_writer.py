@@ -11,8 +11,9 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from tmm_sheets import quoting
+from tmm_sheets.construction.formula import spelt
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
-from tmm_sheets.note.alphabets import TYPST, characters, spelt, string
+from tmm_sheets.note.alphabets import TYPST, characters, string
 from tmm_sheets.note.arranging import Measured, arranged, sticky
 from tmm_sheets.note.document import (
     FRAMED,
@@ -118,7 +119,7 @@ def _compiler(source: str, files: Mapping[str, bytes]) -> Iterator[Any]:
 
 def pictures(blocks: Iterable[Block]) -> dict[str, bytes]:
     """SVG files of the figures and sheets by their names."""
-    return {f"{file_name(b)}.svg": b.svg for b in blocks if isinstance(b, Figure | Sheet)}
+    return {f"{b.file}.svg": b.svg for b in blocks if isinstance(b, Figure | Sheet)}
 
 
 def rasters(blocks: Iterable[Block], dpi: float) -> dict[str, bytes]:
@@ -130,24 +131,14 @@ def rasters(blocks: Iterable[Block], dpi: float) -> dict[str, bytes]:
         root = Path(folder)
         pages = []
         for b in drawn:
-            name = file_name(b)
-            (root / f"{name}.svg").write_bytes(b.svg)
-            width = b.width if isinstance(b, Figure) else 224.0
-            image = f'image("{name}.svg", width: {width:.2f}mm)'
-            turned = isinstance(b, Sheet) or b.turned
-            pages.append(f"rotate(-90deg, reflow: true, {image})" if turned else image)
+            (root / f"{b.file}.svg").write_bytes(b.svg)
+            image = f'image("{b.file}.svg", width: {b.on_page[0]:.2f}mm)'
+            pages.append(f"rotate(-90deg, reflow: true, {image})" if b.turned else image)
         source = "#set page(width: auto, height: auto, margin: 0mm)\n" + "\n#pagebreak()\n".join(f"#{p}" for p in pages)
         (root / "pictures.typ").write_text(source, encoding="utf-8")
         made: Any = typst.compile(str(root / "pictures.typ"), format="png", ppi=dpi) if drawn else []
     found: list[bytes] = [made] if isinstance(made, bytes) else list(made or [])
-    return {file_name(b): data for b, data in zip(drawn, found, strict=True)}
-
-
-def file_name(block: Figure | Sheet) -> str:
-    """Name of the file of a picture."""
-    if isinstance(block, Sheet):
-        return f"sheet-{block.number}"
-    return f"fig-{block.number.replace('.', '-')}" + (f"-{block.part}" if block.further else "")
+    return {b.file: data for b, data in zip(drawn, found, strict=True)}
 
 
 def source(note: Note) -> str:
@@ -196,7 +187,7 @@ def _block(b: Block | None, after: Block | None, file: str = "") -> str:
     held = "true" if b is not None and after is not None and sticky(b, after) else "false"
     match b:
         case Heading():
-            return f"#title({b.level}, {string(f'{b.number}  {b.text}' if b.number else b.text)})"
+            return f"#title({b.level}, {string(b.said)})"
         case Paragraph(look="plain"):
             return f"#para(held: {held})[{text(b.text)}]\n"
         case Paragraph():
@@ -214,9 +205,9 @@ def _block(b: Block | None, after: Block | None, file: str = "") -> str:
             return f"#grid-table({string(b.number)}, {string(b.title)}, {max(map(len, b.rows))}, ({' '.join(rows)}), {looks})"
         case Figure():
             size = f"{b.width:.2f}mm, {b.height:.2f}mm, {'true' if b.turned else 'false'}, {b.part if b.further else 'none'}"
-            return f"#picture({string(b.number)}, {string(b.title)}, {string(file or file_name(b) + '.svg')}, {size})"
+            return f"#picture({string(b.number)}, {string(b.title)}, {string(file or b.file + '.svg')}, {size})"
         case Sheet():
-            return f"#sheet({string(b.number)}, {string(b.title)}, {string(file_name(b) + '.svg')})"
+            return f"#sheet({string(b.number)}, {string(b.title)}, {string(b.file + '.svg')})"
         case Contents():
             return f"#contents({string(b.title)})"
         case _:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from bisect import bisect_right
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping, Sequence
 from math import isfinite
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
@@ -15,6 +15,23 @@ import numpy as np
 from tmm_sheets import results, words
 from tmm_sheets.construction import expression, protocol
 from tmm_sheets.construction.arithmetic import Curve
+from tmm_sheets.construction.equation import with_bare_numbers
+from tmm_sheets.construction.formula import (
+    Alphabet,
+    Barred,
+    Fenced,
+    Figures,
+    FormulaRow,
+    Fraction,
+    Letters,
+    Operand,
+    Root,
+    Scripts,
+    Sign,
+    Words,
+    of_tree,
+    spelt,
+)
 from tmm_sheets.construction.given import Given, Over
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Step, value_at, value_of
@@ -123,12 +140,14 @@ def formula_of(step: Step) -> expression.Expression | None:
     if step.rule.gives not in FORMULA_KINDS:
         return None
     tree = step.rule.tree(len(step.args))
-    return None if isinstance(tree, expression.Argument) or (isinstance(tree, expression.Operation) and tree.function) else tree
+    if tree is None or isinstance(tree, expression.Argument) or (isinstance(tree, expression.Operation) and tree.function):
+        return None
+    return with_bare_numbers(tree, step)
 
 
 def formula_in_letters(step: Step, tree: expression.Expression) -> str:
     """The formula of a step in letters, LaTeX."""
-    return f"{to_latex(step.symbol or step.name)} = {expression.latex(tree, [_argument_latex(a) for a in step.args])}"
+    return f"{to_latex(step.symbol or step.name)} = {latex(tree, [_argument_latex(a) for a in step.args])}"
 
 
 def formula_in_numbers(step: Step, tree: expression.Expression, k: int) -> str:
@@ -137,7 +156,37 @@ def formula_in_numbers(step: Step, tree: expression.Expression, k: int) -> str:
     if any(np.ndim(v) or isinstance(v, str) or not isinstance(v, int | float | complex | np.number) for v in values):
         return ""
     *texts, value = map(_number_latex, values)
-    return f"{expression.latex(tree, texts)} = {value}"
+    return f"{latex(tree, texts)} = {value}"
+
+
+_SIGNS = {"+": " + ", "−": " - ", "·": " \\cdot ", "×": " \\times ", ";": ";\\, "}
+_COMMANDS = {"re": r"\mathrm{Re}", "im": r"\mathrm{Im}", "tg": r"\mathrm{tg}", "arctg": r"\mathrm{arctg}", "НОД": r"\gcd",
+             **{name: f"\\{name}" for name in ("sin", "cos", "arcsin", "arccos", "max", "min", "exp", "log")}}  # fmt: skip
+"""Functions of formulas in LaTeX."""
+LATEX: Alphabet[str] = {
+    Letters: lambda text: f"\\{_LETTERS[text]} " if text in _LETTERS else text,
+    Figures: lambda text, source: text.replace("−", "-") if source else text.replace("−", "-").replace(",", "."),
+    Words: lambda text: _COMMANDS.get(text.strip(), rf"\mathrm{{{text.strip()}}}") + " ",
+    Sign: lambda text: str(_SIGNS.get(text, text)),
+    FormulaRow: "".join,
+    Scripts: lambda base, below, above: base + (f"_{{{below}}}" if below else "") + (f"^{{{above}}}" if above else ""),
+    Fraction: lambda over, under: f"\\frac{{{over}}}{{{under}}}",
+    Root: lambda of: f"\\sqrt{{{of}}}",
+    Fenced: lambda left, of, right: f"\\left{left}{of}\\right{right}",
+    Barred: lambda of: f"\\overline{{{of}}}",
+}
+
+
+def latex(tree: expression.Expression, texts: Sequence[str]) -> str:
+    """LaTeX of a formula, the texts, letters or numbers, in the places of its arguments."""
+    return " ".join(spelt(of_tree(tree, list(map(_operand, texts))), LATEX).split())
+
+
+def _operand(text: str) -> Operand:
+    negative = text.startswith("-")
+    if negative or text[0].isdigit() or text.startswith("\\left("):
+        return Operand(Figures("−" + text[1:] if negative else text, text), None, negative)
+    return Operand(Letters(text))
 
 
 def _argument_latex(a: Any) -> str:

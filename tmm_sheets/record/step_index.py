@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
+from tmm_sheets import result_files
 from tmm_sheets.construction import expression
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Reported, Step, ordered, parents
@@ -117,34 +118,13 @@ def _free(name: str, taken: dict[str, Any]) -> str:
 SECTIONS = ("cycle", "positions", "velocities", "accelerations", "forces", "flywheel", "gear", "reducer", "train", "cam")
 """Parts of the results whose numbers come from steps."""
 
-WITHOUT_STEPS = ("labels",)
-"""Keys of results that are texts: labels of positions."""
-
-
 def leaves(tree: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     """Numeric leaves of a results tree by path: a :class:`Reported` step, or a bare number without one."""
-    for name in SECTIONS:
-        if name in tree:
-            yield from _leaves(name, tree[name])
-
-
-def _leaves(path: str, value: Any) -> Iterator[tuple[str, Any]]:
-    if isinstance(value, Step):
-        yield path, Reported(value)
-    elif isinstance(value, Reported):
-        yield path, value
-    elif isinstance(value, Mapping):
-        for key, v in value.items():
-            if key not in WITHOUT_STEPS:
-                yield from _leaves(f"{path}.{key}", v)
-    elif isinstance(value, list | tuple):
-        if any(isinstance(v, Step | Reported | Mapping) for v in value):
-            for i, v in enumerate(value):
-                yield from _leaves(f"{path}[{i}]", v)
-        elif any(not _text(v) for v in value):
-            yield path, value
-    elif not _text(value):
-        yield path, value
+    for path, value in result_files.leaves({name: tree[name] for name in SECTIONS if name in tree}):
+        if isinstance(value, list | tuple) and any(isinstance(v, Step | Reported) for v in value):
+            yield from ((f"{path}[{i}]", Reported(v) if isinstance(v, Step) else v) for i, v in enumerate(value) if not _text(v))
+        elif not _text(value):
+            yield path, Reported(value) if isinstance(value, Step) else value
 
 
 def _text(value: Any) -> bool:

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.construction.formula import letters, letters_of
-from tmm_sheets.note import phrases
-from tmm_sheets.note.document import NumberInText, Symbol, Text
-from tmm_sheets.note.phrases import Scope
+from tmm_sheets.note.document import NumberInText, Rows, Text, lettered
+from tmm_sheets.note.phrases import set_text
 from tmm_sheets.note.reader import Reader, marked
 from tmm_sheets.numbers import written
 from tmm_sheets.resources import template, variants
@@ -38,22 +35,25 @@ def of(project: Project) -> list[dict[str, str]]:
     return found if found and shipped.is_file() and shipped.read_text(encoding="utf-8") == project.variant.text else []
 
 
-def scope(r: Reader) -> Scope:
+def fields(r: Reader) -> dict[str, Any]:
     """Both tables, and whether the project takes the suggested numbers."""
-    said = phrases.words(r.language)["errata"]
-    misprints = r.project.variant.misprints
-    found = Scope({"corrected": any(m.corrected for m in misprints)})
-    head = tuple((h,) for h in said["head"])
-    found.tables["errata"] = (head, *(tuple(_cell(r, e[k]) for k in ("place", "what", "printed", "should", "basis"))
-                                      for e in of(r.project)))  # fmt: skip
-    rows: list[tuple[Text, ...]] = []
-    for i, m in enumerate(misprints):
-        unit = r.unit(m.unit)
-        numbers = (NumberInText(written(str(x)), f"misprint[{i}]", float(x)) for x in (m.printed, m.suggested))
-        rows.append(((Symbol(letters(letters_of(m.symbol))), f", {unit}" if unit else ""), *((n,) for n in numbers),
-                     tuple(marked(_written(tr(m.reason)), f"misprint[{i}]", "", r.language))))  # fmt: skip
-    found.tables["misprints"] = (tuple((h,) for h in said["suspected"]), *rows)
-    return found
+    said = r.words["errata"]
+    known = [[_cell(e[k], said) for k in ("place", "what", "printed", "should", "basis")] for e in of(r.project)]
+    return {
+        "corrected": any(m.corrected for m in r.project.variant.misprints),
+        "errata": (tuple((h,) for h in said["head"]), *map(tuple, known)) if known else (),
+        "misprints": _misprints(r, said["suspected"]),
+    }
+
+
+def _misprints(r: Reader, head: list[str]) -> Rows:
+    rows: list[tuple[Text, ...]] = [tuple((h,) for h in head)]
+    for i, m in enumerate(r.project.variant.misprints):
+        unit, place = r.unit(m.unit), f"misprint[{i}]"
+        numbers = (NumberInText(written(str(x)), place, float(x)) for x in (m.printed, m.suggested))
+        rows.append(((lettered(m.symbol), f", {unit}" if unit else ""), *((n,) for n in numbers),
+                     tuple(marked(_written(tr(m.reason)), place, "", r.language))))  # fmt: skip
+    return tuple(rows) if len(rows) > 1 else ()
 
 
 def _written(reason: str) -> str:
@@ -64,19 +64,9 @@ def _written(reason: str) -> str:
     return re.sub(r"(\d[.,]\d+)\^2", r"\1²", text)
 
 
-def _cell(r: Reader, text: str) -> Text:
+def _cell(text: str, said: dict[str, Any]) -> Text:
     """A cell: words by their keys, places by theirs, letters between dollar signs."""
-    return tuple(_parts(r, text))
-
-
-def _parts(r: Reader, text: str) -> Iterator[Any]:
-    said = phrases.words(r.language)["errata"]
     if m := re.fullmatch(r"([ts])(\d[\d.]*)", text):
-        yield said["table" if m[1] == "t" else "section"].format(n=m[2])
-        return
-    sign = decimal_sign()
-    for i, part in enumerate(re.sub(r"\{(\w+)\}", lambda m: said["words"].get(m[1], m[0]), text).split("$")):
-        if i % 2:
-            yield Symbol(letters(letters_of(part)))
-        elif part:
-            yield re.sub(r"(?<=\d),(?=\d)", sign, part)
+        return (said["table" if m[1] == "t" else "section"].format(n=m[2]),)
+    told = set_text(re.sub(r"\{(\w+)\}", lambda m: said["words"].get(m[1], m[0]), text))
+    return tuple(re.sub(r"(?<=\d),(?=\d)", decimal_sign(), x) if isinstance(x, str) else x for x in told)

@@ -9,12 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.formula import letters, letters_of
-from tmm_sheets.construction.step import value_at
-from tmm_sheets.note.document import Symbol, Text
-from tmm_sheets.note.phrases import Scope, words
-from tmm_sheets.note.reader import NoteQuantity, Reader
-from tmm_sheets.note.sections.forces import scale_text
+from tmm_sheets.note.document import Rows, ShownFormula, lettered
+from tmm_sheets.note.reader import Column, NoteQuantity, Reader, scale_text
 from tmm_sheets.numbers import is_zero
 
 CLOSE = 5.0
@@ -25,214 +21,145 @@ DRAWN = 0.05
 """What no drawing shows, mm."""
 SAFE = 30.0
 """Speed up to which a rim of cast iron is safe, m/s (000, 5.7)."""
-PLANS = (
-    "reduced-moment",
-    "driving-moment",
-    "total-work",
-    "reduced-inertia",
-    "energy-mass",
-    "first-energy",
-    "flywheel-given",
-    "flywheel-inertia",
-    "flywheel-delta",
-    "drive-power",
-    "flywheel-limit",
-    "flywheel-wheel",
-    "crank-speed",
-    "motor-check",
-    "crank-acceleration",
-    "work",
-)
 
 
-def scope(r: Reader) -> Scope:
-    """Formulas, tables and figures of the flywheel."""
-    fw = r.project.flywheel
-    found = Scope(
-        {
-            "label": r.label,
-            "mertsalov": fw.method == "mertsalov",
-            "resisting": fw.reduced.resisting,
-            "needed": fw.needed,
-            "given": fw.given,
-            "delta": r.of(fw.delta) if fw.given else r.number(fw.unevenness, "", "flywheel.delta"),
-            "rim": r.project.variant.flywheel is not None and r.project.variant.flywheel.form == "rim",
-        }
-    )
+def fields(r: Reader) -> dict[str, Any]:
+    """What the reduction, the integration and the wheel give, the tables over the positions, the comparison with the limit."""
+    fw, table = r.project.flywheel, r.project.variant.flywheel
     fw.results()
-    for name in PLANS:
-        plan = r.plan(name)
-        for step in plan or ():
-            said = r.formula(step, as_unit="rad/s2" if step.name == "ε1" else None)
-            if said is not None:
-                found.formulas[f"{name}/{step.name}"] = said
-    _reduction(r, found)
-    drawn = fw.driving_plan["M"]
-    mu = fw.scales.moment
-    constant = float(np.real(drawn.value))
-    ordinate = NoteQuantity("y_{K}", constant / mu.mu, "mm", "driving-moment/dK")
-    found.formulas["driving"] = r.checked(
-        "M_{д}" if fw.reduced.resisting else "M_{с}",
-        lambda y, m: y * m,
-        [ordinate, NoteQuantity("μ_{M}", mu.mu, "N m/mm", "scales.mu_M")],
-        drawn,
-    )
-    for name, scale in vars(fw.scales).items():
-        if hasattr(scale, "mu"):
-            found.fields[f"mu_{name}"] = scale_text(scale)
-    found.fields["pole"] = r.fixed(fw.pole, "mm", 1, "work/P")
-    _results(r, found)
-    _tables(r, found)
-    for name in ("force_graph", "moments", "works", "total_work", "inertia", "wheel"):
-        figure = r.pictures.figure(f"flywheel.{name}")
-        if figure is not None:
-            found.figures[name] = figure
-    diagram = r.pictures.figure(
-        "energy-mass", focus=("curve", "energy-mass/points", "energy-mass/a", "energy-mass/b", "energy-mass/ab")
-    )
-    if diagram is not None:
-        found.figures["energy_mass"] = diagram
-    for i, figure in enumerate(r.pictures.parts("mertsalov.column")):
-        found.fields.setdefault("column", []).append({"column_part": figure, "nth": str(i + 1)})
-    n = r.pictures.sheet_of("flywheel.wheel") or r.pictures.sheet_of("mertsalov.results") or r.pictures.sheet_of("flywheel.results")
-    found.fields["sheet"] = str(n) if n is not None else ""
-    return found
+    drawn, mu = fw.driving_plan["M"], fw.scales.moment
+    ordinate = NoteQuantity("y_{K}", float(np.real(drawn.value)) / mu.mu, "mm", "driving-moment/dK")
+    speed = r.step("flywheel-wheel/V")
+    return {
+        "label": r.label,
+        "mertsalov": fw.method == "mertsalov",
+        "needed": fw.needed,
+        "given": fw.given,
+        "delta": r.of(fw.delta) if fw.given else r.number(fw.unevenness, "", "flywheel.delta"),
+        "rim": table is not None and table.form == "rim",
+        "driving": r.checked("M_{д}" if fw.reduced.resisting else "M_{с}", lambda y, m: y * m,
+                             [ordinate, NoteQuantity("μ_{M}", mu.mu, "N m/mm", "scales.mu_M")], drawn),
+        **{f"mu_{name}": scale_text(scale) for name, scale in vars(fw.scales).items() if hasattr(scale, "mu")},
+        "pole": r.fixed(fw.pole, "mm", 1, "work/P"),
+        "ab": r.of(fw.ab),
+        "J_flywheel": r.of(fw.first_plan["J_м"]),
+        "J_flywheel_limit": None if fw.given else r.of(fw.limit_plan["J_м∞"]),
+        "letters": {"ab": r.words["flywheel"]["ab"]} if fw.method == "mertsalov" else {},
+        "wheel": fw.wheel is not None,
+        "slow": speed is not None and r.of(speed).value < SAFE,
+        "iron": fw.cast_iron,
+        "safe": r.number(SAFE, "m/s", "flywheel.safe", digits=2),
+        "sheet": r.sheet("flywheel.wheel", "mertsalov.results", "flywheel.results"),
+        "terms": _terms(r),
+        "comparison": _comparison(r),
+        **_reduction(r),
+        **_accuracy(r),
+        **_over_positions(r),
+    }  # fmt: skip
 
 
-def _reduction(r: Reader, found: Scope) -> None:
+def _reduction(r: Reader) -> dict[str, Any]:
     """Reduced moment and reduced moment of inertia at the position that is told, in the words of the field."""
     fw = r.project.flywheel
     at = fw.reduced.numbered
-    plan = at.plan
     omega = NoteQuantity("ω_{1}", fw.omega1, "rad/s", "crank.speed")
-    terms: list[NoteQuantity] = []
-    for name, step in at.terms.items():
-        value = float(np.real(value_at(step, r.at(step, None))))
-        terms.append(NoteQuantity(_term(name), value, "J", r.id(step), r.label))
-    inertia = at.inertia
-    if terms:
-
-        def total(w: Any, *parts: Any) -> Any:
-            out = parts[0]
-            for p in parts[1:]:
-                out = out + p
-            return out / w**2
-
-        said = r.checked("J_{пр}", total, [omega, *terms], inertia)
-        found.formulas["J"] = replace(said, explained=(*said.explained, *(x for t in terms for x in _letters_of_term(r, t.symbol))))
-    for name, step in plan.steps.items():
-        own = name.startswith("N_") and not name.startswith("N_G") and "(" not in name
-        if own and not is_zero(float(np.real(value_at(step, r.at(step, None)))), 1.0):
-            found.fields.setdefault("powers", []).append(
-                {"power": r.of(step), "symbol": Symbol(letters(letters_of(name[2:]))), "force": not name.startswith("N_M")}
-            )
+    terms = [r.measured(_term(name), float(np.real(r.value(step))), "J", step) for name, step in at.terms.items()]
     moment = at.moment()
     n = r.of(moment)
     power = NoteQuantity("ΣN", n.value * fw.omega1, "W", r.id(moment), n.position)
-    found.formulas["M"] = r.checked("M_{пр}", lambda p, w: p / w, [power, omega], moment)
+    own = ((name[2:], step) for name, step in at.plan.steps.items()
+           if name.startswith("N_") and not name.startswith("N_G") and "(" not in name)
+    return {
+        "M": r.checked("M_{пр}", lambda p, w: p / w, [power, omega], moment),
+        "J": _inertia(r, omega, terms) if terms else None,
+        "powers": [{"power": r.of(step), "symbol": lettered(name), "force": not name.startswith("M")} for name, step in own
+                   if not is_zero(float(np.real(r.value(step))), 1.0)],
+    }
+
+
+def _inertia(r: Reader, omega: NoteQuantity, terms: list[NoteQuantity]) -> ShownFormula:
+    """The reduced moment of inertia from the doubled energies; their letters are told too, each with its unit."""
+    units = {"m": "kg", "J": "kg*m2", "V": "m/s", "ω": "rad/s"}
+
+    def total(w: Any, first: Any, *parts: Any) -> Any:
+        return sum(parts, first) / w**2
+
+    said = r.checked("J_{пр}", total, [omega, *terms], r.project.flywheel.reduced.numbered.inertia)
+    letters = (markup for t in terms for markup in re.findall(r"[mJVω]_\{\w+\}|[mJVω]_\w", t.symbol))
+    return replace(said, explained=(*said.explained, *((markup, r.unit(units[markup[0]])) for markup in letters)))
 
 
 def _term(name: str) -> str:
     """Markup of a term of the kinetic energy: m2V_B² is m with the index 2 times V with B squared."""
     text = re.sub(r"^m(\d+)V_?(\w+)²$", r"m_{\1}V_{\2}^{2}", name)
-    text = re.sub(r"^J_?(\w+?)ω(\d+)²$", r"J_{\1}ω_{\2}^{2}", text)
-    return text
+    return re.sub(r"^J_?(\w+?)ω(\d+)²$", r"J_{\1}ω_{\2}^{2}", text)
 
 
-def _letters_of_term(r: Reader, term: str) -> Iterator[tuple[str, str]]:
-    """Letters of a term of the kinetic energy, each with its unit."""
-    units = {"m": "kg", "J": "kg*m2", "V": "m/s", "ω": "rad/s"}
-    for markup in re.findall(r"[mJVω]_\{\w+\}|[mJVω]_\w", term):
-        yield markup, r.unit(units[markup[0]])
-
-
-def _results(r: Reader, found: Scope) -> None:
+def _accuracy(r: Reader) -> dict[str, Any]:
+    """How far the construction is from its limit, and the works from those by the area."""
     fw = r.project.flywheel
-    for name, step in (("ab", fw.ab), ("M_constant", fw.driving_plan["M"]), ("J_flywheel", fw.first_plan["J_м"])):
-        found.fields[name] = r.of(step)
-    if not fw.given:
-        found.fields["J_flywheel_limit"] = r.of(fw.limit_plan["J_м∞"])
-    found.fields["difference"] = r.number(abs(fw.difference_percent), "%", "flywheel-limit/разность", digits=2)
-    found.fields |= {"above": fw.difference_percent >= 0, "close": abs(fw.difference_percent) < CLOSE,
-                     "share": r.number(100 * abs(fw.work_error), "%", "total-work/δA", digits=2),
-                     "coarse": 100 * abs(fw.work_error) > CLOSE}
-    if fw.method == "mertsalov":
-        found.letters["ab"] = words(r.language)["flywheel"]["ab"]
-    work = fw.work_plan
-    for name in ("∫M", "ΔA"):
-        if name in work:
-            value = float(np.real(work[name].value))
-            if name == "ΔA":
-                found.fields["exact_area"] = abs(value) < DRAWN
-            found.fields["closing" if name == "ΔA" else "area"] = r.fixed(abs(value), "mm", 1, r.id(work[name]))
-    wheel = fw.wheel
-    if wheel is not None:
-        for name in ("D", "B", "H", "m", "V"):
-            plan = r.plan("flywheel-wheel")
-            if plan is not None and name in plan:
-                found.fields[f"wheel_{name}"] = r.of(plan[name])
-    found.fields["wheel"] = wheel is not None
-    speed = found.fields.get("wheel_V")
-    found.fields |= {"slow": speed is not None and speed.value < SAFE, "iron": fw.cast_iron,
-                     "safe": r.number(SAFE, "m/s", "flywheel.safe", digits=2)}
-    found.tables["comparison"] = (
-        (
-            (words(r.language)["flywheel"]["quantity"],),
-            (words(r.language)["flywheel"]["drawn"],),
-            (words(r.language)["flywheel"]["limit"],),
-            (words(r.language)["flywheel"]["difference"],),
-        ),
-        (
-            *(((*r.head("δ", ""),), (r.number(fw.unevenness, "", "flywheel-delta/δ"),),
-               (r.number(float(fw.limit_plan["δ∞"].value), "", "flywheel-limit/δ∞"),)) if fw.given else
-              ((*r.head("J_{м}", "kg*m2"),), (r.number(fw.J_flywheel, "", "flywheel-inertia/J_м"),),
-               (r.number(fw.J_flywheel_converged, "", "flywheel-limit/J_м∞"),))),
-            (r.number(fw.difference_percent, "", "flywheel-limit/разность", digits=2),),
-        ),
+    share = 100 * abs(fw.work_error)
+    found = {
+        "difference": r.number(abs(fw.difference_percent), "%", "flywheel-limit/разность", digits=2),
+        "above": fw.difference_percent >= 0,
+        "close": abs(fw.difference_percent) < CLOSE,
+        "share": r.number(share, "%", "total-work/δA", digits=2),
+        "coarse": share > CLOSE,
+    }
+    for name, key in (("∫M", "area"), ("ΔA", "closing")):
+        if name in fw.work_plan:
+            step = fw.work_plan[name]
+            value = abs(float(np.real(step.value)))
+            found |= {key: r.fixed(value, "mm", 1, r.id(step)), "exact_area": value < DRAWN}  # ΔA comes last
+    return found
+
+
+def _comparison(r: Reader) -> Rows:
+    """The result of the construction beside its limit."""
+    fw, said = r.project.flywheel, r.words["flywheel"]
+    if fw.given:
+        told = r.head("δ"), fw.unevenness, "flywheel-delta/δ", float(fw.limit_plan["δ∞"].value), "flywheel-limit/δ∞"
+    else:
+        told = r.head("J_{м}", "kg*m2"), fw.J_flywheel, "flywheel-inertia/J_м", fw.J_flywheel_converged, "flywheel-limit/J_м∞"
+    of, drawn, step, limit, step_of_limit = told
+    difference = r.number(fw.difference_percent, "", "flywheel-limit/разность", digits=2)
+    return (
+        tuple((said[name],) for name in ("quantity", "drawn", "limit", "difference")),
+        (of, (r.number(drawn, "", step),), (r.number(limit, "", step_of_limit),), (difference,)),
     )
 
 
-def _tables(r: Reader, found: Scope) -> None:
-    """Reduced moment, works, energy and reduced moment of inertia at the positions."""
-    fw = r.project.flywheel
-    said = words(r.language)
-    total = fw.total_plan
-    labels = list(fw.labels)
-    columns: list[tuple[str, str, Any, str]] = [
-        ("M_{пр}", "N*m", fw.M_reduced, r.id(fw.moment_plan["M_пр"])),
-        ("A", "J", fw.work, r.id(total["A"])),
-        ("A_{K}", "J", total["A_K"].value, r.id(total["A_K"])),
-        ("ΔE", "J", fw.delta_E, r.id(total["E"])),
-        ("J_{пр}", "kg*m2", fw.J_reduced, r.id(fw.inertia_plan["J_пр"])),
+def _over_positions(r: Reader) -> dict[str, Any]:
+    """Reduced moment, works, energy and reduced moment of inertia at the positions, and what the angular acceleration does."""
+    fw, total = r.project.flywheel, r.project.flywheel.total_plan
+    columns = [
+        ("M_{пр}", "N*m", fw.M_reduced, fw.moment_plan["M_пр"]),
+        ("A", "J", fw.work, total["A"]),
+        ("A_{K}", "J", total["A_K"].value, total["A_K"]),
+        ("ΔE", "J", fw.delta_E, total["E"]),
+        ("J_{пр}", "kg*m2", fw.J_reduced, fw.inertia_plan["J_пр"]),
     ]
+    found: dict[str, Any] = {}
     if "epsilon1" in fw.results():
         step = fw.position_acceleration["ε1"]
         values = np.real(np.atleast_1d(step.value))
-        if len(values) >= len(labels):
-            columns.append(("ε_{1}", "rad/s2", values, r.id(step)))
+        if len(values) >= len(fw.labels):
+            columns.append(("ε_{1}", "rad/s2", values, step))
             ratio = float(np.nanmax(np.abs(values))) / fw.omega1**2
-            found.fields |= {"unevenness": r.number(ratio, "", r.id(step), digits=2), "even": ratio < EVEN}
-    n = min(len(labels), *(len(np.atleast_1d(v)) for _, _, v, _ in columns))
-    rows: list[tuple[Text, ...]] = [((said["position"],), *(r.head(s, u) for s, u, _, _ in columns))]
-    for i in range(n):
-        cells: list[Text] = [(labels[i],)]
-        for _, _, values, where in columns:
-            cells.append((r.number(float(values[i]), "", where, labels[i], kind=float(np.nanmax(np.abs(values)))),))
-        rows.append(tuple(cells))
-    found.tables["works"] = tuple(rows)
-    at = fw.reduced.numbered
-    terms = {name: np.broadcast_to(np.real(step.value), (len(r.project.cycle.labels),)) for name, step in at.terms.items()}
-    if len(terms) > 1:
-        head: list[Text] = [(said["position"],), *(r.head(_term(name), "J") for name in terms)]
-        rows = [tuple(head)]
-        for i, label in r.project.cycle.drawn:
-            rows.append(
-                (
-                    (label,),
-                    *(
-                        (r.number(float(v[i]), "", r.id(at.terms[name]), label, kind=float(np.max(np.abs(v)))),)
-                        for name, v in terms.items()
-                    ),
-                )
-            )
-        found.tables["terms"] = tuple(rows)
+            found = {"unevenness": r.number(ratio, "", r.id(step), digits=2), "even": ratio < EVEN}
+    shown = [Column(r.head(letter, unit), np.atleast_1d(values), r.id(step), np.nanmax(np.abs(values)))
+             for letter, unit, values, step in columns]
+    n = min(len(fw.labels), *(len(c.values) for c in shown))
+    return found | {"works": r.over_positions(enumerate(fw.labels[:n]), shown)}
+
+
+def _terms(r: Reader) -> Rows:
+    """Terms of the reduced moment of inertia at the drawn positions; a single one is the moment itself."""
+    terms = list(_columns_of_terms(r))
+    return r.over_positions(r.project.cycle.drawn, terms) if len(terms) > 1 else ()
+
+
+def _columns_of_terms(r: Reader) -> Iterator[Column]:
+    for name, step in r.project.flywheel.reduced.numbered.terms.items():
+        values = np.broadcast_to(np.real(step.value), (len(r.project.cycle.labels),))
+        yield Column(r.head(_term(name), "J"), values, r.id(step), np.max(np.abs(values)))

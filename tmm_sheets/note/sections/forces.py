@@ -3,140 +3,104 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Iterable, Iterator, Sequence
 from math import pi
 from typing import Any
 
 import numpy as np
 
 from tmm_sheets.construction import expression
-from tmm_sheets.construction.formula import FormulaRow, Node, Sign, Underlined, Words, letters, letters_of
+from tmm_sheets.construction.formula import Node, Sign, Underlined, Words, joined, letters, letters_of, row
 from tmm_sheets.construction.step import Step, value_at
-from tmm_sheets.note.document import NumberInText, Symbol, Text
-from tmm_sheets.note.phrases import Scope, ShownFormula, bare, words
-from tmm_sheets.note.reader import Differs, NoteQuantity, Reader
+from tmm_sheets.meanings import bare
+from tmm_sheets.note.document import Rows, ShownFormula, Text, enumerated, lettered
+from tmm_sheets.note.reader import Column, NoteQuantity, Reader, scale_text
 from tmm_sheets.note.sections.task import pressure_of
 from tmm_sheets.numbers import is_zero
 
 BAR = "\u0305"
 AGREES = 1.0
 """Difference of two results, per cent, that the accuracy of a drawing explains."""
+SEEN = 0.05
+"""Least side of a plan of forces that is told with its length, mm."""
+
+Term = tuple[Sequence[NoteQuantity], bool]
+"""Factors of a term of a sum, and whether it is added."""
 
 
-def scope(r: Reader) -> Scope:
+def fields(r: Reader) -> dict[str, Any]:
     """Everything of the force analysis at the position that is told, reactions at all of them."""
     r.project.check_forces()
     study = r.project.study
-    m = study.mechanism
-    found = Scope(
-        {
-            "label": r.label,
-            "count": len(m.groups),
-            "friction": study.forces.friction is not None,
-            "approximations": "" if study.forces.friction is None else str(study.forces.friction.approximations),
-            "balancing": Symbol(letters(letters_of(r.project.balancing))),
-            "gravity": r.number(r.project.gravity, "m/s2", "forces.gravity"),
-        }
-    )
-    _loads(r, found)
-    found.fields["applied"] = list(_applied(r))
     told: set[str] = set()
-    found.fields["groups"] = [_group(r, g, i, told) for i, g in enumerate(reversed(m.groups), 1)]
-    found.fields["crank_part"] = _crank(r)
-    _lever(r, found)
-    found.tables["reactions"] = _reactions(r)
-    found.fields["sign_of_moment"] = r.project.study.forces.balancing is not None and r.project.study.lever.line is None
-    _compare(r, found)
-    for name, picture in (
-        ("crank", "kinetics.crank"),
-        ("lever", "kinetics.lever"),
-        ("balancing", "diagrams.balancing"),
-    ):
-        figure = r.pictures.figure(picture)
-        if figure is not None and (name != "lever" or "lever" in found.tables):  # without forces there is nothing to tell of it
-            found.figures[name] = figure
-    n = r.pictures.sheet_of("kinetics.crank") or r.pictures.sheet_of("kinetics.lever")
-    found.fields["sheet"] = str(n) if n is not None else ""
-    found.fields["also"] = r.pictures.others(("kinetics.", "friction."), found.fields["sheet"])
-    return found
+    sheet = r.sheet("kinetics.crank", "kinetics.lever")
+    return {
+        "label": r.label,
+        "friction": study.forces.friction is not None,
+        "approximations": "" if study.forces.friction is None else str(study.forces.friction.approximations),
+        "balancing": lettered(r.project.balancing),
+        **_loads(r),
+        "applied": list(_applied(r)),
+        "groups": [_group(r, g, i, told) for i, g in enumerate(reversed(study.mechanism.groups), 1)],
+        "crank_part": _crank(r),
+        **_lever(r),
+        "reactions": _reactions(r),
+        "sign_of_moment": study.forces.balancing is not None and study.lever.line is None,
+        **_compare(r),
+        "sheet": sheet,
+        "also": r.pictures.others(("kinetics.", "friction."), sheet),
+    }
 
 
-def _loads(r: Reader, found: Scope) -> None:
+def _loads(r: Reader) -> dict[str, Any]:
     """Weights, inertia forces and couples of inertia: a formula of one link, all in a table."""
     study = r.project.study
-    forces, acc, m = study.forces, study.accelerations, study.mechanism
-    said = words(r.language)["forces"]
-    rows: list[tuple[Text, ...]] = [
-        (
-            (said["link"],),
-            r.head("m", "kg"),
-            r.head("G", "N"),
-            r.head("a_S", "m/s2"),
-            r.head("F_{и}", "N"),
-            r.head("J_S", "kg*m2"),
-            r.head("ε", "rad/s2"),
-            r.head("M_{и}", "N*m"),
-        )
-    ]
+    acc, m = study.accelerations, study.mechanism
+    heads = (("m", "kg"), ("G", "N"), ("a_S", "m/s2"), ("F_{и}", "N"), ("J_S", "kg*m2"), ("ε", "rad/s2"), ("M_{и}", "N*m"))
+    rows: list[tuple[Text, ...]] = [((r.words["forces"]["link"],), *(r.head(*of) for of in heads))]
+    found: dict[str, Any] = {}
     heaviest = 0.0
     for i, (name, link) in enumerate(m.links.items()):
-        loads: dict[str, Any] = {load.role: load for load in forces.loads[name] if load.role in ("weight", "inertia")}
-        couples = [c for c in study.loads[1].get(name, ()) if c.name.startswith("Mи")]
-        if not loads and not couples:
+        loads: dict[str, Step] = {load.role: load.vector for load in study.forces.loads[name] if load.role in ("weight", "inertia")}
+        couple = next((c for c in study.loads[1].get(name, ()) if c.name.startswith("Mи")), None)
+        if not loads and couple is None:
             continue
-        moved = acc.points.get(str(link.centre))
-        row: list[Text] = [(name,), (r.number(link.mass, "", f"link[{i}].mass"),)]
-        row += [
-            (r.of(step, None, ""),) if step is not None else ("–",)
-            for step in (_vector(loads, "weight"), moved, _vector(loads, "inertia"))
-        ]
-        if couples:
-            of = _inertia(r, name, f"link[{i}].inertia", couples[0])
-            couple, epsilon = r.of(couples[0], None, ""), r.of(acc.epsilon[name], None, "")
-            epsilon = r.number(m.shown_sense(name) * epsilon.value, "", epsilon.step, epsilon.position)
-            couple = r.number(abs(couple.value), "", couple.step, couple.position)
-            row += [(r.number(of.value, "", of.step),), (epsilon,), (couple,)]
-            _couple_formula(r, found, name, of, couples[0])
+        mass, moved = NoteQuantity(f"m_{{{name}}}", float(link.mass), "kg", f"link[{i}].mass"), acc.points.get(str(link.centre))
+        steps = (loads.get("weight"), moved, loads.get("inertia"))
+        cells: list[Text] = [(name,), (r.number(mass.value, "", mass.step),)]
+        cells += [(r.of(step, ""),) if step is not None else ("–",) for step in steps]
+        if couple is None:
+            cells += [("–",)] * 3
         else:
-            row += [("–",)] * 3
-        rows.append(tuple(row))
-        force = link.mass * abs(value_at(moved, r.k)) if moved is not None else 0.0
-        if force > heaviest and "inertia" in loads and moved is not None:
-            heaviest = force
-            _weight_formulas(r, found, link, f"link[{i}].mass", loads, moved)
-    found.tables["loads"] = tuple(rows)
-
-
-def _vector(loads: dict[str, Any], role: str) -> Step | None:
-    return loads[role].vector if role in loads else None
+            inertia, epsilon = _inertia(r, name, f"link[{i}].inertia", couple), r.of(acc.epsilon[name], "")
+            turned = r.number(m.shown_sense(name) * epsilon.value, "", epsilon.step, epsilon.position)
+            cells += [(r.number(inertia.value, "", inertia.step),), (turned,), (r.size(couple, ""),)]
+            found |= _couple_formula(r, name, inertia, couple)
+        rows.append(tuple(cells))
+        if "inertia" in loads and moved is not None and mass.value * abs(value_at(moved, r.k)) > heaviest:
+            heaviest = mass.value * abs(value_at(moved, r.k))
+            g = NoteQuantity("g", r.project.gravity, "m/s2", "forces.gravity")
+            a = r.measured(f"a_{{{link.centre}}}", abs(value_at(moved, r.k)), "m/s2", moved)
+            found["inertia"] = r.checked(f"F_{{и{name}}}", lambda x, y: x * y, [mass, a], loads["inertia"])
+            if "weight" in loads:
+                found["weight"] = r.checked(f"G_{{{name}}}", lambda x, y: x * y, [mass, g], loads["weight"])
+    return {"loads": tuple(rows), **found}
 
 
 def _inertia(r: Reader, name: str, place: str, couple: Step) -> NoteQuantity:
     """Moment of inertia that a couple was computed with, given in that ``place``: of the crank with a flywheel that of both."""
     of = couple.args[0]
-    step = r.id(of) if isinstance(of, Step) else place
-    letter = r.letters_of(of) if isinstance(of, Step) else f"J_{{S{name}}}"
-    return NoteQuantity(letter, abs(float(value_at(of, r.k))), "kg*m2", step)
+    value = abs(float(value_at(of, r.k)))
+    if isinstance(of, Step):
+        return NoteQuantity(r.letters_of(of), value, "kg*m2", r.id(of))
+    return NoteQuantity(f"J_{{S{name}}}", value, "kg*m2", place)
 
 
-def _couple_formula(r: Reader, found: Scope, name: str, inertia: NoteQuantity, couple: Step) -> None:
+def _couple_formula(r: Reader, name: str, inertia: NoteQuantity, couple: Step) -> dict[str, Any]:
     epsilon = r.project.study.accelerations.epsilon[name]
     value = abs(float(value_at(epsilon, r.k)))
-    if not is_zero(value, 1.0):
-        turned = NoteQuantity(f"|ε_{{{name}}}|", value, "rad/s2", r.id(epsilon), r.label)
-        found.formulas["couple"] = r.checked(f"M_{{и{name}}}", lambda x, y: x * y, [inertia, turned], couple)
-
-
-def _weight_formulas(r: Reader, found: Scope, link: Any, place: str, loads: dict[str, Any], moved: Step) -> None:
-    """Weight and inertia force of one link, whose mass is given in that ``place``, as formulas."""
-    name = link.name
-    mass = NoteQuantity(f"m_{{{name}}}", float(link.mass), "kg", place)
-    g = NoteQuantity("g", r.project.gravity, "m/s2", "forces.gravity")
-    a = NoteQuantity(f"a_{{{link.centre}}}", abs(value_at(moved, r.k)), "m/s2", r.id(moved), r.label)
-    found.formulas["inertia"] = r.checked(f"F_{{и{name}}}", lambda x, y: x * y, [mass, a], loads["inertia"].vector)
-    if "weight" in loads:
-        found.formulas["weight"] = r.checked(f"G_{{{name}}}", lambda x, y: x * y, [mass, g], loads["weight"].vector)
+    turned = r.measured(f"|ε_{{{name}}}|", value, "rad/s2", epsilon)
+    return {} if is_zero(value, 1.0) else {"couple": r.checked(f"M_{{и{name}}}", lambda x, y: x * y, [inertia, turned], couple)}
 
 
 def _applied(r: Reader) -> Iterator[dict[str, Any]]:
@@ -144,16 +108,13 @@ def _applied(r: Reader) -> Iterator[dict[str, Any]]:
     study = r.project.study
     for load in study.forces.external:
         if load.role == "applied" and load.vector is not study.forces.balancing:
-            symbol = Symbol(letters(load.symbol.replace(BAR, "")))
-            acts = bool(abs(value_at(load.vector, r.k)))
-            yield {"symbol": symbol, "link": load.link, "value": r.of(load.vector), "acts": acts, "force": True,
-                   **_from_diagram(r, load)}
+            yield {"symbol": lettered(load.symbol.replace(BAR, "")), "link": load.link, "value": r.of(load.vector),
+                   "acts": bool(abs(value_at(load.vector, r.k))), "force": True, **_from_diagram(r, load)}  # fmt: skip
     for link, couples in study.loads[1].items():
         for couple in couples:
             if not couple.name.startswith("Mи") and couple is not study.forces.balancing:
-                symbol = Symbol(letters(letters_of(couple.name)))
-                acts = bool(value_at(couple, r.at(couple, None)))
-                yield {"symbol": symbol, "link": link, "value": _size(r, couple, None), "acts": acts, "force": False}
+                yield {"symbol": lettered(couple.name), "link": link, "value": r.size(couple), "acts": bool(r.value(couple)),
+                       "force": False}  # fmt: skip
 
 
 def _from_diagram(r: Reader, load: Any) -> dict[str, Any]:
@@ -162,117 +123,116 @@ def _from_diagram(r: Reader, load: Any) -> dict[str, Any]:
                      or letters_of(f.name) == load.symbol.replace(BAR, "")), (0, None))
     if given is None or (given.table is None and given.tables is None):
         return {}
-    force = abs(complex(value_at(load.vector, r.k)))
     if given.bore is None:
         return {"diagram": True}
     area = pi * float(given.bore) ** 2 / 4
+    pressure = abs(complex(value_at(load.vector, r.k))) / area + float(given.ambient)
     quantities = [
         NoteQuantity("D", 1e3 * float(given.bore), "mm", f"force[{i}].bore"),
-        NoteQuantity(pressure_of(given.name), 1e-6 * (force / area + float(given.ambient)), "MPa", r.id(load.vector), r.label),
+        r.measured(pressure_of(given.name), 1e-6 * pressure, "MPa", load.vector),
         NoteQuantity("p_{0}", 1e-6 * float(given.ambient), "MPa", f"force[{i}].ambient"),
     ]
     said = r.checked(letters_of(given.name), lambda d, p, around: pi * d**2 / 4 * (p - around if given.ambient else p), quantities,
                      load.vector)  # fmt: skip
-    return {"diagram": True, "pressure": said, "pressure_letter": Symbol(letters(pressure_of(given.name)))}
+    return {"diagram": True, "pressure": said, "pressure_letter": lettered(pressure_of(given.name))}
 
 
-def _terms(r: Reader, total: Step) -> Iterator[tuple[str, complex, complex, float, Step, float]]:
-    """Terms of a sum of moments: symbol, point, force, N, moment, N m, its step, arm, m (0 for a couple)."""
+# --- sums of moments
+
+def _signed(terms: Iterable[Term]) -> tuple[Any, list[NoteQuantity]]:
+    """The expression of a sum, None of nothing, and the quantities in the places of its arguments."""
+    tree: Any = None
+    quantities: list[NoteQuantity] = []
+    for factors, added in terms:
+        part: Any = expression.Argument(len(quantities))
+        for n in range(1, len(factors)):
+            part = part * expression.Argument(len(quantities) + n)
+        quantities += factors
+        signed = part if added else -part
+        tree = signed if tree is None else tree + part if added else tree - part
+    return tree, quantities
+
+
+def _moments(r: Reader, total: Step) -> Iterator[tuple[list[NoteQuantity], float]]:
+    """Terms of a sum of moments: force and arm, or a couple, and the moment, N m, where it is not nothing."""
     forces = r.project.study.forces
     loads = {id(load.vector): load for links in forces.loads.values() for load in links}
-    about = complex(value_at(total.args[0], r.k))
+    about, size = complex(value_at(total.args[0], r.k)), forces.moment_size(r.k)
     for at, vector, couple in zip(total.args[1::3], total.args[2::3], total.args[3::3], strict=True):
         if isinstance(vector, Step):
             f, p = complex(value_at(vector, r.k)), complex(value_at(at, r.k))
             moment = float((np.conj(p - about) * f).imag)
-            load = loads.get(id(vector))
-            symbol = (load.symbol if load is not None else letters_of(vector.name)).replace(BAR, "")
-            yield symbol, p, f, moment, vector, abs(moment) / abs(f) if abs(f) else 0.0
+            symbol = (loads[id(vector)].symbol if id(vector) in loads else letters_of(vector.name)).replace(BAR, "")
+            if not is_zero(moment, size):
+                yield [r.measured(symbol, abs(f), "N", vector), _arm_of(r, symbol, abs(moment) / abs(f), vector)], moment
         if isinstance(couple, Step):
             value = float(np.real(value_at(couple, r.k)))
-            yield letters_of(couple.name), 0j, 0j, value, couple, 0.0
+            if not is_zero(value, size):
+                yield [r.measured(letters_of(couple.name), abs(value), "N*m", couple)], value
 
 
-def _sum(r: Reader, total: Step, symbol: str, result: Step, length: NoteQuantity | None,
-         sign: float = 1.0) -> tuple[ShownFormula, Node] | None:
-    """A force or moment from a sum of moments: its formula, and the equation of equilibrium."""
-    size = r.project.study.forces.moment_size(r.k)
-    terms = [t for t in _terms(r, total) if not is_zero(t[3], size)]
+def _arm_of(r: Reader, symbol: str, arm: float, step: Step, unit: str = "m") -> NoteQuantity:
+    """The arm of a force, whose letters are its index."""
+    return r.measured(f"h_{{{_bared(symbol)}}}", arm, unit, step)
+
+
+def _bared(symbol: str) -> str:
+    return re.sub(r"[_{}^]", "", symbol)
+
+
+def _sum(r: Reader, total: Step, name: str, result: Step, length: NoteQuantity | None = None,
+         about: str = "") -> tuple[ShownFormula, ShownFormula] | None:
+    """A force or moment from a sum of moments: its equation of equilibrium, and its formula; None where the sum is nothing."""
+    terms = list(_moments(r, total))
     if not terms:
         return None
-    quantities: list[NoteQuantity] = []
-    tree: Any = None
-    equation: list[Node] = []
-    target = -float(np.real(value_at(total, r.k)))
-    flip = 1.0 if target >= 0 else -1.0
-    for symbol_, _, f, moment, step, arm in terms:
-        if arm:
-            quantities += [
-                NoteQuantity(symbol_, abs(f), "N", r.id(step), r.label),
-                NoteQuantity(f"h_{{{index_of(symbol_)}}}", arm, "m", r.id(step), r.label),
-            ]
-            part = expression.Argument(len(quantities) - 2) * expression.Argument(len(quantities) - 1)
-        else:
-            quantities.append(NoteQuantity(symbol_, abs(moment), "N*m", r.id(step), r.label))
-            part = expression.Argument(len(quantities) - 1)
-        positive = moment * flip < 0
-        tree = (part if positive else -part) if tree is None else (tree + part if positive else tree - part)
-        equation += [Sign("+" if moment >= 0 else "−")] if equation or moment < 0 else []
-        equation += [letters(symbol_), *((Sign("·"), letters(f"h_{{{index_of(symbol_)}}}")) if arm else ())]
+    symbol, target = letters_of(name), -float(np.real(value_at(total, r.k)))
+    tree, quantities = _signed((factors, (moment < 0) == (target >= 0)) for factors, moment in terms)
     if length is not None:
+        tree = tree / expression.Argument(len(quantities))
         quantities.append(length)
-        tree = tree / expression.Argument(len(quantities) - 1)
     value = float(expression.evaluate(tree, [q.value for q in quantities]))
     n = r.of(result)
-    if abs(abs(value) - abs(n.value)) > 1e-6 * max(abs(n.value), 1e-9 * size):
-        raise Differs(f"{symbol}: the record has {n.value}, the note's formula gives {value}")
-    said = r.written(symbol, tree, quantities, NoteQuantity("", value, r.unit_of(result), n.step, n.position))
-    own = [letters(symbol), *((Sign("·"), letters(length.symbol)) if length is not None else ())]
-    equation += [Sign("+" if target >= 0 else "−"), *own, Sign("="), Words("0")]
-    return said, FormulaRow(tuple(equation))
+    said = r.agreed(symbol, tree, quantities, NoteQuantity("", n.value, r.unit_of(result), n.step, n.position))
+    equation: list[Node] = [letters(f"ΣM_{{{about or total.args[0].name}}}"), Sign("=")]
+    own = [NoteQuantity(symbol, value), *([length] if length is not None else [])]
+    for i, (factors, moment) in enumerate([*terms, (own, target)]):
+        equation += [Sign("+" if moment >= 0 else "−")] if i or moment < 0 else []
+        equation.append(joined("·", [letters(q.symbol) for q in factors]))
+    return ShownFormula(row(*equation, Sign("="), Words("0"))), said
 
 
-def index_of(symbol: str) -> str:
-    """Index of an arm: the letters of its force."""
-    return symbol.replace("_", "").replace("{", "").replace("}", "").replace("^", "")
+def _made(r: Reader, total: Step, name: str, result: Step, length: NoteQuantity | None, about: str) -> dict[str, Any]:
+    """Equation and formula of a sum for a template, or that it is zero."""
+    made = _sum(r, total, name, result, length, about)
+    return {"zero": True} if made is None else {"zero": False, "equation": made[0], "force": made[1]}
 
+
+# --- groups
 
 def _group(r: Reader, g: Any, nth: int, told: set[str]) -> dict[str, Any]:
     """One Assur group: its figure, moments, force plans, and the arms that no group before it has ``told``."""
-    forces = r.project.study.forces
-    found: dict[str, Any] = {"links": g.lettered, "kind": str(g.kind.number), "nth": str(nth)}
-    for name in (f"group {g.name}", f"group {'–'.join(g.links)}"):
-        figure = r.pictures.figure(name)
-        if figure is not None:
-            found["scheme"] = figure
-            break
+    study = r.project.study
+    forces = study.forces
     tangential = []
-    for part in forces.from_moments:
-        if part.link not in g.links:
-            continue
-        total = part.vector.args[0]
-        a, b = (complex(value_at(x, r.k)) for x in part.vector.args[1:3])
-        length = NoteQuantity(
-            r.length(part.at, part.centre), abs(b - a), "m", r.id(r.project.study.positions.points[part.at]), r.label
-        )
-        made = _sum(r, total, letters_of(part.vector.name), part.vector, length)
-        item: dict[str, Any] = {
-            "centre": Symbol(letters(letters_of(part.centre))),
-            "of": Symbol(letters(letters_of(part.vector.name))),
-            "zero": made is None,
-            "joint": Symbol(letters(letters_of(part.at))),
-        }
-        if made is not None:
-            item["force"] = made[0]
-            item["equation"] = _shown(made[1], total.name, part.centre)
-        tangential.append(item)
-    found["tangential"] = tangential
-    found["normal"] = list(_about_special_point(r, g))
-    found["plans"] = [{**_force_plan(r, forces.plans[name]), "nth": f"{nth}-{i}"} for i, name in enumerate(g.kind.force_plans(g))]
-    arms = [_arm(r, name, step) for name, step in forces.arms.items() if _of_group(name, g.links) and name not in told]
-    told |= {name for name in forces.arms if _of_group(name, g.links)}
-    found["arms"] = [x for x in arms if x]
-    return found
+    for part in (part for part in forces.from_moments if part.link in g.links):
+        total, (a, b) = part.vector.args[0], (complex(value_at(x, r.k)) for x in part.vector.args[1:3])
+        length = r.measured(r.length(part.at, part.centre), abs(b - a), "m", study.positions.points[part.at])
+        tangential.append({
+            "centre": lettered(part.centre), "of": lettered(part.vector.name), "joint": lettered(part.at),
+            **_made(r, total, part.vector.name, part.vector, length, about=part.centre),
+        })  # fmt: skip
+    arms = [(name, step) for name, step in forces.arms.items() if _of_group(name, g.links) and name not in told]
+    told |= {name for name, _ in arms}
+    return {
+        "links": g.lettered,
+        "nth": str(nth),
+        "scheme": r.pictures.figures(f"group {g.name}") or r.pictures.figures(f"group {'–'.join(g.links)}"),
+        "tangential": tangential,
+        "normal": list(_about_special_point(r, g)),
+        "plans": [{**_force_plan(r, forces.plans[name]), "nth": f"{nth}-{i}"} for i, name in enumerate(g.kind.force_plans(g))],
+        "arms": [x for name, step in arms if (x := _arm(r, name, step))],
+    }
 
 
 def _about_special_point(r: Reader, g: Any) -> Iterator[dict[str, Any]]:
@@ -280,19 +240,19 @@ def _about_special_point(r: Reader, g: Any) -> Iterator[dict[str, Any]]:
     study = r.project.study
     for special in study.positions.special.values():
         step = study.forces.about_special(special.step)
-        if step is None or special.third.link not in g.links:
-            continue
-        about, at = (complex(value_at(x, r.k)) for x in step.args[1:3])
-        arm = abs(float((np.conj(at - about) * complex(value_at(step.args[3], r.k))).imag))
-        symbol = letters_of(step.name.removesuffix("n") if special.third.guide else step.name)
-        length = NoteQuantity(f"h_{{{index_of(symbol)}}}", arm, "m", r.id(step.args[2]), r.label)
-        made = _sum(r, step.args[0], symbol, step, length)
-        item: dict[str, Any] = {"slider": bool(special.third.guide), "zero": made is None}
-        item |= {"first": special.pair[0].link, "second": special.pair[1].link, "third": special.third.link}
-        item["special"] = Symbol(letters(letters_of(special.name)))
-        if made is not None:
-            item |= {"force": made[0], "equation": _shown(made[1], step.args[0].name, special.name)}
-        yield item
+        if step is not None and special.third.link in g.links:
+            symbol = step.name.removesuffix("n") if special.third.guide else step.name
+            yield {
+                "slider": bool(special.third.guide), "special": lettered(special.name),
+                "first": special.pair[0].link, "second": special.pair[1].link, "third": special.third.link,
+                **_made(r, step.args[0], symbol, step, _arm_of_direction(r, letters_of(symbol), step), about=special.name),
+            }  # fmt: skip
+
+
+def _arm_of_direction(r: Reader, symbol: str, step: Step) -> NoteQuantity:
+    """The arm that a force of known direction has about the point of its sum of moments."""
+    about, at, along = (complex(value_at(x, r.k)) for x in step.args[1:4])
+    return _arm_of(r, symbol, abs(float((np.conj(at - about) * along).imag)), step.args[2])
 
 
 def _of_group(name: str, links: Iterable[str]) -> bool:
@@ -300,259 +260,159 @@ def _of_group(name: str, links: Iterable[str]) -> bool:
     return not set(index.split(",") if "," in index else index).isdisjoint(links)
 
 
-def _shown(equation: Node, name: str, about: str) -> ShownFormula:
-    """An equation of moments with its left side."""
-    head = letters(f"ΣM_{{{about}}}")
-    items = equation.items if isinstance(equation, FormulaRow) else (equation,)
-    return ShownFormula(FormulaRow((head, Sign("="), *items)))
-
-
 def _arm(r: Reader, name: str, step: Step) -> dict[str, Any]:
-    """Arm of a reaction from its moment."""
-    forces = r.project.study.forces
+    """Arm of a reaction from its moment; nothing without a reaction."""
     moment, force = step.args[:2]
-    value = float(np.real(value_at(moment, r.k)))
-    f = abs(complex(value_at(force, r.k)))
-    if is_zero(value, forces.moment_size(r.k)):
-        return {"zero": True, "of": Symbol(letters(letters_of(name))), "force": Symbol(letters(letters_of(f"F{name[1:]}")))}
+    value, f = float(np.real(value_at(moment, r.k))), abs(complex(value_at(force, r.k)))
+    found: dict[str, Any] = {"of": lettered(name), "force": lettered(f"F{name[1:]}")}
+    if is_zero(value, r.project.study.forces.moment_size(r.k)):
+        return found | {"zero": True}
     if not f:
         return {}
-    said = r.checked(
-        letters_of(name),
-        lambda m, x: m / x,
-        [
-            NoteQuantity(letters_of(moment.name), abs(value), "N*m", r.id(moment), r.label),
-            NoteQuantity(letters_of(force.name), f, "N", r.id(force), r.label),
-        ],
-        step,
-    )
-    found: dict[str, Any] = {
-        "zero": False,
-        "of": Symbol(letters(letters_of(name))),
-        "force": Symbol(letters(letters_of(f"F{name[1:]}"))),
-        "arm": said,
-    }
+    quantities = [r.measured(letters_of(moment.name), abs(value), "N*m", moment), r.measured(letters_of(force.name), f, "N", force)]
+    found |= {"zero": False, "arm": r.checked(letters_of(name), lambda m, x: m / x, quantities, step)}
     total = moment.args[0]
-    made = _sum(r, total, letters_of(moment.name), moment, None) if total.rule.name == "sum of moments" else None
+    made = _sum(r, total, moment.name, moment) if total.rule.name == "sum of moments" else None
     if made is not None:
-        about = total.args[0].name
-        found |= {"moment": made[0], "equation": _shown(made[1], total.name, about), "about": Symbol(letters(letters_of(about)))}
+        found |= {"equation": made[0], "moment": made[1], "about": lettered(total.args[0].name)}
     return found
-
-
-SEEN = 0.05
-"""Least side of a plan of forces that is told with its length, mm."""
 
 
 def _force_plan(r: Reader, fp: Any) -> dict[str, Any]:
     """A force plan: vector equation with what is known underlined, sides in mm, what it gives."""
-    scale = r.scales.get(fp.plan.name)
-    unknown = [side for side in fp.sides if side[3]]
-    nodes: list[Node] = []
-    for symbol, _, _, sought in fp.sides:
-        nodes += [Sign("+")] if nodes else []
-        times = 2 if not sought else 1 if len(unknown) > 1 else 0
-        nodes.append(Underlined(letters(symbol), times) if times else letters(symbol))
-    nodes += [Sign("="), Words("0")]
+    two = sum(sought for *_, sought in fp.sides) > 1
+    times = {False: 2, True: 1 if two else 0}
+    terms = [Underlined(letters(symbol), times[sought]) if times[sought] else letters(symbol) for symbol, _, _, sought in fp.sides]
     found: dict[str, Any] = {
-        "equation": ShownFormula(FormulaRow(tuple(nodes))),
+        "equation": ShownFormula(row(joined("+", terms), Sign("="), Words("0"))),
         "links": "–".join(fp.links),
         "one": len(fp.links) == 1,
-        "two": len(unknown) > 1,
+        "two": two,
+        "plan": r.pictures.figures(fp.plan.name),
     }
-    figure = r.pictures.figure(fp.plan.name)
-    if figure is not None:
-        found["plan"] = figure
-    if scale is None:
+    if fp.plan.name not in r.scales:
         return found
-    found["mu"] = scale_text(scale)
-    sides: list[Any] = []
-    tiny: list[Any] = []
-    results = []
+    scale = r.scales[fp.plan.name]
+    sides: list[Text] = []
+    tiny: list[Text] = []
+    results: list[dict[str, Any]] = []
     extra = [(s.symbol, s.tail, s.head, True) for s in fp.plan.segments if s.symbol not in {x[0] for x in fp.sides}]
     for symbol, tail, head, sought in [*fp.sides, *extra]:
-        f = value_at(head, r.k) - value_at(tail, r.k)
-        f = 0j if is_zero(f, r.project.study.forces.force_size(r.k)) else f
-        mm = float(scale.mm(abs(f)))
-        plain = symbol.replace(BAR, "")
-        force = next((s for s in fp.plan if s.name == _named(plain)), head)
+        size = float(abs(value_at(head, r.k) - value_at(tail, r.k)))
+        size = 0.0 if is_zero(size, r.project.study.forces.force_size(r.k)) else size
+        mm, plain = float(scale.mm(size)), symbol.replace(BAR, "")
+        force = next((s for s in fp.plan if s.name == _bared(plain)), head)
         if sought:
             q = [
-                NoteQuantity(f"|{tail.name}–{head.name}|", mm, "mm", r.id(force), r.label),
+                r.measured(f"|{tail.name}–{head.name}|", mm, "mm", force),
                 NoteQuantity("μ_{F}", scale.mu, "N/mm", f"scales.{fp.plan.name}"),
             ]
             tree: Any = expression.Argument(0) * expression.Argument(1)
-            results.append({"result": r.written(plain, tree, q, NoteQuantity("", abs(f), "N", r.id(force), r.label))})
-        elif f and mm < SEEN:
-            tiny += [", "] if tiny else []
-            tiny.append(Symbol(letters(plain)))
-        elif f:
-            sides += [", "] if sides else []
-            sides += [Symbol(letters(plain)), " – ", r.fixed(mm, "mm", 1, r.id(force), r.label)]
-    found["sides"] = tuple(sides)
-    found |= {"tiny": tuple(tiny), "few": (len(tiny) + 1) // 2}
-    found["results"] = results
-    return found
-
-
-def _named(symbol: str) -> str:
-    return symbol.replace("_", "").replace("{", "").replace("}", "").replace("^", "")
-
-
-def scale_text(scale: Any) -> Text:
-    """A scale factor as it is written."""
-    head, _, rest = str(scale).partition(" = ")
-    return (Symbol(FormulaRow((letters(head), Sign("="), Words(rest)))),)
+            results.append({"result": r.written(plain, tree, q, r.measured("", size, "N", force))})
+        elif size and mm < SEEN:
+            tiny.append((lettered(plain),))
+        elif size:
+            sides.append((lettered(plain), " – ", r.fixed(mm, "mm", 1, r.id(force), r.label)))
+    found |= {"sides": enumerated(sides), "tiny": enumerated(tiny), "few": len(tiny)}
+    return found | {"mu": scale_text(scale), "results": results}
 
 
 def _crank(r: Reader) -> list[dict[str, Any]]:
     """The initial link: balancing force or moment from the moments, then its force plan."""
-    study = r.project.study
-    forces, m = study.forces, study.mechanism
-    balancing = forces.balancing
+    study, name = r.project.study, r.project.balancing
+    balancing, m = study.forces.balancing, study.mechanism
     if balancing is None:
         return []
-    total = balancing.args[0]
-    item: dict[str, Any] = {"pivot": Symbol(letters(letters_of(m.crank.pivot)))}
-    length = made = None
-    if study.driver is not None and study.driver.wheel is not None:
-        pivot, at = (complex(value_at(x, r.k)) for x in balancing.args[1:3])
-        u = complex(value_at(balancing.args[3], r.k))
-        arm = abs(float((np.conj(at - pivot) * u).imag))
-        length = NoteQuantity(f"h_{{{index_of(letters_of(r.project.balancing))}}}", arm, "m", r.id(balancing.args[2]), r.label)
+    item: dict[str, Any] = {"pivot": lettered(m.crank.pivot)}
     if m.drive is None:  # the force of an input is a load of the plans
-        made = _sum(r, total, letters_of(r.project.balancing), balancing, length)
-    if made is not None:
-        item |= {"force": made[0], "equation": _shown(made[1], total.name, m.crank.pivot)}
-    plan = forces.plans.get(m.crank.link)
+        on_wheel = study.driver is not None and study.driver.wheel is not None
+        arm = _arm_of_direction(r, letters_of(name), balancing) if on_wheel else None
+        item |= _made(r, balancing.args[0], name, balancing, arm, about=m.crank.pivot)
+    plan = study.forces.plans.get(m.crank.link)
     if plan is not None:
         item |= {f"plan_{k}" if k != "results" else "results": v for k, v in _force_plan(r, plan).items()}
     return [item]
 
 
-def _lever(r: Reader, found: Scope) -> None:
-    """Zhukovsky's lever: arms in mm, the balancing force or moment, the difference."""
-    study = r.project.study
-    lever, scale = study.lever, r.scales.get("lever")
+# --- the lever, and what all positions give
+
+def _lever(r: Reader) -> dict[str, Any]:
+    """Zhukovsky's lever: arms in mm, the balancing force or moment."""
+    study, scale = r.project.study, r.scales.get("lever")
+    lever, crank = study.lever, study.mechanism.crank
     if lever.balancing is None or scale is None:
-        return
-    said = words(r.language)["forces"]
-    rows: list[tuple[Text, ...]] = [((said["force"],), (said["force_size"],), (said["arm"],), (said["lever_moment"],))]
-    quantities: list[NoteQuantity] = []
-    tree: Any = None
+        return {}
     own = lever.hung[-1]
     last = float(value_at(own.arm, r.k))
-    sizes = [
-        abs(complex(value_at(h.force, r.k))) * abs(float(value_at(h.arm, r.k))) for h in lever.hung[:-1] if value_at(h.force, r.k)
-    ]
-    greatest = max(sizes, default=0.0)
-    f_own = float(np.real(value_at(lever.balancing if lever.line is not None else own.force.args[0], r.k)))
-    for h in lever.hung[:-1]:
-        f, arm = abs(complex(value_at(h.force, r.k))), float(value_at(h.arm, r.k))
-        if not f:
-            continue
-        symbol = h.symbol.replace(BAR, "")
-        mm = float(scale.mm(arm))
-        n = r.number(f, "", r.id(h.force), r.label)
-        rows.append(
-            (
-                (Symbol(letters(symbol)),),
-                (n,),
-                (r.fixed(mm, "", 1, r.id(h.arm), r.label),),
-                (r.number(f * mm, "", r.id(h.arm), r.label, kind=greatest * float(scale.mm(1.0))),),
-            )
-        )
-        if is_zero(f * arm, greatest):
-            continue
-        quantities += [
-            NoteQuantity(symbol, f, "N", r.id(h.force), r.label),
-            NoteQuantity(f"h_{{{index_of(symbol)}}}", abs(mm), "mm", r.id(h.arm), r.label),
-        ]
-        part: Any = expression.Argument(len(quantities) - 2) * expression.Argument(len(quantities) - 1)
-        positive = arm * last < 0
-        tree = (part if positive else -part) if tree is None else (tree + part if positive else tree - part)
-    if tree is None or not last:
-        return
+    acting = (h for h in lever.hung[:-1] if value_at(h.force, r.k))
+    hung = [(h, abs(complex(value_at(h.force, r.k))), float(value_at(h.arm, r.k))) for h in acting]
+    greatest = max((f * abs(arm) for _, f, arm in hung), default=0.0)
+    if not last or not greatest:
+        return {}
+    said = r.words["forces"]
+    rows = [tuple((said[name],) for name in ("force", "force_size", "arm", "lever_moment"))]
+    terms: list[Term] = []
+    for h, f, arm in hung:
+        symbol, mm = h.symbol.replace(BAR, ""), float(scale.mm(arm))
+        moment = r.number(f * mm, "", r.id(h.arm), r.label, kind=greatest * float(scale.mm(1.0)))
+        rows.append(((lettered(symbol),), (r.number(f, "", r.id(h.force), r.label),),
+                     (r.fixed(mm, "", 1, r.id(h.arm), r.label),), (moment,)))  # fmt: skip
+        if not is_zero(f * arm, greatest):
+            terms.append(([r.measured(symbol, f, "N", h.force), _arm_of(r, symbol, abs(mm), h.arm, "mm")], arm * last < 0))
     driven = letters_of(r.project.balancing)
     # The force that a moment hangs on the lever with is called after it, as on the sheet.
     name = driven if lever.line is not None else f"F_{{{re.sub('[_{}]', '', driven)}}}"
-    quantities.append(NoteQuantity(f"h_{{{index_of(name)}}}", abs(float(scale.mm(last))), "mm", r.id(own.arm), r.label))
-    tree = tree / expression.Argument(len(quantities) - 1)
-    value = float(expression.evaluate(tree, [q.value for q in quantities]))
-    if abs(abs(value) - abs(f_own)) > 1e-6 * max(abs(f_own), 1e-12):
-        raise Differs(f"lever: the record has {f_own}, the note's formula gives {value}")
-    found.formulas["lever"] = r.written(name, tree, quantities, NoteQuantity("", value, "N", r.id(lever.balancing), r.label))
-    found.tables["lever"] = tuple(rows)
-    if lever.line is None:
-        found.letters[bare(name)] = words(r.language)["loads"]["at_pin"]
-    found.fields["mu_lever"] = scale_text(scale)
-    if lever.line is None:
-        length = NoteQuantity(
-            f"l_{{{study.mechanism.crank.pivot}{study.mechanism.crank.pin}}}",
-            float(study.mechanism.crank.length),
-            "m",
-            r.origin(study.mechanism.crank.length, "crank.length"),
-        )
-        force = NoteQuantity(name, abs(f_own), "N", r.id(own.force), r.label)
-        found.formulas["lever_moment"] = r.checked(
-            driven, lambda f, length: f * length, [force, length], lever.balancing
-        )
+    force = float(np.real(value_at(lever.balancing if lever.line is not None else own.force.args[0], r.k)))
+    tree, quantities = _signed(terms)
+    tree = tree / expression.Argument(len(quantities))
+    quantities.append(_arm_of(r, name, abs(float(scale.mm(last))), own.arm, "mm"))
+    found = {
+        "lever": tuple(rows),
+        "mu_lever": scale_text(scale),
+        "lever_force": r.agreed(name, tree, quantities, r.measured("", force, "N", lever.balancing)),
+    }
+    if lever.line is not None:
+        return found
+    length = NoteQuantity(f"l_{{{crank.pivot}{crank.pin}}}", float(crank.length), "m", r.origin(crank.length, "crank.length"))
+    at_pin = r.measured(name, abs(force), "N", own.force)
+    return found | {
+        "letters": {bare(name): r.words["loads"]["at_pin"]},
+        "lever_moment": r.checked(driven, lambda f, length: f * length, [at_pin, length], lever.balancing),
+    }
 
 
-def _compare(r: Reader, found: Scope) -> None:
+def _compare(r: Reader) -> dict[str, Any]:
     """The balancing force or moment by both methods, with the difference, and whether a drawing would show it."""
-    study = r.project.study
-    said = words(r.language)["forces"]
+    study, said = r.project.study, r.words["forces"]
     if study.forces.balancing is None or study.lever.balancing is None:
-        return
-    first = study.balance["along"] if study.lever.line is not None else study.forces.balancing
-    unit = "N" if study.lever.line is not None else "N*m"
-    name = letters_of(r.project.balancing)
+        return {}
+    by_forces, unit = (study.balance["along"], "N") if study.lever.line is not None else (study.forces.balancing, "N*m")
     delta = study.balance["Δ"]
-    value = float(value_at(delta, r.at(delta, None)))
-    found.fields |= {"agree": abs(value) < AGREES, "balance_off": r.number(abs(value), "%", r.id(delta), r.label, 2, kind=100.0)}
-    found.tables["balance"] = (
-        ((said["quantity"],), (said["kinetostatics"],), (said["lever"],), (said["difference"],)),
-        (
-            (Symbol(letters(name)), f", {r.unit(unit)}"),
-            (_size(r, first),),
-            (_size(r, study.lever.balancing),),
-            (r.number(value, "", r.id(delta), r.label, 2, kind=100.0),),
+    off = float(r.value(delta))
+    return {
+        "agree": abs(off) < AGREES,
+        "balance_off": r.number(abs(off), "%", r.id(delta), r.label, 2, kind=100.0),
+        "balance": (
+            tuple((said[name],) for name in ("quantity", "kinetostatics", "lever", "difference")),
+            (r.head(letters_of(r.project.balancing), unit), (r.size(by_forces, ""),), (r.size(study.lever.balancing, ""),),
+             (r.number(off, "", r.id(delta), r.label, 2, kind=100.0),)),
         ),
-    )
+    }  # fmt: skip
 
 
-def _size(r: Reader, step: Step, unit: str | None = "") -> NumberInText:
-    """A force or moment without its sign: the formulas give its size."""
-    n = r.of(step, None, unit)
-    return replace(n, text=n.text.removeprefix("−"))
-
-
-def _reactions(r: Reader) -> tuple[tuple[Text, ...], ...]:
+def _reactions(r: Reader) -> Rows:
     """Sizes of the reactions at all positions, each pair once."""
-    study = r.project.study
-    forces = study.forces
+    study, forces = r.project.study, r.project.study.forces
+    sizes, moments = ([of(i) for i in range(len(study.labels))] for of in (forces.force_size, forces.moment_size))
     seen: set[frozenset[str]] = set()
-    columns: list[tuple[str, Step]] = []
+    columns: list[Column] = []
     for name, step in forces.reactions.items():
         pair = frozenset(name[1:]) if len(name) == 3 else frozenset((name,))
         if pair not in seen and np.ndim(step.value):
             seen.add(pair)
-            columns.append((name, step))
-    if not columns:
-        return ()
-    unit = "N" if study.lever.line is not None else "N*m"
-    head: list[Text] = [(words(r.language)["position"],), *(r.head(letters_of(name), "N") for name, _ in columns)]
-    if forces.balancing is not None:
-        head.append(r.head(letters_of(r.project.balancing), unit))
-    rows: list[tuple[Text, ...]] = [tuple(head)]
-    for i, label in enumerate(study.labels):
-        size = forces.force_size(i)
-        cells: list[Text] = [(label,)]
-        cells += [(r.number(abs(complex(step.value[i])), "", r.id(step), label, kind=size),) for _, step in columns]
-        if forces.balancing is not None:
-            shown = study.balance["along" if study.lever.line is not None else "M"]
-            kind = size if study.lever.line is not None else forces.moment_size(i)
-            cells.append((r.number(float(np.real(shown.value[i])), "", r.id(shown), label, kind=kind),))
-        rows.append(tuple(cells))
-    return tuple(rows)
+            columns.append(Column(r.head(letters_of(name), "N"), np.abs(step.value), r.id(step), sizes))
+    if columns and forces.balancing is not None:
+        key, unit, kind = ("along", "N", sizes) if study.lever.line is not None else ("M", "N*m", moments)
+        shown = study.balance[key]
+        columns.append(Column(r.head(letters_of(r.project.balancing), unit), np.real(shown.value), r.id(shown), kind))
+    return r.over_positions(enumerate(study.labels), columns)

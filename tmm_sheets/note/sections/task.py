@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from math import degrees, isclose
 from typing import Any
 
+from tmm_sheets import results
 from tmm_sheets.construction.digits import read
-from tmm_sheets.construction.formula import letters, letters_of
+from tmm_sheets.construction.formula import letters_of
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.note import phrases
-from tmm_sheets.note.document import NumberInText, Symbol, Text
-from tmm_sheets.note.phrases import Scope
+from tmm_sheets.meanings import meaning_of
+from tmm_sheets.note.document import NumberInText, Rows, Text, enumerated, lettered
+from tmm_sheets.note.phrases import set_text
 from tmm_sheets.note.reader import Reader
 from tmm_sheets.task import synthesis_refs, units
 
@@ -22,36 +23,31 @@ Item = Mapping[str, Any]
 """The table of the project file that a value stands in."""
 
 
-def scope(r: Reader) -> Scope:
+def fields(r: Reader) -> dict[str, Any]:
     """Given numbers with their letters, the diagrams of the loads, and the scheme."""
-    said = phrases.words(r.language)["task"]
     try:
-        from tmm_sheets import results
-
         results.told(r.project, None, refused={})
     except CannotBuild as e:
         r.problems.append(str(e))
     r.forget()
-    head = tuple((h,) for h in said["head"])
-    figures = {}
-    if r.project.variant.crank is not None and r.project.variant.cycle is not None:
-        figure = r.pictures.position("position plan", r.label, own=True)
-        if figure is not None:
-            figures["scheme"] = figure
-    titles = [{"sheet": str(n), "title": c.drawing.title.split(". ", 1)[-1]} for n, c in r.pictures.sheets.items()]
-    tables = {"data": (head, *_data(r), *_places(r)), "loads": _diagrams(r, "stroke"), "loads_angle": _diagrams(r, "angle")}
-    return Scope({"list": titles}, {}, tables, figures)
+    return {
+        "scheme": r.pictures.position("position plan", r.label, own=True) if r.label else [],
+        "list": [{"sheet": str(n), "title": c.drawing.title.split(". ", 1)[-1]} for n, c in r.pictures.sheets.items()],
+        "data": (tuple((h,) for h in r.words["task"]["head"]), *filter(None, (*_data(r), *_places(r)))),
+        "loads": _diagrams(r, "stroke"),
+        "loads_angle": _diagrams(r, "angle"),
+    }
 
 
 # --- the table of inputs
 
-def _data(r: Reader) -> Iterator[Row]:
+def _data(r: Reader) -> Iterator[Row | None]:
     """Rows of what ``[data]`` has words for, as the project file writes it, or as it goes without saying."""
     own = {q.step: q.symbol for q in r.givens()}
     found = {_dotted(path): match for path, match in synthesis_refs.uses(tomllib.loads(r.project.variant.text))}
     taken = {getattr(a, "name", "") for step in r.book.steps.values() for a in step.args}
     told: set[str] = set()
-    for key, (symbol, meaning) in phrases.words(r.language)["data"].items():
+    for key, (symbol, meaning) in r.words["data"].items():
         place, _, of = key.partition(" ")
         for path, value, name, item in _values(r, place.split("."), taken):
             unit = units.split(_greatest(value))[1]
@@ -62,14 +58,12 @@ def _data(r: Reader) -> Iterator[Row]:
             letter = letters_of(symbol.replace("*", name) if path not in own or place in OWN_LETTERS else own[path])
             told.add(path)
             if path in found:
-                row = _of_synthesis(r, path, found[path], letter, item)
+                yield _of_synthesis(r, path, found[path], item)
             else:
                 words = meaning.replace("*", name).format_map({k: v for k, v in item.items() if isinstance(v, str)})
                 if path == "crank.length" and r.project.variant.input is not None:
                     words = ""  # what an input swings is no crank
-                row = _row(r, path, _greatest(value), letter, words or phrases.meaning_of(letter, r.language))
-            if row is not None:
-                yield row
+                yield _row(r, path, _greatest(value), letter, words or meaning_of(letter, r.language))
 
 
 OWN_LETTERS = ("crank.speed", "reducer.input_speed", "reducer.output_speed", "cam.arm",
@@ -77,38 +71,31 @@ OWN_LETTERS = ("crank.speed", "reducer.input_speed", "reducer.output_speed", "ca
 """Inputs that the note calls otherwise than the steps that take them: as they are written, or as its formulas call them."""
 
 
-def _of_synthesis(r: Reader, path: str, match: Any, symbol: str, item: Item) -> Row | None:
+def _of_synthesis(r: Reader, path: str, match: Any, item: Item) -> Row | None:
     """A length that is laid down as a share of one that the synthesis finds; None for that length itself."""
     if not path.startswith("point"):
         return None
     share = synthesis_refs.share(match)
     symbol = f"l_{{{item['from']}{item['name']}}}"
-    called = Symbol(letters(r.project.synthesis.called(match["name"] or "")))
+    called = lettered(r.project.synthesis.called(match["name"] or ""))
     value: Text = (*((_exact(r, share, path), " ") if share != 1 else ()), called)
-    return tuple(phrases.set_text(phrases.meaning_of(symbol, r.language))), (Symbol(letters(symbol)),), ("–",), value
+    return tuple(set_text(meaning_of(symbol, r.language))), (lettered(symbol),), ("–",), value
 
 
-def _places(r: Reader) -> Iterator[Row]:
+def _places(r: Reader) -> Iterator[Row | None]:
     """Rows of the fixed points and guides: coordinates from the pivot of the crank, x to the right, y up."""
-    said = phrases.words(r.language)["task"]
-    data = r.project.variant.data
+    said, data = r.words["task"], r.project.variant.data
     for name, place in data.get("points", {}).items():
         if any(float(units.split(v)[0]) for v in place):
             for axis, v in zip("xy", place, strict=True):
-                yield from _place(r, f"points.{name}", v, f"{axis}_{{{name}}}", said[axis].format(name=name))
+                yield _row(r, f"points.{name}", v, f"{axis}_{{{name}}}", said[axis].format(name=name), zero=True)
     for i, guide in enumerate(data.get("guide", ())):
-        name = r.quoted(guide["name"])
-        through = guide.get("through", ())
+        name, through = r.quoted(guide["name"]), guide.get("through", ())
         for axis, v in zip("xy", through if isinstance(through, list) else (), strict=False):
-            yield from _place(r, f"guide[{i}].through", v, "", said[f"guide_{axis}"].format(name=name))
+            yield _row(r, f"guide[{i}].through", v, "", said[f"guide_{axis}"].format(name=name), zero=True)
         if "direction" in guide and "link" not in guide:
-            yield from _place(r, f"guide[{i}].direction", guide["direction"], "", said["guide_angle"].format(name=name))
-
-
-def _place(r: Reader, path: str, value: Any, symbol: str, meaning: str) -> Iterator[Row]:
-    row = _row(r, path, value, symbol, meaning, zero=True)
-    if row is not None:
-        yield row
+            angle = said["guide_angle"].format(name=name)
+            yield _row(r, f"guide[{i}].direction", guide["direction"], "", angle, zero=True)
 
 
 def _row(r: Reader, path: str, value: Any, symbol: str, meaning: str, zero: bool = False) -> Row | None:
@@ -117,8 +104,8 @@ def _row(r: Reader, path: str, value: Any, symbol: str, meaning: str, zero: bool
     number = units.si(text)
     if not text or not (number or zero) or not meaning:
         return None
-    shown: Text = (Symbol(letters(symbol)),) if symbol else ("–",)
-    return tuple(phrases.set_text(meaning)), shown, (r.unit(unit) or "–",), (_exact(r, number, path),)
+    shown = lettered(symbol) if symbol else "–"
+    return tuple(set_text(meaning)), (shown,), (r.unit(unit) or "–",), (_exact(r, number, path),)
 
 
 EXACT = 6
@@ -196,23 +183,18 @@ class _Diagram:
         return [units.si(value) / one for argument, value in self.points if units.si(argument) == x]
 
 
-def _diagrams(r: Reader, over: str) -> tuple[Row, ...]:
+def _diagrams(r: Reader, over: str) -> Rows:
     """The points of the diagrams of forces and moments over the ``stroke`` or the ``angle``: a column for each diagram."""
-    data = r.project.variant.data
-    said = phrases.words(r.language)["task"]
+    data, said = r.project.variant.data, r.words["task"]
     columns: list[_Diagram] = []
     for load in (*data.get("force", ()), *data.get("moment", ())):
-        if load.get("over", "stroke") != over:
-            continue
         tables = load.get("tables") or ([load["table"]] if "table" in load else [])
-        for n, points in enumerate(tables, 1):
-            if not points:
-                continue
+        for n, points in enumerate(tables if load.get("over", "stroke") == over else (), 1):
             stroke = n if len(tables) > 1 else 0
             same = next((c for c in columns if c.points == points and c.stroke == stroke), None)
             if same is not None:
                 same.names.append(load["name"])
-            else:
+            elif points:
                 columns.append(_Diagram(points, stroke, [load["name"]]))
     if not columns:
         return ()
@@ -220,8 +202,7 @@ def _diagrams(r: Reader, over: str) -> tuple[Row, ...]:
     for x in sorted({units.si(argument) for c in columns for argument, _ in c.points}):
         cells: list[Text] = [(_exact(r, degrees(x) if over == "angle" else x),)]
         for c in columns:
-            numbers = [_exact(r, v) for v in c.at(x)]
-            cells.append(tuple(z for i, n in enumerate(numbers) for z in ((" / ", n) if i else (n,))) or ("–",))
+            cells.append(enumerated(((_exact(r, v),) for v in c.at(x)), " / ") or ("–",))
         rows.append(tuple(cells))
     return tuple(rows)
 
@@ -229,10 +210,8 @@ def _diagrams(r: Reader, over: str) -> tuple[Row, ...]:
 def _head(r: Reader, of: _Diagram) -> Text:
     """Letters of what has a diagram, its unit, and the stroke."""
     pressure = units.quantity_of(of.unit) == "pressure"
-    head: list[Any] = []
-    for name in of.names:
-        head += [*((", ",) if head else ()), Symbol(letters(pressure_of(name) if pressure else letters_of(name)))]
-    stroke = phrases.words(r.language)["task"]["stroke"].format(n=of.stroke) if of.stroke else ""
+    head = enumerated((lettered(pressure_of(name) if pressure else name),) for name in of.names)
+    stroke = r.words["task"]["stroke"].format(n=of.stroke) if of.stroke else ""
     return (*head, (f" ({stroke})" if stroke else "") + f", {r.unit(of.unit)}")
 
 
