@@ -5,11 +5,10 @@ import numpy as np
 import pytest
 
 from tests.compare.test_tracing import COLUMNS, HIGH, ROWS, WIDE, arrow, draw, fill_head, line, paper
-from tmm_sheets.compare.photo.arrow_heads import exchanged, with_heads
-from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo.arrow_heads import with_heads
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.line_ends import with_ends
-from tmm_sheets.compare.photo.masking import fill
+from tmm_sheets.compare.photo.painting import Owners, fill
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.traces import InkTrace
 
@@ -124,38 +123,6 @@ def test_lines_that_open_beyond_the_tip_are_no_head(at, head):
     e = arrow(1, A, B)
     beyond = [line(k, B, B + 5 * WAY * np.exp(1j * turn), "vector") for k, turn in enumerate((0.35, -0.35), 2)]
     assert heads([e], [e, *beyond], at)[0].head == head
-
-
-@pytest.mark.parametrize(
-    ("under", "drawn", "status", "head"),
-    [
-        ((A, B + 6 * WAY), True, ("beside", "shared"), "there"),
-        ((A - 3 * WAY, B + 1j * WAY * 0.2), True, ("beside", "shared"), "there"),
-        ((B + 6 * WAY, A), True, ("beside", "shared"), "there"),  # given the other way round
-        ((A, B + 6 * WAY), False, ("measured", "beside"), "absent"),  # no head there either
-        ((A, B - 6 * WAY), True, ("measured", "beside"), "absent"),  # not under all of it
-        ((A, B + 3j * WAY), True, ("measured", "beside"), "absent"),  # nor in its direction
-    ],
-)
-def test_a_vector_drawn_elsewhere_leaves_its_place_to_the_helper_line(under, drawn, status, head):
-    """The head is sought where the line lies that was taken for the helper line."""
-    vector, helper, turn = arrow(1, A, B), line(2, *under, "construction"), np.exp(0.1j)
-    there = A + (helper.points - A) * turn
-    ink, words, owners = paper(), np.zeros((ROWS, COLUMNS), np.uint8), Owners(ROWS, COLUMNS)
-    for e in (vector, helper):
-        owners.add(e, e.points)
-    draw(ink, *helper.points, "construction")
-    draw(ink, A, A + (B - A) * turn, "vector")
-    if drawn:
-        fill_head(ink, A + (B - A) * turn, float(np.angle(WAY * turn)))
-    traces = [InkTrace(vector, "measured", at=vector.points, head="absent"),
-              InkTrace(helper, "beside", turn=0.1, deviation=4, at=there)]
-    found = exchanged(traces, ink, owners, words, np.zeros((HIGH, WIDE), bool))
-    assert (found[0].status, found[1].status) == status
-    assert found[0].head == head
-    if status[0] == "beside":
-        assert [judge(t, 0.25, 0.15).verdict for t in found] == ["amber", "green"]
-        assert abs(found[0].deviation - 0.1 * abs(B - A)) < 0.1
 
 
 def test_a_short_vector_is_not_looked_at():
@@ -380,24 +347,6 @@ def test_a_head_where_another_vector_hides_one_side(aside, off, may_be):
     e, other = arrow(1, A, B), arrow(2, B + aside * 1j * WAY, A + aside * 1j * WAY)
     at = [(other.points[1], BACK[1] + np.pi), *([] if off is None else [(BACK[0] + off * 1j * WAY, BACK[1])])]
     assert heads([e, other], [e, other], at)[0].head in may_be
-
-
-@pytest.mark.parametrize(("ends", "head"), [((0, 0), "absent"), ((0, 3j), "unknown"), ((3j, 0), "absent")])
-def test_the_head_of_a_vector_whose_point_was_moved_stands_there(ends, head):
-    """A line from elsewhere that ends at its tip was found to end aside."""
-    e, other = arrow(1, A, B), line(2, B + 20j, B)
-    ink, owners = paper(), Owners(ROWS, COLUMNS)
-    for k in (e, other):
-        owners.add(k, k.points)
-        draw(ink, *(k.points + (np.array(ends) if k is other else 0)), k.style)
-    traces = [InkTrace(e, "measured", at=e.points), InkTrace(other, "measured", at=other.points + np.array(ends))]
-    assert with_heads(traces, ink, owners, np.zeros_like(ink), np.zeros((HIGH, WIDE), bool))[0].head == head
-
-
-@pytest.mark.parametrize(("off", "head"), [(0.0, "absent"), (0.7, "unknown")])
-def test_a_head_is_not_missed_on_a_line_found_by_the_ink_of_another(off, head):
-    e, drawn = arrow(1, A, B), line(2, A + off * 1j * WAY, B + off * 1j * WAY)
-    assert heads([e], [drawn])[0].head == head
 
 
 def test_a_head_is_known_on_a_stroke_that_was_found_a_little_aside():

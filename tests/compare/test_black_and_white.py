@@ -5,8 +5,8 @@ import pytest
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.photo.black_and_white import eats, lost_to_threshold, without_grey
 from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.lost_ink import eats, lost_to_threshold, without_grey
 from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.marks import Provenance as By
 from tmm_sheets.drawing.marks import Text

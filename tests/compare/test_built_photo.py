@@ -15,7 +15,7 @@ from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint
 from tmm_sheets.compare.known_sheet import known_sheet
 from tmm_sheets.compare.photo import built_photo, tracing
 from tmm_sheets.compare.photo.judging import judge
-from tmm_sheets.compare.photo.masking import paint
+from tmm_sheets.compare.photo.painting import paint
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.placing import Placing

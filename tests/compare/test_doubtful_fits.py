@@ -10,13 +10,12 @@ import pytest
 from tests.compare.test_image import N, grey, known, rectified, shot
 from tmm_sheets.compare.elements import grown
 from tmm_sheets.compare.photo import frame_candidates, rectification, tracing
-from tmm_sheets.compare.photo.frame_candidates import homographies
+from tmm_sheets.compare.photo.image import refusal
 from tmm_sheets.compare.photo.judging import judge
-from tmm_sheets.compare.photo.masking import fill
 from tmm_sheets.compare.photo.occlusion import at as hidden_at
+from tmm_sheets.compare.photo.painting import fill
 from tmm_sheets.compare.photo.photograph import Photograph
-from tmm_sheets.compare.photo.refusal import refusal
-from tmm_sheets.compare.photo.sheet_map import CORNERS, projected
+from tmm_sheets.compare.photo.sheet_map import CORNERS
 from tmm_sheets.errors import CannotBuild
 
 INSIDE = (np.linspace(90, 820, 12)[None, :] + 1j * np.linspace(20, 570, 9)[:, None]).ravel()
@@ -135,13 +134,6 @@ def test_a_frame_is_not_thrown_out_for_lines_on_both_sides_of_each(pitch, share)
     flipped = CORNERS.real + 1j * (594 - CORNERS.imag)
     found = frame_candidates._shares(near, flipped[None], p, np.full(len(p), 1j))
     assert found == pytest.approx([share])
-
-
-def test_homographies_of_many_quadrilaterals():
-    rng = np.random.default_rng(5)
-    quads = CORNERS + rng.uniform(-40, 40, (6, 4)) + 1j * rng.uniform(-40, 40, (6, 4))
-    for quad, h in zip(quads, homographies(quads), strict=True):
-        assert projected(h, CORNERS) == pytest.approx(quad, abs=1e-6)
 
 
 @pytest.mark.trial

@@ -5,10 +5,10 @@ import pytest
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.photo import frame_fit, occlusion, own_place
-from tmm_sheets.compare.photo.fragmented_lines import in_pieces, torn_widths
-from tmm_sheets.compare.photo.ink_owner import Owners
+from tmm_sheets.compare.photo import frame_search, occlusion, own_place
 from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.lost_ink import in_pieces, torn_widths
+from tmm_sheets.compare.photo.painting import Owners
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Map, homography
 from tmm_sheets.compare.photo.traces import InkTrace
@@ -108,7 +108,7 @@ def test_the_frame_is_followed_up_to_the_pictures_edge(cut):
     corners = PAPER.corners
     q = (corners.real + 1j * (high - corners.imag)) * scale
     m = Map(middle, reach, homography((q - middle) / reach, corners))
-    seen = frame_fit.sides_near(grey, m, 1.5)
+    seen = frame_search.sides_near(grey, m, 1.5)
     shares = seen.weight.reshape(4, -1).mean(1)
     assert (shares[1:] > 0.95).all()
     assert shares[0] == pytest.approx(0.0 if cut > 5 else 1.0, abs=0.05)

@@ -15,7 +15,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.backends import pdf, png
 from tmm_sheets.compare.elements import elements
 from tmm_sheets.compare.known_sheet import KnownSheet
-from tmm_sheets.compare.photo import frame_fit, frame_search, image, rectification, tracing
+from tmm_sheets.compare.photo import frame_search, image, rectification, tracing
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.photo_report import image_report
 from tmm_sheets.compare.photo.photograph import Photograph, read
@@ -221,6 +221,7 @@ def test_bad_files(tmp_path):
 def test_blurred_picture_is_refused(monkeypatch):
     found = frame()
     monkeypatch.setattr(frame_search, "find", lambda *_: found)
-    assert frame_fit.fit_frame(grey(), frame_fit.initial_map(found.corners, found.sides, grey().shape)).smear < rectification.SOFT
+    start = frame_search.initial_map(found.corners, found.sides, grey().shape)
+    assert frame_search.fit_frame(grey(), start).smear < rectification.SOFT
     with pytest.raises(CannotBuild, match="blurred: edges of lines are smeared over"):
         rectification.rectify(Photograph(cv2.GaussianBlur(grey(), (0, 0), 2.6)), known(), Path("photo.jpg"))

@@ -10,8 +10,7 @@ from tests.compare.test_tracing import line
 from tests.few import seldom
 from tmm_sheets.compare.elements import sampled
 from tmm_sheets.compare.photo import paper_distortion
-from tmm_sheets.compare.photo.ink_levels import ink_levels
-from tmm_sheets.compare.photo.profiles import pixels
+from tmm_sheets.compare.photo.profiles import ink_levels, pixels
 from tmm_sheets.compare.photo.rectification import straighten
 from tmm_sheets.compare.photo.sheet_map import Map, homography
 from tmm_sheets.drawing.marks import Provenance

@@ -6,7 +6,7 @@ import pytest
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.photo.judging import judge
-from tmm_sheets.compare.photo.shared_ink import ignore_junction_ends
+from tmm_sheets.compare.photo.line_ends import ignore_junction_ends
 from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.marks import Provenance as By
 

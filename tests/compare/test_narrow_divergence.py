@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from tests.compare.test_tracing import COLUMNS, ROWS, draw, line, paper
-from tmm_sheets.compare.photo.divergence import may_part, narrow_divergence
-from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.judging import judge
+from tmm_sheets.compare.photo.own_place import may_part, narrow_divergence
+from tmm_sheets.compare.photo.painting import Owners
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.compare.photo.tracing import trace

@@ -12,11 +12,10 @@ from tests.few import seldom
 from tmm_sheets import catalogue
 from tmm_sheets.backends import png
 from tmm_sheets.compare.elements import elements
-from tmm_sheets.compare.photo import block_match, fit_check, frame_search, map_fit, profiles, rectification
+from tmm_sheets.compare.photo import fit_check, frame_search, map_fit, profiles, rectification
 from tmm_sheets.compare.photo.fit_check import FitCheck
 from tmm_sheets.compare.photo.frame_candidates import FrameGuess, follow_sides, inked, side_moved_to_ink
-from tmm_sheets.compare.photo.frame_fit import FrameFit, initial_map, sides_near
-from tmm_sheets.compare.photo.frame_search import FoundFrame
+from tmm_sheets.compare.photo.frame_search import FoundFrame, FrameFit, initial_map, sides_near
 from tmm_sheets.compare.photo.map_fit import FOCUS, Seen, camera_foot, camera_height, fit_map, fit_waves, lens_and_homography
 from tmm_sheets.compare.photo.paper_distortion import fit_surface
 from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, PAPER, RELIEF, Map, drawn_in, heights, homography, spline
@@ -320,7 +319,7 @@ def test_circles_are_not_taken_for_their_neighbours():
     m = Map(0j, 1.0, homography(profiles.pixels(CORNERS, 4.0), CORNERS))
     points = np.concatenate(rings)
     lines = profiles.ProfileLines(points, np.ones(len(points), complex), np.repeat(np.arange(len(rings)), [len(r) for r in rings]))
-    seen = block_match.patches(m, m, picture, lines, 4.0)
+    seen = map_fit.patches(m, m, picture, lines, 4.0)
     about = np.abs(seen.sheet - centre) < 90
     assert about.sum() >= 10
     assert np.abs(m.to_sheet(seen.picture) - seen.sheet - 2.1)[about].max() < 0.4
@@ -371,7 +370,7 @@ def test_how_many_sides_must_be_seen(sides_seen, match, sound, acceptable):
     (0, 0, 0, 0.0), (232, 240, 0, 0.5), (232, 240, 3, 0.5), (232, 240, 4, 0.0), (236, 240, 0, 0.25), (237, 240, 0, 0.0),
 ])  # fmt: skip
 def test_a_part_of_a_side_that_is_off_tells_of_paper_that_is_not_smooth(first, last, unseen, rim):
-    from tmm_sheets.compare.photo.frame_fit import _side_points
+    from tmm_sheets.compare.photo.frame_search import _side_points
 
     p, n, _ = _side_points()
     m = Map(0j, 1.0, homography(CORNERS, CORNERS))
@@ -406,9 +405,9 @@ def test_a_frame_hidden_in_part_is_sought_once_more_from_the_lines(sides_seen, m
     check = replace(SEEN_WHOLE, sides=np.array(sides_seen, float), match=match)
     plain = Map(0j, 1.0, homography(profiles.pixels(CORNERS, 4.0), CORNERS))
     frame = FrameFit(plain, rectification.NO_SIDES, 0.1, 0.2)
-    monkeypatch.setattr(rectification.frame_fit, "fit_frame", lambda grey, start: frame)
-    monkeypatch.setattr(rectification.frame_fit, "frame_about", lambda grey, start, near: frame)
-    monkeypatch.setattr(rectification.frame_fit, "initial_map", lambda *_: plain)
+    monkeypatch.setattr(rectification.frame_search, "fit_frame", lambda grey, start: frame)
+    monkeypatch.setattr(rectification.frame_search, "frame_about", lambda grey, start, near: frame)
+    monkeypatch.setattr(rectification.frame_search, "initial_map", lambda *_: plain)
     monkeypatch.setattr(attempts, "_without_frame", lambda m: asked.append(m) or m)
     monkeypatch.setattr(attempts, "_fit", lambda found, fit: rectification._Attempt(found, fit, plain, check))
     attempts.begin(FoundFrame(profiles.pixels(CORNERS, 4.0), (), False, 1.0))

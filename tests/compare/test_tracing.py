@@ -11,13 +11,12 @@ import pytest
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.photo import arrow_heads, displacement, tracing
-from tmm_sheets.compare.photo.dots import displaced_dots
-from tmm_sheets.compare.photo.ink_owner import Owners
-from tmm_sheets.compare.photo.joints import with_edges
 from tmm_sheets.compare.photo.judging import judge
-from tmm_sheets.compare.photo.masking import fill
+from tmm_sheets.compare.photo.line_ends import with_edges
 from tmm_sheets.compare.photo.own_place import strips
+from tmm_sheets.compare.photo.painting import Owners, fill
 from tmm_sheets.compare.photo.profiles import SCALE
+from tmm_sheets.compare.photo.small_marks import displaced_dots
 from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.compare.photo.tracing import trace
 from tmm_sheets.drawing.marks import Provenance as By
@@ -443,15 +442,6 @@ def test_a_straight_stroke_beside_lettering_is_extra_and_a_letter_is_not():
     assert [x.length for x in extra] == pytest.approx([12.1 + 1.0], abs=0.6)  # its blur, and coarse pixels
 
 
-def test_a_crease_is_not_extra():
-    ink = paper()
-    for x in (35, 150, 245):
-        draw(ink, x + 397j, x + 397.2j + 40, "thin")
-    draw(ink, 130 + 540j, 160 + 540j, "thin")
-    _, extra = trace([line(1, 130 + 350j, 160 + 350j)], ink)
-    assert [round(x.middle.imag) for x in extra] == [540]
-
-
 def test_what_shows_of_a_hidden_line_is_not_extra():
     ink = paper()
     draw(ink, 130 + 440j, 160 + 440j)
@@ -475,22 +465,6 @@ def test_a_circle_crossed_by_many_lines_is_not_seen_in_their_ink(by):
     found, _ = traced([ring, *radii], [*chords, *((*e.points, e.style) for e in radii)])
     assert found[0].growth == pytest.approx(by, abs=0.3)
     assert judge(found[0], 0.25, 0.15).verdict == ("red" if by else "green")
-
-
-@pytest.mark.parametrize(("end", "seen"), [(6.0, True), (0.4, False)])
-def test_a_stroke_that_lines_cut_to_pieces_is_extra(end, seen):
-    """One of two lines that belong in the same place was turned; lines that cross leave no piece of 8 mm."""
-    a, b = 80 + 440j, 120 + 440j
-    cross = [line(k + 3, 88 + 7 * k + 410j, 88 + 7 * k + 470j, "thin") for k in range(5)]
-    known = [line(1, a, b, "thin"), line(2, a, b, "thin"), *cross]
-    found, extra = traced(known, [(a, b, "thin"), (a, b + 1j * end, "thin"), *((*e.points, e.style) for e in cross)])
-    # That it parts is a remark to the two, which cannot be told from each other; all others are in place.
-    verdicts = {t.element.number: judge(t, 0.25, 0.15).verdict for t in found}
-    assert {verdicts[e.number] for e in cross} == {"green"}
-    assert {verdicts[1], verdicts[2]} <= ({"green", "amber"} if seen else {"green"})
-    assert bool(extra) == seen
-    for x in extra:
-        assert abs(x.middle - (105 + 440j + 1j * end * 25 / 40)) < 4
 
 
 def dot(number, at, radius=0.6):
@@ -562,33 +536,6 @@ def test_a_dot_in_a_black_and_white_picture_may_be_swollen(usual, wide, found):
     assert stands([dot(1, CORNER, 0.35)], [], ink, np.zeros_like(ink), usual) == found
 
 
-@pytest.mark.parametrize(
-    ("radius", "places", "room", "found"),
-    [
-        (0.7, [3 + 1j], 2, {1: 3 + 1j}),
-        (0.7, [-3 - 1j], 2, {1: -3 - 1j}),
-        (0.7, [], 2, {}),  # where strokes cross they are not as wide as a dot
-        (0.7, [0j, 3 + 1j], 2, {}),  # one too many, but this is in its place
-        (0.7, [3 + 1j], 0, {}),  # this may be among letters too
-        (0.7, [8 + 0j], 2, {}),
-        (0.5, [3 + 1j], 2, {}),  # no wider than where strokes meet
-    ],
-)
-def test_a_large_dot_is_known_upon_a_letter(radius, places, room, found):
-    ink, words = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
-    for by, letters in ((20, 255), (room, 0)):  # letters about the dot's place, but not in it
-        rows = slice(round((594 - CORNER.imag - by) * SCALE), round((594 - CORNER.imag + by) * SCALE))
-        words[rows, round((CORNER.real - by) * SCALE) : round((CORNER.real + by) * SCALE)] = letters
-    for way in (1 + 1j, 1 - 1j):
-        for middle in (3 + 1j, -3 - 1j, 3 - 3j):
-            draw(ink, CORNER + middle - 2 * way, CORNER + middle + 2 * way, "thin")
-    for by in places:
-        draw(ink, CORNER + by - 0.5 * radius, CORNER + by + 0.5 * radius, "main")
-        for k in range(8):
-            draw(ink, CORNER + by, CORNER + by + (radius - 0.2) * np.exp(1j * k), "main")
-    assert stands([dot(1, CORNER, radius)], [], ink, words, 150) == found
-
-
 def on_a_line(places, radius=0.6, heads=(), usual=180):
     """Dots of that radius upon a thin line through CORNER and a thick one beside, where they are found, by number."""
     ink, lines = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
@@ -630,47 +577,6 @@ def test_a_head_upon_a_line_and_black_lines_are_no_bumps():
     assert on_a_line([3 + 0j], usual=250) == {}  # a picture without grey
 
 
-@pytest.mark.parametrize(("dark", "found"), [(140, {}), (180, {1: 4 + 0j})])
-def test_a_letter_that_runs_together_is_paler_than_a_dot(dark, found):
-    ink, words = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
-    words[:, round((CORNER.real + 2) * SCALE) :] = 255
-    for y in (-0.6, 0, 0.6):
-        draw(ink, CORNER + 3.4 + 1j * y, CORNER + 4.6 + 1j * y, "main", dark)
-    assert stands([dot(1, CORNER, 0.7)], [], ink, words, 150) == found
-
-
-@pytest.mark.parametrize(
-    ("drawn", "meant"),
-    [
-        ((), 1),  # no line is seen: the nearer one
-        ((CORNER + 2j - 25, CORNER - 2j), 2),  # where its line goes
-        ((CORNER - 25, CORNER - 2j), 1),
-        ((CORNER + 2j - 25, CORNER + 2j), 1),  # its line goes to its place
-        ((CORNER + 2j - 25, CORNER - 8), 1),  # and ends before
-    ],
-)
-def test_of_two_dots_the_one_is_meant_whose_line_leads_to_the_spot(drawn, meant):
-    ink = paper()
-    rods = [np.array([CORNER + 2j - 25, CORNER + 2j]), np.array([CORNER, CORNER - 25])]
-    draw(ink, CORNER - 2.2j, CORNER - 1.8j, "main", 230)
-    if drawn:
-        way = (drawn[1] - drawn[0]) / abs(drawn[1] - drawn[0])
-        draw(ink, drawn[0], drawn[1] - way, "thin", 230)
-    some = [dot(1, CORNER, 0.5), dot(2, CORNER + 2j, 0.5)]
-    found = stands(some, rods, ink, np.zeros((ROWS, COLUMNS), np.uint8))
-    assert found == {meant: -2j if meant == 1 else -4j}
-
-
-@pytest.mark.parametrize(("astray", "meant"), [((), {1}), ((1,), {1}), ((2,), {2}), ((1, 2), {1}), ((3,), {1})])
-def test_of_two_dots_the_one_is_meant_whose_line_is_not_in_its_place(astray, meant):
-    rods = [np.array([CORNER - 25 + k * 2j, CORNER + k * 2j]) for k in range(3)]
-    ink, nothing = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
-    draw(ink, CORNER - 2.2j, CORNER - 1.8j, "main", 230)
-    some, lost = [dot(1, CORNER, 0.5), dot(2, CORNER + 2j, 0.5)], [rods[k - 1] for k in astray]
-    found = displaced_dots(some, rods, nothing, nothing, ink, nothing, np.zeros((1, 1), bool), 180, lost)
-    assert {t.element.number for t in found} == meant
-
-
 @pytest.mark.parametrize("barred", [True, False])
 def test_a_bar_over_a_letter_is_no_dot(barred):
     """As wide as it is long it is, blurred; its letter is known to have one."""
@@ -682,6 +588,16 @@ def test_a_bar_over_a_letter_is_no_dot(barred):
     bars = tracing._bars([letter], ink)
     found = displaced_dots([dot(1, CORNER)], [], nothing, bars, ink, nothing, np.zeros((1, 1), bool), 180, bars=bars)
     assert bool(found) != barred
+
+
+@pytest.mark.parametrize(("astray", "meant"), [((), {1}), ((1,), {1}), ((2,), {2}), ((1, 2), {1}), ((3,), {1})])
+def test_of_two_dots_the_one_is_meant_whose_line_is_not_in_its_place(astray, meant):
+    rods = [np.array([CORNER - 25 + k * 2j, CORNER + k * 2j]) for k in range(3)]
+    ink, nothing = paper(), np.zeros((ROWS, COLUMNS), np.uint8)
+    draw(ink, CORNER - 2.2j, CORNER - 1.8j, "main", 230)
+    some, lost = [dot(1, CORNER, 0.5), dot(2, CORNER + 2j, 0.5)], [rods[k - 1] for k in astray]
+    found = displaced_dots(some, rods, nothing, nothing, ink, nothing, np.zeros((1, 1), bool), 180, lost)
+    assert {t.element.number for t in found} == meant
 
 
 @pytest.mark.parametrize("over", [0.5, 1.2, 2.0])

@@ -7,9 +7,9 @@ import pytest
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
+from tmm_sheets.compare.photo.lost_ink import mask_washed_out, taken, uneven_places
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.traces import InkTrace
-from tmm_sheets.compare.photo.washed_out import mask_washed_out, taken, uneven_places
 from tmm_sheets.drawing.marks import Text
 from tmm_sheets.drawing.text_boxes import text_box
 

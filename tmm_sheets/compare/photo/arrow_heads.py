@@ -8,6 +8,12 @@ smaller.
 
 Of vectors in one stroke with one tip the heads lie on each other: whose is missing cannot be seen. One that was drawn the other
 way is told by its head at the beginning of the stroke, where none belongs.
+
+Vectors of which only the helper line under them is there.
+
+A vector that was left out leaves the thin line of its construction in its place, and that is found for it. What tells them apart is
+ink: a thin line is narrower and, blurred as it is in a picture, paler, than the vectors about it, all along where no other thick
+line lies in its stroke. Letters and lines that cross may add ink there, and take none away.
 """
 
 from __future__ import annotations
@@ -18,15 +24,15 @@ from itertools import chain
 from math import erf, sqrt
 from typing import Any, NamedTuple
 
+import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.occlusion import Mask, at
-from tmm_sheets.compare.photo.profiles import pixels, sample
+from tmm_sheets.compare.photo.painting import Owners
+from tmm_sheets.compare.photo.profiles import NO_GREY, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.thin_strokes import construction_only, vector
-from tmm_sheets.compare.photo.traces import Head, InkTrace
+from tmm_sheets.compare.photo.traces import ELSEWHERE, Head, InkTrace
 from tmm_sheets.drawing.styles import line_type
 
 LEAST = 2.4
@@ -78,15 +84,10 @@ WRITTEN = 0.85
 BARE, LITTLE, HARDLY_LIKE, OPEN, EACH = 0.2, 0.2, 0.6, 0.45, 0.1
 """Share up to which there is no head in its place, share and likeness from which on there may be one a little off or smaller, and
 least part of it that must be seen in its place for it to be missed, of all of it and of each of its sides."""
-AWAY = 1.0
-"""mm off its place from which on the line that was found for a vector that was left out is no helper line of its, and from which on
-a line's end is elsewhere, and a head with it."""
 UNLIKE = 0.5
 """Likeness up to which ink in the place of a head that is on one side of the line only is another's that runs past it."""
 NOTHING, SCARCELY = 0.1, 0.3
 """Share up to which nothing of a head is on a side of its place, and in all of its place where a whole one is at the other end."""
-UNDER = 0.3
-"""mm by which a helper line may be off a vector that it runs under, or end before it."""
 ON_LINE = 0.998
 """Cosine of the angle up to which another arrow lies on the same line."""
 TOGETHER = 1.5
@@ -96,10 +97,9 @@ BESIDE_LINE = 0.4
 ENOUGH, NEAREST = 3, 9
 """Least number of vectors with heads that tell how much ink is usual across a line, and of how many about it the middle one is
 taken: where the picture is small, all lines are paler."""
-CENTRED, STROKE, NEARLY, BROADER = 0.45, 0.95, 0.95, 1.35
-"""mm from the middle of a line within which its stroke is darkest, or it is another line's; mm to either side that are its stroke;
-how dark it must be there by its darkest; how much more ink than is usual there may be across it: broader strokes are those of
-several vectors, and hide their heads."""
+CENTRED, BROADER = 0.45, 1.35
+"""mm from the middle of a line within which the middle of its stroke is; how much more ink than is usual there may be across it:
+broader strokes are those of several vectors, and hide their heads."""
 LINED, MOSTLY = 0.9, 0.6
 """Least share of the way to the tip on which the line must be seen for its head to be missed, and where it is at the other end."""
 
@@ -146,11 +146,6 @@ class _End:
         """How much ink the line has across it."""
         return float((self.own - self.own.min()).sum())
 
-    @property
-    def centred(self) -> bool:
-        """Whether the stroke is darkest where the line is, or it was found by another's ink."""
-        return bool(self.own[np.abs(ASIDE) <= CENTRED].max() >= NEARLY * self.own[np.abs(ASIDE) <= STROKE].max())
-
     def likeness(self, shifts: Floats, sizes: Sequence[tuple[float, float]]) -> Iterator[_Likeness]:
         """The likeness to heads of some sizes that lie some mm farther back."""
         for long, wide in sizes:
@@ -160,8 +155,6 @@ class _End:
 
     def _head(self, long: float, wide: float) -> Any:
         """How much darker it would be by a head of a length and a width, as shares of those it has by the drawing."""
-        import cv2
-
         if self.soft:
             return self._soft_head(long, wide)
         e, length = self.element, long * _length(self.element)
@@ -173,8 +166,6 @@ class _End:
 
     def _soft_head(self, long: float, wide: float) -> Any:
         """The same in a picture of few pixels, where a line is broader and paler than its pencil by as much as all is blurred."""
-        import cv2
-
         e, aside = self.element, ASIDE - self.aside
         pen, length = line_type(e.style).width, long * _length(e)
         own = self.own - self.own.min()
@@ -242,13 +233,7 @@ class _End:
     def bare(self) -> bool:
         """Whether nothing of a head is in its place, as far as that is seen."""
         here = next(self.likeness(NEAR, SIZES))
-        return here.part > SCANT and (here.share <= BARE or (here.alike <= UNLIKE and self.one_sided()))
-
-    def one_sided(self) -> bool:
-        """Whether all of the place of a head is seen, and ink is there to one side of the line only."""
-        sides = self.sides()
-        least, most = sorted(s.share for s in sides)
-        return min(s.part for s in sides) >= SIDE and least <= NOTHING and most > BARE
+        return here.part > SCANT and here.share <= BARE
 
     def empty(self, share: float = BARE) -> bool:
         """Whether all of the place of a head is seen, and nothing like one is there: a head a little off would reach into it."""
@@ -274,7 +259,7 @@ class _End:
             return False
         looked = chain(self.likeness(NEAR, SIZES), self.likeness(FARTHER, SIZES[:1]))
         seen = WHOLE if self.empty() else SEEN
-        return self.one_sided() or not any(h.part >= seen and h.share >= LITTLE and h.alike >= HARDLY_LIKE for h in looked)
+        return not any(h.part >= seen and h.share >= LITTLE and h.alike >= HARDLY_LIKE for h in looked)
 
 
 @dataclass(frozen=True)
@@ -313,18 +298,17 @@ class _Paper:
         ink, others, letters, hidden = self._beside(e, tip, way, back)
         dark = own[MIDDLE].max()
         inked = own - own.min() > 0.5 * (dark - own.min())
-        wide = ACROSS * float(inked.sum())
         low = float(ASIDE[~inked & (ASIDE < 0)].max(initial=-np.inf))
         high = float(ASIDE[~inked & (ASIDE >= 0)].min(initial=np.inf))
         # With paper to both sides, or it is others' ink that begins there.
         if np.isfinite(high - low) and high - low - ACROSS >= BROAD * 2 * _half_width(e):
             return None
-        aside = (low + high) / 2
         way_to_tip = (back >= 2 * STEP) & (back <= head + 2 * SHAFT)
         lined = float((ink[way_to_tip][:, MIDDLE].max(1) > 0.5 * dark).mean())
         legible = ~_widened(others & ~under) & ~hidden
-        return _End(e, back, ink - own, legible & ~letters, legible, own, max(0.0, wide - left - right), lined,
-                    max(left, right) > pen, aside if abs(aside) <= CENTRED else 0.0)
+        aside = (low + high) / 2 if abs(low + high) <= 2 * CENTRED else 0.0
+        grown = max(0.0, ACROSS * float(inked.sum()) - left - right)
+        return _End(e, back, ink - own, legible & ~letters, legible, own, grown, lined, max(left, right) > pen, aside)
 
     def _beside(self, e: Element, tip: complex, way: complex, back: Floats) -> tuple[Any, Any, Any, Any]:
         """Ink across a line ``back`` mm from its tip, where others are, where letters may stand, and where it is hidden."""
@@ -364,8 +348,6 @@ def _run_under(others: Any, pen: float) -> tuple[float, float]:
 
 def _widened(others: Any) -> Any:
     """Places of others with those where their ink may reach, as blurred as it is and not quite in its place."""
-    import cv2
-
     return cv2.dilate(others.astype(np.uint8), np.ones((5, 7), np.uint8)) > 0
 
 
@@ -412,9 +394,9 @@ def with_heads(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any,
         broad = end is not None and not end.lies_on and end.across > BROADER * _across_about(t.element, usual) > 0
         if t.element.number in thin and (head != "there" or shares):
             # What lies elsewhere is a thin line of its own.
-            out[k] = replace(t, head="left out") if t.deviation <= AWAY else InkTrace(t.element, "missing")
+            out[k] = replace(t, head="left out") if t.deviation <= ELSEWHERE else InkTrace(t.element, "missing")
         else:
-            elsewhere = head == "absent" and (broad or shares or _moved_tip(t.element, traces))
+            elsewhere = head == "absent" and (broad or shares)
             out[k] = replace(t, head="unknown" if elsewhere else head)
     told = [t.element for t in out if t.head == "reversed"]
     doubted = {t.element.number for t in out if t.head == "doubled" and any(_together(t.element, e, 0) for e in told)}
@@ -429,55 +411,11 @@ def _across_about(e: Element, ends: Sequence[_End]) -> float:
     return float(np.median([end.across for end in about[:NEAREST]]))
 
 
-def _moved_tip(e: Element, traces: Sequence[InkTrace]) -> bool:
-    """Whether another line that ends at the tip of a vector was found to end elsewhere: the point was moved, the head with it."""
-    lines = (t for t in traces if t.at is not None and t.element is not e and t.element.kind == "line")
-    ends = (pair for t in lines if t.at is not None for pair in zip(t.element.points[[0, -1]], t.at[[0, -1]], strict=True))
-    return any(abs(ought - e.points[-1]) < TOGETHER and abs(there - ought) > AWAY for ought, there in ends)
-
-
 def _together(e: Element, other: Element, end: int) -> bool:
     """Whether two vectors of one direction have this end, 0 or -1, in one place: a head there may be either's."""
     ways = [v.points[-1] - v.points[0] for v in (e, other)]
     alike = (ways[0] / ways[1]).real / abs(ways[0] / ways[1]) > ON_LINE
     return bool(alike and abs(e.points[end] - other.points[end]) < TOGETHER)
-
-
-def exchanged(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any, hidden: Mask) -> list[InkTrace]:
-    """The traces in the same order; a vector without a head and a line under it that was found beside have changed places if the
-    head is there: the vector was drawn elsewhere, and what lies in its place is the helper line.
-
-    What is given is as for :func:`with_heads`.
-    """
-    out = list(traces)
-    for k, v in enumerate(traces):
-        if v.head not in ("absent", "left out"):
-            continue
-        for j, under in enumerate(traces):
-            if under.status != "beside" or not _runs_under(under.element, v.element):
-                continue
-            assert under.at is not None
-            begin, way = under.element.points[0], under.element.points[1] - under.element.points[0]
-            there = under.at[0] + (v.element.points - begin) * (under.at[1] - under.at[0]) / way
-            off = float(np.abs(there - v.element.points).max())
-            moved = replace(v, status="shared", shift=complex((there - v.element.points).mean()), turn=under.turn, deviation=off,
-                            ends=(np.nan, np.nan), at=there, head="unknown")
-            [moved] = with_heads([moved], ink, owners, words, hidden)
-            if moved.head == "there":
-                out[k] = replace(moved, status="beside")
-                out[j] = replace(under, status="shared", shift=v.shift, turn=v.turn, deviation=v.deviation, at=under.element.points)
-                break
-    return out
-
-
-def _runs_under(e: Element, vector: Element) -> bool:
-    """Whether a line without a head lies under all of a vector."""
-    if e.kind != "line" or e.fills or e.view is not vector.view:
-        return False
-    way = e.points[1] - e.points[0]
-    along = (vector.points - e.points[0]) / way
-    beyond = np.maximum(np.abs(along.real - 0.5) - 0.5, 0.0)
-    return bool((np.maximum(beyond, np.abs(along.imag)) * abs(way) < UNDER).all())
 
 
 def _wanted(t: InkTrace) -> bool:
@@ -504,7 +442,7 @@ def _head(t: InkTrace, paper: _Paper) -> tuple[Head, _End | None]:
     beyond = [0.0 if np.isnan(by) else by for by in t.ends]
     begin, tip = complex(t.at[0] - way * beyond[0]), complex(t.at[1] + way * beyond[1])
     here = paper.end(t.element, tip, begin)
-    if here is None or not here.centred:
+    if here is None:
         return "unknown", None
     alone = not paper.shares_tip(t.element, way)
     has = here.has_head() and not here.empty()
@@ -530,3 +468,82 @@ def _head(t: InkTrace, paper: _Paper) -> tuple[Head, _End | None]:
     if whole or (not alone and seen >= SIDE and there.better_seen().has_head(SURELY, VERY_LIKE, SIDE)):
         return "doubled", here
     return ("there" if has else "absent" if here.headless() else "unknown"), here
+
+
+THICK = 0.35
+"""mm of width from which on a line hides whether a vector in one stroke with it was drawn."""
+THIN_STEP = 0.3  # mm between places along a line
+THIN_ASIDE = np.arange(-9, 10) * 0.1
+"""mm to its sides within which there must be no other thick line."""
+OWN = np.abs(THIN_ASIDE) <= 0.75
+"""Those within which its ink is."""
+SPARED, THIN_LEAST, PIECE = 1.5, 2.4, 5
+"""mm at its ends that dots hide, least mm of it that must be seen by itself, and places that are taken together."""
+NARROW, PALE = 0.62, 0.7
+"""Ink across it, and its darkness, as shares of those usual for the vectors about it, up to which it is a thin line; in a black and
+white picture all that is left of a line is black, and its width alone counts."""
+UNIFORM, THIN_MOSTLY = 0.75, 0.85
+"""Ink across it up to which a piece of it is no vector's, and least share of it where that is so."""
+
+
+class _Stroke(NamedTuple):
+    """Ink of a vector where no other thick line is near: across it in pieces of it, and its darkness."""
+
+    element: Element
+    across: Any
+    dark: float
+
+    @property
+    def usual(self) -> float:
+        return float(np.median(self.across))
+
+
+def construction_only(traces: Sequence[InkTrace], ink: Any, hidden: Mask) -> set[int]:
+    """Numbers of the vectors in whose places there is no more than a thin line.
+
+    Parameters
+    ----------
+    traces
+        All lines that were found.
+    ink
+        The rectified picture.
+    hidden
+        Where the sheet does not show.
+    """
+    thick = Owners(*ink.shape)
+    for t in traces:
+        if line_type(t.element.style).width >= THICK:
+            thick.add(t.element, t.element.points)
+    strokes = [s for t in traces if vector(t) and (s := _stroke(t, ink, thick, hidden)) is not None]
+    return {s.element.number for s in strokes if _thin(s, [o for o in strokes if o is not s])}
+
+
+def vector(t: InkTrace) -> bool:
+    """Whether it is a straight vector that was found."""
+    e, found = t.element, t.status in ("measured", "shared") and t.at is not None
+    return found and e.style == "vector" and e.kind == "line" and len(e.fills) == 1
+
+
+def _stroke(t: InkTrace, ink: Any, thick: Owners, hidden: Mask) -> _Stroke | None:
+    assert t.at is not None
+    length = abs(t.at[-1] - t.at[0])
+    way = (t.at[-1] - t.at[0]) / length
+    p = t.at[0] + way * np.arange(SPARED, length - SPARED, THIN_STEP)
+    places = p[:, None] + 1j * way * THIN_ASIDE
+    free = ~thick.others(t.element.number, places).any(1) & ~at(p, hidden)
+    if free.sum() * THIN_STEP < THIN_LEAST:
+        return None
+    profile = sample(ink, pixels(places[free])).astype(np.float64)[:, OWN]
+    pieces = [np.median(part, 0) for part in np.array_split(profile, max(len(profile) // PIECE, 1))]
+    across = np.array([(part - part.min()).sum() for part in pieces])
+    return _Stroke(t.element, across, float(np.median(profile.max(1))))
+
+
+def _thin(s: _Stroke, others: Sequence[_Stroke]) -> bool:
+    if len(others) < ENOUGH:
+        return False
+    about = sorted(others, key=lambda o: abs(o.element.middle - s.element.middle))[:NEAREST]
+    usual, dark = float(np.median([o.usual for o in about])), float(np.median([o.dark for o in about]))
+    uniform = (s.across <= UNIFORM * usual).mean() >= THIN_MOSTLY
+    pale = s.dark <= PALE * dark or dark >= NO_GREY
+    return bool(s.usual <= NARROW * usual and pale and uniform)

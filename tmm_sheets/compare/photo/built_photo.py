@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import cv2
 import numpy as np
 
 from tmm_sheets.compare import codes
@@ -17,15 +18,14 @@ from tmm_sheets.compare.elements import Element, ElementView, sampled
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import KnownSheet
 from tmm_sheets.compare.photo import tracing
-from tmm_sheets.compare.photo.ink_levels import line_level
 from tmm_sheets.compare.photo.judging import PhotoFinding, judge
+from tmm_sheets.compare.photo.lost_ink import mask_washed_out
 from tmm_sheets.compare.photo.occlusion import Mask
 from tmm_sheets.compare.photo.occlusion import at as hidden_at
-from tmm_sheets.compare.photo.profiles import pixels, sample
+from tmm_sheets.compare.photo.profiles import line_level, pixels, sample
 from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.photo.sheet_map import PAPER
-from tmm_sheets.compare.photo.traces import ExtraInk, InkTrace
-from tmm_sheets.compare.photo.washed_out import mask_washed_out
+from tmm_sheets.compare.photo.traces import ELSEWHERE, ExtraInk, InkTrace
 from tmm_sheets.compare.report import verdict
 from tmm_sheets.drawing.marks import Points
 
@@ -51,8 +51,6 @@ an end that shows, which is told more exactly."""
 CONTRADICTED = 3
 """Where every so many wrong lines of a plan have one that stays in its place though it would be led elsewhere, another mistake was
 made."""
-AGREES = 1.0
-"""How far from where a point that is off would lead it the end of a line may be measured, mm."""
 AT_POINT = 0.5
 """From a point of the plan within which a line ends in it, mm."""
 Built = Mapping[ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]
@@ -69,8 +67,6 @@ def built_otherwise(project: Project, known: KnownSheet, findings: Sequence[Phot
     ink, hidden
         The rectified sheet, and where it is hidden.
     """
-    import cv2
-
     wrong: dict[ElementView, list[Element]] = {}
     for f in findings:
         if f.element.role == "vector" and f.element.kind == "line" and f.verdict == "red":
@@ -101,11 +97,11 @@ def _borne_out(built: tuple[BuiltPlan, Sequence[PlanPoint]], findings: Sequence[
     mistake, points = built[0].mistake, built[1]
     if not isinstance(mistake, str):
         return True
-    moved = {p.was for p in points if abs(p.now - p.was) > AGREES}
+    moved = {p.was for p in points if abs(p.now - p.was) > ELSEWHERE}
     led = set()
     for f in findings:
         if f.element.role == "vector" and f.element.kind == "line" and f.verdict == "red" and f.trace.at is not None:
-            if np.abs(f.trace.at[[0, -1]] - between(f.element, points)).max() > AGREES:
+            if np.abs(f.trace.at[[0, -1]] - between(f.element, points)).max() > ELSEWHERE:
                 return False
             led |= {was for was in moved if np.abs(f.element.points[[0, -1]] - was).min() < AT_POINT}
     return len(led) > 1
@@ -184,8 +180,6 @@ def inked(ink: Any, line: Points, level: float, hidden: Mask | None = None) -> f
 
     A line that is hidden in part is judged by the rest of it, if that is the greater part: what is not seen speaks for nothing.
     """
-    import cv2
-
     size = float(abs(line[1] - line[0]))
     if size < 2 * ENDS + STEP:
         return 1.0  # too short to be told

@@ -5,35 +5,44 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo.ink_owner import Owners
-from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
+from tmm_sheets.compare.photo.painting import Owners
+from tmm_sheets.compare.photo.profiles import fit, peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.stations import ENOUGH, LEAST, STEP, Stations, expected_ink, fit, measured, shrunk, smoothed
-from tmm_sheets.compare.photo.traces import InkTrace
+from tmm_sheets.compare.photo.traces import (
+    ENOUGH,
+    FARTHEST_OFF,
+    LEAST,
+    NEARLY_ALL,
+    ONE_POINT,
+    PALE,
+    STEP,
+    InkTrace,
+    Stations,
+    expected_ink,
+    measured,
+    shrunk,
+    smoothed,
+)
 
-FAR = 6.0  # mm from its place within which a displaced element is sought
 THERE = 0.8  # share of its ink in its own place from which on an element is not sought elsewhere
 TRIES = 500  # guesses from stations picked at random
 KNOWN, PARTED = 0.4, 0.12
 """Least share of a line that must be seen for it to be known elsewhere; of one that parts from a stroke only its end is seen."""
 SEEN = 0.1  # weight of how much of an element is seen, beside the share of it that has ink
 PLENTY = 40.0  # mm of a line by which it is known, however much of it is hidden
-WHOLE, DARKER, FULLER = 0.85, 1.25, 0.12
-"""Least share of an element's ink elsewhere, and how much darker or more complete it must be there, for it not to be believed in
-its own place."""
-SURE, PIVOT, PALE = 0.95, 0.8, 0.6
-"""Of a line that was turned, little of which is seen: least share of its ink, mm by which the end is off about which it was turned,
-and its least darkness as a share of that of its place, where others are darker."""
-BETWEEN = 0.6
-"""Darkness between a stroke and a line beside it, as a share of the line's, below which paper separates them."""
+DARKER, FULLER = 1.25, 0.12
+"""How much darker or more complete an element must be elsewhere for it not to be believed in its own place."""
+SURE, PIVOT = 0.95, 0.8
+"""Of a line that was turned, little of which is seen: least share of its ink, mm by which the end is off that stays."""
 EDGE, HALF = 0.4, 0.5
 """mm to either side of a line within which others' ink may be taken for its own, and share of its length that may be so."""
 RIDGE = 1.0  # mm beyond such a line within which there is paper again
-BROAD, STROKE = 1.6, 0.7
-"""mm to either side of a line within which what belongs to its stroke is told by the ink, and within which others are of it."""
+BROAD = 1.6
+"""mm to either side of a line within which what belongs to its stroke is told by the ink."""
 BLUR = 11
 """Steps over which a line's ink may be seen, beside its own width."""
 LEFT = 0.8
@@ -87,8 +96,6 @@ def better_match(t: InkTrace, s: Stations, left: Any, wiped: Any, ink: Any, owne
 
     ``t`` and ``s`` are its trace there and its stations, ``owners`` tells who is drawn where; the rest is as for :func:`displaced`.
     """
-    import cv2
-
     offsets, at = _about(t.element, s)
     near = s.points[:, None] + s.normals[:, None] * offsets
     drawn = owners.others(t.element.number, near)
@@ -98,11 +105,11 @@ def better_match(t: InkTrace, s: Stations, left: Any, wiped: Any, ink: Any, owne
     unknown = ~own & (sample(wiped, at) > 100)
     if t.darkness:
         darker = _elsewhere(t.element, s, profile, unknown, offsets, DARKER * t.darkness)
-        if darker is not None and darker.covered >= WHOLE:
+        if darker is not None and darker.covered >= NEARLY_ALL:
             return darker
     for least in (KNOWN, PARTED):
         fuller = _elsewhere(t.element, s, profile, unknown, offsets, level, least)
-        if fuller is None or fuller.covered < max(WHOLE, t.covered + FULLER):
+        if fuller is None or fuller.covered < max(NEARLY_ALL, t.covered + FULLER):
             continue
         if fuller.darkness >= t.darkness / DARKER if least == KNOWN else _swung(fuller) and fuller.darkness >= PALE * t.darkness:
             return fuller
@@ -129,7 +136,7 @@ def beside(t: InkTrace, s: Stations, ink: Any, lines: Any, taken: Any, owners: O
     apart = _apart(profile, sample(lines, at, nearest=True) > 0, drawn, offsets, level)
     unknown = np.where(np.abs(offsets) <= BROAD, ~apart & (profile > level), sample(taken, at) > 100)
     found = _elsewhere(t.element, s, np.where(unknown, 0, profile), unknown, offsets, level, PARTED)
-    if found is None or found.at is None or found.covered < WHOLE or found.deviation < LEFT:
+    if found is None or found.at is None or found.covered < NEARLY_ALL or found.deviation < LEFT:
         return None
     begin, end = found.at - t.element.points
     share = np.abs(s.points - t.element.points[0]) / t.element.length
@@ -140,7 +147,7 @@ def beside(t: InkTrace, s: Stations, ink: Any, lines: Any, taken: Any, owners: O
     side = offsets * way[:, None] > 0
     dark = profile[row, column]
     inside, beyond = (np.where(side & there, profile, 255).min(1) for there in (from_it < 0, (from_it > 0) & (from_it < RIDGE)))
-    apart = (dark > level) & ~unknown[row, column] & (np.maximum(inside, beyond) < BETWEEN * dark)
+    apart = (dark > level) & ~unknown[row, column] & (np.maximum(inside, beyond) < PALE * dark)
     # Most of it at the edges of lines that are meant to be there is theirs.
     if (drawn & (np.abs(offsets - way[:, None]) <= EDGE)).any(1).mean() > HALF:
         return None
@@ -154,26 +161,24 @@ def _apart(profile: Any, found: Any, drawn: Any, offsets: Floats, level: float) 
 
     ``found`` is where lines were found, ``drawn`` where others belong.
     """
-    import cv2
-
     away = np.abs(offsets)
-    near = (drawn & (away > STROKE)) | (found & (away > 1.5 * STROKE))
+    near = (drawn & (away > ONE_POINT)) | (found & (away > 1.5 * ONE_POINT))
     others = cv2.dilate(near.astype(np.uint8), np.ones((1, BLUR), np.uint8)) > 0
     out = np.zeros(profile.shape, bool)
     middle = len(offsets) // 2
     for side in (slice(middle, None), slice(middle, None, -1)):
         aside = np.abs(offsets[side])
-        stroke = found[:, side] & (aside <= 1.5 * STROKE)
+        stroke = found[:, side] & (aside <= 1.5 * ONE_POINT)
         beyond = ~np.logical_or.accumulate(stroke[:, ::-1], 1)[:, ::-1]
         ink = np.where(beyond | (np.roll(beyond, -1, 1) & stroke), profile[:, side], np.inf)
-        paler = beyond & (np.minimum.accumulate(ink, 1) < np.maximum(BETWEEN * profile[:, side], level))
+        paler = beyond & (np.minimum.accumulate(ink, 1) < np.maximum(PALE * profile[:, side], level))
         out[:, side] = np.logical_or.accumulate(paler, 1) & ~np.logical_or.accumulate(others[:, side], 1)
     return out
 
 
 def _about(e: Element, s: Stations) -> tuple[Floats, Any]:
     """How far an element is sought to either side, mm, and the places there, pixels."""
-    reach = min(FAR, max(0.6 * e.length, 3.0))
+    reach = min(FARTHEST_OFF, max(0.6 * e.length, 3.0))
     offsets = np.arange(-reach, reach + STEP / 2, STEP)
     return offsets, pixels(s.points[:, None] + s.normals[:, None] * offsets)
 
@@ -219,8 +224,6 @@ def _elsewhere(e: Element, s: Stations, profile: Any, unknown: Any, offsets: Flo
 
 def _hit(profile: Any, level: float) -> Any:
     """Where there is ink within 0.3 mm."""
-    import cv2
-
     return cv2.dilate((profile > level).astype(np.uint8), np.ones((1, 7), np.uint8)) > 0
 
 

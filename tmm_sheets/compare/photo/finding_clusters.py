@@ -17,19 +17,18 @@ from tmm_sheets.compare import codes
 from tmm_sheets.compare.elements import sampled
 from tmm_sheets.compare.findings import of_radius, worst
 from tmm_sheets.compare.photo.judging import PhotoFinding
-from tmm_sheets.compare.photo.moved_labels import ALIKE, MOVED, TOGETHER
-from tmm_sheets.compare.photo.traces import ExtraInk, InkTrace
+from tmm_sheets.compare.photo.line_ends import one_line
+from tmm_sheets.compare.photo.small_marks import ALIKE, MOVED, TOGETHER
+from tmm_sheets.compare.photo.traces import ELSEWHERE, FARTHEST_OFF, ONE_POINT, SAMPLING, ExtraInk, InkTrace
 from tmm_sheets.compare.report import Verdict
 from tmm_sheets.drawing.marks import Points
 
 ONE = 5.0
 """mm between places of one view that are off, within which they are one: the circles round them would lie upon each other."""
-SAME = 0.7
-"""mm within which ends of lines are one point."""
 ON, MOSTLY = 1.5, 0.5
 """mm from a line within which ink is its own, and least share of one that lies so near the other."""
-BESIDE, ALONG = 6.0, 0.8
-"""mm from the place of a line that is off within which ink may be its own, and least share of the ink that lies so near."""
+ALONG = 0.8
+"""Least share of ink that lies near the place of a line that is off for it to be its own."""
 LIKE = (0.5, 1.5)
 """Extent of ink that may be lettering that is not there, in that of the lettering."""
 ROOM = 2.0
@@ -42,14 +41,12 @@ LEAST_RADIUS, OTHER, ROUND = 4.0, (0.8, 6.0), 0.5
 """mm: circles that are looked about, by how much ink may be off them, and how exactly it is round."""
 TURN, PART = 90.0, 5.0
 """Degrees of a circle that ink must take, counted by parts."""
-STEP = 1.0
 EITHER = 2
 """Most lines of which one may have been drawn where there is ink for them to be named."""
 UNDER = 0.7
 """Least share of a line that lies under others for the ink in its place to be no sign of it."""
-PIVOT, AS_LONG, SWUNG = 1.0, 2.5, (1.0, 8.0)
-"""mm from ink's straight line within which an end of a line stays that was drawn askew, by how much its length may be another, and
-how far its other end lies from where it belongs."""
+AS_LONG, SWUNG = 2.5, (1.0, 8.0)
+"""By how many mm the length of a line that was drawn askew may be another, and how far its other end lies from where it belongs."""
 
 
 @dataclass(frozen=True)
@@ -135,13 +132,13 @@ def one_place(f: PhotoFinding, g: PhotoFinding) -> bool:
     if a.view is not b.view or "text" in (a.kind, b.kind):
         return False
     near = np.abs(_off(f)[:, None] - _off(g)).min() < ONE
-    return bool(near) or ("beside" in (f.trace.status, g.trace.status) and _one_stroke(f, g))
+    return bool(near) or ("beside" in (f.trace.status, g.trace.status) and one_line(f.trace, g.trace))
 
 
 def may_be_either(f: PhotoFinding, g: PhotoFinding) -> bool:
     """Whether one line that was found beside its stroke may be either element."""
     lines = all(h.trace.status == "beside" and h.element.kind == "line" for h in (f, g))
-    return lines and _one_stroke(f, g)
+    return lines and one_line(f.trace, g.trace)
 
 
 def _moved_alike(f: PhotoFinding, g: PhotoFinding) -> bool:
@@ -155,7 +152,7 @@ def one_point(f: PhotoFinding, g: PhotoFinding) -> bool:
     if f.element.view is not g.element.view or "text" in (f.element.kind, g.element.kind):
         return False
     a, b = _ends_off(f), _ends_off(g)
-    return bool((np.abs(a[:, None] - b) < SAME).any())
+    return bool((np.abs(a[:, None] - b) < ONE_POINT).any())
 
 
 def _ends_off(f: PhotoFinding) -> Points:
@@ -173,14 +170,6 @@ def _off(f: PhotoFinding) -> Points:
     return np.append(_ends_off(f), f.at)
 
 
-def _one_stroke(f: PhotoFinding, g: PhotoFinding) -> bool:
-    """Whether the lines that were found of two elements are one."""
-    if f.trace.at is None or g.trace.at is None:
-        return False
-    a, b = (sampled(t.at, STEP)[0] for t in (f.trace, g.trace) if t.at is not None)
-    return max(_share(a, b, ON), _share(b, a, ON)) >= MOSTLY
-
-
 def _share(points: Points, line: Points, within: float) -> float:
     """Share of points that lie so near a line, given by close points."""
     return float((np.abs(points[:, None] - line).min(1) <= within).mean())
@@ -191,7 +180,7 @@ def _on(f: PhotoFinding, x: ExtraInk) -> bool:
     at = f.trace.at
     if at is None or not len(x.points) or f.element.kind == "text" or f.trace.deviation <= f.tolerance:
         return False
-    return _share(x.points, sampled(at, STEP)[0], ON) >= MOSTLY
+    return _share(x.points, sampled(at, SAMPLING)[0], ON) >= MOSTLY
 
 
 def _near(f: PhotoFinding, x: ExtraInk) -> bool:
@@ -199,9 +188,9 @@ def _near(f: PhotoFinding, x: ExtraInk) -> bool:
     e = f.element
     if not len(x.points) or e.kind not in ("line", "arc", "circle", "curve") or (e.kind == "circle" and e.fills):
         return False
-    line, normal = sampled(e.points, STEP)
+    line, normal = sampled(e.points, SAMPLING)
     away = np.abs(x.points[:, None] - line)
-    if (away.min(1) <= BESIDE).mean() < ALONG:
+    if (away.min(1) <= FARTHEST_OFF).mean() < ALONG:
         return False
     way = _way(x.points)
     return bool(abs((way * np.conj(normal[away.argmin(1)])).real).mean() < 0.5)  # within some 30 degrees of its direction
@@ -245,13 +234,13 @@ def _not_sure(f: PhotoFinding, lines: Sequence[PhotoFinding]) -> bool:
         return True
     if f.trace.status != "measured" or f.verdict != "green":
         return False
-    z = sampled(f.element.points, STEP)[0]
+    z = sampled(f.element.points, SAMPLING)[0]
     under = np.zeros(len(z), bool)
     for g in lines:
         if g is not f:
             begin, end = g.element.points
             share = (z - begin) / (end - begin)
-            under |= (np.abs(share.imag) * abs(end - begin) <= SAME) & (share.real >= 0) & (share.real <= 1)
+            under |= (np.abs(share.imag) * abs(end - begin) <= ONE_POINT) & (share.real >= 0) & (share.real <= 1)
     return bool(under.mean() >= UNDER)
 
 
@@ -260,7 +249,7 @@ def _askew(line: Points, ends: Points, way: complex) -> bool:
     length = abs(line[-1] - line[0])
     for stays, other in ((line[0], line[-1]), (line[-1], line[0])):
         far = ends[np.abs(ends - stays).argmax()]
-        if (abs(((stays - far) * np.conj(way)).imag) <= PIVOT and abs(abs(far - stays) - length) <= AS_LONG
+        if (abs(((stays - far) * np.conj(way)).imag) <= ELSEWHERE and abs(abs(far - stays) - length) <= AS_LONG
                 and SWUNG[0] < abs(far - other) <= SWUNG[1]):
             return True
     return False

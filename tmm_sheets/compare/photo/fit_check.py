@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.compare.photo.block_match import APART, patches
-from tmm_sheets.compare.photo.map_fit import Seen, fit_map
+from tmm_sheets.compare.photo.map_fit import APART, Seen, fit_map, patches
 from tmm_sheets.compare.photo.profiles import ProfileLines, peaks, profiles
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats, Map
 from tmm_sheets.drawing.marks import Points
@@ -124,7 +123,7 @@ def check(m: Map, straight: Map, sides: Seen, ink: Any, lines: ProfileLines, lev
     straight, ink, scale
         The picture of ``scale`` pixels per mm that another map straightened, and that map.
     sides
-        Points of the frame, as :func:`~tmm_sheets.compare.photo.frame_fit.fit_frame` has them.
+        Points of the frame, as :func:`~tmm_sheets.compare.photo.frame_search.fit_frame` has them.
     lines
         Where lines are on the sheet.
     level

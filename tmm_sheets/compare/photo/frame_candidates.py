@@ -9,11 +9,11 @@ from collections.abc import Iterator
 from itertools import combinations, product
 from typing import Any, NamedTuple
 
+import cv2
 import numpy as np
 
-from tmm_sheets.compare.photo.frame_fit import STATIONS
-from tmm_sheets.compare.photo.profiles import ProfileLines, follow, sample
-from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, PAPER, Floats, chords, homography, projected
+from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, fit_freely, follow, regions, sample
+from tmm_sheets.compare.photo.sheet_map import CORNERS, FRAME, PAPER, STATIONS, Floats, chords, homography, projected
 from tmm_sheets.drawing.marks import Points
 
 PLACES = np.linspace(0.01, 0.99, STATIONS)
@@ -34,17 +34,9 @@ class FrameGuess(NamedTuple):
     """Orientations the frame may have: quarter turns, plus 4 when mirrored."""
 
 
-def robust_curves(t: Floats, y: Floats, degree: int) -> Floats:
-    """Chebyshev coefficients of curves through most of some points, (curves, coefficients); t from 0 to 1, y (curves, points)."""
-    base = np.polynomial.chebyshev.chebvander(2 * t - 1, degree)
-    w = np.ones(y.shape)
-    c: Floats = np.zeros((len(y), degree + 1))
-    for k in range(12):
-        weighted = base.T * w[:, None] ** 2
-        c = np.linalg.solve(weighted @ base, weighted @ y[..., None])[..., 0]
-        r = np.abs(y - c @ base.T)
-        w = 1 / (1 + (r / (2.0 if k < 6 else 1.0)) ** 2)
-    return np.asarray(c)
+def _curve(t: Floats, y: Floats, degree: int) -> Floats:
+    """Chebyshev coefficients of a curve through most of some points; t from 0 to 1, y in pixels."""
+    return fit_freely(np.polynomial.chebyshev.chebvander(2 * t - 1, degree), y, np.ones(len(y)), 1.0)
 
 
 def follow_sides(ink: Any, guess: FrameGuess) -> tuple[Points, Points]:
@@ -66,7 +58,7 @@ def follow_sides(ink: Any, guess: FrameGuess) -> tuple[Points, Points]:
         offsets = np.arange(-width, width + 0.25, 0.5)
         at = base + n * centre
         table = sample(ink, (at[..., None] + n[..., None] * offsets).reshape(4 * STATIONS, -1)).reshape(4, STATIONS, -1)
-        curves = robust_curves(t, centre + offsets[follow(table)], degree)
+        curves = np.array([_curve(t, y, degree) for y in centre + offsets[follow(table)]])
         centre = curves @ np.polynomial.chebyshev.chebvander(2 * t - 1, degree).T
     return base + n * centre, _corners(a[:, 0], chord[:, 0], n[:, 0], curves)
 
@@ -105,8 +97,6 @@ def side_moved_to_ink(ink: Any, guess: FrameGuess, k: int) -> Points:
 
     For a side that lies on the edge of the paper or runs over into another line.
     """
-    import cv2
-
     before, a, b, after = (guess.corners[(k + i) % 4] for i in (-1, 0, 1, 2))
     t = np.linspace(0.02, 0.98, STATIONS)
     n = 1j * (b - a) / abs(b - a)
@@ -144,7 +134,7 @@ def frame_guesses(grey: Any, ink: Any) -> Iterator[FrameGuess]:
     for corners, bends in _figures_of_lines(ink):
         papers.append((corners, bends))  # it may be the edge of the paper as well
         yield FrameGuess(corners, bends, 5.0)
-    papers += _bright_region(grey)
+    papers += _bright_regions(grey)
     papers.append((np.array([1j * rows, columns + 1j * rows, columns, 0j]), np.zeros((4, STATIONS))))  # nothing but paper: a scan
     edge = np.array([PAPER.x0 + 1j * PAPER.y0, PAPER.x1 + 1j * PAPER.y0, PAPER.x1 + 1j * PAPER.y1, PAPER.x0 + 1j * PAPER.y1])
     for corners, bends in papers:
@@ -154,37 +144,27 @@ def frame_guesses(grey: Any, ink: Any) -> Iterator[FrameGuess]:
 
 def _figures_of_lines(ink: Any) -> Iterator[tuple[Points, Floats]]:
     """Corners and bends of the largest connected figures of straight lines, of strong ones, then of weaker ones."""
-    import cv2
-
     straight = straight_lines(ink)
     for level in (14, 9):
-        strokes = cv2.dilate((straight > level).astype(np.uint8), np.ones((3, 3), np.uint8))
-        _, labels, stats, _ = cv2.connectedComponentsWithStats(strokes, connectivity=8)
-        area = stats[1:, cv2.CC_STAT_WIDTH].astype(float) * stats[1:, cv2.CC_STAT_HEIGHT]
-        for i in np.argsort(-area)[:3] + 1:
-            if area[i - 1] < LEAST * ink.size:
-                break
-            x, y, w, h = stats[i, :4]
-            outline = _outline(labels[y : y + h, x : x + w] == i) + np.array([x, y], np.int32)
-            if (corners := _quadrilateral(outline)) is not None:
-                yield corners, _bends((labels == i).astype(np.uint8), corners)
+        yield from _large_figures(cv2.dilate((straight > level).astype(np.uint8), np.ones((3, 3), np.uint8)), 3)
 
 
-def _bright_region(grey: Any) -> list[tuple[Points, Floats]]:
-    """Corners and bends of the largest bright region, the paper on a darker desk; empty when it is no quadrilateral."""
-    import cv2
-
+def _bright_regions(grey: Any) -> Iterator[tuple[Points, Floats]]:
+    """Corners and bends of the largest bright regions, the paper on a darker desk."""
     soft = cv2.GaussianBlur(grey, (0, 0), 3)
     _, bright = cv2.threshold(soft, 0, 255, cv2.THRESH_BINARY + cv2.THRESH_OTSU)
-    bright = cv2.morphologyEx(bright, cv2.MORPH_CLOSE, np.ones((9, 9), np.uint8))
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(bright, connectivity=4)
-    if count < 2:
-        return []
-    i = int(np.argmax(stats[1:, cv2.CC_STAT_AREA])) + 1
-    if stats[i, cv2.CC_STAT_AREA] <= LEAST * grey.size:
-        return []
-    corners = _quadrilateral(_outline(labels == i))
-    return [] if corners is None else [(corners, _bends((labels == i).astype(np.uint8), corners))]
+    return _large_figures(cv2.morphologyEx(bright, cv2.MORPH_CLOSE, np.ones((9, 9), np.uint8)), 1)
+
+
+def _large_figures(mask: Any, most: int) -> Iterator[tuple[Points, Floats]]:
+    """Corners and bends of those of the largest regions of a mask that are quadrilaterals."""
+    labels, found = regions(mask)
+    for r in sorted(found, key=lambda r: -r.box.width * r.box.height)[:most]:
+        figure = (labels == r.label).astype(np.uint8)
+        if r.box.width * r.box.height * SCALE**2 < LEAST * mask.size:
+            break
+        if (corners := _quadrilateral(cv2.findNonZero(figure))) is not None:
+            yield corners, _bends(figure, corners)
 
 
 def straight_lines(ink: Any, length: int = 61) -> Any:
@@ -192,8 +172,6 @@ def straight_lines(ink: Any, length: int = 61) -> Any:
 
     The grain of paper or desk averages out. For each slope the picture is sheared so that lines of that slope lie along rows.
     """
-    import cv2
-
     rows, columns = ink.shape
     ground = cv2.blur(ink, (length, length))
     best = np.zeros_like(ink)
@@ -211,8 +189,6 @@ def straight_lines(ink: Any, length: int = 61) -> Any:
 
 def _quadrilateral(points: Any) -> Points | None:
     """Four corners of the hull of some pixels, in the order of the sheet's if not mirrored; None when it is no quadrilateral."""
-    import cv2
-
     hull = cv2.convexHull(points)
     around = cv2.arcLength(hull, True)
     for share in np.geomspace(0.005, 0.12, 14):
@@ -224,13 +200,6 @@ def _quadrilateral(points: Any) -> Points | None:
         if len(corners) < 4:
             return None
     return None
-
-
-def _outline(mask: Any) -> Any:
-    """First and last pixel (x, y) of every row of a region, which have the same hull as the region."""
-    rows = np.flatnonzero(mask.any(1))
-    first, last = mask[rows].argmax(1), mask.shape[1] - 1 - mask[rows][:, ::-1].argmax(1)
-    return np.column_stack((np.concatenate((first, last)), np.concatenate((rows, rows)))).astype(np.int32)
 
 
 def _bends(mask: Any, corners: Points) -> Floats:
@@ -245,7 +214,7 @@ def _bends(mask: Any, corners: Points) -> Floats:
         first = offsets[hit.argmax(1)]
         seen = hit.any(1) & ~hit[:, 0]
         if seen.sum() > STATIONS / 3:
-            out[k] = np.polynomial.chebyshev.chebval(2 * t - 1, robust_curves(t[seen], first[seen][None], 4)[0])
+            out[k] = np.polynomial.chebyshev.chebval(2 * t - 1, _curve(t[seen], first[seen], 4))
     return out
 
 
@@ -360,8 +329,6 @@ def _in_order(quad: Points) -> Points:
 
 def _ranked(ink: Any, lines: ProfileLines, level: float, quads: Points, wide: Any, reach: float) -> list[FrameGuess]:
     """The quadrilaterals in which most of the drawing's lines have ink, the sheet lying along the picture where ``wide``."""
-    import cv2
-
     pick = np.linspace(0, len(lines.points) - 1, TRIED).astype(int)
     p, n = lines.points[pick], lines.normals[pick]
     near = cv2.dilate((ink > level).astype(np.uint8), np.ones((3, 3), np.uint8))
@@ -378,7 +345,7 @@ def _ranked(ink: Any, lines: ProfileLines, level: float, quads: Points, wide: An
 
 def _shares(near: Any, quads: Points, p: Points, n: Points) -> Floats:
     """Share of points with ink in each of some quadrilaterals, less that beside them: 0 where everything is full of lines."""
-    h = homographies(quads)
+    h = np.array([homography(CORNERS, quad) for quad in quads])
 
     def placed(z: Points) -> Points:
         x, y, w = (h[:, k, 0, None] * z.real + h[:, k, 1, None] * z.imag + h[:, k, 2, None] for k in range(3))
@@ -392,27 +359,8 @@ def _shares(near: Any, quads: Points, p: Points, n: Points) -> Floats:
     return np.asarray(on.mean(1) - off.mean(1) / 2)
 
 
-def homographies(quads: Points) -> Floats:
-    """The homographies that take the frame's corners to each of some quadrilaterals, (n, 3, 3)."""
-    count = len(quads)
-    a = np.zeros((count, 8, 8))
-    b = np.zeros((count, 8))
-    for k, c in enumerate(CORNERS.tolist()):
-        x, y, u, v = c.real, c.imag, quads[:, k].real, quads[:, k].imag
-        a[:, 2 * k, :3] = x, y, 1
-        a[:, 2 * k, 6], a[:, 2 * k, 7], b[:, 2 * k] = -u * x, -u * y, u
-        a[:, 2 * k + 1, 3:6] = x, y, 1
-        a[:, 2 * k + 1, 6], a[:, 2 * k + 1, 7], b[:, 2 * k + 1] = -v * x, -v * y, v
-    able = np.abs(np.linalg.det(a / np.abs(a).max((1, 2), keepdims=True))) > 1e-30
-    a[~able] = np.eye(8)
-    h = np.concatenate((np.linalg.solve(a, b[..., None])[..., 0], np.ones((count, 1))), 1)
-    return h.reshape(count, 3, 3)
-
-
 def long_lines(ink: Any) -> tuple[Floats, Floats]:
     """Lines that run across the picture and down it, (n, 3): a x + b y + c = 0, the longest first."""
-    import cv2
-
     mask = cv2.resize((straight_lines(ink) > 9).astype(np.uint8), None, fx=0.5, fy=0.5, interpolation=cv2.INTER_NEAREST)
     middle = np.array(ink.shape)[::-1] / 2
     out: tuple[list[Floats], list[Floats]] = [], []

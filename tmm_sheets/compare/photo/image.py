@@ -1,37 +1,41 @@
-"""Comparing a photographed or scanned hand drawing with the exact sheet, element by element."""
+"""Comparing a photographed or scanned hand drawing with the exact sheet, and why one cannot be judged."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import copy_context
 from dataclasses import dataclass, replace
 from math import hypot
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import cv2
+import numpy as np
 
 from tmm_sheets.compare import view_places
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
-from tmm_sheets.compare.elements import Element, ElementView
+from tmm_sheets.compare.elements import Element, ElementView, dashed
 from tmm_sheets.compare.elements import views as views_of
+from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
-from tmm_sheets.compare.photo import built_photo, numbers_read, placed_views, rectification, tracing, washed_out
-from tmm_sheets.compare.photo.black_and_white import lost_to_threshold
-from tmm_sheets.compare.photo.fit_check import MATCH
-from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
+from tmm_sheets.compare.photo import built_photo, lost_ink, numbers_read, overlay, placed_views, rectification, tracing
+from tmm_sheets.compare.photo.fit_check import MATCH, SIDE, SIDES
 from tmm_sheets.compare.photo.judging import PhotoFinding, judge, tolerance_of
+from tmm_sheets.compare.photo.lost_ink import lost_to_threshold
 from tmm_sheets.compare.photo.photo_report import image_report
 from tmm_sheets.compare.photo.photograph import Photograph, read
+from tmm_sheets.compare.photo.profiles import line_level, noise_level
 from tmm_sheets.compare.photo.rectification import LONGEST, Rectified, rectify
-from tmm_sheets.compare.photo.refusal import refusal
-from tmm_sheets.compare.photo.stations import as_lines
-from tmm_sheets.compare.photo.traces import ExtraInk
+from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Map
+from tmm_sheets.compare.photo.traces import ExtraInk, as_lines
 from tmm_sheets.compare.report import Report
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
+    from tmm_sheets.compare.photo.rectification import Rectified
     from tmm_sheets.project import Project
 
 PLACED = 0.25
@@ -169,9 +173,9 @@ def examine(
         raise refusal(picture.grey, found, known, path, n)
     say(tell("measuring the elements"))
     traces, extra = tracing.trace(known, found.ink, found.hidden)
-    uneven = washed_out.uneven_places(picture.grey, found.map)
-    seen = washed_out.mask_washed_out(traces, uneven)
-    if dim := washed_out.taken(traces, seen):
+    uneven = lost_ink.uneven_places(picture.grey, found.map)
+    seen = lost_ink.mask_washed_out(traces, uneven)
+    if dim := lost_ink.taken(traces, seen):
         found, traces = replace(found, uneven=uneven), seen
         where = ", ".join(f"({z.real:.0f}; {z.imag:.0f})" for z in dim)
         notes = (*notes, tell(UNEVEN).format(file=path.name, places=where))
@@ -243,3 +247,113 @@ def _other_sheet(project: Project, n: int, found: Rectified, path: Path, say: Ca
                       hint=tell("is it another project or variant? A drawing with a layout of its own needs --views FILE, which "
                                 "tells "
                                 "where its views stand"))
+
+
+DARK = 60.0
+"""Grey level of the paper below which there was too little light."""
+PATTERNED = 0.02
+"""Share of the picture beside the sheet, dark as lines are, beyond which the ground is patterned."""
+EDGE = 0.01
+"""Share of the picture's longer side within which its edge is."""
+OUT = 0.2
+"""Share of a side outside the picture from which on that is what is wrong with it."""
+BENT, FOLLOWED = 1.0, 0.5
+"""mm by which a part of the frame that is seen is off, and least share of the frame that could be followed, for its sides not to be
+hidden but out of reach of any map of paper."""
+FLAT_OR_PLACED = marked(
+    "lay the sheet flat, weights on its corners, and photograph from straight above; "
+    "if a view was drawn in another place, give --views FILE"
+)
+PRESS = marked(
+    "press the sheet flat, under glass or with weights along its edges, nothing beneath it, and photograph from straight above"
+)
+_HIDDEN = (
+    marked("the lower side of the frame is hidden or was not drawn"),
+    marked("the right side of the frame is hidden or was not drawn"),
+    marked("the upper side of the frame is hidden or was not drawn"),
+    marked("the left side of the frame is hidden or was not drawn"),
+)
+_OUTSIDE = (
+    marked("the lower side of the frame is outside the picture"),
+    marked("the right side of the frame is outside the picture"),
+    marked("the upper side of the frame is outside the picture"),
+    marked("the left side of the frame is outside the picture"),
+)
+"""What is wrong with a side, bottom first."""
+
+
+def attempt(found: Rectified, known: Sequence[Element]) -> bytes:
+    """The sheet laid over the picture as well as it could be, what does not fit circled, as PNG."""
+    exact = [p for e in known if e.kind != "text" for p in dashed(e)]
+    flags = [overlay.Flag(k, "red", complex(z))
+             for k, z in enumerate(np.concatenate((found.check.astray, found.check.adrift, found.check.shifted)), 1)]
+    return overlay.png(found.ink, found.level, exact, flags, fitted=False)
+
+
+def refusal(grey: Any, found: Rectified, known: Sequence[Element], path: Path, n: int) -> CannotBuild:
+    """What is to be said of a picture on which sheet ``n`` could not be laid so that its lines may be judged."""
+    said = tell("{file}: sheet {n} could not be laid over the picture, so nothing was judged: {why}")
+    reasons, hints = zip(*_reasons(grey, found), strict=True)
+    files = {f"compare_sheet_{n}_attempt.png": attempt(found, known)}
+    return CannotBuild(said.format(file=path, n=n, why="; ".join(reasons)), "; ".join(dict.fromkeys(hints)), files=files)
+
+
+def _reasons(grey: Any, found: Rectified) -> Iterator[tuple[str, str]]:
+    """What is wrong, and what to do about it."""
+    check, bent = found.check, _bent(found)
+    for k, share in enumerate(check.sides):
+        if share < SIDE:
+            if _outside(found.map, grey.shape, k) > OUT:
+                yield tell(_OUTSIDE[k]), tell("photograph the whole frame, with some of the ground around the paper")
+            elif not bent and (int((check.sides >= SIDE).sum()) < SIDES or len(check.lost) or len(check.adrift)):
+                yield tell(_HIDDEN[k]), tell("take away what covers the frame, or fold it back, and photograph again")
+    if bent:
+        off = tell("most of the frame can be followed, but parts of it lie {by} mm off: the paper is not flat (waves, folds that "
+                   "do not lie down), or something else was taken for the frame")
+        yield off.format(by=told(millimetres(check.rim))), tell(PRESS)
+    if float(np.median(grey)) < DARK:
+        yield tell("there is too little light"), tell("more light, from a window or two lamps, without the flash")
+    if _patterned(grey, found.map):
+        yield (tell("the ground has lines that may be taken for the frame"),
+               tell("put the sheet on a plain ground that is darker than the paper, nothing under it"))
+    if len(check.shifted):
+        parts = tell("parts of the sheet lie {by} mm elsewhere, neighbours alike: {n}, circled in the overlay of the attempt")
+        yield parts.format(by=told(millimetres(check.shift)), n=len(check.shifted)), tell(FLAT_OR_PLACED)
+    elif len(check.adrift) and not bent:
+        loose = tell("nothing shows where the sheet ends there, and what is drawn nearby lies elsewhere, circled in the overlay "
+                     "of the attempt")
+        yield loose, tell("photograph the whole frame, with some of the ground around the paper")
+    elif len(check.astray):
+        places = tell("parts of the sheet whose lines are elsewhere: {n} of {all}, circled in the overlay of the attempt")
+        flat = tell("lay the sheet flat, weights on its corners, and photograph from straight above")
+        yield places.format(n=len(check.astray), all=check.judged), tell(FLAT_OR_PLACED) if check.framed else flat
+    elif not bent:
+        share = tell("only {share} % of its lines are where they belong")
+        yield share.format(share=round(100 * check.match)), tell("photograph from straight above, sharp, in even light")
+
+
+def _bent(found: Rectified) -> bool:
+    """Whether the frame is seen, and no map of paper that lies down has it where it is."""
+    return found.check.rim > BENT and float((found.sides.weight > 0).mean()) >= FOLLOWED
+
+
+def _outside(m: Map, shape: tuple[int, ...], k: int) -> float:
+    """Share of a side of the frame that lies outside the picture, or along its edge: there the rest of it was taken to be."""
+    corners = FRAME.corners
+    a, b = corners[k], corners[(k + 1) % 4]
+    q = m.to_picture(a + np.linspace(0, 1, 50) * (b - a))
+    edge = EDGE * max(shape)
+    return float(((q.real < edge) | (q.imag < edge) | (q.real > shape[1] - edge) | (q.imag > shape[0] - edge)).mean())
+
+
+def _patterned(grey: Any, m: Map) -> bool:
+    """Whether the ground around the paper has edges like those of lines."""
+    f = 1000 / max(grey.shape)
+    small = cv2.GaussianBlur(cv2.resize(grey, None, fx=f, fy=f, interpolation=cv2.INTER_AREA), (0, 0), 1.0)
+    edges = cv2.morphologyEx(small, cv2.MORPH_BLACKHAT, np.ones((9, 9), np.uint8)) > 0.25 * np.maximum(small, 20)
+    q = m.to_picture(PAPER.corners) * f
+    paper = np.zeros_like(small)
+    cv2.fillPoly(paper, [np.column_stack((q.real, q.imag)).round().astype(np.int32)], 255)
+    paper = cv2.dilate(paper, np.ones((9, 9), np.uint8))
+    ground = paper == 0
+    return bool(ground.mean() > 0.02 and edges[ground].mean() > PATTERNED)

@@ -14,17 +14,14 @@ from tmm_sheets.compare.codes import Number, Remark, joined
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.finding_records import Outcome
 from tmm_sheets.compare.findings import Finding, millimetres, of_radius, shifted, turned
-from tmm_sheets.compare.photo.black_and_white import LostToThreshold, may_be_lost, whole
-from tmm_sheets.compare.photo.fragmented_lines import HALF
-from tmm_sheets.compare.photo.joints import joint
-from tmm_sheets.compare.photo.traces import InkTrace, open_line
-from tmm_sheets.compare.report import verdict
+from tmm_sheets.compare.photo.line_ends import joint
+from tmm_sheets.compare.photo.lost_ink import HALF, LostToThreshold, may_be_lost, whole
+from tmm_sheets.compare.photo.traces import LOOSE_STYLES, InkTrace, open_line
+from tmm_sheets.compare.report import Verdict, verdict
 from tmm_sheets.drawing.styles import line_type
 
-LOOSE_STYLES = frozenset({"thin", "construction", "axis", "centre", "hidden", "twodot"})
-"""Lines whose ends mean nothing exact: by hand they are overdrawn."""
 LOOSE_ROLES = frozenset({"symbol", "curve"})
-"""So are the lines of guides and supports, and curves: no end of theirs is a point of a construction."""
+"""Beside :data:`LOOSE_STYLES`: the lines of guides and supports, and curves, no end of which is a point of a construction."""
 LOOSE, SCARCELY = 2.5, 1.7
 """mm by which those may be too long or too short, a dashed one shorter by its last dash; and by which a line of a construction may
 be too short, which is drawn to a point, a curve or another line and not seldom beyond it."""
@@ -104,7 +101,7 @@ def judge(t: InkTrace, pencil: float, uncertainty: float, soft: bool = False, ea
         Whether the picture is not sharp: the tolerance is wider, and the ends of thin lines, which fade near others, are not
         judged.
     eats
-        What the picture eats of thin lines (see ``black_and_white``): what that may be the reason of is not judged.
+        What the picture eats of thin lines (see ``lost_ink``): what that may be the reason of is not judged.
     """
     if may_be_lost(t, tolerance := tolerance_of(pencil, uncertainty, soft), eats):
         return PhotoFinding(t.element, "green", 0.0, codes.EATEN(), t.element.middle, InkTrace(t.element, "eaten"), tolerance)
@@ -172,21 +169,22 @@ def _line(t: InkTrace, pencil: float, uncertainty: float, soft: bool) -> PhotoFi
         beside = codes.DOT_BESIDE if e.kind == "circle" else codes.LINE_BESIDE
         at = middle if e.kind == "circle" else _displacement(t, tolerance, middle).place
         return PhotoFinding(e, "amber", t.deviation, beside(how=_similarity(t, tolerance)), at, t, tolerance)
-    if t.status == "covered":
-        return PhotoFinding(e, "amber", 0.0, codes.ONLY_COVERED(), middle, t, tolerance)
-    if t.status == "missing":
-        return PhotoFinding(e, "red", e.length, codes.MISSING(), middle, t, tolerance)
     if t.status in ("absent lettering", "part of lettering"):
         said = codes.NO_LETTERING() if t.status == "absent lettering" else codes.PART_OF_LETTERING()
         if t.at is not None:
             said = codes.LETTERING_BESIDE(how=shifted(t.shift))
         return PhotoFinding(e, "amber", t.deviation, said, complex(e.points.mean()), t, tolerance)
-    if t.status == "shared" and t.deviation <= tolerance:
-        return PhotoFinding(e, "green", t.deviation, codes.IN_REACH_SHARED(), middle, t, tolerance)
-    if t.status == "hidden":
-        return PhotoFinding(e, "green", 0.0, codes.HIDDEN(), middle, t, tolerance)
-    word = codes.TOO_NEAR() if t.status in ("dense", "shared") else codes.THERE()
-    return PhotoFinding(e, "green", 0.0, word, middle, t, tolerance)
+    seen: dict[str, tuple[Verdict, float, Remark]] = {
+        "covered": ("amber", 0.0, codes.ONLY_COVERED()),
+        "missing": ("red", e.length, codes.MISSING()),
+        "hidden": ("green", 0.0, codes.HIDDEN()),
+        "dense": ("green", 0.0, codes.TOO_NEAR()),
+        "shared": ("green", 0.0, codes.TOO_NEAR()),
+    }
+    if t.deviation <= tolerance:
+        seen["shared"] = ("green", t.deviation, codes.IN_REACH_SHARED())
+    colour, off, said = seen.get(t.status, ("green", 0.0, codes.THERE()))
+    return PhotoFinding(e, colour, off, said, middle, t, tolerance)
 
 
 def _loosely_judged(e: Element) -> bool:

@@ -1,9 +1,13 @@
-"""Where a line begins and ends.
+"""Where lines begin and end, and how large the circles of joints are.
 
 Along a line and beyond its end a place is bare, or its ink is surely the line's own, or it may be another's (a line that crosses
 there, a letter). So the line reaches at least to the last ink that is surely its own and at most to the first bare place after
 that. It is too long or too short by what both bounds agree on; if its proper end lies between them, nothing is wrong, and if they
 are far apart, nothing is known.
+
+Lines that end at a joint fill its circle, and leave little of it alone: what is measured across its line is drawn to its place. But
+outside a joint there is paper, and the edge of its ink is seen wherever no other line leaves.
+
 """
 
 from __future__ import annotations
@@ -12,15 +16,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+import cv2
 import numpy as np
 
-from tmm_sheets.compare.elements import Element, interruptions
-from tmm_sheets.compare.photo.displacement import FAR
-from tmm_sheets.compare.photo.ink_owner import Owners
-from tmm_sheets.compare.photo.judging import LOOSE_STYLES
+from tmm_sheets.compare.elements import Element, interruptions, sampled
+from tmm_sheets.compare.photo.painting import Owners
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.traces import InkTrace, open_line
+from tmm_sheets.compare.photo.traces import ELSEWHERE, FARTHEST_OFF, LOOSE_STYLES, ONE_POINT, SAMPLING, InkTrace, open_line
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
@@ -102,7 +105,7 @@ def with_ends(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any, 
 def _ways(t: InkTrace) -> tuple[_Way, _Way]:
     """The ways over the beginning and over the end of a line that was found."""
     assert t.at is not None
-    reach = min(FAR, 0.4 * t.element.length)
+    reach = min(FARTHEST_OFF, 0.4 * t.element.length)
     begin, end = t.element.points[[0, -1]]
     gaps = interruptions(t.element)
     back = [(1 - b, 1 - a) for a, b in gaps]
@@ -112,7 +115,7 @@ def _ways(t: InkTrace) -> tuple[_Way, _Way]:
 
 def _tip(e: Element, end: complex) -> float | None:
     """Distance from an end to the tip of the arrow there, mm: the line of a curved arrow stops within the head."""
-    return min((d for f in e.fills if (d := float(abs(f[0] - end))) < FAR), default=None) if e.arrow else None
+    return min((d for f in e.fills if (d := float(abs(f[0] - end))) < FARTHEST_OFF), default=None) if e.arrow else None
 
 
 def _way(e: Element, z: Points, reach: float, tip: float | None, gaps: Sequence[tuple[float, float]]) -> _Way:
@@ -165,8 +168,6 @@ def _lifted(rest: Any, least: float) -> bool:
 
 def _ink_along(way: _Way, across: Any, hidden: Any, level: float) -> tuple[Any, Any, Any]:
     """Where along the way there is ink, where it is the line's own for sure, and where there may be a pale trace of that."""
-    import cv2
-
     across = cv2.blur(across, (1, 3))
     depth, beside = across[:, : len(ASIDE)].max(1), across[:, len(ASIDE) :].max(1)
     hidden = cv2.morphologyEx(hidden.astype(np.uint8)[:, None], cv2.MORPH_CLOSE, np.ones((5, 1), np.uint8))[:, 0] > 0
@@ -202,3 +203,189 @@ def _extent(way: _Way, dark: Any, own: Any) -> tuple[int, int] | None:
             break
         high = i
     return low, high
+
+
+RADII = 1.0, 3.0
+"""mm between which a circle's radius is that of a joint."""
+RAYS = np.exp(2j * np.pi * np.arange(72) / 72)
+RAY_STEP, INWARDS, OUTWARDS, BEYOND = 0.1, 0.6, 1.3, 2.0
+"""mm between places of a ray; from the record's radius to where its stroke may begin and may be darkest; and how far is looked."""
+ROOM = 5
+"""Places and rays to which the ink of others spreads."""
+WITHIN, AFTER = 0.2, 0.3
+"""mm within the stroke that ends at an edge, beside half its width, and beyond the edge, where others' ink would move it."""
+EDGE = 0.5
+"""Share of a stroke's darkness at its edge."""
+LEAST, EDGE_SPREAD = 6, 0.25
+"""Least number of rays on which the edge is nobody else's, and most that half of them may differ by, mm."""
+OFF = 0.2
+"""mm by which the middle of a circle is usually aside."""
+FEW = 3
+"""Least number of other joints that tell how much wider a pencil is on this sheet."""
+
+
+def joint(e: Element) -> bool:
+    """Whether an element is the circle of a joint, which a step has left; those about designations none has."""
+    return e.kind == "circle" and bool(e.step) and not e.fills and RADII[0] < e.radius < RADII[1]
+
+
+def with_edges(traces: Sequence[InkTrace], ink: Any, owners: Owners, words: Any) -> list[InkTrace]:
+    """The traces, those of joints that were found in their places with the radius and the middle that their outer edges have.
+
+    Parameters
+    ----------
+    traces
+        What was found.
+    ink, words
+        The rectified picture, and a picture of the places of lettering, 255 there.
+    owners
+        Who is drawn where.
+    """
+    some = [t for t in traces if joint(t.element) and t.status in ("measured", "dense", "shared")]
+    seen = {t.element.number: edge for t in some if (edge := _edges(t.element, ink, owners, words)) is not None}
+    usual = max(float(np.median([growth for growth, _ in seen.values()])), 0.0) if len(seen) > FEW else 0.0
+    return [_by_edge(t, seen[t.element.number], usual) if t.element.number in seen else t for t in traces]
+
+
+def _by_edge(t: InkTrace, edge: tuple[float, complex], usual: float) -> InkTrace:
+    """The trace of a joint by its ``edge``: how much too far out it is, mm, of which so much is ``usual``, and how far aside.
+
+    Where its line was lost among others, it is known by its edge only if that is too far out.
+    """
+    e, growth, shift = t.element, edge[0] - usual, edge[1]
+    if t.status != "measured" and growth <= t.deviation:
+        return t
+    at = np.asarray(e.points + shift + growth * (e.points - e.centre) / e.radius)
+    return replace(t, status="measured", shift=shift, growth=growth, deviation=max(abs(growth), abs(shift)), at=at, free=1.0)
+
+
+def _edges(e: Element, ink: Any, owners: Owners, words: Any) -> tuple[float, complex] | None:
+    """How much too far out the outer edge of a joint is, and how far aside its middle, mm; None where too little of it is seen, or
+    no circle.
+    """
+    far = np.arange(0, e.radius + BEYOND, RAY_STEP)
+    places = e.centre + RAYS[:, None] * far
+    others = owners.others(e.number, places) | (sample(words, pixels(places)) > 100)
+    near = cv2.dilate(np.vstack((others[-ROOM:], others, others[:ROOM])).astype(np.uint8), np.ones((ROOM, ROOM), np.uint8)) > 0
+    dark = sample(ink, pixels(places)).astype(np.float64)
+    within = (far > e.radius - INWARDS) & (far < e.radius + OUTWARDS)
+    edge, half = np.array([_edge(ray, within) for ray in dark]) * RAY_STEP, line_type(e.style).width / 2
+    moved_by = (far > edge[:, None] - half - WITHIN) & (far < edge[:, None] + AFTER)
+    free = ~(near[ROOM:-ROOM] & moved_by).any(1)
+    return _circle(edge[free] - e.radius - half, RAYS[free]) if free.sum() >= LEAST else None
+
+
+def _edge(ray: Floats, within: Any) -> float:
+    """Where on a ray the stroke that is darkest ends, in steps."""
+    first = int(np.flatnonzero(within)[0])
+    top = first + int(ray[within].argmax())
+    paler = np.flatnonzero(ray[top:] < EDGE * ray[top])
+    return top + int(paler[0]) - 0.5 if len(paler) else float(len(ray))
+
+
+def _circle(edge: Floats, rays: Any) -> tuple[float, complex] | None:
+    """What edges are too far out by on the whole, and how far aside the middle is; None where they are no circle's.
+
+    Seen from one side, a circle may be aside as well as larger: it is off there either way.
+    """
+    base = np.stack((np.ones(len(edge)), rays.real, rays.imag), -1)
+    prior = np.diag([0.0, 1.0, 1.0]) * (EDGE_SPREAD / OFF) ** 2
+    growth, x, y = np.linalg.solve(base.T @ base + prior, base.T @ edge).tolist()
+    if np.ptp(np.percentile(edge - base @ (growth, x, y), (25, 75))) > EDGE_SPREAD:
+        return None
+    return growth, complex(x, y)
+
+
+AT_JOINT, GATHERED = 2.5, 1.5
+"""mm by which a line may be too long or too short at a joint, and by which it may seem too long where others end."""
+ANOTHER_WAY = 0.1
+"""Sine of the angle from which on a line that ends there has a direction of its own."""
+
+
+def ignore_junction_ends(traces: Sequence[InkTrace], elements: Sequence[Element]) -> list[InkTrace]:
+    """The traces; an end that is off by no more than meeting others makes it is right.
+
+    Parameters
+    ----------
+    traces
+        Those of open lines, with ``ends``.
+    elements
+        All that is on the sheet.
+    """
+    rounds = [e for e in elements if joint(e)]
+    joints, radii = np.array([e.centre for e in rounds], complex), np.array([e.radius for e in rounds])
+    dots = np.array([e.centre for e in elements if e.kind == "circle" and e.fills], complex)
+    lines = [e for e in elements if e.kind == "line" and abs(e.points[-1] - e.points[0]) > ONE_POINT]
+    ends = np.array([e.points[[0, -1]] for e in lines], complex).reshape(-1, 2)
+    ways = (ends[:, 1] - ends[:, 0]) / np.maximum(np.abs(ends[:, 1] - ends[:, 0]), ONE_POINT)
+
+    def right(z: Points, by: float) -> bool:
+        """Whether a line whose end and next point are ``z`` may be so much too long there, mm, too short when negative."""
+        if not 0 < abs(by) <= AT_JOINT:  # what is not known stays so
+            return False
+        if (np.abs(joints - z[0]) <= radii + ONE_POINT).any():
+            return True
+        if not 0 < by <= GATHERED:
+            return False
+        way = (z[1] - z[0]) / max(abs(z[1] - z[0]), 1e-9)
+        here = (np.abs(ends - z[0]) <= ONE_POINT).any(1)
+        return bool((np.abs(dots - z[0]) <= ONE_POINT).any() or (np.abs((ways[here] * np.conj(way)).imag) >= ANOTHER_WAY).any())
+
+    out = []
+    for t in traces:
+        z = t.element.points
+        begin, end = (0.0 if right(way, by) else by for way, by in zip((z[:2], z[:-3:-1]), t.ends, strict=True))
+        out.append(replace(t, ends=(begin, end)))
+    return out
+
+
+OVERLAP_MOSTLY = 0.6
+"""Least share of the shorter one of two lines that lies at the other for them to be one."""
+ENDS, STAYS = 1.0, 0.2
+"""By how much more than another line's the ends of one, or the better one of them, may be off for it to be the line as well, mm."""
+ASTRAY = 2.0
+"""mm; of a line that was drawn askew one end is no farther off."""
+
+
+def resolve_overlaps(found: Sequence[InkTrace], ink: Any, owners: Owners, words: Any, level: float) -> set[int]:
+    """Numbers of the elements that were found by ink that is rather another's.
+
+    Parameters
+    ----------
+    found
+        Traces of lines by ink beside the strokes in which they belong.
+    ink, owners, words, level
+        As for :func:`~tmm_sheets.compare.photo.line_ends.with_ends`.
+    """
+    groups: list[list[InkTrace]] = []
+    for t in with_ends(found, ink, owners, words, level):
+        home = next((g for g in groups if any(one_line(t, other) for other in g)), None)
+        if home is None:
+            groups.append([t])
+        else:
+            home.append(t)
+    return {t.element.number for g in groups for t in _others(g)}
+
+
+def _others(some: Sequence[InkTrace]) -> list[InkTrace]:
+    """Those of several lines found by one stroke that are less likely it than others of them."""
+    ends = np.array([np.abs([by for by in t.ends if np.isfinite(by)]).max(initial=0.0) for t in some])
+    stays = np.array([_stays(t) for t in some])
+    likely = ends <= ends.min() + ENDS
+    likely &= stays <= min(stays[likely].min() + STAYS, ASTRAY)
+    return [t for t, may in zip(some, likely, strict=True) if not may]
+
+
+def _stays(t: InkTrace) -> float:
+    """How far the end of a line that is less off is from its place, mm."""
+    assert t.at is not None
+    return float(np.abs(t.at[[0, -1]] - t.element.points[[0, -1]]).min())
+
+
+def one_line(t: InkTrace, other: InkTrace) -> bool:
+    """Whether the lines that were found of two elements of a view are one."""
+    if t.element.view is not other.element.view or t.at is None or other.at is None:
+        return False
+    a, b = sampled(t.at, SAMPLING)[0], sampled(other.at, SAMPLING)[0]
+    near = np.abs(a[:, None] - b) <= ELSEWHERE
+    return bool(max(near.any(1).mean(), near.any(0).mean()) >= OVERLAP_MOSTLY)

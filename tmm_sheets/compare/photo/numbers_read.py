@@ -13,6 +13,7 @@ from importlib.util import find_spec
 from math import degrees
 from typing import Any
 
+import cv2
 import numpy as np
 
 from tmm_sheets import quoting
@@ -121,8 +122,6 @@ def _digits(number: re.Match[str]) -> str:
 
 def _upright(e: Element, ink: Any, margin: float) -> Any:
     """The lettering of an element and ``margin`` mm round it, black on white, ``ROW`` pixels high."""
-    import cv2
-
     lower_left, lower_right, _, upper_left = e.points
     width, height = abs(lower_right - lower_left) + 2 * margin, abs(upper_left - lower_left) + 2 * margin
     times = ROW / (height * SCALE)

@@ -13,11 +13,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+import cv2
 import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.compare.elements import Element, sampled
-from tmm_sheets.compare.photo.profiles import ProfileLines, peaks, profiles
+from tmm_sheets.compare.photo.profiles import ProfileLines, fit_freely, peaks, profiles
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Floats, Map
 from tmm_sheets.drawing.marks import Points
 
@@ -39,6 +40,7 @@ GLOW = 0.08
 """Share by which a reflection makes the paper brighter than it is about there, from which on it may wash out lines."""
 LOST = 0.12
 """Share of the points of lines under a reflection that must not be seen for it to hide all of them; of others 0.04 are not seen."""
+RIM = 5  # mm about the frame that what hides a sheet reaches
 MARGIN, EDGE = 5, 3
 """mm by which hidden places are widened, for edges cast shadows; and by which the back of a dog-ear is."""
 INSIDE, LEG, GONE = 2, (20, 150), 0.9
@@ -64,8 +66,6 @@ def hidden_places(grey: Any, m: Map, ink: Any, lines: ProfileLines, sides: Profi
     lines, sides
         Points of the drawing's lines and of the frame.
     """
-    import cv2
-
     shape = (round(PAPER.height), round(PAPER.width))
     p, n = np.concatenate((lines.points, sides.points)), np.concatenate((lines.normals, sides.normals))
     all_lines = ProfileLines(p, n, np.zeros(len(p), np.int64))
@@ -78,27 +78,23 @@ def hidden_places(grey: Any, m: Map, ink: Any, lines: ProfileLines, sides: Profi
     foreign = (np.abs(share - 1) > FOREIGN) & ~outside
     absent = _absent(row, column, there, shape)
     out = outside.copy()
-    both = (foreign | absent) & ~outside
-    count, labels = cv2.connectedComponents(both.astype(np.uint8), connectivity=8)
-    label = labels[row, column]
-    total = np.bincount(label, minlength=count)
-    seen = np.bincount(label, there, minlength=count)
-    rim = np.zeros(shape, bool)
-    top, bottom = round(PAPER.y1 - FRAME.y1), round(PAPER.y1 - FRAME.y0)
-    left, right = round(FRAME.x0), round(FRAME.x1)
-    rim[top - 2 : bottom + 3, left - 2 : right + 3] = True
-    rim[top + 3 : bottom - 2, left + 3 : right - 2] = False
-    at_rim = np.unique(labels[rim])
-    for k in at_rim[at_rim > 0].tolist():
-        # The margin outside the frame is often in the shade of its own edge: only what reaches inside matters.
-        if total[k] >= LEAST and seen[k] < SEEN * total[k]:
-            out |= labels == k
+
+    def counted(mask: Mask) -> tuple[Any, Any, Any]:
+        """Labels of connected regions, and how many points of lines each has, and how many are there."""
+        count, labels = cv2.connectedComponents(mask.astype(np.uint8), connectivity=8)
+        label = labels[row, column]
+        return labels, np.bincount(label, minlength=count), np.bincount(label, there, minlength=count)
+
+    # The margin outside the frame is often in the shade of its own edge: only what reaches inside matters.
+    labels, total, seen = counted((foreign | absent) & ~outside)
+    low, high = ((round(z.real), round(PAPER.y1 - z.imag)) for z in FRAME.corners[[0, 2]].tolist())
+    rim = cv2.rectangle(np.zeros(shape, np.uint8), low, high, 1, RIM) > 0
+    covers = np.isin(np.arange(len(total)), labels[rim]) & (total >= LEAST) & (seen < SEEN * total)
+    out |= covers[labels] & (labels > 0)
     # What still shows of a reflection that took many lines is too uneven to be judged.
-    count, labels = cv2.connectedComponents((share > 1 + GLOW).astype(np.uint8), connectivity=8)
-    label = labels[row, column]
-    total, lost = np.bincount(label, minlength=count), np.bincount(label, ~there, minlength=count)
-    gone = (lost >= LEAST) & (lost > LOST * total)
-    out |= (gone & (np.arange(count) > 0))[labels]
+    labels, total, seen = counted(share > 1 + GLOW)
+    lost = total - seen
+    out |= ((lost >= LEAST) & (lost > LOST * total))[labels] & (labels > 0)
     if np.median(ground) < PAPER_GREY:
         single = ~there & (ground[row, column] >= GLARE)
         out[row[single], column[single]] = True
@@ -115,8 +111,6 @@ def hidden_places(grey: Any, m: Map, ink: Any, lines: ProfileLines, sides: Profi
 
 def widened(hidden: Mask, by: int = MARGIN) -> Mask:
     """Hidden places with what is so near them, mm, that it may be hidden too."""
-    import cv2
-
     return cv2.dilate(hidden.astype(np.uint8), np.ones((2 * by + 1, 2 * by + 1), np.uint8)) > 0
 
 
@@ -178,8 +172,6 @@ def _long(some: Any) -> Any:
 
 def _flaps(hidden: Mask) -> Iterator[Mask]:
     """Where the backs of dog-ears may lie: a corner that is gone along a straight crease lies mirrored in it on the sheet."""
-    import cv2
-
     for upside, mirrored in ((u, m) for u in (1, -1) for m in (1, -1)):
         corner = hidden[::upside, ::mirrored]
         # How far it is gone along both edges of the paper, a little inside.
@@ -197,8 +189,6 @@ def _flaps(hidden: Mask) -> Iterator[Mask]:
 
 def ground_of(grey: Any, m: Map, shape: tuple[int, int]) -> tuple[Any, Mask]:
     """Brightness of what lies under the lines, and what is outside the picture."""
-    import cv2
-
     # Every eighth place and one more on all sides: between these the resizing has its pixels.
     step = 8
     rows, columns = (step * (np.arange(-1, -(-n // step) + 1) + 0.5) for n in shape)
@@ -216,27 +206,17 @@ def ground_of(grey: Any, m: Map, shape: tuple[int, int]) -> tuple[Any, Mask]:
 
 def _brightness(ground: Any, valid: Mask) -> Floats:
     """Brightness of the ground as a share of the paper's about there, a polynomial fitted robustly at a sixth of the resolution."""
-    import cv2
-
     small = cv2.resize(ground, None, fx=1 / 6, fy=1 / 6, interpolation=cv2.INTER_AREA)
     use = cv2.resize(valid.astype(np.float64), small.shape[::-1], interpolation=cv2.INTER_AREA).ravel()
     y, x = (t.ravel() for t in np.mgrid[-1 : 1 : small.shape[0] * 1j, -1 : 1 : small.shape[1] * 1j])
     base = np.stack([x**i * y**j for i in range(5) for j in range(5 - i)], -1)
-    log, w = np.log(np.maximum(small.astype(np.float64), 1)).ravel(), use
-    c: Floats = np.zeros(base.shape[1])
-    for _ in range(8):
-        # einsum: for so small a product the threads of a matrix library cost more than they bring.
-        square, down = np.einsum("ni,nj->ij", base * w[:, None], base), np.einsum("ni,n->i", base, w * log)
-        c = np.linalg.solve(square + 1e-9 * np.eye(len(c)), down)
-        w = use / (1 + ((log - np.einsum("ni,i->n", base, c)) / 0.08) ** 2) ** 2
-    paper = np.exp(np.einsum("ni,i->n", base, c)).reshape(small.shape).astype(np.float32)
+    log = np.log(np.maximum(small.astype(np.float64), 1)).ravel()
+    paper = np.exp(base @ fit_freely(base, log, use, 0.08)).reshape(small.shape).astype(np.float32)
     return np.asarray(ground / cv2.resize(paper, ground.shape[::-1], interpolation=cv2.INTER_LINEAR))
 
 
 def _absent(row: Any, column: Any, there: Any, shape: tuple[int, int]) -> Mask:
     """Where lines are not, though several belong there."""
-    import cv2
-
     rows, columns = -(-shape[0] // CELL), -(-shape[1] // CELL)
     cell = row // CELL * columns + column // CELL
     total, seen = (np.bincount(cell, some, minlength=rows * columns).reshape(rows, columns).astype(np.float32)

@@ -10,11 +10,12 @@ import zlib
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+import cv2
 import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.numbering import Numbered, around, legend, numbered
-from tmm_sheets.compare.photo.masking import fixed
+from tmm_sheets.compare.photo.painting import fixed
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import tell
@@ -49,8 +50,6 @@ def _legend(fitted: bool = True) -> list[tuple[tuple[int, int, int], list[Points
 
 def png(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag], fitted: bool = True) -> bytes:
     """The overlay as PNG, :data:`PNG_SCALE` pixels per mm; where it was not ``fitted``, of the parts that do not fit."""
-    import cv2
-
     size = (round(PAPER.width * PNG_SCALE), round(PAPER.height * PNG_SCALE))
     grey = cv2.resize(_clean(ink, level), size, interpolation=cv2.INTER_AREA)
     picture: Any = cv2.LUT(cv2.merge([grey, grey, grey]), _palette()[None, :, ::-1].copy())
@@ -76,8 +75,6 @@ def png(ink: Any, level: float, exact: Sequence[Points], flags: Sequence[Flag], 
 
 def piece(ink: Any, level: float, box: Box, scale: float) -> bytes:
     """A rectangle of the sheet, mm, as PNG of ``scale`` pixels per mm; parts beyond the sheet are left out."""
-    import cv2
-
     of = ink.shape[1] / PAPER.width
     rows = slice(max(round((PAPER.height - box.y1) * of), 0), round((PAPER.height - box.y0) * of))
     part = _clean(ink[rows, max(round(box.x0 * of), 0) : round(box.x1 * of)], level)
@@ -101,8 +98,6 @@ def _palette() -> Any:
 
 def _clean(ink: Any, level: float) -> Any:
     """Ink without the grain of bare paper."""
-    import cv2
-
     return cv2.threshold(ink, 0.6 * level, 255, cv2.THRESH_TOZERO)[1]
 
 

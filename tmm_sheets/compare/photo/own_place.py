@@ -1,4 +1,9 @@
-"""Looking for an element in its own place."""
+"""Looking for an element in its own place, and for one that parts from the stroke it shares with others at a small angle.
+
+A helper line lies under its vector nearly all the way. Turned about one end, it is still found: the vector's ink is where its own
+ought to be. Where it leaves the stroke there is a second ridge beside it that belongs to nobody else.
+
+"""
 
 from __future__ import annotations
 
@@ -6,16 +11,29 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo.divergence import may_part
-from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.occlusion import Mask, at
-from tmm_sheets.compare.photo.profiles import peaks, pixels, sample
+from tmm_sheets.compare.photo.painting import Owners
+from tmm_sheets.compare.photo.profiles import fit, peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.stations import ENOUGH, STEP, Stations, expected_ink, fit, measured, shrunk, smoothed, stations
-from tmm_sheets.compare.photo.traces import InkTrace
+from tmm_sheets.compare.photo.traces import (
+    ENOUGH,
+    LEAST,
+    NEARLY_ALL,
+    PALE,
+    STEP,
+    InkTrace,
+    Stations,
+    expected_ink,
+    measured,
+    open_line,
+    shrunk,
+    smoothed,
+    stations,
+)
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
@@ -25,7 +43,6 @@ AT_ONCE = 3000  # stations sampled in one call; many more do not fit into the pr
 APART = 4  # steps of bare paper that separate two lines to the eye
 BROAD = 18  # steps; a wider stroke is not measured as one
 OFF = 0.6  # mm; a line farther off its place is measured a second time
-AS_DARK = 0.6  # darkness of its own place, as a share of that where a line was found, at which the place is not bare
 FREE = 0.25  # least share of a line free of others for it to be measured by itself
 ASIDE = 1.4  # mm from its edge to the next line's from which on a piece of a curve is surely not drawn towards that
 BRANCHES = 4.0  # mm from one branch of a curve to the next within which neither is surely seen by itself
@@ -115,8 +132,6 @@ def in_place(strip: Strip, level: float) -> InkTrace | None:
         o, strength = peaks(profile, OFFSETS, base @ x, 0.7, 0.5)
         use = (strength > level) & free
         x = fit(base, o, use, 0.3)
-        if _at_home(profile, base @ x):
-            return InkTrace(e, "dense", covered=float(there.mean()), at=e.points)
     t = replace(measured(e, s, base @ x, free, float(share / expected)), darkness=float(np.median(strength[use])),
                 free=float(free.mean()))
     if shrunk(e, t):
@@ -139,20 +154,8 @@ def uncovered(strip: Strip) -> Any:
     return np.where(clear, np.where(np.abs(OFFSETS) <= WITHIN, strip.profile, 0).max(1), np.nan)
 
 
-def _at_home(profile: Any, o: Floats) -> bool:
-    """Whether its own place has ink too where a line seems off by ``o``, mm: then what was found may be another line, or blur."""
-    away = np.abs(o) > OFF
-    column = np.clip(np.round((o - OFFSETS[0]) / STEP).astype(int), 1, len(OFFSETS) - 2)
-    row, middle = np.arange(len(o)), len(OFFSETS) // 2
-    found = np.max([profile[row, column + k] for k in (-1, 0, 1)], axis=0)
-    here = profile[:, middle - 1 : middle + 2].max(1)
-    return bool(away.any() and (here > AS_DARK * found)[away].mean() > 0.7)
-
-
 def _shared(strip: Strip, o: Floats, use: Any, level: float) -> InkTrace | None:
     """The trace of an element in one stroke with others: the stroke against where all of them together ought to be."""
-    import cv2
-
     e, s, profile, others = strip
     width = line_type(e.style).width
     meant = others | (np.abs(OFFSETS) <= width / 2)
@@ -202,10 +205,130 @@ def _local(o: Floats, use: Any, step: float) -> float:
 
 def _peaks_within(profile: Any, reach: Floats, half: float, level: float) -> tuple[Floats, Floats]:
     """The line of each profile within its own reach, preferring a near one to a blacker one farther off, but no line's flank."""
-    import cv2
-
     p = np.where(np.abs(OFFSETS)[None, :] <= reach[:, None] + 1e-9, profile, 0)
     top = profile == cv2.dilate(profile, np.ones((1, 5), np.uint8))
     likely = np.where(top, np.minimum(p, 2 * level), 0) * (1 - 0.5 * np.abs(OFFSETS) / NEAR)
     centre = OFFSETS[likely.argmax(1)]
     return peaks(p, OFFSETS, centre, 0.4, half)
+
+
+ALONG_STEP = 0.3  # mm between places along a line
+CLOSE = 5  # steps to either side of others within which ink may be theirs
+
+
+NEAREST, FARTHEST = 0.9, 3.0
+"""mm from the middle of a stroke at which a picture of 2.5 pixels a millimetre, the coarsest that is judged, shows a second ridge
+(two pixels and the paper between them), and by which the end is off at most: what has gone farther is parted by paper."""
+MOST_PLACES = 120  # places along a line
+AWAY = np.arange(-FARTHEST - 1.5, FARTHEST + 1.5 + STEP / 2, STEP)
+END_OFFSETS = np.arange(NEAREST, FARTHEST + STEP / 2, STEP)
+INKED, RIDGE = 0.5, 10
+"""Darkness as a share of that usual beyond which a place has ink; steps beyond a ridge within which there is paper."""
+ABOUT = 2
+"""Steps from where a ridge ought to be within which its top is: a hand draws a straight line to 0.2 mm."""
+VALLEY, GRAIN = 0.8, 0.9
+"""Darkness between both ridges, by the second one's, that half of the places have at most, and each of them: grain of paper and
+pencil makes a tenth of it."""
+TO_END = 2.0  # mm before the end of the line up to which the ridge must be seen
+BACK = 0.35
+"""Offset of the ridge where the line was turned, as a share of that of its other end, up to which it leads there: a quarter of the
+line is all that shows of it, and its direction is known by that only."""
+
+
+def narrow_divergence(t: InkTrace, ink: Any, words: Any, owners: Owners, usual: float) -> InkTrace | None:
+    """The trace of a straight line that parts from its stroke about one end, or None.
+
+    Parameters
+    ----------
+    t
+        The trace of a line in one stroke with others.
+    ink
+        The rectified picture.
+    words
+        Where lettering belongs, 255 there.
+    owners
+        Who is drawn where.
+    usual
+        How dark lines of its width usually are.
+    """
+    e = t.element
+    if not open_line(e) or len(e.points) != 2 or expected_ink(e) < 1:
+        return None
+    way = (e.points[1] - e.points[0]) / e.length
+    run = np.linspace(0, 1, min(int(e.length / ALONG_STEP), MOST_PLACES) + 1)
+    places = (e.points[0] + run * e.length * way)[:, None] + 1j * way * AWAY
+    others = owners.others(e.number, places)
+    profile = smoothed(sample(ink, pixels(places)), others).astype(np.float32)
+    aside = others & (np.abs(AWAY) > 0.5 * line_type(e.style).width + CLOSE * STEP)  # the stroke itself is no other's
+    unknown = _widened(aside, CLOSE) | (sample(words, pixels(places)) > 100)
+    shown = ~_widened(unknown, ABOUT)
+    for left in (True, False):
+        ridge, depth = ridges(profile if left else profile[:, ::-1], INKED * usual)
+        if ridge.any(1).mean() * e.length < LEAST / 2:
+            continue
+        shows = (shown if left else shown[:, ::-1])[:, len(AWAY) // 2 :]
+        for along in (1, -1):
+            off = _parting(run, e.length, ridge[::along], shows[::along], depth[::along])
+            if off is None:
+                continue
+            by = 1j * way * off[::along] * (1 if left else -1)
+            there = e.points + by
+            turn = float(np.angle((there[1] - there[0]) / way))
+            return InkTrace(e, "beside", complex(by.mean()), turn, deviation=float(np.abs(by).max()), covered=1.0, at=there)
+    return None
+
+
+def ridges(profile: Any, least: float) -> tuple[Any, Any]:
+    """Where there is a second ridge above the middle of a stroke, and how dark it is between both by its darkness.
+
+    ``profile`` is how dark it is at places along a stroke and at steps across it, whose middle is in the middle column, ``least``
+    how dark a ridge is at least; both that are returned begin in the middle.
+    """
+    outwards = np.ascontiguousarray(profile[:, profile.shape[1] // 2 :], np.float32)
+    beyond = cv2.erode(outwards, np.ones((1, RIDGE + 1), np.uint8), anchor=(0, 0), borderType=cv2.BORDER_REPLICATE)
+    valley = np.minimum.accumulate(outwards, 1)
+    top = outwards >= cv2.dilate(outwards, np.ones((1, 2 * ABOUT + 1), np.uint8))
+    ridge = top & (outwards > least) & (valley < GRAIN * outwards) & (beyond < PALE * outwards)
+    return ridge, valley / np.maximum(outwards, 1)
+
+
+def may_part(profile: Any, others: Any, length: float, dark: float) -> bool:
+    """Whether a second ridge that is no other's shows beside a line of a ``length`` in mm, so much of it that it may be one.
+
+    ``others`` is where others are drawn in its ``profile``, ``dark`` how dark it is itself.
+    """
+    shows = ~_widened(others, CLOSE)
+    middle = profile.shape[1] // 2
+    sides = ((profile, shows), (profile[:, ::-1], shows[:, ::-1]))
+    return any((ridges(p, INKED * dark)[0] & s[:, middle:]).any(1).mean() * length >= LEAST / 2 for p, s in sides)
+
+
+def _widened(places: Any, steps: int) -> Any:
+    """Places with those so many steps to either side of them."""
+    return cv2.dilate(places.astype(np.uint8), np.ones((1, 2 * steps + 1), np.uint8)) > 0
+
+
+def _parting(run: Floats, length: float, ridge: Any, shows: Any, depth: Any) -> Floats | None:
+    """How far the beginning and the end of the line are off that parts from a stroke at its beginning, mm; None without one.
+
+    Of each place along the stroke and each step outwards it is given whether a ridge is there, whether that shows, and how dark
+    the valley before it is by it.
+    """
+    best: tuple[int, Floats] | None = None
+    for end in END_OFFSETS:
+        rows = np.flatnonzero(end * run >= NEAREST)
+        columns = np.round(end * run[rows] / STEP).astype(int)
+        here = shows[rows, columns]
+        rows, columns = rows[here], columns[here]
+        near = ridge[rows[:, None], columns[:, None] + np.arange(-ABOUT, ABOUT + 1)]
+        seen = near.any(1)
+        if seen.sum() * length / len(run) < LEAST / 2 or seen.mean() < NEARLY_ALL:
+            continue
+        rows, columns = rows[seen], columns[seen] + near[seen].argmax(1) - ABOUT
+        slope, begin = np.polyfit(run[rows], STEP * columns, 1)
+        last = float(begin + slope)
+        parts = NEAREST <= last <= FARTHEST + ABOUT * STEP and abs(begin) <= BACK * last
+        whole = (1 - run[rows].max()) * length <= TO_END and np.median(depth[rows, columns]) <= VALLEY
+        if parts and whole and (best is None or len(rows) > best[0]):
+            best = len(rows), np.array([begin, last])
+    return None if best is None else best[1]

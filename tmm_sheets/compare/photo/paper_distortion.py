@@ -12,17 +12,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element, grown, sampled
-from tmm_sheets.compare.photo.ink_levels import ink_levels
-from tmm_sheets.compare.photo.ink_owner import Owners
 from tmm_sheets.compare.photo.map_fit import LENS, Seen, camera_foot, camera_height, lens_and_homography
-from tmm_sheets.compare.photo.masking import fill
 from tmm_sheets.compare.photo.occlusion import Mask, at
-from tmm_sheets.compare.photo.profiles import follow, peaks, pixels, sample
+from tmm_sheets.compare.photo.painting import Owners, fill
+from tmm_sheets.compare.photo.profiles import fit, follow, ink_levels, peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import AWAY, FRAME, PAPER, Floats, Map, drawn_in, spline_base, spline_nodes
-from tmm_sheets.compare.photo.stations import Stations, fit, measurable, similarity_base
+from tmm_sheets.compare.photo.traces import SAMPLING, Stations, measurable, similarity_base
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import tell
 
@@ -128,8 +127,8 @@ def _bending(shape: tuple[int, int]) -> Any:
     )])  # fmt: skip
 
 
-REACH, ACROSS, ALONG = 4.0, 0.2, 1.0
-"""mm to both sides of a line, and between offsets across it and stations along it."""
+REACH, ACROSS = 4.0, 0.2
+"""mm to both sides of a line, and between offsets across it."""
 PIECE, SHORTEST = 60, 25
 """Stations of a piece of a line that is followed; pieces overlap by half. Stations of the shortest line."""
 NEAR = 1.5
@@ -147,8 +146,8 @@ TABLES = ("frame", "table")
 ALIKE, BESIDE = 0.5, 40.0
 CELL, ABOUT = 12.0, 50.0
 """Side of the cells of the spline by which a map follows a bulge, mm, and how far about its bends it may."""
-FAR = (3.0, 1.5, 0.8, 0.5, 0.5)
-"""Distances from which on lines count little there, mm, one after the other."""
+LOCAL_FAR = 0.5
+"""Distance from which on lines count little there, mm."""
 LOCAL_POINT, BEND_OF_SPLINE, SIZE = 0.6, 2.0, 20.0
 """Usual error of a followed point, usual second difference of the spline and its usual size, mm."""
 MARGIN = 8
@@ -286,10 +285,7 @@ def _over(m: Map, lines: Sequence[TracedLine], places: Points) -> Map:
     prior = np.kron(np.eye(2), prior)
     both = np.hstack((n.real[:, None] * base, n.imag[:, None] * base))
     target = wanted + both @ old
-    c = old
-    for far in FAR:
-        w = 1 / (1 + ((target - both @ c) / far) ** 2) ** 2 / LOCAL_POINT**2
-        c = np.linalg.solve(both.T @ (both * w[:, None]) + prior, both.T @ (w * target))
+    c = fit(both, target, 1.0, LOCAL_FAR, prior * LOCAL_POINT**2)
     out = local.reshape(2, -1).copy()
     out[:, free] = c.reshape(2, -1)
     return replace(m, local=out.reshape(2, *shape))
@@ -297,8 +293,6 @@ def _over(m: Map, lines: Sequence[TracedLine], places: Points) -> Map:
 
 def about(places: Points) -> Mask:
     """Where nothing is to be judged, a pixel for each square millimetre, the upper row first."""
-    import cv2
-
     out = np.zeros((round(PAPER.height), round(PAPER.width)), np.uint8)
     out[(PAPER.y1 - places.imag).astype(int).clip(0, len(out) - 1), places.real.astype(int).clip(0, out.shape[1] - 1)] = 1
     return cv2.dilate(out, np.ones((2 * MARGIN + 1, 2 * MARGIN + 1), np.uint8)) > 0
@@ -306,8 +300,6 @@ def about(places: Points) -> Mask:
 
 def bulge_notes(path: Path, bulging: Mask) -> Iterator[str]:
     """What is to be said of the places where nothing is judged, a line each."""
-    import cv2
-
     _, _, _, middles = cv2.connectedComponentsWithStats(bulging.astype(np.uint8))
     said = tell("{file}: the paper bulges about x = {x}, y = {y} mm, so what is drawn there is not judged: lay it flat, nothing "
                 "beneath it")
@@ -353,9 +345,9 @@ def _pieces(elements: Sequence[Element]) -> tuple[list[tuple[Element, int]], Poi
     chosen: list[tuple[Element, int]] = []
     p, n, real = [], [], []
     for e in elements:
-        if not measurable(e) or e.style == "text" or e.kind == "curve" or e.length < SHORTEST * ALONG:
+        if not measurable(e) or e.style == "text" or e.kind == "curve" or e.length < SHORTEST * SAMPLING:
             continue
-        z, w = sampled(e.points, ALONG)
+        z, w = sampled(e.points, SAMPLING)
         starts = range(0, max(len(z) - PIECE // 2, 1), PIECE // 2)
         for first in starts:
             lack = max(first + PIECE - len(z), 0)

@@ -12,6 +12,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import cv2
 import numpy as np
 
 from tmm_sheets.box import Box
@@ -131,8 +132,6 @@ def image_report(
 
 def boxes(places: Mask) -> list[list[int]]:
     """Left, lower, right and upper side of each place, mm."""
-    import cv2
-
     _, _, sizes, _ = cv2.connectedComponentsWithStats(places.astype(np.uint8))
     return [[int(x), int(PAPER.y1 - y - high), int(x + wide), int(PAPER.y1 - y)] for x, y, wide, high, _ in sizes[1:]]
 

@@ -11,11 +11,12 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import cv2
 import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets import files, quoting
-from tmm_sheets.compare.photo import pdf_page
+from tmm_sheets.compare.photo import need_opencv, pdf_page
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
@@ -44,18 +45,6 @@ class Photograph(NamedTuple):
 
     grey: Grey
     notes: tuple[str, ...] = ()
-
-
-def need_opencv() -> None:
-    """Refuse to go on without OpenCV.
-
-    Raises
-    ------
-    BadInput
-        With the command that installs it.
-    """
-    if find_spec("cv2") is None:
-        raise BadInput(tell("comparing a photograph needs OpenCV, which is not installed"), hint=quoting.install("compare"))
 
 
 def read(path: Path) -> Photograph:
@@ -127,8 +116,6 @@ def _size(data: bytes) -> tuple[int, int] | None:
 
 def _decoded(data: bytes, path: Path) -> tuple[Any, tuple[str, ...]]:
     """Grey pixels of an image file, None when there are none; what is transparent is white paper."""
-    import cv2
-
     size = _size(data)
     if size is not None:
         _refuse_large(*size, path)
@@ -151,8 +138,6 @@ def _decoded(data: bytes, path: Path) -> tuple[Any, tuple[str, ...]]:
 
 def _on_white(with_alpha: Any) -> Grey:
     """Grey pixels of a picture (BGR and opacity) on white paper, a band of rows after the other."""
-    import cv2
-
     most = np.iinfo(with_alpha.dtype).max
     whole = np.empty(with_alpha.shape[:2], np.uint8)
     rows = max(1, BAND // with_alpha.shape[1])

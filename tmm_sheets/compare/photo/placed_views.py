@@ -16,11 +16,9 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.photo.ink_levels import line_level
-from tmm_sheets.compare.photo.profiles import inked
+from tmm_sheets.compare.photo.profiles import fit, inked, line_level
 from tmm_sheets.compare.photo.sheet_map import FRAME, Map
-from tmm_sheets.compare.photo.stations import as_lines, fit, similarity_base
-from tmm_sheets.compare.photo.traces import ExtraInk
+from tmm_sheets.compare.photo.traces import ExtraInk, as_lines, similarity_base
 from tmm_sheets.compare.placing import BESIDE, SYMBOL, Placing, links, moved
 from tmm_sheets.compare.view_places import StatedViewPlace
 from tmm_sheets.drawing.marks import Points

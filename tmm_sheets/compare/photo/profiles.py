@@ -1,20 +1,55 @@
-"""Darkness of a picture, sampled along lines and across them.
+"""Darkness of a picture, sampled along lines and across them, and how dark ink is.
 
 Pictures are arrays with row 0 at the top; their points are complex numbers, pixels.
+
 """
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import cv2
 import numpy as np
 import numpy.typing as npt
 
+from tmm_sheets.box import Box
 from tmm_sheets.compare.photo.sheet_map import PAPER, Floats
 from tmm_sheets.drawing.marks import Points
 
 SCALE = 6.0
 """Pixels per millimetre of the rectified sheet."""
+
+
+class Region(NamedTuple):
+    """A connected region of a part of the rectified sheet: its label, the rows and columns, its middle and its box, mm."""
+
+    label: int
+    here: tuple[slice, slice]
+    middle: complex
+    box: Box
+
+    def points(self, where: Any, scale: float = SCALE) -> Points:
+        """The pixels of its rows and columns in which ``where`` is true, mm."""
+        row, column = np.nonzero(where)
+        return np.asarray(complex(self.box.x0, self.box.y1) + (column + 0.5 - 1j * (row + 0.5)) / scale)
+
+
+def regions(mask: Any, left: int = 0, top: int = 0, scale: float = SCALE) -> tuple[Any, list[Region]]:
+    """The labels of a mask's connected regions, and the regions; ``left`` and ``top`` are its first column and row on the sheet."""
+    _, labels, stats, middles = cv2.connectedComponentsWithStats(np.asarray(mask, np.uint8), connectivity=8)
+    out = []
+    for k, ((x, y, w, h, _), middle) in enumerate(zip(stats.tolist(), middles, strict=True)):
+        x0, y1 = (left + x) / scale, PAPER.y1 - (top + y) / scale
+        at = complex((left + middle[0] + 0.5) / scale, PAPER.y1 - (top + middle[1] + 0.5) / scale)
+        out.append(Region(k, (slice(y, y + h), slice(x, x + w)), at, Box(x0, y1 - h / scale, x0 + w / scale, y1)))
+    return labels, out[1:]
+
+
+def window(middle: complex, half: complex) -> tuple[slice, slice]:
+    """Rows and columns of the rectified sheet ``half`` mm to the sides of and above and below a place."""
+    corners = pixels(np.array([middle - half.conjugate(), middle + half.conjugate()]))
+    rows, columns = (slice(max(round(a), 0), max(round(b), 0)) for a, b in (corners.imag, corners.real))
+    return rows, columns
 
 
 class ProfileLines(NamedTuple):
@@ -30,8 +65,6 @@ def darkness(grey: Any, size: float) -> Any:
 
     Independent of light and shade and of the edge of a dark desk. ``size`` is the width of the widest line in pixels.
     """
-    import cv2
-
     # The grey of the paper varies slowly: a fraction of the resolution is enough.
     step = 2 if size < 20 else 4
     small = cv2.resize(grey, None, fx=1 / step, fy=1 / step, interpolation=cv2.INTER_AREA)
@@ -45,8 +78,6 @@ def darkness(grey: Any, size: float) -> Any:
 
 def sample(picture: Any, p: Points, nearest: bool = False) -> Any:
     """Values of a picture at points of any shape, interpolated bilinearly or taken from the nearest pixel; 0 outside."""
-    import cv2
-
     if not np.size(p):
         return np.zeros(np.shape(p), picture.dtype)
     how = cv2.INTER_NEAREST if nearest else cv2.INTER_LINEAR
@@ -147,3 +178,69 @@ def follow(profile: Any, steps: int = 2, stiffness: float = 0.5) -> npt.NDArray[
     for i in range(n - 1, 0, -1):
         way[:, i - 1] = way[:, i] + steps - options[i, which, way[:, i]].argmax(1)
     return way
+
+
+SETTLED = 1e-3  # mm of change below which a fit has converged
+NO_GREY = 245
+"""Darkness of lines in a black and white picture, which says nothing of how wide they are."""
+
+
+def noise_level(ink: Any) -> float:
+    """Darkness from which on a single pixel counts as ink: six standard deviations of bare paper."""
+    return ink_levels(ink)[0]
+
+
+def line_level(ink: Any) -> float:
+    """The same for the mean of several places along a line, which shows pale thin lines."""
+    return ink_levels(ink)[1]
+
+
+def ink_levels(ink: Any) -> tuple[float, float]:
+    """Both levels: of a single pixel, and of the mean of several places."""
+    middle, noise = _noise(ink)
+    return float(np.clip(middle + 6 * noise, 18.0, 45.0)), float(np.clip(middle + 3.5 * noise, 10.0, 35.0))
+
+
+def _noise(ink: Any) -> tuple[float, float]:
+    """Median and standard deviation of bare paper, from differences of neighbouring places, most of which have no ink."""
+    # Dithered, since percentiles of whole numbers are coarse. Some 200 000 places are enough.
+    rng = np.random.default_rng(1)
+    one, other = (part + rng.uniform(-0.5, 0.5, part.shape) for part in (ink[::12, 4::7], ink[::12, :-4:7]))
+    d = np.abs(one - other)
+    # What is lighter than paper is clipped to paper, so half of the noise is cut off: the other half spreads less.
+    return float(np.median(one)), float(np.median(d)) / 0.6745 / np.sqrt(2) / 0.7
+
+
+def fit(base: Floats, o: Floats, use: Any, loose: float, prior: float | Floats = 0.02) -> Floats:
+    """Robust least squares with Geman-McClure weights and a weak prior for no displacement.
+
+    Parameters
+    ----------
+    base
+        What each parameter brings, (n, k).
+    o, use
+        Offsets of the line, mm, and how much each counts, (n,).
+    loose
+        Residual from which on an offset counts little, mm.
+    prior
+        Weight of the prior, one number, one for each parameter or a matrix (k, k).
+
+    Returns
+    -------
+    The parameters, (k,).
+    """
+    x = np.zeros(base.shape[1])
+    if np.ndim(prior) < 2:
+        prior = np.diag(np.broadcast_to(prior, len(x)))
+    for k in range(8):
+        w = use / (1 + ((o - base @ x) / (loose if k > 1 else 3 * loose)) ** 2) ** 2
+        before, x = x, np.linalg.solve(base.T @ (base * w[:, None]) + prior, base.T @ (w * o))
+        if k > 2 and np.abs(x - before).max(initial=0.0) < SETTLED:
+            break
+    return np.asarray(x)
+
+
+def fit_freely(base: Floats, y: Floats, use: Any, loose: float) -> Floats:
+    """Robust least squares of what is not usually nothing: begun from plain ones. Arguments as of :func:`fit`."""
+    start = np.linalg.lstsq(base * use[:, None], y * use, rcond=None)[0]
+    return np.asarray(start + fit(base, y - base @ start, use, loose, 1e-9))

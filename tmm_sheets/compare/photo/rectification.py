@@ -1,7 +1,7 @@
 """Rectifying a photographed sheet: the picture seen from straight above, to scale.
 
-The frame is found (``frame_search``), its sides give a first map of the sheet (``frame_fit``), and the lines of the drawing and of
-the title block correct it (``map_fit``): homography, lens and the height of the paper, a polynomial of degree
+The frame is found, its sides give a first map of the sheet (``frame_search``), and the lines of the drawing and of the title block
+correct it (``map_fit``): homography, lens and the height of the paper, a polynomial of degree
 :data:`~tmm_sheets.compare.photo.sheet_map.RELIEF`, are fitted together; finally a few waves take up some tenths of a millimetre.
 Paper that is not smooth has a ``surface`` instead.
 None of these can follow a single view, least of all a single line: among several hundred lines that determine some seventy
@@ -17,21 +17,21 @@ from math import hypot
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo import block_match, fit_check, frame_fit, frame_search
-from tmm_sheets.compare.photo.black_and_white import LostToThreshold
+from tmm_sheets.compare.photo import fit_check, frame_search, map_fit
 from tmm_sheets.compare.photo.fit_check import MATCH, FitCheck
 from tmm_sheets.compare.photo.frame_search import FoundFrame
-from tmm_sheets.compare.photo.ink_levels import line_level, noise_level
+from tmm_sheets.compare.photo.lost_ink import LostToThreshold
 from tmm_sheets.compare.photo.map_fit import SIDE, Seen, fit_map, fit_waves
 from tmm_sheets.compare.photo.occlusion import Mask, hidden_places
 from tmm_sheets.compare.photo.paper_distortion import about, bulge_notes, fit_surface, over_bulges
 from tmm_sheets.compare.photo.photograph import Photograph
-from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, inked
+from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, inked, line_level, noise_level
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, RELIEF, Floats, Map
-from tmm_sheets.compare.photo.stations import as_lines
+from tmm_sheets.compare.photo.traces import as_lines
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell
@@ -101,10 +101,10 @@ class Rectified:
     notes : what is worth telling, a line each
     soft : whether the picture is not sharp
     check : what is to be said of the fit
-    hidden : where the sheet does not show, see ``hidden.hidden_places``, or bulges
-    bulging : where the paper bulges and the map does not follow, see ``local_distortion``
-    eats : what it eats of thin lines, see ``black_and_white``
-    uneven : where the light takes letters away, if it took some, see ``washed_out``
+    hidden : where the sheet does not show, see ``occlusion.hidden_places``, or bulges
+    bulging : where the paper bulges and the map does not follow, see ``paper_distortion``
+    eats : what it eats of thin lines, see ``lost_ink``
+    uneven : where the light takes letters away, if it took some, see ``lost_ink``
     """
 
     ink: Any
@@ -199,7 +199,7 @@ class _Attempt(NamedTuple):
     """A frame found, what was fitted to it, and what is to be said of the fit."""
 
     found: FoundFrame
-    frame: frame_fit.FrameFit
+    frame: frame_search.FrameFit
     map: Map
     check: FitCheck
 
@@ -235,16 +235,16 @@ class _Attempts:
         CannotBuild
             When the frame has no sides.
         """
-        start = frame_fit.initial_map(found.corners, found.sides, self.grey.shape)
+        start = frame_search.initial_map(found.corners, found.sides, self.grey.shape)
         frame = None
         if found.whole:
             try:
-                frame = frame_fit.fit_frame(self.grey, start)
+                frame = frame_search.fit_frame(self.grey, start)
             except CannotBuild:  # what was taken for a side may be the edge of what covers it
                 if not self.by_lines:
                     raise
         if frame is None:
-            self._keep(self._fit(found, frame_fit.frame_about(self.grey, self._without_frame(start), ABOUT)))
+            self._keep(self._fit(found, frame_search.frame_about(self.grey, self._without_frame(start), ABOUT)))
             return
         attempt = self._fit(found, frame)
         self._keep(attempt)
@@ -254,7 +254,7 @@ class _Attempts:
         framed = attempt.check.sound and float(attempt.check.sides.min()) >= fit_check.WHOLE
         if self.by_lines and not framed and attempt.check.match > HOPELESS:
             with suppress(CannotBuild, np.linalg.LinAlgError):
-                self._keep(self._fit(found, frame_fit.frame_about(self.grey, self._without_frame(attempt.map), ABOUT)))
+                self._keep(self._fit(found, frame_search.frame_about(self.grey, self._without_frame(attempt.map), ABOUT)))
 
     def finer(self) -> None:
         """Fit paper with waves or creases when lines near each other, or a part of the frame, are off together; kept if lines no
@@ -302,7 +302,7 @@ class _Attempts:
         if self.best is None or (attempt.check.sound, attempt.worth) > (self.best.check.sound, self.best.worth):
             self.best = attempt
 
-    def _fit(self, found: FoundFrame, frame: frame_fit.FrameFit) -> _Attempt:
+    def _fit(self, found: FoundFrame, frame: frame_search.FrameFit) -> _Attempt:
         straight = frame.map
         ink = straighten(self.grey, straight, COARSE)
         level, highest = line_level(ink), RELIEF if self.by_lines else 2
@@ -310,7 +310,7 @@ class _Attempts:
         start = self._by_patches(straight, sides, ink)
         if start is not straight:
             with suppress(CannotBuild):
-                sides = frame_fit.sides_near(self.grey, start, ABOUT)
+                sides = frame_search.sides_near(self.grey, start, ABOUT)
         for _ in range(2):
             better, _, match = refine(straight, sides, ink, self.lines, level, COARSE, highest, start=start)
             if match >= MATCH:
@@ -319,7 +319,7 @@ class _Attempts:
             if match < MATCH or check.sides.min() > WHOLE:
                 break
             # Part of a side was followed along something else: now it is known where the frame must be.
-            sides = frame_fit.sides_near(self.grey, m, ABOUT)
+            sides = frame_search.sides_near(self.grey, m, ABOUT)
         return _Attempt(found, frame._replace(sides=sides), m, check)
 
     def _surface(self, attempt: _Attempt, right: bool) -> _Attempt:
@@ -328,17 +328,17 @@ class _Attempts:
         ink = straighten(self.grey, straight, COARSE)
         level, m = line_level(ink), straight
         if right:
-            sides = frame_fit.sides_near(self.grey, m, ABOUT)
+            sides = frame_search.sides_near(self.grey, m, ABOUT)
         weight = weights(self.lines)
         for steps in (ROUGHLY, ROUGHLY[-1:]):
             for size, far in steps:
-                seen = block_match.patches(m, straight, ink, self.lines, COARSE, size)
+                seen = map_fit.patches(m, straight, ink, self.lines, COARSE, size)
                 count = len(seen.weight) // 2
                 # As much as a fifth of the frame's points, as in _by_patches; each patch as much as some points of lines.
                 own = sides._replace(weight=sides.weight * np.sqrt(0.4 * count / max(float(sides.weight.sum()), 1.0)))
                 m = fit_surface(m, own, SIDE, seen._replace(weight=2 * seen.weight), far)
             for reach, far in FINER:
-                sides = frame_fit.sides_near(self.grey, m, max(reach, ABOUT))
+                sides = frame_search.sides_near(self.grey, m, max(reach, ABOUT))
                 own = sides._replace(weight=0.5 * sides.weight)
                 at = straight.to_sheet(m.to_picture(self.lines.points))
                 o, use, _ = inked(ink, self.lines, reach, level, at - self.lines.points, COARSE)
@@ -348,14 +348,14 @@ class _Attempts:
             if check.match < MATCH or (not len(check.astray) and float(check.sides.min()) > WHOLE):
                 break
             # Where a corner was farther off than lines are sought, its patches know by now where it is.
-            sides = frame_fit.sides_near(self.grey, m, FAR)
+            sides = frame_search.sides_near(self.grey, m, FAR)
         return attempt._replace(frame=attempt.frame._replace(sides=sides), map=m, check=check)
 
     def _by_patches(self, straight: Map, sides: Seen, ink: Any) -> Map:
         """Where to start when whole patches of the sheet are too far off for their lines to be told from their neighbours."""
         m = straight
         for degree in PATCHED if self.by_lines else ():
-            seen = block_match.patches(m, straight, ink, self.lines, COARSE)
+            seen = map_fit.patches(m, straight, ink, self.lines, COARSE)
             count = len(seen.weight) // 2
             if count < LEAST_PATCHES or float(np.abs(m.to_sheet(seen.picture) - seen.sheet).max()) < OFF:
                 break
@@ -400,8 +400,6 @@ def _remarks(path: Path, scale: float, smear: float, turned: int) -> tuple[str, 
 
 def straighten(grey: Any, m: Map, scale: float = SCALE) -> Any:
     """The sheet seen from straight above, ``scale`` pixels per mm, as darkness from 0 to 255, the upper edge first."""
-    import cv2
-
     width, height = round(PAPER.width * scale), round(PAPER.height * scale)
     # Nodes from one to the left of the paper and one above it.
     x, y = np.arange(-NODE, PAPER.x1 + 2 * NODE, NODE), np.arange(PAPER.y1 + NODE, -2 * NODE, -NODE)

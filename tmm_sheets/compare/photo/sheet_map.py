@@ -22,6 +22,7 @@ PAPER = Box(0.0, 0.0, 841.0, 594.0)
 FRAME = Box(20.0, 5.0, 836.0, 589.0)
 CORNERS = np.array([20 + 5j, 836 + 5j, 836 + 589j, 20 + 589j])
 """Corners of the frame, counter-clockwise from the lower left one."""
+STATIONS = 240  # points of each side that are followed
 SIDE_TERMS = 7  # coefficients of the polynomial a side is bent by
 RELIEF = 6  # degree of the polynomial for the height of the paper
 TERMS = tuple((i, n - i) for n in range(2, RELIEF + 1) for i in range(n, -1, -1))
@@ -47,7 +48,7 @@ class Map:
     surface : B-spline of the height of paper that is not smooth, mm, instead of relief, sides and waves (see ``surface``)
     stretch : B-splines of what such paper is displaced by in x and in y, mm
     drawn_in : the same of what it is drawn in by, for it keeps its length where it rises and falls (see ``drawn_in``)
-    local : finer B-splines of what is displaced where the paper bulges (see ``local_distortion``), mm
+    local : finer B-splines of what is displaced where the paper bulges (see ``paper_distortion``), mm
     """
 
     middle: complex

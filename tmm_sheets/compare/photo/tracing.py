@@ -4,8 +4,8 @@ Each element is first looked for in its own place, no farther than half way to t
 is found is wiped out of the picture with a pencil's width to spare, and so are lettering and arrow heads. Elements not found are
 sought in the ink that is left, some millimetres away, turned or of another size (``displacement``). Ink left after that belongs to
 nothing (``extra_ink``). Lines that coincide in one stroke are measured together: what the eye cannot tell apart is not told apart.
-One that leaves the stroke at a small angle is told by its end (``diverging_lines``). The circles of joints are told by outer edges
-(``joints``).
+One that leaves the stroke at a small angle is told by a second ridge beside it (``own_place.narrow_divergence``). The circles of
+joints are told by outer edges (``line_ends.with_edges``), dots by spots of their size beside their places (``small_marks``).
 
 The displacement of an element is a similarity, two shifts, a turn and a growth, of which only what shows along its normals is
 determined: a straight line has no shift along itself and no growth; its length is measured at its ends (``line_ends``).
@@ -18,32 +18,40 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element, grown
-from tmm_sheets.compare.photo import moved_labels
-from tmm_sheets.compare.photo.arrow_heads import exchanged, with_heads
+from tmm_sheets.compare.photo import small_marks
+from tmm_sheets.compare.photo.arrow_heads import with_heads
 from tmm_sheets.compare.photo.displacement import beside, better_match, displaced
-from tmm_sheets.compare.photo.divergence import diverging_line, narrow_divergence
-from tmm_sheets.compare.photo.dots import displaced_dots
 from tmm_sheets.compare.photo.extra_ink import extra_ink, without_creases
-from tmm_sheets.compare.photo.fragmented_lines import in_pieces, torn_widths
-from tmm_sheets.compare.photo.ink_levels import NO_GREY, ink_levels
-from tmm_sheets.compare.photo.ink_owner import Owners
-from tmm_sheets.compare.photo.joints import with_edges
-from tmm_sheets.compare.photo.line_ends import with_ends
-from tmm_sheets.compare.photo.masking import ROOM, fill, fixed, paint, wipe_found, wipe_small
+from tmm_sheets.compare.photo.line_ends import ignore_junction_ends, resolve_overlaps, with_edges, with_ends
+from tmm_sheets.compare.photo.lost_ink import in_pieces, torn_widths
 from tmm_sheets.compare.photo.occlusion import Mask, at, share_hidden, widened
-from tmm_sheets.compare.photo.own_place import Strip, in_place, strips, uncovered
-from tmm_sheets.compare.photo.profiles import SCALE, pixels, sample
-from tmm_sheets.compare.photo.shared_ink import coincident_lines, ignore_junction_ends, reassign_ink, resolve_overlaps
+from tmm_sheets.compare.photo.own_place import Strip, in_place, narrow_divergence, strips, uncovered
+from tmm_sheets.compare.photo.painting import ROOM, Owners, fill, fixed, paint, wipe_found, wipe_small
+from tmm_sheets.compare.photo.profiles import NO_GREY, SCALE, ink_levels, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
-from tmm_sheets.compare.photo.stations import LEAST, expected_ink, measurable, stations
-from tmm_sheets.compare.photo.traces import ExtraInk, InkTrace, Status
+from tmm_sheets.compare.photo.small_marks import displaced_dots
+from tmm_sheets.compare.photo.traces import (
+    ABOUT_INK,
+    ELSEWHERE,
+    LEAST,
+    NEARLY_ALL,
+    PALE,
+    ExtraInk,
+    InkTrace,
+    Status,
+    expected_ink,
+    measurable,
+    stations,
+)
 from tmm_sheets.drawing.marks import Points, Text
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.drawing.text_boxes import text_box
 
+BAR = 1.5  # mm about lettering within which its bars are
 OUT_OF_SIGHT = 0.15  # share of an element that is hidden from which on it is not judged
 NEARLY, WASHED_OUT = 0.3, 12
 """Share of what is not seen that lies in hidden places or at their edge from which on it is hidden; mm about them where letters are
@@ -53,19 +61,12 @@ PARTLY, CLEAR = 0.45, 0.9
 """Share of the columns of its place with ink below which part of lettering is missing, and least share of columns to be seen."""
 GAPPY = 0.65  # share of such columns below which it is looked whether lettering stands elsewhere
 OPEN = 0.3  # least share of a place that is free of lines for it to be told whether there is lettering
-PALE, GAPS = 0.6, 0.85
-"""Darkness of a line as a share of that usual for its kind, and share of it with ink, below which it may be another line."""
 COVERED, FAINT, BARE = 0.65, 0.3, 0.6
 """Share of a line that others cover or run along from which on what was taken for it may be theirs: where it is alone, darkness as
 a share of the usual up to which it is not seen, and share of such places from which on it was theirs."""
 PALER, TO_DOT, AT_DOT = 0.5, 2.5, 0.8
 """The same darkness in the half of a line next to a dot at which it ends, least mm of that where it is alone, and mm from its end
 to the middle of the dot: other helper lines end anywhere, this one must be seen to its point, if lines are grey at all."""
-AWAY = 1.0
-"""mm from its place beyond which a line that was not seen there is elsewhere."""
-CLOSE = 0.9  # mm by which a line drawn by hand and photographed is wider than its own width
-BESIDE = 0.9  # mm about lines whose ink is theirs
-BAR = 1.5  # mm about lettering within which its bars are
 
 
 def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> tuple[list[InkTrace], list[ExtraInk]]:
@@ -84,8 +85,6 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     -------
     A trace of each element in their order, and extra ink, the longest first.
     """
-    import cv2
-
     level, pale = ink_levels(ink)
     owners = Owners(*ink.shape)
     for e in elements:
@@ -113,9 +112,8 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
         covers = cv2.resize(hidden.astype(np.uint8), ink.shape[::-1], interpolation=cv2.INTER_NEAREST) * np.uint8(255)
         left[covers > 0] = 0
     left[wiped > 0] = 0
-    found = coincident_lines(found + _displaced(absent, ink, left, wiped, owners, pale))
+    found += _displaced(absent, ink, left, wiped, owners, pale)
     found = _doubted(found, alone, ink, left, wiped, owners, pale)
-    before = {t.element.number: t for t in found}
     found = _beside_strokes(found, small, ink, owners, pale)
     words = _places_of_lettering(elements, ink)
     found = with_edges(found, ink, owners, words)
@@ -123,12 +121,11 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     ended = ignore_junction_ends(with_ends(open_lines, ink, owners, words, pale), elements)
     ended = [replace(t, ends=_shown_ends(t, hidden)) for t in ended]
     lines = {t.element.number: t for t in (*found, *ended)}
-    headed = exchanged(with_heads(list(lines.values()), ink, owners, words, hidden), ink, owners, words, hidden)
-    headed = reassign_ink(headed, before)
+    headed = with_heads(list(lines.values()), ink, owners, words, hidden)
     out = {t.element.number: t for t in headed} | _presence(small, found, ink, pale) | out_of_sight
     unseen = [t for t in out.values() if t.status in ("absent lettering", "part of lettering")
               or (t.status == "lettering" and t.covered < GAPPY)]  # fmt: skip
-    out |= {t.element.number: t for t in moved_labels.with_places(unseen, found, small, ink, covers, level)}
+    out |= {t.element.number: t for t in small_marks.with_places(unseen, found, small, ink, covers, level)}
     out |= {t.element.number: t for t in _dots(small, headed, ink, words, hidden)}
     near = {"missing": widened(hidden)} | dict.fromkeys(("absent lettering", "part of lettering"), widened(hidden, WASHED_OUT))
     for t in [t for t in out.values() if t.status in near]:
@@ -140,7 +137,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     left = without_creases(left, ink, level)
     tears = torn_widths(found)
     out |= {t.element.number: replace(t, pieces=True) for t in out.values() if in_pieces(t, tears)}
-    return [out[e.number] for e in elements], extra_ink(left, level, words, wiped, PALE * min(_usual(found).values(), default=0.0))
+    return [out[e.number] for e in elements], extra_ink(left, level, words, wiped)
 
 
 def _shown_ends(t: InkTrace, hidden: Mask) -> tuple[float, float]:
@@ -204,16 +201,21 @@ def _displaced(absent: Sequence[Element], ink: Any, left: Any, wiped: Any, owner
         if _edge(t):
             t = InkTrace(e, "dense", covered=t.covered, at=e.points)
         found.append(t)
-        if t.at is not None:
-            owners.add(e, t.at)
-            wipe_found(wiped, t)
-            wipe_found(left, t, 0)
+        _claim(t, left, wiped, owners)
     return found
+
+
+def _claim(t: InkTrace, left: Any, wiped: Any, owners: Owners) -> None:
+    """Wipe out the ink by which an element was found elsewhere."""
+    if t.at is not None:
+        owners.add(t.element, t.at)
+        wipe_found(wiped, t)
+        wipe_found(left, t, 0)
 
 
 def _edge(t: InkTrace) -> bool:
     """Whether what was found elsewhere is so near its place that it is the edge of another's ink."""
-    return t.status == "measured" and t.deviation < AWAY and t.element.kind != "circle"
+    return t.status == "measured" and t.deviation < ELSEWHERE and t.element.kind != "circle"
 
 
 def _doubted(
@@ -228,18 +230,15 @@ def _doubted(
         dark = usual.get(line_type(t.element.style).width, 0.0)
         places = alone.get(t.element.number)
         tells = places is not None and (places.faint <= FAINT or dark < NO_GREY)
-        tells &= t.status != "missing" and t.deviation <= AWAY
+        tells &= t.status != "missing" and t.deviation <= ELSEWHERE
         covered = tells and places is not None and bool((places.dark <= places.faint * dark).mean() >= BARE)
         covered |= t.element.kind == "line" and 0 < t.darkness <= FAINT * dark  # ends of a hatching in its place
         if covered:
             t = replace(t, status="covered", covered=0.0, darkness=0.0)
-        if covered or (t.darkness and (t.darkness < PALE * dark or t.covered < GAPS)):
+        if covered or (t.darkness and (t.darkness < PALE * dark or t.covered < NEARLY_ALL)):
             better = better_match(t, stations(t.element, t.element.kind != "line"), left, wiped, ink, owners, level)
-            believed = better is not None and not _edge(better) and not (covered and better.darkness < PALE * dark)
-            if believed and better is not None and better.at is not None:
-                owners.add(t.element, better.at)
-                wipe_found(wiped, better)
-                wipe_found(left, better, 0)
+            if better is not None and not _edge(better) and not (covered and better.darkness < PALE * dark):
+                _claim(better, left, wiped, owners)
                 t = better
         out.append(t)
     return out
@@ -260,11 +259,11 @@ def _beside_strokes(found: Sequence[InkTrace], small: Sequence[Element], ink: An
     lines, words = np.zeros_like(ink), _places_of_lettering(small, ink)
     taken = words.copy()
     for e in small:
-        paint(taken, e, e.points, CLOSE)
+        paint(taken, e, e.points, ABOUT_INK)
     for t in found:
         if t.at is not None:
             paint(lines, t.element, t.at, 0)
-            paint(taken, t.element, t.at, CLOSE)
+            paint(taken, t.element, t.at, ABOUT_INK)
     usual = _usual(found)
     moved: dict[int, InkTrace] = {}
     for t in found:
@@ -273,8 +272,7 @@ def _beside_strokes(found: Sequence[InkTrace], small: Sequence[Element], ink: An
             dark = usual.get(line_type(t.element.style).width, 0.0)
             # Paler lines were rubbed out, or are the edges of others.
             if other is None or other.darkness <= PALE * dark:
-                other = (diverging_line(t, ink, words, owners, dark)
-                         or narrow_divergence(t, ink, words, owners, dark)) if dark else None
+                other = narrow_divergence(t, ink, words, owners, dark) if dark else None
             if other is not None:
                 moved[t.element.number] = other
     for number in resolve_overlaps(list(moved.values()), ink, owners, words, level):
@@ -291,12 +289,12 @@ def _dots(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, words: 
     lines, taken = np.zeros_like(ink), np.zeros_like(ink)
     for e in small:
         dot = e.kind == "circle" and e.fills
-        paint(taken, e, e.points, CLOSE / 2 if dot else CLOSE)  # paint widens lines, and grows what is filled to all sides
+        paint(taken, e, e.points, ABOUT_INK / 2 if dot else ABOUT_INK)  # paint widens lines, and grows what is filled to all sides
         if not dot:
             paint(lines, e, e.points, 0)
     for t in found:
         where = t.element.points if t.at is None else t.at
-        paint(taken, t.element, where, CLOSE)
+        paint(taken, t.element, where, ABOUT_INK)
         paint(lines, t.element, where, 0)
     straight = [t for t in found if t.element.kind == "line"]
     rods, astray = [t.element.points for t in straight], [t.element.points for t in straight if _astray(t)]
@@ -305,13 +303,11 @@ def _dots(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, words: 
 
 def _astray(t: InkTrace) -> bool:
     """Whether a line is not in its place."""
-    return t.status in ("missing", "covered", "beside") or (t.status == "measured" and t.deviation > AWAY)
+    return t.status in ("missing", "covered", "beside") or (t.status == "measured" and t.deviation > ELSEWHERE)
 
 
 def _bars(small: Sequence[Element], ink: Any) -> Any:
     """A picture of the bars over letters, which lie near them all along as their leaders do not, 255 there."""
-    import cv2
-
     out = np.zeros_like(ink)
     for e in small:
         if e.kind != "text" or not e.pieces:
@@ -320,7 +316,7 @@ def _bars(small: Sequence[Element], ink: Any) -> Any:
         for p in e.pieces:
             inside = (p.real > box.real.min()) & (p.real < box.real.max()) & (p.imag > box.imag.min()) & (p.imag < box.imag.max())
             if inside.all():
-                cv2.polylines(out, [fixed(p)], False, 255, round(2 * CLOSE * SCALE), cv2.LINE_8, 4)
+                cv2.polylines(out, [fixed(p)], False, 255, round(2 * ABOUT_INK * SCALE), cv2.LINE_8, 4)
     return out
 
 
@@ -347,9 +343,9 @@ def _presence(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, lev
     others = np.zeros_like(ink)
     for t in found:
         if t.at is not None:
-            paint(others, t.element, t.at, BESIDE)
+            paint(others, t.element, t.at, ABOUT_INK)
     for e in small:
-        paint(others, e, e.points, BESIDE)
+        paint(others, e, e.points, ABOUT_INK)
     runs = [(e.number, len(m.text), text_box(m)) for e in words for m in e.marks if isinstance(m, Text)]
     u, v = (t.ravel() for t in np.meshgrid(np.linspace(0, 1, 60), np.linspace(0, 1, 24)))
     corners = np.stack([grown(box, 0.3) for _, _, box in runs])

@@ -1,15 +1,16 @@
-"""Which element is drawn at each place of the rectified sheet."""
+"""Known elements painted into a picture: to tell whose a place is, to mark places, to wipe ink out."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any
 
+import cv2
 import numpy as np
 
-from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo.masking import fixed
+from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo.profiles import SCALE, pixels, sample
+from tmm_sheets.compare.photo.traces import InkTrace
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
@@ -28,8 +29,6 @@ class Owners:
 
     def add(self, e: Element, points: Points) -> None:
         """Enter an element, heads included, whose line runs along ``points``; it may be in other places already."""
-        import cv2
-
         strokes = e.kind in ("hatch", "text")
         # At least two pixels wide, or a slanting profile could step over it.
         wide = max(round((THIN if strokes else line_type(e.style).width) * SCALE), 1)
@@ -86,3 +85,51 @@ def _patch(points: Points, wide: int) -> tuple[Any, Any, Any]:
     low = (at.min(0) >> 4) - margin
     size = (at.max(0) >> 4) + margin + 1 - low
     return at, low << 4, np.zeros((int(size[1]), int(size[0])), np.uint8)
+
+
+WRITTEN = 0.9
+"""Margin around lettering that is wiped out, mm: the edges of its letters in a row look like a stroke."""
+ROOM, DENSE_ROOM = 1.4, 2.0
+"""Margin around a line that is wiped out, mm; more for one among others, whose ink cannot be told from theirs."""
+
+
+def fixed(p: Points, scale: float = SCALE) -> Any:
+    """Points of the sheet in sixteenths of pixels, as cv2 draws them with a shift of 4."""
+    q = np.ascontiguousarray(16 * pixels(p, scale))
+    return np.rint(q.view(np.float64).reshape(-1, 2)).astype(np.int32)
+
+
+def paint(picture: Any, e: Element, points: Points, margin: float, value: int = 255) -> None:
+    """Draw an element along ``points``, heads included, ``margin`` mm wider; of lettering its bars and leaders."""
+    if e.kind in ("hatch", "text"):
+        for p in e.pieces:
+            cv2.polylines(picture, [fixed(p)], False, value, max(round((0.2 + margin) * SCALE), 1), cv2.LINE_8, 4)
+        return
+    if e.kind != "fill" and not (e.kind == "circle" and e.fills):
+        wide = max(round((line_type(e.style).width + margin) * SCALE), 1)
+        cv2.polylines(picture, [fixed(points)], False, value, wide, cv2.LINE_8, 4)
+    for f in e.fills:
+        fill(picture, f, value)
+        if margin:
+            cv2.polylines(picture, [fixed(f)], True, value, round(2 * margin * SCALE), cv2.LINE_8, 4)
+
+
+def fill(picture: Any, corners: Points, value: int = 255) -> None:
+    """Paint a polygon."""
+    cv2.fillPoly(picture, [fixed(corners)], value, cv2.LINE_8, 4)
+
+
+def wipe_found(picture: Any, t: InkTrace, value: int = 255) -> None:
+    """Paint a line where it was found, with room to spare."""
+    if t.at is not None:
+        paint(picture, t.element, t.at, ROOM if t.status == "measured" else DENSE_ROOM, value)
+
+
+def wipe_small(wiped: Any, e: Element) -> None:
+    """Wipe out what is not measured (lettering, hatching, dots, short strokes) where it belongs, generously."""
+    if e.kind == "text":
+        fill(wiped, grown(e.points, WRITTEN))
+        for p in e.pieces:
+            cv2.polylines(wiped, [fixed(p)], False, 255, round(1.5 * SCALE), cv2.LINE_8, 4)
+    else:
+        paint(wiped, e, e.points, 1.6)
