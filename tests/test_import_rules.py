@@ -58,7 +58,9 @@ RULES = {
     "output.roster": ("catalogue output task.families task.letters", ""),
     "page": ("backends catalogue compare drawing living output project sheets task", ""),
     "note": ("backends construction drawing project record results sheets task.synthesis_refs task.units", "task"),
-    "compare": ("drawing sheets task.toml_file", "construction project"),
+    "compare": ("drawing sheets", "construction project"),
+    "compare.marking": ("task.messages task.schema task.toml_file", ""),
+    "compare.view_places": ("compare task.messages task.schema task.toml_file", ""),
     "compare.story_pdf": ("backends compare drawing", ""),
     "compare.report_pages": ("compare", ""),
     "compare.group": ("compare output.build_store task.title_entries task.toml_file", "project"),
@@ -81,11 +83,11 @@ RULES = {
 """What each room may import besides itself and the neutral modules; a row holds for all below it that has none of its own."""
 
 LIBRARIES = {
-    "ezdxf": "backends.dxf backends.dxf_frame_making compare.cad.cad_file",
+    "ezdxf": "backends.dxf backends.dxf_frame_making compare.cad.cad_file compare.cad.cad_overlay",
     "reportlab": "backends.pdf compare.story_pdf",
     "matplotlib": "backends.png lab.bench.records optimising.picture",
     "pydantic": "task.values task.schema task.messages task.variant task.title_entries task.keys "
-                "task.family_folder task.family_tables",
+                "task.family_folder task.family_tables compare.marking compare.view_places",
     "pydantic_core": "task.messages task.keys", "cv2": "compare.photo", "pypdfium2": "compare.photo",
     "shapely": "drawing sheets methods lab.bench compare",
     "typst": "note.typst_writer", "docx": "note.docx_writer",

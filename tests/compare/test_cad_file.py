@@ -198,13 +198,6 @@ def test_writing_that_does_not(a, b):
     assert normal(a) != normal(b)
 
 
-def test_the_overlay_can_be_read_again(path):
-    path.write_bytes(cad_file.overlay([np.array([0, 100 + 50j])], [np.array([1, 99 + 50j])], [(50 + 20j, 5.0, "7")]))
-    (space,) = cad_file.read(path).spaces
-    assert {e.layer for e in space.entities} == {"SHEET", "DRAWN", "FOUND"}
-    assert [w.text for w in space.writings] == ["7"]
-
-
 def test_line_types_and_weights_of_layers_and_blocks(path):
     doc = ezdxf.new("R2010", setup=True)
     doc.layers.add("axes", linetype="CENTER", lineweight=20)

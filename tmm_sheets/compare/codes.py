@@ -20,7 +20,6 @@ CODES: Mapping[str, str] = {
     "step-off": "a step that is no point on paper was drawn or computed off; `step` says which",
     "another-mechanism": "so much is wrong that something else was drawn",
     "another-plan": "lines under a title are not those of the plan it names, or not all of them",
-    "view-turned": "a view lies turned by right angles or as in a mirror",
     "view-missing": "a view with lines of its own was not found",
     "table-missing": "a table, text or detail was not found as it is on the sheet",
     "missing": "the element is not there; amber: it is not seen, and may be there",
@@ -156,14 +155,6 @@ ANOTHER_PLAN = Sentence("another-plan", marked_n(
     "this is not the plan of position {position}: {n} lines do not fit"))
 LINES_DO_NOT_FIT = Sentence("another-plan", marked_n("{n} line does not fit", "{n} lines do not fit"))
 NO_INK_UNDER_TITLE = Sentence("view-missing", marked('"{view}": nothing under this title is such a plan'))
-VIEW_TURNED = {
-    "upside down": Sentence("view-turned", marked("drawn mirrored, top and bottom exchanged")),
-    "across": Sentence("view-turned", marked("drawn mirrored, left and right exchanged")),
-    "mirrored": Sentence("view-turned", marked("drawn mirrored and turned")),
-    "90": Sentence("view-turned", marked("drawn turned by 90° counter-clockwise")),
-    "180": Sentence("view-turned", marked("drawn turned by 180°: every arrow points the other way")),
-    "270": Sentence("view-turned", marked("drawn turned by 90° clockwise")),
-}
 VIEW_MISSING = Sentence("view-missing", marked('view "{view}": it was not found in the drawing'))
 TABLE_MISSING = Sentence("table-missing", marked("not found as on the sheet, of tables, texts and details: {views}"))
 

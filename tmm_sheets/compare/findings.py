@@ -12,6 +12,7 @@ from tmm_sheets.compare.codes import Number, Remark
 from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.finding_records import FindingRecord, Outcome
 from tmm_sheets.compare.report import Verdict
+from tmm_sheets.compare.story import Story, listed
 from tmm_sheets.words import marked, tell, tell_n
 
 SHOWN = 60
@@ -146,6 +147,14 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     if len(rows) > SHOWN:
         out.append(tell("... and {n} more; --json has all").format(n=len(rows) - SHOWN))
     return out
+
+
+def as_text(story: Story, end: str) -> str:
+    """A report for the terminal: mistakes, tables, what was not judged, and how it ended."""
+    out = [*listed(story.mistakes), story.title, ""]
+    for t in story.tables:
+        out += [f"{t.title}:", *table(t.head, t.rows), ""]
+    return "\n".join([*out, *story.unjudged, end])
 
 
 def of_element(f: Finding, verdict: Outcome, **more: Any) -> FindingRecord:

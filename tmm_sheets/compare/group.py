@@ -21,7 +21,7 @@ from unicodedata import normalize
 from tmm_sheets import files
 from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.finding_records import FindingRecord
-from tmm_sheets.compare.marking import KINDS, MarkingScheme
+from tmm_sheets.compare.marking import KINDS, FaultKind, MarkingScheme
 from tmm_sheets.compare.report import Kind, Report
 from tmm_sheets.compare.report_pages import page
 from tmm_sheets.compare.story import Story, StoryTable
@@ -52,7 +52,7 @@ class Judgement:
     """What came of one file: how many faults of each kind of a scheme, the mistakes, why it was not judged (else empty)."""
 
     file: str
-    faults: Mapping[str, int] = field(default_factory=dict)
+    faults: Mapping[FaultKind, int] = field(default_factory=dict)
     mistakes: tuple[FindingRecord, ...] = ()
     refused: str = ""
     report: Report | None = None
@@ -69,7 +69,7 @@ class Student:
     made: tuple[str, ...] = ()
 
     @property
-    def faults(self) -> dict[str, int]:
+    def faults(self) -> dict[FaultKind, int]:
         """Faults of each kind in all files together, and what is missing of the whole work."""
         found = {kind: sum(f.faults.get(kind, 0) for f in self.files) for kind in KINDS}
         filled, asked = self.numbers
@@ -258,11 +258,11 @@ def _judged(path: Path, file: str, name: str, opened: Callable[[str], Project], 
     return Judgement(file, faults, mistakes, report=report)
 
 
-MISSING = {"view-missing": "missing_view", "table-missing": "missing_table"}
+MISSING: Mapping[str, FaultKind] = {"view-missing": "missing_view", "table-missing": "missing_table"}
 """Kinds of faults that have findings of their own."""
 
 
-def _faults(report: Report) -> tuple[dict[str, int], tuple[FindingRecord, ...]]:
+def _faults(report: Report) -> tuple[dict[FaultKind, int], tuple[FindingRecord, ...]]:
     """Faults of each kind, and the mistakes; what follows from one, and views that were built on one, are no others."""
     mistakes = tuple(r for r in report.start if r.remark.code not in MISSING)
     built = {r.view for r in report.findings if r.whole}
@@ -272,7 +272,7 @@ def _faults(report: Report) -> tuple[dict[str, int], tuple[FindingRecord, ...]]:
     lost = Counter(MISSING[r.remark.code] for r in report.start if r.remark.code in MISSING)
     # Where something else was drawn the single mistakes are guesses.
     another = tuple(r for r in mistakes if r.remark.code == "another-mechanism")
-    faults = {"mistake": len(mistakes) - len(another), "red": left["red"], "amber": left["amber"]}
+    faults: dict[FaultKind, int] = {"mistake": len(mistakes) - len(another), "red": left["red"], "amber": left["amber"]}
     return faults | {kind: lost[kind] for kind in MISSING.values()}, another or mistakes
 
 

@@ -15,8 +15,8 @@ import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
-from tmm_sheets.compare.cad.line_fit import KnownLines, lines
-from tmm_sheets.compare.cad.overlaps import Interval, Left, Numbers, Overlaps, together
+from tmm_sheets.compare.cad.line_fit import ONE_PLACE, KnownLines, lines
+from tmm_sheets.compare.cad.overlaps import Interval, Left, Numbers, Overlaps, gaps, overlaps, together, union
 from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.findings import Finding
@@ -87,7 +87,8 @@ class LookFinding:
     view : their view, None if they are in several
     styles : those of their lines on the sheet
     remark : how they are drawn
-    elements, entities : their numbers and those of the entities of the drawing
+    elements : their numbers
+    entities : what they are drawn with
     places : their lines, mm, the longest first
     """
 
@@ -95,7 +96,7 @@ class LookFinding:
     styles: tuple[str, ...]
     remark: Remark
     elements: tuple[int, ...]
-    entities: tuple[int, ...]
+    entities: tuple[Entity, ...]
     places: tuple[Points, ...]
 
     verdict: ClassVar[Verdict] = "amber"
@@ -134,15 +135,17 @@ class CadOutcome:
     absent: tuple[AbsentKind, ...] = ()
 
 
-JOINT = 0.3
-"""Greatest gap between pieces of one line, mm."""
 SIZE_OF_SYMBOL = 1.0
 """How much the radius of a hinge or dot may differ, mm: its place counts, its size hardly."""
 LOOSE_STYLES = {"construction", "centre", "hatch", "axis"}
 """Auxiliary lines: they may end up to :data:`BEYOND` mm beyond their ends."""
 BEYOND = 10.0
 CURVE_REACH = 6.0
-"""How far from its place a curve is looked for, mm."""
+"""How far from its place a curve or a dot is looked for, mm."""
+FARTHEST = 25.0
+"""A line whose ends are farther off than this, mm, is another line."""
+ELSEWHERE = 12.0
+"""A curve or a text that is drawn farther from its place than this, mm, is another one."""
 
 
 class Comparison:
@@ -206,6 +209,15 @@ class Comparison:
         made, of, _ = self.ours([n for n in range(len(self.elements)) if self.paths[n]])
         return made, of
 
+    def free(self, n: int) -> list[Interval]:
+        """Stretches of an element without another element of the sheet beside them."""
+        mine, _, base = self.ours([n])
+        every, of = self.everything
+        hit = overlaps(mine, every, 2 * self.tolerance)
+        hit = hit.only(of[hit.theirs] != n)
+        taken = union(zip((base[hit.ours] + hit.s0).tolist(), (base[hit.ours] + hit.s1).tolist(), strict=True), 0.5)
+        return gaps(taken, self.whole(n))
+
     def whole(self, n: int) -> float:
         """Length of the path of an element, mm."""
         return float(sum(np.abs(np.diff(p)).sum() for p in self.paths[n]))
@@ -213,7 +225,7 @@ class Comparison:
     def gap(self, e: Element) -> float:
         """The longest gap in an element's ink that counts as none, mm."""
         pattern = line_type(e.style).pattern
-        return 2 * max((-x for x in pattern if x < 0), default=0.0) + JOINT if pattern else JOINT
+        return 2 * max((-x for x in pattern if x < 0), default=0.0) + ONE_PLACE if pattern else ONE_PLACE
 
     def claimed(self) -> Overlaps:
         """Their ink that belongs to elements."""
@@ -237,28 +249,11 @@ class Comparison:
         judged = verdict(deviation, self.tolerance)
         return CadFinding(e, judged, deviation, remark, middle, reach, shift, turn, size, missing, entities)
 
-    def units(self, n: int, t: npt.NDArray[np.float64]) -> Points:
-        """Directions of the path of an element at distances from its beginning, mm."""
-        z = np.concatenate(self.paths[n])
-        d = np.diff(z)
-        size = np.abs(d)
-        d, size = d[size > 1e-9], size[size > 1e-9]
-        k = np.clip(np.searchsorted(np.cumsum(size), t), 0, len(d) - 1)
-        return np.asarray(d[k] / size[k])
-
     def at(self, n: int, t: float) -> complex:
         """The point at a distance along the path of an element, mm."""
         z = np.concatenate(self.paths[n])
         along = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(z)))))
         return complex(np.interp(t, along, z.real), np.interp(t, along, z.imag))
-
-    def of_strokes(self, strokes: tuple[int, ...]) -> list[int]:
-        """Numbers of the pieces of some strokes."""
-        return [int(j) for k in strokes for j in np.flatnonzero(self.theirs.owner == k)]
-
-    def entities_of_strokes(self, strokes: tuple[int, ...]) -> tuple[int, ...]:
-        """Numbers of the entities of some strokes, each once."""
-        return tuple(dict.fromkeys(self.space.strokes[k].entity for k in strokes))
 
     def entities_of(self, pieces: Iterable[int]) -> tuple[int, ...]:
         """Numbers of the entities of some pieces, each once."""

@@ -36,8 +36,9 @@ from tmm_sheets.compare.cad import (
     registration,
     symbol_matching,
 )
-from tmm_sheets.compare.cad.cad_comparison import JOINT, CadFinding, CadOutcome, Comparison
+from tmm_sheets.compare.cad.cad_comparison import CadFinding, CadOutcome, Comparison
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace, normal
+from tmm_sheets.compare.cad.line_fit import ONE_PLACE
 from tmm_sheets.compare.cad.overlaps import Numbers, gaps, left, overlaps, union
 from tmm_sheets.compare.cad.plan_ink import PlanInk
 from tmm_sheets.compare.cad.plan_judge import JudgedPlans, judge_plans
@@ -50,7 +51,6 @@ from tmm_sheets.compare.findings import worst
 from tmm_sheets.compare.known_sheet import KnownSheet, known_sheet, sheet_numbers
 from tmm_sheets.compare.placing import BESIDE, Placing, links, symbol
 from tmm_sheets.compare.report import Report
-from tmm_sheets.compare.story import listed
 from tmm_sheets.drawing.marks import Drawing, Points
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.errors import BadInput, CannotBuild
@@ -61,8 +61,7 @@ from tmm_sheets.words import marked, name_of, on_paper, paper, tell
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
 
-def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[ElementView, Placing], tolerance: float,
-          say: Callable[[str], None] = lambda _: None) -> CadOutcome:
+def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[ElementView, Placing], tolerance: float) -> CadOutcome:
     """Compare the elements with a drawing that was laid on the sheet.
 
     Parameters
@@ -71,34 +70,26 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     space : the drawing, in mm of the sheet
     moves : for views with another place or size in the drawing, how to take them there from the sheet
     tolerance : how far a point may be off, mm
-    say : told what is being done
     """
     state = Comparison(elements, space, moves, tolerance)
-    say(tell("comparing lines"))
     _not_compared(state)
-    omissions.lines_left_out(state)
     _right(state)
-    say(tell("comparing lettering"))
+    omissions.left_out(state, omissions.KINDS - omissions.FOUND_LAST)
     cad_lettering.lettering(state)
     symbol_matching.hatching(state)
-    say(tell("looking for what was meant"))
     rest = left(state.theirs, state.claimed())
-    displaced_lines.circles(state, rest)
     displaced_lines.straight(state, rest)
-    displaced_lines.elsewhere(state, rest)
-    displaced_lines.curves(state, left(state.theirs, state.claimed()))
+    displaced_lines.shapes(state, left(state.theirs, state.claimed()))
     displaced_lines.incomplete(state)
     symbol_matching.filled(state)
     symbol_matching.arrows(state)
     symbol_matching.heads_of_dimensions(state)
-    omissions.others_left_out(state)
+    omissions.left_out(state, omissions.FOUND_LAST)
     _leading_elsewhere(state)
-    say(tell("looking for what is extra"))
     extras = cad_extras.extra(state)
     for n in range(len(state.elements)):
         if n not in state.found:
             state.found[n] = state.finding(n, 0.0, None)
-    say(tell("comparing line types and widths"))
     looks, notes = line_styles.looks(state)
     found = tuple(state.found[n] for n in range(len(state.elements)))
     return CadOutcome(found, extras, looks, notes, omissions.remarks(found))
@@ -156,7 +147,7 @@ def _nearest(s0: Numbers, s1: Numbers, off: Numbers, whole: float, gaps: Sequenc
     """Distances of the nearest ink at points along an element of length ``whole`` but in its gaps, mm."""
     t = np.linspace(0.0, whole, 25)[1:-1]
     t = t[[not any(a <= x <= b for a, b in gaps) for x in t]]
-    on = (s0 - JOINT <= t[:, None]) & (t[:, None] <= s1 + JOINT)
+    on = (s0 - ONE_PLACE <= t[:, None]) & (t[:, None] <= s1 + ONE_PLACE)
     nearest = np.where(on, off, np.inf).min(axis=1)
     return np.asarray(nearest[np.isfinite(nearest)])
 
@@ -252,18 +243,17 @@ def compared(project: Project, sheet: int | None, path: Path, views: Path | None
     plans = PlanInk(space, ink.unit)
     may_be_ours = views is not None or "positions" not in project.parts or len(plans.a) > MANY_STROKES or plans.has_sheet_frame
     found = examine(project, numbers, ink, views, pencil, say) if may_be_ours else None
-    if found is None and may_be_ours and _other_sheet(project, ink, sheet) is not None:
-        raise _refusal(project, numbers, ink, sheet, path)
-    if found is None and "positions" in project.parts:
+    other = _other_sheet(project, ink, sheet) if found is None and may_be_ours else None
+    if found is None and other is None and "positions" in project.parts:
         say(tell("judging plans by their titles"))
         judged = judge_plans(PlanRecord(project), plans)
-        if judged.fitting and (judged.explained > MOSTLY_PLANS or may_be_ours):
-            return _of_plans(project, sheet or _sheet_of(project, judged), path, space, judged, pencil, ink.notes)
-        found = None if may_be_ours else examine(project, numbers, ink, views, pencil, say)
-        if found is None and (judged.fitting or any(v.kind == "unlike" and v.title for v in judged.views)):
+        mostly = bool(judged.fitting) and (judged.explained > MOSTLY_PLANS or may_be_ours)
+        if not mostly and not may_be_ours:
+            found = examine(project, numbers, ink, views, pencil, say)
+        if mostly or (found is None and (judged.fitting or any(v.kind == "unlike" and v.title for v in judged.views))):
             return _of_plans(project, sheet or _sheet_of(project, judged), path, space, judged, pencil, ink.notes)
     if found is None:
-        raise _refusal(project, numbers, ink, sheet, path)
+        raise _refusal(project, numbers, ink, sheet, other if may_be_ours else _other_sheet(project, ink, sheet), path)
     return _of_sheet(project, found, path, pencil, say)
 
 
@@ -310,9 +300,7 @@ def _of_sheet(project: Project, found: cad_report.ExaminedDrawing, path: Path, p
     exact = tuple(p for e in found.exact for p in drawn(e))
     files = cad_overlay.files(laid.known.n, laid.known.sheet.drawing, exact, found.space, places, looks)
     name = project.variant.project.name
-    report = cad_report.report(name, path, found, pencil)
-    said = "\n".join([*listed(cad_report.mistakes(found, gone)), report.text])
-    report = replace(report, text=said, files=files, story=cad_report.story(name, path, found, pencil))
+    report = replace(cad_report.report(name, path, found, pencil), files=files)
     blank = replace(laid.known.sheet.drawing, marks=(), views=(), dimensions=(), forms=())
     return ComparedDrawing(report, laid.known.n, blank, found.space, exact)
 
@@ -345,7 +333,7 @@ def _examined(project: Project, views: Path | None, pencil: float, say: Callable
     space = replace(space, writings=tuple(w for w in space.writings if not laid.known.tells_who([w.at])),
                     strokes=tuple(s for s in space.strokes if not laid.known.tells_who(s.points)))
     say(tell("placing the views"))
-    places = registration.find(laid.known.elements, space, [(p, laid.placing) for p in given], say)
+    places = registration.find(laid.known.elements, space, [(p, laid.placing) for p in given])
     absent: set[ElementView] = set()
 
     def matched(elements: Sequence[Element]) -> CadOutcome:
@@ -451,15 +439,15 @@ def _other_sheet(project: Project, ink: CadInk, asked: int | None) -> int | None
     return other if fit > 0.4 else None
 
 
-def _refusal(project: Project, numbers: range, ink: CadInk, asked: int | None, path: Path) -> CannotBuild:
-    """That the drawing is of none of the sheets, and of which it may be."""
+def _refusal(project: Project, numbers: range, ink: CadInk, asked: int | None, other: int | None, path: Path) -> CannotBuild:
+    """That the drawing is of none of the sheets; ``other`` is the one that it may be of."""
     hint = tell("is it the right project and variant? in a layout of its own write over each plan what it is and at which position")
     count = len(project.variant.sheets)
     laid = register([known_sheet(project, n) for n in numbers], ink)
-    if (other := _other_sheet(project, ink, asked)) is not None:
+    if other is not None:
         hint = tell("it looks like sheet {n}: use --sheet {n}, or leave --sheet out").format(n=other)
     said = tell("only {share} % of the lines of sheet {n} are in this drawing") if asked is not None or count == 1 else tell(
         "only {share} % of the lines of any of the {count} sheets are in this drawing")
-    share = laid.space.placed(laid.placing).lines.share(registration.line_points(laid.known.elements), 0.3)
+    share = laid.space.placed(laid.placing).lines.share(registration.line_points(laid.known.elements), ONE_PLACE)
     said = said.format(share=round(100 * share), n=laid.known.n, count=count)
     return CannotBuild(f"{path}: {said}", "; ".join((*ink.notes, hint)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -12,8 +12,9 @@ from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad import cad_lettering
 from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, LOOSE_STYLES, Comparison, ExtraStroke, middle_of, reach_of
 from tmm_sheets.compare.cad.cad_ink import Entity, normal
-from tmm_sheets.compare.cad.line_fit import KnownLines, lines, shapes
+from tmm_sheets.compare.cad.line_fit import KnownLines, hanging_together, lines, shapes
 from tmm_sheets.compare.cad.overlaps import Left, left, pieces
+from tmm_sheets.compare.cad.symbol_matching import AT_TIP
 from tmm_sheets.compare.codes import Number, joined
 from tmm_sheets.compare.findings import farthest, place
 from tmm_sheets.compare.placing import HINGE
@@ -30,8 +31,6 @@ TOUCHING = 0.06
 """Distance of places that count as one, mm."""
 FILLED, PART = 3.0, 1.5
 """How far from its place a filled area may be, mm, and a part of one that is there."""
-HEAD = 1.5
-"""How far from the end of its line a corner of a head may be, mm."""
 HEAP = 14.0
 """Width plus height of the smallest extra ink that is not put together with its neighbours, mm."""
 
@@ -43,21 +42,21 @@ def extra(state: Comparison) -> tuple[ExtraStroke, ...]:
     """The extra ink, longest first; the findings of elements that are too long are changed accordingly."""
     rest = left(state.theirs, state.claimed())
     cad_lettering.strange_ink(state, rest)
-    rest, uncut = _outside_zones(state, rest)
+    free = _outside_zones(state, rest)
     owners = _owners(state)
     found: list[tuple[list[Left], float]] = []
     excess: list[tuple[float, int, list[Left]]] = []
-    for chain in _chains(state, rest):
-        size = sum(r.b - r.a for r in chain)
+    for chain in _chains(state, free):
+        size = sum(free[r] for r in chain)
         if size <= state.tolerance:
             continue
-        before, after = _neighbours(state, [uncut.get(r, r) for r in chain], owners)
+        before, after = _neighbours(state, chain, owners)
         if before is not None and after is not None and size < 4.5:
             continue  # one line drawn through where ours are two
         n = before if before is not None else after
         goes_on = n is not None and state.elements[n].kind in ("line", "arc", "curve") and _continues(state, n, chain, owners)
         if n is not None and goes_on and state.found[n].verdict is not None:
-            excess.append((sum(r.b - r.a for r in {uncut.get(r, r) for r in chain}), n, chain))
+            excess.append((sum(r.b - r.a for r in chain), n, chain))
         elif size > LEAST:
             found.append((chain, size))
     for size, n, chain in sorted(excess, key=lambda x: -x[0]):
@@ -66,38 +65,22 @@ def extra(state: Comparison) -> tuple[ExtraStroke, ...]:
     return tuple(sorted((*_extra_lines(state, found), *_extra_areas(state, drawn), *_extra_text(state)), key=lambda x: -x.length))
 
 
-def _outside_zones(state: Comparison, rest: list[Left]) -> tuple[list[Left], dict[Left, Left]]:
-    """The part of the rest that is outside the zones where any ink, or short strokes, may lie; and of what it is a part."""
+def _outside_zones(state: Comparison, rest: list[Left]) -> dict[Left, float]:
+    """Unclaimed stretches that are not wholly in zones where any ink, or short strokes, may lie: with their lengths outside, mm."""
     import shapely
 
-    free_zones, text_zones = _free_zones(state), [_polygon(z) for z in state.lettered]
-    zones = [*free_zones, *text_zones]
-    if not zones or not rest:
-        return rest, {}
+    any_ink = shapely.union_all(_free_zones(state))
+    both = shapely.union_all([any_ink, *(_polygon(z) for z in state.lettered)])
     free = pieces(state.theirs, rest)
     short = np.bincount(state.theirs.owner, state.theirs.length)[state.theirs.owner[free.owner]] < SHORT
-    tree, ink = shapely.STRtree(zones), shapes(free.a, free.b)
-
-    def pairs(predicate: str) -> Iterator[tuple[int, int]]:
-        """Stretches of the rest and the zones that hold for them."""
-        i, k = tree.query(ink, predicate=predicate)
-        holds = (k < len(free_zones)) | short[i]
-        yield from zip(i[holds].tolist(), k[holds].tolist(), strict=True)
-
-    within = {i for i, _ in pairs("within")}
-    touched: dict[int, list[Any]] = {}
-    for i, k in pairs("intersects"):
-        touched.setdefault(i, []).append(zones[k])
-    out: list[Left] = []
-    uncut: dict[Left, Left] = {}
-    for i, r in enumerate(rest):
-        if i not in touched:
-            out.append(r)
-        elif i not in within:
-            parts = list(_beyond(state, r, shapely.difference(ink[i], shapely.union_all(touched[i]))))
-            uncut |= dict.fromkeys(parts, r)
-            out += parts
-    return [r for r in out if r.b - r.a > 0.05], uncut
+    outside = np.zeros(len(rest))
+    for zone, mine in ((both, short), (any_ink, ~short)):
+        shapely.prepare(zone)
+        ink = shapes(free.a[mine], free.b[mine])
+        touched = shapely.intersects(zone, ink)
+        outside[np.flatnonzero(mine)[touched]] = shapely.length(shapely.difference(ink[touched], zone))
+        outside[np.flatnonzero(mine)[~touched]] = shapely.length(ink[~touched])
+    return {r: size for r, size in zip(rest, outside.tolist(), strict=True) if size > 0.05}
 
 
 def _free_zones(state: Comparison) -> list[Any]:
@@ -122,16 +105,7 @@ def _polygon(z: Points) -> Any:
     return shapely.Polygon(np.column_stack((z.real, z.imag)))
 
 
-def _beyond(state: Comparison, r: Left, lines: Any) -> Iterator[Left]:
-    """The parts of a stretch that some lines (shapely) on it are."""
-    for part in getattr(lines, "geoms", [lines]):
-        if not part.is_empty:
-            ends = [complex(*part.coords[0]), complex(*part.coords[-1])]
-            a, b = sorted(abs(z - state.theirs.a[r.piece]) for z in ends)
-            yield Left(r.piece, float(a), float(b))
-
-
-def _chains(state: Comparison, rest: list[Left]) -> Iterator[list[Left]]:
+def _chains(state: Comparison, rest: Iterable[Left]) -> Iterator[list[Left]]:
     """Stretches that follow one another along one stroke."""
     chain: list[Left] = []
     for r in sorted(rest):
@@ -258,31 +232,15 @@ def _extra_lines(state: Comparison, extra: list[tuple[list[Left], float]]) -> It
             small.append((k, size, z))
         else:
             yield _stroke(state.space.entities[k], size, z)
-    for heap in _heaps(np.array([middle_of(z) for _, _, z in small], dtype=complex)):
+    middles = np.array([middle_of(z) for _, _, z in small], dtype=complex)
+    for heap in hanging_together(len(small), *np.nonzero(np.abs(middles[:, None] - middles) < 5.0)):
         z = np.concatenate([small[k][2] for k in heap])
-        size = sum(small[k][1] for k in heap)
-        yield _stroke(state.space.entities[small[heap[0]][0]], size, z, len(heap))
+        yield _stroke(state.space.entities[small[heap[0]][0]], sum(small[k][1] for k in heap), z, len(heap))
 
 
 def _stroke(entity: Entity, size: float, z: Points, count: int = 1) -> ExtraStroke:
     """So many mm of line through some points, from an entity and others beside it."""
     return ExtraStroke("arc" if entity.kind in ROUND else "line", entity, size, middle_of(z), reach_of(z), count)
-
-
-def _heaps(middles: Points, near: float = 5.0) -> Iterator[list[int]]:
-    """Numbers of points of which each is near some other of its heap."""
-    free = np.ones(len(middles), bool)
-    for i in range(len(middles)):
-        if not free[i]:
-            continue
-        heap, border = [i], [i]
-        free[i] = False
-        while border:
-            found = np.flatnonzero(free & (np.abs(middles - middles[border.pop()]) < near))
-            free[found] = False
-            heap += found.tolist()
-            border += found.tolist()
-        yield heap
 
 
 def _extra_areas(state: Comparison, extra: KnownLines) -> Iterator[ExtraStroke]:
@@ -296,7 +254,7 @@ def _extra_areas(state: Comparison, extra: KnownLines) -> Iterator[ExtraStroke]:
         around = float(np.abs(np.diff(np.append(z, z[:1]))).sum())
         if k in state.used_areas or not area.solid or around < 2.0:
             continue
-        if (np.abs(known - state.areas[k]) < reach).any() or extra.nearest(z, HEAD)[2].any():
+        if (np.abs(known - state.areas[k]) < reach).any() or extra.nearest(z, AT_TIP)[2].any():
             continue
         yield ExtraStroke("fill", state.space.entities[area.entity], around, middle_of(z), reach_of(z))
 

@@ -1,4 +1,4 @@
-"""Reading DXF files of any program, whole or damaged, text or binary; writing the overlay a student opens in that program.
+"""Reading DXF files of any program, whole or damaged, text or binary.
 
 Blocks, dimensions and leaders are exploded down to primitives. Layers that are off or frozen, invisible entities and the layer
 Defpoints are left out. Points are complex, in drawing units, seen from above.
@@ -9,10 +9,11 @@ from __future__ import annotations
 import logging
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from io import BytesIO, StringIO
+from enum import IntEnum
+from io import BytesIO
 from itertools import chain, pairwise
 from math import isfinite, radians
 from pathlib import Path
@@ -23,8 +24,6 @@ import numpy as np
 from tmm_sheets import files
 from tmm_sheets.compare.cad.cad_ink import Area, CadInk, DrawingSpace, DrawnStroke, Entity, Writing
 from tmm_sheets.compare.cad.cad_patterns import Pattern, of_dashes
-from tmm_sheets.compare.cad.overlaps import Interval
-from tmm_sheets.compare.numbering import numbered
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
@@ -56,8 +55,6 @@ MOST_HATCH = 20_000
 NARROW = 0.62
 """Average width of a letter in letter heights; the font is not known."""
 UNREAD = {"3DSOLID", "BODY", "REGION", "SURFACE", "MESH", "IMAGE", "OLE2FRAME", "ACAD_PROXY_ENTITY", "PDFUNDERLAY", "WIPEOUT"}
-BYLAYER, BYBLOCK, DEFAULT = -1, -2, -3
-"""Codes of line weights."""
 CURVES = {"ARC", "CIRCLE", "ELLIPSE", "SPLINE"}
 """Entities flattened by themselves: as paths they would become Bezier curves, off by 0.03 % of the radius."""
 PRIMITIVE = {"LINE", "LWPOLYLINE", "CIRCLE", "ARC", "TEXT", "POLYLINE", "SPLINE", "SOLID", "HATCH", "MTEXT"}
@@ -206,6 +203,12 @@ def words(text: str, encoding: str) -> str:
     return text.encode("utf-8", "replace").decode("utf-8")
 
 
+class _WeightCode(IntEnum):
+    """Codes of line weights."""
+
+    BYLAYER, BYBLOCK, DEFAULT = -1, -2, -3
+
+
 class _EntityLook(NamedTuple):
     """Layer, name of the line type in lower case, line weight in hundredths of a millimetre or one of the negative codes."""
 
@@ -239,7 +242,7 @@ class _DxfReader:
         for layer in document.layers:
             name = layer.dxf.name
             self.layers[name.lower()] = _EntityLook(name, layer.dxf.get("linetype", "Continuous").lower(),
-                                              int(layer.dxf.get("lineweight", DEFAULT)))
+                                              int(layer.dxf.get("lineweight", _WeightCode.DEFAULT)))
             if layer.is_off() or layer.is_frozen():
                 self.hidden.add(layer.dxf.name.lower())
             if layer.is_frozen():
@@ -409,11 +412,11 @@ class _DxfReader:
         layer = e.dxf.get("layer", "0")
         if layer == "0" and of is not None:
             layer = of.layer
-        line, weight = e.dxf.get("linetype", "BYLAYER").lower(), int(e.dxf.get("lineweight", BYLAYER))
-        of_layer = self.layers.get(layer.lower(), _EntityLook(layer, "continuous", DEFAULT))
-        by_block = of if of is not None else _EntityLook(layer, "continuous", DEFAULT)
+        line, weight = e.dxf.get("linetype", "BYLAYER").lower(), int(e.dxf.get("lineweight", _WeightCode.BYLAYER))
+        of_layer = self.layers.get(layer.lower(), _EntityLook(layer, "continuous", _WeightCode.DEFAULT))
+        by_block = of if of is not None else _EntityLook(layer, "continuous", _WeightCode.DEFAULT)
         line = of_layer.linetype if line == "bylayer" else by_block.linetype if line == "byblock" else line
-        weight = of_layer.weight if weight == BYLAYER else by_block.weight if weight == BYBLOCK else weight
+        weight = of_layer.weight if weight == _WeightCode.BYLAYER else by_block.weight if weight == _WeightCode.BYBLOCK else weight
         return _EntityLook(layer, line, weight)
 
     def _fine(self, parts: Iterator[DXFEntity]) -> float:
@@ -600,86 +603,21 @@ def _dashes(line: Any) -> list[float]:
 
 def _with_viewport(paper: DrawingSpace, model: DrawingSpace, placing: Placing, low: complex, high: complex) -> DrawingSpace:
     """Paper space with the contents of one viewport: the model where the viewport shows it, clipped at its edges."""
+    import shapely
+
     first = len(paper.entities)
     seen = model.placed(placing)
 
     def inside(z: complex) -> bool:
         return low.real <= z.real <= high.real and low.imag <= z.imag <= high.imag
 
-    strokes = [DrawnStroke(part, s.entity + first) for s in seen.strokes for part in _clipped(s.points, low, high)]
+    strokes = []
+    for s in seen.strokes:
+        line = shapely.linestrings(np.column_stack((s.points.real, s.points.imag)))
+        for part in shapely.get_parts(shapely.clip_by_rect(line, low.real, low.imag, high.real, high.imag)):
+            strokes.append(DrawnStroke(_xy(shapely.get_coordinates(part)), s.entity + first))
     areas = [a._replace(entity=a.entity + first) for a in seen.areas if inside(complex(a.points.mean()))]
     writings = [w._replace(entity=w.entity + first) for w in seen.writings if inside(w.at)]
-    return replace(paper, strokes=paper.strokes + tuple(strokes), areas=paper.areas + tuple(areas),
-                   writings=paper.writings + tuple(writings), entities=paper.entities + seen.entities)
-
-
-def _clipped(z: Points, low: complex, high: complex) -> Iterator[Points]:
-    """The parts of a polyline inside a rectangle."""
-    if (z.real >= low.real).all() and (z.real <= high.real).all() and (z.imag >= low.imag).all() and (z.imag <= high.imag).all():
-        yield z
-        return
-    run: list[complex] = []
-    for a, b in pairwise(z):
-        d = b - a
-        t0, t1 = _within(a, d, low, high)
-        if t0 >= t1 or not run or abs(run[-1] - (a + t0 * d)) > 1e-9 * (abs(d) + 1):
-            if len(run) > 1:
-                yield np.array(run)
-            run = [a + t0 * d] if t0 < t1 else []
-        if t0 < t1:
-            run.append(a + t1 * d)
-    if len(run) > 1:
-        yield np.array(run)
-
-
-def _within(a: complex, d: complex, low: complex, high: complex) -> Interval:
-    """The part of ``a + t d``, t from 0 to 1, inside a rectangle (Liang and Barsky); empty where the ends are in reverse."""
-    t0, t1 = 0.0, 1.0
-    for p, q in ((-d.real, a.real - low.real), (d.real, high.real - a.real), (-d.imag, a.imag - low.imag),
-                 (d.imag, high.imag - a.imag)):
-        if p == 0:
-            if q < 0:
-                t1 = -1.0
-        elif p < 0:
-            t0 = max(t0, q / p)
-        else:
-            t1 = min(t1, q / p)
-    return t0, t1
-
-
-COLOURS = {"SHEET": 3, "DRAWN": 8, "FOUND": 1, "LOOKS": 30}
-"""Layers of the overlay and their AutoCAD colours: the exact sheet green, the student's drawing grey, findings red, lines of a
-wrong type or width orange.
-"""
-
-
-def overlay(exact: Sequence[Points], drawn: Sequence[Points], found: Sequence[tuple[complex, float, str]],
-            looks: Sequence[tuple[Points, str]] = ()) -> bytes:
-    """A DXF file (R12, which every program reads) of the exact sheet over the drawing, with findings circled and numbered.
-
-    Parameters
-    ----------
-    exact, drawn : lines of the sheet and of the drawing, mm
-    found : centre and radius, mm, and number of each finding
-    looks : lines of a wrong type or width, mm, with a number or an empty text
-    """
-    from ezdxf.addons.r12writer import r12writer
-
-    text = StringIO()
-    with r12writer(text) as dxf:
-        for layer, lines in (("DRAWN", drawn), ("SHEET", exact)):
-            for z in lines:
-                dxf.add_polyline_2d(np.column_stack((z.real, z.imag)).tolist(), layer=layer, color=COLOURS[layer])
-        for z, number in looks:
-            dxf.add_polyline_2d(np.column_stack((z.real, z.imag)).tolist(), layer="LOOKS", color=COLOURS["LOOKS"])
-            if number:
-                at = z[len(z) // 2] if len(z) > 2 else z.mean()
-                dxf.add_text(number, (at.real + 1.5, at.imag + 1.5), height=3.5, layer="LOOKS", color=COLOURS["LOOKS"])
-        for centre, radius, _ in found:
-            dxf.add_circle((centre.real, centre.imag), radius, layer="FOUND", color=COLOURS["FOUND"])
-        for one in numbered(found, 3.5):
-            if one.leader is not None:
-                a, b = one.leader
-                dxf.add_line((a.real, a.imag), (b.real, b.imag), layer="FOUND", color=COLOURS["FOUND"])
-            dxf.add_text(one.text, (one.at.real, one.at.imag), height=3.5, layer="FOUND", color=COLOURS["FOUND"])
-    return text.getvalue().encode("ascii")
+    return replace(paper, strokes=paper.strokes + tuple(s for s in strokes if len(s.points) > 1),
+                   areas=paper.areas + tuple(areas), writings=paper.writings + tuple(writings),
+                   entities=paper.entities + seen.entities)

@@ -44,6 +44,11 @@ class Entity(NamedTuple):
         """Width of its lines, mm, provided that drawing units are; None if nothing determines it."""
         return max(self.weight or 0.0, self.broad) if self.broad else self.weight
 
+    @property
+    def tree(self) -> dict[str, str]:
+        """It as JSON has it."""
+        return {"type": self.kind, "layer": self.layer, "handle": self.handle}
+
     def __str__(self) -> str:
         return tell('{kind} {handle} on layer "{layer}"').format(kind=self.kind, handle=self.handle, layer=self.layer)
 

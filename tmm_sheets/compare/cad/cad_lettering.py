@@ -13,16 +13,14 @@ import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.cad.cad_comparison import CadFinding, Comparison
+from tmm_sheets.compare.cad.cad_comparison import ELSEWHERE, CadFinding, Comparison
 from tmm_sheets.compare.cad.cad_ink import Writing, normal
-from tmm_sheets.compare.cad.line_fit import KnownLines, lines
+from tmm_sheets.compare.cad.line_fit import ONE_PLACE, KnownLines, lines
 from tmm_sheets.compare.cad.overlaps import Left, Overlaps, overlaps, union
 from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.marks import Points, Text
 
-CLOSE = 0.3
-"""How far beyond the box of a text the middle of a part of it may be, mm."""
 SIZES = 1.2
 """How many times as high as another a text of the same size may be."""
 ARROWS = str.maketrans("", "", "→←↑↓")
@@ -33,8 +31,6 @@ WORDS = re.compile(r"[^\W\d_]{4}")
 """What a title has and a label has not."""
 SOME = 4
 """A label with more parts is left out whole."""
-FAR = 12.0
-"""How far from its place a text may be, mm: where a letter goes is the draughtsman's choice."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +76,7 @@ class _Reading:
                  for k in by_meaning.get(meant(want.text), ())
                  if n not in self.found and (sizes == inf or 1 / sizes <= self.writings[k].height / want.height <= sizes)]
         for far, n, k in sorted(pairs):
-            if far <= FAR and n not in self.found and k in self.free:
+            if far <= ELSEWHERE and n not in self.found and k in self.free:
                 self._take(n, k)
 
     def joined(self) -> None:
@@ -92,7 +88,7 @@ class _Reading:
             for margin in (0.0, 0.25, 0.5):
                 for n, want in self._missing():
                     near = [k for k in self._about(want)
-                            if k in self.free and _inside(want, self.writings[k].at, margin * (want.height + 1.0) + CLOSE)]
+                            if k in self.free and _inside(want, self.writings[k].at, margin * (want.height + 1.0) + ONE_PLACE)]
                     if order := next(filter(None, (self._spelling(some, want) for some in _but(near, strangers))), None):
                         self._take(n, *order)
 
@@ -132,7 +128,7 @@ class _Reading:
         for _, n, k in sorted(pairs):
             if n not in self.found and k in self.free and self._meant_for(n, k):
                 want = self.wanted[n]
-                parts = {k, *(j for j in self._about(want) if j in self.free and _inside(want, self.writings[j].at, CLOSE)
+                parts = {k, *(j for j in self._about(want) if j in self.free and _inside(want, self.writings[j].at, ONE_PLACE)
                               and not self._title_of_another(n, j))}
                 order = self._along(list(parts), want)
                 self._take(n, *order, says="".join(self.writings[j].text for j in order).strip())
@@ -252,7 +248,7 @@ def _of_own_places(state: Comparison) -> None:
         box = Box.around(np.concatenate([e.points for e in mine]))
         letters = {part for e in mine if e.kind == "text" for part in (meant(e.text), *parts(e.text))}
         state.used_writings |= {k for k, w in enumerate(state.space.writings)
-                                if box.contains(w.at, FAR) and meant(w.text) in letters}
+                                if box.contains(w.at, ELSEWHERE) and meant(w.text) in letters}
 
 
 def _bars(state: Comparison, n: int) -> None:

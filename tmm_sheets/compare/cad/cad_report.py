@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Container, Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import radians
@@ -17,18 +17,17 @@ from tmm_sheets.compare.cad import omissions
 from tmm_sheets.compare.cad.cad_comparison import CadFinding, CadOutcome, ExtraStroke, LookFinding
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
 from tmm_sheets.compare.cad.registration import Layout, Registration
-from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built
 from tmm_sheets.compare.diagnosis.hypotheses import built_otherwise
 from tmm_sheets.compare.elements import Element, ElementView, drawn
 from tmm_sheets.compare.finding_records import FindingRecord, as_tree, point
-from tmm_sheets.compare.findings import called, counted, millimetres, of_element, place, table, worst
-from tmm_sheets.compare.placing import Placing, moved
+from tmm_sheets.compare.findings import as_text, called, counted, millimetres, of_element, place, worst
+from tmm_sheets.compare.placing import moved
 from tmm_sheets.compare.report import Report, said_verdict
 from tmm_sheets.compare.story import Story, StoryPicture, StoryTable, ToldMistake, clipped
 from tmm_sheets.drawing.marks import Role
 from tmm_sheets.numbers import told
-from tmm_sheets.words import marked, tell, tell_n
+from tmm_sheets.words import tell, tell_n
 
 SHAPES: frozenset[Role] = frozenset({"vector", "link", "curve"})
 """Roles of lines without which a view is a table or a text."""
@@ -64,27 +63,12 @@ class ExaminedDrawing:
         """What the findings are on as it should be, where the drawing has its view; the findings have it as it was built."""
         return tuple(moved(e, self.places.moves[e.view]) if e.view in self.places.moves else e for e in self.laid.known.elements)
 
-
-    @cached_property
-    def turned(self) -> dict[ElementView, Remark]:
-        """Views that lie as in a mirror, or turned by right angles, on a drawing that else does not."""
-        out = {v: _turned(move) for v, move in self.places.moves.items() if v.n}
-        return {v: remark for v, remark in out.items() if remark is not None}
-
     @property
     def mirrored(self) -> str:
         """How the whole drawing lies as in a mirror, a key of ``WORDS``; "" where it does not. Paper may be turned, not that."""
         placing = self.laid.placing
         across = round(placing.degrees / 90) % 4 == 2
         return ("mechanism across" if across else "mechanism upside down") if placing.mirrored else ""
-
-
-def _turned(move: Placing) -> Remark | None:
-    """How a view is turned, None where it is not."""
-    quarter = 90 * (round(move.degrees / 90) % 4)
-    if move.mirrored:
-        return codes.VIEW_TURNED[{0: "upside down", 180: "across"}.get(quarter, "mirrored")]()
-    return codes.VIEW_TURNED[str(quarter)]() if quarter else None
 
 
 def gone(outcome: CadOutcome) -> set[ElementView]:
@@ -109,7 +93,7 @@ def tables_and_texts(outcome: CadOutcome) -> set[ElementView]:
     return views - {f.element.view for f in outcome.findings if f.element.role in SHAPES}
 
 
-def not_as_ours(lost: set[ElementView]) -> list[str]:
+def _not_as_ours(lost: set[ElementView]) -> list[str]:
     """What is told of tables and texts that are not found: one line for all of them."""
     said = tell("not found as on the sheet, of tables, texts and details: {views}")
     named = ", ".join(tell('"{view}"').format(view=v.name) for v in sorted(lost, key=lambda v: v.n))
@@ -123,70 +107,23 @@ def _found_by(entities: Sequence[Entity]) -> str:
     return said.format(entity=entities[0], n=len(entities) - 1)
 
 
-def text(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> str:
-    """The report for the terminal on a drawing of project ``name``; ``pencil`` is the tolerance, mm."""
-    laid, outcome = found.laid, found.outcome
-    lost = gone(outcome)
-    said = tell_n("{project}, sheet {sheet}: {file} ({space}), {n} element, tolerance {tolerance} mm",
-                  "{project}, sheet {sheet}: {file} ({space}), {n} elements, tolerance {tolerance} mm", len(outcome.findings))
-    out = [said.format(project=name, sheet=laid.known.n, file=path.name, space=laid.space.name, n=len(outcome.findings),
-                       tolerance=told(f"{pencil:g}")), ""]
-    first, *others = tables(found, lost)
-    if first[2]:
-        out += [*table(*first[1:]), ""]
-    beside = tables_and_texts(outcome)
-    out += [_missing(v, sum(f.element.view == v for f in outcome.findings)) for v in sorted(lost - beside, key=lambda v: v.n)]
-    out += not_as_ours(lost & beside)
-    out += _left_out(outcome, lost)
-    for title, head, rows in others:
+def _tables(found: ExaminedDrawing, lost: set[ElementView]) -> Iterator[StoryTable]:
+    """Of what deviates, what is extra, and what has another type or width of line."""
+    last = (tell("verdict"), tell("in the drawing"))
+    no, view = tell("no."), tell("view")
+    for title, head, rows in (
+            (tell("deviations"), (no, view, tell("element"), tell("deviation"), *last), _deviations(found, lost)),
+            (tell("extra, on no element of the sheet"), (no, tell("what"), tell("about, mm"), *last), _extras(found.outcome)),
+            (tell("of another type or width of line"), (no, view, tell("lines"), tell("what"), *last), _looks(found))):
         if rows:
-            out += [f"{title}:", *table(head, rows), ""]
-    return "\n".join([*out, summary(found, lost, pencil)])
+            yield StoryTable(title[:1].upper() + title[1:], head, tuple(rows))
 
 
-def tables(found: ExaminedDrawing, lost: set[ElementView]) -> list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
-    """Title, head and rows: of what deviates, what is extra, and what has another type or width of line."""
-    return [
-        (tell("deviations"), _said("no.", "view", "element", "deviation", "verdict", "in the drawing"), _deviations(found, lost)),
-        (tell("extra, on no element of the sheet"), _said("no.", "what", "about, mm", "verdict", "in the drawing"),
-         _extras(found.outcome)),
-        (tell("of another type or width of line"), _said("no.", "view", "lines", "what", "verdict", "in the drawing"),
-         _looks(found)),
-    ]
-
-
-_HEADS = (
-    marked("no."), marked("view"), marked("element"), marked("deviation"), marked("verdict"), marked("in the drawing"),
-    marked("what"), marked("about, mm"), marked("lines"),
-)
-"""What stands above the columns, for the catalogues."""
-
-
-def _said(*head: str) -> tuple[str, ...]:
-    return tuple(map(tell, head))
-
-
-def _missing(view: ElementView, size: int) -> str:
-    said = tell_n('not found in the drawing: view "{view}", {n} element',
-                  'not found in the drawing: view "{view}", {n} elements', size)
-    return said.format(view=view.name, n=size)
-
-
-def _left_out(outcome: CadOutcome, lost: set[ElementView]) -> list[str]:
-    """A line for every view that leaves out construction lines or other kinds of elements."""
-    by_view: dict[ElementView, list[str]] = {}
-    for x in outcome.absent:
-        if x.view not in lost:
-            by_view.setdefault(x.view, []).append(omissions.said(x.kind, x.count))
-    said = tell('not drawn, and not judged, in view "{view}": {what}')
-    return [said.format(view=v.name, what=", ".join(what)) for v, what in by_view.items()]
-
-
-def summary(found: ExaminedDrawing, lost: set[ElementView], pencil: float) -> str:
+def _summary(found: ExaminedDrawing, lost: set[ElementView], records: Sequence[FindingRecord]) -> str:
     """How many findings got each verdict: the numbers of the JSON."""
     outcome = found.outcome
     beside = tables_and_texts(outcome)
-    colours = Counter(r.verdict for r in _records(found, sorted(lost, key=lambda v: v.n), lost & beside, pencil)[0])
+    colours = Counter(r.verdict for r in records)
     most = max((f.deviation for f in outcome.findings if f.verdict == "green" and f.element.view not in lost), default=0.0)
     skipped = colours["not-judged"]
     said = [tell("{green} green (up to {most} mm), {amber} amber, {red} red, {skipped} not judged") if skipped else
@@ -229,21 +166,21 @@ def _looks(found: ExaminedDrawing) -> list[tuple[str, ...]]:
         size, first = len(look.elements), ", ".join(map(str, look.elements[:MANY]))
         said = tell("{lines}, {n}: no. {numbers}, ...") if size > MANY else tell("{lines}: no. {numbers}")
         which = said.format(lines=look.lines, n=size, numbers=first)
-        where = _found_by([found.laid.space.entities[i] for i in look.entities])
+        where = _found_by(look.entities)
         view = look.view.name if look.view is not None else tell("all views")
         rows.append((f"~{k}", view, which, look.what, said_verdict(look.verdict), where))
     return rows
 
 
 def report(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> Report:
-    """The report on a drawing of project ``name``: table, JSON and findings; ``pencil`` is the tolerance, mm."""
+    """The report on a drawing of project ``name``: table, JSON, findings, story; ``pencil`` is the tolerance, mm."""
     laid, places, outcome, p = found.laid, found.places, found.outcome, found.laid.placing
     lost = sorted(gone(outcome), key=lambda v: v.n)
-    tables = tables_and_texts(outcome) & set(lost)
-    records, start = _records(found, lost, tables, pencil)
+    beside = tables_and_texts(outcome) & set(lost)
+    records, start = _records(found, lost, beside, pencil)
     tree = as_tree(
         "cad", name, laid.known.n, records, start, [_unclaimed(k, x) for k, x in enumerate(outcome.extras, 1)],
-        {"missing_views": [v.name for v in lost], "missing_tables": [v.name for v in lost if v in tables],
+        {"missing_views": [v.name for v in lost], "missing_tables": [v.name for v in lost if v in beside],
          "not_drawn": sum(r.remark.code == "not-drawn" for r in records)},
         drawing=path.name, space=laid.space.name, tolerance=pencil,
         placing={"scale": p.scale, "degrees": round(p.degrees, 4), "shift": point(p.shift), "mirrored": p.mirrored,
@@ -252,7 +189,12 @@ def report(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> Repo
             {"shift": point(complex(places.moves[v](v.box.centre)) - v.box.centre), "size": round(places.moves[v].scale, 6)}
             if v in places.moves else {})} for v, s in places.share.items()],
         not_drawn=[{"view": x.view.name, "kind": x.kind, "count": x.count} for x in outcome.absent])
-    return Report(text(name, path, found, pencil), tree, notes=found.notes, findings=records, start=start)
+    title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=laid.known.n, file=path.name)
+    tolerance = tell("tolerance {tolerance} mm").format(tolerance=told(f"{pencil:g}"))
+    said = _summary(found, set(lost), records)
+    story = Story(title, (tolerance, said, *found.notes), tuple(_mistakes(found, set(lost))), tuple(_tables(found, set(lost))),
+                  tuple(_unjudged(found, set(lost))))
+    return Report(as_text(story, said), tree, notes=found.notes, story=story, findings=records, start=start)
 
 
 def _records(found: ExaminedDrawing, lost: Sequence[ElementView], tables: Container[ElementView],
@@ -261,15 +203,11 @@ def _records(found: ExaminedDrawing, lost: Sequence[ElementView], tables: Contai
     whole = [FindingRecord(built_otherwise(key), "red", beside={"kind": "mirror", "mistake": key}, whole=True)
              for key in filter(None, (found.mirrored,))]
     built = of_built(found.built)
-    turned: dict[Remark, list[FindingRecord]] = {}
-    for v, remark in found.turned.items():
-        some = turned.setdefault(remark, [])
-        some.append(FindingRecord(remark, "red", v.name, whole=True, follows=some[0] if some else None))
     missing = {v: FindingRecord((codes.TABLE_MISSING(views=v.name) if v in tables else codes.VIEW_MISSING(view=v.name)),
                                 "not-judged", v.name, whole=True) for v in lost}
-    mistakes = [*whole, *built.values(), *(r for some in turned.values() for r in some), *missing.values()]
+    mistakes = [*whole, *built.values(), *missing.values()]
     start = [r for r in mistakes if r.follows is None]
-    return [*mistakes, *(_look(found, look) for look in found.outcome.looks),
+    return [*mistakes, *map(_look, found.outcome.looks),
             *(_record(found, f, _follows(f, built, missing), pencil) for f in found.outcome.findings)], start
 
 
@@ -292,40 +230,26 @@ def _record(found: ExaminedDrawing, f: CadFinding, follows: FindingRecord | None
                       beside={**beside, "entities": _entities(found, f.entities)})
 
 
-def _look(found: ExaminedDrawing, look: LookFinding) -> FindingRecord:
+def _look(look: LookFinding) -> FindingRecord:
     """What is listed of lines of another type or width."""
     return FindingRecord(look.remark, look.verdict, look.view.name if look.view is not None else "", beside={
-        "styles": list(look.styles), "numbers": list(look.elements), "entities": _entities(found, look.entities)})
+        "styles": list(look.styles), "numbers": list(look.elements), "entities": [e.tree for e in look.entities]})
 
 
 def _unclaimed(number: int, x: ExtraStroke) -> dict[str, Any]:
     return {"kind": x.kind, "length_mm": round(x.length, 3), "at_mm": point(x.at), "where": str(x.entity), "number": number,
-            "verdict": x.verdict, "count": x.count, "text": x.text, "entity": _entity(x.entity)}
+            "verdict": x.verdict, "count": x.count, "text": x.text, "entity": x.entity.tree}
 
 
 def _entities(found: ExaminedDrawing, numbers: Iterable[int]) -> list[dict[str, str]]:
-    return [_entity(found.laid.space.entities[k]) for k in numbers]
-
-
-def _entity(e: Entity) -> dict[str, str]:
-    return {"type": e.kind, "layer": e.layer, "handle": e.handle}
+    return [found.laid.space.entities[k].tree for k in numbers]
 
 
 SHOWN = 10
 """Most findings of a view that are told in words beside its picture; the table has all."""
 
 
-def story(name: str, path: Path, found: ExaminedDrawing, pencil: float) -> Story:
-    """The report on a drawing of project ``name``; ``pencil`` is the tolerance, mm."""
-    lost = gone(found.outcome)
-    title = tell("{project}, sheet {sheet}: {file}").format(project=name, sheet=found.laid.known.n, file=path.name)
-    tolerance = tell("tolerance {tolerance} mm").format(tolerance=told(f"{pencil:g}"))
-    about = (tolerance, summary(found, lost, pencil), *found.notes)
-    shown = [StoryTable(said[:1].upper() + said[1:], head, tuple(rows)) for said, head, rows in tables(found, lost) if rows]
-    return Story(title, about, tuple(mistakes(found, lost)), tuple(shown), tuple(_unjudged(found, lost)))
-
-
-def mistakes(found: ExaminedDrawing, lost: set[ElementView]) -> list[ToldMistake]:
+def _mistakes(found: ExaminedDrawing, lost: set[ElementView]) -> list[ToldMistake]:
     """What is wrong, view by view: those built on a wrong step first, then those with the most red."""
     of_view: dict[ElementView, list[CadFinding]] = {}
     for f in worst(found.outcome.findings):
@@ -340,14 +264,11 @@ def mistakes(found: ExaminedDrawing, lost: set[ElementView]) -> list[ToldMistake
             return False, list(found.built).index(v), 0
         return True, -sum(f.verdict == "red" for f in of_view[v]), v.n
 
-    turned = [replace(_mistake(found, v, of_view.pop(v, []), None), what=remark.said(), verdict="red", named=True)
-              for v, remark in found.turned.items() if v not in lost]
     order = sorted(of_view, key=place)
     one_by_one = [_mistake(found, v, of_view[v], first.get(found.built[v].said()) if v in found.built else None) for v in order]
-    named = sum(m.named for m in one_by_one)
     whole = [ToldMistake(tell("the whole drawing"), built_otherwise(key).said(), "red", named=True)
              for key in filter(None, (found.mirrored,))]
-    return [*whole, *one_by_one[:named], *turned, *one_by_one[named:]]
+    return [*whole, *one_by_one]
 
 
 def _mistake(found: ExaminedDrawing, view: ElementView, bad: Sequence[CadFinding],
@@ -404,7 +325,7 @@ def _unjudged(found: ExaminedDrawing, lost: set[ElementView]) -> list[str]:
     beside = tables_and_texts(found.outcome)
     out = [codes.VIEW_MISSING(view=v.name).said()
            for v in sorted(lost - beside, key=lambda v: v.n)]
-    out += not_as_ours(lost & beside)
+    out += _not_as_ours(lost & beside)
     by_view: dict[str, list[str]] = {}
     for x in found.outcome.absent:
         if x.view not in lost:

@@ -1,9 +1,12 @@
-"""For an element that is not right, the line, circle or curve that was drawn for it, and how that is off."""
+"""For an element that is not right, the ink that was drawn for it, and how that is off.
+
+A straight line is sought by its ends among straight runs of free ink. Anything else is laid on the free ink by the fit that lays
+sheets and views (:func:`~tmm_sheets.compare.cad.line_fit.refine`), from its own place and from each free stroke of its size.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from math import pi
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,120 +14,32 @@ import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, JOINT, LOOSE_STYLES, SIZE_OF_SYMBOL, Comparison
-from tmm_sheets.compare.cad.line_fit import lines
-from tmm_sheets.compare.cad.overlaps import Circle, Left, Numbers, OverlapRun, Overlaps, circle, gaps, overlaps, pieces, runs, union
+from tmm_sheets.compare.cad.cad_comparison import (
+    BEYOND,
+    CURVE_REACH,
+    ELSEWHERE,
+    FARTHEST,
+    LOOSE_STYLES,
+    SIZE_OF_SYMBOL,
+    CadFinding,
+    Comparison,
+)
+from tmm_sheets.compare.cad.line_fit import ONE_PLACE, KnownLines, refine
+from tmm_sheets.compare.cad.overlaps import Left, Numbers, OverlapRun, Overlaps, gaps, overlaps, pieces, runs, union
+from tmm_sheets.compare.cad.plan_ink import extend
+from tmm_sheets.compare.cad.symbol_matching import heads_in
 from tmm_sheets.compare.codes import Number, joined
 from tmm_sheets.compare.findings import farthest, missing_part, of_radius, place, shifted, too_long, turned
-from tmm_sheets.compare.placing import HINGE
+from tmm_sheets.compare.placing import HINGE, Placing
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 
 OWN = 0.3
 """Share of a line below which most of it is the ink of others."""
-ELSEWHERE = 12.0
-"""A curve, arc or small circle that is drawn farther from its place than this, mm, is another one."""
-FARTHEST = 25.0
-"""A line whose ends are farther off than this, mm, is another line."""
+GROWN = 0.4
+"""Share by which a shape may be larger or smaller than it should be."""
 FULL = 0.97
-"""Share of its circumference from which on a circle is a whole one."""
-SAME_SHAPE = 0.3
-"""How far a stroke may be from the shape of an element that is drawn elsewhere, mm."""
-
-
-# --- circles ----------------------------------------------------------------------------------------------------------
-
-
-def circles(state: Comparison, rest: Sequence[Left]) -> None:
-    """Find the circles: for each the nearest unclaimed one, by centre and radius."""
-    wanted = [n for n in state.inked if state.elements[n].kind == "circle"]
-    made = list(_fitted(state, rest)) if wanted else []
-    centres, radii = np.array([c.centre for c in made], dtype=complex), np.array([c.radius for c in made])
-    pairs = []
-    for n in wanted:
-        at, r = state.elements[n].centre, state.elements[n].radius
-        off = np.abs(centres - at) + np.abs(radii - r)
-        pairs += [(float(off[k]), n, int(k)) for k in np.flatnonzero(off < min(max(3.0, 0.5 * r), 12.0))]
-    used: set[int] = set()
-    for _, n, k in sorted(pairs):
-        if n not in state.found and k not in used:
-            used.add(k)
-            _take_circle(state, n, made[k])
-
-
-def _take_circle(state: Comparison, n: int, c: Circle) -> None:
-    e = state.elements[n]
-    shift, size = c.centre - e.centre, c.radius - e.radius
-    counted = max(abs(size) - SIZE_OF_SYMBOL, 0.0) if e.radius <= HINGE else abs(size)
-    missing = (1 - c.part) * 2 * pi * c.radius if c.part < FULL else 0.0
-    said = [shifted(shift)] if abs(shift) > state.tolerance else []
-    if counted > state.tolerance:
-        said.append(of_radius(size, e.radius))
-    if missing > 0.5:
-        said.append(missing_part(missing))
-    state.found[n] = state.finding(n, max(abs(shift) + counted, missing), joined(said), shift=shift, size=size,
-                                   entities=state.entities_of_strokes(c.strokes))
-    state.claim([(j, 0.0, float(state.theirs.length[j])) for j in state.of_strokes(c.strokes)], n)
-
-
-def elsewhere(state: Comparison, rest: Sequence[Left]) -> None:
-    """Find the curves, arcs and small circles that are drawn as they should be, but not where: strokes of the same shape."""
-    wanted = [n for n in state.inked if n not in state.found and state.elements[n].kind != "line"]
-    strokes = {k: state.space.strokes[k].points for k in _mostly_free(state, rest)} if wanted else {}
-    number = np.array(list(strokes), dtype=np.int64)
-    boxes = [Box.around(z) for z in strokes.values()]
-    middles, sizes = (np.array(x, dtype=complex) for x in ([b.centre for b in boxes], [complex(b.width, b.height) for b in boxes]))
-    trials = []
-    for n in wanted:
-        box = Box.around(state.elements[n].points)
-        shifts, other = middles - box.centre, sizes - complex(box.width, box.height)
-        near = (np.abs(shifts) < ELSEWHERE) & (np.maximum(np.abs(other.real), np.abs(other.imag)) < 2 * SAME_SHAPE)
-        trials += [(float(abs(shifts[i])), n, int(number[i]), complex(shifts[i])) for i in np.flatnonzero(near).tolist()]
-    used: set[int] = set()
-    for off, n, k, by in sorted(trials, key=lambda x: x[0]):
-        e = state.elements[n]
-        ours, theirs = lines([e.points + by]), lines([strokes[k]])
-        if n in state.found or k in used or off > _missing(state, n) or min(
-                theirs.share(ours.points(0.5), SAME_SHAPE), ours.share(theirs.points(0.5), SAME_SHAPE)) < FULL:
-            continue
-        used.add(k)
-        state.found[n] = state.finding(n, off, shifted(by) if off > state.tolerance else None, shift=by,
-                                       entities=state.entities_of_strokes((k,)))
-        state.claim([(j, 0.0, float(state.theirs.length[j])) for j in state.of_strokes((k,))], n)
-
-
-def _fitted(state: Comparison, rest: Iterable[Left]) -> Iterator[Circle]:
-    """Circles and arcs among the strokes that are mostly unclaimed; arcs of one circle are one."""
-    arcs = list(_arcs(state, rest))
-    while arcs:
-        one = arcs.pop()
-        near = 0.05 + 0.01 * one.radius
-        same = [arc for arc in arcs if abs(arc.centre - one.centre) < near and abs(arc.radius - one.radius) < near]
-        if one.part < FULL and same:
-            arcs = [arc for arc in arcs if arc not in same]
-            part = min(one.part + sum(arc.part for arc in same), 1.0)
-            yield Circle(one.centre, one.radius, part, (*one.strokes, *(k for arc in same for k in arc.strokes)))
-        elif one.part > 0.2:
-            yield one
-
-
-def _arcs(state: Comparison, rest: Iterable[Left]) -> Iterator[Circle]:
-    for k in _mostly_free(state, rest):
-        z = state.space.strokes[k].points
-        fit = circle(z) if len(z) >= 5 else None
-        if fit is not None and fit[2] <= 0.03 + 0.01 * fit[1]:
-            yield Circle(fit[0], fit[1], min(float(np.abs(np.diff(z)).sum()) / (2 * pi * fit[1]), 1.0), (k,))
-
-
-def _mostly_free(state: Comparison, rest: Iterable[Left]) -> Iterator[int]:
-    """The strokes of which no element claims more than half."""
-    free: dict[int, float] = {}
-    for piece, a, b in rest:
-        k = int(state.theirs.owner[piece])
-        free[k] = free.get(k, 0.0) + b - a
-    for k, size in free.items():
-        if size >= 0.5 * float(np.abs(np.diff(state.space.strokes[k].points)).sum()):
-            yield k
+"""Share of a shape drawn elsewhere that must have ink there."""
 
 
 # --- straight lines ---------------------------------------------------------------------------------------------------
@@ -145,7 +60,7 @@ class _Trial(NamedTuple):
 
 def straight(state: Comparison, rest: Sequence[Left]) -> None:
     """Find the lines: for each the unclaimed one whose ends are nearest."""
-    wanted = [n for n in state.inked if state.elements[n].kind == "line" and n not in state.found]
+    wanted = [n for n in state.inked if state.elements[n].kind == "line"]
     if not wanted:
         return
     made = _Runs(state, rest)
@@ -159,7 +74,7 @@ def straight(state: Comparison, rest: Sequence[Left]) -> None:
             if trial.far > _missing(state, trial.n):
                 continue  # more of it is in its place
             used.update(run.parts)
-            _take_line(state, trial.n, trial.ends, run, rest)
+            _take_line(state, trial.n, trial.ends, [rest[k] for k in run.parts])
 
 
 class _Runs:
@@ -177,8 +92,9 @@ class _Runs:
         # Under stretches at its ends that other elements have claimed the line goes on.
         under = np.array([_under(state, r, rest) for r in self.runs]).reshape(-1, 2)
         self.before, self.after = under[:, 0], under[:, 1]
-        self.tip_a = np.array([_tip(state, r.a, r.b) for r in self.runs])
-        self.tip_b = np.array([_tip(state, r.b, r.a) for r in self.runs])
+        heads = heads_in(state.space)
+        self.tip_a, self.tip_b = self.a.copy(), self.b.copy()
+        extend(self.tip_a, self.tip_b, list(zip(heads.tip.tolist(), heads.way.tolist(), strict=True)), [])
 
     def near(self, n: int) -> Iterator[_Trial]:
         """The runs in the direction of a line and near it, either way round."""
@@ -209,19 +125,7 @@ def _under(state: Comparison, run: OverlapRun, rest: Sequence[Left]) -> tuple[fl
     return min(float(t.min()), 0.0), max(float(t.max()) - abs(run.b - run.a), 0.0)
 
 
-def _tip(state: Comparison, end: complex, other: complex) -> complex:
-    """One end of a run, extended to the tip of an arrow head that is there."""
-    if not len(state.areas):
-        return end
-    u = (end - other) / abs(end - other)
-    for k in np.flatnonzero(np.abs(state.areas - end) < 8.0):
-        t = (state.space.areas[k].points - end) * np.conj(u)
-        if np.abs(t.imag).max() < 3.0 and t.real.min() < 0.6 and abs(t.imag[t.real.argmax()]) < 0.3 and t.real.max() > 0:
-            return complex(end + u * t.real.max())
-    return end
-
-
-def _take_line(state: Comparison, n: int, found: tuple[complex, complex], run: OverlapRun, rest: Sequence[Left]) -> None:
+def _take_line(state: Comparison, n: int, found: tuple[complex, complex], parts: Sequence[Left]) -> None:
     p, q = (complex(z) for z in state.elements[n].points)
     c, d = found
     u = (q - p) / abs(q - p)
@@ -229,12 +133,9 @@ def _take_line(state: Comparison, n: int, found: tuple[complex, complex], run: O
     turn = float(np.degrees(np.angle((d - c) / (q - p))))
     size = abs(d - c) - abs(q - p)
     loose = state.elements[n].style in LOOSE_STYLES
-    ends = []
-    for ours, theirs, out in ((p, c, -u), (q, d, u)):
-        v = (theirs - ours) * np.conj(out)
-        # An auxiliary line may be longer at its ends.
-        ends.append(complex(0.0 if loose and 0 < v.real < BEYOND else v.real, v.imag))
-    deviation = max(abs(v) for v in ends)
+    ends = [(theirs - ours) * np.conj(out) for ours, theirs, out in ((p, c, -u), (q, d, u))]
+    # An auxiliary line may be longer at its ends.
+    deviation = max(abs(1j * v.imag if loose and 0 < v.real < BEYOND else v) for v in ends)
     across = abs((shift * np.conj(u)).imag)
     said = [shifted(1j * u * (shift * np.conj(u)).imag)] if across > state.tolerance else []
     if abs(np.radians(turn)) * abs(q - p) / 2 > max(state.tolerance, 0.3 * across):
@@ -244,8 +145,8 @@ def _take_line(state: Comparison, n: int, found: tuple[complex, complex], run: O
     elif abs((shift * np.conj(u)).real) > state.tolerance:
         said.append(codes.ALONG_ITSELF(by=Number(f"{abs((shift * np.conj(u)).real):.2f}")))
     state.found[n] = state.finding(n, deviation, joined(said), shift=shift, turn=turn, size=size,
-                                   entities=state.entities_of(rest[k].piece for k in run.parts))
-    state.claim([_whole_stretch(state, rest[k], c, d) for k in run.parts], n)
+                                   entities=state.entities_of(r.piece for r in parts))
+    state.claim([_whole_stretch(state, r, c, d) for r in parts], n)
 
 
 def _whole_stretch(state: Comparison, r: Left, c: complex, d: complex) -> tuple[int, float, float]:
@@ -255,50 +156,88 @@ def _whole_stretch(state: Comparison, r: Left, c: complex, d: complex) -> tuple[
     return r.piece, min(r.a, max(float(t[0]), 0.0)), max(r.b, min(float(t[1]), float(abs(b - a))))
 
 
-# --- curves -----------------------------------------------------------------------------------------------------------
+# --- shapes -----------------------------------------------------------------------------------------------------------
 
 
-def curves(state: Comparison, rest: Sequence[Left]) -> None:
-    """Find curves, arcs, and lines that no single line was drawn for: by what lies along them."""
-    wanted = [n for n in state.inked if n not in state.found]
+class _Laid(NamedTuple):
+    """A shape laid on free ink: how far it is off, mm, the finding on that, and the stretches of the ink: numbers, from, to."""
+
+    off: float
+    n: int
+    finding: CadFinding
+    parts: npt.NDArray[np.int64]
+    w0: Numbers
+    w1: Numbers
+
+
+def shapes(state: Comparison, rest: Sequence[Left]) -> None:
+    """Find curves, arcs and circles, and lines that no single run was drawn for, by the ink along them; what is nearest first."""
     free = pieces(state.theirs, rest)
+    wanted = [n for n in state.inked if n not in state.found]
     if not wanted or not len(free.a):
         return
-    ours, of, base = state.ours(wanted)
-    near = overlaps(ours, free, CURVE_REACH, 0.5, 0.12)
-    owner = of[near.ours]
+    middles, sizes = _strokes(state, free)
+    trials = []
     for n in wanted:
-        mine = near.only(owner == n)
-        if len(mine.ours):
-            _take_curve(state, n, mine, base[mine.ours], rest)
+        e = state.elements[n]
+        size = float(np.ptp(e.points.real) + np.ptp(e.points.imag))
+        by = middles - e.middle
+        alike = (np.abs(by) < ELSEWHERE) & (np.abs(sizes - size) < GROWN * size) & (e.kind != "line")
+        trials += [laid for start in (0j, *by[alike].tolist()) if (laid := _laid(state, n, free, rest, start)) is not None]
+    used: set[int] = set()
+    for laid in sorted(trials, key=lambda laid: laid[:2]):
+        ink = laid.w1 - laid.w0
+        if laid.n in state.found or ink[np.isin(laid.parts, list(used))].sum() > 0.5 * ink.sum():
+            continue
+        used.update(laid.parts.tolist())
+        state.found[laid.n] = laid.finding
+        state.claim([(rest[k].piece, rest[k].a + a, rest[k].a + b) for k, a, b in zip(
+            laid.parts.tolist(), laid.w0.tolist(), laid.w1.tolist(), strict=True)], laid.n)
 
 
-def _take_curve(state: Comparison, n: int, near: Overlaps, base: Numbers, rest: Sequence[Left]) -> None:
-    """Take what lies along an element, if there is enough of it; ``base`` is where the pieces of its path begin, mm."""
-    whole = state.whole(n)
+def _strokes(state: Comparison, free: KnownLines) -> tuple[Points, Numbers]:
+    """Middles and sizes, width and height together, of the strokes of which no element claims more than half."""
+    owner, count = state.theirs.owner, len(state.space.strokes)
+    unclaimed = np.bincount(owner[free.owner], free.length, count)
+    boxes = [Box.around(state.space.strokes[k].points)
+             for k in np.flatnonzero(unclaimed > 0.5 * np.bincount(owner, state.theirs.length, count)).tolist()]
+    return np.array([b.centre for b in boxes], dtype=complex), np.array([b.width + b.height for b in boxes])
+
+
+def _laid(state: Comparison, n: int, free: KnownLines, rest: Sequence[Left], start: complex) -> _Laid | None:
+    """An element laid on free ink, from its place or from so far beside it; None where less than half of it has ink there."""
+    e, whole = state.elements[n], state.whole(n)
+    ours, _, base = state.ours([n])
+    z = ours.points(min(1.0, whole / 24))
+    reaches = (2.0, 1.0, 0.5, 0.25) if start else (CURVE_REACH, 3.0, 1.5, 0.8, 0.4)
+    laid = refine(z, free, Placing(shift=-start), reaches, e.kind == "circle").placing.inverse()
+    shift, grown = complex(laid(e.middle)) - e.middle, (laid.scale - 1) * e.radius if e.kind == "circle" else 0.0
+    if not start and abs(shift) + abs(grown) > CURVE_REACH:
+        laid, shift, grown = Placing(), 0j, 0.0
+    near = overlaps(ours.moved(laid), free, ONE_PLACE if start else CURVE_REACH, 0.5, 0.12)
+    s0, s1 = base[near.ours] + near.s0 / laid.scale, base[near.ours] + near.s1 / laid.scale
     t = np.linspace(0.0, whole, max(int(whole / 0.5), 8))
-    s0, s1 = base + near.s0, base + near.s1
     off, using = _offsets(t, s0, s1, near)
     there = ~np.isnan(off)
-    if there.mean() < 0.5:
-        return
+    if there.mean() < (FULL if start else 0.5):
+        return None
     worst = float(np.abs(off[there]).max())
-    if worst > _missing(state, n):
-        return
-    parts = union([*zip(s0.tolist(), s1.tolist(), strict=True), *state.inked[n]], state.gap(state.elements[n]) + JOINT)
+    counted = max(abs(grown) - SIZE_OF_SYMBOL, 0.0) if e.radius <= HINGE else abs(grown)
+    as_a_whole = abs(shift) + counted
+    if max(worst, as_a_whole) > _missing(state, n):
+        return None  # more of it is in its place
+    inked = state.inked[n] if as_a_whole <= state.tolerance else []
+    parts = union([*zip(s0.tolist(), s1.tolist(), strict=True), *inked], state.gap(e) + ONE_PLACE)
     missing = max((b - a for a, b in gaps(parts, whole) if b - a > max(state.tolerance, 0.4)), default=0.0)
-    said = []
+    said = [shifted(shift)] if abs(shift) > state.tolerance else []
+    said += [of_radius(grown, e.radius)] if counted > state.tolerance else []
     if worst > state.tolerance:
-        at = state.at(n, float(t[there][np.abs(off[there]).argmax()]))
-        said.append(farthest(worst, at))
-    if missing > 0:
-        said.append(missing_part(missing))
+        said.append(farthest(worst, complex(laid(state.at(n, float(t[there][np.abs(off[there]).argmax()]))))))
+    said += [missing_part(missing)] if missing else []
     kept = np.unique(using[there])
-    stretches = [rest[near.theirs[k]] for k in kept]
-    shift = _common_shift(state.units(n, t)[there], off[there])
-    state.found[n] = state.finding(n, max(worst, missing), joined(said), shift=shift,
-                                   entities=state.entities_of(r.piece for r in stretches))
-    state.claim([(r.piece, r.a + float(near.w0[k]), r.a + float(near.w1[k])) for r, k in zip(stretches, kept, strict=True)], n)
+    finding = state.finding(n, max(worst, as_a_whole, missing), joined(said), shift=shift, size=grown or None,
+                            entities=state.entities_of(rest[k].piece for k in near.theirs[kept].tolist()))
+    return _Laid(finding.deviation, n, finding, near.theirs[kept], near.w0[kept], near.w1[kept])
 
 
 def _offsets(t: Numbers, s0: Numbers, s1: Numbers, near: Overlaps) -> tuple[Numbers, npt.NDArray[np.int64]]:
@@ -309,13 +248,6 @@ def _offsets(t: Numbers, s0: Numbers, s1: Numbers, near: Overlaps) -> tuple[Numb
         x = np.clip((t[on] - s0[k]) / max(s1[k] - s0[k], 1e-9), 0, 1)
         off[on], using[on] = near.off0[k] + x * (near.off1[k] - near.off0[k]), k
     return off, using
-
-
-def _common_shift(units: Points, off: Numbers) -> complex:
-    """The shift of a curve that fits its distances best; ``units`` are its directions there."""
-    m = np.column_stack((units.imag, -units.real))  # the normal to the left is i u, so off = shift . (i u)
-    solved = np.linalg.lstsq(-m, off, rcond=1e-6)[0]
-    return complex(solved[0], solved[1])
 
 
 # --- what is left -----------------------------------------------------------------------------------------------------

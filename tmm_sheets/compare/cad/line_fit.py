@@ -1,7 +1,7 @@
 """Straight pieces of many lines, and the placing that brings those of a drawing onto the known ones.
 
-A placing is found by correlating pictures of both (fast Fourier transform) for each plausible scale and quarter turn, then refined
-on the lines themselves by a robust fit, in which wrong lines hardly count. Points are complex.
+A placing is found by laying long lines on each other, then refined on all of them by a robust fit, in which wrong lines hardly
+count. Points are complex.
 """
 
 from __future__ import annotations
@@ -18,9 +18,15 @@ from tmm_sheets.compare.placing import Placing
 from tmm_sheets.drawing.marks import Points
 
 CELL = 3.0
-"""Cell size of the pictures that are correlated, mm."""
-CELLS = 540
-"""Cells along each side of such a picture: drawings larger than 1.6 m are out of the question."""
+"""How far points may lie from lines, mm, and placings from each other, before they are refined."""
+FEW, TRIED, DOUBTLESS = 60, 8, 0.8
+"""Points that tell which placings are good, how many of these are refined, and the share of points on lines that is beyond
+doubt.
+"""
+ONE_PLACE = 0.3
+"""What lies as near as this, mm, is at one place, or along one line."""
+ASKEW = 0.008
+"""A turn up to this beside quarter turns is none, rad."""
 AT_ONCE = 4096
 """Points whose nearest lines are looked for at once: what is about them stays in memory."""
 HIT = 1.0
@@ -117,38 +123,17 @@ def lines(strokes: Iterable[Points]) -> KnownLines:
     return KnownLines(a[keep], b[keep], owner[keep])
 
 
-def candidates(theirs: KnownLines, unit: float | None, width: float, sides: Sequence[float]) -> list[float]:
-    """Plausible scales, mm per unit of the drawing, the likely ones first.
-
-    Parameters
-    ----------
-    theirs : the drawing, in its units
-    unit : the declared unit, mm, None if there is none
-    width : width of the known lines, mm
-    sides : lengths of the longest known lines (frame, edge of the paper), mm
-    """
-    found = [s / x for x in _longest(theirs) for s in sides]
-    base = unit or 1.0
-    found += [base * k for k in RATIOS]
-    found += [k for k in (1.0, 25.4, 1000.0, 10.0, 0.1, 0.001, *RATIOS) if k != base]
-    z = np.concatenate((theirs.a, theirs.b))
-    for span in (np.ptp(z.real), np.ptp(z.imag)):
-        found += [width / float(span)] if span > 0 else []
-    size = max(float(high - low) for low, high in (np.quantile(part, (0.02, 0.98)) for part in (z.real, z.imag)))
-    good: list[float] = []
-    for s in found:
-        if 0.15 * width < s * size < 1.7 * width and all(abs(s - g) > 2e-4 * g for g in good):
-            good.append(s)
-    return good
-
-
-def _longest(theirs: KnownLines, most: int = 4) -> list[float]:
-    """The greatest lengths, each once."""
-    found: list[float] = []
-    for x in np.sort(theirs.length)[::-1][:40].tolist():
-        if all(abs(x - y) > 1e-3 * x for y in found):
-            found.append(x)
-    return found[:most]
+def hanging_together(count: int, i: npt.NDArray[np.int64], j: npt.NDArray[np.int64]) -> list[npt.NDArray[np.intp]]:
+    """Numbers below ``count`` in groups that pairs ``i``, ``j`` hold together."""
+    least = np.arange(count)
+    while True:
+        new = least.copy()
+        np.minimum.at(new, i, least[j])
+        np.minimum.at(new, j, least[i])
+        new = np.minimum(new, new[new])
+        if (new == least).all():
+            return [np.flatnonzero(least == k) for k in np.unique(least)]
+        least = new
 
 
 RATIOS = (1.0, 2.0, 0.5, 2.5, 0.4, 4.0, 0.25, 5.0, 0.2, 10.0, 0.1, 20.0, 50.0, 100.0)
@@ -162,90 +147,48 @@ class FoundPlacing(NamedTuple):
     share: float
 
 
-def search(ours: Points, theirs: KnownLines, scales: Sequence[float], turns: Sequence[int] = (0, 1, 3, 2), mirrored: bool = False,
-           enough: float = 0.8, tries: int = 8) -> FoundPlacing:
-    """The placing, among scales and quarter turns, with which most of our lines lie on theirs.
+def longest(some: KnownLines, most: int) -> KnownLines:
+    """The longest pieces."""
+    return some.only(np.isin(np.arange(len(some.a)), np.argsort(-some.length)[:most]))
+
+
+def lay(ours: KnownLines, points: Points, long: KnownLines, theirs: KnownLines, mirrored: bool = False,
+        to_scale: bool = False) -> FoundPlacing:
+    """The placing that lays one of our lines on a long one of theirs, either way round, and most of our points on lines of theirs.
+
+    A sheet is laid so on a drawing as a plan is on its strokes (:meth:`~tmm_sheets.compare.cad.plan_ink.Figure.places`).
 
     Parameters
     ----------
-    ours : points along our lines, mm of the sheet
-    theirs : their lines, drawing units
-    scales, turns : what to try, mm per unit and quarter turns counter-clockwise
+    ours, points : lines that may be found whole, and points along all that should be there, mm of the sheet
+    long, theirs : those of their lines that ours are laid on, and all, drawing units
     mirrored : whether the drawing is a mirror image
-    enough : share at which to stop
-    tries : how many of the placings that look best in the pictures to refine
+    to_scale : whether their unit is the millimetre of the sheet
     """
-    if not len(ours):
-        return FoundPlacing(Placing(mirrored=mirrored), 0.0)
-    low = complex(ours.real.min(), ours.imag.min())
-    mine = np.fft.rfft2(_grown(_picture(ours, low)))
-    picked = ours[:: max(len(ours) // 1500, 1)]
-    good: list[tuple[float, Placing]] = []
     best = FoundPlacing(Placing(mirrored=mirrored), 0.0)
-    for scale in scales:
-        here: list[tuple[float, Placing]] = []
-        for quarter in turns:
-            placing = Placing(scale * 1j**quarter, 0j, mirrored)
-            z = theirs.moved(placing).points(CELL)
-            if len(z):
-                here += _peaks(mine, z, low, placing)
-        good += here
-        here.sort(key=lambda peak: -peak[0])
-        if here and here[0][0] > 0.5 * enough * len(_cells(ours)):
-            trial = refine(picked, theirs, here[0][1], (6.0, 3.0, 1.5), False, 1)
-            best = max(best, trial, key=lambda f: f.share)
-            if best.share >= enough:
-                return best
-    good.sort(key=lambda peak: -peak[0])
-    for _, placing in good[:tries]:
-        best = max(best, refine(picked, theirs, placing, (6.0, 3.0, 1.5), False, 1), key=lambda f: f.share)
-        if best.share >= enough:
+    long = long.moved(Placing(mirrored=mirrored))
+    i, j = (x.ravel() for x in np.meshgrid(np.arange(len(ours.a)), np.arange(len(long.a)), indexing="ij"))
+    if not len(i) or len(points) < 2:
+        return best
+    turn = (ours.b - ours.a)[i] / (long.b - long.a)[j]
+    shift = np.concatenate((ours.a[i] - turn * long.a[j], ours.b[i] + turn * long.a[j]))
+    turn = np.concatenate((turn, -turn))
+    size = float(np.ptp(long.a.real) + np.ptp(long.a.imag)) / float(np.ptp(points.real) + np.ptp(points.imag))
+    ok = (np.abs((np.angle(turn) + np.pi / 4) % (np.pi / 2) - np.pi / 4) < ASKEW) & (np.abs(turn) * size > 0.05) & (
+        np.abs(turn) * size < 2.0)
+    ok &= ~np.full(len(turn), to_scale) | (np.abs(np.abs(turn) - 1) < NEARLY)
+    turn, shift = turn[ok], shift[ok]
+    at = (turn * long.a.mean() + shift) / CELL
+    alike = np.round(np.stack((300 * np.log(np.abs(turn)), np.angle(turn) * 2 / np.pi, at.real, at.imag)))
+    turn, shift = (x[np.unique(alike, axis=1, return_index=True)[1]] for x in (turn, shift))
+    found = [Placing(complex(t), complex(d), mirrored) for t, d in zip(turn, shift, strict=True)]
+    few, many = points[:: max(len(points) // FEW, 1)], points[:: max(len(points) // 1500, 1)]
+    found.sort(key=lambda placing: -theirs.share(placing.back(few), CELL / placing.scale))
+    for placing in found[:TRIED]:
+        best = max(best, refine(many, theirs, placing, (6.0, 3.0, 1.5), False, 1), key=lambda f: f.share)
+        if best.share >= DOUBTLESS:
             break
     return best
-
-
-def _peaks(mine: npt.NDArray[np.complex128], z: Points, low: complex, placing: Placing,
-           most: int = 2) -> list[tuple[float, Placing]]:
-    """The best shifts at one scale and turn, each with the number of cells that meet beyond chance."""
-    corner = complex(np.quantile(z.real, 0.001), np.quantile(z.imag, 0.001))
-    picture = _picture(z, corner)
-    product = np.fft.irfft2(mine * np.conj(np.fft.rfft2(picture)), s=(CELLS, CELLS))
-    # As many of our cells meet theirs by chance as theirs fill of the ground.
-    rows, columns = (max(int(np.ptp(part) / CELL), 1) for part in (z.imag, z.real))
-    chance = min(float(picture.sum()) / (rows * columns), 1.0) * float(mine[0, 0].real)
-    found = []
-    for _ in range(most):
-        k = int(product.argmax())
-        i, j = divmod(k, CELLS)
-        peak = float(product[i, j]) - chance
-        r, c = np.arange(i - 2, i + 3) % CELLS, np.arange(j - 2, j + 3) % CELLS
-        product[np.ix_(r, c)] = 0.0
-        i, j = (i - CELLS if i > CELLS // 2 else i), (j - CELLS if j > CELLS // 2 else j)
-        found.append((peak, placing._replace(shift=low - corner + CELL * complex(j, i))))
-    return found
-
-
-def _cells(z: Points) -> npt.NDArray[np.int64]:
-    """The cells with points in them, each once."""
-    return np.unique((z.imag // CELL).astype(np.int64) * 100_000 + (z.real // CELL).astype(np.int64))
-
-
-def _picture(z: Points, corner: complex) -> npt.NDArray[np.float64]:
-    """1 in the cells with points, 0 elsewhere; the first cell begins at the corner."""
-    i, j = ((z.imag - corner.imag) / CELL).astype(int), ((z.real - corner.real) / CELL).astype(int)
-    inside = (i >= 0) & (i < CELLS) & (j >= 0) & (j < CELLS)
-    cells = np.zeros((CELLS, CELLS))
-    cells[i[inside], j[inside]] = 1.0
-    return cells
-
-
-def _grown(cells: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """A picture with at least 0.5 in the neighbours of filled cells."""
-    wide = cells.copy()
-    for axis in (0, 1):
-        for way in (1, -1):
-            wide = np.maximum(wide, 0.5 * np.roll(cells, way, axis))
-    return wide
 
 
 def refine(ours: Points, theirs: KnownLines, start: Placing, reaches: Sequence[float] = (3.0, 1.5, 0.8, 0.4, 0.25),

@@ -7,7 +7,7 @@ that of the drawing's own main lines: thin lines should have s/3 to s/2. A file 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -17,7 +17,8 @@ from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.cad_comparison import STYLES, Comparison, LookFinding
 from tmm_sheets.compare.cad.cad_ink import Entity
 from tmm_sheets.compare.cad.cad_patterns import Pattern, of_dashes, of_strokes
-from tmm_sheets.compare.cad.overlaps import Interval, gaps, overlaps, union
+from tmm_sheets.compare.cad.omissions import SEVERAL
+from tmm_sheets.compare.cad.overlaps import Interval, common, extent, union
 from tmm_sheets.compare.codes import Number, Remark
 from tmm_sheets.compare.elements import ElementView
 from tmm_sheets.drawing.ink import cut
@@ -43,8 +44,6 @@ MOST = 0.7
 """Share of an element's ink that decides."""
 LEAST = 5.0
 """Least ink, mm, that proves an element wrong; less for short elements."""
-FEW = 3
-"""From so many lines on that are drawn continuous, with not one in its pattern, they are told in one row."""
 PATTERNS: Mapping[Pattern, str] = MappingProxyType({
     "continuous": marked("continuous"), "dashed": marked("dashed"), "dash-dot": marked("dash-dot"),
     "dash-two-dots": marked("dash-two-dots"), "other": marked("other"),
@@ -64,20 +63,57 @@ class InkStretch(NamedTuple):
 
     a: float
     b: float
-    entity: int
+    entity: Entity
 
 
-Stretches = list[Interval]
 ByElement = Mapping[int, list[InkStretch]]
 
 
 def looks(state: Comparison) -> tuple[tuple[LookFinding, ...], tuple[str, ...]]:
     """Elements drawn with a wrong type or width of line, by view, and notes on the drawing as a whole."""
-    ink = _along(state)
+    ink = {n: rows for n in range(len(state.elements)) if (rows := _along(state, n))}
     widths, notes = _wrong_widths(state, ink)
     found = sorted((*widths, *_wrong_types(state, ink)),
                    key=lambda x: (-1 if x.view is None else x.view.n, [STYLES[style] for style in x.styles]))
-    return tuple(found), (*notes, *_wrong_dashes(state, ink))
+    return tuple(found), (*notes, *_wrong_dashes(ink))
+
+
+def _along(state: Comparison, n: int) -> list[InkStretch]:
+    """The ink along an element whose lines can be judged; of a straight line that is elsewhere as if it were in its place."""
+    e, outcome, entities = state.elements[n], state.found[n], state.space.entities
+    if e.kind not in ("line", "arc", "circle", "curve") or (e.kind == "circle" and e.fills) or e.style not in STYLES:
+        return []
+    if outcome.missing or outcome.verdict is None or not state.paths[n]:
+        return []
+    if n not in state.owned:
+        k = np.flatnonzero(state.in_place_of == n)
+        a, b, piece = (x[k] for x in (*state.along, state.in_place.theirs))
+    elif e.kind == "line":
+        piece = np.array([j for j, _, _ in state.owned[n]])
+        d, u = state.theirs.b[piece] - state.theirs.a[piece], (e.points[-1] - e.points[0]) / e.length
+        ends = [((state.theirs.a[piece] + t * d / np.abs(d) - e.points[0]) * np.conj(u)).real
+                for t in np.array([(t0, t1) for _, t0, t1 in state.owned[n]]).T]
+        a, b = np.sort(ends, axis=0)
+    else:
+        return []
+    return [InkStretch(p, q, entities[j]) for p, q, j in zip(a.tolist(), b.tolist(), state.entity[piece].tolist(), strict=True)]
+
+
+def _wrong(state: Comparison, n: int, rows: list[InkStretch], fits: Callable[[Entity], bool]) -> list[InkStretch] | None:
+    """The ink of an element that is none of its own look: none if most is, None where that cannot be told.
+
+    Only ink in stretches without another element of the sheet proves anything.
+    """
+    good, wrong = ([row for row in rows if fits(row.entity) == right] for right in (True, False))
+    if extent(_covered(good)) >= MOST * extent(_covered(rows)):
+        return []
+    free = state.free(n)
+    every, right, bad = (extent(common(_covered(some), free)) for some in (rows, good, wrong))
+    sure = bad >= min(LEAST, 0.6 * state.whole(n)) and bad >= MOST * every and right <= (1 - MOST) * bad
+    return wrong if sure else None
+
+
+# --- types ------------------------------------------------------------------------------------------------------------
 
 
 def _wrong_types(state: Comparison, ink: ByElement) -> list[LookFinding]:
@@ -96,64 +132,10 @@ def _wrong_types(state: Comparison, ink: ByElement) -> list[LookFinding]:
             remark = codes.LINE_TYPE(found=Remark("", PATTERNS[found]), wanted=Remark("", PATTERNS[wanted]))
             wrong.setdefault((state.elements[n].view, style, remark), []).append(n)
             plain += [n] if found == "continuous" else []
-    if not right and len(plain) >= FEW:
+    if not right and len(plain) >= SEVERAL:
         wrong = {key: found for key, found in wrong.items() if not set(found) & set(plain)}
         wrong[None, "", codes.ALL_CONTINUOUS()] = plain
     return [_look(state, ink, view, style, remark, found) for (view, style, remark), found in wrong.items()]
-
-
-def _wrong_widths(state: Comparison, ink: ByElement) -> tuple[list[LookFinding], list[str]]:
-    """A finding for each view and style; or a note that widths cannot be compared, or are all alike."""
-    if all(state.space.entities[row.entity].width is None for rows in ink.values() for row in rows):
-        return [], [tell("no line has a width of its own: widths are not compared (those of plot styles are not in a DXF file)")]
-    s, t = _typical(state, ink, BROAD), _typical(state, ink, THIN)
-    if s is None:
-        return [], []
-    if t is not None and s < TOLD_APART * t:
-        said = tell("main lines ({main} mm) are not wider than thin ones ({thin} mm): GOST 2.303 asks for s = {least} to {most} mm "
-                    "and s/3 to s/2")
-        return [], [said.format(main=told(f"{s:.2g}"), thin=told(f"{t:.2g}"), least=told("0.5"), most=told("1.4"))]
-    widths: dict[tuple[ElementView, str], list[tuple[int, float]]] = {}
-    for n, rows in ink.items():
-        width = _wrong_width(state, n, rows, s)
-        if width is not None:
-            widths.setdefault((state.elements[n].view, state.elements[n].style), []).append((n, width))
-    return [_look(state, ink, view, style, _said(style, [w for _, w in found], s), [n for n, _ in found])
-            for (view, style), found in widths.items()], []
-
-
-def _along(state: Comparison) -> dict[int, list[InkStretch]]:
-    """The ink along each element whose lines can be judged."""
-    entities = state.entity[state.in_place.theirs].tolist()
-    rows = zip(state.in_place_of.tolist(), *(x.tolist() for x in state.along), entities, strict=True)
-    in_place: dict[int, list[InkStretch]] = {}
-    for n, a, b, entity in rows:
-        in_place.setdefault(n, []).append(InkStretch(a, b, entity))
-    found = {}
-    for n, e in enumerate(state.elements):
-        outcome = state.found[n]
-        if e.kind not in ("line", "arc", "circle", "curve") or (e.kind == "circle" and e.fills) or e.style not in STYLES:
-            continue
-        if outcome.missing or outcome.verdict is None or not state.paths[n]:
-            continue
-        ink = _elsewhere(state, n) if n in state.owned else in_place.get(n, [])
-        if ink:
-            found[n] = ink
-    return found
-
-
-def _elsewhere(state: Comparison, n: int) -> list[InkStretch]:
-    """The ink of a straight line that is elsewhere, as if it were in its place."""
-    if state.elements[n].kind != "line":
-        return []
-    z = state.elements[n].points
-    u = (z[-1] - z[0]) / abs(z[-1] - z[0])
-    found: list[InkStretch] = []
-    for j, a, b in state.owned[n]:
-        d = state.theirs.b[j] - state.theirs.a[j]
-        ends = [float(((state.theirs.a[j] + t * d / abs(d) - z[0]) * np.conj(u)).real) for t in (a, b)]
-        found.append(InkStretch(min(ends), max(ends), int(state.entity[j])))
-    return found
 
 
 def _pattern_of(style: str) -> Pattern:
@@ -163,97 +145,79 @@ def _pattern_of(style: str) -> Pattern:
 
 def _has_strokes(state: Comparison, n: int) -> bool:
     """Whether an element should be patterned and is long enough to show it."""
-    e = state.elements[n]
-    pattern = line_type(e.style).pattern
-    whole = state.whole(n)
-    closed = e.kind == "circle"
-    return bool(pattern) and len(cut(whole, pattern, closed)) > (6 if closed else 4)
+    closed = state.elements[n].kind == "circle"
+    pattern = line_type(state.elements[n].style).pattern
+    return bool(pattern) and len(cut(state.whole(n), pattern, closed)) > (6 if closed else 4)
 
 
 def _pattern(state: Comparison, n: int, rows: list[InkStretch]) -> Pattern | None:
-    """The class of an element's ink, None if it cannot be told."""
+    """The class of an element's ink, None if it cannot be told; dashes drawn one by one count as the pattern they make."""
     wanted = _pattern_of(state.elements[n].style)
-    right, solid = _covered(_of_pattern(state, rows, wanted)), _covered(_of_pattern(state, rows, "continuous"))
-    if _size(right) >= MOST * _size(_covered(rows)):
+    solid = _covered(row for row in rows if row.entity.pattern == "continuous")
+    whole = max(row.b for row in rows) - min(row.a for row in rows) if n in state.owned else state.whole(n)
+    if wanted != "continuous" and of_strokes(solid, whole) == wanted:
         return wanted
-    if wanted != "continuous" and of_strokes(solid, _extent(state, n, rows)) == wanted:
-        return wanted
-    free = _free(state, n)
-    every = _common(_covered(rows), free)
-    if _size(every) < min(LEAST, 0.6 * state.whole(n)) or _size(_common(right, free)) >= MOST * _size(every):
-        return None
-    others = {state.space.entities[row.entity].pattern for row in rows} - {wanted, "continuous", "other"}
-    sizes = {pattern: _size(_common(_covered(_of_pattern(state, rows, pattern)), free)) for pattern in others}
-    most = max(sizes, key=lambda pattern: sizes[pattern], default=None)
-    if most is not None and sizes[most] >= MOST * _size(every):
-        return most
-    return None if wanted == "continuous" else _drawn_by_strokes(state, n, solid, free)
+    wrong = _wrong(state, n, rows, lambda e: e.pattern == wanted)
+    if not wrong:
+        return wanted if wrong is not None else None
+    free = state.free(n)
+    sizes = {p: extent(common(_covered(row for row in wrong if row.entity.pattern == p), free)) for p in PATTERNS}
+    most = max(PATTERNS, key=lambda p: sizes[p])
+    if most == "continuous":  # stroke by stroke, or whole, if it shows two periods of the pattern
+        a, b = max(free, key=lambda x: x[1] - x[0])
+        period = sum(map(abs, line_type(state.elements[n].style).pattern))
+        most = of_strokes(common(solid, [(a, b)]), b - a) or "other" if b - a > 2 * period else "other"
+    return None if most == "other" else most
 
 
-def _of_pattern(state: Comparison, rows: list[InkStretch], pattern: Pattern) -> list[InkStretch]:
-    return [row for row in rows if state.space.entities[row.entity].pattern == pattern]
-
-
-def _drawn_by_strokes(state: Comparison, n: int, solid: Stretches, free: Stretches) -> Pattern | None:
-    """The class of a patterned element's continuous ink, stroke by stroke or whole, if it shows two periods of its pattern."""
-    a, b = max(free, key=lambda x: x[1] - x[0])
-    period = sum(map(abs, line_type(state.elements[n].style).pattern))
-    found = of_strokes(_common(solid, [(a, b)]), b - a) if b - a > 2 * period else None
-    return None if found == "other" else found
-
-
-def _extent(state: Comparison, n: int, rows: list[InkStretch]) -> float:
-    """Length of an element, or of the line drawn for it elsewhere."""
-    return max(row.b for row in rows) - min(row.a for row in rows) if n in state.owned else state.whole(n)
-
-
-def _typical(state: Comparison, ink: ByElement, styles: set[str]) -> float | None:
-    """Median width of the ink along elements of some styles, mm."""
-    found = [(_wide(state.space.entities[row.entity]), row.b - row.a) for n, rows in ink.items()
-             if state.elements[n].style in styles for row in rows]
-    if not found:
-        return None
-    found.sort()
-    along = np.cumsum([size for _, size in found])
-    return found[int(np.searchsorted(along, along[-1] / 2))][0]
-
-
-def _wrong_dashes(state: Comparison, ink: ByElement) -> Iterator[str]:
+def _wrong_dashes(ink: ByElement) -> Iterator[str]:
     """Notes on line types with strokes much too short or too long; those drawn one by one are elements out of place."""
     entities = {row.entity for rows in ink.values() for row in rows}
     for pattern, (least, most) in DASHES.items():
-        sizes = [state.space.entities[k].dash for k in entities if state.space.entities[k].pattern == pattern]
-        size = float(np.median(sizes)) if sizes else least
+        size = float(np.median([e.dash for e in entities if e.pattern == pattern] or [least]))
         if not least / OUTSIDE <= size <= most * OUTSIDE:
             yield tell(WRONG_DASHES[pattern]).format(size=told(f"{size:.3g}"), least=told(f"{least:g}"), most=told(f"{most:g}"))
 
 
+# --- widths -----------------------------------------------------------------------------------------------------------
+
+
+def _wrong_widths(state: Comparison, ink: ByElement) -> tuple[list[LookFinding], list[str]]:
+    """A finding for each view and style; or a note that widths cannot be compared, or are all alike."""
+    if all(row.entity.width is None for rows in ink.values() for row in rows):
+        return [], [tell("no line has a width of its own: widths are not compared (those of plot styles are not in a DXF file)")]
+    s, t = _typical(state, ink, BROAD), _typical(state, ink, THIN)
+    if s is None:
+        return [], []
+    if t is not None and s < TOLD_APART * t:
+        said = tell("main lines ({main} mm) are not wider than thin ones ({thin} mm): GOST 2.303 asks for s = {least} to {most} mm "
+                    "and s/3 to s/2")
+        return [], [said.format(main=told(f"{s:.2g}"), thin=told(f"{t:.2g}"), least=told("0.5"), most=told("1.4"))]
+    widths: dict[tuple[ElementView, str], dict[int, float]] = {}
+    for n, rows in ink.items():
+        e = state.elements[n]
+        low, high = (NOT_MAIN * s, np.inf) if e.style in BROAD else (0.0, NOT_THIN * s)
+
+        def fits(entity: Entity, low: float = low, high: float = high) -> bool:
+            return low <= _wide(entity) <= high
+
+        if e.style in BROAD | THIN and (wrong := _wrong(state, n, rows, fits)):
+            longest = max(wrong, key=lambda row: row.b - row.a)
+            widths.setdefault((e.view, e.style), {})[n] = _wide(longest.entity)
+    return [_look(state, ink, view, style, _said(style, list(found.values()), s), list(found))
+            for (view, style), found in widths.items()], []
+
+
+def _typical(state: Comparison, ink: ByElement, styles: set[str]) -> float | None:
+    """Median width of the ink along elements of some styles, mm."""
+    rows = [row for n, of in ink.items() if state.elements[n].style in styles for row in of]
+    found = sorted((_wide(row.entity), row.b - row.a) for row in rows)
+    along = np.cumsum([size for _, size in found])
+    return found[int(np.searchsorted(along, along[-1] / 2))][0] if found else None
+
+
 def _wide(e: Entity) -> float:
     return DEFAULT_WIDTH if e.width is None else e.width
-
-
-def _wrong_width(state: Comparison, n: int, rows: list[InkStretch], s: float) -> float | None:
-    """The width of an element's ink, mm, if that is wrong where main lines are ``s`` mm wide."""
-    style = state.elements[n].style
-    if style not in BROAD | THIN:
-        return None
-    wrong: list[InkStretch] = []
-    right: list[InkStretch] = []
-    for row in rows:
-        width = _wide(state.space.entities[row.entity])
-        fits = width >= NOT_MAIN * s if style in BROAD else width <= NOT_THIN * s
-        (right if fits else wrong).append(row)
-    every, good = _covered(rows), _covered(right)
-    if not wrong or _size(good) >= MOST * _size(every):
-        return None
-    free = _free(state, n)
-    bad = _size(_common(_covered(wrong), free))
-    if bad < min(LEAST, 0.6 * state.whole(n)) or bad < MOST * _size(_common(every, free)):
-        return None
-    if _size(_common(good, free)) > (1 - MOST) * bad:
-        return None
-    longest = max(wrong, key=lambda row: row.b - row.a)
-    return _wide(state.space.entities[longest.entity])
 
 
 def _said(style: str, widths: list[float], s: float) -> Remark:
@@ -274,32 +238,6 @@ def _look(state: Comparison, ink: ByElement, view: ElementView | None, style: st
                        tuple(p for n in found for p in state.paths[n]))
 
 
-# --- stretches --------------------------------------------------------------------------------------------------------
-
-
-def _free(state: Comparison, n: int) -> Stretches:
-    """Stretches of an element without another element of the sheet beside them."""
-    mine, _, base = state.ours([n])
-    z = np.concatenate(state.paths[n])
-    every, of = state.everything
-    beside = of != n
-    for ours, a, b in ((z.real, every.a.real, every.b.real), (z.imag, every.a.imag, every.b.imag)):
-        beside &= (np.maximum(a, b) > ours.min() - 1) & (np.minimum(a, b) < ours.max() + 1)
-    hit = overlaps(mine, every.only(beside), 2 * state.tolerance)
-    taken = union(zip((base[hit.ours] + hit.s0).tolist(), (base[hit.ours] + hit.s1).tolist(), strict=True), 0.5)
-    return gaps(taken, state.whole(n))
-
-
-def _covered(rows: Iterable[InkStretch]) -> Stretches:
+def _covered(rows: Iterable[InkStretch]) -> list[Interval]:
     """Where some of the ink is; joints between pieces of a curve are no gaps."""
     return union([(row.a, row.b) for row in rows], 0.3)
-
-
-def _size(parts: Stretches) -> float:
-    return sum(b - a for a, b in parts)
-
-
-def _common(one: Stretches, other: Stretches) -> Stretches:
-    """Where both are."""
-    found = [(max(a, c), min(b, d)) for a, b in one for c, d in other]
-    return sorted((a, b) for a, b in found if b - a > 1e-6)

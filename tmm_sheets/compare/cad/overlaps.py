@@ -8,12 +8,15 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.compare.cad.line_fit import KnownLines, shapes
-from tmm_sheets.drawing.marks import Points
+from tmm_sheets.compare.cad.line_fit import KnownLines, hanging_together, shapes
 
 Numbers = npt.NDArray[np.float64]
 Interval = tuple[float, float]
 
+LEAST = 0.05
+"""Shortest stretch of ink that counts, mm."""
+MOST = 3000
+"""Pieces that are put together to straight lines, the longest of a drawing."""
 STEEP = 0.4
 """Greatest slope between short pieces of what may be one line (chords of a circle, divided in two ways)."""
 FLAT = 0.03
@@ -99,6 +102,17 @@ def gaps(parts: Sequence[Interval], whole: float) -> list[Interval]:
     return [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if b > a]
 
 
+def extent(parts: Iterable[Interval]) -> float:
+    """Length of intervals together."""
+    return sum(b - a for a, b in parts)
+
+
+def common(one: Iterable[Interval], other: Sequence[Interval]) -> list[Interval]:
+    """Where both are."""
+    found = [(max(a, c), min(b, d)) for a, b in one for c, d in other]
+    return sorted((a, b) for a, b in found if b - a > 1e-6)
+
+
 class Left(NamedTuple):
     """An unclaimed stretch of their lines: the number of the piece and the interval along it, mm."""
 
@@ -107,8 +121,8 @@ class Left(NamedTuple):
     b: float
 
 
-def left(theirs: KnownLines, claimed: Overlaps, least: float = 0.05) -> list[Left]:
-    """The stretches of their pieces, longer than ``least``, that no overlap claims."""
+def left(theirs: KnownLines, claimed: Overlaps) -> list[Left]:
+    """The stretches of their pieces, longer than LEAST, that no overlap claims."""
     found: list[Left] = []
     order = np.argsort(claimed.theirs, kind="stable")
     j, w0, w1 = claimed.theirs[order], claimed.w0[order].tolist(), claimed.w1[order].tolist()
@@ -118,8 +132,8 @@ def left(theirs: KnownLines, claimed: Overlaps, least: float = 0.05) -> list[Lef
         if p == q:
             found.append(Left(n, 0.0, length[n]))
             continue
-        parts = union(zip(w0[p:q], w1[p:q], strict=True), least)
-        found.extend(Left(n, a, b) for a, b in gaps(parts, length[n]) if b - a > least)
+        parts = union(zip(w0[p:q], w1[p:q], strict=True), LEAST)
+        found.extend(Left(n, a, b) for a, b in gaps(parts, length[n]) if b - a > LEAST)
     return found
 
 
@@ -139,23 +153,15 @@ class OverlapRun(NamedTuple):
     parts: tuple[int, ...]
 
 
-def runs(rest: KnownLines, gap: float, most: int = 3000) -> list[OverlapRun]:
-    """Straight lines made of collinear pieces with gaps up to ``gap`` mm, of the longest ``most`` pieces only."""
+def runs(rest: KnownLines, gap: float) -> list[OverlapRun]:
+    """Straight lines made of collinear pieces with gaps up to ``gap`` mm, of the longest MOST pieces only."""
     n = np.flatnonzero(rest.length > 0.3)
-    if len(n) > most:
-        n = np.sort(n[np.argsort(-rest.length[n])[:most]])
+    if len(n) > MOST:
+        n = np.sort(n[np.argsort(-rest.length[n])[:MOST]])
     if not len(n):
         return []
     a, b = rest.a[n], rest.b[n]
     u = (b - a) / np.abs(b - a)
-    parent = list(range(len(n)))
-
-    def root(k: int) -> int:
-        while parent[k] != k:
-            parent[k] = parent[parent[k]]
-            k = parent[k]
-        return k
-
     import shapely
 
     tree = shapely.STRtree(shapes(a, b))
@@ -166,43 +172,10 @@ def runs(rest: KnownLines, gap: float, most: int = 3000) -> list[OverlapRun]:
     size = np.minimum(np.abs(b - a)[i], np.abs(b - a)[j])
     near = np.maximum(np.abs(c.imag), np.abs(d.imag)) < 0.03 + 0.002 * np.maximum(np.abs(c), np.abs(d)) * (size < 50)
     near &= np.abs((u[j] * np.conj(u[i])).imag) < np.maximum(0.002, 0.02 / size)
-    for p, q in zip(i[near].tolist(), j[near].tolist(), strict=True):
-        parent[root(p)] = root(q)
-    groups: dict[int, list[int]] = {}
-    for k in range(len(n)):
-        groups.setdefault(root(k), []).append(k)
-    found, lengths = [], np.abs(b - a).tolist()
-    for members in groups.values():
-        longest = max(members, key=lambda k: lengths[k])
+    found = []
+    for members in hanging_together(len(n), i[near], j[near]):
+        longest = members[np.abs(b - a)[members].argmax()]
         ends = np.concatenate((a[members], b[members]))
         t = ((ends - a[longest]) * np.conj(u[longest])).real
-        found.append(OverlapRun(complex(ends[t.argmin()]), complex(ends[t.argmax()]), tuple(int(n[k]) for k in members)))
+        found.append(OverlapRun(complex(ends[t.argmin()]), complex(ends[t.argmax()]), tuple(n[members].tolist())))
     return found
-
-
-class Circle(NamedTuple):
-    """A circle fitted to lines: ``part`` is the share of its circumference that is drawn, ``strokes`` the numbers of the lines."""
-
-    centre: complex
-    radius: float
-    part: float
-    strokes: tuple[int, ...]
-
-
-def circle(z: Points) -> tuple[complex, float, float] | None:
-    """Centre and radius of the circle fitted to points, and the greatest distance from it; None for collinear points."""
-    middle = complex(z.mean())
-    size = float(np.abs(z - middle).max())
-    if len(z) < 4 or not size > 0:
-        return None
-    x, y = (z - middle).real / size, (z - middle).imag / size
-    m = np.column_stack((x, y, np.ones(len(z))))
-    solved, _, rank, _ = np.linalg.lstsq(m, x**2 + y**2, rcond=1e-7)
-    if rank < 3:
-        return None
-    centre = complex(solved[0] / 2, solved[1] / 2)
-    radius = float(np.sqrt(max(solved[2] + abs(centre) ** 2, 0.0)))
-    if radius > 50:
-        return None
-    off = float(np.abs(np.abs((z - middle) / size - centre) - radius).max())
-    return middle + size * centre, radius * size, off * size

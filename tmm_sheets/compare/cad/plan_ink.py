@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
+from tmm_sheets.compare.cad.line_fit import hanging_together, shapes
 from tmm_sheets.drawing.marks import Points
 
 Floats = NDArray[np.float64]
@@ -147,7 +148,7 @@ class PlanInk:
         s2, of = np.delete(s2, symbols, axis=0), np.delete(of, symbols)
         barbs, more = _open_heads(s2)
         self.a, self.b, self.stroke = (np.delete(x, barbs) for x in (s2[:, 0], s2[:, 1], of))
-        _extend(self.a, self.b, heads, joints)
+        extend(self.a, self.b, heads, joints)
         self.heads: list[tuple[complex, complex]] = heads + more
         turns = Counter(round(float(np.degrees(t.angle)) % 360, 1) for t in self.texts)
         self.turn = float(np.radians(turns.most_common(1)[0][0])) if turns else float("nan")
@@ -170,17 +171,9 @@ class PlanInk:
             return []
         import shapely
 
-        a, b = self.a[some], self.b[some]
-        lines = shapely.linestrings(np.stack((np.stack((a.real, a.imag), -1), np.stack((b.real, b.imag), -1)), 1))
+        lines = shapes(self.a[some], self.b[some])
         i, j = shapely.STRtree(lines).query(lines, predicate="dwithin", distance=MAX_GAP_MM)
-        out = np.arange(len(some))
-        while True:
-            least = out.copy()
-            np.minimum.at(least, i, out[j])
-            least = np.minimum(least, least[least])
-            if (least == out).all():
-                return [some[out == f] for f in np.unique(out)]
-            out = least
+        return [some[n] for n in hanging_together(len(some), i, j)]
 
     def is_frame(self, some: Numbers) -> bool:
         """True if strokes are upright and level only, and reach round most of the drawing."""
@@ -261,7 +254,7 @@ def _joint(z: Points) -> list[tuple[complex, float]]:
     return [(centre, float(radius.mean()))] if closed and radius.max() < MAX_JOINT_MM and np.ptp(radius) < 0.1 else []
 
 
-def _extend(a: Points, b: Points, heads: Sequence[tuple[complex, complex]], joints: Sequence[tuple[complex, float]]) -> None:
+def extend(a: Points, b: Points, heads: Sequence[tuple[complex, complex]], joints: Sequence[tuple[complex, float]]) -> None:
     """Lengthen strokes in place: to the tip of the head they end under, to the middle of the joint at whose rim they end."""
     tips = np.array([tip for tip, _ in heads], dtype=complex)
     ways = np.array([way for _, way in heads], dtype=complex)

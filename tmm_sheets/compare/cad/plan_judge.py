@@ -41,7 +41,7 @@ from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.step import Step, ordered
 
 # --- price of a hypothesis, mm of ink: by what must be assumed ---------------------------------------------------------------
-STEP_PRICE, BEFORE_PRICE, POSITION_PRICE, LENGTH_PRICE, MOVED_PRICE = 4.0, 6.0, 7.0, 8.0, 12.0
+PRICES = {"step": 4.0, "step before": 6.0, "other position": 7.0, "length": 8.0, "point moved": 12.0}
 GAIN = 3.0              # a mistake must be so much cheaper than a right plan
 LEFT_MM = 2.0           # ink that may stay unexplained in a plan that is right, besides the share
 # --- probability: shares of ink or of a plan ----------------------------------------------------------------------------------
@@ -391,11 +391,11 @@ class _MistakeSearch:
                 key = (h.words, id(h.step), h.at, str(h.other))
                 if key not in seen:
                     seen.add(key)
-                    price = (STEP_PRICE if h.step.plan == self.name else BEFORE_PRICE) + h.rarity
+                    price = PRICES["step" if h.step.plan == self.name else "step before"] + h.rarity
                     yield Cause(h.remark, h.step, h.changes, price, h)
             if self.name != "positions":
                 for h in of_other_positions(self.view.points, k, self.view.plan.labels):
-                    yield Cause(h.remark, h.step, h.changes, POSITION_PRICE, h)
+                    yield Cause(h.remark, h.step, h.changes, PRICES["other position"], h)
             if fit is not None:
                 yield from self._moved(k, fit)
 
@@ -412,7 +412,7 @@ class _MistakeSearch:
                 by = (end - here) / fit.scale
                 yield from self._longer(p, was, by, k, fit)
                 remark = POINT_MOVED(point=letter_of(p), distance=millimetres(abs(end - here)))
-                yield Cause(remark, p, (Change(p, displaced(by), k),), MOVED_PRICE)
+                yield Cause(remark, p, (Change(p, displaced(by), k),), PRICES["point moved"])
 
     def _longer(self, p: Step, was: complex, by: complex, k: int, fit: Fit) -> Iterator[Cause]:
         """A length laid off too long or too short, where the point stays on its line."""
@@ -422,4 +422,4 @@ class _MistakeSearch:
                 times = abs(was + by - base) / abs(was - base)
                 off = (times - 1) * abs(was - base) * abs(fit.scale)
                 remark = LINE_TOO_LONG[1 if off > 0 else -1](line=letter_of(p.args[0]) + letter_of(p), by=millimetres(off))
-                yield Cause(remark, p, (Change(p, laid_off(times), k),), LENGTH_PRICE)
+                yield Cause(remark, p, (Change(p, laid_off(times), k),), PRICES["length"])

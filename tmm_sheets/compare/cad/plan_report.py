@@ -18,9 +18,9 @@ from tmm_sheets.compare.cad.plan_views import CLASSES
 from tmm_sheets.compare.codes import Remark, joined
 from tmm_sheets.compare.diagnosis.hypotheses import built_otherwise
 from tmm_sheets.compare.finding_records import FindingRecord, Outcome, as_tree, point
-from tmm_sheets.compare.findings import millimetres, table
+from tmm_sheets.compare.findings import as_text, millimetres
 from tmm_sheets.compare.report import Report
-from tmm_sheets.compare.story import Story, StoryPicture, StoryTable, ToldMistake, clipped, listed
+from tmm_sheets.compare.story import Story, StoryPicture, StoryTable, ToldMistake, clipped
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import told
 from tmm_sheets.words import marked, tell, tell_n
@@ -73,11 +73,10 @@ def plan_report(project: str, sheet: int, path: Path, space: DrawingSpace, judge
     head = tuple(map(tell, ("title", "plan", "verdict", "right", "wrong", "not drawn")))
     rows = [_row(v) for v in views]
     about = (tell("tolerance {tolerance} mm").format(tolerance=told(f"{pencil:g}")), said, *notes)
-    unjudged = [*_not_drawn(views), *_figures_without_title(judged)]
-    text = "\n".join([*listed(mistakes), title, "", *table(head, rows), "", *unjudged, said])
+    unjudged = (*_not_drawn(views), *_figures_without_title(judged))
     verdicts = tuple("red" if v.wrong or (v.whole is not None and v.whole.verdict == "red") else "" for v in views)
-    story = Story(title, about, mistakes, (StoryTable(tell("Views"), head, tuple(rows), verdicts),), tuple(unjudged))
-    return Report(text, tree, notes=tuple(notes), story=story, findings=records, start=start)
+    story = Story(title, about, mistakes, (StoryTable(tell("Views"), head, tuple(rows), verdicts),), unjudged)
+    return Report(as_text(story, said), tree, notes=tuple(notes), story=story, findings=records, start=start)
 
 
 def exact_lines(judged: JudgedPlans) -> list[Points]:
@@ -194,7 +193,7 @@ def _unclaimed(space: DrawingSpace, judged: JudgedPlans) -> list[dict[str, Any]]
             a, b = complex(judged.ink.a[n]), complex(judged.ink.b[n])
             e = space.entities[space.strokes[int(judged.ink.stroke[n])].entity]
             out.append({"kind": "line", "length_mm": round(abs(b - a), 3), "at_mm": point((a + b) / 2), "where": str(e),
-                        "number": len(out) + 1, "count": 1, "entity": {"type": e.kind, "layer": e.layer, "handle": e.handle}})
+                        "number": len(out) + 1, "count": 1, "entity": e.tree})
     return out
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +10,19 @@ import numpy.typing as npt
 
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace
 from tmm_sheets.compare.cad.cad_lettering import meant
-from tmm_sheets.compare.cad.line_fit import HIT, RATIOS, KnownLines, candidates, lines, refine, search, snapped
+from tmm_sheets.compare.cad.line_fit import (
+    ASKEW,
+    DOUBTLESS,
+    HIT,
+    ONE_PLACE,
+    RATIOS,
+    KnownLines,
+    lay,
+    lines,
+    longest,
+    refine,
+    snapped,
+)
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.known_sheet import KnownSheet
 from tmm_sheets.compare.placing import Placing
@@ -21,15 +33,10 @@ from tmm_sheets.words import tell
 
 MOST = 800
 """Most points of a view that are compared."""
-NEAR = 0.3
-"""Distance from ink within which a point of ours counts as found, mm."""
 WRONG = 0.3
 """Least share of a view that must be found at a place from a file, else the place is wrong."""
 ENOUGH = 30
 """Least points of a view that can be placed by its lines alone."""
-AT_HOME = 0.6
-"""Share of a view from which on it is where it is."""
-
 
 @dataclass(frozen=True)
 class Layout:
@@ -56,127 +63,104 @@ class Layout:
 
 
 def line_points(elements: Sequence[Element]) -> Points:
-    """Points every millimetre along what a draughtsman cannot omit or draw in another way: lines, circles, curves."""
-    return lines([e.points for e in elements if e.kind not in ("text", "hatch", "fill")]).points(1.0)
+    """Points every millimetre along lines, circles, curves."""
+    return _lines(elements).points(1.0)
 
 
-def find(elements: Sequence[Element], space: DrawingSpace, given: Sequence[tuple[StatedViewPlace, Placing]] = (),
-         say: Callable[[str], None] = lambda _: None) -> Layout:
-    """Place every view of a sheet.
-
-    A view may be in its place, a little aside, where its texts are in the drawing, or anywhere in ink the other views leave.
+def find(elements: Sequence[Element], space: DrawingSpace, given: Sequence[tuple[StatedViewPlace, Placing]] = ()) -> Layout:
+    """Place every view of a sheet: in its place, a little aside, or where its texts are in the drawing.
 
     Parameters
     ----------
     elements : those of the sheet
     space : the drawing, laid on the sheet as a whole, mm
     given : places from a file, each with the placing of the whole drawing; they are refined, not sought
-    say : told what is being done
 
     Raises
     ------
     BadInput
         If a place gives a scale factor for a view that has none of its own on the sheet.
     """
-    return _ViewFinder(elements, space, say).layout(given)
-
-
-class _ViewFinder:
-    """The views of a sheet, and the places found for them so far."""
-
-    def __init__(self, elements: Sequence[Element], space: DrawingSpace, say: Callable[[str], None]) -> None:
-        self.elements, self.space, self.theirs, self.say = elements, space, space.lines, say
-        self.views = list(dict.fromkeys(e.view for e in elements))
-        every = {v: line_points([e for e in elements if e.view == v]) for v in self.views}
-        self.points = {v: z[:: max(len(z) // MOST, 1)] for v, z in every.items()}
-        self.texts = {v: [(meant(e.text), complex(e.points.mean())) for e in elements if e.view == v and e.kind == "text"]
-                      for v in self.views}
-        self.words: dict[str, list[complex]] = {}
-        for w in space.writings:
-            self.words.setdefault(meant(w.text), []).append(w.at)
-        self.moves: dict[ElementView, Placing] = {}
-        self.share: dict[ElementView, float] = {}
-        self.notes: list[str] = []
-        self.elsewhere: list[ElementView] = []
-
-    def layout(self, given: Sequence[tuple[StatedViewPlace, Placing]]) -> Layout:
-        """Place the views from the file, then the others near their places or their texts."""
-        for place, whole in given:
-            self._place_given(place, whole)
-        for v in self.views:
-            if v not in self.moves:
-                self._place_near(v)
-        return Layout(self.moves, self.share, tuple(self.notes), tuple(self.elsewhere))
-
-    def _place_given(self, place: StatedViewPlace, whole: Placing) -> None:
+    words: dict[str, list[complex]] = {}
+    for w in space.writings:
+        words.setdefault(meant(w.text), []).append(w.at)
+    views = {v: _SoughtView(v, [e for e in elements if e.view == v], space.lines, words)
+             for v in dict.fromkeys(e.view for e in elements)}
+    moves: dict[ElementView, Placing] = {}
+    said, elsewhere = [], []
+    for place, whole in given:
         v = place.view
-        move = place.placing([complex(whole(z)) for z in place.theirs])
-        if len(self.points[v]) >= ENOUGH:
-            near = refine(self.points[v], self.theirs, move.inverse(), (4.0, 2.0, 1.0, 0.5, 0.25), place.mu is None)
-            move = max(move, near.placing.inverse(), key=lambda m: self._inked(v, m))
-        share = self._inked(v, move)
-        if share < WRONG and len(self.points[v]) >= ENOUGH:
-            said = tell('"{view}" is not where --views says: {share} % of its lines are there; it was looked for')
-            self.notes.append(said.format(view=v.name, share=round(100 * share)))
+        move, there = views[v].stated(place, whole)
+        if there:
+            moves[v] = move
+            said.append(tell('"{view}" stands {place}, as --views says').format(view=v.name, place=_where(v, move)))
         else:
-            self.moves[v], self.share[v] = move, share
-            self.notes.append(tell('"{view}" stands {place}, as --views says').format(view=v.name, place=_where(v, move)))
+            told_not = tell('"{view}" is not where --views says: {share} % of its lines are there; it was looked for')
+            said.append(told_not.format(view=v.name, share=round(100 * views[v].inked(move))))
+    for v, view in views.items():
+        if v.n and v not in moves and (found := view.elsewhere()) is not None:
+            moves[v] = found
+            elsewhere.append(v)
+    share = {v: view.inked(moves.get(v, Placing())) for v, view in views.items()}
+    return Layout(moves, share, tuple(said), tuple(elsewhere))
 
-    def _place_near(self, v: ElementView) -> bool:
-        """Place a view near its place or where its texts are; False if it must be sought elsewhere and is large enough for that."""
-        self.share[v] = self._inked(v, Placing())
-        if v.n == 0 or self.share[v] > 0.93:
-            return True
-        starts = [Placing(shift=d) for d in (0j, *self._by_texts(v))]
-        trials = [self._nudged(v, s) for s in starts] if len(self.points[v]) >= ENOUGH else starts[1:]
-        return self._accept(v, trials) or self.share[v] >= AT_HOME or len(self.points[v]) < 2 * ENOUGH
 
-    def _accept(self, v: ElementView, trials: Sequence[Placing]) -> bool:
-        """Take the best of several places if it is clearly better than the view's own."""
-        if not trials:
-            return False
-        best = max(trials, key=lambda m: self._score(v, m))
-        inked, read = self._inked(v, best), self._read(v, best)
-        sure = inked > 0.85 or (inked > 0.5 and read > 0.3) or (len(self.points[v]) < ENOUGH and read > 0.5)
-        still = abs(complex(best(v.box.centre)) - v.box.centre) < 0.1 and abs(best.scale - 1) < 1e-3
-        if not sure or still or self._score(v, best) < self._score(v, Placing()) + 0.12:
-            return False
-        self._take(v, best, inked)
-        return True
+class _SoughtView:
+    """A view of the sheet that is looked for in a drawing: points along its lines, and its texts."""
 
-    def _take(self, v: ElementView, best: Placing, inked: float) -> None:
-        """Take a place that is not the view's own."""
-        self.moves[v], self.share[v] = best, inked
-        self.elsewhere.append(v)
+    def __init__(self, view: ElementView, elements: Sequence[Element], theirs: KnownLines,
+                 words: Mapping[str, list[complex]]) -> None:
+        every = line_points(elements)
+        self.view, self.theirs, self.points = view, theirs, every[:: max(len(every) // MOST, 1)]
+        self.texts = [(words.get(meant(e.text), []), complex(e.points.mean())) for e in elements if e.kind == "text"]
 
-    def _inked(self, v: ElementView, move: Placing) -> float:
-        """Share of a view's points that have ink."""
-        return self.theirs.share(move(self.points[v]), NEAR)
+    def inked(self, move: Placing) -> float:
+        """Share of its points that have ink."""
+        return self.theirs.share(move(self.points), ONE_PLACE)
 
-    def _read(self, v: ElementView, move: Placing) -> float:
-        """Share of a view's texts that are where they should be."""
-        texts = self.texts[v]
-        near = sum(any(abs(at - complex(move(z))) < 8.0 for at in self.words.get(word, ())) for word, z in texts)
-        return near / len(texts) if texts else 0.0
+    def _read(self, move: Placing) -> float:
+        """Share of its texts that are where they should be."""
+        near = sum(any(abs(at - complex(move(z))) < 8.0 for at in there) for there, z in self.texts)
+        return near / len(self.texts) if self.texts else 0.0
 
-    def _score(self, v: ElementView, move: Placing) -> float:
-        return self._inked(v, move) + 0.5 * self._read(v, move)
+    def _score(self, move: Placing) -> float:
+        return self.inked(move) + 0.5 * self._read(move)
 
-    def _by_texts(self, v: ElementView) -> list[complex]:
-        """The shift most texts of a view agree on, nothing if few do."""
-        shifts = np.array([at - z for word, z in self.texts[v] for at in self.words.get(word, ())], dtype=complex)
+    def stated(self, place: StatedViewPlace, whole: Placing) -> tuple[Placing, bool]:
+        """The place a file gives, refined, and whether the view is there."""
+        move = place.placing([complex(whole(z)) for z in place.theirs])
+        if len(self.points) < ENOUGH:
+            return move, True
+        near = refine(self.points, self.theirs, move.inverse(), (4.0, 2.0, 1.0, 0.5, 0.25), place.mu is None)
+        move = max(move, near.placing.inverse(), key=self.inked)
+        return move, self.inked(move) >= WRONG
+
+    def elsewhere(self) -> Placing | None:
+        """A place near its own, or where its texts are, that is clearly better than its own; None without."""
+        if self.inked(Placing()) > 0.93:
+            return None
+        trials = [Placing(shift=d) for d in self._by_texts()]
+        if len(self.points) >= ENOUGH:
+            reaches = (6.0, 3.0, 1.5, 0.8, 0.4, 0.25)
+            trials = [refine(self.points, self.theirs, start.inverse(), reaches, False, 1).placing.inverse()
+                      for start in (Placing(), *trials)]
+        best = max(trials, key=self._score, default=Placing())
+        inked, read = self.inked(best), self._read(best)
+        sure = inked > 0.85 or (inked > 0.5 and read > 0.3) or (len(self.points) < ENOUGH and read > 0.5)
+        still = abs(complex(best(self.view.box.centre)) - self.view.box.centre) < 0.1
+        return best if sure and not still and self._score(best) >= self._score(Placing()) + 0.12 else None
+
+    def _by_texts(self) -> list[complex]:
+        """The shift most of its texts agree on, nothing if few do."""
+        shifts = np.array([at - z for there, z in self.texts for at in there], dtype=complex)
         if len(shifts) < 2:
             return []
         votes = (np.abs(shifts[:, None] - shifts[None, :]) < 3.0).sum(axis=1)
         k = int(votes.argmax())
-        if votes[k] < max(2, 0.25 * len(self.texts[v])):
+        if votes[k] < max(2, 0.25 * len(self.texts)):
             return []
         near = shifts[np.abs(shifts - shifts[k]) < 3.0]
         return [complex(np.median(near.real), np.median(near.imag))]
-
-    def _nudged(self, v: ElementView, start: Placing) -> Placing:
-        """A move refined on the lines, without turn or scale."""
-        return refine(self.points[v], self.theirs, start.inverse(), (6.0, 3.0, 1.5, 0.8, 0.4, 0.25), False, 1).placing.inverse()
 
 
 def _where(view: ElementView, move: Placing) -> str:
@@ -193,21 +177,16 @@ def _where(view: ElementView, move: Placing) -> str:
     return ", ".join(said) or tell("in its place")
 
 
-SIDES = (816.0, 841.0, 584.0, 594.0)
-"""Lengths of the sides of the frame and of the paper, mm."""
 SURE = 0.5
 """Share of our lines found above which a placing is beyond doubt."""
-ASKEW = 0.008
-"""A turn up to this is none, rad."""
+PART = 100.0
+"""Width plus height of the smallest part of a sheet that is looked for, mm."""
+LONGEST = 40
+"""Longest lines of a drawing on which ours are laid."""
 LETTERS, MANY, MORE = 6, 0.3, 3
 """So many texts tell how a drawing is turned, else its lines, if that share has one direction and so many times less is upright."""
 ALIGNED = 1e-3
 """What is one direction, rad."""
-LONGEST_PART = 60_000.0
-"""Length of all lines of a part of a sheet, mm."""
-PART = 100.0
-"""Width plus height of the smallest part of a sheet that is looked for, mm."""
-
 
 @dataclass(frozen=True)
 class Registration:
@@ -237,77 +216,58 @@ def register(known: Sequence[KnownSheet], ink: CadInk) -> Registration:
 
 def _lay(known: Sequence[KnownSheet], ink: CadInk) -> Registration:
     """The same of a drawing whose frame and tables, or lettering, are upright or lie on a side."""
-    tried = _by_frame(known, ink)
-    if not tried:
-        tried += _by_lines(known, ink, mirrored=False)
-        if _best(tried).share < SURE:
-            tried += _by_lines(known, ink, mirrored=True)
-        if _best(tried).share < SURE:
-            tried += _by_parts(known, ink)
+    tried = [*_by_lines(known, ink, mirrored=False)]
+    if _best(tried).share < SURE:
+        tried += _by_lines(known, ink, mirrored=True)
+    if _best(tried).share < SURE:
+        tried += _by_parts(known, ink)
     return _refined(_best(tried), ink.unit)
 
 
 def fitting(known: Sequence[KnownSheet], ink: CadInk) -> tuple[int, float]:
     """The sheet a drawing seems to be of, and the share of its lines found at a quick look."""
-    best = _best(_by_frame(known, ink) or list(_by_lines(known, ink, mirrored=False)))
+    best = _best([*_by_lines(known, ink, mirrored=False)])
     return best.known.n, best.share
 
 
-def _by_frame(known: Sequence[KnownSheet], ink: CadInk) -> list[Registration]:
-    """Placings by the frame alone, of one space after another until one is beyond doubt."""
-    frame = _frame(known[0].elements)
-    tried: list[Registration] = []
-    drawn = [line_points(sheet.elements) for sheet in known]
-    for space in ink.spaces:
-        for placing in _of_frame(frame, space.lines, ink.unit):
-            for sheet, points in zip(known, drawn, strict=True):
-                picked = points[:: max(len(points) // 3000, 1)]
-                share = space.lines.share(placing.back(picked), HIT / placing.scale)
-                tried.append(Registration(sheet, space, placing, share))
-        if tried and _best(tried).share >= SURE:
-            break
-    return tried
-
-
-def _of_frame(frame: Points, theirs: KnownLines, unit: float | None) -> list[Placing]:
-    """The four placings that put a frame of theirs on ours, none if there is no frame."""
-    scales = candidates(theirs, unit, float(np.ptp(frame.real)), SIDES)[:8]
-    long = theirs.only(theirs.length > 0.02 * theirs.length.max())
-    trial = search(frame, long, scales, (0, 1), enough=0.97)
-    if trial.share < 0.95:
-        return []
-    x, y = frame.real.min() + frame.real.max(), frame.imag.min() + frame.imag.max()
-    ways = (Placing(), Placing(-1 + 0j, complex(x, y)), Placing(-1 + 0j, complex(x, 0), True), Placing(1 + 0j, complex(0, y), True))
-    return [way.after(trial.placing) for way in ways]
-
-
 def _by_lines(known: Sequence[KnownSheet], ink: CadInk, *, mirrored: bool) -> Iterator[Registration]:
-    """The best placing of each space on each sheet by all of its lines."""
-    drawn = [line_points(sheet.elements) for sheet in known]
-    for space in ink.spaces:
-        for sheet, points in zip(known, drawn, strict=True):
-            scales = candidates(space.lines, ink.unit, float(np.ptp(points.real)), SIDES)
-            found = search(points, space.lines, scales, mirrored=mirrored)
+    """The best placing of each space on each sheet: by the lines of its frame, or those of its views."""
+    for sheet in known:
+        frame, views = (longest(_lines(e for e in sheet.elements if bool(e.view.n) == of_views), 12) for of_views in (False, True))
+        points = line_points(sheet.elements)
+        for space in ink.spaces:
+            long = longest(space.lines, LONGEST)
+            found = max((lay(some, points, long, space.lines, mirrored) for some in (frame, views)), key=lambda f: f.share)
             yield Registration(sheet, space, found.placing, found.share)
-            if found.share > 0.8:
-                break
+            if found.share >= DOUBTLESS:
+                return
 
 
 def _by_parts(known: Iterable[KnownSheet], ink: CadInk) -> Iterator[Registration]:
     """Placings of a drawing of a few views only: those that put most of its own lines on ours."""
     for sheet in known:
-        ours = lines([e.points for e in sheet.elements if e.view.n and e.kind not in ("text", "hatch", "fill")])
+        views = dict.fromkeys(e.view for e in sheet.elements if e.view.n)
+        of_views = [_lines(e for e in sheet.elements if e.view == view) for view in views]
+        ours, long = (_together(some) for some in (of_views, [longest(of, 6) for of in of_views]))
         for space in ink.spaces:
             for size in dict.fromkeys(base * ratio for base in (ink.unit or 1.0, 1.0) for ratio in RATIOS):
                 scale = Placing(complex(size))
-                if space.lines.length.sum() * size > LONGEST_PART:
+                theirs = space.lines.moved(scale)
+                z = theirs.points(max(float(theirs.length.sum()) / 3000, 1.0))
+                if len(z) < 30 or np.ptp(z.real) + np.ptp(z.imag) < PART:
                     continue
-                z = space.lines.moved(scale).points(1.0)
-                if not 30 < len(z) < 60_000 or np.ptp(z.real) + np.ptp(z.imag) < PART:
-                    continue
-                trial = search(z, ours, [1.0], tries=4)
+                trial = lay(longest(theirs, 12), z, long, ours, to_scale=True)
                 if trial.share >= SURE:
                     yield Registration(sheet, space, trial.placing.inverse().after(scale), trial.share)
+
+
+def _lines(some: Iterable[Element]) -> KnownLines:
+    """What a draughtsman cannot omit or draw in another way."""
+    return lines([e.points for e in some if e.kind not in ("text", "hatch", "fill")])
+
+
+def _together(some: Sequence[KnownLines]) -> KnownLines:
+    return KnownLines(*(np.concatenate(x) for x in zip(*((of.a, of.b, of.owner) for of in some), strict=True)))
 
 
 def _askew(space: DrawingSpace) -> float:

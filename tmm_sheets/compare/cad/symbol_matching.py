@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from enum import IntEnum, auto
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.cad.cad_comparison import BEYOND, SIZE_OF_SYMBOL, CadFinding, Comparison
+from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, FARTHEST, SIZE_OF_SYMBOL, CadFinding, Comparison
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
-from tmm_sheets.compare.cad.displaced_lines import FARTHEST
-from tmm_sheets.compare.cad.line_fit import lines
+from tmm_sheets.compare.cad.line_fit import ONE_PLACE, lines
 from tmm_sheets.compare.cad.overlaps import left, overlaps, pieces
 from tmm_sheets.compare.codes import Number, Remark, joined
 from tmm_sheets.compare.findings import shifted, turned
@@ -33,10 +34,6 @@ AHEAD = 0.9
 """Least cosine of the angle between a line and its head."""
 TURNED = 0.6
 """The same for the head of an arc that is drawn elsewhere, perhaps turned."""
-OWN = 0.3
-"""How far a line may be from the one its head asks for, mm."""
-SAME = 0.3
-"""Arrows whose tips are as near as this, mm, share a head: one of them lies on the other."""
 
 
 @dataclass(frozen=True)
@@ -47,13 +44,8 @@ class Heads:
     tip: Points
     way: Points
 
-    def at(self, tip: complex, way: complex) -> bool:
-        """Whether one has its tip at a place and points in a direction."""
-        return bool(((np.abs(self.tip - tip) < AT_TIP) & ((self.way * np.conj(way)).real > AHEAD)).any())
 
-
-@dataclass(frozen=True)
-class _Arrow:
+class _Arrow(NamedTuple):
     """An arrow as it was found: element, one of its heads, and where its tip and the end of its line behind it are, mm."""
 
     n: int
@@ -61,7 +53,7 @@ class _Arrow:
     tip: complex
     tail: complex
     alone: bool
-    curved: bool = False
+    curved: bool
 
     @property
     def way(self) -> complex:
@@ -69,42 +61,66 @@ class _Arrow:
         return (self.tip - self.tail) / max(abs(self.tip - self.tail), 1e-9)
 
 
+class _At(IntEnum):
+    """How a head may be that of an arrow, the likeliest first."""
+
+    IN_PLACE = auto()
+    """at its tip"""
+    BACKWARDS = auto()
+    """at its tail, pointing away"""
+    ALONG = auto()
+    """anywhere on its line"""
+    BESIDE = auto()
+    """beside its tip"""
+    WITH_ARC = auto()
+    """beside the tip of an arc that is drawn elsewhere"""
+
+
 def arrows(state: Comparison) -> None:
     """Check that arrows have their heads, at the right ends."""
     heads = heads_in(state.space)
     wanted = list(_wanted(state))
-    taken: dict[int, complex] = {}
-    for off, arrow, k in _pairs(_in_place, wanted, heads):
-        if k not in taken or abs(taken[k] - arrow.tip) < SAME:
-            taken[k] = arrow.tip
-            wanted.remove(arrow)
-            _off_by(state, arrow, off)
+    pairs = [(how, off, i, k) for i, arrow in enumerate(wanted) for how, off, k in _of_arrow(arrow, heads)]
+    in_place = {k for how, _, _, k in pairs if how is _At.IN_PLACE}
     # A head that several may have, for they lie upon one another, is that of the arrow with no other one near its tip.
-    free = [k for k in range(len(heads.area)) if k not in taken]
-    near = {arrow: float(_elsewhere(arrow, heads)[free].min(initial=np.inf)) for arrow in wanted}
-    for _, arrow, k in sorted(_pairs(_backwards, wanted, heads), key=lambda x: -near[x[1]]):
-        if k not in taken and arrow in wanted:
-            taken[k] = arrow.tip
-            wanted.remove(arrow)
+    others = {i: min((off for how, off, m, k in pairs if m == i and how is _At.ALONG and k not in in_place), default=np.inf)
+              for i in range(len(wanted))}
+    pairs.sort(key=lambda x: (x[0], -others[x[2]] if x[0] is _At.BACKWARDS else x[1]))
+    taken: dict[int, complex] = {}
+    done: set[int] = set()
+    for how, off, i, k in pairs:
+        arrow = wanted[i]
+        shared = how is _At.IN_PLACE and k in taken and abs(taken[k] - arrow.tip) < ONE_PLACE
+        if i in done or (k in taken and not shared):
+            continue
+        if how is _At.BESIDE and not _drawn_aside(state, arrow, complex(heads.tip[k])):
+            continue
+        taken[k] = arrow.tip
+        done.add(i)
+        if how is _At.BACKWARDS:
             _tell(state, arrow, codes.POINTS_BACK(), state.elements[arrow.n].length)
-    for off, arrow, k in _pairs(_elsewhere, wanted, heads):
-        if k not in taken:
-            taken[k] = arrow.tip
-            wanted.remove(arrow)
-            if arrow.finding.verdict == "green":
-                _off_by(state, arrow, off)
-    for _, arrow, k in _pairs(_aside, wanted, heads):
-        if k not in taken and _drawn_aside(state, arrow, complex(heads.tip[k])):
-            taken[k] = arrow.tip
-            wanted.remove(arrow)
-    for _, arrow, k in _pairs(_with_arc, wanted, heads):
-        if k not in taken:
-            taken[k] = arrow.tip
-            wanted.remove(arrow)
-    for arrow in wanted:
-        if len(heads.area) and not _open_head(state, arrow.tip):
+        elif how in (_At.IN_PLACE, _At.ALONG):
+            _off_by(state, arrow, off)
+    for i, arrow in enumerate(wanted):
+        if i not in done and len(heads.area) and not _open_head(state, arrow.tip):
             _tell(state, arrow, codes.NO_HEAD(), 2 * state.tolerance)
     state.used_areas.update(int(heads.area[k]) for k in taken)
+
+
+def _of_arrow(arrow: _Arrow, heads: Heads) -> Iterator[tuple[_At, float, int]]:
+    """The heads that may be that of an arrow: how, how far from its tip or its tail, mm, and their numbers."""
+    off, size = np.abs(heads.tip - arrow.tip), abs(arrow.tip - arrow.tail)
+    same = (heads.way * np.conj(arrow.way)).real
+    t = (heads.tip - arrow.tail) * np.conj(arrow.way)
+    elsewhere = 2 * AT_TIP + arrow.finding.deviation if arrow.curved and arrow.finding.verdict != "green" else 0.0
+    straight = not arrow.curved
+    ways = ((_At.IN_PLACE, (off < AT_TIP) & (same > AHEAD)),
+            (_At.BACKWARDS, (np.abs(t) < AT_TIP) & (same < -AHEAD) & arrow.alone),
+            (_At.ALONG, (np.abs(t.imag) < BESIDE) & (t.real > 2.0) & (t.real < size + BEYOND) & (same > AHEAD) & straight),
+            (_At.BESIDE, (off < min(max(3.0, 0.35 * size), FARTHEST)) & (same > AHEAD) & arrow.alone),
+            (_At.WITH_ARC, (off < min(elsewhere, FARTHEST)) & (same > TURNED)))
+    for how, there in ways:
+        yield from ((how, float(off[k]), k) for k in np.flatnonzero(there).tolist())
 
 
 def heads_in(space: DrawingSpace) -> Heads:
@@ -150,68 +166,17 @@ def _found_at(middle: complex, z: complex, finding: CadFinding) -> complex:
     return complex(middle + (finding.shift or 0j) + half * longer * np.exp(1j * np.radians(finding.turn or 0.0)))
 
 
-def _pairs(off: Callable[[_Arrow, Heads], npt.NDArray[np.float64]], wanted: list[_Arrow], heads: Heads) -> Iterator[
-        tuple[float, _Arrow, int]]:
-    """Arrows without a head and the heads that may be theirs, the nearest first."""
-    found = [(float(d), i, int(k)) for i, arrow in enumerate(wanted) for d, k in _finite(off(arrow, heads))]
-    every = list(wanted)
-    for d, i, k in sorted(found):
-        if every[i] in wanted:
-            yield d, every[i], k
-
-
-def _finite(off: npt.NDArray[np.float64]) -> Iterator[tuple[float, int]]:
-    for k in np.flatnonzero(np.isfinite(off)).tolist():
-        yield float(off[k]), k
-
-
-def _in_place(arrow: _Arrow, heads: Heads) -> npt.NDArray[np.float64]:
-    """How far each head is off the tip; infinite for those that are not at the tip, or point elsewhere."""
-    off = np.abs(heads.tip - arrow.tip)
-    return np.where((off < AT_TIP) & ((heads.way * np.conj(arrow.way)).real > AHEAD), off, np.inf)
-
-
-def _backwards(arrow: _Arrow, heads: Heads) -> npt.NDArray[np.float64]:
-    """The same for heads at the other end that point away from the tip."""
-    off = np.abs(heads.tip - arrow.tail)
-    there = (off < AT_TIP) & ((heads.way * np.conj(arrow.way)).real < -AHEAD)
-    return np.where(there & arrow.alone, off, np.inf)
-
-
-def _elsewhere(arrow: _Arrow, heads: Heads) -> npt.NDArray[np.float64]:
-    """The same for heads that point the right way from anywhere on the line, or a little beyond its end."""
-    t = (heads.tip - arrow.tail) * np.conj(arrow.way)
-    size = abs(arrow.tip - arrow.tail)
-    there = (np.abs(t.imag) < BESIDE) & (t.real > 2.0) & (t.real < size + BEYOND)
-    there &= (heads.way * np.conj(arrow.way)).real > AHEAD
-    return np.where(there & (not arrow.curved), np.abs(heads.tip - arrow.tip), np.inf)
-
-
-def _aside(arrow: _Arrow, heads: Heads) -> npt.NDArray[np.float64]:
-    """The same for heads about the tip that point nearly the right way."""
-    off = np.abs(heads.tip - arrow.tip)
-    near = off < min(max(3.0, 0.35 * abs(arrow.tip - arrow.tail)), FARTHEST)
-    return np.where(near & ((heads.way * np.conj(arrow.way)).real > AHEAD) & arrow.alone, off, np.inf)
-
-
-def _with_arc(arrow: _Arrow, heads: Heads) -> npt.NDArray[np.float64]:
-    """The same for heads about the tip of an arc that is drawn elsewhere: they go with it."""
-    off = np.abs(heads.tip - arrow.tip)
-    reach = 2 * AT_TIP + arrow.finding.deviation if arrow.curved and arrow.finding.verdict != "green" else 0.0
-    return np.where((off < min(reach, FARTHEST)) & ((heads.way * np.conj(arrow.way)).real > TURNED), off, np.inf)
-
-
 def _drawn_aside(state: Comparison, arrow: _Arrow, tip: complex) -> bool:
     """Whether a free line ends at a head: then ink of others lies in the arrow's place, and this line is what was drawn for it."""
     rest = left(state.theirs, state.claimed())
     free = pieces(state.theirs, rest)
     for tail in (arrow.tail + tip - arrow.tip, arrow.tail):
         line = lines([np.array([tail, tip])])
-        if free.share(line.points(1.0), OWN) > 0.6:
+        if free.share(line.points(1.0), ONE_PLACE) > 0.6:
             break
     else:
         return False
-    near = overlaps(line, free, OWN)
+    near = overlaps(line, free, ONE_PLACE)
     state.claim([(rest[j].piece, rest[j].a + float(a), rest[j].a + float(b)) for j, a, b in zip(
         near.theirs.tolist(), near.w0.tolist(), near.w1.tolist(), strict=True)], arrow.n)
     shift = (tip + tail - arrow.tip - arrow.tail) / 2
@@ -246,12 +211,10 @@ def _open_head(state: Comparison, tip: complex) -> bool:
     return int((ends & (whole < 16.0) & (state.theirs.length < 8.0) & (state.theirs.length > 1.0)).sum()) >= 2
 
 
-NEAR, FAR = 2.0, 6.0
-"""How far from its place a filled area is looked for, and a dot, mm."""
+NEAR = 2.0
+"""How far from its place a filled area is looked for, mm."""
 ASIDE = 4.0
 """How far aside the strokes of a hatching may lie, mm."""
-ONE_PLACE = 0.3
-"""Dots whose places are as near as this, mm, are one."""
 
 
 def filled(state: Comparison) -> None:
@@ -264,7 +227,7 @@ def filled(state: Comparison) -> None:
     for n, centre in wanted.items():
         off = np.abs(state.areas - centre)
         dot = state.elements[n].kind == "circle"
-        near = (off < (FAR if dot else NEAR)) & (dots | ((off < NEAR) & ~(dot & heads)))
+        near = (off < (CURVE_REACH if dot else NEAR)) & (dots | ((off < NEAR) & ~(dot & heads)))
         trials += [(float(off[k]), n, k) for k in np.flatnonzero(near).tolist()]
     dot_at: dict[int, complex] = {}
     for _, n, k in sorted(trials):

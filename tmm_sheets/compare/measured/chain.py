@@ -8,7 +8,7 @@ otherwise, or a step drawn off. A number whose deviation explains nothing else w
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from math import atan, degrees, hypot, isfinite, radians, tan
 from statistics import NormalDist
@@ -16,15 +16,13 @@ from statistics import NormalDist
 import numpy as np
 
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.codes import Number, Own, Remark, joined
-from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
+from tmm_sheets.compare.codes import Number, Remark, joined
 from tmm_sheets.compare.measured import measured_units as units
 from tmm_sheets.compare.measured.evidence import CURVED, Evidence, Explanation, place_of
 from tmm_sheets.compare.measured.judged import JudgedValue, Place
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables, angle_apart
 from tmm_sheets.compare.measured.measured_file import FilledTable, MeasuredLine, factor_of
 from tmm_sheets.compare.measured.mistake_search import explanation
-from tmm_sheets.compare.measured.plan_scales import wrong_scales
 from tmm_sheets.compare.measured.recomputation import OwnNumbers, OwnValue
 from tmm_sheets.compare.measured.systematic_error import SystematicError, mark, whole_table
 from tmm_sheets.construction.error import Errors
@@ -75,7 +73,7 @@ def judge(filled: FilledTable, found: Measurables, pencil: float, reading: float
     # What was computed rightly from other numbers of the file is no witness of its own: it is as wrong as they are.
     if judged:
         own = OwnNumbers(judged, errors)
-        left = wrong_scales([j for j in judged if id(j) not in computed])
+        left = [j for j in judged if id(j) not in computed]
         _against_own(own, {id(j) for j in left})
         _chains(Evidence(left, errors, labels), own, computed)
     for j in judged:
@@ -250,9 +248,7 @@ def _chains(evidence: Evidence, own: OwnNumbers, computed: Mapping[int, list[Jud
         start.starts = True
         tried += 1
         found = explanation(evidence, int(first)) if tried <= MOST else None
-        if found is None and tried <= MOST:
-            _wrong_row(start, judged)
-        elif found is not None:
+        if found is not None:
             open_[_told(evidence, start, found, beyond)] = False
             if found.then is not None and (second := _shows(evidence, start, found.then)) is not None:
                 second.starts, second.follows = True, None
@@ -276,23 +272,6 @@ def _shows(evidence: Evidence, start: JudgedValue, found: Explanation) -> Judged
     others = [i for i, j in enumerate(judged) if j.verdict == "red" and not j.starts and j.entry.label == label]
     best = max(others, key=lambda i: (evidence.proves(judged[i], found.wrong[0]) and by[i] > 1, float(by[i])), default=None)
     return judged[best] if best is not None and by[best] > 1 else None
-
-
-def _wrong_row(start: JudgedValue, judged: Sequence[JudgedValue]) -> None:
-    """A number that explains nothing else may be that of a neighbouring row: of the same plan, or of the next position."""
-    e, i = start.entry, judged.index(start)
-    if not e.terms:
-        return
-    beside = [judged[n] for n in (i - 1, i + 1) if 0 <= n < len(judged) and judged[n].entry.plan == e.plan]
-    alike = [j for j in judged if (j.entry.title, j.entry.quantity) == (e.title, e.quantity)]
-    at = alike.index(start)
-    beside += [alike[n] for n in (at - 1, at + 1) if 0 <= n < len(alike)]
-    for j in beside:
-        near = max(start.line.half_digit + j.line.half_digit, start.reading / 2)
-        if j.entry.unit == e.unit and abs(start.line.value - j.exact) <= j.tolerance and (
-                j.verdict == "red" or abs(start.line.value - j.line.value) <= near):
-            start.wrong = (Hypothesis("neighbour", "row", e.terms[-1][0], (), other=Own(j.row)),)
-            return
 
 
 def _follow(evidence: Evidence, start: JudgedValue, found: Explanation, beyond: float) -> Iterator[int]:
@@ -330,17 +309,14 @@ def _beyond_chance(count: int) -> float:
 
 def _own_reason(own: OwnNumbers, j: JudgedValue, computed: Mapping[int, list[JudgedValue]]) -> JudgedValue | None:
     """The mistake that a red number follows from by the student's own earlier numbers; None when it does not follow from them."""
-    made = own.steps.value(j)
+    made = own.value(j)
     if made is None or not isfinite(made.tolerance):
-        expected, tolerance = own.expected(j)
-        reasons = own.reasons(j)
-    else:
-        expected, tolerance, reasons = made.expected, made.tolerance, made.reasons
-    if abs(j.deviation - expected) > 2 * hypot(tolerance, CURVED * expected):
         return None
-    for earlier, part in reasons:
+    if abs(j.deviation - made.expected) > 2 * hypot(made.tolerance, CURVED * made.expected):
+        return None
+    for earlier, part in made.reasons:
         origin = _origin(earlier, computed)
-        if (origin.starts or origin is not earlier) and abs(part) > SHARE * abs(expected):
+        if (origin.starts or origin is not earlier) and abs(part) > SHARE * abs(made.expected):
             return origin
     return None
 
@@ -353,7 +329,7 @@ def _against_own(own: OwnNumbers, left: set[int]) -> None:
     seen: set[Place] = set()
     for j in own.judged:
         judgeable = id(j) in left and isfinite(j.tolerance) and not j.inconsistent and not j.entry.is_way
-        made = own.steps.value(j) if judgeable else None
+        made = own.value(j) if judgeable else None
         if made is not None and seen.isdisjoint(made.known_in_part) and _contradicts(j, made, beyond):
             j.off_own = j.starts = True
             j.noted = _own_gives([m for m, _ in made.reasons[:MOST_TOLD]], j.exact + made.expected)

@@ -239,13 +239,12 @@ def measured_step(plan: Plan, scales: Mapping[str, Scale], k: int, step: Step, n
                       ((step, k, along / mu),), key, 1.0, head=step, signed=True)
 
 
-def size(title: str, entry_id: str, label: str, quantity: str, unit: str, k: int, step: Step, scale: tuple[str, float] = ("", 0.0),
+def size(title: str, entry_id: str, label: str, quantity: str, unit: str, k: int, step: Step,
          by: Step | None = None) -> Measurable:
-    """Magnitude of a vector from the pole or of a number as a result; ``scale`` of the plan a vector is measured on, key and mu."""
+    """Magnitude of a vector from the pole or of a number as a result."""
     value = complex(value_at(step, k))
     u = value / abs(value) if value else 1 + 0j
-    return Measurable(entry_id, RESULTS, title, label, quantity, unit, "result", abs(value), ((step, k, u),), scale[0], scale[1],
-                      head=by)
+    return Measurable(entry_id, RESULTS, title, label, quantity, unit, "result", abs(value), ((step, k, u),), head=by)
 
 
 def magnitude(entry: Measurable) -> Measurable:
@@ -262,13 +261,12 @@ def angle_apart(a: float, b: float, sense: bool = False) -> float:
 
 
 def scalar(found: Measurables, title: str, name: str, value: Any, unit: str, terms: Iterable[Term] = (), *, scale: str = "",
-           reading: float = 0.0, calculated: float = CALCULATED, signed: bool = True, part: str = "",
-           main: bool = True) -> None:
+           reading: float = 0.0, signed: bool = True, part: str = "", main: bool = True) -> None:
     """A result of the whole project; its id begins with its ``part`` where another one has a result of that name, too."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         exact = isinstance(value, int)
         key = f"{part}-{name}" if plain(f"{RESULTS}/{name}") in found.entries else name
         entry = Measurable(f"{RESULTS}/{key}", RESULTS, title, "", name, unit, "result", float(value), tuple(terms), scale,
-                           calculated=0.0 if exact else calculated, reading=reading, signed=True, main=main)
+                           calculated=0.0 if exact else CALCULATED, reading=reading, signed=True, main=main)
         found.add(entry if signed else magnitude(entry))
 

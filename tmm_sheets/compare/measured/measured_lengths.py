@@ -77,7 +77,7 @@ def compare(project: Project, path: Path, pencil: float, reading: float, say: Ca
     judged = judge(filled, found, pencil, reading)
     notes = (*found.notes, *filled.notes)
     title = tell("{project}: {file}").format(project=project.variant.called, file=path.name)
-    pictures = PlanPictures(judged, found, found.errors(filled.factors, pencil, reading))
+    pictures = PlanPictures(found, found.errors(filled.factors, pencil, reading))
     found_all, start = records(judged)
     following = sum(j.follows is not None for j in judged)
     tree = as_tree("measured", project.variant.project.name, None, found_all, start,

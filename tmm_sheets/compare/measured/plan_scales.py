@@ -17,16 +17,6 @@ SIMILAR_SCALES = 0.15
 """Difference of two scale factors, as a share, below which all lengths must tell of it."""
 
 
-def wrong_scales(judged: list[JudgedValue]) -> list[JudgedValue]:
-    """Mark the lengths of plans that were drawn with another scale factor than stated; returns what is left to explain."""
-    plans: dict[str, list[JudgedValue]] = {}
-    for j in judged:
-        if is_scaled(j):
-            plans.setdefault(j.entry.scale, []).append(j)
-    marked = {id(j) for of_plan in plans.values() for j in _drawn_to_another_scale(of_plan, judged)}
-    return [j for j in judged if id(j) not in marked]
-
-
 def is_scaled(j: JudgedValue) -> bool:
     """Whether a number is a length that a plan's scale factor makes longer, as it was stated."""
     return bool(j.entry.kind == "length" and j.entry.scale and j.line.factor is None)
@@ -58,28 +48,3 @@ def times_as_long(measured: Floats, expected: Floats, tolerance: Floats) -> tupl
 def drawn_to(times: float, step: Step, scale: str) -> Hypothesis:
     """The mistake: the plan of a step, by its scale factor, drawn so many times as large, what is taken from it being right."""
     return Hypothesis("scale", "plan scale", step, (), other=Number(f"{times:.3g}"), drawn=((scale, times),))
-
-
-def _drawn_to_another_scale(of_plan: list[JudgedValue], judged: list[JudgedValue]) -> list[JudgedValue]:
-    """Lengths of a plan that another scale factor explains, marked as such; none when it does not."""
-    found = times_as_long(*(np.array(x) for x in zip(*((j.line.value, j.exact, j.tolerance) for j in of_plan), strict=True)))
-    off = [j for j in of_plan if abs(j.exact) > 5 * j.tolerance and j.verdict == "red"]
-    if found is None or _has_reason(off, judged):
-        return []
-    times, explained = found
-    first = off[0]
-    first.starts = True
-    first.wrong = (drawn_to(times, first.entry.terms[-1][0], first.entry.scale),)
-    scaled = [j for j, told_ in zip(of_plan, explained, strict=True) if told_]
-    for j in scaled:
-        if j is not first and j.verdict != "green":
-            j.follows = first
-    return scaled
-
-
-def _has_reason(off: list[JudgedValue], judged: list[JudgedValue]) -> bool:
-    """True when something drawn earlier, on which this plan depends, is red already."""
-    first, plan = min(j.order for j in off), off[0].entry.plan
-    sources = {id(step) for j in off for step, _, g in j.rows if g}
-    return any(j.verdict == "red" and j.order < first and j.entry.plan != plan and id(j.entry.terms[-1][0]) in sources
-               for j in judged if j.entry.terms)
