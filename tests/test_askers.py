@@ -25,7 +25,7 @@ EXCEPTIONS = {
     "methods.gears.gear_pair": "whether a rack cuts into the flank, where the fillet begins; the greatest sliding",
     "methods.cams.cam_motion": "second derivatives, which the curvature is made of",
     "methods.cams.cam_profile": "the least radius of each part of the turn: the greatest of them is drawn",
-    "methods.cams.cam_closure": "the angle at which the spring is needed most",
+    "methods.cams.cam_inversion": "the angle at which the spring is needed most",
 }
 """Modules that decide by a step, or tell it on as a plain number."""
 

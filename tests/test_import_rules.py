@@ -17,13 +17,13 @@ METHODS = "methods.linkage methods.flywheel methods.gears methods.cams methods.i
 
 RULES = {
     # room: (what it imports at run time, what else it names in annotations)
-    "mechanism": ("construction.search_count", "construction mechanism.groups"),
-    "mechanism.groups": ("construction mechanism", ""),
+    "mechanism": ("construction.step", "construction mechanism.groups methods.linkage"),
+    "mechanism.groups": ("construction mechanism", "methods.linkage"),
     "mechanism.structure": ("mechanism", ""),
     "construction": ("", ""),
     "drawing": ("", ""),
     "methods": ("construction", ""),
-    "methods.linkage": ("construction mechanism methods.integration", "task.schema"),
+    "methods.linkage": ("construction mechanism methods.integration", "methods.flywheel task.schema"),
     "methods.flywheel": ("construction mechanism methods.integration methods.linkage", "task.schema"),
     "methods.gears": ("construction", "task.schema"),
     "methods.cams": ("construction methods.integration", "task.schema"),
@@ -171,9 +171,9 @@ def test_imports():
     ("task.variant", "from tmm_sheets.sheets import sheet"),
     ("task.units", "def f():\n    from tmm_sheets.methods.gears import rack"),
     ("methods.linkage.positions", "import tmm_sheets.sheets.sheet"),
-    ("methods.flywheel.chosen", "from tmm_sheets.task.schema import FlywheelTable"),
+    ("methods.flywheel.mertsalov", "from tmm_sheets.task.schema import FlywheelTable"),
     ("methods.cams.cam_zone", "from tmm_sheets.methods.flywheel.flywheel import Flywheel"),
-    ("construction.plan", "if TYPE_CHECKING:\n    from tmm_sheets.project import Project"),
+    ("construction.step", "if TYPE_CHECKING:\n    from tmm_sheets.project import Project"),
     ("mechanism.model", "from tmm_sheets.construction import rules"),
     ("sheets.cams.cam", "from tmm_sheets.methods.cams import cam_profile"),
     ("compare.photo.image", "import ezdxf"),
@@ -218,8 +218,9 @@ def circles(arrows):
 
 
 def test_no_circles():
-    """Not even in annotations, or in imports inside functions."""
-    arrows = {m: {ours(n) for n, *_ in imports(syntax(m)) if n.startswith("tmm_sheets")} - {m} for m in MODULES}
+    """Not even in imports inside functions. Annotations may name what is handed in from a room that imports this one."""
+    arrows = {m: {ours(n) for n, _, typing in imports(syntax(m)) if n.startswith("tmm_sheets") and not typing} - {m}
+              for m in MODULES}
     assert circles(arrows) == []
 
 

@@ -9,8 +9,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import TYPE_CHECKING, NamedTuple
 
-from tmm_sheets.construction.search_count import SearchCount
-from tmm_sheets.construction.step import Step, ordered, parents
+from tmm_sheets.construction.step import SearchCount, Step, ordered, parents
 from tmm_sheets.numbers import of_reader
 from tmm_sheets.progress import Stopwatch
 from tmm_sheets.words import tell

@@ -16,7 +16,7 @@ from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
-    from tmm_sheets.construction.search_count import SearchCount
+    from tmm_sheets.construction.step import SearchCount
     from tmm_sheets.mechanism.groups.three_legs import Course
     from tmm_sheets.mechanism.groups.triad import TriadGroup
     from tmm_sheets.mechanism.model import Mechanism
@@ -349,7 +349,7 @@ class Project:
             raise CannotBuild(
                 tell("a flywheel needs links with masses"), tell("add mass, centre and inertia to [[link]] of the project file")
             )
-        from tmm_sheets.methods.flywheel.chosen import flywheel
+        from tmm_sheets.methods.flywheel.mertsalov import flywheel
 
         if self.cycle.swings:
             raise CannotBuild(tell("a crank that only swings has no flywheel: no cycle in which its energy comes back"),

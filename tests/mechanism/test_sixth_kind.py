@@ -17,7 +17,7 @@ from tmm_sheets.lab.stress.invariants import State
 from tmm_sheets.mechanism.groups import RRP
 from tmm_sheets.mechanism.groups.contexts import Outline
 from tmm_sheets.mechanism.groups.dead_centres import PIN_ANGLE
-from tmm_sheets.mechanism.groups.rrr import RRRKind
+from tmm_sheets.mechanism.groups.hinged import RRRKind
 from tmm_sheets.mechanism.model import Crank, Guide, Link, StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import acceleration_plan
 from tmm_sheets.methods.linkage.checks import check_turn
@@ -46,13 +46,9 @@ class Triangle(RRRKind):
         u = pos.plan.add(pos.plan.free("BE"), rules.TURNED_BY, pos.direction(g.outer[0], g.inner), AHEAD)
         pos.points["E"] = pos.plan.add("E", rules.ALONG, pos.points[g.outer[0]], u, REACH)
 
-    def velocity(self, vel, g):
-        super().velocity(vel, g)
-        vel.points["E"] = vel.rotated("E", vel.points[g.outer[0]], g.links[0], g.outer[0], "E")
-
-    def acceleration(self, acc, g):
-        super().acceleration(acc, g)
-        acc.points["E"] = acc.rotated("E", acc.points[g.outer[0]], g.links[0], g.outer[0], "E")
+    def motion(self, plan, g):
+        super().motion(plan, g)
+        plan.points["E"] = plan.rotated("E", plan.points[g.outer[0]], g.links[0], g.outer[0], "E")
 
     def outlines(self, pos, g):
         (i, j), (p, q), c = g.links, g.outer, g.inner

@@ -22,8 +22,7 @@ from tests.sheets import equations
 from tests.sheets.traced import ROOMS, views
 from tmm_sheets import results
 from tmm_sheets.catalogue import read
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Given, Step
 from tmm_sheets.drawing.marks import Text
 from tmm_sheets.project import Project
 from tmm_sheets.record.recording import unit

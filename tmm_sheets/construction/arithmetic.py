@@ -20,10 +20,8 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.quantities import Directions, Points, Reals, Signs, Vectors
+from tmm_sheets.construction.expression import Directions, Floats, Points, Reals, Signs, Vectors, primitive
 
 _SPLIT = 134217729.0  # 2**27 + 1, Dekker's splitting constant for doubles
 
@@ -318,7 +316,6 @@ def by_pieces(x: Reals, *pieces: Reals) -> Reals:
     return np.select([np.asarray(x) < b for b in borders], values[:-1], values[-1])
 
 
-Floats = npt.NDArray[np.float64]
 Law = Literal["cubic", "straight"]
 
 

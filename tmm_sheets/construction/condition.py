@@ -15,14 +15,10 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Rule, Step, value_of
-
-Floats = npt.NDArray[np.float64]
+from tmm_sheets.construction.expression import Floats, primitive
+from tmm_sheets.construction.step import Plan, Rule, Step, value_of
 
 
 def _cross(u: Any, v: Any) -> Any:

@@ -70,11 +70,6 @@ PLACES = 4
 """Places of an angle that is found behind its minutes, those of seconds among them, and none."""
 
 
-def _read_angle(value: float, places: int) -> tuple[float, float]:
-    """An angle as it is written, and half a unit of its last digit, rad."""
-    return rounded_angle(value, places), radians(0.5 / (60 if not places else 3600 * 10 ** (places - 1)))
-
-
 @dataclass(frozen=True)
 class _Place:
     """Where a number stands in a formula: the same argument in degrees inside a function, as a number outside."""
@@ -119,7 +114,8 @@ def chosen(
     others = range(PLACES) if in_degrees and not of_result else OTHERS
     for fixed, more in product((held, ()) if held else ((),), others):
         digits = max(of_result + more, 1) if of_result else more
-        said, half = read(result, digits) if of_result else _read_angle(result, digits)
+        said, half = read(result, digits) if of_result else (
+            rounded_angle(result, digits), radians(0.5 / (60 if not digits else 3600 * 10 ** (digits - 1))))
         half = min(half, 0.5 * 10.0**-filled) if filled and more >= 0 else half
         if in_degrees and of_result and degrees_and_minutes(said) != degrees_and_minutes(result):
             continue

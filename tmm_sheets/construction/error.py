@@ -36,11 +36,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.rules import take
-from tmm_sheets.construction.step import Step, value_of
+from tmm_sheets.construction.step import Plan, Step, value_of
 
-Floats = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.intp]
 Matrices = npt.NDArray[np.float64]
 """Shape (n, 2, m): for every position a matrix with the rows x and y; n is 1 for what does not depend on the position."""

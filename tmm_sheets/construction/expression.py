@@ -17,9 +17,32 @@ from fractions import Fraction
 from functools import cache, reduce, wraps
 from math import pi
 from types import ModuleType
-from typing import Any, Literal, TypeVar, cast
+from typing import Any, Literal, TypeAlias, TypeVar, cast
 
 import numpy as np
+import numpy.typing as npt
+
+# --- quantities ---------------------------------------------------------------------------------------------------------
+
+# What the functions of constructions take and give, by name: quantities of one position, or of many at once. The plane is that of
+# the complex numbers, lengths are metres and angles radians unless a function says otherwise. Each is a number, or an array with
+# one at each position, shape (positions,), or of any other shapes that NumPy broadcasts: a function gives what its arguments
+# broadcast to, and NaN where its construction does not exist. For the type checker they are anything: a function is also traced
+# with symbols.
+Points: TypeAlias = Any
+"""Points x + iy, m."""
+Vectors: TypeAlias = Any
+"""Plane vectors x + iy: forces, N, velocities, m/s ..."""
+Directions: TypeAlias = Any
+"""Vectors of length 1 without unit."""
+Reals: TypeAlias = Any
+"""Lengths, m, angles, rad, and other real numbers."""
+Signs: TypeAlias = Any
+"""+1 or -1: one or the other of two solutions, as the function says."""
+Floats: TypeAlias = npt.NDArray[np.float64]
+Complex: TypeAlias = npt.NDArray[np.complex128]
+
+# --- trees --------------------------------------------------------------------------------------------------------------
 
 _SIGNS = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/", "power": "^", "negative": "-", "positive": "+",
           "absolute": "abs", "conjugate": "conj", "arctan2": "atan2", "arctan": "atan", "arcsin": "asin",
@@ -156,18 +179,22 @@ def trace(compute: Callable[..., Any], count: int) -> Expression | None:
         return None
 
 
+def fold(tree: Expression, argument: Callable[[int], Any], constant: Callable[[Any], Any],
+         operation: Callable[[Operation, list[Any]], Any]) -> Any:
+    """What comes of a tree from its leaves up: of an argument's number, a constant's value, an operation and its parts' values."""
+    if isinstance(tree, Operation):
+        return operation(tree, [fold(part, argument, constant, operation) for part in tree.parts])
+    return argument(tree.index) if isinstance(tree, Argument) else constant(tree.value)  # type: ignore[attr-defined]
+
+
 def evaluate(tree: Expression, arguments: Sequence[Any]) -> Any:
-    """Value of a tree for some arguments: numbers, or arrays of one shape."""
-    if isinstance(tree, Argument):
-        return arguments[tree.index]
-    if isinstance(tree, Constant):
-        return tree.value
-    assert isinstance(tree, Operation)
-    values = [evaluate(part, arguments) for part in tree.parts]
-    if tree.name == "re":
-        return np.real(values[0])
-    if tree.name == "im":
-        return np.imag(values[0])
+    """Value of a tree at some values of its arguments."""
+    return fold(tree, arguments.__getitem__, lambda value: value, _operated)
+
+
+def _operated(tree: Operation, values: list[Any]) -> Any:
+    if tree.name in ("re", "im"):
+        return np.real(values[0]) if tree.name == "re" else np.imag(values[0])
     if tree.function is not None:
         return tree.function(*values)
     if tree.name in "+-":
@@ -178,14 +205,9 @@ def evaluate(tree: Expression, arguments: Sequence[Any]) -> Any:
 
 
 def as_json(tree: Expression) -> Any:
-    """The tree for JSON: {"arg": 0}, a number, {"complex": [x, y]} or {"*": [...]}."""
-    if isinstance(tree, Argument):
-        return {"arg": tree.index}
-    if isinstance(tree, Constant):
-        value = tree.value
-        return {"complex": [value.real, value.imag]} if isinstance(value, complex) else value
-    assert isinstance(tree, Operation)
-    return {tree.name: [as_json(part) for part in tree.parts]}
+    """The tree as JSON: a number, ``{"arg": number}`` or ``{operation: operands}``."""
+    return fold(tree, lambda i: {"arg": i}, lambda x: {"complex": [x.real, x.imag]} if isinstance(x, complex) else x,
+                lambda operation, parts: {operation.name: parts})
 
 
 def from_json(data: Any, known: Mapping[str, Callable[..., Any]]) -> Expression:

@@ -345,11 +345,9 @@ def _negated(tree: expression.Expression) -> TypeGuard[expression.Operation]:
 
 def filled(tree: expression.Expression, arguments: Sequence[expression.Expression]) -> expression.Expression:
     """The tree with others in the places of its arguments."""
-    if isinstance(tree, expression.Argument):
-        return arguments[tree.index]
-    if isinstance(tree, expression.Operation):
-        return expression.Operation(tree.name, tuple(filled(p, arguments) for p in tree.parts), tree.function)
-    return tree
+    found: expression.Expression = expression.fold(
+        tree, arguments.__getitem__, expression.Constant, lambda of, parts: expression.Operation(of.name, tuple(parts), of.function))
+    return found
 
 
 def _is(tree: expression.Expression, value: float) -> bool:
@@ -393,13 +391,9 @@ def can_be_written(tree: expression.Expression) -> bool:
     return tree.name in _WRITTEN and all(map(can_be_written, tree.parts))
 
 
-def arguments(tree: expression.Expression) -> Iterator[int]:
-    """Numbers of the arguments in the order in which a formula shows them."""
-    if isinstance(tree, expression.Argument):
-        yield tree.index
-    elif isinstance(tree, expression.Operation):
-        for part in tree.parts:
-            yield from arguments(part)
+def arguments(tree: expression.Expression) -> tuple[int, ...]:
+    """Numbers of the arguments in the order they stand in."""
+    return tuple(expression.fold(tree, lambda i: (i,), lambda value: (), lambda of, parts: sum(parts, ())))
 
 
 SUM, PRODUCT, POWER, ATOM = 1, 2, 3, 4

@@ -20,7 +20,6 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.arithmetic import Curve
-from tmm_sheets.construction.given import FoundNumber
 from tmm_sheets.construction.program import (
     GIVEN,
     NUMBER,
@@ -35,7 +34,7 @@ from tmm_sheets.construction.program import (
     ufunc,
     written,
 )
-from tmm_sheets.construction.step import Step, ordered, parents, value_of
+from tmm_sheets.construction.step import FoundNumber, Step, ordered, parents, value_of
 
 _OTHERS = {"complex": "packed({0}, {1})", "re": "{0}.real", "im": "{0}.imag"}
 
@@ -323,13 +322,10 @@ def told(value: Any) -> Any:
         return {"x": told(value.x), "y": told(value.y), "left": told(value.left), "right": told(value.right), "law": value.law}
     array = np.asarray(value)
     if array.dtype.kind == "c":
-        return np.stack((array.real, array.imag), axis=-1).tolist() if np.isfinite(array).all() else _undefined(array)
+        pairs = [[None if x != x else x for x in (z.real, z.imag)] for z in np.atleast_1d(array).tolist()]
+        return np.stack((array.real, array.imag), axis=-1).tolist() if np.isfinite(array).all() else pairs
     found = array.tolist()
     return found if array.dtype.kind != "f" or np.isfinite(array).all() else [None if x != x else x for x in found]
-
-
-def _undefined(array: Any) -> Any:
-    return [[None if x != x else x for x in (z.real, z.imag)] for z in np.atleast_1d(array).tolist()]
 
 
 class Replay:

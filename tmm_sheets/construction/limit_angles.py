@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.quantities import Reals, Signs
+from tmm_sheets.construction.expression import Reals, Signs
 
 DIGITS = 60
 SAME = Decimal(10) ** (10 - DIGITS)

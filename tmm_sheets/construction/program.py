@@ -21,8 +21,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.expression import Argument, Constant, Expression, Operation, Primitive, Type, trace
-from tmm_sheets.construction.given import FoundNumber, Given
-from tmm_sheets.construction.step import Step, ordered, parents, value_of
+from tmm_sheets.construction.step import FoundNumber, Given, Step, ordered, parents, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.words import tell
 
@@ -220,7 +219,7 @@ class _List:
             raise CannotBuild(tell("operation {name} on a table or a curve is not known here").format(name=does))
         if None not in numbers:
             with np.errstate(all="ignore"):
-                return self.number(_carried_out(does, numbers))
+                return self.number(getattr(np, ufunc(does))(*map(np.float64, numbers)))
         return self._simpler(does, of, numbers) if does in _SIMPLER else self.done(does, *of)
 
     def _simpler(self, does: str, of: Parts, numbers: list[float | None]) -> int:
@@ -312,10 +311,6 @@ _NUMPY = {"+": "add", "-": "subtract", "*": "multiply", "/": "divide", "^": "pow
 def ufunc(does: str) -> str:
     """Name of numpy's function for an operation on real numbers."""
     return _NUMPY.get(does, does)
-
-
-def _carried_out(does: str, numbers: Sequence[Any]) -> float:
-    return float(getattr(np, ufunc(does))(*map(np.float64, numbers)))
 
 
 # --- the walk ----------------------------------------------------------------------------------------------------------------

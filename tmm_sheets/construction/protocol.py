@@ -13,9 +13,8 @@ import numpy as np
 
 from tmm_sheets.construction.equation import UNITS, Quantity, digits_for, of_step
 from tmm_sheets.construction.formula import letters_of
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import LINE_LINE, take
-from tmm_sheets.construction.step import Kind, Step, value_at, value_of
+from tmm_sheets.construction.step import Kind, Plan, Step, value_at, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.meanings import meaning_of
 from tmm_sheets.numbers import Sizes, clean, degrees_and_minutes, fixed, number, rounded_angle

@@ -12,6 +12,7 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.step import DISTANCE as DISTANCE
 from tmm_sheets.construction.step import Helper, Rule
 from tmm_sheets.words import marked
 
@@ -20,24 +21,12 @@ def _same(x: Any) -> Any:
     return x
 
 
-def _shift(p: Any, v: Any) -> Any:
-    return p + v
-
-
-def _distance(p: Any, q: Any) -> Any:
-    return np.abs(q - p)
-
-
 def arm(about: Any, at: Any, force: Any) -> tuple[Helper, ...]:
     """The line of action of a force, from its point to the foot of the perpendicular, and the arm itself; none of no force."""
     if not abs(force) > 0:
         return ()
     foot = ar.foot(about, at, force / abs(force))
     return Helper("line", at, foot), Helper("line", about, foot)
-
-
-def _difference(p: Any, q: Any) -> Any:
-    return q - p
 
 
 @primitive("values at positions", "real")
@@ -80,7 +69,7 @@ OFFSET = Rule(
     marked("From {0} lay off {2} along {1}: point {name}."),
     lambda a, v: (Helper("arc", a[0], v, abs(a[2])),), laid_off=True,
 )
-SHIFT = Rule("lay off a vector", _shift, ("point", "vector"), "point", marked("From {0} lay off {1}: point {name}."),
+SHIFT = Rule("lay off a vector", lambda p, v: p + v, ("point", "vector"), "point", marked("From {0} lay off {1}: point {name}."),
              lambda a, v: (Helper("line", a[0], v),), laid_off=True)
 TURN = Rule("turn by 90 degrees", ar.turned, ("direction",), "direction", marked("Turn the direction {0} by 90°."))
 PERPENDICULAR = Rule(
@@ -110,8 +99,8 @@ TANGENT = Rule(
 FOOT = Rule("foot of a perpendicular", ar.foot, ("point", "point", "direction"), "point",
             marked("From {0} drop the perpendicular to the line {2}: point {name}."),
             lambda a, v: (Helper("line", a[0], v),))
-DISTANCE = Rule("measure a length", _distance, ("point", "point"), "length", marked("Measure the segment {0}{1} = {value}."))
-DIFFERENCE = Rule("measure a vector", _difference, ("point", "point"), "vector", marked("Measure the vector {0}{1}: {value}."))
+DIFFERENCE = Rule("measure a vector",
+                  lambda p, q: q - p, ("point", "point"), "vector", marked("Measure the vector {0}{1}: {value}."))
 ARM = Rule("measure an arm", ar.arm, ("point", "point", "force"), "length",
            marked("Measure the arm of the force {2} about {0}: {value}."), lambda a, v: arm(*a))
 TURNED_BY = Rule("turn a direction", lambda u, angle: u * ar.unit(angle), ("direction", "angle"), "direction",

@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction.function import JavaScriptSource, told
-from tmm_sheets.construction.given import Given, GivenNumber, GivenPoint
 from tmm_sheets.construction.program import depending, is_row, name_of, program, rows_of
 from tmm_sheets.construction.rules import GIVEN_NUMBER
-from tmm_sheets.construction.step import Step, ordered, parents, value_of
+from tmm_sheets.construction.step import Given, GivenNumber, GivenPoint, Step, ordered, parents, value_of
 from tmm_sheets.mechanism.groups.triad import NEAR_DIRECTION, NEAR_PLACE, TriadGroup
 from tmm_sheets.methods.flywheel.flywheel import Flywheel
 from tmm_sheets.methods.flywheel.reduced import Reduction, turning_back

@@ -6,31 +6,19 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import takewhile
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from tmm_sheets.construction.search_count import SearchCount
+from tmm_sheets.construction.step import Plan, SearchCount, Step
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.limit_angles import Gaps
-    from tmm_sheets.construction.plan import Plan
-    from tmm_sheets.construction.step import Step
-    from tmm_sheets.mechanism.groups.contexts import (
-        AccelerationPlan,
-        Crossing,
-        ForcePlans,
-        OuterReaction,
-        Outline,
-        PositionPlan,
-        VelocityPlan,
-    )
-    from tmm_sheets.mechanism.groups.limits import AssemblyLimit
+    from tmm_sheets.mechanism.groups.contexts import AssemblyLimit, Crossing, Outline
 
-    # The plans as a kind of group sees them.
-    Positions: TypeAlias = PositionPlan["Mechanism", "StructuralGroup"]
-    Velocities: TypeAlias = VelocityPlan["Mechanism", "StructuralGroup"]
-    Accelerations: TypeAlias = AccelerationPlan["Mechanism", "StructuralGroup"]
-    Kinetostatics: TypeAlias = ForcePlans["Mechanism", "StructuralGroup"]
+    # The plans that a kind constructs itself on; at run time it knows nothing of their room.
+    from tmm_sheets.methods.linkage.forces import Kinetostatics as Kinetostatics
+    from tmm_sheets.methods.linkage.positions import Positions as Positions
+    from tmm_sheets.methods.linkage.velocities import MotionPolygon as MotionPolygon
 
 Motion = Literal["rotation", "translation"]
 
@@ -83,6 +71,42 @@ class Guide:
     towards: str | None = None
 
 
+@dataclass(frozen=True)
+class OuterReaction:
+    """Reaction on a link from outside its group: in the hinge ``point``, or from ``guide``, balancing moments about ``point``."""
+
+    link: str
+    point: str
+    guide: str | None = None
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A leg: its link and the ``corner`` of the triangle it belongs to.
+
+    ``outer`` is its outer hinge, ``length`` m from there to the corner; or ``guide`` the outer guide it slides along; or, with
+    ``outer`` and ``slot``, it is a block in a slot of the triangle through the corner, turned by ``slot``, rad, from the line of
+    the first corner to the second.
+    """
+
+    link: str
+    corner: str
+    outer: str = ""
+    guide: str = ""
+    length: float = 0.0
+    slot: float | None = None
+
+    @property
+    def form(self) -> str:
+        """Its outer and its inner pair: R turning, P sliding."""
+        return "PR" if self.guide else "RR" if self.slot is None else "RP"
+
+    @property
+    def at(self) -> str:
+        """Point of the triangle where it is held: its normal passes there."""
+        return self.corner if self.slot is None else self.outer
+
+
 class GroupKind(ABC):
     """A kind of group (вид группы Ассура; manual 000, table 3.1); a kind has no state of its own.
 
@@ -107,13 +131,23 @@ class GroupKind(ABC):
     def __repr__(self) -> str:
         return type(self).__name__
 
-    @abstractmethod
+    def legs(self, g: StructuralGroup) -> tuple[Leg, ...]:
+        """Each link of the group with its outer pair; a guide holds the middle hinge, or the pin in a slot."""
+        (first, middle, last), hinges, guides = tuple(self.orders[0]), iter(g.outer), iter(g.guides)
+        corner, lengths = str(g.inner) if middle == "R" else g.outer[0], (*g.lengths, 0.0, 0.0)
+        return tuple(Leg(link, corner, next(hinges), length=length) if pair == "R" else Leg(link, corner, guide=next(guides))
+                     for link, pair, length in zip(g.links, (first, last), lengths, strict=False))
+
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         """Outer, inner and outer kinematic pair of a group in a mechanism."""
+        (i, j), (one, two), primes = g.links, self.legs(g), iter("′″")
+        return [turning(hinge, a, b) if form == "R" else sliding(one.corner + next(primes), a, b)
+                for form, hinge, a, b in zip(self.orders[0], (one.outer, str(g.inner), two.outer), (m.carrier(one), i, j),
+                                             (i, j, m.carrier(two)), strict=True)]
 
     def carried(self, g: StructuralGroup) -> dict[str, str]:
-        """Points the group brings along, each with the link it is fixed on."""
-        return {g.inner: g.links[0]} if g.inner else {}
+        """Points the group brings along, each with the link it is fixed on: of a single slider the point on its guide."""
+        return {g.inner: g.links[len(g.guides) == 1]} if g.inner else {}
 
     def guided(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:
         """Points the group brings along a guide, each with the guide."""
@@ -124,12 +158,8 @@ class GroupKind(ABC):
         """Construct the inner point and the directions of both links in the position plan."""
 
     @abstractmethod
-    def velocity(self, vel: Velocities, g: StructuralGroup) -> None:
-        """Solve the vector equations of the velocities by two lines (manual 000, table 3.1)."""
-
-    @abstractmethod
-    def acceleration(self, acc: Accelerations, g: StructuralGroup) -> None:
-        """Solve the vector equations of the accelerations by two lines (manual 000, table 3.6)."""
+    def motion(self, plan: MotionPolygon, g: StructuralGroup) -> None:
+        """Solve the vector equations of velocities or of accelerations by two lines (manual 000, tables 3.1 and 3.6)."""
 
     @abstractmethod
     def force(self, forces: Kinetostatics, g: StructuralGroup) -> None:
@@ -188,9 +218,10 @@ class GroupKind(ABC):
     def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
         """How both links look."""
 
-    @abstractmethod
     def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
         """Reactions from outside, in order of the links."""
+        return [OuterReaction(leg.link, leg.corner, leg.guide) if leg.guide else OuterReaction(leg.link, leg.outer)
+                for leg in self.legs(g)]
 
     def force_plans(self, g: StructuralGroup) -> tuple[str, ...]:
         """Names of the force plans, in the order they are drawn: that of the whole group, or one of each link."""
@@ -429,6 +460,10 @@ class Mechanism:
             if point in (carried := g.kind.carried(g)):
                 return carried[point]
         raise KeyError(point)
+
+    def carrier(self, leg: Leg) -> str:
+        """Link outside a group that a leg of it is paired with."""
+        return self.guides[leg.guide].link if leg.guide else self.owner(leg.outer)
 
     @property
     def mobility(self) -> int:

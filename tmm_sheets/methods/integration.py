@@ -13,31 +13,12 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tmm_sheets.construction.arithmetic import Curve
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.quantities import Directions, Points, Reals
+from tmm_sheets.construction.expression import Floats, Reals, primitive
 from tmm_sheets.construction.rules import LINE_LINE, RAY
-from tmm_sheets.construction.step import Helper, Rule, Step, value_of
+from tmm_sheets.construction.step import Helper, Plan, Rule, Step, value_of
 from tmm_sheets.words import marked, tr
-
-Floats = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
-
-
-def _mid_ordinate(x0: Reals, x1: Reals, y: Reals) -> Any:
-    return (x0 + x1) / 2 + 1j * y
-
-
-def _chord(start: Any, direction: Directions, x: Reals) -> Any:
-    # The abscissa is the given one, not the sum of the steps before: borders of intervals do not drift.
-    return x + 1j * (np.imag(start) + (x - np.real(start)) * np.imag(direction) / np.real(direction))
-
-
-def _between(p: Points, q: Points, ordinate: Reals) -> Any:
-    return (np.real(p) + np.real(q)) / 2 + 1j * np.imag(ordinate)
 
 
 @primitive("smooth curve", "other")
@@ -89,7 +70,8 @@ POLE = Rule(
 ORIGIN = Rule("origin of the integral", lambda y: 1j * y, ("ordinate",), "point",
               marked("On the axis of ordinates of the lower graph mark the starting point {name}."))
 MID_ORDINATE = Rule(
-    "ordinate in the middle of an interval", _mid_ordinate, ("ordinate", "ordinate", "ordinate"), "point",
+    "ordinate in the middle of an interval",
+    lambda x0, x1, y: (x0 + x1) / 2 + 1j * y, ("ordinate", "ordinate", "ordinate"), "point",
     marked("In the middle of the interval between the abscissae {0} and {1} draw the ordinate {2} up to the curve: point {name}."),
     lambda a, v: (Helper("line", complex(v.real, 0), v),),
 )
@@ -99,7 +81,9 @@ CARRY = Rule(
     lambda a, v: (Helper("line", a[0], v),),
 )
 CHORD = Rule(
-    "chord parallel to a ray", _chord, ("point", "direction", "ordinate"), "point",
+    "chord parallel to a ray",
+    lambda start, direction, x: x + 1j * (np.imag(start) + (x - np.real(start)) * np.imag(direction) / np.real(direction)),
+    ("point", "direction", "ordinate"), "point",
     marked("From {0}, parallel to the ray {1}, draw the chord up to the ordinate at the abscissa {2}: point {name}."),
     lambda a, v: (Helper("line", a[0], v),),
 )
@@ -108,7 +92,8 @@ CHORD_OF_CURVE = Rule(
     marked("Draw the chord {0}{1} of the arc of the curve."), lambda a, v: (Helper("line", a[0], a[1]),),
 )
 CARRY_BETWEEN = Rule(
-    "carry to the middle of an interval", _between, ("point", "point", "point"), "point",
+    "carry to the middle of an interval",
+    lambda p, q, ordinate: (np.real(p) + np.real(q)) / 2 + 1j * np.imag(ordinate), ("point", "point", "point"), "point",
     marked("Carry {2} horizontally over to the middle of the interval between {0} and {1}: point {name}."),
     lambda a, v: (Helper("line", a[2], v),),
 )

@@ -9,8 +9,7 @@ import numpy as np
 
 from tmm_sheets import results, spelling
 from tmm_sheets.construction import protocol
-from tmm_sheets.construction.given import Given, GivenNumber, GivenPoint
-from tmm_sheets.construction.step import Reported, Step, value_at
+from tmm_sheets.construction.step import Given, GivenNumber, GivenPoint, Reported, Step, value_at
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.numbers import in_a_row, listed
 from tmm_sheets.project import LINKAGE

@@ -21,9 +21,9 @@ from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
     from tmm_sheets.box import Box
+    from tmm_sheets.construction.expression import Floats
     from tmm_sheets.methods.cams.cam_profile import RockerCam, TappetCam
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
-    from tmm_sheets.methods.integration import Floats
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.arrangement import ViewPlace
 

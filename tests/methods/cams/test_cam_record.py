@@ -8,8 +8,7 @@ import pytest
 from tests.methods.cams.cam_cases import cam_data, flat_data, rocker_data
 from tmm_sheets.construction import expression
 from tmm_sheets.construction.arithmetic import Curve
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.step import Reported, Step, value_of
+from tmm_sheets.construction.step import Given, Reported, Step, value_of
 from tmm_sheets.methods.cams.cam_profile import cam
 
 TABLE = [[0, 0], [0.25, 1], [0.5, 0.2], [0.5, -0.3], [0.75, -1], [1, 0]]

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.given import Given
 from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Given, Step
 
 
 class Rows:

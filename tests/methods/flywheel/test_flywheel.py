@@ -18,9 +18,9 @@ from hypothesis import strategies as st
 from tests.methods.linkage import shaper_truth as truth
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.scale import Scale
-from tmm_sheets.methods.flywheel.chosen import flywheel
 from tmm_sheets.methods.flywheel.diagram_scales import DiagramSpace, FlywheelScales
 from tmm_sheets.methods.flywheel.energy_mass import limit
+from tmm_sheets.methods.flywheel.mertsalov import flywheel
 from tmm_sheets.methods.flywheel.wheel import wheel
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 
@@ -266,11 +266,6 @@ def test_every_plan_speaks_and_can_be_built():
             assert plan.check() is None
             for k in range(len(plan.labels)):
                 assert all(s.endswith(".") and "nan" not in s for s in sentences(plan, k, lambda mm: mm))
-
-
-def test_unknown_method():
-    with pytest.raises(ValueError, match="'guess' is not known"):
-        flywheel(truth.Shaper(), SimpleNamespace(method="guess"))
 
 
 # --- scales ------------------------------------------------------------------------------------------------------------

@@ -21,11 +21,10 @@ from tests.project_files import from_file, project
 from tmm_sheets import catalogue
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.scale import Scale
-from tmm_sheets.methods.flywheel.chosen import flywheel
 from tmm_sheets.methods.flywheel.diagram_scales import FlywheelScales
+from tmm_sheets.methods.flywheel.energy_mass import Energy, steady
 from tmm_sheets.methods.flywheel.flywheel import Flywheel
-from tmm_sheets.methods.flywheel.mertsalov import SPACE, Mertsalov
-from tmm_sheets.methods.flywheel.running import Energy, steady
+from tmm_sheets.methods.flywheel.mertsalov import SPACE, Mertsalov, flywheel
 from tmm_sheets.methods.flywheel.wheel import motor_check, wheel
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
 from tmm_sheets.project import Project

@@ -3,7 +3,7 @@
 import pytest
 
 from tests.project_files import from_file, project
-from tmm_sheets.construction.given import GivenNumber
+from tmm_sheets.construction.step import GivenNumber
 
 
 @pytest.mark.parametrize("turned_over", [False, True])

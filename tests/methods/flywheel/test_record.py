@@ -10,8 +10,7 @@ from tmm_sheets import catalogue
 from tmm_sheets.construction import expression
 from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.error import Errors
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.step import Reported, Step, value_of
+from tmm_sheets.construction.step import Given, Reported, Rule, Step, value_of
 from tmm_sheets.project import Project
 from tmm_sheets.task import variant
 
@@ -230,7 +229,6 @@ def test_values_of_single_positions_have_errors_of_their_own():
     """Two ordinates taken from one row are drawn apart: their sum has the root of the squares, twice one of them twice."""
     from tmm_sheets.construction import rules
     from tmm_sheets.construction.plan import Plan
-    from tmm_sheets.construction.step import Rule
 
     plan = Plan("row", "", "mm", ("0", "1", "2"))
     centre = plan.add("O", rules.GIVEN, 0j)

@@ -8,12 +8,10 @@ import pytest
 from tests.methods.gears import reducer_cases as cases
 from tests.methods.gears.test_gears import data
 from tmm_sheets.construction import arithmetic, expression
-from tmm_sheets.construction.given import Given, GivenNumber
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import sentences
-from tmm_sheets.construction.step import Reported, Step, value_of
+from tmm_sheets.construction.step import Given, GivenNumber, Reported, Step, value_of
 from tmm_sheets.methods.gears import (
-    fillets,
     gear_engagement,
     gear_formulas,
     planetary,
@@ -28,7 +26,7 @@ from tmm_sheets.methods.gears.gear_pair import gear_pair, settled
 from tmm_sheets.methods.gears.reducer import reducer
 from tmm_sheets.task.schema import GearTable
 
-KNOWN = expression.primitives(arithmetic, fillets, gear_engagement, gear_formulas, pairs, planetary, rack, reducers,
+KNOWN = expression.primitives(arithmetic, gear_engagement, gear_formulas, pairs, planetary, rack, reducers,
                                train_steps)
 CASES = ["fillet", "no shift", "rack", "undercut", "rule", "reduced", *cases.MACHINES, "two internal", "ring"]
 

@@ -11,7 +11,7 @@ from shapely import Polygon
 from tests.methods.gears.test_gears import data, told
 from tests.project_files import GEAR, read
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.methods.gears.gear_pair import MeshingPair, gear_pair
+from tmm_sheets.methods.gears.gear_pair import GearData, gear_pair
 
 ALPHA = radians(20)
 
@@ -220,4 +220,4 @@ def test_ways_to_say_it_are_one():
     assert one.keys() == two.keys()
     assert all(np.array_equal(one[name], two[name], equal_nan=True) for name in one)
     assert one["p"] == pytest.approx(3.5 * pi)
-    assert replace(MeshingPair((1, 2), 1, (0, 0), 1, 1, 1, 1, "", "")).mesh == "external"
+    assert replace(GearData((1, 2), 1, (0, 0), 1, 1, 1, 1, "", "")).mesh == "external"

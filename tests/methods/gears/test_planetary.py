@@ -10,9 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tmm_sheets.methods.gears.planetary import (
+    EFFICIENCY,
     SCHEMES,
     assembles,
-    efficiency_formula,
+    efficiency_case,
     inner_ratio,
     least_ring,
     neighbours_clear,
@@ -92,7 +93,7 @@ def test_efficiency_is_that_of_the_power_balance(case, eta0):
     if abs(inner - 1) < 1e-6:
         return
     for driver in SCHEMES[name].drivers:
-        got = float(efficiency_formula(inner, driver)(inner, eta0))
+        got = float(EFFICIENCY[efficiency_case(inner, driver)](inner, eta0))
         assert got == pytest.approx(balanced(inner, driver, eta0), rel=1e-9)
         assert 0 < got < 1
 
@@ -168,6 +169,6 @@ def test_schemes_of_the_manual():
     assert stage_ratio(inner_ratio((1, -1), (15, 30, 15, 60)), "sun") == 9
     assert gcd(30, 15) == 15
     eta0 = 0.98**2
-    assert efficiency_formula(-8.0, "sun")(-8.0, eta0) == pytest.approx((1 + eta0 * 8) / 9, rel=1e-14)
-    assert efficiency_formula(0.9, "carrier")(0.9, eta0) == pytest.approx(0.1 / (1 - 0.9 * eta0), rel=1e-12)
-    assert efficiency_formula(1.1, "carrier")(1.1, eta0) == pytest.approx(eta0 * 0.1 / (1.1 - eta0), rel=1e-12)
+    assert EFFICIENCY[efficiency_case(-8.0, "sun")](-8.0, eta0) == pytest.approx((1 + eta0 * 8) / 9, rel=1e-14)
+    assert EFFICIENCY[efficiency_case(0.9, "carrier")](0.9, eta0) == pytest.approx(0.1 / (1 - 0.9 * eta0), rel=1e-12)
+    assert EFFICIENCY[efficiency_case(1.1, "carrier")](1.1, eta0) == pytest.approx(eta0 * 0.1 / (1.1 - eta0), rel=1e-12)

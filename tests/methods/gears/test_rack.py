@@ -14,7 +14,7 @@ from tests.methods.gears.test_gears import data, polygon
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears.gear_engagement import unrolled
-from tmm_sheets.methods.gears.gear_pair import MeshingPair, gear_pair, settled
+from tmm_sheets.methods.gears.gear_pair import GearData, gear_pair, settled
 from tmm_sheets.methods.gears.gear_steps import geometry_plan
 from tmm_sheets.methods.gears.rack import Rack, flank
 
@@ -176,9 +176,9 @@ class _Reducer:
 
 
 def test_settled_data():
-    assert settled(_Section()) == MeshingPair((12, 30), 0.005, "rule", ALPHA, 1.0, 0.25, 1, "clockwise", "rack")
+    assert settled(_Section()) == GearData((12, 30), 0.005, "rule", ALPHA, 1.0, 0.25, 1, "clockwise", "rack")
     got = settled(_Section(teeth="reducer", module=None, shift=(0.3, -0.1)), _Reducer())
-    assert got == MeshingPair((11, 33), 0.012, (0.3, -0.1), ALPHA, 0.8, 0.2, 1, "clockwise", "rack")
+    assert got == GearData((11, 33), 0.012, (0.3, -0.1), ALPHA, 0.8, 0.2, 1, "clockwise", "rack")
 
 
 def test_rack_teeth_stand_where_the_others_do():

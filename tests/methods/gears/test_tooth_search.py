@@ -10,14 +10,15 @@ from tests.few import few
 from tests.methods.gears import reducer_cases as cases
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears.planetary import (
+    RUNNERS_UP,
     SCHEMES,
     assembles,
     inner_ratio,
     least_ring,
     neighbours_clear,
+    search,
     stage_ratio,
 )
-from tmm_sheets.methods.gears.tooth_search import RUNNERS_UP, search
 
 
 def everything(d):

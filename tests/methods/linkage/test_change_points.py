@@ -18,8 +18,7 @@ from tmm_sheets.mechanism.groups import RPR, RRP, RRR
 from tmm_sheets.mechanism.model import Crank, Guide, Link, LinkPoint, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.accelerations import acceleration_plan
 from tmm_sheets.methods.linkage.checks import check_assembly, check_followed
-from tmm_sheets.methods.linkage.force_limits import limits_of_forces
-from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics
+from tmm_sheets.methods.linkage.forces import external_loads, kinetostatics, limits_of_forces
 from tmm_sheets.methods.linkage.numbering import even_cycle, swing_cycle
 from tmm_sheets.methods.linkage.positions import passages, position_plan
 from tmm_sheets.methods.linkage.velocities import velocity_plan

@@ -13,8 +13,7 @@ from tmm_sheets.construction.step import value_of
 from tmm_sheets.mechanism.groups import RRR
 from tmm_sheets.mechanism.model import StructuralGroup
 from tmm_sheets.methods.linkage.positions import position_plan
-from tmm_sheets.methods.linkage.velocities import velocity_plan
-from tmm_sheets.methods.linkage.watched import Watched
+from tmm_sheets.methods.linkage.velocities import Watched, velocity_plan
 from tmm_sheets.project import Project
 
 OWN = Path(__file__).parents[2] / "projects"

@@ -12,13 +12,14 @@ import numpy as np
 from mpmath import mp
 
 from tmm_sheets import catalogue
+from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.lab.bench.records import Bench
 from tmm_sheets.methods.flywheel.energy_mass import highest
 from tmm_sheets.methods.flywheel.flywheel import Flywheel
 from tmm_sheets.methods.flywheel.mertsalov import Mertsalov
 from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
-from tmm_sheets.methods.integration import Floats, Quadrature, integrate, ordinates, smooth
+from tmm_sheets.methods.integration import Quadrature, integrate, ordinates, smooth
 from tmm_sheets.project import Project
 
 CHORDS = (6, 12, 24, 48, 96, 192, 384)

@@ -20,8 +20,8 @@ from tmm_sheets.methods.cams.cam_profile import RollerCam, cam
 from tmm_sheets.methods.gears.gear_engagement import divisions, involute_plan
 from tmm_sheets.methods.gears.gear_geometry import GearWheel
 from tmm_sheets.methods.gears.gear_pair import GearPair
+from tmm_sheets.methods.gears.planetary import TIERS, ToothSet, search
 from tmm_sheets.methods.gears.rack import Rack, flank
-from tmm_sheets.methods.gears.tooth_search import TIERS, ToothSet, search
 from tmm_sheets.project import Project
 
 DIGITS = 40

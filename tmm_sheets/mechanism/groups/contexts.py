@@ -1,25 +1,27 @@
-"""What kinds of groups and the plans they are in hand one another.
-
-A kind is handed the plans it constructs itself on, as far as it uses them, and force plans with their loads; it tells how the crank
-angle knows its crossing, how its links look, which reactions come from outside. The plans are those of
-:mod:`tmm_sheets.methods.linkage`, which fit these protocols; the kinds know nothing of that room. ``M`` is the mechanism and ``G``
-a group, left open here because a group has a kind.
+"""What kinds of groups tell of themselves: how the crank angle knows their crossing, how their links look, which reactions come
+from outside, the loads and plans of their forces.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
+from math import ceil, floor, log10
+from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+
+from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.indices import against, on_link
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Helper, Rule, Step
-from tmm_sheets.words import marked
+from tmm_sheets.construction.expression import Directions, Reals
+from tmm_sheets.construction.step import Helper, Plan, Rule, Step
+from tmm_sheets.mechanism.model import Leg as Leg
+from tmm_sheets.mechanism.model import OuterReaction as OuterReaction
+from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
-    from tmm_sheets.mechanism.groups.three_legs import Course
+    pass
+    from tmm_sheets.mechanism.model import Positions
 
 
 @dataclass(frozen=True)
@@ -77,48 +79,6 @@ class Outline:
     along: Step | None = None
     slot: Step | None = None
     slotted: bool = False
-
-
-@dataclass(frozen=True)
-class OuterReaction:
-    """Reaction on a link from outside its group: in the hinge ``point``, or from ``guide``, balancing moments about ``point``."""
-
-    link: str
-    point: str
-    guide: str | None = None
-
-
-@dataclass(frozen=True)
-class Leg:
-    """A leg: its link and the ``corner`` of the triangle it belongs to.
-
-    ``outer`` is its outer hinge, ``length`` m from there to the corner; or ``guide`` the outer guide it slides along; or, with
-    ``outer`` and ``slot``, it is a block in a slot of the triangle through the corner, turned by ``slot``, rad, from the line of
-    the first corner to the second.
-    """
-
-    link: str
-    corner: str
-    outer: str = ""
-    guide: str = ""
-    length: float = 0.0
-    slot: float | None = None
-
-    @property
-    def form(self) -> str:
-        """Its outer and its inner pair: R turning, P sliding."""
-        return "PR" if self.guide else "RR" if self.slot is None else "RP"
-
-    @property
-    def at(self) -> str:
-        """Point of the triangle where it is held: its normal passes there."""
-        return self.corner if self.slot is None else self.outer
-
-    def index(self, triangle: str, carrier: str) -> str:
-        """Index of the motion that it leaves the triangle: against its outer hinge, its block, or the ``carrier`` of its guide."""
-        if self.guide:
-            return against(self.corner, carrier)
-        return f"{self.corner if self.slot is None else on_link(self.outer, triangle)}{self.outer}"
 
 
 @dataclass(frozen=True)
@@ -192,177 +152,84 @@ class ForcePlan:
         return self.plan.add(name, CLOSE, tail, head)
 
 
-M = TypeVar("M", covariant=True)
-G = TypeVar("G", contravariant=True)
+SWEEP = 720
+"""Crank angles of the fine sweep; between them the narrowest places are searched for."""
+
+TOUCH = 1e-6
+"""Share of the crank length (sine of the angle between guides) below which a pin sits on a pivot (guides are parallel)."""
 
 
-class PositionPlan(Protocol[M, G]):
-    """Points, m, unit directions of links and guides, by their names."""
+@dataclass(frozen=True)
+class AssemblyLimit:
+    """One condition of assembly of a group: it holds where ``margin`` (m, or the sine of an angle) is not negative.
 
-    plan: Plan
-    points: dict[str, Step]
-    directions: dict[str, Step]
-    guide_points: dict[str, Step]
-    guide_directions: dict[str, Step]
-    rays: dict[tuple[str, str], Step]
-    feet: dict[str, str]
-    special: dict[str, SpecialPoint]
-    false: dict[str, Plan]
-    angle: Any
-    where: str
+    ``unit`` is what the margin is compared with: the crank length, or 1 for a sine. ``say`` words the greatest lack, whose
+    place is named when it is ``measured``; ``hint`` words what would help, from the positions of the whole turn.
+    """
 
-    @property
-    def value(self) -> Callable[[Step], Any]:
-        """Value of a step at the crank's angles."""
-
-    @property
-    def mechanism(self) -> M:
-        """The mechanism that is drawn."""
-
-    def direction(self, p: str, q: str) -> Step:
-        """Direction from one point to another, drawn once."""
-
-    def crossing(self, group: G) -> tuple[Step, ...]:
-        """Further arguments of the rule that makes a group's crossing, where the crank angle knows better than the points."""
-
-    def side(self, group: G) -> Any:
-        """On which side a group is put together, +1 or -1: a step where it changes in change points."""
-
-    def place(self, name: str) -> Step:
-        """A point of the mechanism or a special point by its name."""
-
-    def course(self, group: G) -> Course:
-        """Way of assembly of a group of class III round the turn, followed once."""
-
-    def known_sine(self, group: G) -> tuple[Step, ...]:
-        """The sine between a group's lines, where it is known better than they tell."""
+    unit: float
+    margin: Callable[[Positions], Any]
+    say: Callable[[float], str]
+    hint: Callable[[Positions], str]
+    measured: bool = True
 
 
-class MotionPlan(Protocol[M, G]):
-    """What plans of velocities and of accelerations have alike: vectors from the pole, by the points' names."""
-
-    plan: Plan
-    points: dict[str, Step]
-    coincident: dict[str, Step]
-    special: dict[str, Step]
-
-    @property
-    def positions(self) -> PositionPlan[M, G]:
-        """The positions they belong to."""
-
-    @property
-    def pole(self) -> Step:
-        """The pole of the plan."""
-
-    def name(self, point: str) -> str:
-        """Free name on the plan for a point of the mechanism."""
-
-    def on(self, link: str, through: str, at: str) -> Step:
-        """Motion of the point of a link that coincides with ``at``, from the link's point ``through``; drawn once."""
-
-    def rotated(self, point: str, start: Step, link: str, q: str, b: str) -> Step:
-        """Motion of a point of a turning link at ``b``, from that at ``q``; named after ``point``."""
-
-    def similar(self, point: str, q: Step, b: Step, big_q: str, big_b: str, name: str = "") -> Step:
-        """Motion of a point of a link by similarity, from the motions of two of its points; named after it, or otherwise."""
-
-    def perpendicular(self, p: str, q: str) -> Step:
-        """Direction across the line of two points, drawn once."""
-
-    def known(self, group: G) -> tuple[Step, ...]:
-        """What is known of the crossing of a group's lines better than they tell: their sine, the way along the first."""
-
-    def turning(self, link: str, big_q: str, big_b: str, q: Step, b: Step) -> None:
-        """How a link turns, from the motions ``q`` and ``b`` of two of its points."""
-
-    def turns_with(self, link: str, other: str) -> None:
-        """A link does not turn against another."""
+def mm(length: float) -> str:
+    """A length, m, in words."""
+    return tell("{length:.4g} mm").format(length=length * 1000)
 
 
-class VelocityPlan(MotionPlan[M, G], Protocol[M, G]):
-    """Velocities, m/s."""
-
-    def guide(self, guide: str, at: str) -> tuple[Step, str]:
-        """Velocity of the guide's point that coincides with ``at``, and the guide's link; the pole for a fixed guide."""
+def lacking(length: float) -> str:
+    """A lack, m, in words."""
+    return mm(length) if length >= 1e-6 else tell("less than 0.001 mm")
 
 
-class AccelerationPlan(MotionPlan[M, G], Protocol[M, G]):
-    """Accelerations, m/s2."""
-
-    @property
-    def velocities(self) -> VelocityPlan[M, G]:
-        """The velocities they belong to."""
-
-    def guide(self, guide: str, at: str) -> tuple[Step, Step, str]:
-        """Acceleration and velocity of the guide's point coinciding with ``at``, and the guide's link."""
-
-    def coriolis(self, a: Step, link: str, v_from: Step, v_to: Step, symbol: str) -> Step:
-        """End of the Coriolis segment; the point itself where the carrier does not turn."""
-
-    def normal(self, a: Step, link: str, big_q: str, big_b: str, letters: str = "") -> Step:
-        """End of the normal acceleration of ``big_b`` round ``big_q``, laid off from ``a``."""
+def more(length: float) -> str:
+    """A length to four significant digits, surely greater than the given one, m."""
+    return _rounded(length * (1 + 1e-6), ceil)
 
 
-class ForcePlans(Protocol[M, G]):
-    """Loads of the links, N and N m, and the force plans made of them; ``F_jk`` acts on link j from link k."""
+def less(length: float) -> str:
+    """A length to four significant digits, surely less than the given one, m."""
+    return _rounded(length * (1 - 1e-6), floor)
 
-    loads: dict[str, list[Load]]
-    plan: Plan
-    reactions: dict[str, Step]
-    parts: dict[str, Step]
 
-    @property
-    def positions(self) -> PositionPlan[M, G]:
-        """Where the forces act."""
+def _rounded(length: float, to: Callable[[float], int]) -> str:
+    if length <= 0:
+        return mm(0.0)
+    unit = 10.0 ** (floor(log10(length * 1000)) - 3)
+    return tell("{length:.6g} mm").format(length=to(length * 1000 / unit) * unit)
 
-    def plan_of(self, name: str, links: tuple[str, ...]) -> ForcePlan:
-        """New force plan of a link or of a whole group."""
 
-    def order(self, loads: list[Load], first: Role) -> list[Load]:
-        """Loads in the order they are laid off, of one role first."""
+def span(pos: Positions, p: str, q: str) -> Reals:
+    """Distance of two points of the position plan, m, shape (n,)."""
+    return np.abs(pos.value(pos.points[q]) - pos.value(pos.points[p]))
 
-    def moment_sum(self, name: str, about: Step, links: Iterable[str], more: Iterable[tuple[Step, Any, Any]] = ()) -> Step:
-        """Sum of moments of all that acts on some links so far about a point, N m; ``more`` are further points, forces, couples."""
 
-    def tangential(self, j: str, k: str, total: Step, centre: str, at: str) -> Step:
-        """Part of F_jk at a point across its line to the centre of the moments, from their sum."""
+def rounding(length: float, *points: Any) -> Any:
+    """What a difference of lengths may be by the rounding of a length and of some points alone, m, shape (n,)."""
+    return 4e-15 * (length + sum(np.abs(p) for p in points))
 
-    def normal(self, j: str, other: str, name: str, u: Step, symbol: str = "") -> Step:
-        """Direction of a sliding pair's reaction on link ``j``: across the guide, with friction deviated from there."""
 
-    def deviates(self, j: str, other: str) -> bool:
-        """True where friction deviates the reaction of a sliding pair from the normal."""
+def unrounded(margin: Reals, rounding: Reals) -> Reals:
+    """A margin that is nothing where it is nothing but rounding, m: rods that just reach do reach."""
+    return np.where(np.abs(margin) <= rounding, 0.0, margin)
 
-    def close(self, fp: ForcePlan, j: str, other: str, tail: Step, head: Step) -> Step:
-        """Close a polygon by the reaction on link ``j`` from link ``other``."""
 
-    def reaction(self, j: str, k: str, vector: Step) -> Step:
-        """Record F_jk under its name."""
+def extremes(lengths: Reals) -> tuple[float, float]:
+    """Least and greatest of ``lengths`` over the turn, m: a number, or shape (n,) that ends with the sweep.
 
-    def opposite(self, j: str, k: str, vector: Step) -> Step:
-        """Record F_jk, the opposite of F_kj."""
+    Between the angles of the sweep their squares, which are smooth, are taken as parabolas.
+    """
+    y = np.broadcast_to(lengths, max(np.size(lengths), SWEEP))[-SWEEP:] ** 2
+    before, after = np.roll(y, 1), np.roll(y, -1)
+    bend = before - 2 * y + after
+    with np.errstate(invalid="ignore", divide="ignore"):
+        vertex = np.where(np.abs(before - after) <= 2 * np.abs(bend), y - (after - before) ** 2 / (8 * bend), y)
+    vertex = np.where(np.isfinite(vertex), vertex, y)
+    return float(np.sqrt(max(np.nanmin(vertex), 0.0))), float(np.sqrt(np.nanmax(vertex)))
 
-    def opposite_couple(self, j: str, k: str, couple: Step) -> Step:
-        """The couple on link ``j`` opposite to that on link ``k``."""
 
-    def negative(self, step: Step) -> Step:
-        """A number with the other sign, no step of any plan."""
-
-    def contact(self, j: str, k: str, at: Step, vector: Step, couple: Step | None = None) -> Load:
-        """Reaction on link ``j`` from link ``k`` as a load."""
-
-    def react(self, link: str, on: str, at: Step, vector: Step, couple: Step | None = None) -> Step:
-        """The equal and opposite force on the neighbouring link ``on`` from ``link``."""
-
-    def sliding(self, j: str, other: str, force: Step, about: Step) -> Step:
-        """Couple of a sliding pair's reaction on link ``j``, its force taken at ``about``, and its arm."""
-
-    def guide_couple(self, j: str, other: str, about: Step) -> Step:
-        """Couple of a sliding pair's reaction on link ``j``, its force taken at ``about``."""
-
-    def arm(self, j: str, other: str, couple: Step, force: Step) -> None:
-        """Arm of that reaction."""
-
-    def group_polygon(self, g: G, first: Step | None, last: Step | None, u: Step, v: Step, carriers: tuple[str, str],
-                      sine: tuple[Step, ...] = ()) -> tuple[Step, Step, ForcePlan]:
-        """Plan of a whole group closed by two unknown forces along ``u`` and ``v``, and these forces."""
+def sine(u: Directions, v: Directions) -> Reals:
+    """Magnitude of the sine of the angle between two unit directions, shape (n,)."""
+    return np.abs(ar.cross(u, v))

@@ -11,7 +11,7 @@ Lines of the plans that tell its motion fall together in a change point, and wha
 The crank angle tells it: the half-chord of the group is the smooth root of two gaps
 (:class:`~tmm_sheets.construction.limit_angles.Gaps`) times +1 or -1, its branch, and so are the rates at which its links turn. At
 every crank angle they are as exact as the lengths, also in the change point and next to it. Only a group between the crank and the
-frame has such a form; those that hang on others are told of by :mod:`tmm_sheets.methods.linkage.passages`.
+frame has such a form; those that hang on others are told of by :mod:`tmm_sheets.methods.linkage.positions`.
 """
 
 from __future__ import annotations
@@ -25,11 +25,9 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.expression import primitive
+from tmm_sheets.construction.expression import Directions, Points, Reals, Signs, primitive
 from tmm_sheets.construction.limit_angles import DIGITS, PI, Cosine, Gaps, angle_of, direction
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.quantities import Directions, Points, Reals, Signs
-from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.construction.step import Plan, Rule, Step
 from tmm_sheets.mechanism.groups.contexts import Turning
 from tmm_sheets.mechanism.model import Guide, Mechanism, StructuralGroup
 from tmm_sheets.words import marked
@@ -277,12 +275,6 @@ def line_of_centres(phi: Reals, l1: float, ahead: float, pivot: complex, fixed: 
     return sign * 1j * np.exp(0.5j * (np.asarray(phi) + ahead + np.angle(fixed - pivot)))
 
 
-def _squares(l1: float, pivot: complex, fixed: complex, l2: float, l3: float) -> tuple[float, float]:
-    """Differences of the squares of the lengths: crank and frame, rod and rod; nothing where both are meant to be the same."""
-    l0 = abs(fixed - pivot)
-    return (l1 - l0) * (l1 + l0), (l3 - l2) * (l3 + l2)
-
-
 @primitive("turning of a rod on two arcs", "real")
 def turning_of_arcs(phi: Reals, branch: Reals, l1: float, ahead: float, pivot: complex, fixed: complex, l2: float,
                     l3: float) -> Reals:
@@ -307,7 +299,9 @@ def _of_arcs(phi: Reals, branch: Reals, l1: float, ahead: float, pivot: complex,
     quotient, second = (branch * x for x in gaps.quotient(phi))
     if meets((l1, ahead, pivot, fixed), gaps, l2, l3):
         return 0.5 - quotient / 2, -second / 2
-    one, two = _squares(l1, pivot, fixed, l2, l3)
+    # Differences of squares: crank and frame, rod and rod; nothing where both are meant to be the same.
+    l0 = abs(fixed - pivot)
+    one, two = (l1 - l0) * (l1 + l0), (l3 - l2) * (l3 + l2)
     square = gaps.q(phi) + (l2 - l3) ** 2
     slope = gaps.q.slope(phi) / square**2
     return (0.5 + one / (2 * square) - quotient / 2 * (1 + two / square),

@@ -15,10 +15,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.quantities import Directions, Points, Reals
+from tmm_sheets.construction.expression import Complex, Directions, Floats, Points, Reals, primitive
 
 CIRCLE, LINE, SLOT = 0.0, 1.0, 2.0
 """What a leg does: its corner on a circle, on a line; a line of the triangle through a point."""
@@ -28,8 +26,6 @@ direction of the guide; length, m, or angle of the slot, rad, to the line from t
 triangle's own frame, m."""
 Pose = tuple[complex, complex]
 """First corner of the triangle, m, and its direction."""
-Floats = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 NODES = 720
 """Crank angles at which a way of assembly is followed, before steps are made smaller."""
@@ -291,7 +287,7 @@ def course(before: Callable[[Floats], Legs], at: float, near: float) -> Course:
     ``before`` gives the legs at crank angles, shape (n,).
     """
     start = before(np.array([at]))
-    one = tuple(x if i % 5 == 0 else _one(x) for i, x in enumerate(start))
+    one = tuple(x if i % 5 == 0 else np.ravel(x)[0] for i, x in enumerate(start))
     found = tuple(modes(one))
     grid: Floats = np.asarray(at + 2 * np.pi / NODES * np.arange(NODES + 1), dtype=np.float64)
     grid[-1] = at + 2 * np.pi
@@ -316,10 +312,6 @@ def course(before: Callable[[Floats], Legs], at: float, near: float) -> Course:
     with np.errstate(all="ignore"):
         normals = conditions(k, u, legs)[1]
     return Course(angles, k, u, normals, back, found, taken)
-
-
-def _one(x: Reals) -> Any:
-    return np.ravel(x)[0]
 
 
 class _Way:

@@ -19,21 +19,18 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.indices import against, on_link, pair_index
-from tmm_sheets.construction.plan import Plan, symbol
-from tmm_sheets.construction.step import Helper, Rule, Step, value_of
+from tmm_sheets.construction.indices import on_link, pair_index
+from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step, symbol, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import three_legs
-from tmm_sheets.mechanism.groups.contexts import Leg, OuterReaction, Outline, SpecialPoint
-from tmm_sheets.mechanism.groups.limits import AssemblyLimit, lacking
+from tmm_sheets.mechanism.groups.contexts import AssemblyLimit, Leg, Outline, SpecialPoint, lacking
 from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
 from tmm_sheets.numbers import in_a_row, of_reader
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.groups.three_legs import Course
-    from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
+    from tmm_sheets.mechanism.model import Kinetostatics, MotionPolygon, Positions
 
 FALSE = (-3, -2, -1, 1, 2, 3)
 """False positions, counted from the true one."""
@@ -65,11 +62,9 @@ class TriadGroup(StructuralGroup):
         return [tuple(plan[f"{leg.corner}{sign(n)}"] for leg in self.legs) for n in FALSE]
 
 
-def _third_corner(length: Any, angle: Any) -> Any:
-    return length * (np.cos(angle) + 1j * np.sin(angle))
-
-
-CORNER = Rule("corner of a triangle", _third_corner, ("length", "angle"), "vector", "{name} = {value}.", unit="m", exact=True)
+CORNER = Rule("corner of a triangle",
+              lambda length, angle: length * (np.cos(angle) + 1j * np.sin(angle)),
+              ("length", "angle"), "vector", "{name} = {value}.", unit="m", exact=True)
 NEAR_PLACE = Rule("place near by", three_legs.on_course, ("angle",), "point", "{name} = {value}.", unit="m", exact=True)
 NEAR_DIRECTION = Rule("direction near by", three_legs.on_course, ("angle",), "direction", "{name} = {value}.", unit="1", exact=True)
 
@@ -89,11 +84,8 @@ ON_LOCUS = Rule("direction on the locus", three_legs.direction_on_legs, ("point"
                 marked("Put the triangle there: direction {name}."))
 
 
-def _from_third(third: Any, u: Any, own: Any, corner: Any) -> Any:
-    return third + (corner - own) * u
-
-
-FROM_THIRD = Rule("corner from another", _from_third, ("point", "direction", "number", "number"), "point",
+FROM_THIRD = Rule("corner from another",
+                  lambda third, u, own, corner: third + (corner - own) * u, ("point", "direction", "number", "number"), "point",
                   marked("From {0} with the side of the triangle mark point {name} on its circle or guide."),
                   lambda a, v: (Helper("line", a[0], v),))
 FALSE_CORNER = Rule("false position of the first leg", three_legs.false_place, ("point", "direction"), "point",
@@ -102,20 +94,16 @@ FALSE_SIDE = Rule("side of a false position", three_legs.false_side, ("point", "
                   unit="1", exact=True)
 
 
-def _transferred(first: Any, second: Any, two: Any, three: Any) -> Any:
-    return first + three / two * (second - first)
-
-
-TRANSFER = Rule("triangle on its side", _transferred, ("point", "point", "length", "number"), "point",
+TRANSFER = Rule("triangle on its side",
+                lambda first, second, two, three: first + three / two * (second - first),
+                ("point", "point", "length", "number"), "point",
                 marked("On {0}{1} put up the triangle: point {name} of the locus."),
                 lambda a, v: (Helper("line", a[0], a[1]), Helper("line", a[0], v), Helper("line", a[1], v)))
 
 
-def _in_slot(first: Any, u: Any, three: Any, slot: Any) -> Any:
-    return first + three * u * np.exp(-1j * slot)
-
-
-IN_SLOT = Rule("triangle by its slot", _in_slot, ("point", "direction", "number", "angle"), "point",
+IN_SLOT = Rule("triangle by its slot",
+               lambda first, u, three, slot: first + three * u * np.exp(-1j * slot),
+               ("point", "direction", "number", "angle"), "point",
                marked("From {0} along its slot put up the triangle: point {name} of the locus."),
                lambda a, v: (Helper("line", a[0], v),))
 
@@ -132,11 +120,9 @@ SLOT_DIRECTION = Rule("slot through a pivot", _slot_direction, ("point", "point"
                       marked("Draw the slot through {1}: direction {name}."), lambda a, v: (Helper("line", a[0], a[1]),))
 
 
-def _component(total: Any, about: Any, at: Any, u: Any) -> Any:
-    return -total / ar.moment(about, at, u) * u
-
-
-BY_MOMENTS = Rule("component along a normal from moments", _component, ("number", "point", "point", "direction"), "force",
+BY_MOMENTS = Rule("component along a normal from moments",
+                  lambda total, about, at, u: -total / ar.moment(about, at, u) * u,
+                  ("number", "point", "point", "direction"), "force",
                   marked("From the sum of moments about the special point {1} find the component {name} = {value}."),
                   lambda a, v: rules.arm(a[1], a[2], a[3]), unit="N")
 
@@ -152,6 +138,11 @@ ALONG_SLOT = Rule("component along a slot", _along_slot, ("direction",), "force"
                   marked("From the sum of projections on the slot find the component {name} = {value}."), unit="N")
 
 
+def _moving(leg: Leg, triangle: str) -> str:
+    """Point of the triangle whose motion a leg leaves free along one line: its corner, or the point in the slot."""
+    return leg.corner if leg.slot is None else on_link(leg.outer, triangle)
+
+
 def _of(g: StructuralGroup) -> TriadGroup:
     assert isinstance(g, TriadGroup)
     return g
@@ -162,6 +153,9 @@ class TriadKind(GroupKind):
 
     number, form, orders = 6, marked("class III"), ()
     grade, order = 3, 3
+
+    def legs(self, g: StructuralGroup) -> tuple[Leg, ...]:
+        return _of(g).legs
 
     def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
         found = []
@@ -288,107 +282,39 @@ class TriadKind(GroupKind):
 
     # --- velocities and accelerations -------------------------------------------------------------------------------
 
-    def velocity(self, vel: Velocities, g: StructuralGroup) -> None:
-        plan, pos, tri = vel.plan, vel.positions, g.links[0]
+    def motion(self, plan: MotionPolygon, g: StructuralGroup) -> None:
+        pos, tri = plan.positions, g.links[0]
         s = pos.special[special_name(tri)]
         (a, b), c = s.pair, s.third
-        (base_a, t_a), (base_b, t_b), (base_c, t_c) = (self._end(vel, leg) for leg in (a, b, c))
-        w = vel.special[s.name] = plan.add(vel.name(s.name), rules.LINE_LINE, base_a, t_a, base_b, t_b)
-        plan.vector(f"V̅_{s.name}", vel.pole, w)
-        n = vel.perpendicular(s.name, c.at)
-        step = plan.add(self._name(vel, c, tri), rules.LINE_LINE, w, n, base_c, t_c)
-        plan.vector(f"V̅_{self._letters(c, tri)}", vel.pole, step)
-        plan.vector(f"V̅_{{{self._letters(c, tri)}{s.name}}}", w, step)
-        if base_c is not vel.pole:
-            plan.vector(f"V̅_{{{c.index(tri, self._carrier(pos, c))}}}", base_c, step)
-        self._others(vel, _of(g), c, step, w, "V̅")
-        self._turnings(vel, _of(g))
-
-    @staticmethod
-    def _turnings(plan: Velocities | Accelerations, g: TriadGroup) -> None:
-        """Angular quantities of the triangle, from the corners of the pair of legs, and of the legs."""
-        tri, z, pos = g.links[0], plan.points, plan.positions
-        a, b = pos.special[special_name(tri)].pair
-        plan.turning(tri, a.corner, b.corner, z[a.corner], z[b.corner])
-        for leg in g.legs:
-            if leg.guide:
-                plan.turns_with(leg.link, pos.mechanism.guides[leg.guide].link)
-                plan.coincident[on_link(leg.corner, leg.link)] = z[leg.corner]
-            elif leg.slot is None:
-                plan.turning(leg.link, leg.outer, leg.corner, z[leg.outer], z[leg.corner])
+        lines = []
+        for leg in (a, b):
+            end, u = plan.end(leg, _moving(leg, tri), tri), plan.rest(leg)
+            lines += [plan.normal(end, tri, leg.at, s.name), u]
+        w = plan.special[s.name] = plan.plan.add(plan.name(s.name), rules.LINE_LINE, *lines)
+        plan.plan.vector(f"{plan.VECTOR}_{s.name}", plan.pole, w)
+        moving = _moving(c, tri)
+        letters = moving if c.slot is None else f"{{{moving}}}"
+        n = plan.normal(w, tri, s.name, c.at, f"{letters}{s.name}")
+        end, u = plan.end(c, moving, tri), plan.rest(c)
+        step = plan.plan.add(plan.name(moving), rules.LINE_LINE, n, plan.perpendicular(s.name, c.at), end, u)
+        plan.plan.vector(f"{plan.VECTOR}_{letters}", plan.pole, step)
+        plan.plan.vector(f"{plan.VECTOR}_{{{letters}{s.name}}}{plan.MARKS['RR']}", n, step)
+        if end is not plan.pole:
+            plan.plan.vector(f"{plan.VECTOR}_{{{moving}{plan.against(c)}}}{plan.MARKS[c.form]}", end, step)
+        # The other points of the triangle by similarity, from the special point and the third leg's.
+        (plan.points if c.slot is None else plan.coincident)[moving] = step
+        for leg in g.kind.legs(g):
+            if leg.corner not in plan.points:
+                found = plan.points[leg.corner] = plan.similar(leg.corner, w, step, s.name, c.at)
+                plan.plan.vector(f"{plan.VECTOR}_{leg.corner}", plan.pole, found)
+            if leg.slot is not None and (here := on_link(leg.outer, tri)) not in plan.coincident:
+                plan.coincident[here] = plan.similar(leg.outer, w, step, s.name, c.at, here)
+        plan.turning(tri, a.corner, b.corner, plan.points[a.corner], plan.points[b.corner])
+        for leg in g.kind.legs(g):
+            if leg.slot is None:
+                plan.turns_on(leg, plan.points[leg.corner])
             else:
                 plan.turns_with(leg.link, tri)
-
-    def _end(self, vel: Velocities, leg: Leg) -> tuple[Step, Step]:
-        """Where the line of the velocities along a leg's normal begins on the plan, and its direction."""
-        pos = vel.positions
-        if leg.guide:
-            return vel.guide(leg.guide, leg.corner)[0], pos.guide_directions[leg.guide]
-        if leg.slot is not None:
-            return vel.points[leg.outer], pos.directions[leg.link]
-        return vel.points[leg.outer], vel.perpendicular(leg.outer, leg.corner)
-
-    @staticmethod
-    def _name(plan: Velocities | Accelerations, leg: Leg, tri: str) -> str:
-        return plan.name(leg.corner if leg.slot is None else on_link(leg.outer, tri))
-
-    @staticmethod
-    def _carrier(pos: Positions, leg: Leg) -> str:
-        """Link of a leg's guide."""
-        return pos.mechanism.guides[leg.guide].link if leg.guide else ""
-
-    @staticmethod
-    def _letters(leg: Leg, tri: str) -> str:
-        return leg.corner if leg.slot is None else f"{{{on_link(leg.outer, tri)}}}"
-
-    def _others(self, plan: Velocities | Accelerations, g: TriadGroup, c: Leg, step: Step, w: Step, letter: str) -> None:
-        """The other points of the triangle by similarity, from the special point and the third leg's."""
-        tri = g.links[0]
-        start = plan.positions.special[special_name(tri)].name
-        if c.slot is not None:
-            plan.coincident[on_link(c.outer, tri)] = step
-        else:
-            plan.points[c.corner] = step
-        for leg in g.legs:
-            if leg.corner not in plan.points:
-                end = plan.points[leg.corner] = plan.similar(leg.corner, w, step, start, c.at)
-                plan.plan.vector(f"{letter}_{leg.corner}", plan.pole, end)
-            if leg.slot is not None and on_link(leg.outer, tri) not in plan.coincident:
-                plan.coincident[on_link(leg.outer, tri)] = plan.similar(leg.outer, w, step, start, c.at, on_link(leg.outer, tri))
-
-    def acceleration(self, acc: Accelerations, g: StructuralGroup) -> None:
-        plan, pos, tri = acc.plan, acc.positions, g.links[0]
-        s = pos.special[special_name(tri)]
-        (a, b), c = s.pair, s.third
-        ends = []
-        for leg in (a, b):
-            base, t = self._known(acc, leg, tri)
-            ends += [acc.normal(base, tri, leg.at, s.name), t]
-        w = acc.special[s.name] = plan.add(acc.name(s.name), rules.LINE_LINE, *ends)
-        plan.vector(f"a̅_{s.name}", acc.pole, w)
-        n = acc.normal(w, tri, s.name, c.at, f"{self._letters(c, tri)}{s.name}")
-        base, t = self._known(acc, c, tri)
-        step = plan.add(self._name(acc, c, tri), rules.LINE_LINE, n, acc.perpendicular(s.name, c.at), base, t)
-        plan.vector(f"a̅_{self._letters(c, tri)}", acc.pole, step)
-        plan.vector(f"a̅_{{{self._letters(c, tri)}{s.name}}}^τ", n, step)
-        if base is not acc.pole:
-            plan.vector(f"a̅_{{{c.index(tri, self._carrier(pos, c))}}}^{'τ' if c.form == 'RR' else 'r'}", base, step)
-        self._others(acc, _of(g), c, step, w, "a̅")
-        self._turnings(acc, _of(g))
-
-    @staticmethod
-    def _known(acc: Accelerations, leg: Leg, tri: str) -> tuple[Step, Step]:
-        """End of what is known of the acceleration where a leg holds the triangle, and the direction of the rest."""
-        pos, vel = acc.positions, acc.velocities
-        if leg.guide:
-            base, v_base, link = acc.guide(leg.guide, leg.corner)
-            return (acc.coriolis(base, link, v_base, vel.points[leg.corner], against(leg.corner, link)),
-                    pos.guide_directions[leg.guide])
-        if leg.slot is not None:
-            here = on_link(leg.outer, tri)
-            return (acc.coriolis(acc.points[leg.outer], tri, vel.points[leg.outer], vel.coincident[here], f"{here}{leg.outer}"),
-                    pos.directions[leg.link])
-        return (acc.normal(acc.points[leg.outer], leg.link, leg.outer, leg.corner), acc.perpendicular(leg.outer, leg.corner))
 
     # --- forces -------------------------------------------------------------------------------------------------------
 
@@ -397,7 +323,7 @@ class TriadKind(GroupKind):
         pos, m, triad, tri = forces.positions, forces.positions.mechanism, _of(g), g.links[0]
         s = pos.special[special_name(tri)]
         c = s.third
-        owner = {leg: m.guides[leg.guide].link if leg.guide else m.owner(leg.outer) for leg in triad.legs}
+        owner = {leg: m.carrier(leg) for leg in triad.legs}
         part: dict[Leg, Step] = {}
         couple: dict[Leg, Step] = {}
         more: list[tuple[Step, Any, Any]] = []
@@ -537,10 +463,6 @@ class TriadKind(GroupKind):
             else:
                 found.append(Outline(leg.link, block=leg.at, along=pos.directions[leg.link], slotted=bool(leg.guide)))
         return found
-
-    def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
-        return [OuterReaction(leg.link, leg.corner, leg.guide) if leg.guide else OuterReaction(leg.link, leg.outer)
-                for leg in _of(g).legs]
 
     def about(self, g: StructuralGroup) -> str:
         return special_name(g.links[0])

@@ -12,14 +12,10 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tmm_sheets.construction.arithmetic import by_pieces
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.quantities import Reals
-from tmm_sheets.construction.step import Kind, Rule, Step
+from tmm_sheets.construction.expression import Floats, Reals, primitive
+from tmm_sheets.construction.step import Given, Kind, Plan, Rule, Step
 from tmm_sheets.methods.cams.cam_laws import (
     Law,
     Phase,
@@ -31,8 +27,6 @@ from tmm_sheets.methods.cams.cam_laws import (
     within_turn,
 )
 from tmm_sheets.words import marked, tr
-
-Floats = npt.NDArray[np.float64]
 
 SOURCE = "000, 7.1"
 INSIDE = 1e-12

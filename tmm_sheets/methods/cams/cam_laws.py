@@ -6,6 +6,7 @@ straight ramps of an eighth of the phase, linearly decreasing acceleration; both
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, partial
@@ -14,16 +15,13 @@ from math import pi
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tmm_sheets.construction.arithmetic import by_pieces, inner_slopes
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.quantities import Points, Reals
+from tmm_sheets.construction.expression import Floats, Points, Reals, primitive
+from tmm_sheets.construction.step import Given
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.words import marked, tell, tr
 
-Floats = npt.NDArray[np.float64]
 Function = Callable[..., Any]
 
 
@@ -54,8 +52,28 @@ def second_derivative(travel: Reals, angle: Reals, dds: Any) -> Reals:
     return travel / angle**2 * dds
 
 
+class Motion(ABC):
+    """A displacement over an argument, with its first and second derivative."""
+
+    @abstractmethod
+    def at(self, order: int, x: Reals) -> Reals:
+        """Displacement, order 0, or one of its derivatives."""
+
+    def s(self, x: Reals) -> Reals:
+        """Displacement."""
+        return self.at(0, x)
+
+    def ds(self, x: Reals) -> Reals:
+        """First derivative."""
+        return self.at(1, x)
+
+    def dds(self, x: Reals) -> Reals:
+        """Second derivative."""
+        return self.at(2, x)
+
+
 @dataclass(frozen=True)
-class Law:
+class Law(Motion):
     """Law of one phase for unit stroke and unit phase angle: ``s`` grows from 0 to 1 while ``x`` grows from 0 to 1.
 
     ``forms`` are ``s`` and its exact derivatives ``ds`` and ``dds``: functions of ``x`` and of the ``nodes`` of a given diagram,
@@ -74,19 +92,8 @@ class Law:
     even: bool = True
     nodes: tuple[Given, ...] = ()
 
-    def s(self, x: Reals) -> Reals:
-        """Displacement."""
-        return self._at(0, x)
-
-    def ds(self, x: Reals) -> Reals:
-        """First derivative."""
-        return self._at(1, x)
-
-    def dds(self, x: Reals) -> Reals:
-        """Second derivative."""
-        return self._at(2, x)
-
-    def _at(self, order: int, x: Reals) -> Reals:
+    def at(self, order: int, x: Reals) -> Reals:
+        """Share of the travel passed, or a derivative, at shares ``x`` of the phase."""
         return self.forms[order](x, *(given.value for given in self.nodes))
 
     @property
@@ -336,7 +343,7 @@ PHASES = {"φ_у": marked("φ_r"), "φ_дс": marked("φ_ud"), "φ_с": marked("
 
 
 @dataclass(frozen=True)
-class Phase:
+class Phase(Motion):
     """A phase of the motion: ``angle`` rad from ``start`` on, the displacement going from ``first`` by ``travel``, m.
 
     The functions take the share ``x`` of the phase, 0 .. 1, numbers or arrays.
@@ -374,17 +381,12 @@ class Phase:
         """Largest second derivative of the phase, m."""
         return abs(self.travel) * self.law.peak / self.angle**2
 
-    def s(self, x: Reals) -> Reals:
-        """Displacement, m."""
-        return displaced(self.first, self.travel, self.law.s(x))
-
-    def ds(self, x: Reals) -> Reals:
-        """First derivative by the cam angle, m."""
-        return first_derivative(self.travel, self.angle, self.law.ds(x))
-
-    def dds(self, x: Reals) -> Reals:
-        """Second derivative by the cam angle, m."""
-        return second_derivative(self.travel, self.angle, self.law.dds(x))
+    def at(self, order: int, x: Reals) -> Reals:
+        """Displacement, m or rad, or a derivative over the cam angle, at shares ``x`` of the phase."""
+        of_law = self.law.at(order, x)
+        if not order:
+            return displaced(self.first, self.travel, of_law)
+        return (first_derivative if order == 1 else second_derivative)(self.travel, self.angle, of_law)
 
     def phi(self, x: Reals) -> Reals:
         """Cam angle, rad."""
@@ -392,7 +394,7 @@ class Phase:
 
 
 @dataclass(frozen=True)
-class PositionFunction:
+class PositionFunction(Motion):
     """Displacement of the follower over a turn of the cam, with both derivatives, exact for the law.
 
     Angles in rad, displacement in m (a rocker's in rad), numbers or arrays. Where the second derivative jumps, the value
@@ -435,21 +437,10 @@ class PositionFunction:
         """Stroke of the follower, m."""
         return self.rise.travel
 
-    def s(self, phi: Reals) -> Reals:
-        """Displacement, m."""
-        return self._at(phi, Phase.s)
-
-    def ds(self, phi: Reals) -> Reals:
-        """First derivative, m."""
-        return self._at(phi, Phase.ds)
-
-    def dds(self, phi: Reals) -> Reals:
-        """Second derivative, m."""
-        return self._at(phi, Phase.dds)
-
-    def _at(self, phi: Reals, function: Callable[[Phase, Any], Any]) -> Reals:
-        turn = within_turn(phi)
-        values = [function(p, share(turn, p.start, p.angle)) for p in self.phases]
+    def at(self, order: int, x: Reals) -> Reals:
+        """Displacement, or a derivative, at any cam angles ``x``, rad."""
+        turn = within_turn(x)
+        values = [p.at(order, share(turn, p.start, p.angle)) for p in self.phases]
         return by_pieces(turn, *[v for p, value in zip(self.phases, values, strict=True) for v in (value, p.end)][:-1])
 
     @cached_property

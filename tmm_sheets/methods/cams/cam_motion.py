@@ -18,18 +18,16 @@ import numpy.typing as npt
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.arithmetic import Curve
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.expression import Complex
 from tmm_sheets.construction.readable import CURVE, MAIN, POLE
 from tmm_sheets.construction.scale import Scale, handy
-from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step
 from tmm_sheets.methods.cams.cam_displacement import KINDS, SOURCE, Displacement, ExactMotion, names, row
 from tmm_sheets.methods.cams.cam_laws import Law, Phase, PositionFunction
 from tmm_sheets.methods.integration import SMOOTH, integrate, ordinates
 from tmm_sheets.words import marked, tr
 
 Reals = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 
 GAP = 6.0
 """Clear distance between the pole of S'' and the auxiliary circle, mm."""

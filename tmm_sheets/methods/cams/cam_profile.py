@@ -6,33 +6,35 @@ Source: manual 000, section 7, examples 1 to 3; manual 002, 4.4 (radius of curva
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, reduce
 from itertools import pairwise
 from math import degrees, floor, isfinite, log10, pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-import numpy.typing as npt
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import Given, GivenNumber
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.quantities import Points, Reals
-from tmm_sheets.construction.step import Helper, Rule, Step, value_of
+from tmm_sheets.construction.expression import Floats, Points, Reals, primitive
+from tmm_sheets.construction.step import Given, GivenNumber, Helper, Plan, Reading, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams import cam_inversion, cam_zone
-from tmm_sheets.methods.cams.cam_closure import DISTANCE, SPREAD, Spring, second_disc_of_rocker, second_disc_of_tappet, spring
 from tmm_sheets.methods.cams.cam_displacement import Displacement, ExactMotion, in_phase
 from tmm_sheets.methods.cams.cam_inversion import (
     CONTACT,
+    DISTANCE,
     ROCKER_RADIUS,
+    SPREAD,
     TAPPET_RADIUS,
     Inversion,
+    Spring,
     rocker_curvature,
+    second_disc_of_rocker,
+    second_disc_of_tappet,
+    spring,
     tappet_curvature,
 )
 from tmm_sheets.methods.cams.cam_laws import LAWS, PHASES, Law, Phase, PositionFunction, ordinates_law, table_law
@@ -43,7 +45,6 @@ from tmm_sheets.words import marked, tell, tr
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import CamTable
 
-Floats = npt.NDArray[np.float64]
 
 DIAGRAMS = {"tappet": (327.0, 500.0), "rocker": (327.0, 288.0), "flat": (327.0, 500.0)}
 """Room on paper for the three diagrams when nobody asks for another one, mm: that of the sheet as shipped."""
@@ -190,7 +191,7 @@ OF_THREE = Rule("point of the sharpest place", rules.take, ("point", "number"), 
 
 
 @dataclass(frozen=True, eq=False)
-class Cam:
+class Cam(ABC):
     """A disc cam; every part is built when it is first asked for. The kinds of followers are its subclasses.
 
     A cam is no other of the same data: what is kept of one is its own.
@@ -275,13 +276,13 @@ class Cam:
         raise NotImplementedError
 
     @property
+    @abstractmethod
     def r0(self) -> float:
         """Smallest radius of the centre profile; of the profile itself under a flat follower, m."""
-        raise NotImplementedError
 
+    @abstractmethod
     def check(self) -> None:
         """Build what can fail: :class:`CannotBuild` says what and what to try."""
-        raise NotImplementedError
 
     # --- closure
 
@@ -330,20 +331,37 @@ class Cam:
 class RollerCam(Cam):
     """A cam whose follower carries a roller."""
 
+    DIMENSIONS: ClassVar[dict[str, str]]
+    APART: ClassVar[str]
+
     @property
+    @abstractmethod
     def zone(self) -> Zone:
         """Allowed zone and main dimensions from the ordinates of the diagrams."""
-        raise NotImplementedError
 
     @property
     def r0(self) -> float:
         """Smallest radius of the centre profile, m."""
         return self.zone.r0
 
+    @property
+    def least(self) -> Plan | None:
+        """Least possible cam of a rocker; None where there is none."""
+        return None if self.zone.cones.pivot is None else self.zone.least
+
     @cached_property
     def steepest(self) -> Plan | None:
         """Greatest pressure angles where the radius is given and they follow; None where the permitted one gives the radius."""
         return None if self.data.base_radius is None else cam_zone.steepest(self.zone)
+
+    def _dimensions(self) -> dict[str, Any]:
+        z = self.zone
+        _ = self.roller
+        found: dict[str, Any] = {key: z.plan[name] for key, name in self.DIMENSIONS.items()}
+        found |= {"r_roller": self.choice["r_p"], "rho_min": self.curvature["ρ_min"]}
+        if self.least is not None:
+            found["least"] = {key: self.least[name] for key, name in self.DIMENSIONS.items()}
+        return found | self._found_angles() | ({self.APART: self.apart} if self.apart else {})
 
     def _found_angles(self) -> dict[str, Any]:
         """What they are and where, for the results."""
@@ -352,9 +370,9 @@ class RollerCam(Cam):
         return {"steepest": {phase: {"phi": self.steepest[f"φ_α{k}"], "pressure_angle": self.steepest[f"α_{k}"]}
                              for k, phase in enumerate(("rise", "fall"), 1)}}
 
+    @abstractmethod
     def _bending(self, second: bool) -> tuple[Rule, Callable[..., Any], tuple[Any, ...]]:
         """Rule for the radius of curvature of a centre profile, the curvature itself, and what both take besides the motion."""
-        raise NotImplementedError
 
     @property
     def apart(self) -> Step | None:
@@ -378,36 +396,34 @@ class RollerCam(Cam):
         _ = self.roller
 
     def _dimension_plans(self) -> Iterable[Plan]:
-        yield from (*self.zone.plans.values(), *self.zone.display_plans())
+        z = self.zone
+        yield from (*z.plans.values(), z.curve_plan, z.every, *([z.beyond] if z.beyond else []))
         if self.steepest is not None:
             yield self.steepest
         if self.discs is not None:
             yield self.discs
         yield from (self.curvature, self.near.at.plan, self.near.plan, self.choice)
+        if self.least is not None:
+            yield self.least
 
     # --- curvature
 
     @cached_property
+    def _curvature(self) -> tuple[Plan, list[Sharpest]]:
+        plan = Plan("cam-curvature", tr("Least radius of curvature of the pitch curve"), "m")
+        places = [self._sharpest(plan, second) for second in ((False, True) if self.discs else (False,))]
+        plan.add("ρ_min", LEAST, *(found.radius for found in places), symbol="ρ_{min}")
+        return plan, places
+
+    @property
     def curvature(self) -> Plan:
         """Exact radii of curvature of the sharpest places."""
-        plan = Plan("cam-curvature", tr("Least radius of curvature of the pitch curve"), "m")
-        radii = [found.radius for found in self._sharpest_places(plan)]
-        plan.add("ρ_min", LEAST, *radii, symbol="ρ_{min}")
-        return plan
+        return self._curvature[0]
 
-    @cached_property
+    @property
     def sharpest(self) -> Sharpest:
         """Sharpest convex place of the centre profile."""
-        _ = self.curvature
-        return self._places[0]
-
-    def _sharpest_places(self, plan: Plan) -> list[Sharpest]:
-        self._places.extend(self._sharpest(plan, second) for second in ((False, True) if self.discs else (False,)))
-        return self._places
-
-    @cached_property
-    def _places(self) -> list[Sharpest]:
-        return []
+        return self._curvature[1][0]
 
     def _sharpest(self, plan: Plan, second: bool) -> Sharpest:
         rule, curvature, of = self._bending(second)
@@ -433,10 +449,8 @@ class RollerCam(Cam):
         radius = plan.add(f"{tag}_min", rule, *moving, *of) if second else plan.add("ρ_1", rule, *moving, *of)
         return Sharpest(p, at, radius, float(p.phi(a)), float(p.phi(b)), self.law.parts)
 
-    @property
-    def rho_min(self) -> float:
-        """Smallest radius of curvature of the convex parts of the centre profile, or of both where there are two discs, m."""
-        return float(self.curvature["ρ_min"].value)
+    rho_min = Reading("curvature", "ρ_min")
+    """Smallest radius of curvature of the convex parts of the centre profile, or of both where there are two discs, m."""
 
     @cached_property
     def near(self) -> Inversion:
@@ -518,10 +532,8 @@ class RollerCam(Cam):
         return (RollerRule("r_0", SHARE_OF_R0, (plan["r_0_1"], plan["r_0_2"])),
                 RollerRule("ρ_{min}", shares, (plan["ρ_1"], plan["ρ_2"])))
 
-    @property
-    def largest_roller(self) -> float:
-        """Radius from which on the profile has a cusp or cuts itself, m."""
-        return float(self.choice["r_max"].value)
+    largest_roller = Reading("choice", "r_max")
+    """Radius from which on the profile has a cusp or cuts itself, m."""
 
     @cached_property
     def roller(self) -> float:
@@ -565,17 +577,14 @@ class RollerCam(Cam):
 class TappetCam(RollerCam):
     """A cam with a translating roller follower (толкатель)."""
 
+    DIMENSIONS, APART = {"r0": "r_0", "e": "e", "s0": "S_0"}, "roller_distance"
+
     @cached_property
     def zone(self) -> Zone:
         """Allowed zone and main dimensions from the ordinates of the diagrams."""
         at = self.motion.ordinates
         return cam_zone.zone(self.law, self.alpha, self.data.limit, self.right, at.s, at.ds, self.given("eccentricity"),
                              self.data.centre, self.exact, self.given("base_radius"))
-
-    @property
-    def distance(self) -> float:
-        """Distance of the rollers of the two discs, m."""
-        return float(self.apart.value) if self.apart else 0.0
 
     def _keep_apart(self, plan: Plan) -> Step:
         return plan.add("L", DISTANCE, self.zone.plan["S_0"], self.law.stroke)
@@ -590,16 +599,12 @@ class TappetCam(RollerCam):
         of = (self.zone.plan["S_0"], self.zone.plan["e"], self.right, self.apart if second else 0.0)
         return TAPPET_RADIUS, tappet_curvature, of
 
-    def _dimensions(self) -> dict[str, Any]:
-        z = self.zone.plan
-        _ = self.roller
-        found = {"r0": z["r_0"], "e": z["e"], "s0": z["S_0"], "r_roller": self.choice["r_p"], "rho_min": self.curvature["ρ_min"]}
-        return found | self._found_angles() | ({"roller_distance": self.apart} if self.apart else {})
-
 
 @dataclass(frozen=True, eq=False)
 class RockerCam(RollerCam):
     """A cam with an oscillating roller follower (коромысло)."""
+
+    DIMENSIONS, APART = {"r0": "r_0", "l0": "l_0"}, "arm_angle"
 
     @cached_property
     def zone(self) -> Zone:
@@ -612,11 +617,6 @@ class RockerCam(RollerCam):
     def arm(self) -> float:
         """Length of the rocker, m."""
         return self.given("arm") or 0.0
-
-    @property
-    def spread(self) -> float:
-        """Angle between the arms of the two rollers, rad."""
-        return float(self.apart.value) if self.apart else 0.0
 
     def _keep_apart(self, plan: Plan) -> Step:
         return plan.add("ψ_12", SPREAD, self.zone.plan["A"], self.zone.plan["O"], self.law.stroke)
@@ -631,21 +631,6 @@ class RockerCam(RollerCam):
         z = self.zone
         of = (z.plan["A"], z.plan["O"], z.cones.turn, self.right, self.apart if second else 0.0)
         return ROCKER_RADIUS, rocker_curvature, of
-
-    def _dimension_plans(self) -> Iterable[Plan]:
-        yield from super()._dimension_plans()
-        if self.zone.least is not None:
-            yield self.zone.least
-
-    def _dimensions(self) -> dict[str, Any]:
-        z = self.zone
-        _ = self.roller
-        found: dict[str, Any] = {"r0": z.plan["r_0"], "l0": z.plan["l_0"], "r_roller": self.choice["r_p"],
-                                 "rho_min": self.curvature["ρ_min"]}
-        if z.least is not None:
-            found["least"] = {"r0": z.least["r_0"], "l0": z.least["l_0"]}
-        return found | self._found_angles() | ({"arm_angle": self.apart} if self.apart else {})
-
 
 @dataclass(frozen=True, eq=False)
 class FlatCam(Cam):

@@ -10,7 +10,7 @@ velocity of B, its axis points against that velocity and its half angle is the p
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
@@ -19,14 +19,10 @@ from operator import itemgetter
 from typing import Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.quantities import Directions, Points, Reals, Signs
-from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.construction.expression import Complex, Directions, Floats, Points, Reals, Signs, primitive
+from tmm_sheets.construction.step import Given, Helper, Plan, Reading, Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams.cam_displacement import (
     AT_SHARE,
@@ -43,8 +39,6 @@ from tmm_sheets.methods.cams.cam_laws import Phase, PositionFunction
 from tmm_sheets.numbers import fixed
 from tmm_sheets.words import marked, tell, tr
 
-Floats = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 Limit = Literal["rise", "both"]
 Centre = Literal["vertex", "least"]
 
@@ -375,25 +369,14 @@ class Zone:
         """Permitted pressure angle, rad."""
         return self.cones.alpha
 
-    @property
-    def r0(self) -> float:
-        """Smallest radius of the centre profile, m."""
-        return float(self.plan["r_0"].value)
-
-    @property
-    def s0(self) -> float:
-        """Height of the start of a translating follower's motion over the cam's axis, m."""
-        return float(self.plan["S_0"].value)
-
-    @property
-    def e(self) -> float:
-        """Offset of a translating follower, m; positive when it lessens the pressure angle of the rise."""
-        return float(self.plan["e"].value)
-
-    @property
-    def l0(self) -> float:
-        """Distance between the axes of cam and rocker, m."""
-        return float(self.plan["l_0"].value)
+    r0 = Reading("plan", "r_0")
+    """Smallest radius of the centre profile, m."""
+    s0 = Reading("plan", "S_0")
+    """Height of the start of a translating follower's motion over the cam's axis, m."""
+    e = Reading("plan", "e")
+    """Offset of a translating follower, m; positive when it lessens the pressure angle of the rise."""
+    l0 = Reading("plan", "l_0")
+    """Distance between the axes of cam and rocker, m."""
 
     @cached_property
     def curve_plan(self) -> Plan:
@@ -440,12 +423,6 @@ class Zone:
     def tips(self, plan: Plan) -> Step:
         """Tips of one of the plans of the curve, m: a row of points."""
         return plan[self._curve_name]
-
-    def display_plans(self) -> Iterator[Plan]:
-        """Plans of what is drawn beyond the construction."""
-        yield from (self.curve_plan, self.every)
-        if self.beyond is not None:
-            yield self.beyond
 
     @property
     def swing(self) -> tuple[Any, ...]:
@@ -740,25 +717,14 @@ class Plate:
         before, after = (at.plan.add("S+S''", SUM, at.s, at.dds) for at in (self.exact.before, self.exact.after))
         return before, after
 
-    @property
-    def r0(self) -> float:
-        """Smallest radius of the cam, m."""
-        return float(self.plan["r_0"].value)
-
-    @property
-    def r_min(self) -> float:
-        """Radius below which the profile would not be convex, m."""
-        return float(self.plan["r_min"].value)
-
-    @property
-    def l1(self) -> float:
-        """Reach of the plate to the side of the contact in the rise, m."""
-        return float(self.plan["l_1"].value)
-
-    @property
-    def l2(self) -> float:
-        """Reach of the plate to the side of the contact in the fall, m."""
-        return float(self.plan["l_2"].value)
+    r0 = Reading("plan", "r_0")
+    """Smallest radius of the cam, m."""
+    r_min = Reading("plan", "r_min")
+    """Radius below which the profile would not be convex, m."""
+    l1 = Reading("plan", "l_1")
+    """Reach of the plate to the side of the contact in the rise, m."""
+    l2 = Reading("plan", "l_2")
+    """Reach of the plate to the side of the contact in the fall, m."""
 
 
 def lowest_sum(law: PositionFunction) -> tuple[float, Phase, float]:

@@ -8,22 +8,23 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import count, pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tmm_sheets.construction.arithmetic import Curve
-from tmm_sheets.construction.given import named
+from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.readable import CURVE, MAIN
 from tmm_sheets.construction.scale import Scale, coarser, finer, handy, plain, reach
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Step, named
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.flywheel.energy_mass import AtAngles
-from tmm_sheets.methods.flywheel.reduced_data import ReducedData
-from tmm_sheets.methods.integration import Floats, Quadrature
+from tmm_sheets.methods.integration import Quadrature
 from tmm_sheets.methods.linkage.cycle import closed
 from tmm_sheets.numbers import is_zero
 from tmm_sheets.words import tell, tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.flywheel.reduced import Reduced, Reduction
 
 BENT = 0.05
 """An interval is halved when its ordinate in the middle tells its work wrongly by more, share of the range of the work."""
@@ -48,7 +49,7 @@ def _fresh(number: str, taken: set[str]) -> str:
 class Intervals:
     """Division of the angle axis, and the reduced quantities at its borders, in the middles and close together between them."""
 
-    reduced: ReducedData
+    reduced: Reduced
     where: str
     """Behind the names of the plans, where a project has two flywheels."""
 
@@ -125,22 +126,22 @@ class Intervals:
         """Mark of the points carried to the ordinate axis: ″ where there are positions named 1′."""
         return "″" if len(self._numbered) < len(self.labels) else "′"
 
-    def at(self, where: str, phi: Any, labels: tuple[str, ...] | None = None) -> AtAngles:
+    def at(self, where: str, phi: Any, labels: tuple[str, ...] | None = None) -> Reduction:
         """Reduced quantities at angles of this flywheel only."""
         return self.reduced.at(f"{where}{self.where}", phi, labels)
 
     @cached_property
-    def at_borders(self) -> AtAngles:
+    def at_borders(self) -> Reduction:
         """Reduced quantities at the borders of the intervals."""
         return self.reduced.at("borders", self.edges, self.borders)
 
     @cached_property
-    def at_samples(self) -> AtAngles:
+    def at_samples(self) -> Reduction:
         """Reduced quantities at the :attr:`samples`."""
         return self.reduced.at("samples", self.samples)
 
     @cached_property
-    def at_middles(self) -> AtAngles:
+    def at_middles(self) -> Reduction:
         """Reduced quantities in the middles of the intervals."""
         return self.reduced.at("middles", (self.edges[:-1] + self.edges[1:]) / 2, self.intervals)
 
@@ -209,7 +210,7 @@ class Diagrams(Intervals, ABC):
     space: DiagramSpace | None
     fixed_scales: FlywheelScales | None
 
-    def mass(self, at: AtAngles) -> Step:
+    def mass(self, at: Reduction) -> Step:
         """Reduced moment of inertia whose graph is drawn, kg m2: of all links without the flywheel."""
         return at.inertia
 

@@ -15,20 +15,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.given import Given, named
-from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.rules import GIVEN_INERTIA
-from tmm_sheets.construction.step import Reported, Rule, Step
+from tmm_sheets.construction.step import Given, Plan, Reading, Reported, Rule, Step, named
 from tmm_sheets.methods.flywheel.diagram_scales import DiagramSpace, FlywheelScales
-from tmm_sheets.methods.flywheel.energy_mass import STOPS, AtAngles, ConvergedWheel, speed, too_light
-from tmm_sheets.methods.flywheel.reduced_data import ReducedData
-from tmm_sheets.methods.flywheel.running import Energy, Running, steady
+from tmm_sheets.methods.flywheel.energy_mass import STOPS, ConvergedWheel, Energy, Running, speed, steady, too_light
 from tmm_sheets.methods.flywheel.wheel import STEEL, MotorCheck, RimWheel, motor_check, wheel
 from tmm_sheets.methods.flywheel.works import DIFFERENCE, INERTIA_AT, MOMENT_AT, SLOPE_AT, Works
-from tmm_sheets.methods.integration import Floats
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.methods.flywheel.reduced import Reduced, Reduction
     from tmm_sheets.task.schema import FlywheelTable
 
 
@@ -96,7 +93,7 @@ class Flywheel(Works):
     Everything is computed when first read.
     """
 
-    reduced: ReducedData
+    reduced: Reduced
     data: FlywheelTable
     space: DiagramSpace | None = None
     fixed_scales: FlywheelScales | None = None
@@ -250,10 +247,8 @@ class Flywheel(Works):
         plan = self.rotor_plan
         return float((plan["J_к"] if "J_к" in plan else self.reduced.crank).value)  # noqa: SIM401 - a plan has no get
 
-    @property
-    def J_first(self) -> float:
-        """Moment of inertia of all that turns with the crank, flywheel included, by the drawn construction, kg m2."""
-        return float(self.first_plan["J_I"].value)
+    J_first = Reading("first_plan", "J_I")
+    """Moment of inertia of all that turns with the crank, flywheel included, by the drawn construction, kg m2."""
 
     @property
     def J_first_converged(self) -> float:
@@ -265,10 +260,8 @@ class Flywheel(Works):
         """Moment of inertia of the motor's rotor reduced to the crank, kg m2."""
         return float(self.rotor_plan["J_рот"].value) if "J_рот" in self.rotor_plan else 0.0
 
-    @property
-    def J_flywheel(self) -> float:
-        """Moment of inertia of the flywheel itself by the drawn construction, kg m2."""
-        return float(self.first_plan["J_м"].value)
+    J_flywheel = Reading("first_plan", "J_м")
+    """Moment of inertia of the flywheel itself by the drawn construction, kg m2."""
 
     @property
     def J_flywheel_converged(self) -> float:
@@ -284,10 +277,8 @@ class Flywheel(Works):
         """False when what turns with the crank already is enough by the drawn construction."""
         return self.J_flywheel > 0
 
-    @property
-    def J_running(self) -> float:
-        """Moment of inertia of what turns with the crank of the finished machine, with a flywheel only if it is needed, kg m2."""
-        return float(self.first_plan["J_вр"].value)
+    J_running = Reading("first_plan", "J_вр")
+    """Moment of inertia of what turns with the crank of the finished machine, with a flywheel only if it is needed, kg m2."""
 
     def running(self, first: float) -> Running:
         """Exact running when all that turns with the crank has the moment of inertia ``first``, kg m2."""
@@ -330,10 +321,8 @@ class Flywheel(Works):
         """Moment at the nodes of the quadrature, from plans that are kept."""
         return np.asarray(self.at("limit", nodes).moment(0).value)
 
-    @property
-    def difference_percent(self) -> float:
-        """How much the drawn construction differs from the limit, % of the limit."""
-        return float(self.limit_plan["разность"].value)
+    difference_percent = Reading("limit_plan", "разность")
+    """How much the drawn construction differs from the limit, % of the limit."""
 
     @cached_property
     def wheel(self) -> RimWheel | None:
@@ -402,7 +391,7 @@ class Flywheel(Works):
         """The same at the numbered positions, on their velocity plans."""
         return self._acceleration(self.reduced.numbered, self.labels, "", (self.closing,))
 
-    def _acceleration(self, at: AtAngles, labels: tuple[str, ...], name: str, closing: tuple[Given, ...] = ()) -> Plan:
+    def _acceleration(self, at: Reduction, labels: tuple[str, ...], name: str, closing: tuple[Given, ...] = ()) -> Plan:
         plan = Plan(f"crank-acceleration{name}{self.where}", tr("Angular acceleration of the input link"), "rad/s2", labels)
         mu_phi, mu_j = self.mu("angle"), self.mu("inertia")
         moment, inertia, slope = at.moment(), at.inertia, at.slope

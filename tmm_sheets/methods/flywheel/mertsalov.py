@@ -13,23 +13,26 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.rules import DISTANCE
 from tmm_sheets.construction.scale import Scale
-from tmm_sheets.construction.step import Reported, Rule, Step
+from tmm_sheets.construction.step import Given, Plan, Reading, Reported, Row, Rule, Step
 from tmm_sheets.methods.flywheel.diagram_scales import DiagramSpace
-from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT, AtAngles, ConvergedWheel, highest, limit_segment
+from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT, ConvergedWheel, Running, highest, limit_segment
 from tmm_sheets.methods.flywheel.flywheel import OF_EXCESS, OF_SEGMENT, Flywheel
-from tmm_sheets.methods.flywheel.running import Running
 from tmm_sheets.methods.flywheel.wittenbauer import FASTEST, SLOWEST, Wittenbauer
 from tmm_sheets.methods.flywheel.works import FROM_PAPER, PLOT
-from tmm_sheets.methods.integration import CARRY, Floats, Quadrature
+from tmm_sheets.methods.integration import CARRY, Quadrature
 from tmm_sheets.words import marked, tr
+
+if TYPE_CHECKING:
+    from tmm_sheets.methods.flywheel.reduced import Reduced, Reduction
+    from tmm_sheets.task.schema import FlywheelTable
+
 
 SPACE = DiagramSpace(work=240.0, energy=220.0, inertia=175.0, stack=470.0, stacked=4, pole=(25.0, 80.0),
                      spare=4.0, heads=False)
@@ -91,7 +94,7 @@ class Mertsalov(Flywheel):
         """Name of the method, as in the project file."""
         return "mertsalov"
 
-    def mass(self, at: AtAngles) -> Step:
+    def mass(self, at: Reduction) -> Step:
         """Reduced moment of inertia of the links without the crank, kg m2."""
         return at.others
 
@@ -169,13 +172,10 @@ class Mertsalov(Flywheel):
         other = (p for p in self.other.plans.values() if p.name.endswith(self.other.where))
         return self.speed_plan, *other, self.comparison_plan
 
-    def second_curve(self, phi: Any) -> Floats:
-        """Ordinate of the graph T_II(phi) in the scale of energies, mm."""
-        return np.asarray(self.scales.inertia.mm(self.inertia(phi)) * self.convert)
-
     def first_curve(self, phi: Any) -> Any:
         """Point of the graph T_I(phi), mm."""
-        return self.scales.angle.mm(np.asarray(phi, dtype=float)) + 1j * (self.energy_curve(phi) - self.second_curve(phi))
+        second = np.asarray(self.scales.inertia.mm(self.inertia(phi)) * self.convert)
+        return self.scales.angle.mm(np.asarray(phi, dtype=float)) + 1j * (self.energy_curve(phi) - second)
 
     # --- results, SI ------------------------------------------------------------------------------------
     @property
@@ -210,20 +210,12 @@ class Mertsalov(Flywheel):
     def _first_converged(self, plan: Plan, excess: Step) -> Step:
         return plan.add("J_I∞", OF_EXCESS, excess, self.permitted, self.omega1)
 
-    @property
-    def T_second(self) -> Floats:
-        """Energy of the links without the crank at the positions as the procedure takes it, J."""
-        return np.asarray(self.energy_plan["E_II"].value)
-
-    @property
-    def T_first(self) -> Floats:
-        """Energy of the crank's group at the positions from its unknown level at position 0, J."""
-        return np.asarray(self.energy_plan["E_I"].value)
-
-    @property
-    def omega(self) -> Floats:
-        """Angular velocity of the crank at the positions, rad/s."""
-        return np.asarray(self.speed_plan["ω1"].value)
+    T_second = Row("energy_plan", "E_II")
+    """Energy of the links without the crank at the positions as the procedure takes it, J."""
+    T_first = Row("energy_plan", "E_I")
+    """Energy of the crank's group at the positions from its unknown level at position 0, J."""
+    omega = Row("speed_plan", "ω1")
+    """Angular velocity of the crank at the positions, rad/s."""
 
     @property
     def extremes(self) -> tuple[float, float]:
@@ -276,10 +268,8 @@ class Mertsalov(Flywheel):
         plan.add("e", EXCESS, *(plan.add(f"J_{name}", AT_CONTACT, contacts, k) for k, name in enumerate(("max", "min"))))
         return plan
 
-    @property
-    def excess(self) -> float:
-        """How much the procedure takes too much by theory: (J_II(phi_max) + J_II(phi_min))/2, kg m2; terms in delta left out."""
-        return float(self.comparison_plan["e"].value)
+    excess = Reading("comparison_plan", "e")
+    """How much the procedure takes too much by theory: (J_II(phi_max) + J_II(phi_min))/2, kg m2; terms in delta left out."""
 
     @property
     def drawn(self) -> dict[str, Any]:
@@ -298,3 +288,8 @@ class Mertsalov(Flywheel):
             "compared": [{"first": c.step, "omega_max": of[f"ω_max{i}"], "omega_min": of[f"ω_min{i}"], "delta": of[f"δ{i}"]}
                          for i, c in enumerate(self.compared, 1)],
         }
+
+
+def flywheel(reduced: Reduced, data: FlywheelTable) -> Flywheel:
+    """Flywheel of a linkage by the method its data name."""
+    return Mertsalov(reduced, data, SPACE) if data.method == "mertsalov" else Wittenbauer(reduced, data)

@@ -16,10 +16,8 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.function import Replay
-from tmm_sheets.construction.given import Given, named
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import GIVEN_INERTIA, taken
-from tmm_sheets.construction.step import Rule, Step, value_of
+from tmm_sheets.construction.step import Given, Plan, Rule, Step, named, value_of
 from tmm_sheets.mechanism.model import Link, Mechanism
 from tmm_sheets.methods.flywheel.flywheel import WITHOUT_CRANK
 from tmm_sheets.methods.linkage.accelerations import Accelerations, acceleration_plan

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from math import pi
 from typing import Any, Literal
 
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Rule, Step, value_of
+from tmm_sheets.construction.step import Plan, Reading, Rule, Step, value_of
 from tmm_sheets.numbers import number
 from tmm_sheets.words import tr
 
@@ -53,33 +52,20 @@ class RimWheel:
     form: Literal["rim", "disc"]
     plan: Plan
 
-    def _of(self, name: str) -> float:
-        return float(self.plan[name].value) if name in self.plan else float("nan")
+    diameter = Reading("plan", "D")
+    """D, m."""
 
-    @property
-    def diameter(self) -> float:
-        """D, m."""
-        return self._of("D")
+    width = Reading("plan", "B")
+    """B, m."""
 
-    @property
-    def width(self) -> float:
-        """B, m."""
-        return self._of("B")
+    thickness = Reading("plan", "H")
+    """H, m; NaN for a disc."""
 
-    @property
-    def thickness(self) -> float:
-        """H, m; NaN for a disc."""
-        return self._of("H")
+    mass = Reading("plan", "m")
+    """Mass, kg."""
 
-    @property
-    def mass(self) -> float:
-        """Mass, kg."""
-        return self._of("m")
-
-    @property
-    def speed(self) -> float:
-        """Speed of the rim at D/2, m/s."""
-        return self._of("V")
+    speed = Reading("plan", "V")
+    """Speed of the rim at D/2, m/s."""
 
 
 def wheel(inertia: Step | float, omega: float, form: str, density: float, width_ratio: float, thickness_ratio: float,
@@ -132,15 +118,10 @@ class MotorCheck:
     rated_power: float
     delta: float
 
-    @property
-    def power(self) -> float:
-        """Power asked for, W."""
-        return float(self.plan["P"].value)
-
-    @property
-    def permitted(self) -> float:
-        """Permitted coefficient of non-uniformity."""
-        return float(self.plan["[δ]"].value)
+    power = Reading("plan", "P")
+    """Power asked for, W."""
+    permitted = Reading("plan", "[δ]")
+    """Permitted coefficient of non-uniformity."""
 
     @property
     def strong(self) -> bool:

@@ -9,11 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.readable import MAIN
 from tmm_sheets.construction.scale import Scale, fit
-from tmm_sheets.construction.step import Rule, Step, value_of
+from tmm_sheets.construction.step import Given, Plan, Rule, Step, value_of
 from tmm_sheets.methods.flywheel.diagram_scales import DiagramSpace
 from tmm_sheets.methods.flywheel.energy_mass import (
     ConvergedWheel,
@@ -26,7 +25,6 @@ from tmm_sheets.methods.flywheel.energy_mass import (
     touched,
 )
 from tmm_sheets.methods.flywheel.flywheel import OF_EXCESS, OF_SEGMENT, TOGETHER, TOGETHER_LIMIT, Flywheel
-from tmm_sheets.methods.integration import Floats
 from tmm_sheets.words import marked, tr
 
 TURN = 2 * pi

@@ -9,15 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction.arithmetic import Curve
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import Given, named
-from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.expression import Floats, primitive
 from tmm_sheets.construction.rules import GIVEN_NUMBER, taken
 from tmm_sheets.construction.scale import Scale
-from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.construction.step import Given, Helper, Plan, Row, Rule, Step, named
 from tmm_sheets.methods.flywheel.diagram_scales import Diagrams
 from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT
-from tmm_sheets.methods.integration import AREA, ON_CURVE, ORIGIN, SMOOTH, Floats, Quadrature, differentiate, integrate
+from tmm_sheets.methods.integration import AREA, ON_CURVE, ORIGIN, SMOOTH, Quadrature, differentiate, integrate
 from tmm_sheets.numbers import is_zero
 from tmm_sheets.words import marked, tr
 
@@ -381,20 +379,12 @@ class Works(Diagrams):
         return np.asarray((self.work_curve(phi) + line) * (self.scales.work.mu / self.scales.energy.mu))
 
     # --- results, SI -----------------------------------------------------------------------------------
-    @property
-    def M_reduced(self) -> Floats:
-        """Reduced moment of the technological forces at the positions, N m."""
-        return np.asarray(self.moment_plan["M_пр"].value)
-
-    @property
-    def work(self) -> Floats:
-        """Work of that moment from position 0, J: ends of the chords."""
-        return np.asarray(self.total_plan["A"].value)
-
-    @property
-    def work_converged(self) -> Floats:
-        """The same work by the area of the graph of the moment, for vanishing intervals, J."""
-        return np.asarray(self.area_plan["A"].value)
+    M_reduced = Row("moment_plan", "M_пр")
+    """Reduced moment of the technological forces at the positions, N m."""
+    work = Row("total_plan", "A")
+    """Work of that moment from position 0, J: ends of the chords."""
+    work_converged = Row("area_plan", "A")
+    """The same work by the area of the graph of the moment, for vanishing intervals, J."""
 
     @property
     def work_error(self) -> float:
@@ -410,12 +400,7 @@ class Works(Diagrams):
         """Constant moment that balances the cycle, N m: the driving one of a working machine."""
         return float(self.driving_plan["M"].value)
 
-    @property
-    def delta_E(self) -> Floats:
-        """Change of kinetic energy at the positions, J."""
-        return np.asarray(self.total_plan["E"].value)
-
-    @property
-    def J_reduced(self) -> Floats:
-        """Reduced moment of inertia at the positions, kg m2."""
-        return np.asarray(self.inertia_plan["J_пр"].value)
+    delta_E = Row("total_plan", "E")
+    """Change of kinetic energy at the positions, J."""
+    J_reduced = Row("inertia_plan", "J_пр")
+    """Reduced moment of inertia at the positions, kg m2."""

@@ -14,10 +14,7 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.quantities import Directions, Points, Reals, Signs
+from tmm_sheets.construction.expression import Directions, Points, Reals, Signs, primitive
 from tmm_sheets.construction.readable import CURVE
 from tmm_sheets.construction.rules import (
     ALONG,
@@ -28,7 +25,7 @@ from tmm_sheets.construction.rules import (
     RAY,
     TANGENT,
 )
-from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step
 from tmm_sheets.methods.gears.gear_geometry import GearWheel, PairGeometry
 from tmm_sheets.methods.gears.rack import TAKEN
 from tmm_sheets.numbers import number
@@ -81,10 +78,6 @@ def _profile_on_circle(o: Points, foot: Points, pole: Points, radius: Reals) -> 
     return unrolled(o, foot, pole, np.sqrt((radius - base) * (radius + base)))
 
 
-def _divide(p: Points, q: Points, k: Any, parts: Any) -> Any:
-    return p + (q - p) * (k / parts)
-
-
 @primitive("lay off an arc")
 def _lay_arc(o: Points, foot: Points, pole: Points, k: Any, parts: Any) -> Any:
     return o + (foot - o) * turn_of(o, foot, (pole - foot) * (1 - k / parts))
@@ -101,14 +94,6 @@ def _speed(foot: Points, pole: Points, at: Points, ordinate: Reals) -> Any:
     # the same products above and below the line: the ordinate at the pole comes out exactly
     # (and no negative zero over the foot, which would turn the sliding's infinity over)
     return ordinate * (ar.dot(at - foot, string) / ar.dot(string, string)) + 0.0
-
-
-def _sliding(own: Any, other: Any) -> Any:
-    return np.divide(own - other, own)  # of two zeros too: no number then
-
-
-def _middle(p: Points, q: Points) -> Any:
-    return (p + q) / 2
 
 
 @primitive("fillet on a radial piece")
@@ -144,7 +129,7 @@ ROLLED = Rule(
     lambda a, v: (Helper("line", a[1], v),),
 )
 DIVIDE = Rule(
-    "equal parts", _divide, ("point", "point", "number", "number"), "point",
+    "equal parts", lambda p, q, k, parts: p + (q - p) * (k / parts), ("point", "point", "number", "number"), "point",
     marked("Divide the segment {0}{1} into equal parts ({3} of them); division {2} from {0}: point {name}."),
 )
 LAY_ARC = Rule(
@@ -166,7 +151,7 @@ UNROLLED = Rule(
     "point of the profile", unrolled, ("point", "point", "point", "length"), "point",
     marked("On the involute mark point {name}, to which the length of the tangent is {3}."),
 )
-MIDDLE = Rule("middle", _middle, ("point", "point"), "point", marked("Bisect the segment {0}{1}: point {name}."))
+MIDDLE = Rule("middle", lambda p, q: (p + q) / 2, ("point", "point"), "point", marked("Bisect the segment {0}{1}: point {name}."))
 RADIAL_FILLET = Rule(
     "fillet on a radial piece", _radial_fillet, ("point", "point", "length", "length", "number"), "point",
     marked("Below {1} the profile is a radius; the centre {name} of the fillet with the radius {2} lies at this distance from the "
@@ -190,7 +175,7 @@ SPEED = Rule(
            "mm."),
     unit="mm", source="000, 6.3",
 )
-SLIDING = Rule("specific sliding", _sliding, ("number", "number"), "number",
+SLIDING = Rule("specific sliding", lambda own, other: np.divide(own - other, own), ("number", "number"), "number",
                "", source="000, 6.3")
 
 

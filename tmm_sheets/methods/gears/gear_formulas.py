@@ -5,16 +5,15 @@ Lengths in millimetres, angles in radians; recorded by :mod:`~tmm_sheets.methods
 
 from __future__ import annotations
 
-from math import atan, cbrt, floor, pi, sin, tan
-from typing import Any, Protocol
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import asin, atan, cbrt, floor, pi, sin, tan
+from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import Given, GivenNumber
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Kind, Rule, Step
-from tmm_sheets.methods.gears import fillets
+from tmm_sheets.construction.expression import Reals, primitive
+from tmm_sheets.construction.step import Given, GivenNumber, Kind, Plan, Rule, Step
 from tmm_sheets.methods.gears.rack import Rack
 from tmm_sheets.words import marked, tr
 
@@ -22,31 +21,21 @@ FILLET = 0.38
 """Fillet radius of the basic rack in modules (GOST 13755; manual 000, 6.4, item 5)."""
 
 
-class GearData(Protocol):
-    """What a gear pair is given by, SI units: numbers of the ``[gear]`` section, or steps of the reducer they come from."""
+@dataclass(frozen=True)
+class GearData:
+    """A gear pair as it is to be built: every number settled, SI units, or a step of the reducer."""
 
-    @property
-    def teeth(self) -> Any: ...  # noqa: D102
-    @property
-    def module(self) -> Any: ...  # noqa: D102
-    @property
-    def shift(self) -> Any: ...  # noqa: D102
-    @property
-    def pressure_angle(self) -> float: ...  # noqa: D102
-    @property
-    def addendum(self) -> Any: ...  # noqa: D102
-    @property
-    def clearance(self) -> float: ...  # noqa: D102
-    @property
-    def driver(self) -> int: ...  # noqa: D102
-    @property
-    def sense(self) -> str: ...  # noqa: D102
-    @property
-    def profile(self) -> str: ...  # noqa: D102
-    @property
-    def mesh(self) -> str: ...  # noqa: D102
-    @property
-    def centre_distance(self) -> Any: ...  # noqa: D102
+    teeth: Any
+    module: Any
+    shift: Any
+    pressure_angle: float
+    addendum: Any
+    clearance: float
+    driver: int
+    sense: str
+    profile: str
+    mesh: str = "external"
+    centre_distance: Any = None
 
 
 def involute(angle: Any) -> Any:
@@ -189,13 +178,70 @@ LIMIT_TANGENT = formula(
     "", textbook=lambda h, z, a, x, m: m * (x - h + z * np.sin(a) ** 2 / 2) / np.sin(a), source=marked("GOST 16532-70"))
 HALF_TOOTH = formula("half of the tooth at the base circle", lambda s, r, inv: s / (2 * r) + inv, (N, N, N),
                       "", "rad", marked("GOST 16532-70"))
+
+
+def fillet_start(rho: Reals, rb: Reals, rf: Reals) -> Reals:
+    """Unrolled length at which a fillet of radius ``rho`` leaves the involute; below 0: it touches the radial piece."""
+    return np.sqrt(np.maximum((rf + rho - rb) * (rf + rho + rb), 0.0)) - rho
+
+
+def _angle(rho: float, rb: float, rf: float, half: float) -> float:
+    """Angle between the tooth's axis and the centre of its fillet."""
+    t = float(fillet_start(rho, rb, rf))
+    if t < 0:
+        return half + asin(rho / (rf + rho))
+    return half - t / rb + atan((t + rho) / rb)
+
+
+def _largest(fits: Callable[[float], bool], rho: float) -> float:
+    """The radius, or the largest below it that fits; NaN when none does."""
+    if fits(rho):
+        return rho
+    low, high = 0.0, rho
+    if not fits(low):
+        return float("nan")
+    while low < (middle := (low + high) / 2) < high:
+        low, high = (middle, high) if fits(middle) else (low, middle)
+    return low
+
+
+@primitive("largest fillet", "real")
+def fillet_radius(rho: float, rb: float, rf: float, half: float, half_pitch: float, t_low: float) -> float:
+    """The radius ``rho``, or the largest that leaves room for both fillets of a space and for the mate's tip; NaN if none.
+
+    ``half`` of the tooth and of the pitch as angles, ``t_low`` the unrolled length at the lowest contact.
+    """
+    def fits(r: float) -> bool:
+        return _angle(r, rb, rf, half) <= half_pitch and float(fillet_start(r, rb, rf)) <= max(t_low, 0.0)
+
+    return _largest(fits, rho) if rf > 0 or fits(rho) else float("nan")
+
+
+def ring_fillet_start(rho: Reals, rb: Reals, rf: Reals) -> Reals:
+    """Unrolled length at which a fillet of a ring's tooth space leaves the involute towards the root circle."""
+    return np.sqrt(np.maximum((rf - rho - rb) * (rf - rho + rb), 0.0)) + rho
+
+
+@primitive("largest fillet of a ring", "real")
+def ring_fillet_radius(rho: float, rb: float, rf: float, half: float, t_low: float) -> float:
+    """The radius ``rho``, or the largest that leaves room for both fillets of a ring's space and for the mate's tip; NaN if none.
+
+    ``half`` of the space on the base circle as an angle, ``t_low`` the unrolled length at the last contact.
+    """
+    def fits(r: float) -> bool:
+        t = float(ring_fillet_start(r, rb, rf))
+        return rf - r > rb and t >= t_low and half - t / rb + atan((t - r) / rb) >= 0
+
+    return _largest(fits, rho)
+
+
 FILLET_RADIUS = formula(
-    "fillet radius", lambda m, rb, rf, half, z, low: fillets.radius(FILLET * m, rb, rf, half, pi / z, low), (N, N, N, N, N, N),
+    "fillet radius", lambda m, rb, rf, half, z, low: fillet_radius(FILLET * m, rb, rf, half, pi / z, low), (N, N, N, N, N, N),
     marked("Radius of the fillet 0.38m if there is room for it in the tooth space, else the greatest possible: {name} = {value} "
            "mm."),
     source="000, 6.4")
 FILLET_START = formula("beginning of the involute over the fillet",
-                        lambda rho, rb, rf: np.maximum(fillets.start(rho, rb, rf), 0.0), (N, N, N),
+                        lambda rho, rb, rf: np.maximum(fillet_start(rho, rb, rf), 0.0), (N, N, N),
                         marked("Radius of curvature of the involute where the fillet takes over (0 on the base circle): {name} = "
                                "{value} mm."), source="000, 6.4")
 RACK_FILLET = formula("tip radius of the rack", lambda c, m, a: c * m / (1 - np.sin(a)), (N, N, A),

@@ -13,8 +13,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Reported, Step
+from tmm_sheets.construction.step import Plan, Reported, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears.gear_formulas import FILLET, GearData, addendum, dedendum
 from tmm_sheets.methods.gears.gear_steps import geometry_plan

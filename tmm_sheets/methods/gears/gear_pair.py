@@ -10,9 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit_standard
-from tmm_sheets.construction.step import Reported, Rule, Step
+from tmm_sheets.construction.step import Plan, Reported, Rule, Step
 from tmm_sheets.methods.gears import gear_engagement as ge
 from tmm_sheets.methods.gears import rack
 from tmm_sheets.methods.gears.gear_engagement import on_normal, unrolled
@@ -196,24 +195,7 @@ class GearPair(PairGeometry):
         return warnings_of(self)
 
 
-@dataclass(frozen=True)
-class MeshingPair:
-    """A gear pair as it is to be built: :class:`GearData` with every number settled, or the steps it comes from."""
-
-    teeth: Any
-    module: Any
-    shift: Any
-    pressure_angle: float
-    addendum: Any
-    clearance: float
-    driver: int
-    sense: str
-    profile: str
-    mesh: str = "external"
-    centre_distance: Any = None
-
-
-def settled(section: Any, reducer: Any = None) -> MeshingPair:
+def settled(section: Any, reducer: Any = None) -> GearData:
     """Data of a ``[gear]`` section whose teeth may come from the reducer's simple stage; ``shift`` may be "rule"."""
     if section.teeth == "reducer":
         teeth, module, addendum, clearance = reducer.simple_pair
@@ -225,7 +207,7 @@ def settled(section: Any, reducer: Any = None) -> MeshingPair:
     shift = section.shift
     if section.centre_distance is not None:
         shift = "rule" if section.first_shift is None else (section.first_shift, None)
-    return MeshingPair(teeth, module, shift, section.pressure_angle, addendum, clearance, section.driver, section.sense,
+    return GearData(teeth, module, shift, section.pressure_angle, addendum, clearance, section.driver, section.sense,
                        section.profile, section.mesh, section.centre_distance)
 
 

@@ -13,9 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Rule, Step
-from tmm_sheets.methods.gears import fillets
+from tmm_sheets.construction.step import Plan, Rule, Step
 from tmm_sheets.methods.gears import gear_formulas as gf
 from tmm_sheets.methods.gears.gear_formulas import A, GearData, N, addendum, dedendum, formula, given, involute
 from tmm_sheets.words import marked, tr
@@ -90,10 +88,10 @@ HALF_SPACE = _formula("half of the ring's space at the base circle", lambda s, r
                       marked("Half the angular width of the ring's space on the base circle ψ_b = π/z − s/2r + inv α: {name} = "
                              "π/{3} − {0}/(2 × {1}) + {2} = {value}."), "rad")
 RING_FILLET = _formula(
-    "fillet radius of a ring", lambda m, rb, rf, half, low: fillets.ring_radius(gf.FILLET * m, rb, rf, half, low), (N, N, N, N, N),
+    "fillet radius of a ring", lambda m, rb, rf, half, low: gf.ring_fillet_radius(gf.FILLET * m, rb, rf, half, low), (N,) * 5,
     marked("Radius of the ring's fillet 0.38m if there is room for it in the tooth space, else the greatest possible: {name} = "
            "{value} mm."))
-RING_START = _formula("end of the ring's involute", fillets.ring_start, (N, N, N),
+RING_START = _formula("end of the ring's involute", gf.ring_fillet_start, (N, N, N),
                       marked("Radius of curvature of the ring's involute where the fillet takes over: {name} = {value} mm."))
 TIP_MEETS_PINION = _formula(
     "angle of the crossing tip circles about the pinion", lambda ra1, ra2, a: pi - _between(ra1, a, ra2), (N, N, N),

@@ -20,15 +20,10 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.construction import arithmetic as ar
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.quantities import Directions, Points, Reals
+from tmm_sheets.construction.expression import Complex, Directions, Points, Reals, primitive
 from tmm_sheets.construction.rules import ALONG, GIVEN, GIVEN_LENGTH, OFFSET
-from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step
 from tmm_sheets.words import marked, tr
-
-Complex = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -163,10 +158,6 @@ def _bisect(f: Any, low: float, high: float) -> float:
     return high
 
 
-def _turned_down(u: Directions, angle: Reals) -> Any:
-    return u * np.exp(-1j * angle)
-
-
 @primitive("point within limits")
 def _within(point: Any, start: Any, u: Directions, least: Any) -> Any:
     return np.where(ar.dot(point - start, u) >= least * (1 + 1e-12), point, np.nan)
@@ -185,7 +176,7 @@ ROLLING_LINE = Rule("rolling line", lambda u: -1j * u, ("direction",), "directio
                     marked("Perpendicular to the radius draw the pitch line {name} of the rack."))
 REFERENCE = Rule("shifted reference line", ar.along, ("point", "direction", "ordinate"), "point",
                  marked("From the pitch line lay off the shift {2}: point {name} of the reference line of the rack."))
-FLANK = Rule("flank of the rack", _turned_down, ("direction", "angle"), "direction",
+FLANK = Rule("flank of the rack", lambda u, angle: u * np.exp(-1j * angle), ("direction", "angle"), "direction",
              marked("At the profile angle {1} to the axis of the rack tooth draw its flank."))
 TOUCH = Rule(
     "perpendicular on the flank", lambda p, q, u: ar.foot(p, q, u), ("point", "point", "direction"), "point",

@@ -6,7 +6,7 @@ Wheels 1 to 4 of the formulas are those of one planetary stage (a single row: 1,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from itertools import pairwise
 from math import gcd, pi
@@ -15,14 +15,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import Given, GivenNumber
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Reported, Rule, Step
+from tmm_sheets.construction.step import Given, GivenNumber, Plan, Reported, Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears import planetary
-from tmm_sheets.methods.gears.planetary import SCHEMES, Driver
-from tmm_sheets.methods.gears.tooth_search import (
+from tmm_sheets.methods.gears.planetary import (
+    SCHEMES,
     TIERS,
+    Driver,
     ToothSet,
     named_teeth,
     search,
@@ -75,19 +74,12 @@ DEVIATION = _formula("deviation of the ratio", lambda u, asked: u / asked - 1, 2
 PAIR_EFFICIENCY = _formula("efficiency of a pair", lambda eta: eta, 1, marked("Efficiency of one pair of wheels {name} = {value}."))
 INNER_EFFICIENCY = _formula("efficiency with the carrier stopped", lambda eta: eta**2, 1,
                             marked("Efficiency of both pairs of the train with the carrier held: {name} = {0}² = {value}."))
-STAGE_EFFICIENCY: dict[Callable[[Any, Any], Any], Rule] = {
-    planetary.efficiency_from_sun: _formula(
-        "efficiency of a stage driven by the sun", planetary.efficiency_from_sun, 2,
-        marked("Efficiency of a stage (1 + η_0|i|)/(1 + |i|), i = {0}, η_0 = {1}: {name} = {value}.")),
-    planetary.efficiency_from_ring: _formula(
-        "efficiency of a stage driven by the ring", planetary.efficiency_from_ring, 2,
-        marked("Efficiency of a stage (1 + η_0/|i|)/(1 + 1/|i|), i = {0}, η_0 = {1}: {name} = {value}.")),
-    planetary.efficiency_from_carrier_below: _formula(
-        "efficiency of a stage driven by the carrier, i < 1", planetary.efficiency_from_carrier_below, 2,
-        marked("Efficiency of a stage (1 − i)/(1 − iη_0) for i < 1, i = {0}, η_0 = {1}: {name} = {value}.")),
-    planetary.efficiency_from_carrier_above: _formula(
-        "efficiency of a stage driven by the carrier, i > 1", planetary.efficiency_from_carrier_above, 2,
-        marked("Efficiency of a stage η_0(i − 1)/(i − η_0) for i > 1, i = {0}, η_0 = {1}: {name} = {value}.")),
+STAGE_EFFICIENCY = {
+    case: _formula(f"efficiency of a stage driven by the {case}", planetary.EFFICIENCY[case], 2, said) for case, said in (
+        ("sun", marked("Efficiency of a stage (1 + η_0|i|)/(1 + |i|), i = {0}, η_0 = {1}: {name} = {value}.")),
+        ("ring", marked("Efficiency of a stage (1 + η_0/|i|)/(1 + 1/|i|), i = {0}, η_0 = {1}: {name} = {value}.")),
+        ("carrier, i < 1", marked("Efficiency of a stage (1 − i)/(1 − iη_0) for i < 1, i = {0}, η_0 = {1}: {name} = {value}.")),
+        ("carrier, i > 1", marked("Efficiency of a stage η_0(i − 1)/(i − η_0) for i > 1, i = {0}, η_0 = {1}: {name} = {value}.")))
 }
 PLANETARY_EFFICIENCY = _formula("efficiency of the planetary stages", lambda eta, stages: eta**stages, 2,
                                 marked("Efficiency of the planetary part (stages: {1}): {name} = {value}."))
@@ -163,8 +155,8 @@ def ratio_plan(data: ReducerTable, teeth: ToothSet, k: int, criterion: str, chos
         both = plan.add("eta_0", INNER_EFFICIENCY, pair, symbol="η_0")
     else:
         pair, both = chosen["eta_pair"], chosen["eta_0"]
-    formula = planetary.efficiency_formula(planetary.inner_ratio(scheme.signs, teeth.stage), driver)
-    one = plan.add("eta_stage", STAGE_EFFICIENCY[formula], inner, both, symbol=tr("η_{st}"))
+    case = planetary.efficiency_case(float(planetary.inner_ratio(scheme.signs, teeth.stage)), driver)
+    one = plan.add("eta_stage", STAGE_EFFICIENCY[case], inner, both, symbol=tr("η_{st}"))
     part = plan.add("eta_planetary", PLANETARY_EFFICIENCY, one, stages, symbol=tr("η_{pl}"))
     plan.add("eta", *((EFFICIENCY, part, pair) if simple else (SAME_EFFICIENCY, part)), symbol="η")
     return plan

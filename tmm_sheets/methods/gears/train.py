@@ -17,12 +17,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.construction.given import GivenNumber
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Reported, Step
+from tmm_sheets.construction.step import GivenNumber, Plan, Reported, Step
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.gears import speed_picture
-from tmm_sheets.methods.gears.train_steps import DISTANCE, FRAME, Kinematics, Mesh, TrainData, distance_of, is_wheel
+from tmm_sheets.methods.gears.train_steps import (
+    DISTANCE,
+    FRAME,
+    Kinematics,
+    Mesh,
+    SpeedPicture,
+    TrainData,
+    distance_of,
+    is_wheel,
+    speeds_plan,
+)
 from tmm_sheets.numbers import number
 from tmm_sheets.words import tell, tr
 
@@ -100,12 +107,12 @@ class Train:
     @cached_property
     def velocities(self) -> Plan:
         """Picture of velocities: points ``A`` .. with their velocities ``a`` .., and a line named after each link."""
-        return speed_picture.SpeedPicture(self).plan
+        return SpeedPicture(self).plan
 
     def speeds(self, distance: float) -> Plan:
         """Plan of the speeds of rotation with its pole ``distance`` m over the line on which they are read."""
         if distance not in self._speed_plans:
-            self._speed_plans[distance] = speed_picture.speeds(self.velocities, distance, self.data.part)
+            self._speed_plans[distance] = speeds_plan(self.velocities, distance, self.data.part)
         return self._speed_plans[distance]
 
     @cached_property

@@ -16,12 +16,11 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.construction.indices import on_link, pair_index
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Helper, Rule, Step, value_of
+from tmm_sheets.construction.step import Helper, Plan, Rule, Step, value_of
 from tmm_sheets.mechanism.groups.contexts import Turning
-from tmm_sheets.mechanism.model import Mechanism, Pair, StructuralGroup
+from tmm_sheets.mechanism.model import Leg, Mechanism, Pair, StructuralGroup
 from tmm_sheets.methods.linkage.positions import SEARCHED, passages, position_plan
-from tmm_sheets.methods.linkage.velocities import POLE, MotionPolygon, Velocities, plan_name, turning, velocity_plan
+from tmm_sheets.methods.linkage.velocities import MotionPolygon, Velocities, plan_name, turning, velocity_plan
 from tmm_sheets.words import marked, tr
 
 NORMAL = Rule(
@@ -69,6 +68,7 @@ class Accelerations(MotionPolygon):
     """Acceleration plan: ``points`` m/s2 from the pole for every point, ``epsilon`` rad/s2 of every link."""
 
     POLE, VECTOR, RATE, TURNING, SAME = "π", "a̅", "ε", ANGULAR_ACCELERATION, SAME
+    MARKS, ABSOLUTE = {"RR": "^τ", "PR": "^r", "RP": "^r"}, 1
 
     velocities: Velocities = field(kw_only=True)
 
@@ -82,21 +82,22 @@ class Accelerations(MotionPolygon):
         """Symbols of the Coriolis segments."""
         return {s.symbol for s in self.plan.segments if s.head.rule is CORIOLIS}
 
-    def guide(self, guide: str, at: str) -> tuple[Step, Step, str]:
-        """Acceleration and velocity of the guide's point coinciding with ``at``, and the guide's link."""
-        m, vel = self.positions.mechanism, self.velocities
-        g = m.guides[guide]
-        if g.link == m.frame:
-            return self.pole, vel.pole, g.link
-        assert isinstance(g.through, str)
-        return self.on(g.link, g.through, at), vel.on(g.link, g.through, at), g.link
+    def end(self, leg: Leg, point: str, slotted_in: str) -> Step:
+        """With the normal acceleration about the outer hinge, or the Coriolis acceleration on the guide or in the slot."""
+        start, letters, vel = self.start(leg), point + self.against(leg), self.velocities
+        if leg.form == "RR":
+            return self.normal(start, leg.link, leg.outer, leg.corner, letters)
+        link = self.positions.mechanism.guides[leg.guide].link if leg.guide else slotted_in
+        moved = vel.coincident[point] if point in vel.coincident and slotted_in else vel.points[point]
+        return self.coriolis(start, link, vel.start(leg), moved, letters)
 
     def way(self, turning: Turning, group: StructuralGroup) -> tuple[Any, ...]:
         """Rule and arguments that tell the tangential acceleration of a point about the other end of its link."""
         pos, crank = self.positions, self.positions.mechanism.crank.link
         second = turning.second
         if second is None:
-            second = passages(pos.mechanism).row(group, pos.phi, "second turning", _second_of_last)
+            second = passages(pos.mechanism).row(group, pos.phi, "second turning", lambda m, phi: acceleration_plan(
+                velocity_plan(position_plan(m, phi, purpose=SEARCHED))).epsilon[m.groups[-1].links[0]].value)
         return WAY, self.velocities.first(turning, group), second, self.velocities.omega[crank], self.epsilon[crank]
 
     def rotated(self, point: str, start: Step, link: str, q: str, b: str) -> Step:
@@ -126,27 +127,12 @@ def acceleration_plan(vel: Velocities, epsilon1: Any = None, where: str = "") ->
     ``epsilon1`` is the angular acceleration of the crank, rad/s2: a number or of shape (n,), signed, or a step, positive in the
     sense of rotation; that of the mechanism unless told. ``where`` stands behind the plan's name.
     """
+    from tmm_sheets.methods.linkage.drive import drive_accelerations
+
     pos = vel.positions
-    m = pos.mechanism
     plan = Plan(f"accelerations{pos.where}{where}", tr("Acceleration polygon"), "m/s2", pos.plan.labels, "π", pos.plan.search)
     acc = Accelerations(pos, plan, velocities=vel)
-    pole = plan.add("π", POLE, 0j)
-    for name in m.fixed:
-        acc.points[name] = pole
-    acc.epsilon[m.frame] = plan.add("ε0", SAME, 0.0)
-    c = m.crank
-    if m.drive is not None:
-        from tmm_sheets.methods.linkage.drive import drive_accelerations
-
-        drive_accelerations(acc)
-    else:
-        _of_crank(acc, epsilon1)
-    acc.further_points(c.link)
-    for g in m.groups:
-        if m.drive is None or g.name != m.drive.group.name:
-            g.kind.acceleration(acc, g)
-        for link in g.links:
-            acc.further_points(link)
+    acc.fill(lambda: _of_crank(acc, epsilon1), drive_accelerations)
     _number_alike(acc)
     return acc
 
@@ -170,12 +156,6 @@ def _of_crank(acc: Accelerations, epsilon1: Any) -> None:
     plan.vector(f"a̅_{c.pin}", pole, b)
     acc.points[c.pin] = b
     acc.reference[c.link] = (c.pivot, c.pin, pole, b)
-
-
-def _second_of_last(m: Mechanism, phi: Any) -> Any:
-    """Angular acceleration of the first link of the last group, rad/s2."""
-    vel = velocity_plan(position_plan(m, phi, purpose=SEARCHED))
-    return acceleration_plan(vel).epsilon[m.groups[-1].links[0]].value
 
 
 def _number_alike(acc: Accelerations) -> None:

@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from tmm_sheets.construction.expression import Floats
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.mechanism.groups.limits import SWEEP, TOUCH, AssemblyLimit
+from tmm_sheets.mechanism.groups.contexts import SWEEP, TOUCH, AssemblyLimit
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
-from tmm_sheets.methods.linkage.cycle import Cycle, Floats
+from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.methods.linkage.positions import Positions, passages
-from tmm_sheets.methods.linkage.watched import Watched
+from tmm_sheets.methods.linkage.velocities import Watched
 from tmm_sheets.numbers import in_a_row, of_reader
 from tmm_sheets.remarks import Remark
 from tmm_sheets.words import marked, marked_n, tell, tell_n

@@ -11,14 +11,10 @@ from itertools import groupby
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.quantities import Reals
-from tmm_sheets.construction.step import Rule, Step, value_of
+from tmm_sheets.construction.expression import Floats, Reals, primitive
+from tmm_sheets.construction.step import Given, Plan, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.words import marked, tell, tr
@@ -194,7 +190,6 @@ def named_angles(m: Mechanism, start: float, sense: float) -> Plan | None:
     return plan
 
 
-Floats = npt.NDArray[np.float64]
 
 TURN = 2 * np.pi
 SWEEP = 720

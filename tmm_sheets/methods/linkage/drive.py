@@ -14,21 +14,20 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import Given, GivenNumber
+from tmm_sheets.construction.expression import Reals, primitive
 from tmm_sheets.construction.indices import on_link
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.quantities import Reals
-from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.construction.step import Given, GivenNumber, Helper, Plan, Rule, Step
 from tmm_sheets.errors import CannotBuild
+from tmm_sheets.mechanism.groups.contexts import mm
 from tmm_sheets.mechanism.groups.dead_centres import PIN_ANGLE
-from tmm_sheets.mechanism.groups.limits import mm
 from tmm_sheets.mechanism.model import Drive, Guide, Mechanism
 from tmm_sheets.methods.linkage.cycle import Cycle
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.mechanism.model import Accelerations, Positions, Velocities
+    from tmm_sheets.methods.linkage.accelerations import Accelerations
+    from tmm_sheets.methods.linkage.positions import Positions
+    from tmm_sheets.methods.linkage.velocities import Velocities
 
 EQUAL_STROKE = Rule("equal parts of a stroke", lambda start, end, parts, number: start + (end - start) / parts * number,
                     ("ordinate", "ordinate", "number", "number"), "ordinate",
@@ -160,15 +159,15 @@ def input_cycle(m: Mechanism, positions: int, *, zero: str = "0") -> Cycle:
     return Cycle(labels, turned.value, float(start.value), crank.sense, float(turned.value[-1]), None, None, plan, swings=True)
 
 
-def drive_velocities(vel: Velocities) -> None:
+def drive_velocities(vel: Velocities, drive: Drive) -> None:
     """Velocities of the crank pin and of the group that drives it, from that of the input."""
     pos, plan, m = vel.positions, vel.plan, vel.positions.mechanism
-    drive, crank = m.drive, m.crank
-    assert drive is not None
+    crank = m.crank
     pole, far, body = vel.pole, drive.far, drive.group.links[1]
     end = vel.name(far) if drive.slides else plan.free(RELATIVE)
     given = plan.add(end, GIVEN_RATE, pole, pos.directions[drive.link], drive.sense, drive.speed)
-    pin = plan.add(vel.name(crank.pin), rules.LINE_LINE, given, vel.perpendicular(*_rod(m)), pole,
+    across = vel.perpendicular(*((crank.pin, far) if drive.slides else (far, crank.pin)))
+    pin = plan.add(vel.name(crank.pin), rules.LINE_LINE, given, across, pole,
                    vel.perpendicular(crank.pivot, crank.pin))
     plan.vector(f"V̅_{crank.pin}", pole, pin)
     vel.points[crank.pin] = pin
@@ -188,20 +187,12 @@ def drive_velocities(vel: Velocities) -> None:
     vel.turns_with(drive.group.links[0], body)
 
 
-def _rod(m: Mechanism) -> tuple[str, str]:
-    """Ends of the rod as the group draws its line: from the crank pin to the slider, from the hinge of a cylinder to the pin."""
-    drive = m.drive
-    assert drive is not None
-    return (m.crank.pin, drive.far) if drive.slides else (drive.far, m.crank.pin)
-
-
-def drive_accelerations(acc: Accelerations) -> None:
+def drive_accelerations(acc: Accelerations, drive: Drive) -> None:
     """Accelerations of the crank pin and of the group that drives it, from that of the input."""
     pos, vel, plan, m = acc.positions, acc.velocities, acc.plan, acc.positions.mechanism
-    drive, crank = m.drive, m.crank
-    assert drive is not None
+    crank = m.crank
     pole, far, (first, body) = acc.pole, drive.far, drive.group.links
-    here, across = on_link(crank.pin, body), acc.perpendicular(*_rod(m))
+    here, across = on_link(crank.pin, body), acc.perpendicular(*((crank.pin, far) if drive.slides else (far, crank.pin)))
 
     def rated(name: str, start: Step) -> Step:
         """The given acceleration of the input, laid off."""

@@ -9,7 +9,7 @@ Source: manual 000, section 4 and table 4.1.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -17,22 +17,20 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import FoundNumber, Given
+from tmm_sheets.construction.expression import Floats, primitive
 from tmm_sheets.construction.indices import pair_index
-from tmm_sheets.construction.plan import Plan, symbol
-from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.construction.step import FoundNumber, Given, Plan, Rule, SearchCount, Step, symbol, value_at
 from tmm_sheets.mechanism.groups.contexts import OPPOSITE_COUPLE, ForcePlan, Load, Role, TangentialPart
 from tmm_sheets.mechanism.groups.triad import BY_MOMENTS
 from tmm_sheets.mechanism.model import Drive, StructuralGroup, lettered
 from tmm_sheets.methods.linkage.accelerations import Accelerations
-from tmm_sheets.methods.linkage.positions import Positions
+from tmm_sheets.methods.linkage.positions import CHOICE, SEARCHED, PassagePlace, Positions, alone, beside, passages, position_plan
 from tmm_sheets.numbers import Sizes
 from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.search_count import SearchCount
     from tmm_sheets.methods.linkage.friction import Friction
+
 
 WEIGHT = Rule("weight", lambda m, g: -1j * m * g, ("number", "number"), "force",
               marked("Weight {name} = m·g = {0}·{1} = {value}, downwards."))
@@ -85,7 +83,7 @@ class Kinetostatics:
     ``couples`` and ``arms`` of sliding pairs by name ("h50"); ``link_couples`` are inertia couples and applied
     moments of each link; ``from_moments`` are the parts of reactions that moment equations gave, in the order they were found;
     ``parts`` those known before the normal part, by the reaction's name, from moments or along a slot; ``limits`` are rows that are
-    known next to change points (:func:`~tmm_sheets.methods.linkage.force_limits.limits_of_forces`).
+    known next to change points (:func:`~tmm_sheets.methods.linkage.forces.limits_of_forces`).
     """
 
     positions: Positions
@@ -252,15 +250,15 @@ class Kinetostatics:
         name = pair_index(j, other)
         self.arms[f"h{name}"] = self.plan.add(f"h{name}", ARM, couple, force)
 
-    def group_polygon(self, g: StructuralGroup, first: Step | None, last: Step | None, u: Step, v: Step,
-                          carriers: tuple[str, str], sine: tuple[Step, ...] = ()) -> tuple[Step, Step, ForcePlan]:
+    def group_polygon(self, g: StructuralGroup, parts: list[Step | None], lines: list[Step], carriers: tuple[str, ...],
+                      sine: tuple[Step, ...]) -> tuple[Step, Step]:
         """Plan of a whole group closed by two unknown forces: ``first`` .. ``last`` known parts, lines along ``u`` and ``v``.
 
         ``sine`` of the angle between these lines, where the position plan knows it better than they do.
 
         ``carriers`` are the links outside that the two links lean on; returns the total forces from them.
         """
-        i, j = g.links
+        (i, j), (first, last), (u, v) = g.links, parts, lines
         fp = self.plan_of(g.name, g.links)
         start = fp.plan.add("2", rules.GIVEN, 0j)
         n, tail = 2, start
@@ -301,7 +299,7 @@ class Kinetostatics:
         inner = self.reaction(i, j, fp.between(name, split, closing))
         fp.plan.vector(symbol(name), split, closing)
         self.opposite(j, i, inner)
-        return f_one, f_two, fp
+        return f_one, f_two
 
 
 def _drive_plan() -> Plan:
@@ -519,10 +517,57 @@ BALANCING = Rule("balancing moment", lambda total, limit: -in_limit(total, limit
                  OPPOSITE_COUPLE.wording, unit="N*m")
 
 
-def _driving(total: Any, centre: Any, at: Any, u: Any, *limit: Any) -> Any:
-    return -(in_limit(total, *limit) if limit else total) / ar.moment(centre, at, u) * u
-
-
-DRIVING_FORCE = Rule("balancing force", _driving, ("number", "point", "point", "direction"), "force",
+DRIVING_FORCE = Rule("balancing force", lambda total, centre, at, u, *limit: -(
+                         in_limit(total, *limit) if limit else total) / ar.moment(centre, at, u) * u,
+                     ("number", "point", "point", "direction"), "force",
                      marked("From the sum of moments about {1} find the balancing force {name} = {value}."),
                      lambda a, v: rules.arm(a[1], a[2], a[3]), unit="N")
+
+
+FORCE_ZONE = 1e-5
+"""Angle, rad, next to a change point in which moments of forces that grow beyond all bounds are taken as a limit."""
+
+
+def limits_of_forces(pos: Positions, acc: Accelerations, loads: dict[str, list[Load]], couples: dict[str, list[Step]],
+                     driver: GearForce | InputForce | None) -> dict[str, Given]:
+    """Limits of what force plans cannot tell next to change points, as rows over the positions, NaN elsewhere.
+
+    Lines of a group's plan fall together there, and its reactions grow beyond all bounds unless nothing loads it; what they do to
+    the crank has a limit. The loads stay as they are at the position: only the links move to both sides of it.
+    """
+    passing, phi = passages(pos.mechanism), np.atleast_1d(np.asarray(pos.phi, dtype=float))
+    rows: dict[str, Floats] = {}
+    for angle in passing.every():
+        for place in passing.places(angle, phi, passing.together(angle), FORCE_ZONE):
+            for k, x in zip(place.which.tolist(), place.x.tolist(), strict=True):
+                for name, value in _limits_at(pos, acc, loads, couples, driver, place, k, x).items():
+                    rows.setdefault(name, np.full(phi.shape, np.nan))[k] = value
+    return {name: Given(row, f"limit: {name}", choice=CHOICE) for name, row in rows.items()}
+
+
+def _limits_at(pos: Positions, acc: Accelerations, loads: dict[str, list[Load]], couples: dict[str, list[Step]],
+               driver: GearForce | InputForce | None, place: PassagePlace, k: int, x: float) -> dict[str, float]:
+    """Limits at position ``k``, ``x`` from the change point: of the moments on the crank, and of groups that have one."""
+    m, names = pos.mechanism, {id(step): name for name, step in pos.points.items()}
+    force = max((abs(value_at(load.vector, k)) for of in loads.values() for load in of), default=0.0)
+    moment = force * m.crank.length + max((abs(value_at(c, k)) for of in couples.values() for c in of), default=0.0)
+    if not moment > 0:
+        return {}
+    scales = {TOTAL: moment} | {name: moment / m.crank.length for name, _ in place.sides}
+
+    def told(angles: Floats) -> dict[str, Any]:
+        """What the force plans say with the links that far from the change point."""
+        there = position_plan(alone(m, m.groups[-1], {name: side * np.sign(angles) for name, side in place.sides}),
+                              place.angle + angles, purpose=SEARCHED)
+        here = {link: [replace(load, at=there.points[names[id(load.at)]], vector=value_at(load.vector, k)) for load in of]
+                for link, of in loads.items()}
+        plans = kinetostatics(there, acc, here, {link: [value_at(c, k) for c in of] for link, of in couples.items()}, driver)
+        ways = {TOTAL: np.broadcast_to(plans.plan[f"ΣM{m.crank.link}"].value, angles.shape)}
+        for name, _ in place.sides:
+            closing = plans.plans[name].plan["1"]
+            start, u = closing.args[:2]
+            ways[name] = ar.dot(u.value, closing.value - start.value)
+        return {name: way / scales[name] for name, way in ways.items()}
+
+    found = beside(told, TOTAL)
+    return {} if found is None else {name: float(found.at(name, np.array(x))) * scales[name] for name in found.values}

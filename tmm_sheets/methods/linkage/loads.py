@@ -18,17 +18,14 @@ from typing import Any, NoReturn
 import numpy as np
 
 from tmm_sheets.construction.arithmetic import Curve, inner_slopes
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.quantities import Directions, Points, Reals, Signs
-from tmm_sheets.construction.step import Rule, Step, value_of
+from tmm_sheets.construction.expression import Directions, Floats, Points, Reals, Signs, primitive
+from tmm_sheets.construction.step import Given, Plan, Rule, Step, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
-from tmm_sheets.methods.linkage.cycle import SWEEP, TURN, Cycle, Floats, Run, Strokes, in_strokes, over_cycle, root, runs_of
+from tmm_sheets.methods.linkage.cycle import SWEEP, TURN, Cycle, Run, Strokes, in_strokes, over_cycle, root, runs_of
 from tmm_sheets.methods.linkage.positions import Positions
-from tmm_sheets.methods.linkage.watched import Watched
+from tmm_sheets.methods.linkage.velocities import Watched
 from tmm_sheets.words import marked, tell
 
 STROKES = "strokes of forces"
@@ -526,11 +523,6 @@ CORNER = 0.05
 ordinate: where a load begins in the middle of an interval, the ordinate in the middle tells nothing of its work."""
 
 
-def jumps_of(table: Table) -> tuple[float, ...]:
-    """Arguments where a diagram jumps: given twice with different values."""
-    return tuple(a for (a, p), (b, q) in pairwise(zip(*table, strict=True)) if a == b and p != q)
-
-
 def corners_of(table: Table) -> tuple[float, ...]:
     """Arguments of the inner points where a diagram of straight lines has a corner that shows: CORNER of its greatest ordinate.
 
@@ -604,12 +596,10 @@ class StrokeLaw:
         for n, (run, curve) in enumerate(zip(motion.runs, self.curves, strict=True)):
             if curve is not None:
                 ahead = (side or 1) * run.sense * motion.way
-                value = np.where(i == n, signs[n] * curve(self._at(x, ahead), ahead), value)
+                # The end of a turn is not the beginning of the next.
+                at = np.where(x < NEAR, 1.0, x) if motion.endless and ahead < 0 else x
+                value = np.where(i == n, signs[n] * curve(at, ahead), value)
         return value
-
-    def _at(self, x: Reals, ahead: int) -> Any:
-        """Fractions of the way as the diagrams take them: the end of a turn is not the beginning of the next."""
-        return np.where(x < NEAR, 1.0, x) if self.motion.endless and ahead < 0 else x
 
     @cached_property
     def different(self) -> tuple[Table, ...]:
@@ -652,7 +642,8 @@ def stroke_law(motion: OutputMotion, tables: Sequence[Table | None], signs: Sequ
         table = tables[i]
         if table is not None:
             around = (0.0,) if motion.endless and table[1][0] != table[1][-1] else ()
-            fractions = (*jumps_of(table), *(() if smooth else corners_of(table)), *around)
+            jumps_of_table = tuple(a for (a, p), (b, q) in pairwise(zip(*table, strict=True)) if a == b and p != q)
+            fractions = (*jumps_of_table, *(() if smooth else corners_of(table)), *around)
             jumps += [at for fraction in fractions for at in motion.crossings(run, fraction)]
     return law, distinct((float(np.mod(t, motion.period)) for t in jumps), motion.period)
 

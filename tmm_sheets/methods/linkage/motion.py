@@ -9,11 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.quantities import Directions, Reals
+from tmm_sheets.construction.expression import Directions, Reals
 from tmm_sheets.construction.rules import take
-from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.construction.step import Given, Plan, Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.linkage.cycle import named_angles
 from tmm_sheets.methods.linkage.study import Study

@@ -11,10 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import Given, GivenNumber
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.construction.expression import Floats, primitive
+from tmm_sheets.construction.step import Given, GivenNumber, Plan, Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.linkage.checks import check_turn
@@ -22,7 +20,6 @@ from tmm_sheets.methods.linkage.cycle import (
     SWEEP,
     TURN,
     Cycle,
-    Floats,
     Run,
     Strokes,
     dead_positions,
@@ -32,7 +29,7 @@ from tmm_sheets.methods.linkage.cycle import (
     working_stroke,
 )
 from tmm_sheets.methods.linkage.positions import passages
-from tmm_sheets.methods.linkage.watched import OfAngles, Watched
+from tmm_sheets.methods.linkage.velocities import OfAngles, Watched
 from tmm_sheets.words import marked, tell, tr
 
 BY_ANGLE = marked('give the crank angle of position 0 instead: start = "90 deg"')
@@ -188,6 +185,25 @@ def _check_first(label: str, last: int) -> None:
                           tell('give the first position a name that no other has, such as zero = "0"'))
 
 
+def _numbering(named: Mapping[str, tuple[float, float, float]],
+               extra: Mapping[str, float]) -> tuple[tuple[str, ...], Plan, list[Given]]:
+    """Labels in order of their angles, the plan of the numbering, and rows of what it divides: numbers, further angles.
+
+    Raises
+    ------
+    CannotBuild
+        when a further position has the name of another.
+    """
+    if taken := [label for label in extra if label in named]:
+        raise CannotBuild(tell("there is a position {label} already").format(label=taken[0]),
+                          tell("give the further position another name"))
+    every = {**named} | {label: (angle, 0.0, angle) for label, angle in extra.items()}
+    order = tuple(sorted(every, key=lambda label: every[label][0]))
+    rows = [Given(np.array([every[label][k] for label in order], dtype=np.float64), name, "", unit)
+            for k, name, unit in ((1, "numbers of the positions", ""), (2, "cycle.extra", "rad"))]
+    return order, Plan("cycle", tr("Numbering of the positions"), "rad", order), rows
+
+
 def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", turns: int = 1,
                extra: Mapping[str, float] | None = None, output: str | None = None, working_sense: str | None = None) -> Cycle:
     """Cycle of equal parts from a given crank angle; ``positions`` in one turn, numbered on through all ``turns``.
@@ -205,16 +221,8 @@ def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", t
     first = str(count) if zero == str(positions) else zero
     _check_first(first, count - 1)
     named = {first if i == 0 else str(i): (2 * np.pi / positions * i, i, 0.0) for i in range(count)}
-    for label, angle in (extra or {}).items():
-        if label in named:
-            raise CannotBuild(tell("there is a position {label} already").format(label=label),
-                              tell("give the further position another name"))
-        further = float(np.mod(angle, 2 * np.pi * turns))
-        named[label] = (further, 0, further)
-    order = sorted(named, key=lambda label: named[label][0])
-    numbering = Plan("cycle", tr("Numbering of the positions"), "rad", tuple(order))
-    rows = [Given(np.array([named[label][k] for label in order], dtype=np.float64), name, "", unit)
-            for k, name, unit in ((1, "numbers of the positions", ""), (2, "cycle.extra", "rad"))]
+    further = {label: float(np.mod(angle, 2 * np.pi * turns)) for label, angle in (extra or {}).items()}
+    order, numbering, rows = _numbering(named, further)
     turned = numbering.add("φ_п", EQUAL, GivenNumber(positions, "cycle.positions"), *rows, symbol=tr("φ_t"))
     numbering.add("φ", WORLD, GivenNumber(start, "cycle.start", "φ_0", "rad"), m.crank.sense, turned)
     plan, strokes = None, None
@@ -225,7 +233,7 @@ def even_cycle(m: Mechanism, start: float, positions: int, *, zero: str = "0", t
         # A dead position that is position 0 up to rounding is position 0.
         begin = 0.0 if min(begin, 2 * np.pi - begin) < 1e-12 else begin
         strokes = _strokes(m, output, dead, begin)
-    return Cycle(tuple(order), turned.value, start, m.crank.sense, 2 * np.pi * turns, strokes, plan, numbering)
+    return Cycle(order, turned.value, start, m.crank.sense, 2 * np.pi * turns, strokes, plan, numbering)
 
 
 def swing_cycle(m: Mechanism, start: float, end: float, positions: int, *, zero: str = "0",
@@ -244,22 +252,15 @@ def swing_cycle(m: Mechanism, start: float, end: float, positions: int, *, zero:
     _check_first(zero, positions)
     named = {zero if i == 0 else str(i): (swing / positions * i, float(i), 0.0) for i in range(positions + 1)}
     for label, angle in (extra or {}).items():
-        if label in named:
-            raise CannotBuild(tell("there is a position {label} already").format(label=label),
-                              tell("give the further position another name"))
         if not 0 <= angle <= swing:
             raise CannotBuild(tell("position {label} lies outside of the swing of {swing:.4g} deg").format(
                 label=label, swing=np.degrees(swing)))
-        named[label] = (angle, 0.0, angle)
-    order = sorted(named, key=lambda label: named[label][0])
-    numbering = Plan("cycle", tr("Numbering of the positions"), "rad", tuple(order))
+    order, numbering, rows = _numbering(named, extra or {})
     width = numbering.auxiliary("φ_к", TURNED, GivenNumber(start, "cycle.start", "φ_0", "rad"),
                             GivenNumber(end, "cycle.end", "", "rad"), m.crank.sense, symbol=tr("φ_s"))
-    rows = [Given(np.array([named[label][k] for label in order], dtype=np.float64), name, "", unit)
-            for k, name, unit in ((1, "numbers of the positions", ""), (2, "cycle.extra", "rad"))]
     turned = numbering.add("φ_п", EQUAL_SWING, width, GivenNumber(positions, "cycle.positions"), *rows, symbol=tr("φ_t"))
     numbering.add("φ", WORLD, GivenNumber(start, "cycle.start", "φ_0", "rad"), m.crank.sense, turned)
-    return Cycle(tuple(order), turned.value, start, m.crank.sense, swing, None, None, numbering, swings=True)
+    return Cycle(order, turned.value, start, m.crank.sense, swing, None, None, numbering, swings=True)
 
 
 @dataclass(frozen=True)

@@ -5,20 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.given import Given
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.construction.step import Given, Plan, Rule, SearchCount, Step
 from tmm_sheets.mechanism.groups.contexts import Load
 from tmm_sheets.mechanism.model import Mechanism
 from tmm_sheets.methods.integration import weighted
 from tmm_sheets.methods.linkage.accelerations import Accelerations, Sliding, acceleration_plan
 from tmm_sheets.methods.linkage.cycle import Cycle
-from tmm_sheets.methods.linkage.force_limits import limits_of_forces
-from tmm_sheets.methods.linkage.forces import GearForce, InputForce, Kinetostatics, external_loads, kinetostatics
+from tmm_sheets.methods.linkage.forces import GearForce, InputForce, Kinetostatics, external_loads, kinetostatics, limits_of_forces
 from tmm_sheets.methods.linkage.loads import Applied
 from tmm_sheets.methods.linkage.positions import Positions, position_plan
 from tmm_sheets.methods.linkage.velocities import Velocities, velocity_plan
@@ -26,21 +23,8 @@ from tmm_sheets.methods.linkage.zhukovsky import Lever, lever
 from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.search_count import SearchCount
+    from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.methods.linkage.friction import Coefficients, Friction
-
-
-class CrankMotion(Protocol):
-    """What the forces need of a crank that does not turn evenly: the flywheel says it."""
-
-    @property
-    def first_plan(self) -> Plan:
-        """Moment of inertia of all that turns with the crank of the finished machine as step ``J_вр``, kg m2."""
-        ...
-
-    def acceleration_plan(self, phi: Any, labels: tuple[str, ...]) -> Plan:
-        """Angular acceleration as step ``ε1``, rad/s2, positive in the sense of rotation, at angles turned from position 0."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -59,7 +43,7 @@ class Study:
     gravity: float
     technological: Callable[[], tuple[Applied, ...]]
     driver: GearForce | InputForce | None
-    running: Callable[[], CrankMotion] | None = None
+    running: Callable[[], Flywheel] | None = None
     purpose: str = ""
     friction: Coefficients | None = None
 
@@ -152,7 +136,7 @@ class Study:
         if self.friction is None:
             limits = limits_of_forces(self.positions, self.accelerations, loads, couples, self.driver)
             return kinetostatics(self.positions, self.accelerations, loads, couples, self.driver, limits=limits)
-        from tmm_sheets.methods.linkage.approximations import with_friction
+        from tmm_sheets.methods.linkage.friction import with_friction
 
         return with_friction(self.friction, self.velocities, self.sliding, statics)
 

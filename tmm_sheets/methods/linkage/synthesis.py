@@ -18,9 +18,7 @@ import numpy as np
 
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import primitive
-from tmm_sheets.construction.given import GivenNumber
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.construction.step import GivenNumber, Helper, Plan, Rule, Step
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number
 from tmm_sheets.words import marked, tell, tr

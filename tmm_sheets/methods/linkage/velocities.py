@@ -5,18 +5,22 @@ Every value is a vector from the pole, complex, m/s. Source: manual 000, section
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from time import perf_counter
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
+from tmm_sheets.construction.function import Replay
 from tmm_sheets.construction.indices import on_link
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step
 from tmm_sheets.mechanism.groups.contexts import Turning
-from tmm_sheets.mechanism.model import Mechanism, StructuralGroup
+from tmm_sheets.mechanism.model import Drive, Leg, Mechanism, StructuralGroup
 from tmm_sheets.methods.linkage.positions import SEARCHED, Positions, passages, position_plan
 from tmm_sheets.words import marked, tr
 
@@ -60,7 +64,7 @@ WAY = Rule("velocity about the other end", lambda turning, w, length: turning * 
 
 
 @dataclass
-class MotionPolygon:
+class MotionPolygon(ABC):
     """What velocity and acceleration polygons have in common: vectors of points from the pole, rates of turning of links.
 
     ``reference`` holds two points of a link and their vectors, ``coincident`` the points of guides under those of the sliders,
@@ -72,6 +76,8 @@ class MotionPolygon:
     RATE: ClassVar[str]
     TURNING: ClassVar[Rule]
     SAME: ClassVar[Rule]
+    MARKS: ClassVar[dict[str, str]]
+    ABSOLUTE: ClassVar[int]
 
     positions: Positions
     plan: Plan
@@ -103,9 +109,62 @@ class MotionPolygon:
             self.carried.append(found)
         return self.coincident[here]
 
+    def guide(self, guide: str, at: str) -> Step:
+        """Motion of the guide's point that coincides with ``at``; the pole for a fixed guide."""
+        g, m = self.positions.mechanism.guides[guide], self.positions.mechanism
+        return self.pole if g.link == m.frame else self.on(g.link, str(g.through), at)
+
+    def start(self, leg: Leg) -> Step:
+        """Motion of what a leg is paired with outside, where it is paired."""
+        return self.guide(leg.guide, leg.corner) if leg.guide else self.points[leg.outer]
+
+    def against(self, leg: Leg) -> str:
+        """Letters of that point."""
+        return leg.outer or on_link(leg.corner, self.positions.mechanism.guides[leg.guide].link)
+
+    def end(self, leg: Leg, point: str, slotted_in: str) -> Step:
+        """End of what is known by a leg of the motion of a point; ``slotted_in`` is the link whose slot its block slides in."""
+        return self.start(leg)
+
+    def rest(self, leg: Leg) -> Step:
+        """Direction of what is not known of it: across a rod, along a guide or a slot."""
+        if leg.guide:
+            return self.positions.guide_directions[leg.guide]
+        return self.perpendicular(leg.outer, leg.corner) if leg.slot is None else self.positions.directions[leg.link]
+
+    def normal(self, a: Step, link: str, big_q: str, big_b: str, letters: str = "") -> Step:
+        """End of what is known of the motion of ``big_b`` round ``big_q``, laid off from ``a``: of a velocity nothing."""
+        return a
+
+    def meet(self, point: str, legs: tuple[Leg, ...], known: tuple[Step, ...], slotted_in: str = "") -> Step:
+        """Motion of a point held by two legs: lines along what is not known by each meet there. With its vectors.
+
+        ``slotted_in``, with a slider block among the legs, is the link that turns its slot.
+        """
+        ends = [self.end(leg, point, slotted_in) for leg in legs]
+        lines = [x for leg, end in zip(legs, ends, strict=True) for x in (end, self.rest(leg))]
+        step = self.plan.add(self.name(point), rules.LINE_LINE, *lines, *known)
+        vectors = []
+        for leg, end in zip(legs, ends, strict=True):
+            if end is not self.pole:
+                letters, mark = point + self.against(leg), self.MARKS[leg.form]
+                vectors.append((letters if leg.form == "RR" and not (mark or slotted_in) else f"{{{letters}}}{mark}", end))
+        vectors.insert(self.ABSOLUTE * len(vectors), (f"{{{point}}}" if slotted_in else point, self.pole))
+        for letters, tail in vectors:
+            self.plan.vector(f"{self.VECTOR}_{letters}", tail, step)
+        return step
+
+    def turns_on(self, leg: Leg, step: Step) -> None:
+        """How the link of a leg turns whose inner hinge moves by ``step``."""
+        if leg.guide:
+            self.turns_with(leg.link, self.positions.mechanism.guides[leg.guide].link)
+            self.coincident[on_link(leg.corner, leg.link)] = step
+        else:
+            self.turning(leg.link, leg.outer, leg.corner, self.points[leg.outer], step)
+
+    @abstractmethod
     def rotated(self, point: str, start: Step, link: str, q: str, b: str) -> Step:
         """Vector of a point of a turning link at ``b``, from that at ``q``; named after ``point``."""
-        raise NotImplementedError
 
     def similar(self, point: str, q: Step, b: Step, big_q: str, big_b: str, name: str = "") -> Step:
         """Vector of a point of a link by similarity, from those of two of its points; named after it, or otherwise."""
@@ -125,9 +184,9 @@ class MotionPolygon:
         way = self.plan.auxiliary(f"{self.RATE}l {group.name}", *self.way(turning, group), group.lengths[0])
         return (*self.positions.known_sine(group), way)
 
+    @abstractmethod
     def way(self, turning: Turning, group: StructuralGroup) -> tuple[Any, ...]:
         """Rule and arguments that tell how far a point is laid off across its link, one metre from the other end."""
-        raise NotImplementedError
 
     def turning(self, link: str, big_q: str, big_b: str, q: Step, b: Step) -> None:
         """Rate of turning of a link from the vectors ``q`` and ``b`` of two of its points."""
@@ -139,6 +198,22 @@ class MotionPolygon:
         """Rate of turning of a link that does not turn against another: nobody reads of it in a search."""
         same = self.rates[other]
         self.rates[link] = same if self.plan.search is not None else self.plan.add(f"{self.RATE}{link}", self.SAME, same)
+
+    def fill(self, initial: Callable[[], None], driven: Callable[[Any, Drive], None]) -> None:
+        """Construct the motion of the frame, of the initial link (or of the group that drives it) and of all groups in turn."""
+        m, pole = self.positions.mechanism, self.plan.add(self.POLE, POLE, 0j)
+        self.points.update(dict.fromkeys(m.fixed, pole))
+        self.rates[m.frame] = self.plan.add(f"{self.RATE}0", self.SAME, 0.0)
+        if m.drive is None:
+            initial()
+        else:
+            driven(self, m.drive)
+        self.further_points(m.crank.link)
+        for g in m.groups:
+            if m.drive is None or g.name != m.drive.group.name:
+                g.kind.motion(self, g)
+            for link in g.links:
+                self.further_points(link)
 
     def further_points(self, link: str) -> None:
         """Vectors of the points of a link that its group did not need: by similarity, or by turning round one of them."""
@@ -159,26 +234,19 @@ class Velocities(MotionPolygon):
     """Velocity plan: ``points`` m/s from the pole for every point of the mechanism, ``omega`` rad/s of every link."""
 
     POLE, VECTOR, RATE, TURNING, SAME = "p", "V̅", "ω", ANGULAR_VELOCITY, SAME
+    MARKS, ABSOLUTE = dict.fromkeys(("RR", "PR", "RP"), ""), 0
 
     def first(self, turning: Turning, group: StructuralGroup) -> Any:
         """Angle that the first link of a group with change points turns by an angle of the crank; NaN where it is not known."""
         if turning.first is not None:
             return turning.first
-        return passages(self.positions.mechanism).row(group, self.positions.phi, "turning", _turning_of_last)
+        return passages(self.positions.mechanism).row(group, self.positions.phi, "turning",
+        lambda m, phi: velocity_plan(position_plan(m, phi, purpose=SEARCHED)).omega[m.groups[-1].links[0]].value)
 
     @property
     def omega(self) -> dict[str, Step]:
         """Angular velocity of every link, rad/s."""
         return self.rates
-
-    def guide(self, guide: str, at: str) -> tuple[Step, str]:
-        """Velocity of the guide's point that coincides with ``at``, and the guide's link; the pole for a fixed guide."""
-        m = self.positions.mechanism
-        g = m.guides[guide]
-        if g.link == m.frame:
-            return self.pole, g.link
-        assert isinstance(g.through, str)
-        return self.on(g.link, g.through, at), g.link
 
     def way(self, turning: Turning, group: StructuralGroup) -> tuple[Any, ...]:
         """Rule and arguments that tell the velocity of a point about the other end of its link."""
@@ -190,11 +258,6 @@ class Velocities(MotionPolygon):
         return self.plan.add(self.name(point), RIGID, start, self.omega[link], z[q], z[b])
 
 
-def _turning_of_last(m: Mechanism, phi: Any) -> Any:
-    """Angular velocity of the first link of the last group, rad/s."""
-    return velocity_plan(position_plan(m, phi, purpose=SEARCHED)).omega[m.groups[-1].links[0]].value
-
-
 def plan_name(plan: Plan, point: str) -> str:
     """Name of a point on a plan: the small letter of the mechanism's, with a prime where the plan has that name already."""
     return plan.named(point.lower())
@@ -202,28 +265,111 @@ def plan_name(plan: Plan, point: str) -> str:
 
 def velocity_plan(pos: Positions) -> Velocities:
     """Record the velocity plans of all positions of ``pos``."""
-    m = pos.mechanism
+    from tmm_sheets.methods.linkage.drive import drive_velocities
+
+    c = pos.mechanism.crank
     plan = Plan(f"velocities{pos.where}", tr("Velocity polygons"), "m/s", pos.plan.labels, "p", pos.plan.search)
     vel = Velocities(pos, plan)
-    pole = plan.add("p", POLE, 0j)
-    for name in m.fixed:
-        vel.points[name] = pole
-    vel.omega[m.frame] = plan.add("ω0", SAME, 0.0)
-    c = m.crank
-    if m.drive is not None:
-        from tmm_sheets.methods.linkage.drive import drive_velocities
 
-        drive_velocities(vel)
-    else:
+    def initial() -> None:
         vel.omega[c.link] = plan.add(f"ω{c.link}", OF_CRANK, c.sense, c.speed)
         b = plan.add(plan_name(plan, c.pin), CRANK_VELOCITY, pos.points[c.pivot], pos.points[c.pin], vel.omega[c.link])
-        plan.vector(f"V̅_{c.pin}", pole, b)
+        plan.vector(f"V̅_{c.pin}", vel.pole, b)
         vel.points[c.pin] = b
-        vel.reference[c.link] = (c.pivot, c.pin, pole, b)
-    vel.further_points(c.link)
-    for g in m.groups:
-        if m.drive is None or g.name != m.drive.group.name:
-            g.kind.velocity(vel, g)
-        for link in g.links:
-            vel.further_points(link)
+        vel.reference[c.link] = (c.pivot, c.pin, vel.pole, b)
+
+    vel.fill(initial, drive_velocities)
     return vel
+
+
+OfAngles = Callable[[Any], Any]
+"""Values at crank angles, rad in the world frame, in the shape of these."""
+REMEMBERED = 32
+"""Sets of angles whose values are remembered: loads are asked for at the positions of the sheets again and again."""
+RECORDED = "watched"
+"""Under which a mechanism keeps them."""
+
+
+class Watched:
+    """What a search for ``purpose`` asks of a mechanism, each as a function of the crank angle; see :class:`Replay`."""
+
+    def __init__(self, mechanism: Mechanism, purpose: str) -> None:
+        self.mechanism = mechanism
+        self.purpose = purpose
+
+    def point(self, name: str) -> OfAngles:
+        """Place of a point, m."""
+        return self._of(lambda plans: plans.positions.points[name])
+
+    def direction(self, link: str) -> OfAngles:
+        """Direction of a link."""
+        return self._of(lambda plans: plans.positions.directions[link])
+
+    def velocity(self, name: str) -> OfAngles:
+        """Velocity of a point, m/s."""
+        return self._of(lambda plans: plans.velocities.points[name])
+
+    def omega(self, link: str) -> OfAngles:
+        """Angular velocity of a link, rad/s."""
+        return self._of(lambda plans: plans.velocities.omega[link])
+
+    def positions(self, phi: Any) -> Positions:
+        """Position plan whose values are those at crank angles."""
+        plans = self._plans(phi)
+        if plans.positions.chosen:
+            return plans.positions
+        steps = list(plans.positions.plan)
+        done = dict(zip(map(id, steps), self._done(Replay(steps, [plans.row]), phi), strict=True))
+        return replace(plans.positions, angle=phi, value=lambda step: done[id(step)])
+
+    def _of(self, pick: Callable[[_Plans], Step]) -> OfAngles:
+        replay: Replay | None = None
+        known = dict[tuple[Any, ...], Any]()
+
+        def values(phi: Any) -> Any:
+            nonlocal replay
+            asked = np.shape(phi), np.asarray(phi).tobytes()
+            if asked in known:
+                return known[asked]
+            if replay is None:
+                plans = self._plans(phi)
+                found = Replay([pick(plans)], [plans.row])
+                replay = None if plans.positions.chosen else found  # those are chosen by the angles they are recorded for
+            else:
+                found = replay
+            (value,) = self._done(found, phi)
+            if len(known) == REMEMBERED:
+                known.clear()
+            known[asked] = np.broadcast_to(value, np.shape(phi))
+            return known[asked]
+
+        return values
+
+    def _done(self, replay: Replay, phi: Any) -> list[Any]:
+        """Values at crank angles, counted."""
+        begin = perf_counter()
+        values = replay([phi])
+        tally = self.mechanism.search(self.purpose)
+        assert tally is not None
+        tally.again(len(replay), perf_counter() - begin)
+        return values
+
+    def _plans(self, phi: Any) -> _Plans:
+        """The plans of all searches, or others for these angles where something is chosen by them."""
+        known = self.mechanism.recorded
+        if RECORDED not in known or known[RECORDED].positions.chosen:
+            known[RECORDED] = _Plans(self.mechanism, self.purpose, phi)
+        return cast("_Plans", known[RECORDED])
+
+
+class _Plans:
+    """Plans recorded for some crank angles."""
+
+    def __init__(self, mechanism: Mechanism, purpose: str, phi: Any) -> None:
+        self.row = Given(phi, "crank angles", "φ_1", "rad")
+        self.positions: Positions = position_plan(mechanism, self.row, purpose=purpose)
+
+    @cached_property
+    def velocities(self) -> Velocities:
+        """Velocity plans."""
+        return velocity_plan(self.positions)

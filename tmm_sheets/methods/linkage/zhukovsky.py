@@ -14,8 +14,7 @@ import numpy as np
 
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.plan import Plan, symbol
-from tmm_sheets.construction.step import Helper, Rule, Step
+from tmm_sheets.construction.step import Helper, Plan, Rule, Step, symbol
 from tmm_sheets.mechanism.groups.contexts import Load
 from tmm_sheets.methods.linkage.forces import GearForce, InputForce, contact_point
 from tmm_sheets.methods.linkage.velocities import POLE, SAME, SIMILAR, Velocities

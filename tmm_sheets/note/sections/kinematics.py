@@ -162,7 +162,7 @@ def _of_special(r: Reader, plan: Plan, step: Step, start: Step, path: Sequence[s
             carrier = m.guides[leg.guide].link if leg.guide else ""
             if (v.coincident.get(on_link(leg.corner, carrier)) if leg.guide else v.points[leg.outer]) is start:
                 held = leg.corner if leg.slot is None else on_link(leg.outer, tri)
-                return [f"V{BAR}_{{{leg.index(tri, carrier)}}}", f"V{BAR}_{{{s.name}{held}}}"]
+                return [f"V{BAR}_{{{held}{v.against(leg)}}}", f"V{BAR}_{{{s.name}{held}}}"]
     return []
 
 

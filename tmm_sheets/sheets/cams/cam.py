@@ -27,7 +27,7 @@ from tmm_sheets.words import tr
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
     from tmm_sheets.construction.step import Step
-    from tmm_sheets.methods.cams.cam_closure import Spring
+    from tmm_sheets.methods.cams.cam_inversion import Spring
     from tmm_sheets.methods.cams.cam_motion import FollowerMotion
     from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam
     from tmm_sheets.project import Project

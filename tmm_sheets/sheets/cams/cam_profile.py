@@ -287,8 +287,8 @@ def _given(cam: Any, letter_of: str = ANGLE) -> list[list[str]]:
                 [in_mm("S_0"), in_full(z.s0)], [in_mm("e"), in_full(z.e)], [in_mm("r_0"), in_full(z.r0)]]
     rows.append([in_mm("r_p"), number(cam.roller * 1e3)])
     if d.closure == "geometric":
-        rows.append([tr("Angle between the arms"), f"{fixed(degrees(cam.spread), 2)}°"] if "rocker" in cam.traits
-                    else [tr("Between the rollers L, mm"), in_full(cam.distance)])
+        rows.append([tr("Angle between the arms"), f"{fixed(degrees(float(cam.apart.value)), 2)}°"] if "rocker" in cam.traits
+                    else [tr("Between the rollers L, mm"), in_full(float(cam.apart.value))])
     return rows
 
 

@@ -35,12 +35,12 @@ from tmm_sheets.sheets.player import PlayerStage, play, stage
 from tmm_sheets.words import tell, tr, tr_in
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.expression import Floats
     from tmm_sheets.construction.scale import Scale
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.methods.flywheel.wheel import RimWheel
     from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
-    from tmm_sheets.methods.integration import Floats
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.arrangement import Arrangement, ViewPlace
 

@@ -26,9 +26,9 @@ from tmm_sheets.sheets.player import PlayerStage, stage
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.expression import Floats
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.flywheel.mertsalov import Mertsalov
-    from tmm_sheets.methods.integration import Floats
     from tmm_sheets.project import Project
 
 Options = dict[str, Any]

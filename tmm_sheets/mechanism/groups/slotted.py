@@ -1,4 +1,8 @@
-"""Kind 3, RPR: a block hinged to a pin, sliding along a rocker that is hinged to a pivot."""
+"""Kinds 3 and 5 of class II, with a block that is hinged to a pin and slides along the other link: RPR and RPP.
+
+The point of the other link that coincides with the pin moves along the slot against the pin, and as that link's own
+outer pair lets it.
+"""
 
 from __future__ import annotations
 
@@ -9,16 +13,26 @@ import numpy as np
 from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.indices import on_link, pair_index
-from tmm_sheets.construction.plan import Plan, symbol
-from tmm_sheets.construction.step import Helper, Rule, Step
-from tmm_sheets.mechanism.groups.contexts import Crossing, OuterReaction, Outline
+from tmm_sheets.construction.step import Helper, Plan, Rule, Step, symbol
+from tmm_sheets.mechanism.groups.contexts import (
+    TOUCH,
+    AssemblyLimit,
+    Crossing,
+    Leg,
+    Outline,
+    extremes,
+    lacking,
+    less,
+    mm,
+    sine,
+    span,
+)
 from tmm_sheets.mechanism.groups.dead_centres import DISTANCE, PIN_ANGLE, TANGENT, measured, span_from_crank
-from tmm_sheets.mechanism.groups.limits import TOUCH, AssemblyLimit, extremes, lacking, less, mm, span
-from tmm_sheets.mechanism.model import GroupKind, Mechanism, Pair, StructuralGroup, sliding, turning
+from tmm_sheets.mechanism.model import GroupKind, Mechanism, StructuralGroup
 from tmm_sheets.words import marked, tell, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.mechanism.model import Accelerations, Kinetostatics, Positions, Velocities
+    from tmm_sheets.mechanism.model import Kinetostatics, MotionPolygon, Positions
 
 ALONG_TANGENT = Rule(
     "along a tangent", lambda foot, *given: ar.tangent_direction(*given),
@@ -34,10 +48,6 @@ class RPRKind(GroupKind):
 
     number, form, orders = 3, marked("RPR"), ("RPR",)
 
-    def pairs(self, m: Mechanism, g: StructuralGroup) -> list[Pair]:
-        (p, q), (i, j) = g.outer, g.links
-        return [turning(p, m.owner(p), i), sliding(p + "′", i, j), turning(q, j, m.owner(q))]
-
     def position(self, pos: Positions, g: StructuralGroup) -> None:
         p, q = g.outer
         if g.offset:
@@ -52,41 +62,15 @@ class RPRKind(GroupKind):
             u = pos.direction(q, p)
         pos.directions[g.links[1]] = pos.directions[g.links[0]] = u
 
-    def velocity(self, vel: Velocities, g: StructuralGroup) -> None:
-        pos, plan = vel.positions, vel.plan
+    def motion(self, plan: MotionPolygon, g: StructuralGroup) -> None:
         (p, q), (i, j) = g.outer, g.links
         pj = on_link(p, j)
-        n = vel.perpendicular(q, p)
-        name = vel.name(pj)
-        step = plan.add(name, rules.LINE_LINE, vel.points[p], pos.directions[j], vel.points[q], n, *pos.known_sine(g))
-        plan.vector(f"V̅_{{{pj}}}", vel.pole, step)
-        if vel.points[q] is not vel.pole:
-            plan.vector(f"V̅_{{{pj}{q}}}", vel.points[q], step)
-        plan.vector(f"V̅_{{{pj}{p}}}", vel.points[p], step)
-        vel.coincident[pj] = step
-        vel.turning(j, q, p, vel.points[q], step)
-        vel.turns_with(i, j)
+        step = plan.coincident[pj] = plan.meet(pj, (Leg(i, p, p, slot=0.0), Leg(j, p, q)), plan.known(g), j)
+        plan.turning(j, q, p, plan.points[q], step)
+        plan.turns_with(i, j)
         if g.offset:
-            foot = pos.feet[j]
-            vel.points[foot] = vel.rotated(foot, vel.points[q], j, q, foot)
-
-    def acceleration(self, acc: Accelerations, g: StructuralGroup) -> None:
-        plan, pos, vel = acc.plan, acc.positions, acc.velocities
-        (p, q), (i, j) = g.outer, g.links
-        pj = on_link(p, j)
-        k = acc.coriolis(acc.points[p], j, vel.points[p], vel.coincident[pj], f"{pj}{p}")
-        n = acc.normal(acc.points[q], j, q, p, f"{pj}{q}")
-        step = plan.add(acc.name(pj), rules.LINE_LINE, k, pos.directions[j], n, acc.perpendicular(q, p),
-                        *pos.known_sine(g))
-        plan.vector(f"a̅_{{{pj}{p}}}^r", k, step)
-        plan.vector(f"a̅_{{{pj}{q}}}^τ", n, step)
-        plan.vector(f"a̅_{{{pj}}}", acc.pole, step)
-        acc.coincident[pj] = step
-        acc.turning(j, q, p, acc.points[q], step)
-        acc.turns_with(i, j)
-        if g.offset:
-            foot = pos.feet[j]
-            acc.points[foot] = acc.rotated(foot, acc.points[q], j, q, foot)
+            foot = plan.positions.feet[j]
+            plan.points[foot] = plan.rotated(foot, plan.points[q], j, q, foot)
 
     def force(self, forces: Kinetostatics, g: StructuralGroup) -> None:
         """Kind 3: tangential part from moments of the group about the pivot, then plans of block and rocker."""
@@ -162,7 +146,7 @@ class RPRKind(GroupKind):
     def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
         """Tangents from the rocker's pivot to the crank circle (manual 000, 3.1), for a rocker that swings, without an offset."""
         c, q = m.crank, g.outer[1]
-        if g.offset or q not in m.fixed or _inside(m, q) >= 0:
+        if g.offset or q not in m.fixed or abs(m.fixed[q] - m.fixed[c.pivot]) <= c.length:
             return None
         pivot = plan.add(q, rules.GIVEN, m.fixed[q])
         a, b = (plan.add(f"{c.pin}{prime}", rules.TANGENT, pivot, centre, c.length, side) for prime, side in (("′", 1), ("″", -1)))
@@ -175,10 +159,6 @@ class RPRKind(GroupKind):
         rocker = Outline(j, (q, p), p) if foot is None else Outline(j, (q,), p, ((q, foot), (foot, p)))
         return [Outline(i, block=p, along=pos.directions[j]), rocker]
 
-    def outer_reactions(self, g: StructuralGroup) -> list[OuterReaction]:
-        (i, j), (p, q) = g.links, g.outer
-        return [OuterReaction(i, p), OuterReaction(j, q)]
-
     def force_plans(self, g: StructuralGroup) -> tuple[str, ...]:
         return g.links
 
@@ -189,9 +169,106 @@ class RPRKind(GroupKind):
         return g.links[1]
 
 
-def _inside(m: Mechanism, pivot: str) -> float:
-    """How far a fixed pivot lies inside the crank circle, m; negative outside."""
-    return m.crank.length - abs(m.fixed[pivot] - m.fixed[m.crank.pivot])
-
-
 RPR = RPRKind()
+
+
+class RPPKind(GroupKind):
+    """Kind 5: a block hinged to a pin in the slot of a link that slides along a guide."""
+
+    number, form, orders = 5, marked("RPP"), ("RPP", "PPR")
+
+    def position(self, pos: Positions, g: StructuralGroup) -> None:
+        assert g.inner is not None
+        guide = g.guides[0]
+        u = pos.guide_directions[guide]
+        slot = pos.plan.add(f"n{g.links[1]}–n{g.links[1]}", rules.TURNED_BY, u, g.slot,
+                            say=tr("Slot of link {link}: take the direction {{name}} at the angle {{1}} to "
+                                   "{{0}}.").format(link=g.links[1]))
+        pos.points[g.inner] = pos.plan.add(g.inner, rules.LINE_LINE, pos.points[g.outer[0]], slot, pos.guide_points[guide], u,
+                                           say=tr("Through {0} parallel to {1} draw a line; it meets {3} at point {name}."))
+        pos.directions[g.links[0]] = slot
+        pos.directions[g.links[1]] = u
+
+    def motion(self, plan: MotionPolygon, g: StructuralGroup) -> None:
+        p, s, guide, (i, j) = g.outer[0], str(g.inner), g.guides[0], g.links
+        m, pj = plan.positions.mechanism, on_link(p, j)
+        link = m.guides[guide].link
+        step = plan.coincident[pj] = plan.meet(pj, (Leg(i, p, p, slot=0.0), Leg(j, p, guide=guide)), plan.known(g), link)
+        for k in g.links:
+            plan.turns_with(k, link)
+        # Link j does not turn against the guide: its point at the pin and its point on the guide move alike on a fixed
+        # guide; on a turning one the point at the pin is taken first.
+        if link == m.frame:
+            plan.points[s] = step
+        else:
+            plan.points[s] = plan.rotated(s, step, link, p, s)
+            plan.plan.vector(f"{plan.VECTOR}_{s}", plan.pole, plan.points[s])
+            plan.plan.vector(f"{plan.VECTOR}_{{{s}{pj}}}", step, plan.points[s])
+        plan.coincident[on_link(s, j)] = plan.points[s]
+
+    def force(self, forces: Kinetostatics, g: StructuralGroup) -> None:
+        """Kind 5: the plan of the guided link first, then of the block; arms from moments (manual 000, 4 ex. 1)."""
+        pos, m = forces.positions, forces.positions.mechanism
+        (i, j), p, guide = g.links, g.outer[0], g.guides[0]
+        base = m.guides[guide].link
+        across_slot = forces.normal(i, j, pos.directions[i].name, pos.directions[i])
+        across_guide = forces.normal(j, base, guide, pos.guide_directions[guide])
+        fp = forces.plan_of(j, (j,))
+        start = fp.plan.add("2", rules.GIVEN, 0j)
+        loads = forces.order(forces.loads[j], "inertia")
+        end = start
+        pending = []  # sides are recorded in the manual's order, the first unknown one before them
+        for n, load in enumerate(loads, 3):
+            head = fp.plan.add(str(n), rules.SHIFT, end, load.vector)
+            pending.append((load.symbol, end, head))
+            end = head
+        one = fp.plan.add("1", rules.LINE_LINE, start, across_slot, end, across_guide)
+        f_ji = forces.close(fp, j, i, one, start)
+        for s, tail, head in pending:
+            fp.side(s, tail, head)
+        f_jb = forces.close(fp, j, base, end, one)
+        # Block: F_ij, its loads, closing force from the link that carries the pin.
+        f_ij = forces.opposite(i, j, f_ji)
+        forces.loads[i].insert(0, forces.contact(i, j, pos.points[p], f_ij))
+        inner = forces.sliding(i, j, f_ji, pos.points[p])
+        owner = m.owner(p)
+        block = forces.plan_of(i, (i,))
+        first = block.plan.add("1", rules.GIVEN, 0j)
+        loads = forces.loads[i]
+        rest = [load for load in loads if load.role != "reaction"] + [load for load in loads[1:] if load.role == "reaction"]
+        tail = block.chain(1, first, [loads[0], *rest])
+        f_io = forces.close(block, i, owner, tail, first)
+        # The guided link also carries the opposite of the inner couple.
+        on_j = forces.opposite_couple(j, i, inner)
+        forces.loads[j].append(forces.contact(j, i, pos.points[p], f_ji, on_j))
+        outer = forces.sliding(j, base, f_jb, pos.points[p])
+        forces.react(i, owner, pos.points[p], f_io)
+        forces.react(j, base, pos.points[p], f_jb, outer)
+
+    def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
+        i, j = g.links
+        return [AssemblyLimit(1.0, lambda pos: sine(pos.value(pos.directions[i]), pos.value(pos.directions[j])) - TOUCH,
+                              lambda lack: tell("the slot of link {link} is parallel to its guide {guide}").format(
+                                  link=j, guide=g.guides[0]),
+                              lambda pos: tell('try slot = "90 deg"'), measured=False)]
+
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        return 1 / sine(pos.guide_directions[g.guides[0]].value, pos.directions[g.links[0]].value)
+
+    def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
+        (i, j), slot = g.links, pos.directions[g.links[0]]
+        return [Outline(i, block=g.outer[0], along=slot),
+                Outline(j, block=str(g.inner), along=pos.guide_directions[g.guides[0]], slot=slot)]
+
+    def force_plans(self, g: StructuralGroup) -> tuple[str, ...]:
+        i, j = g.links
+        return j, i
+
+    def about(self, g: StructuralGroup) -> str:
+        return g.outer[0]
+
+    def ram(self, g: StructuralGroup) -> str | None:
+        return g.links[1]
+
+
+RPP = RPPKind()

@@ -1,0 +1,298 @@
+"""Kinds 1, 2 and 4 of class II, whose links are joined by a hinge: RRR, RRP and PRP.
+
+Each link has its outer pair, a hinge or a guide (a :class:`~tmm_sheets.mechanism.groups.contexts.Leg`), and holds the
+middle hinge on an arc or on a line. So do its motions: by each leg it is known but for a part along a line, and both lines meet.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from tmm_sheets.construction import arithmetic as ar
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.step import Plan, Rule, Step
+from tmm_sheets.mechanism.groups.contexts import (
+    TOUCH,
+    AssemblyLimit,
+    Crossing,
+    Outline,
+    Turning,
+    extremes,
+    lacking,
+    less,
+    mm,
+    more,
+    rounding,
+    sine,
+    span,
+    unrounded,
+)
+from tmm_sheets.mechanism.groups.dead_centres import (
+    ARCS,
+    DISTANCE,
+    HALF_BESIDE_ARCS,
+    HALF_BESIDE_LINE,
+    HALF_OF_ARCS,
+    HALF_OF_LINE,
+    LINE,
+    LINE_OF_CENTRES,
+    SIGNED_DISTANCE,
+    fold_and_stretch,
+    gaps_of_arcs,
+    gaps_of_line,
+    measured,
+    meets,
+    near_point,
+    on_crank,
+    passing,
+    reaches,
+    span_from_crank,
+)
+from tmm_sheets.mechanism.model import GroupKind, Mechanism, StructuralGroup
+from tmm_sheets.words import marked, tell
+
+if TYPE_CHECKING:
+    from tmm_sheets.construction.limit_angles import Gaps
+    from tmm_sheets.mechanism.model import Kinetostatics, MotionPolygon, Positions
+
+SINE_OF_LINKS = Rule("sine between links", lambda h, d, r1, r2, side: side * h * d / (r1 * r2), (), "number",
+                     marked("Sine of the angle between the links {name} = {value}."), beyond_paper=True, unit="1")
+SINE_TO_GUIDE = Rule("sine between rod and perpendicular to the guide", lambda h, r, side: -side * h / r, (), "number",
+                     marked("Sine of the angle between the coupler and the perpendicular to the guide {name} = {value}."),
+                     beyond_paper=True, unit="1")
+
+
+class HingedKind(GroupKind):
+    """Two links joined by a hinge; ``crosses`` is the rule that makes the hinge from both legs."""
+
+    crosses: ClassVar[Rule]
+
+    def position(self, pos: Positions, g: StructuralGroup) -> None:
+        c, legs = str(g.inner), self.legs(g)
+        known = pos.crossing(g)
+        args = [x for leg in legs for x in ((pos.guide_points[leg.guide], pos.guide_directions[leg.guide]) if leg.guide else
+                                            (pos.points[leg.outer], leg.length))]
+        side = (pos.side(g),) if self.two_ways else ()
+        pos.points[c] = pos.plan.add(c, self.crosses, *args, *side, *known)
+        for leg in legs:
+            pos.directions[leg.link] = pos.guide_directions[leg.guide] if leg.guide else pos.direction(leg.outer, c)
+
+    def motion(self, plan: MotionPolygon, g: StructuralGroup) -> None:
+        c, legs = str(g.inner), self.legs(g)
+        plan.points[c] = plan.meet(c, legs, plan.known(g))
+        for leg in legs:
+            plan.turns_on(leg, plan.points[c])
+
+    def force(self, forces: Kinetostatics, g: StructuralGroup) -> None:
+        """Tangential parts from moments of each rod about the middle hinge; reactions of guides across them."""
+        pos, legs, c = forces.positions, self.legs(g), str(g.inner)
+        carriers = tuple(pos.mechanism.carrier(leg) for leg in legs)
+        parts: list[Step | None] = []
+        lines = []
+        for leg, carrier in zip(legs, carriers, strict=True):
+            if leg.guide:
+                parts.append(None)
+                lines.append(forces.normal(leg.link, carrier, leg.guide, pos.guide_directions[leg.guide]))
+            else:
+                total = forces.moment_sum(f"ΣM{leg.link}", pos.points[c], [leg.link])
+                parts.append(forces.tangential(leg.link, carrier, total, c, leg.outer))
+                lines.append(pos.direction(leg.outer, c))
+        known = pos.known_sine(g)
+        if g.guides:
+            # The lines of the velocities turned by 90 degrees, one of them the other way round; with friction other lines.
+            known = () if forces.deviates(legs[1].link, carriers[1]) else tuple(forces.negative(s) for s in known)
+        found = forces.group_polygon(g, parts, lines, carriers, known)
+        couples = {leg.link: forces.sliding(leg.link, carrier, force, pos.points[c])
+                   for leg, carrier, force in zip(legs, carriers, found, strict=True) if leg.guide}
+        for leg, carrier, force in zip(legs, carriers, found, strict=True):
+            forces.react(leg.link, carrier, pos.points[leg.outer or c], force, couples.get(leg.link))
+
+    def outlines(self, pos: Positions, g: StructuralGroup) -> list[Outline]:
+        c = str(g.inner)
+        return [Outline(leg.link, block=c, along=pos.guide_directions[leg.guide], slotted=self.two_ways) if leg.guide else
+                Outline(leg.link, (leg.outer, c)) for leg in self.legs(g)]
+
+    def sliders(self, g: StructuralGroup) -> tuple[tuple[str, str], ...]:
+        return tuple((leg.link, leg.guide) for leg in self.legs(g) if leg.guide)
+
+
+class RRRKind(HingedKind):
+    """Kind 1: two rods joined by a hinge, hinged to what is before them."""
+
+    number, form, orders = 1, marked("RRR"), ("RRR",)
+    crosses, two_ways = rules.ARC_ARC, True
+
+    def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
+        (p, q), (l1, l2) = g.outer, g.lengths
+        first, second = f"{p}{g.inner}", f"{g.inner}{q}"
+        (long, a), (short, b) = sorted(((first, l1), (second, l2)), key=lambda x: -x[1])
+
+        def hint(pos: Positions) -> str:
+            low, high = extremes(span(pos, p, q))
+            for name, other in ((first, l2), (second, l1)):
+                least, most = max(high - other, other - low), other + low
+                if most > least * 1.001:
+                    return tell("try {rod} from {least} to {most}").format(rod=name, least=more(least), most=less(most))
+            return tell("try {first} = {second} = {least} or longer").format(first=first, second=second, least=more(high / 2))
+
+        def around(pos: Positions) -> Any:
+            return rounding(l1 + l2, pos.value(pos.points[p]), pos.value(pos.points[q]))
+
+        return [
+            AssemblyLimit(m.crank.length, lambda pos: unrounded(l1 + l2 - span(pos, p, q), around(pos)),
+                          lambda lack: tell("{first} = {l1} and {second} = {l2} together are {lack} too short").format(
+                              first=first, second=second, l1=mm(l1), l2=mm(l2), lack=lacking(lack)), hint),
+            AssemblyLimit(m.crank.length, lambda pos: unrounded(span(pos, p, q) - (a - b), around(pos)),
+                          lambda lack: tell("{long} = {a} is {lack} too long beside {short} = {b}").format(
+                              long=long, short=short, a=mm(a), b=mm(b), lack=lacking(lack)), hint),
+        ]
+
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        (p, q), c = (pos.points[name].value for name in g.outer), pos.points[str(g.inner)].value
+        return size / min(g.lengths) * size / np.abs(p - q) / sine(ar.ray(p, c), ar.ray(q, c))
+
+    def gaps(self, m: Mechanism, g: StructuralGroup) -> Gaps | None:
+        """(l2 + l3)^2 - d^2 and d^2 - (l2 - l3)^2, d the distance of the outer hinges."""
+        span = span_from_crank(m, g)
+        return None if span is None else gaps_of_arcs(*span, *g.lengths)
+
+    def gaps_at(self, pos: Positions, g: StructuralGroup) -> tuple[Any, Any, Any]:
+        (p, q), (l1, l2) = (pos.points[name].value for name in g.outer), g.lengths
+        d = np.abs(q - p)
+        return (l1 + l2 - d) * (l1 + l2 + d), (d - l1 + l2) * (d + l1 - l2), (l1 + l2) * rounding(l1 + l2, p, q)
+
+    def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
+        """Half-chord h = sqrt(((l2 + l3)^2 - d^2) (d^2 - (l2 - l3)^2)) / 2d."""
+        span, gaps = span_from_crank(m, g), self.gaps(m, g)
+        if span is None or gaps is None:
+            return None
+        numbers = (*span, *g.lengths)
+        met = meets(span, gaps, *g.lengths)
+        turning = passing(m, g, phi, ARCS, numbers, turned=met) if gaps.touching else None
+        side, line = g.side if turning is None else turning.side, None
+        if met:
+            line = Step(f"u {g.name}", LINE_OF_CENTRES, (phi, *span, 1.0 if on_crank(m, g.outer[0]) else -1.0))
+        half, distance = measured(g, phi, (HALF_OF_ARCS, numbers), (SIGNED_DISTANCE, numbers) if met else (DISTANCE, span))
+        return Crossing(half, distance, Step(f"sin {g.name}", SINE_OF_LINKS, (half, distance, *g.lengths, side)), turning, line)
+
+    def passage(self, pos: Positions, g: StructuralGroup, side: Any, root: Any) -> Crossing:
+        p, q = (pos.points[name] for name in g.outer)
+        half = Step(f"h {g.name}", HALF_BESIDE_ARCS, (root, p, g.lengths[0], q, g.lengths[1]))
+        distance = Step(f"d {g.name}", rules.DISTANCE, (p, q))
+        sine = Step(f"sin {g.name}", SINE_OF_LINKS, (half, distance, *g.lengths, side))
+        return Crossing(half, distance, sine, Turning(side, None, None, (side,) if isinstance(side, Step) else ()))
+
+    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
+        """Arcs about the crank pivot of radius rod plus crank and rod minus crank cross the arc of the rocker."""
+        c, q = m.crank, g.outer[1]
+        # About the crank's own pivot rod and rocker turn with it.
+        if g.outer[0] != c.pin or q not in m.fixed or m.fixed[q] == m.fixed[c.pivot]:
+            return None
+        pivot = plan.add(q, rules.GIVEN, m.fixed[q])
+        rod, rocker = g.lengths
+        far, near = (plan.add(f"{g.inner}{prime}", rules.ARC_ARC, centre, reach, pivot, rocker, g.side)
+                     for prime, reach in reaches(plan, rod, c.length))
+        return fold_and_stretch(m, plan, rod, centre, (far, near))
+
+
+RRR = RRRKind()
+
+
+class RRPKind(HingedKind):
+    """Kind 2: a rod hinged to a slider on a guide."""
+
+    number, form, orders = 2, marked("RRP"), ("RRP", "PRR")
+    crosses, two_ways = rules.ARC_LINE, True
+
+    def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
+        p, guide, length = g.outer[0], g.guides[0], g.lengths[0]
+        rod = f"{p}{g.inner}"
+
+        def away(pos: Positions) -> Any:
+            return np.abs(ar.cross(pos.value(pos.guide_directions[guide]),
+                                   pos.value(pos.guide_points[guide]) - pos.value(pos.points[p])))
+
+        def margin(pos: Positions) -> Any:
+            return unrounded(length - away(pos), rounding(length, pos.value(pos.points[p]), pos.value(pos.guide_points[guide])))
+
+        return [AssemblyLimit(m.crank.length, margin,
+                              lambda lack: tell(
+                                  "rod {rod} = {length} is {lack} too short to reach the guide {guide}").format(
+                                      rod=rod, length=mm(length), lack=lacking(lack), guide=guide),
+                              lambda pos: tell("try {rod} >= {least}").format(rod=rod, least=more(extremes(away(pos))[1])))]
+
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        rod = pos.points[str(g.inner)].value - pos.points[g.outer[0]].value
+        return size / g.lengths[0] / np.abs(ar.dot(pos.guide_directions[g.guides[0]].value, rod) / np.abs(rod))
+
+    @staticmethod
+    def _numbers(m: Mechanism, g: StructuralGroup) -> tuple[Any, ...] | None:
+        """What the crossing of a rod on the crank with a fixed guide follows from."""
+        guide, pin = m.guides[g.guides[0]], on_crank(m, g.outer[0])
+        if pin is None or isinstance(guide.through, str):
+            return None
+        return *pin, g.lengths[0], m.fixed[m.crank.pivot], guide.through, guide.direction
+
+    def gaps(self, m: Mechanism, g: StructuralGroup) -> Gaps | None:
+        """The rod's length plus and minus the distance of its outer hinge from the guide."""
+        numbers = self._numbers(m, g)
+        return None if numbers is None else gaps_of_line(*numbers)
+
+    def gaps_at(self, pos: Positions, g: StructuralGroup) -> tuple[Any, Any, Any]:
+        p, guide, length = pos.points[g.outer[0]].value, g.guides[0], g.lengths[0]
+        through = pos.guide_points[guide].value
+        e = ar.cross(pos.guide_directions[guide].value, p - through)
+        return length + e, length - e, rounding(length, p, through)
+
+    def crossing(self, m: Mechanism, g: StructuralGroup, phi: Any) -> Crossing | None:
+        """Half-chord h = sqrt((l - e) (l + e)) with the pin's distance from the guide e = e0 + l1 sin(phi - psi)."""
+        numbers, gaps = self._numbers(m, g), self.gaps(m, g)
+        if numbers is None or gaps is None:
+            return None
+        half, _ = measured(g, phi, (HALF_OF_LINE, numbers))
+        turning = passing(m, g, phi, LINE, numbers) if gaps.touching else None
+        side = g.side if turning is None else turning.side
+        return Crossing(half, None, Step(f"sin {g.name}", SINE_TO_GUIDE, (half, g.lengths[0], side)), turning)
+
+    def passage(self, pos: Positions, g: StructuralGroup, side: Any, root: Any) -> Crossing:
+        guide, length = g.guides[0], g.lengths[0]
+        half = Step(f"h {g.name}", HALF_BESIDE_LINE, (root, pos.points[g.outer[0]], length, pos.guide_points[guide],
+                                                      pos.guide_directions[guide]))
+        sine = Step(f"sin {g.name}", SINE_TO_GUIDE, (half, length, side))
+        return Crossing(half, None, sine, Turning(side, None, None, (side,) if isinstance(side, Step) else ()))
+
+    def dead_positions(self, m: Mechanism, g: StructuralGroup, plan: Plan, centre: Step) -> tuple[Step, Step] | None:
+        """Arcs about the crank pivot of radius rod plus crank and rod minus crank cross the guide."""
+        guide, rod = m.guides[g.guides[0]], g.lengths[0]
+        if guide.link != m.frame:
+            return None
+        through = plan.add(plan.free(f"{guide.name}₀"), *near_point(m, guide))
+        along = plan.add(plan.free(guide.name), rules.UNDER, guide.direction)
+        far, near = (plan.add(f"{g.inner}{prime}", rules.ARC_LINE, centre, reach, through, along, g.side)
+                     for prime, reach in reaches(plan, rod, m.crank.length))
+        return fold_and_stretch(m, plan, rod, centre, (far, near))
+
+
+RRP = RRPKind()
+
+
+class PRPKind(HingedKind):
+    """Kind 4: two blocks on two guides, joined by a hinge."""
+
+    number, form, orders = 4, marked("PRP"), ("PRP",)
+    crosses = rules.LINE_LINE
+
+    def limits(self, m: Mechanism, g: StructuralGroup) -> list[AssemblyLimit]:
+        a, b = g.guides
+        return [AssemblyLimit(1.0, lambda pos: sine(pos.value(pos.guide_directions[a]), pos.value(pos.guide_directions[b])) - TOUCH,
+                              lambda lack: tell("the guides {a} and {b} are parallel there").format(a=a, b=b),
+                              lambda pos: tell("turn one of the guides so that they cross at every position"), measured=False)]
+
+    def condition(self, pos: Positions, g: StructuralGroup, size: Any) -> Any:
+        a, b = (pos.guide_directions[name].value for name in g.guides)
+        return 1 / sine(a, b)
+
+
+PRP = PRPKind()
