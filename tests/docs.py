@@ -27,10 +27,10 @@ from tmm_sheets.methods.linkage import numbering
 from tmm_sheets.methods.linkage import positions as positions_module
 from tmm_sheets.project import Project
 from tmm_sheets.record import recording
-from tmm_sheets.sheets import frame
-from tmm_sheets.sheets.arrangement import arrangement
-from tmm_sheets.sheets.frame import PlanFrame
+from tmm_sheets.sheets import player
+from tmm_sheets.sheets.player import PlanFrame
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.sheets.views import arrangement
 from tmm_sheets.task import messages, units, variant
 from tmm_sheets.task.cam_table import FOLLOWER_KEYS
 from tmm_sheets.task.keys import Key, keys_of, spaced
@@ -221,7 +221,7 @@ def walk() -> str:
         ("cycle", numbering, f"label `2`: {degrees(project.cycle.turned[2]):g}° turned from the dead position, crank at "
                          f"{degrees(project.cycle.phi[2]) % 360:g}° of the world frame"),
         ("step", positions_module, f"`{pin.name}` by the rule *{pin.rule.name}*: ({z.real:.6f}, {z.imag:.6f}) m"),
-        ("frame", frame, f"origin ({circle.real:g}, {circle.imag:g}) mm, μ_l = {scale.mu:g} m/mm: B at "
+        ("frame", player, f"origin ({circle.real:g}, {circle.imag:g}) mm, μ_l = {scale.mu:g} m/mm: B at "
                          f"({there.real:.4f}, {there.imag:.4f}) mm"),
         ("mark", marks, f"`Line` in the style `{crank.style}`, of `{crank.of}`, shortened by the circles of its hinges"),
         ("file", dxf, f"`LINE` on the layer `{styles.layer(crank).name}`: {groups_of_line}"),

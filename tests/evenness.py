@@ -4,7 +4,8 @@ Usage: python -m tests.evenness [--ciphers N --seed S] [--lang L] [--each] [--jo
 ciphers.
 
 For every arrangement: share of cells of 50 mm without ink (mean, most), sheets with an empty rectangle of more than 160 x 120 mm,
-what position plans take of their places, and what of the kinematics is below its floor (:mod:`tmm_sheets.sheets.floors`): one line
+what position plans take of their places, and what of the kinematics is below its floor (:mod:`tmm_sheets.sheets.border_solver`):
+one line
 for each, with "told" where the sheet itself says so. Exit status 1 when an aim is missed. What cannot be built is told.
 """
 
@@ -28,8 +29,8 @@ from tmm_sheets.box import Box
 from tmm_sheets.drawing import evenness
 from tmm_sheets.drawing.marks import Drawing, Text
 from tmm_sheets.project import Project
+from tmm_sheets.sheets.border_solver import CRANK, EMPTY, LETTERED, SHARE, VECTOR, Floor
 from tmm_sheets.sheets.composed import Composed
-from tmm_sheets.sheets.floors import CRANK, EMPTY, LETTERED, SHARE, VECTOR, Floor
 from tmm_sheets.sheets.linkage import kinematic_frames, kinematics
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.words import set_paper, tell

@@ -63,5 +63,5 @@ def test_askers_are_told(tmp_path, capsys):
     assert run(["build", "lugansk/shaper", "--sheet", "3", "--explain", "--no-cache", "--format", "svg", "-o", str(tmp_path)]) == 0
     lines = capsys.readouterr().out.split("asked for\n")[1].splitlines()
     assert len(lines) > 100
-    for said in ("drawn on sheet 3: ", "read by sheets.gears.gear_equations for sheet 3, gear.", "for gear-"):
+    for said in ("drawn on sheet 3: ", "read by sheets.gears.gear for sheet 3, gear.", "for gear-"):
         assert any(f" {said}" in line for line in lines)

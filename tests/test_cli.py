@@ -444,7 +444,7 @@ def test_solve_imports_no_drawing():
     assert "tmm_sheets.results" in loaded
     # Scale factors follow from the places on the sheets, and these from what all views of the sheet need.
     views = ("linkage.kinematics", "linkage.kinetics", "cams.cam", "gears.gear", "flywheel.flywheel", "flywheel.mertsalov",
-             "gears.reducer", "sheet")
+             "gears.train", "sheet")
     assert loaded & {f"tmm_sheets.sheets.{m}" for m in views} == set()
     assert {m for m in loaded if m.startswith(("tmm_sheets.drawing.labels", "tmm_sheets.backends"))} == set()
     assert loaded & {"shapely", "ezdxf", "reportlab", "matplotlib"} == set()

@@ -241,7 +241,7 @@ class Opened:
         CannotBuild
             when something cannot be built.
         """
-        from tmm_sheets.sheets import composing, composition, legibility
+        from tmm_sheets.sheets import composing, composition
 
         project, variant = self.project, self.project.variant
         with self._on_paper():
@@ -249,7 +249,7 @@ class Opened:
             composition.check(project)
             every = range(1, len(project.sheets) + 1)
             told: list[object] = [*composing.shortened(project), *composition.left_out(project, every),
-                                  *legibility.crowded(project, every)]
+                                  *composition.crowded(project, every)]
             if variant.crank is not None:
                 from tmm_sheets import summary
                 from tmm_sheets.sheets.components import flat_crossings

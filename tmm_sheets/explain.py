@@ -197,7 +197,7 @@ def _reader(frame: FrameType | None) -> StepReader:
         name = str(frame.f_globals.get("__name__", ""))
         if not module and name.startswith(HERE) and not name.startswith(STEPS):
             module = name.removeprefix(HERE)
-        if frame.f_code in (composing.viewed.__code__, composing.ask_again.__code__):
+        if frame.f_code is composing.viewed.__code__:
             view = frame.f_locals.get("view")
             return StepReader(module, frame.f_locals["n"], view.draw) if view is not None else StepReader(module, 0, "")
         frame = frame.f_back

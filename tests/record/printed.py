@@ -78,7 +78,7 @@ def written(project: Project) -> tuple[dict[Line, list[float]], dict[str, float]
 
     views = [import_module(m.name) for m in walk_packages(sheets.__path__, f"{sheets.__name__}.")]
     before = [(m, name, vars(m)[name]) for m in views for name in ("number", "fixed")
-              if name in vars(m) and vars(m)[name].__module__ != "tmm_sheets.sheets.view_sizes"]  # its fixed is of places
+              if name in vars(m) and vars(m)[name].__module__ != "tmm_sheets.sheets.border_solver"]  # its fixed is of places
     try:
         for module, name, write in before:
             setattr(module, name, noting(write))

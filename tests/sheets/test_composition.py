@@ -12,15 +12,14 @@ from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY, handy
 from tmm_sheets.drawing.marks import Arc, Text
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.arrangement import arrangement
-from tmm_sheets.sheets.border_solver import BorderNode, Need, cut, joined, rounded_up, solve
+from tmm_sheets.sheets.border_solver import SHOWN, BorderNode, Need, cut, joined, reaching, rounded_up, solve
 from tmm_sheets.sheets.composing import INSIDE
 from tmm_sheets.sheets.composition import TITLE_BLOCK, arranged
-from tmm_sheets.sheets.frame import fit_frame
 from tmm_sheets.sheets.linkage import friction, kinematic_frames, kinetic_frames, link_marks
 from tmm_sheets.sheets.linkage.linkage_sizes import OF_FORCE
+from tmm_sheets.sheets.player import fit_frame
 from tmm_sheets.sheets.sheet import composed
-from tmm_sheets.sheets.view_sizes import SHOWN, reaching
+from tmm_sheets.sheets.views import arrangement
 
 ROOM = Box(0.0, 0.0, 400.0, 300.0)
 

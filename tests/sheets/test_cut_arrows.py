@@ -8,8 +8,8 @@ import pytest
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.frame import fit_frame
 from tmm_sheets.sheets.linkage import kinetic_frames
+from tmm_sheets.sheets.player import fit_frame
 
 
 @pytest.fixture(scope="module")

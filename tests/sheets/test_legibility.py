@@ -1,5 +1,7 @@
 """What a sheet cannot show at a readable size is told; many Assur groups have a sheet of their own."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from tests import project_files
@@ -10,10 +12,11 @@ from tmm_sheets.drawing import evenness
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.output.building import with_room
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import legibility
+from tmm_sheets.sheets import composition
 from tmm_sheets.sheets.composition import arranged
-from tmm_sheets.sheets.linkage.kinetic_frames import places_of_groups
+from tmm_sheets.sheets.linkage.linkage_sizes import each_group
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.sheets.views import ViewPlace
 
 CHAIN = "tests/sheets/chain.toml"
 
@@ -23,7 +26,7 @@ def on_sheets(*names):
 
 
 def test_four_groups_beside_the_kinematics_are_told_to_be_too_small():
-    *_, vectors, lever = map(str, legibility.crowded(on_sheets("kinematics_forces_wide", "flywheel"), [1]))
+    *_, vectors, lever = map(str, composition.crowded(on_sheets("kinematics_forces_wide", "flywheel"), [1]))
     assert "60 mm" in vectors
     assert "29" in lever
     for said in (vectors, lever):
@@ -31,7 +34,7 @@ def test_four_groups_beside_the_kinematics_are_told_to_be_too_small():
 
 
 def test_a_sheet_more_is_advised_only_where_it_helps():
-    (said,) = map(str, legibility.crowded(Project(read("lugansk/engine")), [1]))
+    (said,) = map(str, composition.crowded(Project(read("lugansk/engine")), [1]))
     assert "the longest vector is 33.9 mm" in said
     assert "sheets =" not in said
 
@@ -39,7 +42,7 @@ def test_a_sheet_more_is_advised_only_where_it_helps():
 def test_four_groups_call_for_a_sheet_of_their_own_and_can_be_read_there():
     project = Project(read(CHAIN))
     assert project.sheets == ("kinematics", "forces", "flywheel")
-    assert not list(legibility.crowded(project, [2, 3]))
+    assert not list(composition.crowded(project, [2, 3]))
     sheet = composed(project, 2)
     assert not sheet.leaving
     assert not sheet.crowded
@@ -49,7 +52,7 @@ def test_four_groups_call_for_a_sheet_of_their_own_and_can_be_read_there():
 
 
 def test_an_acceleration_plan_with_too_many_letters_together_is_told():
-    (said,) = map(str, legibility.crowded(Project(read(CHAIN)), [1]))
+    (said,) = map(str, composition.crowded(Project(read(CHAIN)), [1]))
     assert "14" in said
     assert "force_position" in said
 
@@ -75,21 +78,22 @@ def test_sheets_without_a_mechanism_tell_what_is_too_low_on_them(tables, told):
 def test_fewer_groups_stay_beside_the_kinematics_if_their_plans_have_room():
     three = project_files.project(project_files.from_file("tests/projects/planer.toml"), {"project.sheets": None})
     assert three.sheets[0] == "kinematics_forces_wide"
-    told = list(legibility.crowded(three, [1]))
+    told = list(composition.crowded(three, [1]))
     assert all("names" in remark.values for remark in told)  # nothing but what another sheet helps
     apart = Project(with_room(three.variant))
     assert apart.sheets[:2] == (("kinematics", "forces") if told else three.sheets[:2])
-    assert not list(legibility.crowded(apart, [1, 2]))
+    assert not list(composition.crowded(apart, [1, 2]))
 
 
 @pytest.mark.parametrize(("count", "columns", "corners"), [
     (0, 2, []),
     (1, 1, [(0, 60)]),
-    (2, 1, [(0, 60), (0, 28)]),
-    (3, 2, [(0, 60), (0, 28), (52, 60)]),
-    (4, 2, [(0, 60), (0, 28), (52, 60), (52, 28)]),
+    (2, 1, [(0, 60), (0, 30)]),
+    (3, 2, [(0, 60), (0, 30), (50, 60)]),
+    (4, 2, [(0, 60), (0, 30), (50, 60), (50, 30)]),
 ])  # fmt: skip
 def test_groups_stand_down_each_column_in_turn(count, columns, corners):
-    places = places_of_groups(Box(0, 0, 100, 60), count, columns, 4.0)
+    project = SimpleNamespace(mechanism=SimpleNamespace(groups=range(count)))
+    places = [view.box for view in each_group(project, ViewPlace("kinetics.groups", Box(0, 0, 100, 60), {"columns": columns}))]
     assert [(place.x0, place.y1) for place in places] == corners
     assert all(Box(0, 0, 100, 60).contains(complex(place.x1, place.y0)) for place in places)

@@ -19,10 +19,9 @@ from tmm_sheets.numbers import number
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import optional_views
 from tmm_sheets.sheets.composing import _code
-from tmm_sheets.sheets.gears import reducer, train
-from tmm_sheets.sheets.linkage import hodograph, kinematics, kinetics, link_marks, moments
+from tmm_sheets.sheets.gears import train, train_scheme
+from tmm_sheets.sheets.linkage import diagrams, given_position, kinematics, kinetics, link_marks, moments
 from tmm_sheets.sheets.sheet import composed
-from tmm_sheets.sheets.tables import given_data, position_tables
 
 FIELD = Box(20.0, 5.0, 836.0, 589.0)
 
@@ -173,10 +172,10 @@ def worked_out(line):
 def test_tables_over_positions_hold_what_equilibrium_and_kinematics_demand(name):
     """A pair stands in the table once; the accelerations are the second differences of the points' positions."""
     p = Project(read(name))
-    heads = [head for head, _ in position_tables._reactions(p)[1]]
+    heads = [head for head, _ in given_position._reactions(p)[1]]
     assert len(heads) == len({frozenset(re.findall(r"\d", head)) for head in heads}) == len(p.mechanism.pairs)
     h = 1e-4 / abs(p.mechanism.crank.speed)
-    _, columns = position_tables._accelerations(p)
+    _, columns = given_position._accelerations(p)
     turned = np.asarray(p.cycle.turned)
     for head, values in columns:
         if head.startswith("a_"):
@@ -247,7 +246,7 @@ def test_points_of_a_train_run_as_the_wheel_they_are_on_turns():
     p = Project(read("tests/projects/hoist.toml"))
     canvas = Canvas()
     canvas.scales[p.train.velocities.name] = Scale("μ_V", 0.06, "(m/s)/mm")
-    _, *rows = reducer.rows_of_points(p.train, canvas)
+    _, *rows = train_scheme.rows_of_points(p.train, canvas)
     carrier = -960 * 18 / 54
     ring = carrier + (-400 - carrier) * (-24 / 84)
     for (_, distance, measured, speed), turns in zip(rows, (carrier, -400, carrier, ring), strict=True):
@@ -272,7 +271,7 @@ def test_the_curve_of_the_power_of_friction_meets_the_numbers_of_the_positions()
 def test_a_hodograph_is_closed_and_balances_the_crank(name):
     """At each position the reaction of the frame is opposite to all else on the crank; over a cycle it comes back."""
     p = Project(read(name))
-    _, step, course = hodograph._reaction(p)
+    _, step, course = diagrams._reaction(p)
     size = np.abs(course).max()
     crank = p.mechanism.crank
     others = sum(load.vector.value for load in p.study.forces.loads[crank.link] if load.vector is not step)
@@ -284,8 +283,8 @@ def test_a_hodograph_numbers_the_positions_of_every_turn_where_their_force_ends(
     """In the second turn of a four-stroke engine the force is another one."""
     p = Project(read(str(Path(__file__).parents[1] / "projects" / "pump.toml")))
     canvas = canvas_with()
-    hodograph.bearing(p, canvas, Box(100.0, 100.0, 260.0, 260.0), {})
-    _, step, _ = hodograph._reaction(p)
+    diagrams.bearing(p, canvas, Box(100.0, 100.0, 260.0, 260.0), {})
+    _, step, _ = diagrams._reaction(p)
     frame = canvas.frames[-1]
     there = {label: frame.origin + complex(z) / frame.mu[0] for label, z in zip(p.cycle.labels, step.value, strict=True)}
     said = {}
@@ -304,10 +303,10 @@ def test_a_hodograph_numbers_the_positions_of_every_turn_where_their_force_ends(
 def test_a_load_that_jumps_where_the_cycle_begins_leaves_no_gap_in_the_hodograph(swings):
     """The press ends its stroke under the full force and begins the next without one; a swing does not come back."""
     p = Project(read("press"))
-    _, _, course = hodograph._reaction(p)
+    _, _, course = diagrams._reaction(p)
     p.__dict__["cycle"] = replace(p.cycle, swings=swings)
     canvas = canvas_with()
-    hodograph.bearing(p, canvas, Box(100.0, 100.0, 260.0, 260.0), {})
+    diagrams.bearing(p, canvas, Box(100.0, 100.0, 260.0, 260.0), {})
     (curve,) = (m.points for m in canvas.marks if isinstance(m, Polyline) and m.style == "curve")
     assert abs(course[0] - course[-1]) > 0.9 * np.abs(course).max()
     assert (curve[0] == curve[-1]) is not swings
@@ -343,7 +342,7 @@ def test_a_force_is_not_parted_from_its_value(width):
 def test_the_table_of_given_sizes_holds_what_the_task_gives(name, lengths):
     """Every number but zero, once, as it is in the mechanism; one that a synthesis has found has its letters too."""
     project = Project(read(name))
-    rows = list(given_data._quantities(project))
+    rows = list(given_position._quantities(project))
     signs = [sign.split(", ")[0] for sign, _ in rows]
     assert lengths <= set(signs)
     assert len(rows) == len(set(rows))
@@ -352,7 +351,7 @@ def test_the_table_of_given_sizes_holds_what_the_task_gives(name, lengths):
     assert bool(masses) == any(link.mass for link in m.links.values())
     assert not {"0", "−0"} & {value for _, value in rows}
     assert number(float(m.crank.length)) in {value for sign, value in rows if sign.endswith(", м")}
-    for size, cells, row in given_data._forms(project):
+    for size, cells, row in given_position._forms(project):
         assert size[1] == pytest.approx(8.0 + row * len(cells))
         assert sum(cell != "" for line in cells[1:] for cell in line) == 2 * len(rows)
 

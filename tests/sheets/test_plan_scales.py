@@ -13,9 +13,9 @@ from tmm_sheets import catalogue
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.output import building
 from tmm_sheets.project import Project
-from tmm_sheets.sheets import composition, legibility, sheet
-from tmm_sheets.sheets.frame import joined, needed
+from tmm_sheets.sheets import composition, sheet
 from tmm_sheets.sheets.linkage.kinematic_frames import own_factors
+from tmm_sheets.sheets.player import joined, needed
 
 HERE = Path(__file__).parent
 CLOSE, CONVEYOR, PLANER = map(str, (HERE / "close.toml", *(HERE.parent / "projects" / f"{name}.toml" for name in
@@ -68,10 +68,10 @@ def test_sizes_of_one_kind_have_one_factor():
 def test_two_sheets_are_taken_where_one_is_too_small():
     planer = files.read(files.from_file(PLANER), {"project.sheets": None})
     alone = files.project(files.from_file(PLANER), {"project.sheets": ["kinematics_forces_wide"]})
-    (said,) = legibility.crowded(alone, [1])
+    (said,) = composition.crowded(alone, [1])
     assert 'sheets = ["kinematics", "forces"]' in str(said)
     assert building.with_room(planer).sheets == ("kinematics", "forces", "flywheel")
-    assert not list(legibility.crowded(Project(building.with_room(planer)), [1]))
+    assert not list(composition.crowded(Project(building.with_room(planer)), [1]))
     assert building.with_room(alone.variant) is alone.variant, "who names one has it"
 
 

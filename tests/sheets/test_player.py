@@ -12,8 +12,7 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Arc, Fill, Line
-from tmm_sheets.sheets.frame import PlanFrame
-from tmm_sheets.sheets.player import play, stage
+from tmm_sheets.sheets.player import PlanFrame, play, stage
 
 MM = Scale("μ", 0.5, "м/мм")
 

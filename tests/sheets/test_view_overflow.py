@@ -16,10 +16,10 @@ from tmm_sheets.drawing.marks import Text, flat
 from tmm_sheets.drawing.placing import place
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import composing as sheets
-from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.composing import BESIDE, INSIDE, TITLE_BLOCK, TOUCH, leaving
 from tmm_sheets.sheets.composition import arranged
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.sheets.views import arrangement
 
 
 def masses(distance, angle):

@@ -9,8 +9,7 @@ from tmm_sheets import catalogue, resources
 from tmm_sheets.errors import BadInput
 from tmm_sheets.project import Project
 from tmm_sheets.sheets import composition
-from tmm_sheets.sheets.arrangement import arrangement
-from tmm_sheets.sheets.views import VIEWS, ViewKind, function
+from tmm_sheets.sheets.views import VIEWS, ViewKind, arrangement, function
 
 FUNCTIONS = [f.name for f in fields(ViewKind) if f.name not in ("shows", "every", "stands", "picture", "plan", "name")]
 ARRANGEMENTS = sorted((resources.template("sheets")).glob("*.toml"))
@@ -37,7 +36,7 @@ def test_every_offered_view_tells_its_sizes_and_every_view_is_used():
 
 def test_an_unknown_view_is_refused_with_the_nearest_one(tmp_path, monkeypatch):
     (tmp_path / "mine.toml").write_text('title = "A"\n[[view]]\ndraw = "kinematics.position_plan"\nbox = [20, 5, 400, 500]\n')
-    monkeypatch.setattr("tmm_sheets.sheets.arrangement.template", lambda name: tmp_path / name.removeprefix("sheets/"))
+    monkeypatch.setattr("tmm_sheets.sheets.views.template", lambda name: tmp_path / name.removeprefix("sheets/"))
     with pytest.raises(BadInput, match=r'there is no view "kinematics\.position_plan"') as raised:
         arrangement("mine")
     assert "kinematics.position_plans" in str(raised.value.problems[0].hint)

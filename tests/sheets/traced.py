@@ -21,10 +21,10 @@ from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.step import Helper, Step, value_at
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, PlacedFrame, Points, Polyline, Text, flat
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.composed import Composed
 from tmm_sheets.sheets.linkage.details import NAMES
 from tmm_sheets.sheets.sheet import every
+from tmm_sheets.sheets.views import arrangement
 
 ROOMS = {
     "linkage": ("kinematics", "false_positions", "kinetics", "friction", "diagrams", "load_diagram", "synthesis", "given_position",

@@ -345,8 +345,8 @@ def _negated(tree: expression.Expression) -> TypeGuard[expression.Operation]:
 
 def filled(tree: expression.Expression, arguments: Sequence[expression.Expression]) -> expression.Expression:
     """The tree with others in the places of its arguments."""
-    found: expression.Expression = expression.fold(
-        tree, arguments.__getitem__, expression.Constant, lambda of, parts: expression.Operation(of.name, tuple(parts), of.function))
+    found: expression.Expression = expression.fold(tree, arguments.__getitem__, expression.Constant,
+                                                   lambda of, parts: expression.Operation(of.name, tuple(parts), of.function))
     return found
 
 

@@ -288,10 +288,10 @@ def with_room(variant: Variant) -> Variant:
     if variant.project.sheets is not None or TOGETHER not in variant.sheets:
         return variant
     from tmm_sheets.project import Project
-    from tmm_sheets.sheets import legibility
+    from tmm_sheets.sheets import composition
 
     with suppress(BadInput, CannotBuild):  # whoever needs its parts says why they cannot be had
-        if any("names" in remark.values for remark in legibility.crowded(Project(variant), [1])):  # another sheet helps
+        if any("names" in remark.values for remark in composition.crowded(Project(variant), [1])):  # another sheet helps
             named = [*APART, *(name for name in variant.sheets if name != TOGETHER)]
             return variant.model_copy(update={"project": variant.project.model_copy(update={"sheets": tuple(named)})})
     return variant

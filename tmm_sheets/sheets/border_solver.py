@@ -1,8 +1,11 @@
-"""Where the borders between the views of a sheet run: each view gets a place of the shape it needs.
+"""What views need of their places, and where the borders between them run: each view gets a place of the shape it needs.
 
 The boxes of an arrangement are cut apart by straight lines from side to side, again and again: a tree of rows and columns with the
 views as leaves. It says what stands where and in what order; the sizes are proportions only. Borders then move as long as the
 views fill the sheet better. Everything is done in a fixed order and in steps of whole millimetres: the same needs, the same places.
+
+A floor, the least size at which what a view shows is read, decides, it does not remark: needs, the way in which a sheet is arranged
+and scale factors come from it. What no place of the sheet can reach is told by :mod:`.composition`.
 """
 
 from __future__ import annotations
@@ -12,9 +15,20 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import floor, inf, log10
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY
+from tmm_sheets.remarks import Remark
+from tmm_sheets.sheets.player import needed
+from tmm_sheets.words import marked
+
+if TYPE_CHECKING:
+    from tmm_sheets.project import Project
+    from tmm_sheets.sheets.views import ViewPlace
 
 GAP = 6.0
 """Largest distance that is kept between views, mm: the room of a view left out goes to its neighbours."""
@@ -148,6 +162,16 @@ class BorderNode:
         for child in self.children:
             yield from child.every()
 
+    def leaves(self) -> Iterator[BorderNode]:
+        """The views in it."""
+        return (node for node in self.every() if node.need is not None)
+
+    def parts(self, box: Box) -> list[Box]:
+        """Places of its views in a rectangle, in turn."""
+        for number, node in enumerate(self.leaves()):
+            node.leaf = number
+        return list(self.places(box).values())
+
     def sizes(self, width: float, height: float) -> list[float]:
         """Extents of the children along the axis in a place of this size."""
         free = (height if self.axis else width) - self.gap * (len(self.children) - 1)
@@ -269,3 +293,95 @@ def _runs(intervals: Sequence[tuple[float, float]]) -> list[tuple[float, float, 
         else:
             runs.append((a, b, [i]))
     return runs
+
+
+SHOWN = 20.0
+"""Size below which a figure tells nothing, mm."""
+
+
+def fixed(box: Box) -> BorderNode:
+    """What keeps the size it has."""
+    size = (box.width, box.height)
+    return BorderNode(Need(least=size, most=size, drawn=lambda w, h: w * h), area=box.width * box.height)
+
+
+def reaching(box: Box, z: Any, d: Any, inset: tuple[float, float, float, float],
+              least: tuple[float, float]) -> Need:
+    """Need of points with what sticks out of each of them on paper, as it is in about the box of the arrangement.
+
+    Where that alone takes nearly all of the box, so much more that ``SHOWN`` is left for what is drawn to scale.
+    """
+    z, d = np.ravel(np.asarray(z, dtype=complex)), np.ravel(np.asarray(d, dtype=complex))
+    inside = box.inset(*inset)
+    size, around, finest = [], [], []
+    for x, offset, room, edge in ((z.real, d.real, inside.width, inset[0] + inset[2]),
+                                  (z.imag, d.imag, inside.height, inset[1] + inset[3])):
+        mu, span = needed(x, offset, max(room, 40.0)), float(np.ptp(x[~np.isnan(x)]))
+        size.append(span if mu > 0 else 0.0)
+        around.append(edge + (max(room, 40.0) - span / mu if mu > 0 else float(np.ptp(offset))))
+        finest.append(mu)
+    short = [beside + SHOWN if mu == max(finest) > 0 else 0.0 for beside, mu in zip(around, finest, strict=True)]
+    return Need((size[0], size[1]), (around[0], around[1]), (max(least[0], short[0]), max(least[1], short[1])))
+
+
+LOW = 0.3
+"""What a view counts for at most whose main figure is lower than can be read: a way in which it is not is better, whatever else."""
+
+
+def reached(size: float, floor: float) -> float:
+    """Share of its ink that a view counts for with a figure of this size, mm: all from its floor on."""
+    return 1.0 if size >= floor else LOW * size / floor
+
+
+def leaf(box: Box, need: Need, share: float = 1.0) -> BorderNode:
+    """Node of a need that counts for a share of its box."""
+    return BorderNode(need, area=share * box.width * box.height)
+
+
+def rows(project: Project, view: ViewPlace, count: int, head: float, row: tuple[float, float],
+          widths: tuple[float, float]) -> BorderNode:
+    """Need of a table with so many rows under its heading: rows from the least height to the usual one."""
+    need = Need(least=(widths[0], head + row[0] * count), most=(widths[1], head + row[1] * count), drawn=lambda w, h: w * h)
+    return BorderNode(need, area=need.least[0] * need.most[1])
+
+
+class Floor(NamedTuple):
+    """``least`` size, mm, of ``what`` is measured."""
+
+    what: str
+    least: float
+
+
+class Measured(NamedTuple):
+    """A size of what a view shows in its place, mm, and from where on it is read; what to try where it is less.
+
+    Where it is among ``forces``, so many, only a larger place helps.
+    """
+
+    what: Remark
+    size: float
+    least: float
+    hint: str = ""
+    forces: int = 0
+
+
+CRANK = Floor(marked("the crank circle"), 30.0)
+"""Diameter: twelve positions are 8 mm apart on it, as their numbers of 2.5 mm need beside the lines that end there."""
+VECTOR = Floor(marked("the longest vector"), 60.0)
+"""Of velocity and acceleration plans: half a millimetre of the pencil is then less than 1 % of it."""
+LETTERED = Floor(marked("a plan with letters"), 25.0)
+"""Larger side of a velocity or acceleration plan: three to five letters of 3.5 mm stand about it; below it has none."""
+SHARE = 0.5
+"""Share of its place that a position plan takes at least, 0 .. 1: the mechanism is what the sheet is about."""
+EMPTY = 160.0 * 120.0
+"""Area of the largest rectangle without ink that no eye stops at, mm^2."""
+
+
+LEVEL = 1e-9
+"""Share of the largest ordinate up to which a curve rises by rounding."""
+
+
+def risen(values: npt.NDArray[np.float64]) -> float:
+    """What values extend over, in their unit; nothing where they are level but for rounding."""
+    extent, largest = float(np.ptp(values)), float(np.abs(values).max())
+    return extent if extent > LEVEL * largest else 0.0

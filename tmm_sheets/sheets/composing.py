@@ -2,41 +2,36 @@
 
 from __future__ import annotations
 
+import re
+from cmath import rect
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from itertools import pairwise
+from math import ceil, floor, inf, pi
 from typing import TYPE_CHECKING
 
-from tmm_sheets.drawing.canvas import Canvas, Part
+import numpy as np
+
+from tmm_sheets.box import Box
+from tmm_sheets.drawing.canvas import Canvas, Label, Part
 from tmm_sheets.drawing.crowded import Shortened
+from tmm_sheets.drawing.evenness import dense
+from tmm_sheets.drawing.ink import polyline_inside
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Drawing, View
+from tmm_sheets.drawing.marks import Arc, Drawing, Line, Mark, Points, Text, View, flat
 from tmm_sheets.drawing.paper import A1
 from tmm_sheets.drawing.placing import place
+from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.drawing.title_block import block, draw_frame
-from tmm_sheets.sheets import composition, legibility
-from tmm_sheets.sheets.arrangement import arrangement
-from tmm_sheets.sheets.components import titles
-from tmm_sheets.sheets.composed import Composed
-from tmm_sheets.sheets.composition import DESIGNATION, arranged
-from tmm_sheets.sheets.views import VIEWS, function
+from tmm_sheets.sheets import composition
+from tmm_sheets.sheets.composed import Composed, Leaving
+from tmm_sheets.sheets.views import VIEWS, Arrangement, arrangement, function
 from tmm_sheets.words import marked, of_file, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
     from tmm_sheets.remarks import Remark
-    from tmm_sheets.sheets.arrangement import Arrangement
-import re
-from cmath import rect
-from collections.abc import Iterator
-from dataclasses import dataclass
-from math import ceil, floor, inf, pi
-
-from tmm_sheets.box import Box
-from tmm_sheets.drawing.ink import polyline_inside
-from tmm_sheets.drawing.marks import Arc, Line, Mark, Points, Text, flat
-from tmm_sheets.drawing.text_boxes import text_box
-from tmm_sheets.sheets.composed import Leaving
 
 TOUCH = 2.0
 """So far lines of a view may come out of its box, mm: a quarter of the distance between views, and what indices need."""
@@ -68,7 +63,8 @@ def leaving(canvas: Canvas, frame: Box, title_block: Box) -> list[Leaving]:
         out = [*bounds.left_by(lines, TOUCH, beside), *bounds.left_by(labels, inf if anywhere else BESIDE, [])]
         if out:
             # What is drawn later in the place of a titled part is one view with it.
-            it = Leaving(_plain(part.title or titles.get(part.box) or part.draw), *max(out), _scales(canvas, k))
+            plain = re.sub(r"[_^{}]", "", part.title or titles.get(part.box) or part.draw)  # without marks of lettering
+            it = Leaving(plain, *max(out), _scales(canvas, k))
             found[it.title, part.box] = max(found.get((it.title, part.box), it), it, key=lambda each: each.by)
     return list(found.values())
 
@@ -122,10 +118,6 @@ def _apart(one: Box, other: Box) -> bool:
     return one.x1 <= other.x0 or other.x1 <= one.x0 or one.y1 <= other.y0 or other.y1 <= one.y0
 
 
-def _tie(mark: Mark) -> bool:
-    return not isinstance(mark, Text) and mark.style == TIE
-
-
 def _outside(own: Box, box: Box) -> tuple[float, str]:
     """How far the rectangle round a mark comes out of a box, and on which side: the first of the farthest."""
     out = (box.x0 - own.x0, box.y0 - own.y0, own.x1 - box.x1, own.y1 - box.y1)
@@ -153,7 +145,8 @@ class _Bounds:
                 continue
             p = text_box(mark) if isinstance(mark, Text) else flat(mark, 2.0)
             own = Box.around(p)
-            out = self._across(p, own) or (None if _tie(mark) else self._beyond(p, own, slack, beside))
+            ties = not isinstance(mark, Text) and mark.style == TIE
+            out = self._across(p, own) or (None if ties else self._beyond(p, own, slack, beside))
             if out is not None:
                 yield out
 
@@ -190,11 +183,6 @@ def _scales(canvas: Canvas, k: int) -> tuple[tuple[str, float], ...]:
     return tuple((name, canvas.scales[name].mu) for name in list(canvas.scales)[begin:end] if name in canvas.chosen)
 
 
-def _plain(title: str) -> str:
-    """A title without marks of lettering."""
-    return re.sub(r"[_^{}]", "", title)
-
-
 WIDTH, HEIGHT = A1.width, A1.height
 INSIDE = A1.frame
 TITLE_BLOCK = block("1")
@@ -206,7 +194,7 @@ KEYWORDS = (marked("TMM"), marked("theory of mechanisms and machines"), marked("
 
 def viewed(project: Project, n: int) -> tuple[Arrangement, Canvas, dict[str, str]]:
     """Arrangement of sheet ``n``, its views on a canvas without the lettering that looks for places, texts of the title block."""
-    plan = arranged(project, n)
+    plan = composition.arranged(project, n)
     if {"positions", "flywheel"} & {view.needs for view in plan.views}:
         from tmm_sheets.sheets.linkage.kinematic_frames import check_number
 
@@ -217,11 +205,11 @@ def viewed(project: Project, n: int) -> tuple[Arrangement, Canvas, dict[str, str
         canvas.of = view.draw
         canvas.begin(view.box, "", view.draw)
         function(view.draw)(project, canvas, view.box, view.options)
-    titles.lower(canvas)
+    lower_titles(canvas)
     if plan.offers:
         from tmm_sheets.sheets import optional_views
 
-        optional_views.draw(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, DESIGNATION))
+        optional_views.draw(project, canvas, plan.offers, INSIDE, (TITLE_BLOCK, composition.DESIGNATION))
     return plan, canvas, fields
 
 
@@ -238,22 +226,14 @@ def composed(project: Project, n: int) -> Composed:
     project.shown.add(n)
     return Composed(drawing, dict(canvas.scales), tuple(crowded), tuple(canvas.parts), tuple(canvas.groups), tuple(left),
                     tuple(canvas.frames), _symbols(project, drawing), _dead(project, plan),
-                    tuple(composition.left_out(project, [n])), tuple(legibility.crowded(project, [n])))
+                    tuple(composition.left_out(project, [n])), tuple(composition.crowded(project, [n])))
 
 
-def ask_again(project: Project, n: int, parts: Iterable[Part]) -> None:
-    """Ask a project for all that sheet ``n`` shows, its ``parts`` being known: the steps are made, the sheet is not."""
-    plan, canvas = arranged(project, n), Canvas()
-    placed = [(part.draw, part.box) for part in parts if not part.title]
-    for view in plan.views:
-        canvas.begin(view.box, "", view.draw)
-        function(view.draw)(project, canvas, view.box, view.options)
-    if plan.offers:
-        from tmm_sheets.sheets import optional_views
-
-        optional_views.ask_again(project, canvas, plan.offers, placed)
+def ask_again(project: Project, n: int) -> None:
+    """Ask a project for all that sheet ``n`` shows: the steps are made, lettering looks for no places."""
+    plan, _, _ = viewed(project, n)
     project.shown.add(n)
-    _ = _dead(project, plan), [*composition.left_out(project, [n])], [*legibility.crowded(project, [n])]
+    _ = _dead(project, plan), [*composition.left_out(project, [n])], [*composition.crowded(project, [n])]
 
 
 def _symbols(project: Project, drawing: Drawing) -> dict[str, str]:
@@ -341,11 +321,43 @@ def said(part: Part | None) -> str:
     """Name of a view: the letters of its title; without a view that of the frame."""
     if part is not None and part.title:
         return "".join(run.text for run in letter(part.title, 5.0).runs)
-    return tr(_name_of(part.draw if part is not None else FRAME))
+    if part is None or part.draw == FRAME:
+        return tr("Frame and title block")
+    return tr(VIEWS[part.draw].name if part.draw in VIEWS and VIEWS[part.draw].name else part.draw)
 
 
-def _name_of(draw: str) -> str:
-    """What a view without a title is called."""
-    if draw == FRAME:
-        return marked("Frame and title block")
-    return VIEWS[draw].name if draw in VIEWS and VIEWS[draw].name else draw
+FAR = 40.0
+"""Distance of a title from its view from which on it comes lower, mm."""
+NEAR = 9.0
+"""Distance it then has, mm."""
+
+
+def lower_titles(canvas: Canvas) -> None:
+    """Bring every title of a canvas down to its view, labels that are not set yet included."""
+    parts = canvas.parts
+    for k, part in enumerate(parts):
+        if not part.headed:
+            continue
+        # What belongs to it: also parts of the same view that have no title of their own.
+        last = next((n for n in range(k + 1, len(parts)) if parts[n].headed or parts[n].draw != part.draw), len(parts))
+        end = parts[last].first if last < len(parts) else len(canvas.marks)
+        drawn = dense(canvas.marks[part.headed:end], 2.0)
+        if not len(drawn):
+            continue
+        top = max(float(drawn.imag.max()), *(_top(label) for label in canvas.labels if k <= label.part < last), -np.inf)
+        gap = float(dense(canvas.marks[part.first:part.headed], 2.0).imag.min()) - top
+        if gap > FAR:
+            for n in range(part.first, part.headed):
+                mark, by = canvas.marks[n], 1j * (gap - NEAR)
+                if isinstance(mark, Text):
+                    canvas.marks[n] = mark._replace(at=mark.at - by)
+                elif isinstance(mark, Line):  # a bar over a letter
+                    canvas.marks[n] = mark._replace(a=mark.a - by, b=mark.b - by)
+
+
+def _top(label: Label) -> float:
+    """Level up to which a label that goes upwards may reach."""
+    if label.away and label.away.imag <= 0:
+        return label.anchor.imag
+    laid = letter(label.text, label.height)
+    return label.anchor.imag + label.gap + laid.ascent + laid.descent

@@ -1,4 +1,8 @@
-"""Places of the views of a project's sheets: the arrangement's order and proportions, borders where the views need them."""
+"""Places of the views of a project's sheets, and what follows from them without drawing.
+
+The arrangement has the order and the proportions, borders run where the views need them. What a sheet cannot show so large that it
+can be read is told by ``check`` and ``build``.
+"""
 
 from __future__ import annotations
 
@@ -7,20 +11,26 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
 
 from tmm_sheets.box import Box
+from tmm_sheets.construction.readable import CURVE, MAIN, POLE, TOOTH
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
-from tmm_sheets.sheets import view_sizes
 from tmm_sheets.sheets.answered import Answered
-from tmm_sheets.sheets.arrangement import Arrangement, ViewPlace, arrangement
-from tmm_sheets.sheets.border_solver import GAP, BorderNode, cut, joined, solve
-from tmm_sheets.sheets.linkage import kinematic_frames
-from tmm_sheets.sheets.views import ViewKind, function
+from tmm_sheets.sheets.border_solver import CRANK, GAP, LETTERED, VECTOR, BorderNode, Measured, cut, fixed, joined, risen, solve
+from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
+from tmm_sheets.sheets.linkage.linkage_sizes import LINKS
+from tmm_sheets.sheets.player import extent, fit_frame
+from tmm_sheets.sheets.views import Arrangement, ViewKind, ViewPlace, arrangement, function
+from tmm_sheets.words import marked
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.scale import Scale
+    from tmm_sheets.methods.cams.cam_profile import RockerCam, TappetCam
+    from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.project import Project
 
 FORM = "1"
@@ -56,7 +66,7 @@ def _arranged(project: Project, n: int) -> Arrangement:
 
         return enlarged.apart(project, flywheel.apart(project, plan))
     # Whoever sets scale factors by hand has the boxes as they are written; an indicator diagram only makes its mechanism larger.
-    as_written = replace(plan, views=tuple(view for view in plan.views if _meant(project, view)))
+    as_written = replace(plan, views=tuple(view for view in plan.views if is_meant(project, view)))
     if project.variant.scales.keys() - {"indicator"}:
         return as_written
     if not any(view.kind.place for view in plan.views):
@@ -103,36 +113,38 @@ class _Way:
 
     def areas(self) -> dict[tuple[str, Any], float]:
         """Area that each view is meant to have, mm^2."""
-        return {_name(view): sum(leaf.area for leaf in _leaves(node)) for parts in self.parts for view, node in parts}
+        return {_name(view): sum(leaf.area for leaf in node.leaves()) for parts in self.parts for view, node in parts}
 
     def means(self, other: _Way) -> None:
         """Take over what another way means each view to have: only so are their costs alike."""
         own, asked = self.areas(), other.areas()
         for view, node in (part for parts in self.parts for part in parts):
-            for leaf in _leaves(node):
+            for leaf in node.leaves():
                 leaf.area *= asked.get(_name(view), own[_name(view)]) / own[_name(view)]
 
     def solved(self) -> tuple[float, Arrangement] | None:
         """What its places cost and the arrangement with them; None where the boxes cannot be cut apart or what is fixed moves."""
         columns = [_in_columns(parts) for parts in self.parts]
         boxes = [_around([view.box for view, _ in parts]) for parts in self.parts]
-        tree = cut([*boxes, TITLE_BLOCK], [*columns, view_sizes.fixed(TITLE_BLOCK)])
+        tree = cut([*boxes, TITLE_BLOCK], [*columns, fixed(TITLE_BLOCK)])
         if tree is None:
             return None
-        for number, leaf in enumerate(_leaves(tree)):
+        for number, leaf in enumerate(tree.leaves()):
             leaf.leaf = number
         whole = _around([view.box for view in arrangement(self.plan.name).views])
         room = Box(whole.x0, TITLE_BLOCK.y0, TITLE_BLOCK.x1, whole.y1)
         views = [part for parts in self.parts for part in parts]
-        fixed = {(view.box.x0, view.box.x1) for view, _ in views if not view.kind.place}
+        columns_kept = {(view.box.x0, view.box.x1) for view, _ in views if not view.kind.place}
         for view, node in views:
             # A table that asks for a wider column would move what is fixed there, and all borders would stay as written.
-            if node.need is not None and (view.box.x0, view.box.x1) in fixed:
+            if node.need is not None and (view.box.x0, view.box.x1) in columns_kept:
                 node.need = replace(node.need, most=(min(node.need.most[0], view.box.width), node.need.most[1]))
             if node.need is not None and view.kind.place and _designated(view.box):
                 node.need = replace(node.need, covered=max(room.y1 - DESIGNATION.y0, 0.0))
         found = solve(tree, room)
-        if not all(_kept(view.box, found[node.leaf]) for view, node in views if not view.kind.place):
+        # A view that tells no need has to be where its box is, up to rounding: then it stays just there.
+        moved = (zip(view.box, found[node.leaf], strict=True) for view, node in views if not view.kind.place)
+        if any(abs(a - b) > 3.0 for sides in moved for a, b in sides):
             return None
         placed = replace(self.plan, views=tuple(_placed(view, node, found) for view, node in views))
         return tree.cost(room.width, room.height), placed
@@ -155,32 +167,17 @@ def _around(boxes: Iterable[Box]) -> Box:
     return Box(min(x0), min(y0), max(x1), max(y1))
 
 
-def _kept(box: Box, place: Box) -> bool:
-    """Whether a view that tells no need is still where its box is, up to rounding: then it stays just there."""
-    return max(abs(a - b) for a, b in zip(box, place, strict=True)) <= 3.0
-
-
-def _leaves(node: BorderNode) -> Iterator[BorderNode]:
-    if node.need is not None:
-        yield node
-    for child in node.children:
-        yield from _leaves(child)
-
-
 def _designated(box: Box) -> bool:
     """Whether a box reaches up to the turned designation or under it."""
     return box.x0 < DESIGNATION.x1 and box.y1 > DESIGNATION.y0 - GAP
-
-
-def _below_designation(box: Box) -> Box:
-    return box._replace(y1=min(box.y1, DESIGNATION.y0)) if _designated(box) else box
 
 
 def _placed(view: ViewPlace, node: BorderNode, found: dict[int, Box]) -> ViewPlace:
     """A view in its new place; one of several parts with the places of these as its option ``places``."""
     if not view.kind.place:
         return view
-    parts = [_below_designation(found[leaf.leaf]) for leaf in _leaves(node)]
+    places = [found[leaf.leaf] for leaf in node.leaves()]
+    parts = [box._replace(y1=min(box.y1, DESIGNATION.y0)) if _designated(box) else box for box in places]
     return replace(view, box=_around(parts), options={**view.options, "places": parts} if len(parts) > 1 else view.options)
 
 
@@ -188,19 +185,22 @@ def _parts(project: Project, view: ViewPlace) -> list[tuple[ViewPlace, BorderNod
     """Nodes of a view, which may stand for several one under another; none for one with nothing to draw."""
     if view.kind.parts:
         return [part for one in function(view.kind.parts)(project, view) for part in _parts(project, one)]
-    if not _meant(project, view):
+    if not is_meant(project, view):
         return []
     if not view.kind.place:
-        return [(view, view_sizes.fixed(view.box))]
+        return [(view, fixed(view.box))]
     try:
         node = function(view.kind.place)(project, view)
     except CannotBuild:
-        node = view_sizes.fixed(view.box)  # drawing it will say why
+        node = fixed(view.box)  # drawing it will say why
     return [(view, node)] if node is not None else []
 
 
-def _meant(project: Project, view: ViewPlace) -> bool:
-    """Whether a view is meant for such a cam: one with all traits ``when`` it is, and none ``unless`` which it is."""
+def is_meant(project: Project, view: ViewPlace) -> bool:
+    """Whether a view is meant for such a cam: one with all traits ``when`` it is, and none ``unless`` which it is.
+
+    Traits: tappet, rocker, flat (kind of follower); roller, plate; force, geometric (closure); spring.
+    """
     when, unless = view.options.get("when", ()), view.options.get("unless", ())
     traits = project.cam.traits if when or unless else frozenset()
     return bool(traits.issuperset(when) and traits.isdisjoint(unless))
@@ -252,3 +252,183 @@ def scales(project: Project, parts: set[str]) -> dict[str, tuple[Scale, int]]:
         for scale in kept.scales.values():
             found.setdefault(scale.symbol.replace("μ", "mu"), (scale, n))
     return found
+
+
+APART = 3.0
+"""Length of a group's links, or of the lever, that one force on it needs at least to be told from the next one, mm."""
+OF_THEIR_OWN = ("kinematics", "forces")
+"""Arrangements that give kinematics and forces a sheet each."""
+
+
+def crowded(project: Project, sheets: Iterable[int]) -> Iterator[Remark]:
+    """What of some sheets (from 1) comes out too small for what stands on it, for the command line."""
+    for n in sheets:
+        try:
+            views = placed_where(project, n, lambda kind: kind.read)
+        except CannotBuild:  # the sheet itself tells why
+            continue
+        for view in views:
+            for found in _read(project, n, view):
+                if isinstance(found, Remark):
+                    yield found
+                elif found.size < found.least * (1 - 1e-6):
+                    yield _told(project, n, view, found)
+
+
+def _read(project: Project, n: int, view: ViewPlace) -> list[Measured | Remark]:
+    """What is measured of a view in its place on a sheet; nothing where it cannot be drawn there, which the sheet itself tells."""
+    try:
+        return list(function(view.kind.read)(project, n, view))
+    except CannotBuild:
+        return []
+
+
+def _told(project: Project, n: int, view: ViewPlace, found: Measured) -> Remark:
+    """That something is too small on sheet ``n``, and what to try."""
+    values = {"n": n, "what": found.what, "size": found.size}
+    if found.forces:
+        more = marked("{said}: take a sheet more, sheets = [{names}]")
+        said = Remark(marked("sheet {n}: {what} is {size:.0f} mm large and cannot be read (forces on it: {count})"),
+                      {**values, "count": found.forces})
+    else:
+        more = marked("{said}, or take a sheet more, sheets = [{names}]")
+        said = Remark(marked("sheet {n}: {what} is {size:.3g} mm large, it is read from {least:.0f} mm on: {hint}"),
+                      {**values, "least": found.least, "hint": Remark(found.hint)})
+    names = _apart(project, n, view, found)
+    return said if names is None else Remark(more, {"said": said, "names": names})
+
+
+def _apart(project: Project, n: int, view: ViewPlace, small: Measured) -> str | None:
+    """Sheets of a project, as they stand in its file, with kinematics and forces on two in the place of sheet ``n``.
+
+    None where that does not make it as large as it is read, or would lose what else stands on the sheet.
+    """
+    shown = {view.needs for view in arranged(project, n).views if view.needs}
+    if not shown <= {"positions", "forces"} or set(OF_THEIR_OWN) & set(project.sheets):
+        return None
+    names = [*project.sheets[:n - 1], *OF_THEIR_OWN, *project.sheets[n:]]
+    other = project.on_sheets(names)
+    try:
+        sizes = [found.size for at in (n, n + 1) for there in arranged(other, at).views
+                 if there.draw == view.draw and there.options.get("group") == view.options.get("group")
+                 for found in _read(other, at, there) if isinstance(found, Measured) and found.what == small.what]
+    except CannotBuild:
+        return None
+    return ", ".join(f'"{name}"' for name in names) if max(sizes, default=0.0) >= small.least * (1 - 1e-6) else None
+
+
+def _book() -> Any:
+    """A book of scale factors for one question: nothing is drawn."""
+    return SimpleNamespace(scales={}, chosen=set())
+
+
+def _graph(quantity: str) -> Remark:
+    return Remark(marked("the graph of {quantity}"), {"quantity": quantity})
+
+
+# --- what is measured of each view ----------------------------------------------------------------------------------------
+
+
+def positions(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
+    """The crank beside the other links."""
+    frame = kinematic_frames.positions(project, _book(), view.box, view.options)
+    yield Measured(Remark(CRANK.what), float(frame.scale.mm(2 * project.mechanism.crank.length)), CRANK.least,
+                   marked("leave out points far from the crank"))
+
+
+def velocities(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
+    """The largest velocity plan and the smallest: what is shown once more, enlarged, is but one of them."""
+    layout, plan = kinematic_frames.velocities(project, _book(), view.box, view.options), project.study.velocities.plan
+    for floor, size in ((VECTOR, layout.longest(plan)), (LETTERED, min(layout.sizes(plan).values()))):
+        yield Measured(Remark(floor.what), size, floor.least, marked("number fewer positions"))
+
+
+def accelerations(project: Project, n: int, view: ViewPlace) -> Iterator[Measured | Remark]:
+    """The acceleration plan, and how many of its letters stand together."""
+    plan, k, scale = project.study.accelerations.plan, project.force_index, kinematic_frames.accelerations(
+        project, _book(), view.box).scale
+    yield Measured(Remark(VECTOR.what), float(scale.mm(kinematic_frames.longest(plan, [k]))), VECTOR.least,
+                   marked("take another force_position"))
+    letters = kinematic_frames.crowd(plan, k, scale.mu)
+    if letters > kinematic_frames.TOGETHER_READ:
+        yield Remark(marked("sheet {n}: the acceleration plan cannot be read, {count} of its letters stand within "
+                            "{about:.0f} mm of one of them: take another force_position"),
+                     {"n": n, "count": letters, "about": kinematic_frames.ABOUT})
+
+
+def flywheel(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
+    """Graphs of the flywheel's column, low beside each other; that of dE is shown once more, enlarged."""
+    fw: Flywheel = project.flywheel
+    shown = {"M": fw.scales.moment.mm(fw.at_samples.moment().value), "A": fw.work_curve(fw.samples),
+             "J": fw.scales.inertia.mm(fw.inertia(fw.samples))}
+    for quantity, ordinates in shown.items():  # one that is level has no height
+        yield Measured(_graph(quantity), risen(ordinates) or CURVE, CURVE, marked("take the other method of [flywheel]"))
+
+
+def cam_motion(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
+    """Pole distances and graphs of the motion of a cam, to the millimetre."""
+    scales, law = project.cam.motion.scales, project.cam.law
+    poles = [(Remark(marked("the pole distance {symbol}"), {"symbol": f"H_{k}"}), distance, POLE)
+             for k, distance in ((1, scales.h1), (2, scales.h2))]
+    for what, size, least in (*poles, (_graph(law.symbol), scales.s.mm(law.stroke), MAIN)):
+        yield Measured(what, round(size), least, marked("longer phases of rise and return"))
+
+
+def zone(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
+    """The curve whose tangents bound the zone of a cam's axis, which has one scale factor with the cam itself."""
+    from tmm_sheets.sheets.cams import cam_zone
+
+    cam, rays = project.cam, bool(view.options.get("rays"))
+    if cam.law.symbol == "S":
+        name, size = "S(S')", cam_zone.stroke_in(cast("TappetCam", cam), rays, view.box.width, view.box.height)
+    else:
+        rocker = cast("RockerCam", cam)
+        name, size = "D(ψ)", float(np.ptp(rocker.zone.curve.value.imag)) / cam_zone.fitted_rocker(rocker, rays, view.box)[0]
+    yield Measured(_graph(name), round(size), CURVE, marked("a larger pressure_angle makes the cam smaller"))
+
+
+def spring(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
+    """The force of a cam's spring and that of inertia."""
+    from tmm_sheets.sheets.cams.cam import spring_diagram
+
+    span, diagram = spring_diagram(project.cam, view.box)
+    yield Measured(_graph("F, Q"), round(diagram.tall.mm(span)), CURVE, marked("leave out a view of the sheet"))
+
+
+def teeth(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
+    """The teeth of the mesh."""
+    from tmm_sheets.sheets.gears import gear_picture
+
+    size = gear_picture.picture(project.gear, view.box.width, view.box.height)[0].mm(gear_picture.highest_tooth(project.gear))
+    yield Measured(Remark(marked("the tooth of the mesh")), round(size), TOOTH, marked("a smaller ratio of the tooth numbers"))
+
+
+def lever(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
+    """The lever among its forces."""
+    k = project.force_index
+    shown = kinetic_frames.on_lever(project, k)
+    points = extent([complex(step.at(k)) for step in project.study.lever.points.values()])
+    yield from _among_forces(project, Remark(marked("the lever")), max(points.width, points.height), len(shown), "lever",
+                             kinetic_frames.lever_scheme(project, k, shown), view.box.inset(*kinetic_frames.LEVER))
+
+
+def group(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
+    """A loaded group among its forces; none that has no force, or stands in the box as it is written."""
+    if "places" in view.options:
+        k, g = project.force_index, tuple(reversed(project.mechanism.groups))[int(view.options["group"]) - 1]
+        place = view.options["places"][0].inset(*kinetic_frames.SCHEME)
+        around = kinetic_frames.scheme(project, g, k, kinetic_frames.share_of_arrows(project, g, k, place))
+        what = Remark(marked("group {name}"), {"name": g.lettered})
+        yield from _among_forces(project, what, *kinetic_frames.crowd(project, g, k), f"scheme-{'-'.join(g.links)}", around, place)
+
+
+def _among_forces(project: Project, what: Remark, size: float, count: int, plan: str,
+                  around: tuple[list[complex], list[complex]], place: Box) -> Iterator[Measured]:
+    """A figure of such a size, in its unit, with so many forces, in a place; ``around`` are its points and what reaches from them.
+
+    What is small beside its own forces and their arms, blocks in a slot or a lever in a dead position, is so at any scale factor.
+    """
+    whole = extent([np.asarray(around[0])])
+    if size > LINKS * max(whole.width, whole.height):
+        scale = fit_frame(project, _book(), plan, "", "", *around, place).scale
+        yield Measured(what, float(scale.mm(size)), APART * count, forces=count)

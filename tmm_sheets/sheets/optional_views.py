@@ -16,8 +16,7 @@ from tmm_sheets.drawing.ink_index import Cells, sum_area
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.sheets.arrangement import ViewPlace
-from tmm_sheets.sheets.views import VIEWS, function
+from tmm_sheets.sheets.views import VIEWS, ViewPlace, function
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
@@ -41,8 +40,6 @@ CLOSE = (100.0, 200.0)
 LARGE = (160.0, 120.0), (150.0, 112.0), (216.0, 76.0)
 """An empty rectangle of these sides, upright or lying, is a gap, mm: the second where cells that its edges cut hide one, the third
 a long one."""
-SAME = 1e-3
-"""Sizes of boxes that differ by less are one, mm."""
 FAR = np.int16(2**15 - 1)
 """More cells than a sheet has."""
 APART = (12.0, 9.0, 6.0)
@@ -86,18 +83,6 @@ def draw(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], inside:
             canvas.of = view.draw
             canvas.begin(box, "", view.draw)
             function(view.draw)(project, canvas, box, view.options)
-
-
-def ask_again(project: Project, canvas: Canvas, offered: Sequence[ViewPlace], placed: Sequence[tuple[str, Box]]) -> None:
-    """Ask the project for what the offered views show that were ``placed`` in these boxes."""
-    left = list(placed)
-    for view, wanted in _wanted(project, canvas, offered):
-        # Of several of one kind the first may have found no room: a box is that of a view which wanted its size.
-        k = next((k for k, (draw, box) in enumerate(left) if draw == view.draw
-                  and any(abs(box.width - width) + abs(box.height - height) < SAME for width, height in wanted)), None)
-        if k is not None:
-            canvas.begin(left[k][1], "", view.draw)
-            function(view.draw)(project, canvas, left.pop(k)[1], view.options)
 
 
 def _wanted(project: Project, canvas: Canvas, offered: Sequence[ViewPlace]) -> Iterator[tuple[ViewPlace, Any]]:

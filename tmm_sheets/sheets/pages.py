@@ -141,10 +141,6 @@ def _near(a: Box, b: Box, apart: float = 0.0) -> bool:
     return min(a.x1, b.x1) - max(a.x0, b.x0) > -apart + 1e-6 and min(a.y1, b.y1) - max(a.y0, b.y0) > -apart + 1e-6
 
 
-def _around(a: Box, b: Box) -> Box:
-    return Box(min(a.x0, b.x0), min(a.y0, b.y0), max(a.x1, b.x1), max(a.y1, b.y1))
-
-
 # --- pages ----------------------------------------------------------------------------------------------------------------
 
 
@@ -157,7 +153,7 @@ def _pages(pieces: Sequence[Piece], asked: Paper, first: str) -> list[PaperPage]
         return not a.cells.isdisjoint(b.cells)
 
     def within(a: Piece, b: Piece) -> bool:
-        return touch(a, b) and _around(a.ink, b.ink) in (a.ink, b.ink)
+        return touch(a, b) and Box.around(np.concatenate((a.ink.corners, b.ink.corners))) in (a.ink, b.ink)
 
     units = list[Piece]()
     for unit in _together(pieces, touch):

@@ -269,7 +269,7 @@ def composed(project: Project, n: int, steps: bool = False) -> Composed:
         found = loaded(data)
         if found is not None:
             if steps:
-                ask_again(project, n, found)
+                ask_again(project, n)
             return found
     from tmm_sheets.sheets import composing
 
@@ -278,9 +278,9 @@ def composed(project: Project, n: int, steps: bool = False) -> Composed:
     return made
 
 
-def ask_again(project: Project, n: int, found: Composed) -> None:
+def ask_again(project: Project, n: int) -> None:
     """Let the project make the steps of a sheet that was kept."""
     if n not in project.shown:
         from tmm_sheets.sheets import composing
 
-        composing.ask_again(project, n, found.parts)
+        composing.ask_again(project, n)

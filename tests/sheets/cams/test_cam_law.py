@@ -57,8 +57,9 @@ def test_every_form_says_all_of_it(name):
     law = PositionFunction.of(1.2, 0.5, 1.7, 0.03, LAWS[name])
     whole = " ".join(line for lines in _phases(law) for line in lines)
     forms = list(_forms(law))
-    for size, columns, height, step in forms:
+    for form in forms:
+        columns, height, step, *_ = form
         assert " ".join(line.strip() for lines in columns for line in lines).split() == whole.split()
-        assert size[1] == pytest.approx(12.0 + step * max(map(len, columns)))
+        assert form.size[1] == pytest.approx(12.0 + step * max(map(len, columns)))
         assert step >= 1.6 * height
-    assert min(size[0] for size, *_ in forms[-4:]) == min(size[0] for size, *_ in forms)
+    assert min(form.size[0] for form in forms[-4:]) == min(form.size[0] for form in forms)

@@ -16,9 +16,9 @@ from tmm_sheets.drawing.marks import Arc, Box, Line, Polyline, Text, flat
 from tmm_sheets.drawing.placing import place
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.methods.cams.cam_profile import DIAGRAMS, cam
-from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.cams.cam import HEADS
-from tmm_sheets.sheets.views import function
+from tmm_sheets.sheets.composition import is_meant
+from tmm_sheets.sheets.views import arrangement, function
 
 TITLE_BLOCK = Box(651, 5, 836, 60)
 FRAME = Box(20, 5, 836, 589)
@@ -56,9 +56,7 @@ PROJECTS = {
 
 def places(data):
     """Views drawn for a cam, by name, with their places."""
-    traits = data.cam.traits
-    return {v.draw: v.box for v in arrangement("cam").views
-            if traits.issuperset(v.options.get("when", ())) and traits.isdisjoint(v.options.get("unless", ()))}
+    return {v.draw: v.box for v in arrangement("cam").views if is_meant(data, v)}
 
 
 @cache
@@ -75,7 +73,8 @@ def drawn(name, data):
 def whole(data):
     canvas = Canvas()
     for v in arrangement("cam").views:
-        function(v.draw)(data, canvas, v.box, v.options)
+        if is_meant(data, v):
+            function(v.draw)(data, canvas, v.box, v.options)
     return canvas
 
 

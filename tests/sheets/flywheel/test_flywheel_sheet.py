@@ -21,11 +21,10 @@ from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.flywheel.mertsalov import flywheel
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.components import graphs
 from tmm_sheets.sheets.flywheel.flywheel import apart, constant_moment, force_graph
 from tmm_sheets.sheets.sheet import composed
-from tmm_sheets.sheets.views import function
+from tmm_sheets.sheets.views import arrangement, function
 from tmm_sheets.task import variant
 
 VIEWS = tomllib.loads((Path(__file__).parents[3] / "templates/sheets/flywheel.toml").read_text(encoding="utf-8"))["view"]

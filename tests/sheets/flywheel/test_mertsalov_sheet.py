@@ -22,10 +22,9 @@ from tmm_sheets.project import Project
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import composition
 from tmm_sheets.sheets import views as kinds
-from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.flywheel import mertsalov
 from tmm_sheets.sheets.sheet import composed
-from tmm_sheets.sheets.views import function
+from tmm_sheets.sheets.views import arrangement, function
 
 AXIS = 382.0
 COLUMN = Box(324, 8, 647, 586)

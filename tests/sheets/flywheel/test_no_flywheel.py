@@ -20,8 +20,8 @@ from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.drawing.marks import Arc, Line, Polyline, Text, flat
 from tmm_sheets.methods.flywheel.diagram_scales import lettered
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.sheets.views import arrangement
 
 SHEET = {"lugansk/shaper": 2, "press": 1}
 BOTH = pytest.mark.parametrize("name", SHEET)

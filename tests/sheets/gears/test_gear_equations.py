@@ -9,7 +9,7 @@ from tests.note.printed_formulas import equalities
 from tests.sheets.equations import read
 from tmm_sheets import catalogue
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.gears.gear_equations import OF_PAIR, OF_WHEEL, equations
+from tmm_sheets.sheets.gears.gear import OF_PAIR, OF_WHEEL, equations
 from tmm_sheets.task import variant
 
 RING = Path(__file__).parents[2] / "projects" / "ring.toml"

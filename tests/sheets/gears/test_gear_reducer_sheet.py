@@ -16,14 +16,12 @@ from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.methods.gears.gear_pair import gear_pair, settled
 from tmm_sheets.methods.gears.reducer import reducer
 from tmm_sheets.resources import template
-from tmm_sheets.sheets.gears import gear, rack
-from tmm_sheets.sheets.gears import reducer as reducers
+from tmm_sheets.sheets.views import function
 from tmm_sheets.task.schema import GearTable
 
 TITLE_BLOCK = Box(651, 5, 836, 60)
 DESIGNATION = Box(20, 575, 90, 589)
 FRAME = Box(20, 5, 836, 589)
-MODULES = {"gear": gear, "rack": rack, "reducer": reducers}
 
 
 def project(machine, c, **over):
@@ -49,8 +47,7 @@ def arrangement():
 
 
 def draw(canvas, name, box, data):
-    module, function = name.split(".")
-    getattr(MODULES[module], function)(data, canvas, box, {})
+    function(name)(data, canvas, box, {})
 
 
 def sheet(data):
@@ -166,6 +163,6 @@ def test_undercut_is_named_on_the_view():
         teeth=(9, 9), shift=(0.2, 0.4), module=0.01, pressure_angle=radians(20), addendum=1.0, clearance=0.25, driver=1,
         sense="clockwise", profile="rack", mesh="external", centre_distance=None)))
     canvas = Canvas()
-    rack.generating(undercut, canvas, dict(arrangement())["rack.generating"], {})
+    function("rack.generating")(undercut, canvas, dict(arrangement())["rack.generating"], {})
     assert "подрез" in [label.text for label in canvas.labels]
     assert place(canvas, FRAME) == []

@@ -10,7 +10,7 @@ from tests.project_files import project
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.evenness import empty_cells
 from tmm_sheets.drawing.marks import Box, Line, Text
-from tmm_sheets.sheets.gears import plan_checks, wheel_sizes
+from tmm_sheets.sheets.gears import train
 from tmm_sheets.sheets.gears.train_scheme import TrainScheme, columns_of
 from tmm_sheets.sheets.sheet import composed
 
@@ -97,14 +97,14 @@ def test_wheels_as_wide_as_the_end_view_needs():
 def test_sizes_of_wheels_without_shift():
     own, _ = drawn("sun drives")
     sun, planet, ring = own.reducer.data.teeth.values()
-    assert wheel_sizes.rows(own.reducer)[1:] == [
+    assert train.rows(own.reducer)[1:] == [
         [name, str(z), *(f"{3 * (z + over):g}".replace(".", ",") for over in (0, tip, root))]
         for name, z, tip, root in (("1", sun, 2, -2.5), ("2", planet, 2, -2.5), ("3", ring, -2, 2.5))]
 
 
 def test_ratios_of_pairs_and_of_their_chain():
     own, _ = drawn("shafts")
-    assert list(plan_checks._pairs(own.train)) == [
+    assert list(train._pairs(own.train)) == [
         "i_{12} = n_{1}/n_{2} = 960/(−480) = −2;  −z_{2}/z_{1} = −40/20 = −2",
         "i_{34} = n_{3}/n_{4} = −480/342,9 = −1,4;  −z_{4}/z_{3} = −35/25 = −1,4", "i_{14} = i_{12}·i_{34} = 40·35/(20·25) = 2,8"]
 

@@ -11,7 +11,8 @@ from tmm_sheets.catalogue import read
 from tmm_sheets.methods.gears.train import Train
 from tmm_sheets.methods.gears.train_steps import Mesh
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.gears import planet_motion
+from tmm_sheets.sheets.gears import train as train_views
+from tmm_sheets.sheets.gears import train_scheme
 from tmm_sheets.sheets.sheet import composed
 
 
@@ -44,7 +45,7 @@ TEETH = {"1": 24, "2": 45, "3": 114}
 ])  # fmt: skip
 def test_conditions_of_planets(meshes, teeth, satellites, said):
     made = train(meshes, teeth, {}, satellites)
-    lines = list(planet_motion.checks_of(made, *made.stages))
+    lines = list(train_views.checks_of(made, *made.stages))
     assert all(any(part in line for line in lines) for part in said), lines
     assert bool(lines) is bool(said)
 
@@ -56,7 +57,7 @@ def test_conditions_of_planets(meshes, teeth, satellites, said):
 ])  # fmt: skip
 def test_planets_are_drawn_where_they_can_be_put_in(meshes, teeth, wanted, drawn):
     made = train(meshes, teeth, {}, wanted)
-    assert planet_motion.at_equal_angles(made, made.stages[0]) == drawn
+    assert train_scheme.at_equal_angles(made, made.stages[0]) == drawn
 
 
 @pytest.mark.parametrize(("meshes", "speeds", "count"), [
@@ -67,7 +68,7 @@ def test_planets_are_drawn_where_they_can_be_put_in(meshes, teeth, wanted, drawn
     ([ROW[0], mesh("3", "2", -1, "H2")], {"1": 1.0, "3": 2.0, "H": 0.0, "H2": 0.0}, 0),  # on other carriers
 ])  # fmt: skip
 def test_ratios_by_speeds_and_by_teeth_agree(meshes, speeds, count):
-    lines = list(planet_motion._ratios(train(meshes, TEETH, speeds)))
+    lines = list(train_views._ratios(train(meshes, TEETH, speeds)))
     assert len(lines) == count
     assert len({line.rsplit(" = ", 1)[1] for line in lines}) <= 1
 
@@ -87,11 +88,11 @@ def test_planets_all_round_stay_in_their_place(satellites):
 def test_relative_speeds_are_as_the_teeth_demand(name, rows):
     """Who turns with the carrier sees an ordinary train: the speeds of two wheels in mesh are as their teeth, inverted."""
     project = Project(read(name))
-    found = {name: n - h for _, name, n, h in planet_motion._inverted(project)}
+    found = {name: n - h for _, name, n, h in train_views._inverted(project)}
     assert len(found) == rows
     own = project.train if project.variant.train is not None else project.reducer
     teeth = own.data.teeth
     for central, planet in [(m.central, m.planet) for m in own.meshes if m.carrier]:
         assert np.isclose(abs(found[central] * teeth[central]), abs(found[planet] * teeth[planet]), rtol=1e-9)
-    for line in planet_motion._ratios(own):
+    for line in train_views._ratios(own):
         assert re.search(r"= −?[\d,]+$", line)

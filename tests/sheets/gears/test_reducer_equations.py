@@ -8,7 +8,7 @@ import pytest
 
 from tmm_sheets import catalogue
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.gears.reducer import _lines
+from tmm_sheets.sheets.gears.train import _lines
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import variant
 

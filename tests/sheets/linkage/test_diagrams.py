@@ -18,10 +18,10 @@ from tmm_sheets.drawing.marks import Line, Polyline, Text
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.arrangement import ViewPlace
 from tmm_sheets.sheets.components import cycle_graphs, graphs
 from tmm_sheets.sheets.linkage import diagrams
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.sheets.views import ViewPlace
 
 BOX = Box(20.0, 10.0, 330.0, 240.0)
 

@@ -13,7 +13,7 @@ from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.project import Project
 from tmm_sheets.resources import variants
-from tmm_sheets.sheets.linkage import indicator, kinematics, synthesis
+from tmm_sheets.sheets.linkage import diagrams, kinematics, synthesis
 from tmm_sheets.sheets.sheet import composed
 from tmm_sheets.task import variant
 
@@ -35,7 +35,7 @@ def test_indicator_diagrams_carry_the_pressures_over_the_marks_of_the_path(proje
     canvas = Canvas()
     kinematics.position_plans(project, canvas, Box(25, 228, 243, 573), {})
     mu_l, mu_p = canvas.scales["positions"].mu, canvas.scales["indicator"].mu
-    shown = {one.force.name: one for one in indicator.indicators(project)}
+    shown = {one.force.name: one for one in diagrams.indicators(project)}
     assert shown["F3"].side == -shown["F5"].side
     cycle, points = project.cycle, project.study.positions.points
     for label, pressure in PRINTED.items():
@@ -78,7 +78,7 @@ def test_no_pressure_at_all_is_drawn_at_the_scale_asked_for():
     canvas = Canvas()
     kinematics.position_plans(p, canvas, Box(25, 228, 343, 573), {})
     assert canvas.scales["indicator"].mu == 0.1
-    assert indicator.height(p, indicator.indicators(p)) == 0.0
+    assert diagrams.indicator_height(p, diagrams.indicators(p)) == 0.0
 
 
 def quick_return():

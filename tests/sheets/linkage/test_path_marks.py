@@ -5,7 +5,7 @@ import pytest
 from tmm_sheets.catalogue import read
 from tmm_sheets.drawing.marks import Text
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.linkage import kinematics, path_marks
+from tmm_sheets.sheets.linkage import kinematics
 from tmm_sheets.sheets.sheet import composed
 
 VIEW = "path_marks.enlarged"
@@ -34,7 +34,7 @@ def test_all_24_numbers_can_be_read_on_the_enlarged_path(sheet):
 
 
 def test_the_plans_keep_the_numbers_at_the_ends_of_the_path(sheet):
-    (part,) = (part for part in sheet.parts if part.draw == path_marks.VIEW and part.title)
+    (part,) = (part for part in sheet.parts if part.draw == kinematics.PLANS and part.title)
     (enlarged,) = (part for part in sheet.parts if part.draw == VIEW and part.title)
     there = numbers(sheet, part.box)
     for text in numbers(sheet, enlarged.box):  # it may stand in the corner of the plans

@@ -5,9 +5,8 @@ import pytest
 
 from tests import project_files as files
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.sheets.frame import PlanFrame
 from tmm_sheets.sheets.linkage import kinematics, link_marks
-from tmm_sheets.sheets.player import stage
+from tmm_sheets.sheets.player import PlanFrame, stage
 
 
 @pytest.mark.parametrize("link", ["2", "3"])

@@ -9,7 +9,7 @@ from tests import project_files as files
 from tmm_sheets.box import Box
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.numbers import enough
-from tmm_sheets.sheets.flywheel import crank_speed, flywheel
+from tmm_sheets.sheets.flywheel import enlarged, flywheel
 
 
 @pytest.mark.parametrize(("x", "least", "kind", "text"), [
@@ -40,7 +40,7 @@ def test_an_even_machine_does_not_have_one_speed(monkeypatch):
     monkeypatch.setattr(Canvas, "text", keeping)
     project = files.project(files.SLIDER, files.WORKING, files.FORCE, files.MASS, files.MOMENT, files.FLYWHEEL,
                             {"flywheel.delta": 0.0001, "project.sheets": ["flywheel"]})
-    crank_speed.graph(project, Canvas(), Box(20.0, 5.0, 420.0, 200.0), {})
+    enlarged.graph(project, Canvas(), Box(20.0, 5.0, 420.0, 200.0), {})
     found = dict(re.match(r"ω_\{(\w+)\} = ([\d,]+)$", s).groups() for s in said if re.match(r"ω_\{m(?:ax|in)\} = ", s))
     assert set(found) == {"max", "min"}
     assert found["max"] != found["min"]

@@ -11,7 +11,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Text
 from tmm_sheets.errors import BadInput
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.tables import given_data
+from tmm_sheets.sheets.linkage import given_position
 from tmm_sheets.task import variant
 
 ROOT = Path(__file__).parents[3]
@@ -20,8 +20,8 @@ ROOT = Path(__file__).parents[3]
 def title(project):
     """What stands over the table."""
     canvas = Canvas()
-    ((width, height), *_) = given_data.links_sizes(project, canvas, {})
-    given_data.links(project, canvas, Box(0.0, 0.0, width, height), {})
+    ((width, height), *_) = given_position.links_sizes(project, canvas, {})
+    given_position.links(project, canvas, Box(0.0, 0.0, width, height), {})
     return next(mark.text for mark in canvas.marks if isinstance(mark, Text))
 
 
@@ -31,7 +31,7 @@ def test_the_diesel_has_weights_angle_and_unevenness_as_table_2_1_prints_them():
         rows = {row[1]: row[5:] for row in csv.reader((x for x in file if not x.startswith("#")), delimiter=";")}
     project = Project(read("transport/diesel@01-Т-27"))
     assert title(project) == "Исходные данные"
-    shown = dict(given_data._quantities(project))
+    shown = dict(given_position._quantities(project))
     for letters, key, column in (("n_{1}, об/мин", "n1", 1), ("l_{BD}, м", "l_BD", 2), ("θ, °", "theta", 2), ("G_{2}, Н", "G2", 2),
                                  ("δ", "delta", 2), ("J_{S4}, кг·м²", "J_S4", 2)):
         assert shown[letters] == rows[key][column].replace(".", ","), letters

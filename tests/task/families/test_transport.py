@@ -15,8 +15,8 @@ from tmm_sheets import catalogue, resources, summary
 from tmm_sheets.drawing.marks import Text
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.project import Project
-from tmm_sheets.sheets.arrangement import arrangement
 from tmm_sheets.sheets.sheet import composed
+from tmm_sheets.sheets.views import arrangement
 from tmm_sheets.task import families, family_tables, variant
 
 MANUALS = Path(__file__).parents[2] / "manuals"

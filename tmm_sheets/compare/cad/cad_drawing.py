@@ -55,7 +55,7 @@ from tmm_sheets.drawing.marks import Drawing, Points
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.numbers import decimal, told
-from tmm_sheets.sheets.arrangement import arrangement
+from tmm_sheets.sheets.views import arrangement
 from tmm_sheets.words import marked, name_of, on_paper, paper, tell
 
 if TYPE_CHECKING:

@@ -337,7 +337,7 @@ def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
     The sheets are drawn for it: they decide on the scale factors and on the positions that are shown.
     """
     from tmm_sheets.sheets import sheet
-    from tmm_sheets.sheets.linkage import kinematics
+    from tmm_sheets.sheets.linkage import kinematic_frames
 
     found = Measurables()
     shown: set[str] = set()
@@ -350,7 +350,7 @@ def measurables(project: Project, say: Callable[[str], None]) -> Measurables:
             found.scales.setdefault(key, scale)
         shown |= {str(mark.of) for mark in composed.drawing.marks}
         if "velocities" in composed.scales:  # what has a factor of its own is not asked for: errors are reckoned with one
-            own = kinematics.factors_of(composed.frames, project.study.velocities.plan).items()
+            own = kinematic_frames.factors_of(composed.frames, project.study.velocities.plan).items()
             shown -= {f"velocity plan {project.cycle.labels[i]}" for i, mu in own if mu != composed.scales["velocities"].mu}
     there = project.parts
     if "positions" in there:

@@ -17,7 +17,7 @@ from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.note.document import Rows, ShownFormula, Symbol, Text, enumerated, lettered
 from tmm_sheets.note.reader import Column, NoteQuantity, Reader, listed, named
 from tmm_sheets.numbers import is_zero, number
-from tmm_sheets.sheets.linkage.false_positions import triads
+from tmm_sheets.sheets.linkage.synthesis import triads
 
 BAR = "\u0305"
 MOST_COLUMNS = 9

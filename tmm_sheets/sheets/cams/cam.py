@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from cmath import rect
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import wraps
 from itertools import pairwise
 from math import degrees, pi, radians
 from typing import TYPE_CHECKING, Any, cast
@@ -20,8 +19,7 @@ from tmm_sheets.drawing.lettering import fitted, letter, size_for
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.text_layout import needs, parted, widened
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.frame import OVER
-from tmm_sheets.sheets.player import PlayerStage, placed, play
+from tmm_sheets.sheets.player import OVER, PlayerStage, placed, play
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -40,26 +38,10 @@ TITLE = 8.0
 """Height of a title of one line over a view, mm."""
 ANGLE = "α"
 """Letter of the pressure angle; an arrangement may name another one as the option ``angle``."""
-View = Callable[["Project", Canvas, Box, dict[str, Any]], None]
 BEHIND = 13.0
 """So far the axis of the cam angle goes beyond the phases, mm."""
 BEYOND = 2.0
 """So far the centre lines of the auxiliary circle go beyond it, mm."""
-
-
-def for_cams(view: View) -> View:
-    """A view that is drawn for the cams its arrangement means: ``when`` names traits they have, ``unless`` ones they have not.
-
-    Traits: tappet, rocker, flat (kind of follower); roller, plate; force, geometric (closure); spring.
-    """
-
-    @wraps(view)
-    def drawn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-        traits = project.cam.traits
-        if traits.issuperset(options.get("when", ())) and traits.isdisjoint(options.get("unless", ())):
-            view(project, canvas, box, options)
-
-    return drawn
 
 
 def axes(s: PlayerStage, step: Step | str, x: float, y: tuple[float, float], before: float = 3.0) -> None:
@@ -115,7 +97,6 @@ def reach_of_motion(m: FollowerMotion) -> tuple[float, float]:
     return left, float(m.scales.phi.mm(m.law.fall.end)) + BEHIND
 
 
-@for_cams
 def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """S'', S' and S one under another over a common axis of the cam angle, with both graphical integrations."""
     cam: Cam = project.cam
@@ -147,11 +128,14 @@ def motion(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     smooth = (m.between, m.plan[m.names[1]], m.plan[m.names[2]])
     every = zip(stages, ups, downs, curves, steps, symbols, _heads(m), smooth, strict=True)
     for s, up, down, points, ordinates, symbol, head, step in every:
-        _diagram(s, ordinates[0], up, down, right, symbol)
+        o = s.frame(0j)
+        axes(s, ordinates[0], right, (-down, up + 10.0), 3.0 if down else 0.0)
+        canvas.text(o + complex(2.5, up + 6.0), symbol, 3.5)
+        canvas.label(o + right - 5.0, tr("{symbol}, rad").format(symbol="φ"), 1j, 3.5, 1.5, leader=False)
         # Over the first diagram there is no pole distance: its left side is free, too, and wider beside short phases.
-        _head(canvas, s.frame(0j) + 1j * (up + 6.0), head, box, both=step is m.between)
+        _head(canvas, o + 1j * (up + 6.0), head, box, both=step is m.between)
         _ordinates(s, m, ordinates)
-        (course if step is m.between else s).curve(step, s.frame(0j) + points)
+        (course if step is m.between else s).curve(step, o + points)
     if m.circle:
         _auxiliary_circle(stages[0], m)
     _integration(stages[0], stages[1], m, m.names[1], m.ds, "P_1", "H_1", downs[0])
@@ -198,14 +182,6 @@ def _heads(m: FollowerMotion) -> tuple[str, str, str]:
 def heads_width(m: FollowerMotion) -> float:
     """How far the heads reach to the right of the axes, in their usual letters, mm."""
     return HEAD + max(letter(head, 3.5).width for head in _heads(m)) + 4.0
-
-
-def _diagram(s: PlayerStage, step: Step, up: float, down: float, right: float, symbol: str) -> None:
-    """Axes of one diagram with the letter of its quantity."""
-    canvas, o = s.canvas, s.frame(0j)
-    axes(s, step, right, (-down, up + 10.0), 3.0 if down else 0.0)
-    canvas.text(o + complex(2.5, up + 6.0), symbol, 3.5)
-    canvas.label(o + right - 5.0, tr("{symbol}, rad").format(symbol="φ"), 1j, 3.5, 1.5, leader=False)
 
 
 def _head(canvas: Canvas, at: complex, text: str, box: Box, *, both: bool) -> None:
@@ -347,7 +323,6 @@ def ordinates_apart(cam: Cam, width: float) -> float:
     return degrees(float(steps[steps > 1e-9].min())) / across
 
 
-@for_cams
 def pressure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Pressure angle over rise and fall, measured at the finished profile, with the permitted value; after them it rests."""
     cam = cast("RollerCam", project.cam)
@@ -420,7 +395,6 @@ def _exceeded(d: OverAngle, canvas: Canvas, cam: RollerCam, letter_of: str) -> N
 # --- table ----------------------------------------------------------------------------------------------------------
 
 
-@for_cams
 def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """S, S', S'' and the pressure angle in the numbered positions; without upper dwell 8 and 8' are one."""
     cam: Cam = project.cam
@@ -474,7 +448,6 @@ def _check_values(cam: Cam, second: Mapping[str, Any], letter_of: str) -> Iterat
 # --- spring ---------------------------------------------------------------------------------------------------------
 
 
-@for_cams
 def spring(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Force of the closing spring against the force of inertia over the cam angle, with the least ratio of both."""
     cam: Cam = project.cam

@@ -3,57 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
+from itertools import pairwise, product
 from math import inf
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from tmm_sheets.construction.arithmetic import BY_PIECES
 from tmm_sheets.construction.equation import Quantity, equation
 from tmm_sheets.construction.expression import Expression, Operation, lettered, trace
-from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken, letter
-from tmm_sheets.drawing.marks import Box
 from tmm_sheets.numbers import number
-from tmm_sheets.words import tr
+from tmm_sheets.sheets.components.listed import Form, Formulas
+from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_laws import Law, Phase, PositionFunction
-    from tmm_sheets.project import Project
 
 WAYS = (5.0, 12.0, inf), (3.5, 8.0, inf), (3.5, 7.0, inf), (3.5, 6.0, inf), (3.5, 6.0, 62.0)
 """Heights of the letters, distances of the lines and widths at which these are broken that are tried, mm."""
-APART = 14.0
-"""Distance of the formulas of both phases where they stand side by side, mm."""
+TITLE = marked("Law of motion in formulas")
 
 
-def equations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the formulas can do with, mm: those of both phases one under another or side by side."""
-    return [size for size, _, _, _ in _forms(project.cam.law)]
-
-
-def equations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Displacement and both derivatives on the rise and on the return."""
-    canvas.of = project.cam.motion.plan.name
-    fitting = (form for form in _forms(project.cam.law) if all(np.array(form[0]) <= np.array((box.width, box.height)) + 1e-6))
-    (_, high), columns, height, step = next(fitting)
-    left = canvas.title(box, tr("Law of motion in formulas"), spare=box.height - high)
-    x = box.x0 + 3.0
-    for lines in columns:
-        canvas.lines(complex(x, left.y1 - 0.8 * step), lines, step, height)
-        x += _width(lines, height) + APART
-
-
-def _forms(law: PositionFunction) -> Iterator[tuple[tuple[float, float], list[list[str]], float, float]]:
-    """Size, columns, height of the letters and distance of the lines, mm, of the forms of the view: the clearest first."""
+def _forms(law: PositionFunction) -> Iterator[Form]:
+    """The formulas of both phases one under another or side by side, under a title as large as others or in smaller letters."""
     for height, step, most in WAYS:
         rise, fall = ([line for text in lines for line in _broken(text, most, height)] for lines in _phases(law))
-        for columns in ([rise + fall], [rise, fall]):
-            width = sum(_width(lines, height) for lines in columns) + APART * (len(columns) - 1)
-            for titled in (5.0, 3.5):
-                title = letter(tr("Law of motion in formulas"), titled).width
-                yield (max(width, title) + 6.0, 12.0 + step * max(map(len, columns))), columns, height, step
+        for columns, titled in product(([rise + fall], [rise, fall]), (5.0, 3.5)):
+            yield Form(columns, height, step, least=letter(tr(TITLE), titled).width)
+
+
+equations = Formulas(TITLE, "cam-motion", lambda project, canvas, options: _forms(project.cam.law))
+"""Displacement and both derivatives on the rise and on the return."""
 
 
 def _broken(text: str, most: float, height: float) -> list[str]:
@@ -62,10 +41,6 @@ def _broken(text: str, most: float, height: float) -> list[str]:
         return broken(text, most, height)
     word, colon, rest = text.partition(": ")
     return [f"{word}:", rest] if colon else [text]
-
-
-def _width(lines: list[str], height: float) -> float:
-    return max(letter(line, height).width for line in lines)
 
 
 def _phases(law: PositionFunction) -> tuple[list[str], list[str]]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from tmm_sheets.construction.equation import digits_for
-from tmm_sheets.construction.scale import fitting
+from tmm_sheets.construction.scale import Scale, fitting
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.lettering import letter
@@ -19,14 +19,12 @@ from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import pivot
 from tmm_sheets.drawing.text_layout import LEAST, needs, size_in, widened
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cams import cam_scale
-from tmm_sheets.sheets.cams.cam import ANGLE, distinct, for_cams, in_degrees, in_mm, lines_of_text, raised
-from tmm_sheets.sheets.frame import ratio, standard
-from tmm_sheets.sheets.player import PlayerStage, placed, play
+from tmm_sheets.sheets.cams.cam import ANGLE, distinct, in_degrees, in_mm, lines_of_text, raised
+from tmm_sheets.sheets.components import clear_dimensions
+from tmm_sheets.sheets.player import PlayerStage, placed, play, ratio, standard
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.scale import Scale
     from tmm_sheets.methods.cams.cam_inversion import Inversion
     from tmm_sheets.methods.cams.cam_profile import Cam, FlatCam, RollerCam
     from tmm_sheets.project import Project
@@ -37,7 +35,6 @@ ROLLER = 8.0, 34.0, 8.0, 24.0
 """Room round the figure for the roller's radius at the left, below (what follows from it), right and above, mm."""
 
 
-@for_cams
 def profile(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Centre profile by inversion with all follower lines and arcs, roller circles, working profile, follower."""
     cam: Cam = project.cam
@@ -220,17 +217,12 @@ def _plates(cam: FlatCam) -> list[tuple[complex, complex]]:
     for k, (centre, line, contact) in enumerate(zip(inv.centres.value, inv.lines.value, inv.plan["F"].value, strict=True)):
         along = 1j * complex(line)
         if k == 0:
-            low, high = sorted(_plate_ends(cam))
+            low, high = sorted((cam.plate.l1, -cam.plate.l2) if cam.right > 0 else (cam.plate.l2, -cam.plate.l1))
         else:
             offset = float(((contact - centre) * np.conjugate(along)).real)
             low, high = min(offset, 0.0) - beyond, max(offset, 0.0) + beyond
         found.append((complex(centre + low * along), complex(centre + high * along)))
     return found
-
-
-def _plate_ends(cam: FlatCam) -> tuple[float, float]:
-    """Ends of the plate along the direction 90 degrees left of the follower's line, m."""
-    return (cam.plate.l1, -cam.plate.l2) if cam.right > 0 else (cam.plate.l2, -cam.plate.l1)
 
 
 def _joined(inv: Inversion) -> dict[int, str]:
@@ -394,14 +386,14 @@ def _path(s: PlayerStage, picture: _ProfilePicture, first: int, table: Box) -> N
     marks = [s.position(k).at(inv.axis) for k in range(len(inv.plan.labels))]
     if picture.kind == "rocker":
         a0 = s.at("A_0")
-        along = cam_scale.lengths(np.array(marks), a0)
+        along = clear_dimensions.lengths(np.array(marks), a0)
         arm, way = abs(marks[0] - a0), 1.0 if max(along) > -min(along) else -1.0
         start = phase(marks[0] - a0)
-        cam_scale.numbered(s, inv.axis, first, [way * t for t in along], inv.plan.labels,
+        clear_dimensions.numbered(s, inv.axis, first, [way * t for t in along], inv.plan.labels,
                          lambda t, beside: a0 + rect(arm + beside, start + way * t / arm), 1.0, table, 15.0)
         return
     low = marks[0]
-    cam_scale.numbered(s, inv.axis, first, [(p - low).imag for p in marks], inv.plan.labels,
+    clear_dimensions.numbered(s, inv.axis, first, [(p - low).imag for p in marks], inv.plan.labels,
                      lambda t, beside: low + complex(beside, t), side, table)
 
 
@@ -512,7 +504,6 @@ def _phase_angles(s: PlayerStage, picture: _ProfilePicture) -> None:
     canvas.label(origin + rect(around, middle), "−ω", rect(1, middle) * (1 if around > reach else -1), 5.0, 1.0)
 
 
-@for_cams
 def roller(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Smallest radius of curvature by three points of the centre profile; the radius of the roller by both rules."""
     cam = cast("RollerCam", project.cam)

@@ -12,17 +12,15 @@ import numpy as np
 from tmm_sheets.construction.readable import CURVE
 from tmm_sheets.construction.scale import STANDARD, fitting
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.sheets.border_solver import Need
+from tmm_sheets.sheets.border_solver import BorderNode, Need, leaf, reached
 from tmm_sheets.sheets.cams import cam as cam_views
 from tmm_sheets.sheets.cams import cam_profile, cam_zone
-from tmm_sheets.sheets.frame import standard
-from tmm_sheets.sheets.view_sizes import leaf, reached
+from tmm_sheets.sheets.player import standard
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam, TappetCam
     from tmm_sheets.project import Project
-    from tmm_sheets.sheets.arrangement import ViewPlace
-    from tmm_sheets.sheets.border_solver import BorderNode
+    from tmm_sheets.sheets.views import ViewPlace
 
 
 NUMBERED = CURVE

@@ -16,10 +16,9 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.symbols import bar, hinge
 from tmm_sheets.numbers import fixed, number
-from tmm_sheets.sheets.cams.cam import ANGLE, OverAngle, centred, distinct, for_cams, lines_of_text, raised
+from tmm_sheets.sheets.cams.cam import ANGLE, OverAngle, centred, distinct, lines_of_text, raised
 from tmm_sheets.sheets.components import clear_dimensions
-from tmm_sheets.sheets.frame import ratio, standard
-from tmm_sheets.sheets.player import PlayerStage, placed, play
+from tmm_sheets.sheets.player import PlayerStage, placed, play, ratio, standard
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -76,7 +75,6 @@ def stroke_in(cam: TappetCam, rays: bool, width: float, height: float) -> float:
     return cam.law.stroke / fitted_tappet(cam, rays, width - left - right, height - below - above)[0]
 
 
-@for_cams
 def of_tappet(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """S(S') with the tangents under the permitted pressure angle, the allowed zone and the main dimensions."""
     cam = cast("TappetCam", project.cam)
@@ -224,7 +222,6 @@ def fitted_rocker(cam: RockerCam, rays: bool, box: Box) -> tuple[float, float, B
     return mu, min(low, max(y1 - mu * room.height, apex.imag - DEEP * cam.arm)), room, beside  # what height is left is zone
 
 
-@for_cams
 def of_rocker(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Positions of the rocker with the segments AB psi', rays under the permitted pressure angle, allowed zone, r0 and l0."""
     cam = cast("RockerCam", project.cam)
@@ -258,9 +255,7 @@ def of_rocker(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
 def _permitted(s: PlayerStage, cam: RockerCam, picture: Box, scale: Scale) -> None:
     """The allowed zone, the rays under the permitted pressure angle and the borders that touch the curve, inside the picture."""
     z, canvas, at = cam.zone, s.canvas, s.frame
-    corners = [complex(picture.x0, picture.y0), complex(picture.x1, picture.y0),
-               complex(picture.x1, picture.y1), complex(picture.x0, picture.y1)]
-    region = z.cones.region([complex(scale.real(p - at(0j))) for p in corners])
+    region = z.cones.region([complex(scale.real(p - at(0j))) for p in picture.corners])
     if len(region) > 2:
         hatch_polygon(canvas, np.asarray(at(region)), 5.0)
     reach = picture.width + picture.height
@@ -321,8 +316,8 @@ def _rocker_and_axis(s: PlayerStage, cam: RockerCam, picture: Box, letter_of: st
 def _rocker_lines(cam: RockerCam, scale: Scale | None = None) -> list[str]:
     """Main dimensions in formulas and numbers, and the least cam where it is another one."""
     z, mu = cam.zone, 1e-3 if scale is None else scale.mu
-    lines = [_measured("r_0", "|OB_0|", z.r0, "μ_l", mu), _measured("l_0", "|OA|", z.l0, "μ_l", mu)]
-    lines.append(tr("x_i = AB·ψ'_i towards the axis A") if cam.data.rotation == "same" else tr("x_i = AB·ψ'_i on AB produced"))
+    lines = [_measured("r_0", "|OB_0|", z.r0, "μ_l", mu), _measured("l_0", "|OA|", z.l0, "μ_l", mu),
+             tr("x_i = AB·ψ'_i towards the axis A") if cam.data.rotation == "same" else tr("x_i = AB·ψ'_i on AB produced")]
     if cam.data.base_radius is not None:
         lines[0] = tr("r_0 = {length} mm (given)").format(length=number(z.r0 * 1e3))
     if z.least is not None and (r0 := float(z.least["r_0"].value)) < z.r0 * (1 - 1e-6):
@@ -332,7 +327,6 @@ def _rocker_lines(cam: RockerCam, scale: Scale | None = None) -> list[str]:
     return lines
 
 
-@for_cams
 def sum_graph(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Graph of S + S'' over the cam angle with its lowest ordinate; radius r0 and sizes of the plate."""
     cam = cast("FlatCam", project.cam)
@@ -382,7 +376,6 @@ def sum_graph(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     ])
 
 
-@for_cams
 def plate(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """The flat follower with the sizes of its plate, to scale."""
     cam = cast("FlatCam", project.cam)

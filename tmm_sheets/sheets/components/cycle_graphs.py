@@ -7,7 +7,7 @@ how many columns they stand and their scale factors: first all reach their floor
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple
@@ -19,17 +19,14 @@ from tmm_sheets.construction.readable import CURVE
 from tmm_sheets.construction.scale import Scale, coarser, finer, fit, reach
 from tmm_sheets.numbers import enough
 from tmm_sheets.remarks import Remark
-from tmm_sheets.sheets.border_solver import Need
+from tmm_sheets.sheets.border_solver import Measured, Need, risen
 from tmm_sheets.sheets.components import graphs
-from tmm_sheets.sheets.components.graphs import Floats
-from tmm_sheets.sheets.floors import risen
-from tmm_sheets.sheets.frame import PlanFrame, pick
+from tmm_sheets.sheets.player import PlanFrame, pick
 from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.drawing.canvas import Canvas
     from tmm_sheets.project import Project
-    from tmm_sheets.sheets.arrangement import ViewPlace
 
 LEFT, RIGHT = 20.0, 12.0
 """Room beside an angle axis for the sign of the ordinate and for the arrow, mm."""
@@ -63,9 +60,9 @@ class Curve:
 
     symbol: str
     step: str
-    turned: Floats
-    values: Floats
-    at: Floats
+    turned: graphs.Floats
+    values: graphs.Floats
+    at: graphs.Floats
 
     @property
     def plan(self) -> str:
@@ -235,18 +232,14 @@ def _fitted(project: Project, column: Column, room: float) -> list[float]:
     return mus
 
 
-def low(project: Project, n: int, view: ViewPlace, columns: Callable[[Project, ViewPlace], list[Column]]) -> Iterator[Remark]:
-    """What of the graphs of a view on sheet ``n`` (from 1) is below its floor; ``columns`` are those that the view has there."""
-    from tmm_sheets.sheets.legibility import below
-
-    shown = [q for column in columns(project, view) for q in column if q.span and q.key not in project.variant.scales]
-    for q in shown:
-        def height(project: Project, view: ViewPlace, key: str = q.key) -> float:
-            return next(q.extent / mu for q, _, mu in placed(project, columns(project, view), view.box) if q.key == key)
-
+def low(project: Project, columns: Sequence[Column], box: Box) -> Iterator[Measured]:
+    """How high the graphs of columns come out in a place; none whose scale factors the project file asks for."""
+    places = [place for place in (placed(project, columns, box) if columns else ())
+              if place.quantity.span and place.quantity.key not in project.variant.scales]
+    hint = marked("name fewer outputs in diagrams of [cycle]") if len(places) > 3 else marked("number fewer positions")
+    for q, _, mu in places:
         what = Remark(marked("the graph of {quantity}"), {"quantity": re.sub("[_{}]", "", q.letter)})
-        hint = marked("name fewer outputs in diagrams of [cycle]") if len(shown) > 3 else marked("number fewer positions")
-        yield from below(project, n, view, what, q.floor, height, hint)
+        yield Measured(what, q.extent / mu, q.floor, hint)
 
 
 def draw(project: Project, canvas: Canvas, box: Box, title: str, columns: Sequence[Column]) -> None:
@@ -295,11 +288,8 @@ def _graph(project: Project, canvas: Canvas, place: GraphPlace, beside: bool) ->
     first, last = q.curves[0].at, len(cycle.ends)  # a swing ends at its last position
     graphs.numbers(axis, g, np.append(angle.mm(cycle.turned), length)[:last], cycle.ends, np.append(first, first[0])[:last])
     for c in q.curves if len(q.curves) > 1 else ():
-        k = _crest(np.abs(c.values))
+        size = np.abs(c.values)
+        peak, low = int(np.argmax(size)), np.flatnonzero(size < 0.97 * size.max())
+        # Middle of the stretch in which it is about as high as it is anywhere.
+        k = int(max(low[low < peak], default=-1) + 1 + min(low[low > peak], default=len(size)) - 1) // 2
         canvas.label(complex(at(c.turned[k] + 1j * c.values[k])), c.symbol, 1j * np.sign(c.values[k]), 3.5, 0.8)
-
-
-def _crest(size: Floats) -> int:
-    """Middle of the stretch in which a curve is about as high as it is anywhere."""
-    peak, low = int(np.argmax(size)), np.flatnonzero(size < 0.97 * size.max())
-    return int(max(low[low < peak], default=-1) + 1 + min(low[low > peak], default=len(size)) - 1) // 2

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from tmm_sheets.construction import condition, rules
 from tmm_sheets.numbers import fixed
 from tmm_sheets.sheets import composition
+from tmm_sheets.sheets.components import graphs
 from tmm_sheets.sheets.linkage import kinematic_frames
 from tmm_sheets.words import marked, tell, tell_n, tr
 
@@ -252,20 +253,14 @@ def said(project: Project, flat: Flat) -> str:
 
 def _labels(project: Project) -> dict[int, str]:
     """What the sheet calls each position: those drawn by all their labels, a repetition of one by its own."""
-    return {**dict(enumerate(project.cycle.labels)), **dict(project.cycle.drawn)}
+    return dict(enumerate(project.cycle.labels)) | dict(project.cycle.drawn)
 
 
 def _listed(project: Project, positions: tuple[int, ...]) -> str:
     """Labels of positions; three and more in a row as 5–7."""
     order = [i for i, _ in project.cycle.drawn]
-    labels = project.cycle.labels
-    rows: list[list[int]] = []
-    for i in positions:
-        if rows and order.index(_drawn(project, i)) == order.index(_drawn(project, rows[-1][-1])) + 1:
-            rows[-1].append(i)
-        else:
-            rows.append([i])
-    return ", ".join(f"{labels[r[0]]}–{labels[r[-1]]}" if len(r) > 2 else ", ".join(labels[i] for i in r) for r in rows)
+    labels = {order.index(_drawn(project, i)): project.cycle.labels[i] for i in positions}
+    return graphs.in_ranges(labels, list(labels))
 
 
 def lines(project: Project) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import floor, log10
@@ -99,14 +99,9 @@ def begin(canvas: Canvas, box: Box, options: Options, heads: tuple[str, ...], lo
 def axes(canvas: Canvas, g: Graph, length: float, low: float, high: float, ordinate: str) -> None:
     """Angle axis of a length and ordinate axis over a range, mm, with their signs."""
     canvas.arrow(g(0j), g(length + OVER), "axis", 3.0)
-    turned_angle(canvas, complex(g(length + OVER)))
+    canvas.label(complex(g(length + OVER)) - 5.0, tr("{symbol}, rad").format(symbol="φ_1"), -1j, 3.5, 1.5, leader=False)
     canvas.arrow(g(1j * (low - 3 if low else 0)), g(1j * (high + OVER)), "axis", 3.0)
     canvas.text(complex(g(1j * (high + OVER))) - 2.0 - 2.5j, ordinate, 3.5, "right")
-
-
-def turned_angle(canvas: Canvas, tip: complex) -> None:
-    """Sign and unit of the crank angle at the end of its axis."""
-    canvas.label(tip - 5.0, tr("{symbol}, rad").format(symbol="φ_1"), -1j, 3.5, 1.5, leader=False)
 
 
 def numbers(canvas: Canvas, g: Graph, x: Floats, labels: Sequence[str], heights: Floats) -> None:
@@ -136,7 +131,7 @@ def ranged(labels: list[str]) -> str:
     return f"{labels[0]}–{labels[-1]}" if len(labels) > 2 else ", ".join(labels)
 
 
-def in_ranges(labels: Sequence[str], numbers: Sequence[int]) -> str:
+def in_ranges(labels: Sequence[str] | Mapping[int, str], numbers: Sequence[int]) -> str:
     """Labels of rising ``numbers``, neighbours as a range: 1, 7–10."""
     starts = [i for i, n in enumerate(numbers) if not i or numbers[i - 1] != n - 1]
     return ", ".join(ranged([labels[n] for n in numbers[a:b]]) for a, b in pairwise([*starts, len(numbers)]))
@@ -180,6 +175,19 @@ def table(canvas: Canvas, box: Box, title: str, rows: list[list[str]]) -> None:
         height = size_in(high) if wide else 2.5
         canvas.table(complex(box.x0, top), widened([first, *[width] * columns], part, height), part, high, height)
         top -= high * len(part)
+
+
+def table_in(canvas: Canvas, left: Box, rows: Sequence[Sequence[str]], tallest: float, widths: Sequence[float] = (),
+             under: float = 0.0, header: int = 1) -> Box:
+    """Table from the top of a place down, as high as it lets it be with ``under`` mm left free, rows no higher than ``tallest``.
+
+    Columns are of equal widths unless told, but for the first of which there is told one; all are wide enough for their texts.
+    """
+    row = min((left.height - under) / len(rows), tallest)
+    count, height = len(rows[0]), size_in(row)
+    if len(widths) < count:
+        widths = [*widths, *[(left.width - sum(widths)) / (count - len(widths))] * (count - len(widths))]
+    return canvas.table(complex(left.x0, left.y1), widened(widths, rows, height), rows, row, height, header)
 
 
 def note(canvas: Canvas, room: Box, lines: Sequence[str], ink: Sequence[Points]) -> bool:

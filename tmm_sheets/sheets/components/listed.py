@@ -1,15 +1,15 @@
-"""Views that are data: lines or a table under a title, for room that is left beside other views."""
+"""Views that are data, for room that is left beside others: lines or a table under a title, and upright tables of positions."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.text_layout import GAP, LEAST, needs, widened
+from tmm_sheets.drawing.text_layout import GAP, LEADING, LEAST, TOGETHER, Heading, heading, needs, size_in, widened
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
@@ -22,6 +22,8 @@ ROW, LARGE, LETTERS = 12.0, 16.0, 5.0
 """Greatest height of a row of a table, mm; of one where there is room for letters as large as a title's, and these."""
 HEIGHTS = ((5.0, 5.0, 12.0), (5.0, 3.5, 10.0), (5.0, 3.5, 7.0), (3.5, 3.5, 7.0))
 """Heights of the letters of a title and of the lines under it, and distances of these, that are tried, mm."""
+APART = 14.0
+"""Distance of formulas that stand side by side, mm."""
 PLACES = ((220.0, LARGE), (180.0, ROW), (150.0, 9.0), (120.0, 7.0))
 """Widths and heights of rows of a table that are tried, mm."""
 
@@ -54,6 +56,56 @@ class Lines:
         canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
 
 
+class Form(NamedTuple):
+    """A form of a view of lines: its columns, height of the letters, distance of the lines, room for the title, mm.
+
+    It is ``least`` so wide, mm.
+    """
+
+    columns: Sequence[list[str]]
+    height: float
+    step: float
+    head: float = 12.0
+    least: float = 0.0
+
+    @property
+    def widths(self) -> list[float]:
+        """Widths of the columns with what parts them, mm."""
+        return [max(letter(line, self.height).width for line in lines) + APART for lines in self.columns]
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """What it takes, mm."""
+        return max(sum(self.widths) - APART, self.least) + 6.0, self.head + self.step * max(map(len, self.columns))
+
+
+@dataclass(frozen=True)
+class Formulas:
+    """A view of lines under a ``title`` in the first of its ``forms`` that a place has room for, the clearest first.
+
+    Its marks are ``of`` a plan.
+    """
+
+    title: str
+    of: str
+    forms: Callable[[Project, Canvas, dict[str, Any]], Iterable[Form]]
+
+    def sizes(self, project: Project, canvas: Canvas, options: dict[str, Any]) -> Sizes:
+        """Places that it can do with."""
+        return [form.size for form in self.forms(project, canvas, options)]
+
+    def __call__(self, project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+        """Draw it."""
+        canvas.of = self.of
+        room = box.width + 1e-6, box.height + 1e-6
+        form = next(form for form in self.forms(project, canvas, options) if form.size[0] <= room[0] and form.size[1] <= room[1])
+        left = canvas.title(box, tr(self.title), spare=box.height - form.size[1])
+        x = box.x0 + 3.0
+        for lines, width in zip(form.columns, form.widths, strict=True):
+            canvas.lines(complex(x, left.y1 - 0.8 * form.step), lines, form.step, form.height)
+            x += width
+
+
 @dataclass(frozen=True)
 class Table:
     """A view of ``rows``, the first of them the heading, under a ``title``; columns have these ``shares`` of the width."""
@@ -75,3 +127,48 @@ class Table:
         left = canvas.title(box, title, spare=box.height - 11.0 - self.places[-1][1] * len(rows))
         row, height = letters_in(left.height / len(rows), widths, rows)
         canvas.table(complex(box.x0, left.y1), widened(widths, rows, height), rows, row, height)
+
+
+Rows = Sequence[Sequence[str]]
+
+TRIED = (7.0, 3.5, 4.0), (6.4, 3.5, 2.0), (7.0, 2.5, 2.5), (5.6, 2.5, 2.0), (4.6, 2.5, 2.0)
+"""Heights of rows and of their letters, and what a column is wider than its widest text, mm: the largest first."""
+UNDER = 3.0
+"""Distance of the last of them from the table, mm."""
+LINES = 3
+"""Most lines of a title: below them it is no longer read as one."""
+
+
+def upright_sizes(title: str, rows: Rows, widest: float = float("inf")) -> list[tuple[float, float]]:
+    """Widths and heights that a table with these cells, heads included, can do with, mm, the largest first.
+
+    None is wider than ``widest``; each is at least as wide as the longest word of the title.
+    """
+    word = max(letter(word, 3.5).width for word in title.split(" "))
+    found = [(max(sum(needs(rows, height, gap)), word), row) for row, height, gap in TRIED]
+    return [(width, _head(title, width)[1] + row * len(rows)) for width, row in found if width <= widest]
+
+
+def draw_upright(canvas: Canvas, box: Box, title: str, rows: Rows, header: int = 1) -> None:
+    """A table and its title, as large as the place lets them be; the first ``header`` of its rows are heads."""
+    canvas.begin(box, title.replace(TOGETHER, " "))
+    (lines, height, wide), head = _head(title, box.width)
+    for k, line in enumerate(lines):
+        canvas.text(complex(box.centre.real, box.y1 - LEADING * (k + 1) + 1.0), line, height, "centre", wide=wide)
+    row = min((box.height - head) / len(rows), TRIED[0][0])
+    letters = size_in(row) if sum(needs(rows, size_in(row))) <= box.width + 1e-6 else 2.5
+    first = needs([[line[0]] for line in rows], letters)[0]
+    widths = [first, *[(box.width - first) / (len(rows[0]) - 1)] * (len(rows[0]) - 1)]
+    canvas.table(complex(box.x0, box.y1 - head), widened(widths, rows, letters), rows, row, letters, header)
+
+
+def left_edge(options: dict[str, Any]) -> float | None:
+    """Where such a table would like to begin, mm, if its arrangement says so: at the edge of the sheet, beside an ordinate axis."""
+    found: float | None = options.get("left")
+    return found
+
+
+def _head(title: str, width: float) -> tuple[Heading, float]:
+    """A title over a table of a width, mm, and the room it takes."""
+    found = heading(title, width, 5.0, LINES)
+    return found, LEADING * len(found.lines) + UNDER - 1.0

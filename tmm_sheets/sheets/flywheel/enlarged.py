@@ -1,12 +1,14 @@
-"""Graphs of energy enlarged along their ordinates, for room that a sheet has left: where dE is little beside what belongs to it.
+"""Graphs for room that a sheet of the flywheel has left: those of energy enlarged along their ordinates, and the crank's speed.
 
-The links' own energy, or the segment ab, sets the scale factor of the construction. What is too low at it to be read is shown
-again, its tangencies too, at a scale factor of its own.
+Where dE is little beside what belongs to it, the links' own energy, or the segment ab, sets the scale factor of the construction.
+What is too low at it to be read is shown again, its tangencies too, at a scale factor of its own. The option ``axis`` of the graph
+of the angular velocity is the x of the ordinate axis of the other graphs, mm: beneath them its positions stand under theirs.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
+from math import floor, log10
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,16 +19,17 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Points
+from tmm_sheets.errors import CannotBuild
+from tmm_sheets.numbers import number
 from tmm_sheets.sheets.components import graphs
 from tmm_sheets.sheets.flywheel import flywheel, mertsalov
-from tmm_sheets.sheets.frame import together
-from tmm_sheets.sheets.player import stage
-from tmm_sheets.words import tr
+from tmm_sheets.sheets.player import stage, together
+from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.project import Project
-    from tmm_sheets.sheets.arrangement import Arrangement
+    from tmm_sheets.sheets.views import Arrangement
 
 Options = dict[str, Any]
 LEFT, RIGHT, BELOW, ABOVE = 22.0, 14.0, 9.0, 12.0
@@ -37,15 +40,13 @@ SHARES = (1.0, 0.75, 0.6, 0.45)
 """Shares of the abscissae's own scale that an enlarged graph can do with."""
 
 
-def _height(fw: Flywheel) -> float:
-    """Height of the enlarged graph of dE, from its axis on, mm; 0.0 where that of the construction is high enough."""
-    span = float(np.ptp(np.append(fw.energy_curve(fw.samples), 0.0)))
-    return 0.0 if span >= MAIN or not span else span * fw.scales.energy.mu / fw.enlarged(fw.scales.energy, span).mu
-
-
 def _sizes(fw: Flywheel, across: float) -> tuple[tuple[float, float], ...]:
-    high = _height(fw)
-    return tuple((share * across + LEFT + RIGHT, high + TITLE + ABOVE + BELOW) for share in SHARES) if high else ()
+    """Sizes of the enlarged graph of dE, mm; none where that of the construction is high enough."""
+    span = float(np.ptp(np.append(fw.energy_curve(fw.samples), 0.0)))
+    if span >= MAIN or not span:
+        return ()
+    high = span * fw.scales.energy.mu / fw.enlarged(fw.scales.energy, span).mu
+    return tuple((share * across + LEFT + RIGHT, high + TITLE + ABOVE + BELOW) for share in SHARES)
 
 
 def apart(project: Project, plan: Arrangement) -> Arrangement:
@@ -138,3 +139,50 @@ def energy_mass(project: Project, canvas: Canvas, box: Box, options: Options) ->
     canvas.text(complex(g(1j * (high + graphs.OVER))) - 2.0 - 2.5j, tr("ΔE, J"), 3.5, "right")
     sign = tr("J^red, kg·m^2")
     pen.label(g(reach - letter(sign, 3.5).width / 2 - 2.0), sign, -1j, 3.5, 1.5, leader=False)
+
+
+CRANK_SPEED = ((260.0, 120.0), (220.0, 105.0), (180.0, 105.0), (150.0, 105.0))
+
+
+def graph_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[tuple[float, float], ...]:
+    """Sizes from that of the sheet's other graphs down; none where no tangents are drawn or no flywheel is needed."""
+    fw = project.flywheel
+    if fw.method != "wittenbauer" or not fw.needed:
+        return ()
+    as_others = fw.scales.angle.mm(fw.reduced.period) + LEFT + RIGHT
+    return (*((as_others, high) for high in (145.0, 120.0, 105.0)), *(size for size in CRANK_SPEED if size[0] < as_others))
+
+
+def graph_left(options: dict[str, Any]) -> float:
+    """Left edge, mm, with which its axis stands under those of the other graphs."""
+    return float(options["axis"]) - LEFT
+
+
+def graph(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Differences from the mean angular velocity over the turn of the crank, with the bounds at the tangents."""
+    fw = flywheel.with_tangents(project)
+    if not fw.needed:
+        raise CannotBuild(tell("no flywheel is needed: the energy-mass diagram does not tell how the crank runs"),
+                          tell("leave the view crank_speed.graph out"))
+    plan, mean = fw.speed_plan, fw.reduced.omega1
+    highest, lowest = (float(plan[f"ω_{name}"].value) for name in ("max", "min"))
+    x, wide = fw.scales.angle, box.width - LEFT - RIGHT
+    if x.mm(fw.reduced.period) > wide + 1e-6:
+        x = fit(x.symbol, x.unit, fw.reduced.period, wide)
+    room = box.height - TITLE - BELOW - ABOVE
+    y = fit("μ_ω", tr("s^{−1}/mm"), highest - lowest, room)
+    left = canvas.title(box, tr("Graph of the angular velocity ω_1(φ_1)"), f"{y}, {x}")
+    high, low = y.mm(highest - mean), y.mm(lowest - mean)
+    g = graphs.Graph(complex(left.x0 + LEFT, left.y1 - ABOVE - high))
+    # The axis stands at the mean: the zero of the angular velocities lies far below it.
+    of = stage(canvas, plan, None, graphs.Graph(g.origin - 1j * y.mm(mean)).place(x.mu, y.mu))
+    length = x.mm(fw.reduced.period)
+    of.curve("ω1", g(x.mm(fw.samples) + 1j * y.mm(fw.speed_curve(fw.samples) - mean)))
+    flywheel.axes(fw, of, "ω1", g, (low, high), tr("{symbol}, s^{{−1}}").format(symbol="ω_1"), plan["ω1"].value - mean, x)
+    canvas.text(g(-2.0) + 1.0j, tr("ω_{1m}"), 3.5, "right")
+    digits = max(4, 2 + floor(log10(mean / (highest - lowest))))  # the bounds differ in two digits at least
+    for name, level in (("max", high), ("min", low)):
+        pen = of.pen(f"ω_{name}", "axis")
+        pen.line(g(1j * level), g(length + 1j * level), "thin")
+        value = number(float(plan[f"ω_{name}"].value), digits)
+        pen.text(g(length + 1j * level) + (1.3j if level > 0 else -5.0j), f"ω_{{{name}}} = {value}", 3.5, "right")

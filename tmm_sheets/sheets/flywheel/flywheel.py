@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from tmm_sheets.construction.equation import Quantity, digits_for, equation, of_step
-from tmm_sheets.construction.scale import times
+from tmm_sheets.construction.scale import Scale, times
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon, in_role
 from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.lettering import letter, size_for
@@ -29,9 +29,8 @@ from tmm_sheets.drawing.text_layout import TOGETHER, wrapped
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import decimals_for, enough, fixed, is_zero, number
 from tmm_sheets.sheets.border_solver import GAP
-from tmm_sheets.sheets.components import graphs, upright_tables
-from tmm_sheets.sheets.frame import ratio, standard, together
-from tmm_sheets.sheets.player import PlayerStage, play, stage
+from tmm_sheets.sheets.components import graphs, listed
+from tmm_sheets.sheets.player import PlayerStage, play, ratio, stage, standard, together
 from tmm_sheets.words import tell, tr, tr_in
 
 if TYPE_CHECKING:
@@ -42,7 +41,7 @@ if TYPE_CHECKING:
     from tmm_sheets.methods.flywheel.wheel import RimWheel
     from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
     from tmm_sheets.project import Project
-    from tmm_sheets.sheets.arrangement import Arrangement, ViewPlace
+    from tmm_sheets.sheets.views import Arrangement, ViewPlace
 
 Options = dict[str, Any]
 CLEAR = 14.0
@@ -65,8 +64,7 @@ Stacked = tuple[Callable[..., None], float, float]
 
 def column(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Forces, moments and works one under another."""
-    parts = _of_column(project.flywheel)
-    stacked(project, canvas, box, options, "flywheel.column", [(_view(draw), height, below) for draw, height, below in parts])
+    stacked(project, canvas, box, options, "flywheel.column", _of_column(project.flywheel), apart=True)
 
 
 def _of_column(fw: Flywheel) -> tuple[Stacked, ...]:
@@ -117,16 +115,6 @@ def _of_energy(fw: Wittenbauer) -> float:
     return height + graphs.HEAD + graphs.OVER
 
 
-def _view(draw: Callable[..., None]) -> Callable[..., None]:
-    """One graph of the column as a view of its own."""
-    def begun(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
-        canvas.of = f"flywheel.{draw.__name__}"
-        canvas.begin(box, "", canvas.of)
-        draw(project, canvas, box, options)
-
-    return begun
-
-
 def of_moments(fw: Flywheel) -> tuple[Stacked, Stacked]:
     """The graphs of moments and works as parts of a column."""
     moment = np.concatenate(([0.0, fw.M_constant], *(fw.at_samples.moment(side).value for side in (1, -1))))
@@ -135,8 +123,9 @@ def of_moments(fw: Flywheel) -> tuple[Stacked, Stacked]:
     return (moments, float(np.ptp(fw.scales.moment.mm(moment))) + 6.0, 4.0), (works, float(np.ptp(work)), 4.0)
 
 
-def stacked(project: Project, canvas: Canvas, box: Box, options: Options, name: str, views: Sequence[Stacked]) -> None:
-    """Graphs one under another, each as high as it is, the room left over between them."""
+def stacked(project: Project, canvas: Canvas, box: Box, options: Options, name: str, views: Sequence[Stacked],
+            apart: bool = False) -> None:
+    """Graphs one under another, each as high as it is, the room left over between them; ``apart`` each is a view of its own."""
     over = graphs.OVER + graphs.HEAD
     spare = (box.height - sum(height + below + over for _, height, below in views)) / (len(views) - 1)
     graphs.check_room(box, box.y1 - min(spare, 0.0) * (len(views) - 1), name)
@@ -145,7 +134,11 @@ def stacked(project: Project, canvas: Canvas, box: Box, options: Options, name: 
     top = box.y1
     for view, height, below in views:
         low = top - height - below - over
-        view(project, canvas, Box(box.x0, low, box.x1, top), options)
+        place = Box(box.x0, low, box.x1, top)
+        if apart:
+            canvas.of = f"flywheel.{view.__name__}"
+            canvas.begin(place, "", canvas.of)
+        view(project, canvas, place, options)
         top = low - spare
 
 
@@ -180,14 +173,10 @@ def force_graph(project: Project, canvas: Canvas, box: Box, options: Options) ->
     axes(fw, of, r.force_steps[0], g, (min(low, 0.0), top), ordinate, np.ones(len(fw.labels)))
     for k, x in enumerate(s.angle.mm(r.phi)):
         if top and k:
-            here, name = max(((graphs.one(values), name) for name, values in r.forces_at(r.phi[k]).items()), key=_size)
+            here, name = max(((graphs.one(values), name) for name, values in r.forces_at(r.phi[k]).items()),
+                             key=lambda of: (abs(of[0]), of[1]))
             at = of.position(k % len(r.labels))
             at.line(steps[name], g(x), g(x + 1j * s.force.mm(here)), "thin")
-
-
-def _size(of: tuple[float, str]) -> tuple[float, str]:
-    """By magnitude, then by name."""
-    return abs(of[0]), of[1]
 
 
 def _acting(fw: Flywheel, name: str) -> list[Points]:
@@ -531,13 +520,15 @@ def wheel(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
 
     Words in its place when no flywheel is needed, or of a given one nothing but its moment of inertia is known.
     """
-    fw: Flywheel = project.flywheel
-    w = fw.wheel
-    if w is None:
-        (_given_wheel if fw.given else _no_wheel)(fw, canvas, box)
-    else:
+    w = project.flywheel.wheel
+    if w is not None:
         with canvas.as_role("symbol"):
             _sketch(w, canvas, box)
+        return
+    title, lines = _without_sketch(project.flywheel)
+    left = canvas.title(box, title)
+    height = size_for(lines, left.width, 5.0)  # as large as their place allows: what is left under them is free for other views
+    canvas.lines(complex(left.centre.real, left.y1 - 2.0 * height), lines, 2.0 * height, height, "centre")
 
 
 LEFT, BETWEEN, RIGHT = 6.0, 17.0, 22.0
@@ -593,21 +584,11 @@ def _sketch(w: RimWheel, canvas: Canvas, box: Box) -> None:
         canvas.dimension(top - 1j * h * k, top, 7.0, f"H = {fixed(h, 0)}", factor=1 / k, apart=(top - 7.0 - 0.5j * h * k, -1 + 0j))
 
 
-def _given_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
-    left = canvas.title(box, tr("The flywheel is given"))
-    lines = [tr("J_f = {J} kg·m^2").format(J=number(fw.J_flywheel)),
-             tr("It leaves δ = {delta}").format(delta=number(fw.unevenness, 4))]
-    _words(canvas, left, lines)
-
-
-def _words(canvas: Canvas, left: Box, lines: list[str]) -> None:
-    """Lines under their title, as large as their place allows: what is left under them is free for other views."""
-    height = size_for(lines, left.width, 5.0)
-    canvas.lines(complex(left.centre.real, left.y1 - 2.0 * height), lines, 2.0 * height, height, "centre")
-
-
-def _no_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
-    left = canvas.title(box, tr("No flywheel is needed"))
+def _without_sketch(fw: Flywheel) -> tuple[str, list[str]]:
+    """Title and lines in place of a sketch: of a given flywheel, or of one that is not needed."""
+    if fw.given:
+        return tr("The flywheel is given"), [tr("J_f = {J} kg·m^2").format(J=number(fw.J_flywheel)),
+                                             tr("It leaves δ = {delta}").format(delta=number(fw.unevenness, 4))]
     delta = fw.running(fw.J_running).delta
     held = tr("J_{{cr}} + J_r·u^2 = {there} kg·m^2;  needed {needed} kg·m^2") if fw.J_rotor else \
         tr("J_{{cr}} = {there} kg·m^2;  needed {needed} kg·m^2")
@@ -616,7 +597,7 @@ def _no_wheel(fw: Flywheel, canvas: Canvas, box: Box) -> None:
     if not np.isnan(delta):
         lines.append(tr("Without a flywheel δ = {found} {sign} {permitted}").format(
             found=number(delta, 4), sign="≤" if delta <= fw.permitted else ">", permitted=number(fw.permitted)))
-    _words(canvas, left, lines)
+    return tr("No flywheel is needed"), lines
 
 
 def disagreement(fw: Flywheel) -> list[str]:
@@ -645,14 +626,14 @@ def inertia_table(project: Project, canvas: Canvas, box: Box, options: Options) 
 def work_table_sizes(project: Project, canvas: Canvas, options: Options) -> list[tuple[float, float]]:
     """Places that the table of works can do with, mm: upright no wider than the option ``widest``, or lying."""
     title, quantities = _works(project.flywheel)
-    return [*upright_tables.sizes(title, _upright(project.flywheel, quantities), options["widest"]), *LYING]
+    return [*listed.upright_sizes(title, _upright(project.flywheel, quantities), options["widest"]), *LYING]
 
 
 def work_table(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
     """Table of moment, works and change of energy at the positions: a row for each of them in a place that is higher than wide."""
     title, quantities = _works(project.flywheel)
     if box.height > box.width:
-        upright_tables.draw(canvas, box, title, _upright(project.flywheel, quantities), header=2)
+        listed.draw_upright(canvas, box, title, _upright(project.flywheel, quantities), header=2)
     else:
         graphs.table(canvas, box, title, [[tr("Position"), *project.flywheel.labels], *quantities])
 
@@ -788,14 +769,9 @@ def sizes(fw: Flywheel) -> list[str]:
     too_fast = "" if w.speed < 30 else tr(": too fast for cast iron") if fw.cast_iron else tr(": the wheel is of steel")
     rows = [[step for step in w.plan if step.name in names] for names in (("J_об",), ("D",), ("B", "H"), ("m",), ("V",))]
     *said, last = (";  ".join(map(of_step, steps)) for steps in rows if steps)
-    return [head, *said, *(disc_for_rim(w) or [f"{last} {speed} {tr('m/s')}{too_fast}"])]
-
-
-def disc_for_rim(w: RimWheel) -> list[str]:
-    """What made a disc of the rim that was asked for; nothing where none was."""
-    if "V_об" not in w.plan:
-        return []
-    return [tr("A rim would have V = {speed} m/s ≥ 30 m/s: a disc is taken").format(speed=fixed(float(w.plan["V_об"].value), 2))]
+    disc_for_rim = tr("A rim would have V = {speed} m/s ≥ 30 m/s: a disc is taken")
+    return [head, *said, disc_for_rim.format(speed=fixed(float(w.plan["V_об"].value), 2)) if "V_об" in w.plan else
+            f"{last} {speed} {tr('m/s')}{too_fast}"]
 
 
 # --- parts shared by the views --------------------------------------------------------------------------

@@ -17,7 +17,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.text_layout import TOGETHER, size_in, widened
+from tmm_sheets.drawing.text_layout import TOGETHER
 from tmm_sheets.numbers import decimals_for, enough, fixed, number, size
 from tmm_sheets.sheets.components import graphs
 from tmm_sheets.sheets.flywheel import flywheel
@@ -195,10 +195,7 @@ def position_table(project: Project, canvas: Canvas, box: Box, options: Options)
     rows = [[tr("No."), *(name for name, _, _ in columns)], ["", *(unit for _, unit, _ in columns)]]
     rows += [[label, *(column[i] for column in cells)] for i, label in enumerate(fw.labels)]
     left = canvas.title(box.inset(0, 0, 0, 2), tr("Results by positions"))
-    high = min(left.height / len(rows), 7.0)
-    height = size_in(high)
-    widths = widened([9.0, *[(box.width - 9.0) / len(columns)] * len(columns)], rows, height)
-    canvas.table(complex(box.x0, left.y1), widths, rows, high, height, header=2)
+    graphs.table_in(canvas, left, rows, 7.0, [9.0], header=2)
 
 
 def results(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
@@ -280,10 +277,7 @@ def comparison(project: Project, canvas: Canvas, box: Box, options: Options) -> 
     rows += [[name, fixed(first, inertia), fixed(fastest, digits), fixed(slowest, digits), fixed(delta, places)]
              for name, first, fastest, slowest, delta in made]
     left = canvas.title(box.inset(0, 0, 0, 2), tr("Comparison of the methods with the exact running"))
-    high = min((left.height - 12.0) / len(rows), 8.0)
-    first = max(letter(line[0], 3.5).width for line in rows) + 3.0
-    widths = widened([first, *[(box.width - first) / 4] * 4], rows, 3.5)
-    place = canvas.table(complex(box.x0, left.y1), widths, rows, high, 3.5)
+    place = graphs.table_in(canvas, left, rows, 8.0, [max(letter(line[0], 3.5).width for line in rows) + 3.0], 12.0)
     if fw.given:
         return
     _, _, _, sign = _signs(options)

@@ -1,25 +1,28 @@
-"""Views of the gear sheet: engagement picture, sliding curves, tables (manual 000, section 6)."""
+"""Views of the gear sheet: engagement picture, sliding curves, tables (manual 000, section 6), equations of the pair."""
 
 from __future__ import annotations
 
 from cmath import phase
+from collections.abc import Callable, Iterable, Iterator
+from itertools import product
 from math import degrees, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.construction.equation import Quantity, digits_for, of_step
 from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit
+from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import fitted
+from tmm_sheets.drawing.lettering import broken, fitted
 from tmm_sheets.drawing.marks import Box, Dimension
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
-from tmm_sheets.sheets.frame import PlanFrame, proportion, ratio, standard
+from tmm_sheets.sheets.components.listed import Form, Formulas
 from tmm_sheets.sheets.gears import gear_picture
-from tmm_sheets.sheets.gears.gear_equations import digits_of
 from tmm_sheets.sheets.gears.gear_marks import Window, draw_radii, gap, ruled_table
-from tmm_sheets.sheets.player import PlayerStage, placed, stage
-from tmm_sheets.words import tr
+from tmm_sheets.sheets.player import PlanFrame, PlayerStage, placed, proportion, ratio, stage, standard
+from tmm_sheets.words import marked, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.gears.gear_geometry import GearWheel
@@ -48,8 +51,6 @@ def engagement(project: Project, canvas: Canvas, box: Box, options: dict[str, An
         picture.dimensions(wheel)
     picture.pole_letter()
     draw_radii(picture)
-
-
 
 
 def mesh(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -171,7 +172,9 @@ def sliding(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
 
     lower = canvas.title(Box(box.x0, box.y0, box.x1, axis - 16), tr("Specific sliding"))
     worst = -min(gear.greatest_sliding)
-    mu, top = _sliding_scale(worst, lower.height - 12)
+    # The worst value of the engagement is seen.
+    mu = fit("μ_θ", tr("1/mm"), 1 + min(max(1.15 * worst, 2.0), DEEPEST), lower.height - 12)
+    top = 1 / mu.mu
     canvas.text(complex((box.x0 + box.x1) / 2, lower.y1 - 5), str(mu), 5.0, "centre")
     zero = lower.y1 - 14 - top
     deepest = zero - (lower.y0 + 2)
@@ -228,12 +231,6 @@ def _axis_line(s: PlayerStage, gear: GearPair, origin: complex, whole: float, po
         canvas.label(origin + x, name, away=-1j, height=3.5)
 
 
-def _sliding_scale(worst: float, height: float) -> tuple[Scale, float]:
-    """Scale factor of the sliding with which the worst value of the engagement is seen, and the height of 1 in mm."""
-    mu = fit("μ_θ", tr("1/mm"), 1 + min(max(1.15 * worst, 2.0), DEEPEST), height)
-    return mu, 1 / mu.mu
-
-
 def _theta(s: PlayerStage, gear: GearPair, lowest: float, way: int) -> None:
     """Both curves, cut where they leave the place on their way to minus infinity."""
     x = _ways(gear, s.plan)
@@ -267,15 +264,11 @@ def sliding_table(project: Project, canvas: Canvas, box: Box, options: dict[str,
     rows = [["", *plan.labels]]
     for name, text, symbol in (("yV1", tr("{symbol}, mm"), "y_{V1}"), ("yV2", tr("{symbol}, mm"), "y_{V2}"),
                                ("theta1", "{symbol}", "θ_1"), ("theta2", "{symbol}", "θ_2")):
-        rows.append([text.format(symbol=symbol), *(_cell(v, 2) for v in plan[name].value)])
+        rows.append([text.format(symbol=symbol), *(fixed(v, 2) if np.isfinite(v) else "−∞" for v in plan[name].value)])
     inner = canvas.title(box, tr("Velocities and specific sliding"))
     head = 24.0
     widths = [head] + [(box.width - head) / len(plan.labels)] * len(plan.labels)
     canvas.table(complex(box.x0, inner.y1), widths, rows, row=min(14.0, (inner.y1 - box.y0) / len(rows)), height=3.5)
-
-
-def _cell(value: float, decimals: int) -> str:
-    return fixed(value, decimals) if np.isfinite(value) else "−∞"
 
 
 def parameters(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -365,3 +358,75 @@ def results(project: Project, canvas: Canvas, box: Box, options: dict[str, Any])
         y = end - 8 - 7 * k
         if y > box.y0:
             canvas.put(fitted(text, box.width, 3.5), complex(box.x0, y), 0.0, text)
+
+
+OF_PAIR = ("inv_alpha", "inv_alpha_w", "alpha_w", "x_sum", "y", "dy", "a", "a_w", "p", "pb", "N1N2", "g_alpha", "eps_alpha")
+OF_WHEEL = ("r", "rb", "rw", "ra", "rf", "s")
+WAYS = ((8.0, 200.0), (7.0, 170.0), (6.0, 150.0), (6.0, 120.0), (6.0, 100.0))
+"""Distances of the lines and widths at which equations are broken that are tried, mm."""
+HEIGHT = 3.5
+DECIMALS = 4, 7
+"""So many decimals shifts and what follows from them have at least, and fewer than so many."""
+
+
+def _forms(plan: Plan) -> Iterator[Form]:
+    """The equations of pair and wheels, then those of the pair alone, broken at several widths."""
+    of_pair = list(equations(plan, OF_PAIR, True))
+    every = [*of_pair, *equations(plan, [f"{name}{i}" for i in (1, 2) for name in OF_WHEEL], False)]
+    for lines, (step, width) in product((every, of_pair), WAYS):
+        yield Form([[part for line in lines for part in broken(line, width, HEIGHT, "(?= = )")]], HEIGHT, step)
+
+
+of_pair = Formulas(marked("The gear pair in numbers"), "gear-geometry",
+                   lambda project, canvas, options: _forms(project.gear.geometry))
+"""Angle of engagement, distances, pitches and contact ratio; radii and thicknesses of the wheels in numbers."""
+
+
+def digits_of(plan: Plan) -> Callable[[Step], str]:
+    """How the numbers of a pair's geometry are written on its sheet, in tables and in equations; of other steps nothing.
+
+    Lengths in mm have two decimals, but the module has those that it is given with; shifts and y as many as give Δy by what is
+    written.
+    """
+    decimals = _of_shifts(plan)
+
+    def written(step: Step) -> str:
+        if step.name.rstrip("12") in ("x", "y", "dy"):
+            return fixed(step.value, decimals).rstrip("0").rstrip(".,")
+        least = _decimals(step)
+        return fixed(step.value, least) if least else ""
+
+    return written
+
+
+def _of_shifts(plan: Plan) -> int:
+    """Decimals of shifts and y with which they add up to Δy."""
+    last = plan["dy"]
+
+    def adds_up(decimals: int) -> bool:
+        found = last.rule.compute(*(round(float(arg.value), decimals) for arg in last.args))
+        return bool(abs(found - round(float(last.value), decimals)) < 0.1 * 10.0**-decimals)
+
+    return next(filter(adds_up, range(*DECIMALS)), DECIMALS[0])
+
+
+def _decimals(step: Step) -> int:
+    """Fixed decimals of a number of the pair, 0 for one that has none."""
+    if step.rule.unit == "mm" and step.name != "m":
+        return 2
+    return {"eps_alpha": 3, "inv_alpha": 5, "inv_alpha_w": 5}.get(step.name, 0)
+
+
+def equations(plan: Plan, names: Iterable[str], letters: bool) -> Iterator[str]:
+    """Those steps of a plan that a formula gives: sign, formula in ``letters``, in numbers, value."""
+    shifts = _of_shifts(plan)
+
+    def quantity(symbol: str, value: float, unit: str, of: Any) -> Quantity:
+        if symbol[:1] in "xyΔ":
+            return Quantity(symbol, value, unit, digits_for(value, shifts))
+        least = _decimals(of) if isinstance(of, Step) else 0
+        return Quantity(symbol, value, unit, digits_for(value, least), least) if least else Quantity(symbol, value, unit)
+
+    for step in (plan[name] for name in names if name in plan):
+        if said := of_step(step, in_letters=letters, quantity=quantity):
+            yield said

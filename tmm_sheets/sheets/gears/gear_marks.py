@@ -68,9 +68,7 @@ class Window:
 
     def edge(self) -> None:
         """The edge of the picture."""
-        x0, y0, x1, y1 = self.box
-        corners = complex(x0, y0), complex(x1, y0), complex(x1, y1), complex(x0, y1)
-        self.canvas.tracing("frame").polyline(corners, "thin", closed=True)
+        self.canvas.tracing("frame").polyline(self.box.corners, "thin", closed=True)
 
     def breaks(self, s: PlayerStage, wheel: GearWheel) -> None:
         """Break lines where the edge of the picture cuts a wheel (GOST 2.303: thin, with a kink)."""

@@ -17,9 +17,8 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Line
 from tmm_sheets.numbers import degrees_and_minutes, fixed
 from tmm_sheets.sheets.components.clear_dimensions import around, crossed
-from tmm_sheets.sheets.frame import PlanFrame, ratio, standard
 from tmm_sheets.sheets.gears.gear_marks import CIRCLES, Window, hatch_between
-from tmm_sheets.sheets.player import play, stage
+from tmm_sheets.sheets.player import PlanFrame, play, ratio, stage, standard
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:

@@ -8,16 +8,15 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from tmm_sheets.construction.readable import TOOTH
-from tmm_sheets.sheets.border_solver import BorderNode, Need
+from tmm_sheets.sheets.border_solver import BorderNode, Need, reached
 from tmm_sheets.sheets.components import listed
-from tmm_sheets.sheets.frame import standard
-from tmm_sheets.sheets.gears import gear, gear_picture, rack, speed_plan, train, train_scheme
-from tmm_sheets.sheets.view_sizes import reached
+from tmm_sheets.sheets.gears import gear, gear_picture, rack, train, train_scheme
+from tmm_sheets.sheets.player import standard
 
 if TYPE_CHECKING:
     from tmm_sheets.methods.gears.train import Train
     from tmm_sheets.project import Project
-    from tmm_sheets.sheets.arrangement import ViewPlace
+    from tmm_sheets.sheets.views import ViewPlace
 
 BESIDE = 44.0
 """Room beside the smaller wheel: dimension of the centre distance and what is kept from it, mm."""
@@ -100,37 +99,21 @@ def speeds(project: Project, view: ViewPlace) -> BorderNode:
     return _node(view, (150.0, 100.0), lambda width, height: 0.6 * width * min(height, 190))
 
 
-def _table(view: ViewPlace, rows: int, head: float = 16.0) -> BorderNode:
-    """A table of so many rows under its title, from the least height of a row to the greatest of use."""
+def table(project: Project, view: ViewPlace) -> BorderNode:
+    """A table, or lines, under its title with the remarks under them: rows from the least height to the greatest of use."""
+    of, head = _train(project, view), 16.0
+    match view.draw.partition(".")[2]:
+        case "choice":  # tooth sets with the line that says how they were chosen
+            rows, head = len(project.reducer.sets) + 1, 24.0
+        case "conditions":
+            rows = 9 + 2 * bool(project.reducer.simple) + len(of.warnings)
+        case "points":
+            rows = len(train_scheme.moving_points(of)) + 1
+        case "table":
+            rows = len(of.names) + 1 + len(of.warnings)
+        case "willis":  # two lines for each mesh
+            rows = 2 * len(of.meshes)
+        case _:
+            rows = len(train.dimensions(project))
     need = Need(least=(150.0, head + 6.0 * rows), most=(190.0, head + listed.LARGE * rows), drawn=lambda w, h: w * h)
     return BorderNode(need, area=need.least[0] * need.most[1])
-
-
-def choice(project: Project, view: ViewPlace) -> BorderNode:
-    """Tooth sets with the line that says how they were chosen."""
-    return _table(view, len(project.reducer.sets) + 1, 24.0)
-
-
-def conditions(project: Project, view: ViewPlace) -> BorderNode:
-    """Conditions of a reducer and the remarks under them."""
-    return _table(view, 9 + 2 * bool(project.reducer.simple) + len(project.reducer.warnings))
-
-
-def points(project: Project, view: ViewPlace) -> BorderNode:
-    """Velocities of the points of a picture of velocities."""
-    return _table(view, len(speed_plan.moving_points(_train(project, view))) + 1)
-
-
-def links_of_train(project: Project, view: ViewPlace) -> BorderNode:
-    """Wheels and carriers of a train with the remarks under them."""
-    return _table(view, len(project.train.names) + 1 + len(project.train.warnings))
-
-
-def willis(project: Project, view: ViewPlace) -> BorderNode:
-    """Two lines for each mesh of a train."""
-    return _table(view, 2 * len(project.train.meshes))
-
-
-def dimensions(project: Project, view: ViewPlace) -> BorderNode:
-    """Lines of diameters and distances."""
-    return _table(view, len(train.dimensions(project)))

@@ -8,20 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.drawing.canvas import KEPT_OFF, Canvas
 from tmm_sheets.drawing.ink_index import InkIndex
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box
 from tmm_sheets.drawing.text_boxes import SHELF
 from tmm_sheets.numbers import degrees_and_minutes, fixed, number
-from tmm_sheets.sheets.frame import PlanFrame, ratio, standard
 from tmm_sheets.sheets.gears.gear_marks import Window, distance, gap
-from tmm_sheets.sheets.player import PlayerStage, stage
+from tmm_sheets.sheets.player import PlanFrame, ratio, stage, standard
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.methods.gears.gear_geometry import GearWheel
     from tmm_sheets.methods.gears.gear_pair import GearPair
     from tmm_sheets.project import Project
 
@@ -67,12 +64,6 @@ def generating(project: Project, canvas: Canvas, box: Box, options: dict[str, An
     picture.dimensions(canvas.tracing("dimension"))
 
 
-def _turned(canvas: Canvas, plan: Plan, wheel: GearWheel, at: PlanFrame) -> PlayerStage:
-    """The engagement with a wheel's centre where the rack's plan has it."""
-    centre = complex(plan[f"O{wheel.number}"].value)
-    return stage(canvas, plan, 0, PlanFrame(at.scale, at(-centre)))
-
-
 class _RackPicture:
     """The surroundings of the pole P0 of the generating engagement, cut out of wheel and rack."""
 
@@ -105,7 +96,9 @@ class _RackPicture:
         The pitch circle rolls: it is drawn like a centre line; the working pitch circle has no part in the cutting.
         """
         self.window.edge()
-        engaged = _turned(self.canvas, self.gear.engagement, self.wheel, self.at)
+        plan = self.gear.engagement  # with the wheel's centre where the rack's plan has it
+        centre = self.at(-complex(plan[f"O{self.wheel.number}"].value))
+        engaged = stage(self.canvas, plan, 0, PlanFrame(self.at.scale, centre))
         self.window.circles(engaged, [self.wheel], 0.7, leave=("rw",))
 
     def lines(self) -> None:

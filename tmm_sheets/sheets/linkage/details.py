@@ -26,9 +26,8 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame, Points, Provenance, Text, flat
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.numbers import number
-from tmm_sheets.sheets.frame import together
 from tmm_sheets.sheets.linkage import link_marks
-from tmm_sheets.sheets.player import PlayerStage
+from tmm_sheets.sheets.player import PlayerStage, together
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project

@@ -1,38 +1,50 @@
-"""Diagrams over the crank angle: motion of the output (S, V, a or psi, omega, epsilon), balancing moment over the cycle."""
+"""Diagrams over the crank angle: motion of the outputs, balancing moment, technological loads, hodograph of the bearing."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass
+from math import degrees, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.readable import CURVE, MAIN
+from tmm_sheets.construction.scale import Scale, handy, times
 from tmm_sheets.construction.step import Step, value_of
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.marks import Box, Points
 from tmm_sheets.drawing.text_layout import LEAST, needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.numbers import NOISE
+from tmm_sheets.numbers import NOISE, fixed, is_zero
 from tmm_sheets.remarks import Remark
-from tmm_sheets.sheets.components import cycle_graphs, graphs, upright_tables
+from tmm_sheets.sheets.border_solver import BorderNode, Measured, leaf
+from tmm_sheets.sheets.components import cycle_graphs, graphs, listed
 from tmm_sheets.sheets.components.cycle_graphs import Column, Curve, Quantity
-from tmm_sheets.sheets.components.graphs import Floats
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
 from tmm_sheets.sheets.linkage.link_marks import indexed, shapes, tell_signs
-from tmm_sheets.sheets.view_sizes import leaf
+from tmm_sheets.sheets.player import PlanFrame, PlayerStage, extent, pick, together
 from tmm_sheets.words import both, marked, marked_n, tell, tr, tr_in
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from tmm_sheets.methods.linkage.loads import Applied
     from tmm_sheets.methods.linkage.motion import Output
     from tmm_sheets.project import Project
-    from tmm_sheets.sheets.arrangement import ViewPlace
-    from tmm_sheets.sheets.border_solver import BorderNode
+    from tmm_sheets.sheets.views import ViewPlace
 
 Options = dict[str, Any]
 GRAPH_SIZES = (280.0, 110.0), (240.0, 96.0), (200.0, 84.0), (170.0, 76.0)
 """Sizes of a single graph over the cycle for room that a sheet has left, mm."""
+
+
+OF_POINTS = (("graph-S", "S", marked("m"), MAIN), ("graph-V", "V", marked("m/s"), CURVE), ("graph-a", "a", marked("m/s^2"), CURVE))
+OF_LINKS = (("graph-psi", "ψ", marked("rad"), MAIN), ("graph-omega", "ω", marked("s^{−1}"), CURVE),
+            ("graph-epsilon", "ε", marked("s^{−2}"), CURVE))
+"""Graphs of an output: key of the scale factor, letter, unit, height from which on they are read, mm."""
 
 
 def motion_graphs(project: Project, options: Options) -> list[Column]:
@@ -40,7 +52,9 @@ def motion_graphs(project: Project, options: Options) -> list[Column]:
     named = options.get("of") or project.diagrams
     links = [name for name in named if name in project.mechanism.links]
     points = [name for name in named if name not in links]
-    return [of(project, some) for of, some in ((_of_points, points), (_of_links, links)) if some]
+    of_points = [project.motion.point(name) for name in points]
+    of_links = [project.motion.link(name) for name in links]
+    return [_quantities(project, outputs, units) for outputs, units in ((of_points, OF_POINTS), (of_links, OF_LINKS)) if outputs]
 
 
 def motion(project: Project, canvas: Canvas, box: Box, options: Options) -> None:
@@ -81,12 +95,12 @@ def motion_place(project: Project, view: ViewPlace) -> BorderNode | None:
     return leaf(view.box, cycle_graphs.need(project, columns), 0.5) if columns else None
 
 
-def motion_low(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
+def motion_low(project: Project, n: int, view: ViewPlace) -> Iterator[Measured | Remark]:
     """Those that are too low on sheet ``n``, or of nothing that moves."""
     columns = motion_graphs(project, view.options)
     if columns and not _moves(columns):
         yield _at_rest(project)
-    yield from cycle_graphs.low(project, n, view, lambda project, view: motion_graphs(project, view.options))
+    yield from cycle_graphs.low(project, columns, view.box)
 
 
 ROW = 5.6
@@ -140,7 +154,7 @@ def _rows_of(project: Project) -> tuple[tuple[int, str], ...]:
     return same if len(same) < len(project.cycle.labels) else tuple(enumerate(project.cycle.labels))
 
 
-def _motion_rows(labels: Iterable[tuple[int, str]], every: list[tuple[str, str, Floats]], digits: int, *,
+def _motion_rows(labels: Iterable[tuple[int, str]], every: list[tuple[str, str, graphs.Floats]], digits: int, *,
                  two: bool) -> list[list[str]]:
     """Rows of the table of motion with so many digits; the units stand in a row of their own if there are ``two`` of headings."""
     heads = [[tr("No."), *(symbol for symbol, _, _ in every)], ["", *(unit for _, unit, _ in every)]] if two else \
@@ -149,7 +163,7 @@ def _motion_rows(labels: Iterable[tuple[int, str]], every: list[tuple[str, str, 
     return [*heads, *([label, *(c[i] for c in columns)] for i, label in labels)]
 
 
-def _of_bars(project: Project, known: Collection[str]) -> list[tuple[str, str, Floats]]:
+def _of_bars(project: Project, known: Collection[str]) -> list[tuple[str, str, graphs.Floats]]:
     """Angle, angular velocity and acceleration of every bar but the crank at the positions, without those that are ``known``.
 
     A rocker's angle is counted from position 0, a rod's is its inclination to the guide of its other end (manual 001, table I)
@@ -175,9 +189,9 @@ def balancing(project: Project, canvas: Canvas, box: Box, options: Options) -> N
     cycle_graphs.draw(project, canvas, box, tr("Graph of the balancing moment"), [balancing_graph(project)])
 
 
-def balancing_low(project: Project, n: int, view: ViewPlace) -> Iterator[Remark]:
+def balancing_low(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
     """The graph on sheet ``n``, where it is too low; an offered one has a size in which it is not."""
-    return cycle_graphs.low(project, n, view, lambda project, _: [] if project.driver is not None else [balancing_graph(project)])
+    return cycle_graphs.low(project, [] if project.driver is not None else [balancing_graph(project)], view.box)
 
 
 def balancing_graph(project: Project) -> Column:
@@ -206,7 +220,7 @@ def balancing_table_sizes(project: Project, canvas: Canvas, options: Options) ->
     if project.driver is not None:
         return []
     rows = (len(project.cycle.labels) + 1) // 2 + 1
-    upright = upright_tables.sizes(tr(BALANCING), _balancing(project), options["widest"]) if "widest" in options else []
+    upright = listed.upright_sizes(tr(BALANCING), _balancing(project), options["widest"]) if "widest" in options else []
     return [*upright, *((width, 11.0 + row * rows) for width, row in ((170.0, 7.5), (150.0, 6.0), (130.0, 5.0)))]
 
 
@@ -219,17 +233,14 @@ def balancing_table(project: Project, canvas: Canvas, box: Box, options: Options
         raise CannotBuild(*map(tell, _NO_MOMENT))
     heads, *cells = _balancing(project)
     if box.height > box.width:
-        upright_tables.draw(canvas, box, tr(BALANCING), [heads, *cells])
+        listed.draw_upright(canvas, box, tr(BALANCING), [heads, *cells])
         return
     left = canvas.title(box, tr(BALANCING))
     half = (len(cells) + 1) // 2
     cells += [["", "", ""]] * (2 * half - len(cells))
     rows = [heads + heads, *(cells[i] + cells[half + i] for i in range(half))]
-    row = min(left.height / len(rows), 7.5)
     width = box.width / 2 - 10.0
-    widths = [10.0, 0.58 * width, 0.42 * width]
-    height = size_in(row)
-    canvas.table(complex(box.x0, left.y1), widened(widths * 2, rows, height), rows, row, height)
+    graphs.table_in(canvas, left, rows, 7.5, [10.0, 0.58 * width, 0.42 * width] * 2)
 
 
 def _balancing(project: Project) -> list[list[str]]:
@@ -247,26 +258,15 @@ _NO_MOMENT = (marked("the diagram of the balancing moment needs a crank driven b
               marked('write kind = "moment" in [balancing]'))
 
 
-def _of_points(project: Project, names: list[str]) -> Column:
-    units = (("graph-S", "S", tr("m"), MAIN), ("graph-V", "V", tr("m/s"), CURVE), ("graph-a", "a", tr("m/s^2"), CURVE))
-    return _quantities(project, [project.motion.point(name) for name in names], units)
-
-
-def _of_links(project: Project, names: list[str]) -> Column:
-    units = (("graph-psi", "ψ", tr("rad"), MAIN), ("graph-omega", "ω", tr("s^{−1}"), CURVE),
-             ("graph-epsilon", "ε", tr("s^{−2}"), CURVE))
-    return _quantities(project, [project.motion.link(name) for name in names], units)
-
-
 def _quantities(project: Project, outputs: list[Output], units: Iterable[tuple[str, str, str, float]]) -> Column:
     turned = project.motion.turned
     curves = [[Curve(here.symbol, here.path, turned, _row(between, turned), _row(here, project.study.turned))
                for here, between in zip(one.at_positions, one.between, strict=True)] for one in outputs]
-    return tuple(Quantity.of(key, letter, unit, row, floor)
+    return tuple(Quantity.of(key, letter, tr(unit), row, floor)
                  for (key, letter, unit, floor), row in zip(units, zip(*curves, strict=True), strict=True))
 
 
-def _row(step: Step, turned: Floats) -> Floats:
+def _row(step: Step, turned: graphs.Floats) -> graphs.Floats:
     """Values of a step at some angles, of one that is the same at all of them as well.
 
     An angle that is nothing beside a radian is nothing, and an angular acceleration beside all that the points of its link are
@@ -280,3 +280,248 @@ def _row(step: Step, turned: Floats) -> Floats:
         return values
     big_q, big_b, q, b = map(value_of, source.args)
     return np.where(np.abs(values) <= NOISE * np.max(np.abs(b - q) / np.abs(big_b - big_q)), 0.0, values)
+
+
+AROUND = 12.0, 10.0, 12.0, 26.0
+"""Room round the curve for numbers at the left, below, right and above (title and scale factor), mm."""
+SIZES = 120.0, 100.0, 80.0, 60.0
+"""Lengths of the longer side of the curve that are tried, mm."""
+
+
+def bearing_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the hodograph can do with, mm; none where there is no force, or where it has no end."""
+    _, _, course = _reaction(project)
+    if not np.isfinite(course).all() or is_zero(float(np.abs(course).max()), project.study.forces.force_size(project.force_index)):
+        return []
+    real = extent([course, np.zeros(1)])
+    left, below, right, above = AROUND
+    longest = max(real.width, real.height)
+    return [(max(size * real.width / longest + left + right, 80.0), size * real.height / longest + below + above) for size in SIZES]
+
+
+def bearing(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Ends of the vectors of the reaction on the crank, laid off from one pole, at the positions and between them."""
+    name, step, course = _reaction(project)
+    at = np.broadcast_to(step.value, (len(project.cycle.labels),))
+    real, inside = extent([course, np.zeros(1)]), box.inset(*AROUND)
+    scale = Scale("μ_F", handy(max(real.width / inside.width, real.height / inside.height)), tr("N/mm"))
+    canvas.of = "hodograph"
+    canvas.title(box, tr("Hodograph of the reaction F_{{{index}}}").format(index=name[1:]), str(scale))
+    frame = PlanFrame(scale, inside.centre - scale.mm(real.centre))
+    placed = canvas.placed(step.plan, "", frame.origin, frame.mu)
+    # Round a turn it is closed: a load that jumps where the cycle begins anew is drawn like one that jumps within.
+    drawn, ends = frame(course if project.cycle.swings else np.append(course, course[:1])), frame(at)
+    # In the plan itself the vectors stand elsewhere: here they begin at one point.
+    canvas.tracing("curve", step.path, "", placed, name).polyline(drawn, "curve")
+    axis = canvas.tracing("axis", step.path, "", placed, name)
+    for a, b in ((real.x0 + 0j, real.x1 + 0j), (1j * real.y0, 1j * real.y1)):
+        u = (b - a) / abs(b - a) if b != a else 0j
+        axis.line(complex(frame(a)) - 5.0 * u, complex(frame(b)) + 5.0 * u, "centre")
+    pole, middle, labels = complex(frame(0j)), complex(np.mean(drawn)), project.cycle.labels
+    canvas.dot(pole, 0.8)
+    for same in together(ends, 1.0):  # in each turn the force is another one
+        z, pen = complex(ends[same[0]]), canvas.tracing("point", step.path, labels[same[0]], placed, name)
+        pen.dot(z, 0.5)
+        pen.label(z, graphs.in_ranges(labels, same), z - middle, 2.5, 0.9)
+    tip, pen = complex(ends[project.force_index]), canvas.tracing("vector", step.path, labels[project.force_index], placed, name)
+    if abs(tip - pole) > 6.0:
+        pen.arrow(pole, tip, "vector")
+        pen.label(pole + 0.6 * (tip - pole), f"F̅_{{{name[1:]}}}", 1j * (tip - pole), 3.5, 1.0)
+
+
+def _reaction(project: Project) -> tuple[str, Step, Points]:
+    """Name of the reaction of the frame on the crank, its step at the positions, and its values over the cycle, N."""
+    m = project.mechanism
+    name = f"F{pair_index(m.crank.link, m.frame)}"
+    course = project.course.forces.reactions[name]
+    return name, project.study.forces.reactions[name], np.broadcast_to(course.value, np.shape(project.course.turned))
+
+
+SAMPLES = 361
+"""Angles at which the curves are drawn, besides both sides of every jump."""
+HAIR = 1e-9
+"""How near to a jump the curve is drawn on either side, rad."""
+
+
+def over_turn(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Magnitudes of the forces or of the moments that are not given as pressures, over the angle of the crank."""
+    if not (column := load_graph(project)):
+        return
+    shown = _shown(project)
+    names = {f.name for f in shown}
+    taken = all((*(f.accepted for f in project.variant.force if f.name in names),
+                 *(m.accepted for m in project.variant.moment if m.name in names)))
+    cycle_graphs.draw(project, canvas, box, tr("Technological load (taken)") if taken else tr("Technological load"), [column])
+    if (said := _many_strokes(project, shown)) is not None:
+        canvas.note(box, said)
+
+
+def place(project: Project, view: ViewPlace) -> BorderNode | None:
+    """What the graph needs of its place."""
+    column = load_graph(project)
+    return leaf(view.box, cycle_graphs.need(project, [column])) if column else None
+
+
+def low(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
+    """The graph on sheet ``n``, where it is too low."""
+    return cycle_graphs.low(project, [load_graph(project)], view.box)
+
+
+def load_graph(project: Project) -> Column:
+    """The graph of these loads; nothing where there are none."""
+    shown, cycle = _shown(project), project.cycle
+    if not shown:
+        return ()
+    turned = _angles(shown, cycle.period)
+    letter, unit = ("F", tr("N")) if shown[0].point is not None else ("M", tr("N·m"))
+
+    def at(f: Applied) -> graphs.Floats:
+        """Of both sides of a jump the one with the greater magnitude."""
+        sides = np.array([f.shown(cycle.turned, side) for side in (-1, 1)])
+        return np.asarray(np.where(np.abs(sides[0]) > np.abs(sides[1]), *sides))
+
+    curves = [Curve(indexed(f.name), f"loads/{f.name}", turned, f.shown(turned), at(f)) for f in shown]
+    return (Quantity.of("loads", letter, unit, curves),)
+
+
+def _shown(project: Project) -> list[Applied]:
+    pressures = {f.name for f in project.variant.force if f.bore is not None}
+    return [f for f in project.applied if f.name not in pressures]
+
+
+def _angles(shown: list[Applied], period: float) -> graphs.Floats:
+    """Angles at which the curves are drawn, both sides of every jump among them."""
+    jumps = [j + s * HAIR for f in shown for j in f.jumps for s in (-1, 1)]
+    turned = np.unique(np.concatenate((np.linspace(0, period, SAMPLES), jumps)))
+    return turned[(turned >= 0) & (turned <= period)]
+
+
+def _many_strokes(project: Project, shown: list[Applied]) -> str | None:
+    """What is said of an output that turns back more than twice a turn: which of its strokes is the working one."""
+    cycle, strokes = project.cycle, project.cycle.strokes
+    if strokes is None or len(strokes.runs) <= 2 or not any(f.motion is not None and f.point == strokes.output for f in shown):
+        return None
+    a, b = (fixed(degrees(x) % degrees(cycle.period), 1) for x in (strokes.begin, strokes.end))
+    return tr("Point {point} turns back {times} a turn; working stroke φ = {begin}°…{end}°").format(
+        point=strokes.output, times=times(len(strokes.runs)), begin=a, end=b)
+
+
+GAP = 25.0
+"""Distance of a diagram's abscissa from the path: room for position numbers, mm."""
+HEIGHT, MOST = 40.0, 100.0
+"""Greatest ordinate as we choose the scale factor, and by any the project asks for, mm."""
+
+
+@dataclass(frozen=True)
+class Indicator:
+    """A diagram beside a path: its force, unit vectors of the path and of the ordinates, and what one unit of ordinate is.
+
+    ``area`` m2 turns the force into a pressure; 1 where the ordinate is the force itself.
+    """
+
+    force: Applied
+    along: complex
+    side: complex
+    area: float
+
+    @property
+    def text(self) -> str:
+        """Sign of the ordinate in lettering markup, with its unit."""
+        name = f"{'p' if self.area != 1 else self.force.name[0]}_{{{self.force.name[1:]}}}"
+        said = tr("{quantity}, MPa") if self.area != 1 else tr("{quantity}, N")
+        return said.format(quantity=name)
+
+    def ordinate(self, turned: ArrayLike, side: int = 0) -> graphs.Floats:
+        """Pressure, MPa, or force, N, at angles from position 0, rad, in their shape."""
+        value = np.asarray(self.force.magnitude(turned, side)) / self.area
+        return value * 1e-6 if self.area != 1 else value
+
+
+def indicators(project: Project) -> list[Indicator]:
+    """Diagrams of the forces on sliders of fixed guides that are given as pressures in a cylinder.
+
+    The diagrams of one guide stand on its two sides in turn; a single one stands on the side away from the crank.
+    """
+    m = project.mechanism
+    areas = {f.name: pi * f.bore**2 / 4 for f in project.variant.force if f.bore is not None}
+    found, taken = list[Indicator](), list[str]()
+    for force in project.applied:
+        group = next((g for g in m.groups if g.inner == force.point and g.guides), None)
+        if force.name not in areas or group is None:
+            continue
+        guide = m.guides[group.guides[-1]]
+        if guide.link != m.frame or isinstance(guide.through, str):
+            continue
+        u = complex(np.cos(guide.direction), np.sin(guide.direction))
+        lateral = ((guide.through - m.fixed[m.crank.pivot]) * np.conj(u)).imag
+        n = 1j * u if lateral > 1e-9 or (abs(lateral) <= 1e-9 and u.imag < 0) else -1j * u
+        found.append(Indicator(force, u, n * (-1) ** taken.count(guide.name), areas[force.name]))
+        taken.append(guide.name)
+    return found
+
+
+def indicator_height(project: Project, shown: list[Indicator]) -> float:
+    """Greatest ordinate, mm: by the scale factor that the project asks for, or as we choose it."""
+    mu = project.variant.scales.get("indicator")
+    if mu is None:
+        return HEIGHT
+    top = max(float(np.max(one.ordinate(_angles_of_turns(project)))) for one in shown)
+    return min(top / mu, MOST)
+
+
+def indicator_reach(project: Project) -> tuple[list[complex], list[complex]]:
+    """Points of the paths and what the diagrams stick out of them on paper, mm: for the frame of the position plans."""
+    z, d, shown = list[complex](), list[complex](), indicators(project)
+    high = indicator_height(project, shown) if shown else 0.0
+    for n, one in enumerate(shown):
+        # Over the ordinate axis the scale factor is written, from side to side; that of another one within its length.
+        beyond = 28.0 if n == 0 and abs(one.side.real) > 0.5 else 10.0
+        at = np.ravel(project.study.positions.points[str(one.force.point)].value)
+        for p in (at[np.argmin((at * np.conj(one.along)).real)], at[np.argmax((at * np.conj(one.along)).real)]):
+            z.append(complex(p))
+            d.append(one.side * (GAP + high + beyond))
+    return z, d
+
+
+def _angles_of_turns(project: Project) -> graphs.Floats:
+    period = project.cycle.period
+    return np.unique(np.concatenate((np.linspace(0, period, round(period / (2 * pi)) * (SAMPLES - 1) + 1), project.cycle.turned)))
+
+
+def draw_indicators(project: Project, s: PlayerStage) -> None:
+    """The diagrams of a project beside the paths of its position plans."""
+    shown = indicators(project)
+    if not shown:
+        return
+    canvas, cycle = s.canvas, project.cycle
+    turned = _angles_of_turns(project)
+    top = max(float(np.max(one.ordinate(turned))) for one in shown)
+    pressure = shown[0].area != 1
+    symbol, unit = ("μ_p", tr("MPa/mm")) if pressure else ("μ_F", tr("N/mm"))
+    tallest = MOST if "indicator" in project.variant.scales else HEIGHT
+    scale = pick(project, canvas, "indicator", symbol, unit, top / tallest)
+    pos = project.study_at(turned, tuple("" for _ in turned)).positions
+    for one in shown:
+        name, load = str(one.force.point), f"loads/{one.force.name}"
+        path = s.frame(np.asarray(pos.points[name].value))
+        canvas.of = f"indicator {one.force.name}"
+        zero = path[0] - one.along * ((path[0] - s.frame(0j)) * np.conj(one.along)).real + one.side * GAP
+        mu = (s.frame.mu[0], scale.mu * (1e6 * one.area if pressure else 1.0))  # of the force, which the plan has
+        graph = canvas.placed("loads", "", zero, mu, float(np.angle(one.along)), (one.side / one.along).imag < 0)
+        canvas.tracing("curve", load, "", graph).polyline(path + one.side * (GAP + one.ordinate(turned) / scale.mu), "curve")
+        ways = (path * np.conj(one.along)).real
+        low, high = path[int(np.argmin(ways))] + one.side * GAP, path[int(np.argmax(ways))] + one.side * GAP
+        top = float(np.max(one.ordinate(turned))) / scale.mu
+        outer = low if (low - s.frame(0j)).imag * one.along.imag < 0 else high
+        axis = canvas.tracing("axis", load, "", graph)
+        axis.line(low, high, "axis")
+        axis.arrow(outer, outer + one.side * (top + 9.0), "axis", 3.0)
+        away = one.along * (1 if outer == high else -1)
+        canvas.label(outer + one.side * (top + 4.0), one.text, away, 3.5, 1.2, leader=False)
+        out = top + 4.0 if one is shown[0] else 0.4 * top
+        canvas.label(outer + one.side * out + 7.0 * away, str(scale), away, 3.5, 1.2)
+        marks = s.frame(np.asarray(s.plan[name].value))
+        for mark in np.unique(np.round(marks, 6)):
+            here = np.flatnonzero(np.abs(marks - mark) < 1e-5)
+            y = max(float(one.ordinate(cycle.turned[i])) for i in here) / scale.mu
+            s.position(int(here[0])).pen(name, "construction").line(mark, mark + one.side * (GAP + max(y, 0.0)), "thin")

@@ -6,7 +6,9 @@ that deviates from it by the angle of friction; both the motion of the one link 
 
 from __future__ import annotations
 
-from math import ceil, degrees
+from collections.abc import Iterator
+from functools import cache
+from math import ceil, degrees, inf
 from operator import mul
 from typing import TYPE_CHECKING, Any
 
@@ -18,14 +20,13 @@ from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.text_layout import size_in, widened
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import fixed, is_zero, number
+from tmm_sheets.sheets.border_solver import BorderNode, Measured, Need, leaf, reaching, rows
 from tmm_sheets.sheets.components import cycle_graphs, graphs
-from tmm_sheets.sheets.frame import PlanFrame, fit_frame, ratio, standard
 from tmm_sheets.sheets.linkage import diagrams, link_marks
 from tmm_sheets.sheets.linkage.kinetic_frames import balancing_sign
-from tmm_sheets.sheets.player import PlayerStage, play, stage
+from tmm_sheets.sheets.player import PlanFrame, PlayerStage, fit_frame, play, ratio, stage, standard
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.linkage.friction import Friction
     from tmm_sheets.project import Project
+    from tmm_sheets.sheets.views import ViewPlace
 
 ARROW = 24.0
 """Length of a reaction's arrow, mm."""
@@ -181,7 +183,9 @@ def pairs(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
                 _turning(project, canvas, place, frame, index, step, force)
             else:
                 _sliding(project, canvas, place, frame, index, step, force, half)
-            _said(canvas, place, _told(project, of, index, force, k))
+            lines = _told(project, of, index, force, k)
+            foot = complex(place.centre.real, place.y0 + 3.0 + APART + 6.0 * (len(lines) - 1))
+            canvas.lines(foot, lines, 6.0, size_for(lines, place.width - 4.0, 3.5), "centre")
 
 
 def _reach(of: Friction, index: str, force: complex, k: int, scale: Scale, half: float) -> tuple[float, float]:
@@ -192,8 +196,8 @@ def _reach(of: Friction, index: str, force: complex, k: int, scale: Scale, half:
         ends = [1j * (journal + 4.0), -1j * (journal + 4.0), (journal + 14.0) * u]
     else:
         normal = u * complex(np.exp(-1j * float(of.deviations[index].at(k)))) if force else 1j
-        ends = [a * half * 1j * normal + b * (half / 6 + 8.0) * normal for a in (1, -1) for b in (1, -1)]
-        ends.append((half + ARROW / 4) * u)
+        corners = (a * half * 1j * normal + b * (half / 6 + 8.0) * normal for a in (1, -1) for b in (1, -1))
+        ends = [*corners, (half + ARROW / 4) * u]
     return max(z.imag for z in ends), -min(z.imag for z in ends)
 
 
@@ -263,11 +267,6 @@ def _told(project: Project, of: Friction, index: str, force: complex, k: int) ->
     return [of_step(of.angle), reaction]
 
 
-def _said(canvas: Canvas, box: Box, lines: list[str]) -> None:
-    height = size_for(lines, box.width - 4.0, 3.5)
-    canvas.lines(complex(box.centre.real, box.y0 + 3.0 + APART + 6.0 * (len(lines) - 1)), lines, 6.0, height, "centre")
-
-
 def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """All pairs with friction: reaction, moment or deviation, relative velocity, power; their sum, and what the drive has."""
     of, k, study = _friction(project), project.force_index, project.study
@@ -286,10 +285,7 @@ def table(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
                          number(abs(complex(of.sliding[index].at(k))), 4), power])
     left = canvas.title(box, tr("Friction in the pairs"))
     said = _balance(project, of, k)
-    row = min((left.height - 7.0 * len(said)) / len(rows), ROWS[0])
-    height = size_in(row)
-    widths = widened([box.width / len(rows[0])] * len(rows[0]), rows, height)
-    place = canvas.table(complex(box.x0, left.y1), widths, rows, row, height)
+    place = graphs.table_in(canvas, left, rows, ROWS[0], under=7.0 * len(said))
     canvas.lines(complex(box.x0 + 2.0, place.y0 - 6.5), said, 7.0, size_for(said, box.width - 4.0, 3.5))
 
 
@@ -316,16 +312,12 @@ def positions(project: Project, canvas: Canvas, box: Box, options: dict[str, Any
     drive = study.balance["M"].value if study.driver is None else np.abs(forces.balancing.value)
     columns = [(tr("F_{{{index}}}, N").format(index=index), np.abs(np.broadcast_to(forces.reactions[f"F{index}"].value, (n,))))
                for index in of.pairs]
-    columns.append((f"{sign}, {unit}", np.broadcast_to(drive, (n,))))
-    columns.append((tr("N_f, W"), np.broadcast_to(of.total.value, (n,))))
+    columns += [(f"{sign}, {unit}", np.broadcast_to(drive, (n,))), (tr("N_f, W"), np.broadcast_to(of.total.value, (n,)))]
     rows = [[tr("No."), *(name for name, _ in columns)]]
     cells = [graphs.column(values, 4) for _, values in columns]
     rows += [[label, *(column[i] for column in cells)] for i, label in enumerate(study.labels)]
     left = canvas.title(box, tr("Reactions with friction in all positions"))
-    row = min(left.height / len(rows), ROWS[1])
-    height = size_in(row)
-    widths = widened([9.0, *[(box.width - 9.0) / len(columns)] * len(columns)], rows, height)
-    canvas.table(complex(box.x0, left.y1), widths, rows, row, height)
+    graphs.table_in(canvas, left, rows, ROWS[1], [9.0])
 
 
 def power_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> tuple[tuple[float, float], ...]:
@@ -347,3 +339,38 @@ def power_graph(project: Project) -> cycle_graphs.Column:
               ((course, every), (_friction(project), project.cycle.turned))]
     sign, unit = tr("N_f, W").split(", ")
     return (cycle_graphs.Quantity("graph-N", sign, unit, (cycle_graphs.Curve("", step.path, every, *values),)),)
+
+
+def mechanism_place(project: Project, view: ViewPlace) -> BorderNode:
+    """The mechanism with the forces of"""
+    return leaf(view.box, reaching(view.box, *scheme(project), AROUND, (150.0, 90.0)))
+
+
+def pairs_place(project: Project, view: ViewPlace) -> BorderNode:
+    """A picture of each pair with friction."""
+    @cache
+    def in_place(width: int, height: int) -> float:
+        return pairs_area(project, width, height)
+
+    return leaf(view.box, Need(least=(200.0, 120.0), drawn=lambda w, h: in_place(int(w), int(h))), 1.5)
+
+
+def power_place(project: Project, view: ViewPlace) -> BorderNode:
+    """The power lost over the turn."""
+    return leaf(view.box, cycle_graphs.need(project, [power_graph(project)]), 0.5)
+
+
+def power_low(project: Project, n: int, view: ViewPlace) -> Iterator[Measured]:
+    """The graph of that power on sheet ``n``, where it is too low."""
+    return cycle_graphs.low(project, [power_graph(project)], view.box)
+
+
+def table_place(project: Project, view: ViewPlace) -> BorderNode:
+    """A row for each pair."""
+    found = project.study.forces.friction
+    return rows(project, view, len(found.pairs) + 1 if found else 1, 34.0, (5.0, ROWS[0]), (0.7 * view.box.width, inf))
+
+
+def positions_place(project: Project, view: ViewPlace) -> BorderNode:
+    """A row for each position."""
+    return rows(project, view, len(project.cycle.labels) + 1, 12.0, (4.6, ROWS[1]), (0.7 * view.box.width, inf))

@@ -1,20 +1,29 @@
-"""View of the given position: speeds and accelerations of its points and links, inertia loads, technological loads."""
+"""Tables: values in the given position, what the task gives, structure, velocities and forces at all positions."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import product
+from math import ceil
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from tmm_sheets.construction.indices import on_link
 from tmm_sheets.drawing.canvas import Canvas
+from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
-from tmm_sheets.drawing.text_layout import size_in, widened
+from tmm_sheets.drawing.text_layout import needs, size_in, widened
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.numbers import number, size
-from tmm_sheets.sheets.linkage.link_marks import indexed, tell_signs
-from tmm_sheets.words import tell, tr, tr_in
+from tmm_sheets.mechanism.structure import decompose
+from tmm_sheets.numbers import decimals_for, fixed, is_zero, number, size, written
+from tmm_sheets.sheets.components import graphs, listed
+from tmm_sheets.sheets.linkage import kinematic_frames, link_marks
+from tmm_sheets.words import marked, tell, tr, tr_in
 
 if TYPE_CHECKING:
+    from tmm_sheets.construction.plan import Segment
     from tmm_sheets.construction.step import Step
     from tmm_sheets.project import Project
 
@@ -37,17 +46,12 @@ def values(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) 
     if row < 4.0:
         raise CannotBuild(tell("the tables of the given position need more room: {row:.1f} mm for a row").format(row=row),
                           tell("make the place of given_position.values higher in templates/sheets"))
-    height = size_in(row)
-    tell_signs(project, canvas, box)
+    link_marks.tell_signs(project, canvas, box)
     y = box.y1
     for text, rows in tables:
         canvas.text(complex(box.centre.real, y - 5.5), text, 3.5, "centre")
-        columns = len(rows[0])
-        first = 0.12 if columns > 3 else 0.3
-        widths = [first] + [(1 - first) / (columns - 1)] * (columns - 1)
-        widths = widened([w * box.width for w in widths], rows, height)
-        drawn = canvas.table(complex(box.x0, y - title), widths, rows, row, height)
-        y = drawn.y0
+        first = (0.12 if len(rows[0]) > 3 else 0.3) * box.width
+        y = graphs.table_in(canvas, Box(box.x0, y - title - row * len(rows), box.x1, y - title), rows, row, [first]).y0
 
 
 def values_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
@@ -63,7 +67,8 @@ def _points(project: Project) -> list[list[str]]:
     names = [name for name in study.positions.points if name not in m.fixed and name in study.velocities.points]
     speed, acceleration = study.velocities.points, study.accelerations.points
     of_speed, of_acceleration = (size((step.value for step in of.values()), k) for of in (speed, acceleration))
-    cells = [[indexed(name), _size(speed[name], k, of_speed), _size(acceleration[name], k, of_acceleration)] for name in names]
+    cells = [[link_marks.indexed(name), _size(speed[name], k, of_speed), _size(acceleration[name], k, of_acceleration)]
+             for name in names]
     half = (len(cells) + 1) // 2
     head = [tr("Point"), tr("V, m/s"), tr("a, m/s²")]
     return [head * 2, *([*left, *right] for left, right in zip(cells[:half], [*cells[half:], ["", "", ""]], strict=False))]
@@ -96,7 +101,7 @@ def _loads(project: Project) -> list[list[str]]:
         unit = tr("N") if load.point is not None else tr("N·m")
         data = tr_in("load", "taken") if written[load.name].accepted else tr_in("load", "given")
         value = float(np.ravel(load.magnitude(turned))[0])
-        rows.append([indexed(load.name), f"{number(value)} {unit}", data])
+        rows.append([link_marks.indexed(load.name), f"{number(value)} {unit}", data])
     return rows
 
 
@@ -107,3 +112,333 @@ def _size(step: Step | None, k: int, kind: float) -> str:
 def _signed(step: Step | None, k: int, kind: float, sense: float) -> str:
     """A number with its sign."""
     return "−" if step is None else number(sense * float(np.real(step.at(k))), kind=kind)
+
+
+ROWS = (7.0, 6.4, 5.6, 4.6)
+"""Heights of the rows that are tried, mm."""
+BESIDE = (1, 2, 3)
+"""How many quantities may stand in one row."""
+HEAD = 8.0
+"""Height of the title over the table, mm."""
+ROOMY = 8.0
+"""What a column is wider than its widest text, mm."""
+
+Rows = list[list[str]]
+
+UNITS = {"deg": "°", **{unit.replace(" ", "").replace("·", "").replace("²", "2"): unit for unit in (
+    marked("m"), marked("mm"), marked("cm"), marked("kg"), marked("kg·m²"), marked("N"), marked("kN"), marked("N·m"),
+    marked("kN·m"), marked("rad/s"), marked("rpm"), marked("m/s"), marked("MPa"), marked("kW"))}}
+"""How the units of a task are written on paper, by their common spelling; others stand as they are."""
+
+
+def links_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the table can do with, mm; none where a mechanism has no length of its own."""
+    return [size for size, _, _ in _forms(project)]
+
+
+def links(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """What the task gives as it prints it.
+
+    Where the file does not say: where the fixed hinges are, lengths in the order in which the links are put together, then masses
+    and moments of inertia.
+    """
+    _, rows, row = next(form for form in _forms(project) if form[0][0] <= box.width + 1e-6 and form[0][1] <= box.height + 1e-6)
+    height = size_in(row)
+    widths = needs(rows, height, ROOMY)
+    spare = max(box.width - sum(widths), 0.0) / len(widths)
+    canvas.text(complex(box.centre.real, box.y1 - 5.5), _title(project), 3.5, "centre")
+    canvas.table(complex(box.x0, box.y1 - HEAD), [w + spare for w in widths], rows, row, height)
+
+
+def _title(project: Project) -> str:
+    if project.given:
+        return tr("Given data")
+    return tr("Given sizes and masses") if any(link.mass for link in project.mechanism.links.values()) else tr("Given sizes")
+
+
+def _forms(project: Project) -> Iterator[tuple[tuple[float, float], Rows, float]]:
+    """Size on paper, rows and their height, of the forms of the table: the clearest first."""
+    cells, title = [[symbol, value] for symbol, value in _quantities(project)], _title(project)
+    if not cells:
+        return
+    for row, beside in product(ROWS, BESIDE):
+        count = -(-len(cells) // beside)
+        columns = [cells[n * count:(n + 1) * count] for n in range(beside)]
+        lines = [[text for column in columns for text in (column[i] if i < len(column) else ["", ""])] for i in range(count)]
+        rows = [[tr("Quantity"), tr("Value")] * beside, *lines]
+        width = max(sum(needs(rows, size_in(row), ROOMY)), letter(title, 3.5).width + 4.0)
+        yield (width, HEAD + row * len(rows)), rows, row
+
+
+def _quantities(project: Project) -> Iterator[tuple[str, str]]:
+    """Letters with unit, and number: as the task prints them, or of frame and links, where a synthesis may have found them.
+
+    Of the latter nothing that is zero.
+    """
+    if project.given:
+        for given in project.given:
+            yield ", ".join(filter(None, (given.symbol, tr(UNITS.get(given.unit, given.unit))))), written(given.number)
+        return
+    m = project.mechanism
+    lengths: list[Any] = [m.crank.length]
+    for g in m.groups:
+        lengths += [*g.lengths, g.offset, *getattr(g, "sides", ()), *(leg.length for leg in getattr(g, "legs", ()))]
+    lengths += [p.distance for p in m.points]
+    given_of_input: list[Any] = [] if m.drive is None else [*m.drive.place, m.drive.speed, m.drive.acceleration]
+    for name, at in ((name, at) for name, at in m.fixed.items() if name in link_marks.drawn_points(project.study.positions)):
+        for axis, value in (("x", at.real), ("y", at.imag)):
+            if not is_zero(value, float(m.crank.length)):
+                yield f"{axis}_{{{name}}}, {tr('m')}", number(value)
+    links = sorted(m.links.values(), key=lambda link: (len(link.name), link.name))
+    of_links = [getattr(link, name) for name in ("mass", "inertia") for link in links]
+    for unit, values in ((tr("m"), lengths), (None, given_of_input), (None, of_links)):
+        for value in values:
+            given = getattr(value, "step", value)  # one that a synthesis found has the letters of its step
+            if value and getattr(given, "symbol", ""):
+                units = {"kg": tr("kg"), "kg*m2": tr("kg·m²"), "m": tr("m"), "m/s": tr("m/s"), "m/s2": tr("m/s²")}
+                # The other way along its line is no length.
+                yield f"{given.symbol}, {unit or units[given.unit]}", number(abs(float(value)))
+
+
+MOST = 14
+"""Most columns that can be read at a glance."""
+
+Columns = list[tuple[str, Any]]
+
+
+def accelerations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the table of accelerations can do with, mm."""
+    return _sizes(project, *_accelerations(project))
+
+
+def accelerations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Accelerations of the moving points, m/s^2, and angular ones of the links, s^-2, at all positions."""
+    title, columns = _accelerations(project)
+    _table(project, canvas, box, title, columns)
+    if any(name.startswith("ε") for name, _ in columns):
+        link_marks.tell_signs(project, canvas, box)
+
+
+def reactions_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the table of reactions can do with, mm."""
+    return _sizes(project, *_reactions(project))
+
+
+def reactions(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Magnitudes of the reactions in all pairs, N, at all positions."""
+    _table(project, canvas, box, *_reactions(project))
+
+
+def _accelerations(project: Project) -> tuple[str, Columns]:
+    acc = project.study.accelerations
+    sizes = [(f"a_{{{name}}}", np.abs(step.value)) for name, step in acc.points.items() if np.ndim(step.value)]
+    found: Columns = [(name, v) for name, v in sizes if not np.allclose(v, v[0])]  # that of the crank pin is the same everywhere
+    # That of the crank stands in the table of its running, there positive in its sense.
+    crank, speed = project.mechanism.crank.link, project.mechanism.crank.speed
+    turning = [(f"ε_{link}", np.real(step.value)) for link, step in acc.epsilon.items() if np.ndim(step.value) and link != crank]
+    size = max((float(np.nanmax(np.abs(v))) for _, v in turning), default=0.0) + speed**2  # where none but rounding turns them
+    found += [(name, v) for name, v in turning if not is_zero(np.abs(v).max(), size)]
+    return tr("Accelerations of the points, m/s², and of the links, s^{−2}"), found
+
+
+def _reactions(project: Project) -> tuple[str, Columns]:
+    pairs: dict[frozenset[str], tuple[str, Any]] = {}
+    for name, step in project.study.forces.reactions.items():
+        # A pair has one reaction and its opposite: the first that the force analysis finds stands for both.
+        links = frozenset(name[1:].split(",") if "," in name else name[1:])
+        pairs.setdefault(links, (link_marks.indexed(name), np.abs(step.value)))
+    return tr("Reactions in the pairs, N"), [pair for pair in pairs.values() if np.ndim(pair[1])]
+
+
+def _cells(project: Project, columns: Columns, digits: int) -> list[list[str]]:
+    numbers = [graphs.column(values, digits) for _, values in columns]
+    return [[tr("No."), *(name for name, _ in columns)],
+            *([label, *(column[i] for column in numbers)] for i, label in project.cycle.drawn)]
+
+
+def _sizes(project: Project, title: str, columns: Columns) -> list[tuple[float, float]]:
+    if not 0 < len(columns) <= MOST or not all(np.isfinite(values).all() for _, values in columns):
+        return []
+    return listed.upright_sizes(title, _cells(project, columns, 4))
+
+
+def _table(project: Project, canvas: Canvas, box: Box, title: str, columns: Columns) -> None:
+    listed.draw_upright(canvas, box, title, _cells(project, columns, 4))
+
+
+COLUMNS = 7
+"""So many columns the table of lengths has in about half of the place; with more it shares the width with that of speeds."""
+WIDE = 19.0
+"""Width of a column of the table of lengths, mm: that of a number in letters of 3.5 mm."""
+FOLD = 6.0
+"""Distance of the parts of a table side by side, mm."""
+LOWEST = 3.9
+"""Height of a row, mm, below which letters of 2.5 mm touch its lines."""
+
+
+def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Tables of measured segments and of velocities over all positions (manual 000, tables 3.2 and 3.3)."""
+    vel, cycle = project.study.velocities, project.cycle
+    varying: list[tuple[Segment, Any]] = []
+    constant: list[tuple[Segment, Any]] = []
+    for seg in vel.plan.segments:
+        value = np.broadcast_to(vel.plan.length(seg.tail, seg.head).value, (len(cycle.labels),))
+        (constant if np.allclose(value, value[0]) else varying).append((seg, value))
+    linear: dict[str, Any] = {}
+    for seg, value in varying:
+        linear.setdefault(seg.symbol.replace("\u0305", ""), value)
+    m = project.mechanism
+    turning = [(f"ω_{link}", m.shown_sense(link) * w.value) for link, w in vel.omega.items()
+               if np.ndim(w.value) and link in vel.reference]
+    speeds = [*linear.items(), *turning]
+    stacked = bool(options.get("stacked"))
+    mu = _factors(project, canvas)
+    if np.ptp(mu):  # what is constant is not so on paper
+        varying, constant = [*constant, *varying], []
+    lengths = _measured_lengths(project, canvas, varying, [link.removeprefix("ω_") for link, _ in turning])
+    width = box.width - 30.0
+    lying = kinematic_frames.COLUMN * (max(len(lengths), len(speeds)) if stacked else len(lengths) + len(speeds)) > width
+    folds = 1 if lying or stacked else _folds(box, len(cycle.drawn), len(lengths), len(speeds))
+    # Tables that lie down have the same columns.
+    left, right = _table_places(box, len(speeds) if lying and lengths else len(lengths), len(speeds), stacked=stacked, folds=folds)
+    if lengths:
+        said = [f"{_segment(seg.tail, seg.head)} = {fixed(float(value[0] / mu[0]), 1)}" for seg, value in constant]
+        title = "; ".join([tr("Lengths of the segments, mm"), *said])
+        _table_over_positions(project, canvas, left, title, lengths, 1, lying=lying, folds=folds)
+    if speeds:
+        title = tr("Linear, m/s, and angular, rad/s, velocities") if turning else tr("Linear velocities, m/s")
+        if turning:
+            link_marks.tell_signs(project, canvas, box)
+        _table_over_positions(project, canvas, right, title, speeds, 3, lying=lying, folds=folds)
+
+
+def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segment, Any]],
+                      turning: list[str]) -> list[tuple[str, Any]]:
+    """Captions and lengths, mm, of the segments to be measured.
+
+    They are what the speeds come from: the vectors of the plans, and the segments that the links ``turning`` have there.
+    """
+    lengths = _lengths_on_rockers(project, canvas)
+    mu, vel = _factors(project, canvas), project.study.velocities
+    drawn = {_segment(seg.tail, seg.head): value / mu for seg, value in varying}
+    for q, b in (vel.reference[link][2:] for link in turning):
+        if _segment(q, b) not in drawn and _segment(b, q) not in drawn:
+            drawn[_segment(q, b)] = np.abs(np.asarray(b.value) - np.asarray(q.value)) / mu
+    lengths += [(name, v) for name, v in drawn.items() if not any(np.allclose(v, w) for _, w in lengths)]
+    return lengths
+
+
+def _factors(project: Project, canvas: Canvas) -> NDArray[np.float64]:
+    """Scale factor of the velocity plan of each position of the cycle."""
+    drawn = kinematic_frames.factors_of(canvas.frames, project.study.velocities.plan)
+    return np.array([drawn.get(i, canvas.scales["velocities"].mu) for i in range(len(project.cycle.labels))])
+
+
+def _segment(tail: Step, head: Step) -> str:
+    return f"|{link_marks.indexed(tail.name)}{link_marks.indexed(head.name)}|"
+
+
+def _lengths_on_rockers(project: Project, canvas: Canvas) -> list[tuple[str, Any]]:
+    """Segments of rockers with a slot: the coincident point's velocity, the way to the block, velocities of carried hinges."""
+    vel = project.study.velocities
+    pos = vel.positions
+    mu_v, mu_l = _factors(project, canvas), canvas.scales["positions"]
+    pole = vel.plan[str(vel.plan.pole)]
+    lengths: list[tuple[str, Any]] = []
+    hinges = {name for g in pos.mechanism.groups for name in g.outer}
+    for g in pos.mechanism.groups:
+        if (j := g.kind.rocker(g)) is not None:
+            p, q = g.outer
+            coincident = vel.plan.length(pole, vel.coincident[on_link(p, j)])
+            lengths.append((f"|p{link_marks.indexed(on_link(p.lower(), j))}|", coincident.value / mu_v))
+            lengths.append((f"{q}{p}", pos.plan.length(pos.points[q], pos.points[p]).value / mu_l.mu))
+            carried = [x.name for x in pos.mechanism.points if x.link == j and x.name in hinges]
+            lengths += [(f"|{q.lower()}{link_marks.indexed(x.lower())}|", vel.plan.length(pole, vel.points[x]).value / mu_v)
+                        for x in carried]
+    return lengths
+
+
+def _folds(box: Box, positions: int, *columns: int) -> int:
+    """Parts of the tables side by side: two, where so many rows are too low for the usual letters and the columns leave room."""
+    wide = sum(2 * (10.0 + WIDE * count) + FOLD for count in columns) + 10.0
+    return 2 if size_in(_row(box, positions)) < 3.5 and wide <= box.width else 1
+
+
+def _row(place: Box, positions: int) -> float:
+    return min((place.height - 15.0) / (positions + 2), 7.5)
+
+
+def _table_places(box: Box, columns: int, speeds: int, *, stacked: bool, folds: int) -> tuple[Box, Box]:
+    """Places of the tables of lengths and of speeds with so many columns; the second has all of it without any of the first."""
+    if not columns:
+        return box, box
+    if stacked:
+        middle = (box.y0 + box.y1) / 2
+        return Box(box.x0, middle + 2.0, box.x1, box.y1), Box(box.x0, box.y0, box.x1, middle - 2.0)
+    few = (0.45 * box.width - 10.0) / columns if columns <= COLUMNS else 0.0
+    one = min(WIDE, max(few, (box.width - 30.0) / (columns + speeds)))
+    left = Box(box.x0, box.y0, box.x0 + folds * (10.0 + one * columns) + (folds - 1) * FOLD, box.y1)
+    return left, Box(left.x1 + 10.0, box.y0, box.x1, box.y1)
+
+
+NOTHING = 1e-4
+"""Share of the greatest number of a table below which a column shows that it is nothing."""
+
+
+def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: str, columns: list[tuple[str, Any]],
+                          decimals: int, *, lying: bool = False, folds: int = 1) -> None:
+    """A column for each quantity, a row for each position that is drawn; the other way round ``lying``; a dash for no number.
+
+    In so many ``folds`` side by side.
+
+    ``decimals`` unless a column's numbers are too small for them, but for those that are nothing beside the others. What has no
+    room at all is named in a remark.
+    """
+    cycle = project.cycle
+    greatest = {name: float(np.nanmax(np.abs(v), initial=0.0)) for name, v in columns}
+    places = {name: decimals_for([size], decimals) if size > NOTHING * max(greatest.values()) else decimals
+              for name, size in greatest.items()}
+    cells = [[tr("No."), *(name for name, _ in columns)]]
+    cells += [[label, *(fixed(float(v[i]), places[name]) for name, v in columns)]
+              for i, label in cycle.drawn]
+    if lying:
+        cells = [list(row) for row in zip(*cells, strict=True)]
+        room = max(int((place.height - 9.0) / LOWEST), 2)
+        if len(cells) > room:
+            canvas.note(place, tr("The table has no room for {names}").format(names=", ".join(row[0] for row in cells[room:])))
+            cells = cells[:room]
+    each = ceil((len(cells) - 1) / folds)
+    row = min((place.height - 9.0) / len(cells), 7.5) if lying else _row(place, each)
+    # A head that is too long goes on in a second line: beside a larger one nobody reads it.
+    head = [title] if letter(title, 3.5).width <= place.width else [part for part in title.partition("; ")[::2] if part]
+    begin = complex(place.centre.real, place.y1 - (5.0 if len(head) == 1 else 2.2))
+    canvas.lines(begin, head, 5.0, size_for(head, place.width, 3.5), "centre")
+    height, count, width = size_in(row), len(cells[0]) - 1, (place.width - (folds - 1) * FOLD) / folds
+    if sum(needs(cells, height)) > width:
+        height = 2.5  # numbers that touch the lines cannot be read
+    widths = widened([10.0] + [(width - 10.0) / count] * count, cells, height)
+    for fold in range(folds):
+        part = [cells[0], *cells[1 + fold * each : 1 + (fold + 1) * each]]
+        canvas.table(complex(place.x0 + fold * (width + FOLD), place.y1 - 9.0), widths, part, row, height)
+
+
+STRUCTURE = 200.0
+"""Width beyond which the table of groups, of five short columns, is not drawn apart, mm: a row is to be read as one."""
+
+
+def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """Structure of the mechanism: mobility by Chebyshev, formula of structure, Assur groups."""
+    m = project.mechanism
+    moving, pairs = len(m.links), len(m.pairs)
+    spare = max(0.0, box.width - STRUCTURE) / 2
+    box = box.inset(spare, 0.0, spare, 0.0)
+    inside = canvas.title(box, tr("Structure of the mechanism"))
+    lines = (f"W = 3n − 2p_5 − p_4 = 3·{moving} − 2·{pairs} − 0 = {m.mobility}", m.structure)
+    canvas.lines(complex(box.x0 + 2.0, inside.y1 - 6.0), lines, 7.0)
+    if not m.groups:
+        return
+    rows = [[tr("Group"), tr("Class"), tr("Order"), tr("Kind"), tr("Pairs")]]
+    for g, found in zip(reversed(m.groups), decompose(m), strict=True):
+        rows.append([g.lettered, g.kind.roman, str(g.kind.order), found.kind.told(found), ", ".join(found.kind.joints(found))])
+    widths = [0.17, 0.15, 0.2, 0.22, 0.26]
+    canvas.table(complex(box.x0, inside.y1 - 16.5), widened([w * box.width for w in widths], rows, 3.5), rows, 7.0, 3.5)

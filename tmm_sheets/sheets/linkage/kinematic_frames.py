@@ -13,18 +13,18 @@ from numpy.typing import NDArray
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import Scale, coarser, handy, reach
-from tmm_sheets.drawing.marks import Points
+from tmm_sheets.drawing.marks import PlacedFrame, Points
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.remarks import Remark
-from tmm_sheets.sheets.floors import LETTERED
-from tmm_sheets.sheets.frame import SHORTEST, PlanFrame, ScaleBook, extent, fit_frame, pick, raised, together
-from tmm_sheets.sheets.linkage import indicator, link_marks
+from tmm_sheets.sheets.border_solver import LETTERED
+from tmm_sheets.sheets.linkage import link_marks
+from tmm_sheets.sheets.player import SHORTEST, PlanFrame, ScaleBook, extent, fit_frame, pick, raised, together
 from tmm_sheets.words import marked_n, tell, tell_n, tr
 
 if TYPE_CHECKING:
     from tmm_sheets.construction.plan import Plan
     from tmm_sheets.project import Project
-    from tmm_sheets.sheets.arrangement import ViewPlace
+    from tmm_sheets.sheets.views import ViewPlace
 
 GRAPH = 48.0
 """Height kept free over the position plans for the force graph, mm."""
@@ -100,6 +100,8 @@ def positions_around(project: Project, options: dict[str, Any]) -> tuple[float, 
 
 def positions_reach(project: Project) -> tuple[Points, Points]:
     """Points of all position plans and of the way of the crank pin, m, and what sticks out of each on paper, mm."""
+    from tmm_sheets.sheets.linkage import diagrams  # sheets without a linkage do not wait for it
+
     pos = project.study.positions
     m, c = pos.mechanism, pos.mechanism.crank
     beside = np.asarray([16.0 + 0j, -16.0, 9.0j, -9.0j])
@@ -127,7 +129,7 @@ def positions_reach(project: Project) -> tuple[Points, Points]:
     for end in (np.ravel(end.at) for ends in link_marks.free_ends(pos).values() for end in ends):
         z.append(end)
         d.append(np.full(len(end), 1j))
-    at_indicator, reach = indicator.reach(project)
+    at_indicator, reach = diagrams.indicator_reach(project)
     z.append(np.asarray(at_indicator))
     d.append(np.asarray(reach))
     return np.concatenate(z), np.concatenate(d)
@@ -307,6 +309,12 @@ def velocity_spans(project: Project, options: dict[str, Any]) -> tuple[list[Box]
     shares = [one / mu for one in own_factors(_sizes(real), mu)]
     enlarged = [Box(*(x / share for x in s)) for s, share in zip(real, shares, strict=True)]
     return enlarged, max(longest(plan, [i]) / share for i, share in zip(shown, shares, strict=True))
+
+
+def factors_of(frames: Sequence[PlacedFrame], plan: Plan) -> dict[int, float]:
+    """Scale factors of a plan by the positions it is drawn at, those it has first."""
+    return {plan.labels.index(frame.position) if frame.position else 0: frame.mu[1]
+            for frame in reversed(frames) if frame.plan == plan.name and not frame.turn}
 
 
 COLUMN = 12.5

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterator, Sequence
 from itertools import pairwise
-from math import ceil, degrees, pi
+from math import degrees, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tmm_sheets.construction.indices import on_link
 from tmm_sheets.construction.scale import Scale, handy, times
 from tmm_sheets.drawing import symbols
 from tmm_sheets.drawing.canvas import SMALLEST, Align, Canvas
@@ -18,25 +16,21 @@ from tmm_sheets.drawing.evenness import dense
 from tmm_sheets.drawing.ink import segment_inside
 from tmm_sheets.drawing.ink_index import STRONG, distance
 from tmm_sheets.drawing.lettering import letter, size_for
-from tmm_sheets.drawing.marks import Box, PlacedFrame, Points, Text
-from tmm_sheets.drawing.text_layout import TOGETHER, needs, size_in, widened
-from tmm_sheets.mechanism.structure import decompose
-from tmm_sheets.numbers import decimals_for, fixed, is_zero, number
+from tmm_sheets.drawing.marks import Box, Points, Text
+from tmm_sheets.drawing.text_layout import TOGETHER
+from tmm_sheets.numbers import is_zero, number
+from tmm_sheets.sheets.border_solver import LETTERED, VECTOR
 from tmm_sheets.sheets.components import flat_crossings, graphs
-from tmm_sheets.sheets.floors import LETTERED, VECTOR
-from tmm_sheets.sheets.frame import SHORTEST, PlanFrame, joined, pick, together
-from tmm_sheets.sheets.linkage import indicator, kinematic_frames, link_marks
-from tmm_sheets.sheets.player import PlayerStage, play, stage
+from tmm_sheets.sheets.linkage import diagrams, kinematic_frames, link_marks
+from tmm_sheets.sheets.player import SHORTEST, PlanFrame, PlayerStage, joined, pick, play, stage, together
 from tmm_sheets.words import tr, tr_in
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan, Segment
-    from tmm_sheets.construction.step import Step
+    from tmm_sheets.construction.plan import Segment
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.methods.linkage.cycle import Cycle
     from tmm_sheets.methods.linkage.positions import Positions
     from tmm_sheets.project import Project
-
 
 def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
     """Combined position plans with path marks and the force graph over the path."""
@@ -61,7 +55,7 @@ def position_plans(project: Project, canvas: Canvas, box: Box, options: dict[str
     link_marks.draw_guides(s, pos)
     link_marks.draw(s, pos, "main")
     canvas.of = of
-    indicator.draw(project, every)
+    diagrams.draw_indicators(project, every)
     _position_numbers(project, s)
     _point_letters(project, s)
     link_marks.number_links(s, pos)
@@ -450,7 +444,9 @@ def _force_graph(project: Project, s: PlayerStage, box: Box, below: bool) -> Non
     inward, outward = _SIDES[::u]
     rear, edge = (box.x0, box.x1)[::u]
     room = edge - u * (1.5 + letter(ways, 3.5).width)
-    enlarged = _enlargement(abs(b - a))
+    # As many times as long as on the plans as it takes to be read (GOST 2.302).
+    stroke, enlargements = abs(b - a), (2.0, 2.5, 4.0, 5.0, 10.0, 20.0, 40.0)
+    enlarged = 1.0 if stroke >= READABLE else next((t for t in enlargements if t * stroke >= READABLE), 50.0)
     start = a if enlarged == 1 else _nearer(rear, (a + b - enlarged * (b - a)) / 2, room - 14.0 * u - enlarged * (b - a))
 
     def along(x: Any) -> Any:
@@ -522,11 +518,6 @@ def _held(cycle: Cycle, turned: Any) -> str:
 
 READABLE = 40.0
 """Length of a stroke on the plans, mm, below which its graph of forces has an abscissa of its own."""
-
-
-def _enlargement(stroke: float) -> float:
-    """How many times as long as on the plans, where it is so many mm, a stroke is under its graph (GOST 2.302)."""
-    return 1.0 if stroke >= READABLE else next((t for t in (2.0, 2.5, 4.0, 5.0, 10.0, 20.0, 40.0) if t * stroke >= READABLE), 50.0)
 
 
 _SIDES: tuple[Align, Align] = ("right", "left")
@@ -646,16 +637,10 @@ def _place_of_sign(s: PlayerStage, seg: Segment) -> complex:
 
     def room(t: float) -> float:
         z = begin + t * (b - begin)
-        return min((_distance(z, p, q) for p, q in across), default=size)
+        return min((float(distance(np.array([p]), np.array([q]), z)[0]) for p, q in across), default=size)
 
     best = max((0.5, 0.42, 0.58, 0.34, 0.66), key=lambda t: min(room(t), 0.08 * size))
     return begin + best * (b - begin)
-
-
-def _distance(z: complex, p: complex, q: complex) -> float:
-    """Distance of a point from the segment p .. q."""
-    t = ((z - p) * np.conj(q - p)).real / abs(q - p) ** 2 if q != p else 0.0
-    return abs(z - p - min(max(t, 0.0), 1.0) * (q - p))
 
 
 def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -664,8 +649,12 @@ def acceleration_plan(project: Project, canvas: Canvas, box: Box, options: dict[
     frame = kinematic_frames.accelerations(project, canvas, box)
     canvas.title(box, kinematic_frames.title_of_accelerations(project, k), str(frame.scale))
     flat_crossings.warn(project, canvas, box, acc.plan)
-    tiny = _draw_plan(stage(canvas, acc.plan, k, frame), "π", symbols_at=True)
-    if tiny:
+    _signed_plan(canvas, box, stage(canvas, acc.plan, k, frame), "π")
+
+
+def _signed_plan(canvas: Canvas, box: Box, s: PlayerStage, pole: str) -> None:
+    """A plan with the signs of its vectors; those too short to be drawn are told beside it."""
+    if tiny := _draw_plan(s, pole, symbols_at=True):
         canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
 
 
@@ -678,7 +667,7 @@ def second_accelerations_sizes(project: Project, canvas: Canvas, options: dict[s
     if not longest > 0:
         return []
     # Wide enough for a title as the other plans have it, if there is room.
-    titled = letter(kinematic_frames.title_of_accelerations(project, kinematic_frames.other_stroke(project)), 5.0).width + 0.1
+    titled = letter(kinematic_frames.title_of_accelerations(project, i), 5.0).width + 0.1
     places = [(size * real.width / longest + left + right + 12.0, size * real.height / longest + below + above + 10.0)
               for size in (120.0, 100.0, 80.0)
               if kinematic_frames.longest(plan, [i]) >= VECTOR.least * handy(longest / size) * (1 - 1e-6)
@@ -693,15 +682,7 @@ def second_accelerations(project: Project, canvas: Canvas, box: Box, options: di
     inside = box.inset(*kinematic_frames.ACCELERATIONS).inset(6.0, 5.0, 6.0, 5.0)
     scale = Scale("μ_a", handy(_need(real, inside)), tr("(m/s²)/mm"))
     canvas.title(box, kinematic_frames.title_of_accelerations(project, k), str(scale))
-    tiny = _draw_plan(stage(canvas, acc.plan, k, PlanFrame(scale, inside.centre - scale.mm(real.centre))), "π", symbols_at=True)
-    if tiny:
-        canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
-
-
-def factors_of(frames: Sequence[PlacedFrame], plan: Plan) -> dict[int, float]:
-    """Scale factors of a plan by the positions it is drawn at, those it has first."""
-    return {plan.labels.index(frame.position) if frame.position else 0: frame.mu[1]
-            for frame in reversed(frames) if frame.plan == plan.name and not frame.turn}
+    _signed_plan(canvas, box, stage(canvas, acc.plan, k, PlanFrame(scale, inside.centre - scale.mm(real.centre))), "π")
 
 
 SMALL = 30.0
@@ -717,7 +698,7 @@ def enlarged_velocities_sizes(project: Project, canvas: Canvas, options: dict[st
     """
     plan, k = project.study.velocities.plan, project.force_index
     real = kinematic_frames.plan_extent(plan, k)
-    drawn_with = factors_of(canvas.frames, plan)
+    drawn_with = kinematic_frames.factors_of(canvas.frames, plan)
     if (mu := drawn_with.get(k)) is None or (drawn := max(real.width, real.height) / mu) < SHORTEST:
         return []
     if drawn >= SMALL and max(kinematic_frames.longest(plan, [i]) / own for i, own in drawn_with.items()) >= VECTOR.least:
@@ -746,10 +727,7 @@ def enlarged_velocities(project: Project, canvas: Canvas, box: Box, options: dic
     said = tr("{scale} (enlarged {times})").format(scale=scale, times=times(larger))
     canvas.title(box, tr("Velocity polygon, position {label}").format(label=project.cycle.labels[k]),
                  said if letter(said, 5.0).width <= box.width - 2.0 else str(scale))
-    frame = PlanFrame(scale, inside.centre - scale.mm(real.centre))
-    tiny = _draw_plan(stage(canvas, plan, k, frame), "p", symbols_at=True)
-    if tiny:
-        canvas.note(box, tr("Less than 1{space}mm, ≈{space}0: {vectors}").format(space=TOGETHER, vectors=""), tiny)
+    _signed_plan(canvas, box, stage(canvas, plan, k, PlanFrame(scale, inside.centre - scale.mm(real.centre))), "p")
 
 
 def _need(real: Box, inside: Box) -> float:
@@ -758,179 +736,88 @@ def _need(real: Box, inside: Box) -> float:
     return max(asks / has for asks, has in ((real.width, inside.width), (real.height, inside.height)) if asks > nothing)
 
 
-COLUMNS = 7
-"""So many columns the table of lengths has in about half of the place; with more it shares the width with that of speeds."""
-WIDE = 19.0
-"""Width of a column of the table of lengths, mm: that of a number in letters of 3.5 mm."""
-FOLD = 6.0
-"""Distance of the parts of a table side by side, mm."""
-LOWEST = 3.9
-"""Height of a row, mm, below which letters of 2.5 mm touch its lines."""
+PLANS = "kinematics.position_plans"
+SHARED = 4
+"""So many marks that have no number of their own on the plans are a crowd."""
+PATH_ENLARGED = (100.0, 50.0, 40.0, 20.0, 10.0, 5.0, 4.0, 2.5, 2.0)
+"""Enlargements (GOST 2.302), the most welcome first."""
+SHORTEST_PATH, LONGEST_PATH = 60.0, 260.0
+"""Length of the path in the view, mm, below which its numbers crowd still, and beyond which it takes too much of a sheet."""
+BEYOND_PATH, BESIDE_PATH, HEAD_PATH = 10.0, 9.0, 16.0
+"""Room beyond the ends of the path, beside it for the numbers, over it for the title, mm."""
 
 
-def velocity_tables(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Tables of measured segments and of velocities over all positions (manual 000, tables 3.2 and 3.3)."""
-    vel, cycle = project.study.velocities, project.cycle
-    varying: list[tuple[Segment, Any]] = []
-    constant: list[tuple[Segment, Any]] = []
-    for seg in vel.plan.segments:
-        value = np.broadcast_to(vel.plan.length(seg.tail, seg.head).value, (len(cycle.labels),))
-        (constant if np.allclose(value, value[0]) else varying).append((seg, value))
-    linear: dict[str, Any] = {}
-    for seg, value in varying:
-        linear.setdefault(seg.symbol.replace("\u0305", ""), value)
-    m = project.mechanism
-    turning = [(f"ω_{link}", m.shown_sense(link) * w.value) for link, w in vel.omega.items()
-               if np.ndim(w.value) and link in vel.reference]
-    speeds = [*linear.items(), *turning]
-    stacked = bool(options.get("stacked"))
-    mu = _factors(project, canvas)
-    if np.ptp(mu):  # what is constant is not so on paper
-        varying, constant = [*constant, *varying], []
-    lengths = _measured_lengths(project, canvas, varying, [link.removeprefix("ω_") for link, _ in turning])
-    width = box.width - 30.0
-    lying = kinematic_frames.COLUMN * (max(len(lengths), len(speeds)) if stacked else len(lengths) + len(speeds)) > width
-    folds = 1 if lying or stacked else _folds(box, len(cycle.drawn), len(lengths), len(speeds))
-    # Tables that lie down have the same columns.
-    left, right = _table_places(box, len(speeds) if lying and lengths else len(lengths), len(speeds), stacked=stacked, folds=folds)
-    if lengths:
-        said = [f"{_segment(seg.tail, seg.head)} = {fixed(float(value[0] / mu[0]), 1)}" for seg, value in constant]
-        title = "; ".join([tr("Lengths of the segments, mm"), *said])
-        _table_over_positions(project, canvas, left, title, lengths, 1, lying=lying, folds=folds)
-    if speeds:
-        title = tr("Linear, m/s, and angular, rad/s, velocities") if turning else tr("Linear velocities, m/s")
-        if turning:
-            link_marks.tell_signs(project, canvas, box)
-        _table_over_positions(project, canvas, right, title, speeds, 3, lying=lying, folds=folds)
+def enlarged_path_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
+    """Places that the enlarged path can do with, mm; none where every mark has its number on the plans."""
+    name = _crowded(project, canvas)
+    if name is None:
+        return []
+    span, title = _span(project, canvas, name), letter(_title_of_path(name), 5.0).width
+    return [(max(times * span + 2 * BEYOND_PATH, title + 4.0), HEAD_PATH + 2 * BESIDE_PATH + 2.0) for times in PATH_ENLARGED
+            if SHORTEST_PATH <= times * span <= LONGEST_PATH]
 
 
-def _measured_lengths(project: Project, canvas: Canvas, varying: list[tuple[Segment, Any]],
-                      turning: list[str]) -> list[tuple[str, Any]]:
-    """Captions and lengths, mm, of the segments to be measured.
-
-    They are what the speeds come from: the vectors of the plans, and the segments that the links ``turning`` have there.
-    """
-    lengths = _lengths_on_rockers(project, canvas)
-    mu, vel = _factors(project, canvas), project.study.velocities
-    drawn = {_segment(seg.tail, seg.head): value / mu for seg, value in varying}
-    for q, b in (vel.reference[link][2:] for link in turning):
-        if _segment(q, b) not in drawn and _segment(b, q) not in drawn:
-            drawn[_segment(q, b)] = np.abs(np.asarray(b.value) - np.asarray(q.value)) / mu
-    lengths += [(name, v) for name, v in drawn.items() if not any(np.allclose(v, w) for _, w in lengths)]
-    return lengths
-
-
-def _factors(project: Project, canvas: Canvas) -> NDArray[np.float64]:
-    """Scale factor of the velocity plan of each position of the cycle."""
-    drawn = factors_of(canvas.frames, project.study.velocities.plan)
-    return np.array([drawn.get(i, canvas.scales["velocities"].mu) for i in range(len(project.cycle.labels))])
+def enlarged_path(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
+    """The marks of the path with all their numbers; on the plans only those at its ends keep theirs."""
+    name = _crowded(project, canvas)
+    assert name is not None
+    pos, plain = project.study.positions, canvas.scales["positions"]
+    span = _span(project, canvas, name)
+    times = next(t for t in PATH_ENLARGED if t * span <= LONGEST_PATH and t * span + 2 * BEYOND_PATH <= box.width + 1e-6)
+    scale = Scale(plain.symbol, float(f"{plain.mu / times:.6g}"), plain.unit)
+    _thin_out(project, canvas, name)
+    canvas.title(box, _title_of_path(name), str(scale))
+    along = _along(project, name)
+    z = scale.mm(np.asarray(pos.points[name].value)) / along
+    middle = complex(z.real.min() + z.real.max(), z.imag.min() + z.imag.max()) / 2
+    at = complex(box.centre.real, box.y0 + BESIDE_PATH + 1.0)
+    s = stage(canvas, pos.plan, None, PlanFrame(scale, at - middle, turn=-float(np.angle(along))))
+    half = float(np.ptp(z.real)) / 2 + BEYOND_PATH - 2.0
+    s.pen(pos.points[name], "axis").line(at - half, at + half, "centre")
+    own_path(project, s, name, 1j)
 
 
-def _segment(tail: Step, head: Step) -> str:
-    return f"|{link_marks.indexed(tail.name)}{link_marks.indexed(head.name)}|"
+def _title_of_path(name: str) -> str:
+    return tr("Positions of point {point} on its path").format(point=link_marks.indexed(name))
 
 
-def _lengths_on_rockers(project: Project, canvas: Canvas) -> list[tuple[str, Any]]:
-    """Segments of rockers with a slot: the coincident point's velocity, the way to the block, velocities of carried hinges."""
-    vel = project.study.velocities
-    pos = vel.positions
-    mu_v, mu_l = _factors(project, canvas), canvas.scales["positions"]
-    pole = vel.plan[str(vel.plan.pole)]
-    lengths: list[tuple[str, Any]] = []
-    hinges = {name for g in pos.mechanism.groups for name in g.outer}
-    for g in pos.mechanism.groups:
-        if (j := g.kind.rocker(g)) is not None:
-            p, q = g.outer
-            coincident = vel.plan.length(pole, vel.coincident[on_link(p, j)])
-            lengths.append((f"|p{link_marks.indexed(on_link(p.lower(), j))}|", coincident.value / mu_v))
-            lengths.append((f"{q}{p}", pos.plan.length(pos.points[q], pos.points[p]).value / mu_l.mu))
-            carried = [x.name for x in pos.mechanism.points if x.link == j and x.name in hinges]
-            lengths += [(f"|{q.lower()}{link_marks.indexed(x.lower())}|", vel.plan.length(pole, vel.points[x]).value / mu_v)
-                        for x in carried]
-    return lengths
+def _along(project: Project, name: str) -> complex:
+    """Unit vector along the path of a slider, to the right or, of an upright one, upwards."""
+    pos = project.study.positions
+    guide = on_fixed_guides(pos.mechanism)[name]
+    u = complex(pos.guide_directions[guide].at(0))
+    return u if u.real > 1e-9 or (u.real > -1e-9 and u.imag > 0) else -u
 
 
-def _folds(box: Box, positions: int, *columns: int) -> int:
-    """Parts of the tables side by side: two, where so many rows are too low for the usual letters and the columns leave room."""
-    wide = sum(2 * (10.0 + WIDE * count) + FOLD for count in columns) + 10.0
-    return 2 if size_in(_row(box, positions)) < 3.5 and wide <= box.width else 1
+def _span(project: Project, canvas: Canvas, name: str) -> float:
+    """Length of a path on the plans, mm."""
+    z = np.asarray(project.study.positions.points[name].value)
+    mu: float = canvas.scales["positions"].mu
+    return float(np.abs(z[:, None] - z).max()) / mu
 
 
-def _row(place: Box, positions: int) -> float:
-    return min((place.height - 15.0) / (positions + 2), 7.5)
+def _crowded(project: Project, canvas: Canvas) -> str | None:
+    """The slider, alone on its path, whose marks share most numbers on the plans of this sheet; None where hardly any do."""
+    if "positions" not in canvas.scales or PLANS not in {part.draw for part in canvas.parts}:
+        return None
+    guides, drawn = on_fixed_guides(project.mechanism), [i for i, _ in project.cycle.drawn]
+    found: dict[str, int] = {}
+    for name, guide in guides.items():
+        z = np.asarray(project.study.positions.points[name].value) / canvas.scales["positions"].mu
+        if list(guides.values()).count(guide) == 1 and z.ndim:
+            shared = (crowd for marks in by_stroke(project, name, drawn) for crowd in crowds(marks, z))
+            found[name] = sum(len(crowd) - 1 for crowd in shared)
+    worst = max(found, key=lambda name: found[name], default=None)
+    return worst if worst is not None and found[worst] >= SHARED else None
 
 
-def _table_places(box: Box, columns: int, speeds: int, *, stacked: bool, folds: int) -> tuple[Box, Box]:
-    """Places of the tables of lengths and of speeds with so many columns; the second has all of it without any of the first."""
-    if not columns:
-        return box, box
-    if stacked:
-        middle = (box.y0 + box.y1) / 2
-        return Box(box.x0, middle + 2.0, box.x1, box.y1), Box(box.x0, box.y0, box.x1, middle - 2.0)
-    few = (0.45 * box.width - 10.0) / columns if columns <= COLUMNS else 0.0
-    one = min(WIDE, max(few, (box.width - 30.0) / (columns + speeds)))
-    left = Box(box.x0, box.y0, box.x0 + folds * (10.0 + one * columns) + (folds - 1) * FOLD, box.y1)
-    return left, Box(left.x1 + 10.0, box.y0, box.x1, box.y1)
-
-
-NOTHING = 1e-4
-"""Share of the greatest number of a table below which a column shows that it is nothing."""
-
-
-def _table_over_positions(project: Project, canvas: Canvas, place: Box, title: str, columns: list[tuple[str, Any]],
-                          decimals: int, *, lying: bool = False, folds: int = 1) -> None:
-    """A column for each quantity, a row for each position that is drawn; the other way round ``lying``; a dash for no number.
-
-    In so many ``folds`` side by side.
-
-    ``decimals`` unless a column's numbers are too small for them, but for those that are nothing beside the others. What has no
-    room at all is named in a remark.
-    """
-    cycle = project.cycle
-    greatest = {name: float(np.nanmax(np.abs(v), initial=0.0)) for name, v in columns}
-    places = {name: decimals_for([size], decimals) if size > NOTHING * max(greatest.values()) else decimals
-              for name, size in greatest.items()}
-    cells = [[tr("No."), *(name for name, _ in columns)]]
-    cells += [[label, *(fixed(float(v[i]), places[name]) for name, v in columns)]
-              for i, label in cycle.drawn]
-    if lying:
-        cells = [list(row) for row in zip(*cells, strict=True)]
-        room = max(int((place.height - 9.0) / LOWEST), 2)
-        if len(cells) > room:
-            canvas.note(place, tr("The table has no room for {names}").format(names=", ".join(row[0] for row in cells[room:])))
-            cells = cells[:room]
-    each = ceil((len(cells) - 1) / folds)
-    row = min((place.height - 9.0) / len(cells), 7.5) if lying else _row(place, each)
-    # A head that is too long goes on in a second line: beside a larger one nobody reads it.
-    head = [title] if letter(title, 3.5).width <= place.width else [part for part in title.partition("; ")[::2] if part]
-    begin = complex(place.centre.real, place.y1 - (5.0 if len(head) == 1 else 2.2))
-    canvas.lines(begin, head, 5.0, size_for(head, place.width, 3.5), "centre")
-    height, count, width = size_in(row), len(cells[0]) - 1, (place.width - (folds - 1) * FOLD) / folds
-    if sum(needs(cells, height)) > width:
-        height = 2.5  # numbers that touch the lines cannot be read
-    widths = widened([10.0] + [(width - 10.0) / count] * count, cells, height)
-    for fold in range(folds):
-        part = [cells[0], *cells[1 + fold * each : 1 + (fold + 1) * each]]
-        canvas.table(complex(place.x0 + fold * (width + FOLD), place.y1 - 9.0), widths, part, row, height)
-
-
-STRUCTURE = 200.0
-"""Width beyond which the table of groups, of five short columns, is not drawn apart, mm: a row is to be read as one."""
-
-
-def structure(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Structure of the mechanism: mobility by Chebyshev, formula of structure, Assur groups."""
-    m = project.mechanism
-    moving, pairs = len(m.links), len(m.pairs)
-    spare = max(0.0, box.width - STRUCTURE) / 2
-    box = box.inset(spare, 0.0, spare, 0.0)
-    inside = canvas.title(box, tr("Structure of the mechanism"))
-    lines = (f"W = 3n − 2p_5 − p_4 = 3·{moving} − 2·{pairs} − 0 = {m.mobility}", m.structure)
-    canvas.lines(complex(box.x0 + 2.0, inside.y1 - 6.0), lines, 7.0)
-    if not m.groups:
-        return
-    rows = [[tr("Group"), tr("Class"), tr("Order"), tr("Kind"), tr("Pairs")]]
-    for g, found in zip(reversed(m.groups), decompose(m), strict=True):
-        rows.append([g.lettered, g.kind.roman, str(g.kind.order), found.kind.told(found), ", ".join(found.kind.joints(found))])
-    widths = [0.17, 0.15, 0.2, 0.22, 0.26]
-    canvas.table(complex(box.x0, inside.y1 - 16.5), widened([w * box.width for w in widths], rows, 3.5), rows, 7.0, 3.5)
+def _thin_out(project: Project, canvas: Canvas, name: str) -> None:
+    """Take the numbers off the path on the plans, but for those nearest to its ends."""
+    part = next(k for k, part in enumerate(canvas.parts) if part.draw == PLANS and part.title)
+    path, numbers = project.study.positions.points[name].path, set(project.cycle.labels)
+    asked = [label for label in canvas.labels if label.part == part and label.by is not None and label.by.step == path
+             and label.text[0] in {number[0] for number in numbers}]
+    along = _along(project, name)
+    far = [(label.anchor / along).real for label in asked]
+    ends = {asked[int(pick(far))] for pick in (np.argmin, np.argmax)} if asked else set()
+    canvas.labels[:] = [label for label in canvas.labels if label not in asked or label in ends]

@@ -11,15 +11,14 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.indices import pair_index
-from tmm_sheets.construction.plan import symbol
+from tmm_sheets.construction.plan import Segment, symbol
 from tmm_sheets.construction.scale import handy
 from tmm_sheets.numbers import is_zero
-from tmm_sheets.sheets.frame import extent, needed
 from tmm_sheets.sheets.linkage import link_marks
+from tmm_sheets.sheets.player import extent, needed
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Segment
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.groups.contexts import ForcePlan, Leg, Load, OuterReaction
     from tmm_sheets.mechanism.model import StructuralGroup
@@ -194,14 +193,6 @@ def scheme(project: Project, g: StructuralGroup, k: int, share: float = 1.0) -> 
     about = complex(pos.place(g.kind.about(g)).at(k))
     free = [(complex(end.at[k]), 0j) for link, ends in link_marks.free_ends(pos).items() if link in g.links for end in ends]
     return loaded([*points, *(force.at for force in shown)], shown, about, free, with_arms(project, g, shown), share)
-
-
-def places_of_groups(box: Box, count: int, columns: int, gap: float) -> list[Box]:
-    """Equal parts of a place for so many groups, the farthest first: down each of the columns in turn, ``gap`` mm apart."""
-    rows = -(-count // max(columns, 1))
-    wide, high = (box.width + gap) / columns, (box.height + gap) / max(rows, 1)
-    corners = [(box.x0 + (i // rows) * wide, box.y1 - (i % rows) * high) for i in range(count)]
-    return [Box(x, y - high + gap, x + wide - gap, y) for x, y in corners]
 
 
 def crowd(project: Project, g: StructuralGroup, k: int) -> tuple[float, int]:

@@ -19,8 +19,7 @@ from tmm_sheets.drawing.text_layout import TOGETHER, widened, wrapped
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import clean, decimals_for, fixed, is_zero, number
 from tmm_sheets.sheets.components import flat_crossings
-from tmm_sheets.sheets.frame import SHORTEST, PlanFrame, fit_frame, joined, together
-from tmm_sheets.sheets.linkage import link_marks
+from tmm_sheets.sheets.linkage import link_marks, linkage_sizes
 from tmm_sheets.sheets.linkage.kinetic_frames import (
     AROUND,
     CRANK,
@@ -46,7 +45,6 @@ from tmm_sheets.sheets.linkage.kinetic_frames import (
     on_crank,
     on_lever,
     outer_forces,
-    places_of_groups,
     polygon,
     scheme,
     scheme_points,
@@ -55,11 +53,12 @@ from tmm_sheets.sheets.linkage.kinetic_frames import (
     turned_vectors,
     with_arms,
 )
-from tmm_sheets.sheets.player import PlayerStage, play, stage
+from tmm_sheets.sheets.player import SHORTEST, PlanFrame, PlayerStage, fit_frame, joined, play, stage, together
+from tmm_sheets.sheets.views import ViewPlace
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan, Segment
+    from tmm_sheets.construction.plan import Segment
     from tmm_sheets.construction.step import Step
     from tmm_sheets.mechanism.groups.contexts import ForcePlan
     from tmm_sheets.mechanism.model import StructuralGroup
@@ -70,49 +69,31 @@ if TYPE_CHECKING:
 ALONG, SAME = 0.05, 0.01
 """Sine of the angle at which two sides of a polygon lie along each other; distance at which they meet, mm."""
 BAR = "\u0305"
-GAP = 4.0
-"""Distance of groups that share a place, mm."""
 ROOM = 6.0
 """Room for labels between a force polygon and its equation, mm."""
 UP = 3.0
 """What a force polygon may take of the room under its scale factor where its equation needs it, mm."""
 LINE, LINES = 6.25, 3
 """Distance of the lines of that equation and of the values under it, mm, and how many there is always room for."""
-STACKED = 90.0
-"""Height from which on the plans of a group stand one over another, mm; in lower places side by side."""
 
 
 def groups(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """All Assur groups of a mechanism, the farthest on top, in equal parts of the place, in so many ``columns``.
-
-    ``scheme`` is the share of the width for the loaded schemes, one number or one for each group.
-    """
-    shares = options.get("scheme", 0.42)
-    for i, place in enumerate(places_of_groups(box, len(project.mechanism.groups), int(options.get("columns", 1)), GAP)):
-        if "groups" in options:
-            group(project, canvas, box, {"group": i + 1, "places": options["groups"][i]})
-            continue
-        share = shares[min(i, len(shares) - 1)] if isinstance(shares, list) else shares
-        group(project, canvas, place, {"group": i + 1, "scheme": share})
+    """All Assur groups of a mechanism, the farthest on top, in equal parts of a place that is as it is written."""
+    for view in linkage_sizes.each_group(project, ViewPlace("kinetics.groups", box, options)):
+        group(project, canvas, view.box, view.options)
 
 
 def group(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Loaded scheme of one Assur group beside the force plans of its links; ``group`` counts from the farthest.
-
-    ``scheme`` is the scheme's share of the place, ``stacked`` puts it above its plans.
-    """
+    """Loaded scheme of one Assur group beside the force plans of its links; ``group`` counts from the farthest."""
     k, m = project.force_index, project.mechanism
     nth = int(options.get("group", 1))
     if not 1 <= nth <= len(m.groups):
         raise CannotBuild(tell("the mechanism has no group {nth} to draw, it has {count}").format(nth=nth, count=len(m.groups)),
                           tell("take an arrangement with the view kinetics.groups, or leave kinetics.group out of it"))
     g = tuple(reversed(m.groups))[nth - 1]
-    share = float(options.get("scheme", 0.42))
     plans = loaded_plans(project, g.kind.force_plans(g))
-    if "places" in options:
-        left, *places = options["places"]
-    else:
-        left, places = _parted(box, share, plans, k, stacked=bool(options.get("stacked"))) if plans else (box, [])
+    view = ViewPlace("kinetics.group", box, options)
+    left, *places = options.get("places") or linkage_sizes.group(project, view).parts(box)
     _scheme(project, canvas, left, g, k)
     for line in jumps(project, g.links):
         canvas.note(left, line)
@@ -132,37 +113,6 @@ def jumps(project: Project, links: Collection[str]) -> Iterator[str]:
             before, after, here = (f"{number(value)}{TOGETHER}{unit}" for value in found)
             yield tr("At position {label} {load} jumps from {before} to {after}; {here} are taken").format(
                 label=project.cycle.labels[k], load=link_marks.indexed(load.name), before=before, after=after, here=here)
-
-
-def _parted(box: Box, share: float, plans: list[ForcePlan], k: int, *, stacked: bool) -> tuple[Box, list[Box]]:
-    """Place of a loaded scheme, its share of the whole, and of the force plans beside or, ``stacked``, below it."""
-    left = Box(box.x0, box.y0, box.x0 + share * box.width, box.y1)
-    right = Box(left.x1 + 6.0, box.y0, box.x1, box.y1)
-    if stacked:
-        left = Box(box.x0, box.y1 - share * box.height, box.x1, box.y1)
-        right = Box(box.x0, box.y0, box.x1, left.y0 - 2.0)
-    if right.height / len(plans) < STACKED and len(plans) > 1:
-        width = (right.width + GAP) / len(plans)
-        return left, [Box(right.x0 + i * width, right.y0, right.x0 + (i + 1) * width - GAP, right.y1) for i in range(len(plans))]
-    return left, _stacked(right, plans, k)
-
-
-def _stacked(box: Box, plans: list[ForcePlan], k: int) -> list[Box]:
-    """Places of force plans one under another: as high as each polygon is when it fills the width, the rest in equal parts."""
-    left, below, right, above = AROUND
-    width = box.width - left - right
-    wanted = []
-    for fp in plans:
-        real = polygon(fp, k)[1]
-        wanted.append(width * real.height / real.width if real.width > 0 else box.height)
-    free = box.height - len(plans) * (below + above)
-    spare = (free - sum(wanted)) / len(plans)
-    heights = [h + spare for h in wanted] if spare > 0 else [free / len(plans)] * len(plans)
-    places, y = [], box.y1
-    for h in heights:
-        places.append(Box(box.x0, y - h - below - above + 2.0, box.x1, y))
-        y -= h + below + above
-    return places
 
 
 def _scheme(project: Project, canvas: Canvas, box: Box, g: StructuralGroup, k: int) -> None:
@@ -309,7 +259,9 @@ def _force_plan(project: Project, canvas: Canvas, box: Box, fp: ForcePlan, k: in
                                                  value=newtons(clean(fp.plan.length(tail, head).at(k), size)))
              for sign, tail, head in asked]
     frame, lines, height = _over_equation(project, canvas, box, fp, (terms(sides), found))
-    tiny = _tiny(fp.plan, sides, k, frame)
+    tiny = {(tail.name, head.name): tr("{quantity} = {value} N").format(
+                quantity=sign, value=newtons(fp.plan.length(tail, head).at(k))).replace(" ", TOGETHER)
+            for sign, tail, head, _ in sides if abs(frame(head.at(k)) - frame(tail.at(k))) < SHORTEST}
     small = tr("Less than 1{space}mm: {vectors}").format(space=TOGETHER, vectors=", ".join(tiny.values())) if tiny else ""
     ends = [complex(frame(z)).imag for z in points.values()]
     above, under = inside.y1 + UP - max(ends), min(ends) - box.y0 - ROOM
@@ -384,13 +336,6 @@ def heads_apart(sides: Sequence[tuple[complex, complex]]) -> list[float | None]:
     return sizes
 
 
-def _tiny(plan: Plan, sides: Sequence[tuple[str, Step, Step, bool]], k: int, frame: PlanFrame) -> dict[tuple[str, str], str]:
-    """Sides of a force polygon too short to be drawn, by their vertices: sign and value."""
-    return {(tail.name, head.name): tr("{quantity} = {value} N").format(
-                quantity=sign, value=newtons(plan.length(tail, head).at(k))).replace(" ", TOGETHER)
-            for sign, tail, head, _ in sides if abs(frame(head.at(k)) - frame(tail.at(k))) < SHORTEST}
-
-
 def _draw_sides(s: PlayerStage, sides: Sequence[tuple[str, Step, Step, bool]], centre: complex) -> None:
     """Sides of a force polygon with their signs outside it, but for those too short to be drawn."""
     heads = heads_apart([(s.at(tail), s.at(head)) for _, tail, head, _ in sides])
@@ -437,10 +382,9 @@ def crank(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -
     """The initial link with its forces and arms beside its force plan."""
     k, study, c, driver = project.force_index, project.study, project.mechanism.crank, project.driver
     forces, pos = study.forces, study.positions
-    share = float(options.get("scheme", 0.5))
     plans = loaded_plans(project, [c.link])
-    left, *places = options.get("places", (Box(box.x0, box.y0, box.x0 + share * box.width, box.y1),
-                                           Box(box.x0 + share * box.width + 4.0, box.y0, box.x1, box.y1)) if plans else (box,))
+    view = ViewPlace("kinetics.crank", box, options)
+    left, *places = options.get("places") or linkage_sizes.crank(project, view).parts(box)
     centre, pins = pos.points[c.pivot], [pos.points[name] for name in link_marks.crank_pins(pos)]
     pivot, ends = complex(centre.at(k)), [complex(pin.at(k)) for pin in pins]
     shown = on_crank(project, k)

@@ -10,13 +10,11 @@ from typing import TYPE_CHECKING
 from tmm_sheets.box import Box
 from tmm_sheets.construction.scale import HANDY
 from tmm_sheets.drawing.lettering import letter
-from tmm_sheets.sheets.arrangement import ViewPlace
-from tmm_sheets.sheets.border_solver import BorderNode, Need, joined, rounded_up
-from tmm_sheets.sheets.floors import CRANK, SHARE, VECTOR
-from tmm_sheets.sheets.frame import extent
-from tmm_sheets.sheets.linkage import false_positions as triads_by_hand
+from tmm_sheets.sheets.border_solver import CRANK, SHARE, VECTOR, BorderNode, Need, fixed, joined, leaf, reaching, rounded_up, rows
 from tmm_sheets.sheets.linkage import kinematic_frames, kinetic_frames
-from tmm_sheets.sheets.view_sizes import fixed, leaf, reaching, rows
+from tmm_sheets.sheets.linkage import synthesis as triads_by_hand
+from tmm_sheets.sheets.player import extent
+from tmm_sheets.sheets.views import ViewPlace
 
 if TYPE_CHECKING:
     from tmm_sheets.mechanism.groups.contexts import ForcePlan
@@ -116,7 +114,7 @@ def false_positions(project: Project, view: ViewPlace) -> BorderNode | None:
     return leaf(view.box, reaching(view.box, *reach, triads_by_hand.AROUND, (110.0, 90.0)))
 
 
-def group(project: Project, view: ViewPlace) -> BorderNode | None:
+def group(project: Project, view: ViewPlace) -> BorderNode:
     """Loaded scheme and force plans: side by side, or the plans one under another, or the scheme over them: what fills most."""
     k = project.force_index
     nth = int(view.options.get("group", 1))
@@ -131,9 +129,13 @@ def group(project: Project, view: ViewPlace) -> BorderNode | None:
 
 
 def each_group(project: Project, view: ViewPlace) -> list[ViewPlace]:
-    """Every group of the mechanism in a place of its own."""
-    places = kinetic_frames.places_of_groups(view.box, len(project.mechanism.groups), int(view.options.get("columns", 1)), 0.0)
-    return [ViewPlace("kinetics.group", place, {"scheme": 0.45, "group": i}) for i, place in enumerate(places, 1)]
+    """Every group of the mechanism in an equal part of a place, the farthest first: down each of the ``columns`` in turn."""
+    box, count, columns = view.box, len(project.mechanism.groups), int(view.options.get("columns", 1))
+    rows = -(-count // max(columns, 1))
+    wide, high = box.width / columns, box.height / max(rows, 1)
+    corners = [(box.x0 + (i // rows) * wide, box.y1 - (i % rows) * high) for i in range(count)]
+    return [ViewPlace("kinetics.group", Box(x, y - high, x + wide, y), {"scheme": 0.45, "group": i})
+            for i, (x, y) in enumerate(corners, 1)]
 
 
 def _readable(need: Need, size: float, forces: int, each: float) -> Need:

@@ -17,9 +17,9 @@ from tmm_sheets.construction.indices import pair_index
 from tmm_sheets.construction.plan import symbol
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas
-from tmm_sheets.drawing.lettering import broken, letter
-from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.numbers import clean, is_zero
+from tmm_sheets.sheets.components.listed import Form, Formulas
 from tmm_sheets.sheets.linkage.kinetic_frames import arm_sign, balancing_sign, flat, normal_sign, on_lever
 from tmm_sheets.sheets.linkage.link_marks import indexed
 from tmm_sheets.words import marked, tr
@@ -43,31 +43,19 @@ class Term(NamedTuple):
     values: tuple[float, ...]
 
 
-def equations_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the equations can do with, mm: each in one line, then broken, then in small letters; last without guides."""
-    sizes = []
-    for texts, (height, step, width) in _choices(project):
-        lines = [line for text in texts for line in broken(text, width, height)]
-        sizes.append((max(letter(line, height).width for line in lines) + 6.0, 12.0 + step * len(lines)))
-    return sizes
+def _forms(project: Project, canvas: Canvas, options: dict[str, Any]) -> Iterator[Form]:
+    """Each equation in one line, then broken, then in small letters; with those of the guides' reactions, if there are any.
 
-
-def _choices(project: Project) -> list[tuple[list[str], tuple[float, float, float]]]:
-    """The equations with those of the guides' reactions, if there are any; rather without them than in small letters."""
+    Rather without these than in small letters.
+    """
     every, usual = list(_lines(project, guides=True)), list(_lines(project))
     guided = product([every], WAYS[:-1]) if len(every) > len(usual) else ()
-    return [(texts, way) for texts, way in (*guided, *product([usual], WAYS)) if texts]
+    for texts, (height, step, width) in (*guided, *product([usual] if usual else [], WAYS)):
+        yield Form([[line for text in texts for line in broken(text, width, height)]], height, step)
 
 
-def equations(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Every equation of moments that gives a part of a reaction or the balancing moment: letters, then numbers."""
-    canvas.of = "moments"
-    left = canvas.title(box, tr("Equations of moments"))
-    for texts, (height, step, _) in _choices(project):
-        lines = [line for text in texts for line in broken(text, box.width - 6.0 + 1e-6, height)]
-        if 12.0 + step * len(lines) <= box.height + 1e-6:
-            break
-    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
+equations = Formulas(marked("Equations of moments"), "moments", _forms)
+"""Every equation of moments that gives a part of a reaction or the balancing moment: letters, then numbers."""
 
 
 def _lines(project: Project, guides: bool = False) -> Iterator[str]:
@@ -149,28 +137,15 @@ def _solved(project: Project, centre: str, total: Step, own: tuple[str, str, flo
     yield _worked_out(terms, Quantity(sign, abs(complex(found.at(k))), "N"), lambda total, arm: abs(total) / arm, length)
 
 
-def lever_sizes(project: Project, canvas: Canvas, options: dict[str, Any]) -> list[tuple[float, float]]:
-    """Places that the equation of the lever can do with, mm: none without the lever on the sheet."""
-    if "lever" not in canvas.scales:
-        return []
-    sizes = []
-    for height, step in ((3.5, 6.0), (2.5, 5.0)):
-        for width in (250.0, 190.0, 140.0, 110.0, 90.0):
-            if not (lines := _lever_lines(project, canvas, width - 6.0, height, options)):
-                return []  # no force has a moment about the pole
-            sizes.append((max(letter(line, height).width for line in lines) + 6.0, 10.0 + step * len(lines)))
-    return sizes
+def _forms_of_lever(project: Project, canvas: Canvas, options: dict[str, Any]) -> Iterator[Form]:
+    """The equation of the lever in two heights of letters, broken at several widths; none without the lever on the sheet."""
+    for (height, step), width in product(((3.5, 6.0), (2.5, 5.0)), (250.0, 190.0, 140.0, 110.0, 90.0)):
+        if "lever" in canvas.scales and (lines := _lever_lines(project, canvas, width - 6.0, height, options)):
+            yield Form([lines], height, step, 10.0)
 
 
-def lever(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
-    """Sum of the moments about the pole of Zhukovsky's lever: letters, then numbers; arms in mm as they are drawn."""
-    canvas.of = "moments of the lever"
-    left = canvas.title(box, tr("Equation of the lever"))
-    for height, step in ((3.5, 6.0), (2.5, 5.0)):
-        lines = _lever_lines(project, canvas, box.width - 3.0, height, options)
-        if 10.0 + step * len(lines) <= box.height + 1e-6:
-            break
-    canvas.lines(complex(box.x0 + 3.0, left.y1 - 0.8 * step), lines, step, height)
+lever = Formulas(marked("Equation of the lever"), "moments of the lever", _forms_of_lever)
+"""Sum of the moments about the pole of Zhukovsky's lever: letters, then numbers; arms in mm as they are drawn."""
 
 
 def _lever_lines(project: Project, canvas: Canvas, width: float, height: float, options: dict[str, Any]) -> list[str]:

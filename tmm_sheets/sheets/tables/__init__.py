@@ -1,1 +1,0 @@
-"""Tables for the room that a sheet has left."""
