@@ -183,7 +183,9 @@ def _vectors(ink, view):
         if isinstance(m, Line):
             line, by = LineString([(m.a.real, m.a.imag), (m.b.real, m.b.imag)]), m.by[1:4]
             own = [head for head, of in heads if of == by and head.distance(line.boundary) < TIE]
-            yield line, GeometryCollection([line, *own]), by
+            # The line ends within its head.
+            tips = [max(head.exterior.coords, key=lambda z: line.distance(Point(z))) for head in own]
+            yield LineString([*line.coords, *tips]), GeometryCollection([line, *own]), by
 
 
 def _of_another(p, ink):

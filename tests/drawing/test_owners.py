@@ -97,6 +97,25 @@ def test_vectors_on_one_line_are_named_together():
     assert reads((28, -4, 32, -1), both) == ""
 
 
+def test_a_leader_that_ends_where_two_vectors_run_together_might_name_either():
+    both = [Line(0j, 60 + 0j, "vector", by=A), Line(0.1j, 30 + 0.1j, "vector", by=B), Line(0.5j, 10 + 0.5j, "thin")]
+    here = owners.Surroundings(ink_index.InkIndex(both), Label(20 + 0j, "x", 3.5, by=A), 60.0)
+    assert here.count_unsure(np.array([5 + 0j, 20 + 0j, 40 + 0j])).tolist() == [1, 1, 0]
+
+
+@pytest.mark.parametrize("length", [2.0, 8.0, 60.0])
+def test_a_vector_has_its_name_anywhere_along_it_to_the_tip_of_its_own_head(length):
+    canvas = Canvas()
+    for name, tail in (("p–b", 0j), ("a–b", length + 40j)):
+        with canvas.traced("vector", "plan/b", "1", 0, name):
+            canvas.arrow(tail, length + 0j, "vector")
+    label = Label(length / 2 + 0j, "x", 3.5, by=Provenance("text", "plan/b", "1", 0))
+    here = owners.Surroundings(ink_index.InkIndex(canvas.marks), label, 60.0)
+    places = np.array([label.anchor, *here.places_along()])
+    assert (places.real.min(), places.real.max()) == pytest.approx((0.05 * length, 0.95 * length))
+    assert {canvas.marks[n].by.name for n in here.of[here.own]} == {"p–b"}
+
+
 def test_no_lines_at_all_and_a_leader_that_is_added():
     assert reads((28, 1, 32, 4), []) == ""
     ink = ink_index.InkIndex(LINES)
@@ -291,7 +310,7 @@ def test_a_window_parts_no_label_from_what_it_names():
     (2.0, 80 + 66j, 1),  # through the letters
 ])  # fmt: skip
 def test_the_shelf_of_a_name_is_part_of_it(shelf, end, ill):
-    detail = Label(65 + 80j, "II", 5.0, shelf=shelf), Box(60.0, 60.0, 70.0, 65.0), True
+    detail = Label(65 + 80j, "II", 5.0, shelf=shelf), Box(60.0, 60.0 - labels.SHELF * bool(shelf), 70.0, 65.0), True
     number = Label(50 + 58j, "3, 4", 2.5), Box(end.real, end.imag, end.real + 5, end.imag + 2.5), True
     placed = placing(Box(0.0, 0.0, 100.0, 100.0), [], detail, number)
     assert min(placed.count_faults(1), 1) == ill

@@ -257,8 +257,8 @@ def _thin(points: Any) -> Any:
     return points[np.union1d(keep, [len(points) - 1])]
 
 
-def distance(a: Any, b: Any, p: complex) -> Floats:
-    """Distances of a point to segments a .. b, complex (n,) -> (n,)."""
+def distance(a: Any, b: Any, p: Any) -> Floats:
+    """Distances of a point, or of a point each, complex (n,), to segments a .. b, complex (n,) -> (n,)."""
     d = b - a
     length2 = np.maximum(np.abs(d) ** 2, 1e-18)
     t = np.minimum(np.maximum(((p - a) * np.conj(d)).real / length2, 0.0), 1.0)

@@ -102,10 +102,10 @@ class PlacedLabels:
         self._update_leaders()
 
     def put(self, k: int, placement: Placement) -> None:
-        """Label ``k`` is set; the shelf it may stand on is part of it."""
+        """Label ``k`` is set."""
         self.at[k:k + 1] = [placement]
         label, box, _ = placement
-        self.boxes[k] = box._replace(y0=box.y0 - SHELF - CLEAR) if label.shelf else box
+        self.boxes[k] = box
         before = self._led.pop(k, None)
         if _needs_leader(label, box):
             self._led[k] = _leader_ends(label, box)
@@ -134,13 +134,16 @@ class PlacedLabels:
         return sum(self._count_met(k) + SEVERAL * self._is_misread(k) for k in some)
 
     def _count_met(self, k: int) -> int:
-        """How many other leaders and how much other lettering the leader of label ``k`` meets; how many leaders its lettering."""
+        """How many other leaders and how much other lettering the leader of label ``k`` meets; how many leaders its lettering;
+        which lines but its own it might be led to.
+        """
         _, a, b = self._others(k)
         over = int(ink_index.enters(a, b - a, *self.boxes[k]).sum())
         if k not in self._led:
             return over
         written = np.delete(self.written, len(self.written) - len(self.boxes) + k, axis=0)
-        return int(ink_index.crosses(a, b, *self._led[k]).sum()) + _count_crossed(written, *self._led[k]) + over
+        unsure = _surroundings(self.ink, self.at[k][0]).count_unsure(np.array(self._led[k][:1]))[0]
+        return int(ink_index.crosses(a, b, *self._led[k]).sum() + unsure) + _count_crossed(written, *self._led[k]) + over
 
     def _is_misread(self, k: int) -> bool:
         """Whether label ``k`` has no leader and is read as another's because of the leader of one."""
@@ -280,6 +283,7 @@ def _candidates(placed: PlacedLabels, labels: Sequence[Label], around: Around = 
     turned = TURNING * np.abs(np.angle(directions)) / pi
     units = np.array([directions * (label.away / abs(label.away)) if label.away else directions for label in labels])
     w, h = np.array([size(label.text, label.height) for label in labels]).T[:, :, None, None] / 2
+    h = h + SHELF / 2 * np.array([bool(label.shelf) for label in labels])[:, None, None]
     # The rectangle's support along the direction keeps its nearest corner or side at the asked distance.
     support = np.minimum(w / np.maximum(np.abs(units.real), 1e-9)[:, None], h / np.maximum(np.abs(units.imag), 1e-9)[:, None])
     distances = away[:, None] + np.array([label.gap for label in labels])[:, None, None]
@@ -401,7 +405,7 @@ class _Places:
             written = self._placed.written
             wx0, wy0, wx1, wy1 = written[ink_index.find_near(written.T, Box.around(np.append(p, q)), 0.0)].T
             over = ink_index.enters(p[:, None], (q - p)[:, None], wx0, wy0, wx1, wy1).sum(axis=1)
-            found[led] += np.where(over > 0, OVER * over, CROSSING * here.count_crossed(p, q))
+            found[led] += OVER * over + CROSSING * here.count_crossed(p, q)
         return found.tolist()
 
     def well_apart(self, here: owners.Surroundings) -> Iterator[int]:
@@ -437,10 +441,10 @@ def _read_on(sides: npt.NDArray[np.float64], boxes: npt.NDArray[np.float64], gap
 
 
 def _draw(canvas: Canvas, label: Label, box: Box) -> None:
-    laid = letter(label.text, label.height)
+    laid, shelf = letter(label.text, label.height), SHELF * bool(label.shelf)
     canvas.of, first = label.of, len(canvas.marks)
     with canvas.traced("text", *(label.by[1:] if label.by is not None else ())):
-        canvas.put(laid, complex(box.x0, box.y0 + laid.descent), 0.0, label.text)
+        canvas.put(laid, complex(box.x0, box.y0 + shelf + laid.descent), 0.0, label.text)
         _draw_leader(canvas, label, box)
     if len(canvas.marks) > first:
         # The leader line belongs to its label.
@@ -489,8 +493,8 @@ def _leader_ends(label: Label, box: Box) -> tuple[complex, complex]:
 
 
 def _shelf_ends(box: Box) -> tuple[complex, complex]:
-    """Ends of the shelf under lettering."""
-    return complex(box.x0, box.y0 - SHELF), complex(box.x1, box.y0 - SHELF)
+    """Ends of the shelf that lettering stands on."""
+    return complex(box.x0, box.y0), complex(box.x1, box.y0)
 
 
 def _count_crossed(boxes: npt.NDArray[np.float64], a: complex, b: complex) -> int:

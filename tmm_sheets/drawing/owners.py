@@ -14,7 +14,7 @@ import numpy as np
 
 from tmm_sheets.drawing.canvas import Label
 from tmm_sheets.drawing.ink_index import LEADER, ROUNDING, Flags, Floats, InkIndex, Numbers, crosses, distance, enters, sides
-from tmm_sheets.drawing.marks import Box, Fill, Line, Points, flat
+from tmm_sheets.drawing.marks import Box, Fill, Line, Points, Provenance, flat
 from tmm_sheets.drawing.text_boxes import run_corners
 
 AT = 0.3
@@ -22,7 +22,7 @@ AT = 0.3
 SLACK = 0.1
 """By so much another line may be nearer before anybody takes the label for its letter, mm."""
 
-CLEARLY, HARDLY, SEEN = 1.0, 0.4, 6.0
+CLEARLY, HARDLY, SEEN = 1.0, 0.4, 9.0
 """By so much its own vector is nearer to a letter that nobody, or hardly anybody, takes for another's, of all within so many mm."""
 SYMBOL = 0.6
 """By so much a symbol about the anchor may reach beyond the distance its letter keeps, mm."""
@@ -30,14 +30,13 @@ SYMBOL = 0.6
 PARALLEL, BESIDE = 0.15, 1.5
 """A leader runs along a line when it turns from it by less than this (sine of the angle) and is nearer than so many mm."""
 LED = 10
-"""Crossing another leader, which GOST 2.316 forbids, is as bad as crossing so many strong lines."""
+"""Crossing another leader, which GOST 2.316 forbids, or ending at several vectors is as bad as crossing so many strong lines."""
 EVEN = 1e-9
 """Distances that differ by less, mm, are one: what ends on the line that is named does not part it from its letter."""
 UNSURE = 0.7
-"""A leader that ends so near to a foreign strong line, mm, may be its: as bad as crossing three."""
+"""A leader that ends so near to a foreign strong line, mm, may be its."""
 SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88, 0.05, 0.95)
-LONG = 12.0
-"""Places along a vector where its letter may stand, when it is longer than so many mm."""
+"""Places along a vector where its letter may stand."""
 
 
 class Surroundings:
@@ -49,12 +48,12 @@ class Surroundings:
         self.a, self.b, self.of, self.strong = ink.parting(p, reach)
         self.sides = sides(self.a, self.b)
         self.leaders = self.of == LEADER
+        self.vector = _vector(ink, label)
         self.own, self.twin = _own(ink, self, label), np.zeros(len(self.of), bool)
-        self._vector = _vector(ink, label)
-        if self._vector is not None:
+        if self.vector is not None:
             self._runs = _runs(label)
             # What lies on the vector is named together with it.
-            along = np.maximum(_to_line(self.a, *self._vector), _to_line(self.b, *self._vector)) <= AT
+            along = np.maximum(_to_line(self.a, *self.vector), _to_line(self.b, *self.vector)) <= AT
             self.twin = _are_others(ink, self.of, along & ~self.own)
             self.own |= along
 
@@ -67,13 +66,14 @@ class Surroundings:
     def judge(self, boxes: Floats) -> tuple[Flags, Floats]:
         """Where lettering in rectangles, shape (4, m), is read as another line's, and how vague it is."""
         m = boxes.shape[1]
-        return self._pairs(boxes).judge(boxes, np.full(m, self.anchor), [None if self._vector is None else self._runs] * m)
+        bad, vague = self._pairs(boxes).judge(boxes, np.full(m, self.anchor), [None if self.vector is None else self._runs] * m)
+        return bad, vague + 3.0 * (self.vector is not None and self.count_unsure(np.array([self.anchor])))
 
     def _pairs(self, boxes: Floats) -> Pairs:
         """Segments no farther from each rectangle than the anchor is: nothing beyond it is nearer."""
         x0, y0, x1, y1 = (v[:, None] for v in boxes)
         gap = np.abs(nearest(self.anchor, boxes) - self.anchor)[:, None]
-        reach = np.maximum(gap + ROUNDING, 0.0 if self._vector is None else SEEN)
+        reach = np.maximum(gap + ROUNDING, 0.0 if self.vector is None else SEEN)
         e0, f0, e1, f1 = self.sides
         which, near = ((e0 <= x1 + reach) & (e1 >= x0 - reach) & (f0 <= y1 + reach) & (f1 >= y0 - reach)).nonzero()
         return Pairs(which, self.a[near], self.b[near], self.of[near], self.own[near], self.twin[near], self.strong[near])
@@ -97,14 +97,18 @@ class Surroundings:
         strong = self.strong[near] & ~self.own[near]
         crossed = (strong | self.leaders[near] & ~self.own[near]) & crosses(a, b, start, end)
         count = (parallel & (beside < BESIDE)).astype(int) + crossed + (LED - 1) * (crossed & self.leaders[near])
-        count += 3 * (strong & (distance(a, b, start) < UNSURE))
-        return np.bincount(which, count, len(ends)).astype(int)
+        return np.asarray(np.bincount(which, count, len(ends)).astype(int) + LED * self.count_unsure(starts))
+
+    def count_unsure(self, starts: Points) -> Numbers:
+        """How many foreign strong lines, or other vectors on its line, a leader from each point, shape (m,), might name as well."""
+        others = self.strong & ~self.own | self.twin
+        return np.asarray((distance(self.a[others], self.b[others], starts[:, None]) < UNSURE).sum(axis=1))
 
     def places_along(self) -> list[complex]:
         """Other places on the vector that the label names, the nearer the middle the sooner; none where it names no vector."""
-        if self._vector is None:
+        if self.vector is None:
             return []
-        a, b = self._vector
+        a, b = self.vector
         return [a + share * (b - a) for share in SHARES if abs(a + share * (b - a) - self.anchor) > SYMBOL]
 
 
@@ -219,8 +223,8 @@ def read_well(ink: InkIndex, labels: Sequence[Label], boxes: Floats) -> Flags:
     on = np.zeros(len(labels), bool)
     for k, number in dict.fromkeys(zip(*(v[found & (apart <= 2 * AT)].tolist() for v in (which, of)), strict=True)):
         on[k] = True
-        alone[k] &= min(abs(z - labels[k].anchor) for z in _ends(ink, number)) > 2 * AT
-    alone &= on
+        alone[k] &= np.abs(flat(ink.marks[number])[[0, -1]] - labels[k].anchor).min() > 2 * AT
+    alone = alone & on | [v is not None for v in vectors]
     gaps = np.array([label.gap + SYMBOL for label in labels])[which]
     twin = np.zeros(len(which), bool)
     own = found | ~alone[which] & ((np.maximum(np.abs(a - at), np.abs(b - at)) <= gaps) | (apart <= AT))
@@ -247,49 +251,43 @@ def nearest(p: Any, boxes: Floats) -> Points:
     return np.asarray(np.minimum(np.maximum(p.real, x0), x1) + 1j * np.minimum(np.maximum(p.imag, y0), y1))
 
 
-def _ends(ink: InkIndex, number: int) -> Sequence[complex]:
-    """Where the line of a mark begins and ends."""
-    mark = ink.marks[number]
-    return (mark.a, mark.b) if isinstance(mark, Line) else flat(mark)[[0, -1]].tolist()
-
-
 def _named(ink: InkIndex, label: Label) -> list[int]:
-    """Numbers of the marks of the step that a label names; of its vectors only the one on which its anchor lies.
+    """Numbers of the marks of the step that a label names; of its vectors only the one on which its anchor lies, without the point.
 
     Several forces of a plan end at one of its points, and so in one step: a letter at the point itself names them all.
     """
     if label.by is None or not label.by.step:
         return []
-    found = ink.of_step(label.by)
-    vectors = {n: m for n in found if isinstance(m := ink.marks[n], Line) and m.by is not None and m.by.role == "vector"}
-    apart = {n: _apart(line, label.anchor) for n, line in vectors.items()}
+    found, vectors = ink.of_step(label.by), _lines_of(ink, label.by, {"vector"})
+    apart = {n: _apart(*ends, label.anchor) for n, ends in vectors.items()}
     least = min(apart.values(), default=inf)
     foreign = {n for n in apart if apart[n] > least + 1e-3}
-    if least > AT or not foreign:
+    if least > AT:
         return found
-    tips = np.array([z for n, line in vectors.items() if n not in foreign for z in (line.a, line.b)])
-    return [n for n in found if n not in foreign and (
-        not isinstance(m := ink.marks[n], Fill) or np.abs(np.array(m.points)[:, None] - tips).min() <= AT)]
+    others = {ink.marks[n].by for n in foreign} - {ink.marks[n].by for n in vectors.keys() - foreign}
+    return [n for n in found if n not in foreign and (by := ink.marks[n].by) not in others and by and by.role != "point"]
 
 
 def _vector(ink: InkIndex, label: Label) -> tuple[complex, complex] | None:
     """Ends of the vector, or of the construction line or line of a detail named by its own letter, beside which a label stands."""
     if label.by is None:
         return None
-    roles = {"vector"} | {"construction", "symbol"} & {label.by.role}
-    for number in _named(ink, label):
-        mark = ink.marks[number]
-        if (isinstance(mark, Line) and mark.by is not None and mark.by.role in roles and abs(mark.b - mark.a) > LONG
-                and min(abs(mark.a - label.anchor), abs(mark.b - label.anchor)) > 2 * AT and _apart(mark, label.anchor) <= 2 * AT):
-            return mark.a, mark.b
-    return None
+    named, lines = _named(ink, label), _lines_of(ink, label.by, {"vector"} | {"construction", "symbol"} & {label.by.role})
+    return next((ends for n, ends in lines.items() if n in named and _apart(*ends, label.anchor) <= 2 * AT
+                 and min(abs(z - label.anchor) for z in ends) > 2 * AT), None)
 
 
-def _apart(line: Line, p: complex) -> float:
+def _lines_of(ink: InkIndex, by: Provenance, roles: set[str]) -> dict[int, tuple[complex, complex]]:
+    """Lines of these roles that came from a step, by the numbers of their marks: tail and tip of each."""
+    marks = {n: ink.marks[n] for n in ink.of_step(by)}
+    tips = {m.by: complex(m.points[0]) for m in marks.values() if isinstance(m, Fill)}
+    return {n: (m.a, tips.get(m.by, m.b)) for n, m in marks.items() if isinstance(m, Line) and m.by and m.by.role in roles}
+
+
+def _apart(a: complex, b: complex, p: complex) -> float:
     """Distance of a point to a line, without an array."""
-    d = line.b - line.a
-    t = ((p - line.a) * d.conjugate()).real / max(d.real * d.real + d.imag * d.imag, 1e-18)
-    return abs(line.a + (0.0 if t < 0.0 else 1.0 if t > 1.0 else t) * d - p)
+    t = ((p - a) * (b - a).conjugate()).real / max(abs(b - a) ** 2, 1e-18)
+    return abs(a + (0.0 if t < 0.0 else 1.0 if t > 1.0 else t) * (b - a) - p)
 
 
 def _own(ink: InkIndex, here: Surroundings, label: Label) -> Flags:
@@ -298,7 +296,7 @@ def _own(ink: InkIndex, here: Surroundings, label: Label) -> Flags:
     The letter of a vector or a curve stands beside it: there lines that only pass by the anchor are foreign.
     """
     found = np.isin(here.of, _named(ink, label))
-    if found.any() and not _at_end(ink, here, found, label.anchor):
+    if here.vector is not None or (found.any() and not _at_end(ink, here, found, label.anchor)):
         return found
     about = np.maximum(np.abs(here.a - label.anchor), np.abs(here.b - label.anchor)) <= label.gap + SYMBOL
     # The leader of another label names nothing by itself, even if it comes from the same point.

@@ -129,6 +129,21 @@ def test_what_a_detail_draws_is_not_about_zero(signs, drawn, left):
     assert [note.said for note in canvas.notes] == [*([] if left == [] else [f"≈ 0: {', '.join(left or [])}"]), "≈ 0: a"]
 
 
+@pytest.mark.parametrize(("tail", "head", "read"), [
+    (40 + 0j, 0.5j, False),         # runs beside the other one from where both begin
+    (40 + 4j, 0.5j, True),          # is apart farther out
+    (40 + 0j, 1 + 0j, True),        # on one line with it
+    (1 + 0.5j, 0.5j, False),        # all of it in the circle
+    (-40 + 0j, 0.5j, True),         # comes from the other side
+])  # fmt: skip
+def test_a_name_leaves_a_plan_where_its_vector_is_one_of_a_bundle(tail, head, read):
+    points = {"1": 40 + 0j, "2": 0j, "3": tail, "4": head}
+    vectors = details.Vector("F", "1", "2"), details.Vector("G", "3", "4")
+    frame, scale = PlacedFrame(0, "plan", "", 0j, (1.0, 1.0)), Scale("μ_F", 1.0, "N/mm")
+    corner = details.Corner(0, 0j, 0.5, scale, None, frame, 0, vectors, points, ("2", "4"))
+    assert corner._is_read(vectors[1], 2.0) is read
+
+
 def test_details_are_numbered_as_they_stand_there():
     canvas = Canvas()
     assert details.next_name(canvas) == "I"

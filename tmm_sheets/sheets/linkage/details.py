@@ -22,8 +22,10 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Step
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.ink import chord
+from tmm_sheets.drawing.ink_index import distance
 from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame, Points, Provenance, Text, flat
+from tmm_sheets.drawing.owners import AT, CLEARLY
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.numbers import number
 from tmm_sheets.sheets.linkage import link_marks
@@ -91,10 +93,6 @@ class Dense:
         return [*((width, 2 * half + HEAD) for width, half in zip(wide[:2], halves, strict=False)),
                 *((2 * (half + self.beside), 2 * half + HEAD) for half in halves)]
 
-    def others(self, project: Project, canvas: Canvas) -> list[int]:
-        """Parts of the sheet that the detail could be taken for one of."""
-        return []
-
     def draw(self, project: Project, canvas: Canvas, middle: complex, half: float) -> float:
         """Draw it in a window and take from the view what stands there now; gives the radius of the circle round it, mm."""
         raise NotImplementedError
@@ -110,7 +108,8 @@ def dense_near(project: Project, canvas: Canvas, options: dict[str, Any]) -> tup
     """What the detail shows, mm of the sheet, the part of its view, and those of the views it could be taken for a detail of."""
     found = _nth(project, canvas, options)
     assert found is not None
-    return found.centre, found.part, found.others(project, canvas)
+    others = {frame.view for frame in _whole(canvas, _polygons(project))} - {found.part} if isinstance(found, Corner) else ()
+    return found.centre, found.part, list(others)
 
 
 def dense(project: Project, canvas: Canvas, box: Box, options: dict[str, Any]) -> None:
@@ -197,50 +196,51 @@ class Corner(Dense):
         """How many vectors run through it."""
         return sum(chord(self.centre, 2 * self.reach, self.points[a], self.points[b]) is not None for _, a, b in self.vectors)
 
-    def others(self, project: Project, canvas: Canvas) -> list[int]:
-        """The other polygons as they stand on the sheet."""
-        return list({frame.view for frame in _whole(canvas, _polygons(project))} - {self.part})
-
     def draw(self, project: Project, canvas: Canvas, middle: complex, half: float) -> float:
-        """Vectors and letters of the corners; the polygon keeps none that lies in the circle: it would need a leader out of it."""
+        """Vectors and letters of the corners; the polygon keeps none that it cannot show."""
         place = _placed(canvas, self.frame, self.centre, middle, self.times(half))
-        self._enlarged(PlayerStage(canvas, self.plan, self.k, canvas.frames[place], place), middle, half)
+        named = self._enlarged(PlayerStage(canvas, self.plan, self.k, canvas.frames[place], place), middle, half)
         radius = self._free_radius(canvas)
-        inside = {v.sign for v in self.vectors if all(abs(self.points[name] - self.centre) < radius for name in (v.tail, v.head))}
-        canvas.labels[:] = [label for label in canvas.labels if label.part != self.part or label.text not in inside
-                            or abs(label.anchor - self.centre) > radius]
+        unread = {v.sign: (self.points[v.tail], self.points[v.head]) for v in named if not self._is_read(v, radius)}
+        canvas.labels[:] = [label for label in canvas.labels if label.part != self.part or label.text not in unread
+                            or distance(*unread[label.text], label.anchor) > ONE]
         _no_more_zero(canvas, self)
         return radius
 
-    def _enlarged(self, s: PlayerStage, middle: complex, half: float) -> None:
-        """Vectors and letters inside a circle of a radius, mm."""
+    def _is_read(self, v: Vector, radius: float) -> bool:
+        """Whether a vector is seen apart from others anywhere outside the circle round the corners.
+
+        A leader that ends at one of a bundle ends at all; vectors on one line have their names in common.
+        """
+        a, b = (np.array([self.points[other[end]] for other in self.vectors]) for end in (1, 2))
+        along = self.points[v.tail] + np.linspace(0.05, 0.95, 19) * (self.points[v.head] - self.points[v.tail])
+        apart = distance(a, b, along[:, None])
+        foreign = (apart > AT).any(axis=0)
+        return bool((apart[:, foreign].min(axis=1, initial=np.inf)[np.abs(along - self.centre) > radius] >= CLEARLY).any())
+
+    def _enlarged(self, s: PlayerStage, middle: complex, half: float) -> list[Vector]:
+        """Vectors and letters inside a circle of a radius, mm; gives the vectors."""
         at = {name: s.at(name) for name in self.points}
-        for sign, tail, head in self.vectors:
-            seen = chord(middle, half, at[tail], at[head])
-            if seen is None or abs(seen[1] - seen[0]) < 1.0:
-                continue
-            a, b = seen
-            pen = s.pen(head, "symbol", f"{tail}–{head}")
-            if abs(b - at[head]) < 1e-9 and abs(b - a) > 3.0:
-                pen.arrow(a, b, "vector")
-            else:
-                pen.line(a, b, "vector")
-            pen.label((a + b) / 2, sign, 1j * (b - a), LETTERS, 1.0)
+        seen = {v: part for v in self.vectors
+                if (part := chord(middle, half, at[v.tail], at[v.head])) and abs(part[1] - part[0]) >= 1.0}
+        for v, (a, b) in seen.items():
+            pen = s.pen(v.head, "symbol", f"{v.tail}–{v.head}")
+            (pen.arrow if abs(b - at[v.head]) < 1e-9 and abs(b - a) > 3.0 else pen.line)(a, b, "vector")
+            pen.label((a + b) / 2, v.sign, 1j * (b - a), LETTERS, 1.0)
+        letters = {name: name if name.isdigit() else link_marks.indexed(self.plan[name].symbol or name) for name in self.names}
         for same in together([at[name] for name in self.names], 0.8):
             first = self.names[same[0]]
             pen = s.pen(first, "symbol")
             pen.dot(at[first], 0.6)
-            pen.label(at[first], ", ".join(self._letters(self.names[i]) for i in same), at[first] - middle, LETTERS, 1.0)
-
-    def _letters(self, name: str) -> str:
-        return name if name.isdigit() else link_marks.indexed(self.plan[name].symbol or name)
+            pen.label(at[first], ", ".join(letters[self.names[i]] for i in same), at[first] - middle, LETTERS, 1.0)
+        return list(seen)
 
     def _free_radius(self, canvas: Canvas) -> float:
         """Radius of the circle round the corners, mm: the least that runs over no lettering, the usual one where all do."""
         boxes = [np.abs(text_box(m) - self.centre) for m in canvas.marks if isinstance(m, Text) and abs(m.at - self.centre) < 40.0]
         usual = self.reach + 1.5
-        free = (r for r in usual + 0.5 * np.arange(8) if not any(b.min() < r + 0.2 and b.max() > r - 0.2 for b in boxes))
-        return next(free, usual)
+        return next((r for r in usual + 0.5 * np.arange(8)
+                     if not any(b.min() < r + 0.2 and b.max() > r - 0.2 for b in boxes)), usual)
 
 
 def _no_more_zero(canvas: Canvas, it: Corner) -> None:
@@ -287,11 +287,11 @@ def _corners(canvas: Canvas, polygons: Mapping[str, Polygon], whole: Sequence[Pl
 def _polygons(project: Project) -> dict[str, Polygon]:
     """Plans by their names with their vectors."""
     study = project.study
-    found = {plan.name: (plan, [(seg.symbol, seg.tail, seg.head) for seg in plan.segments])
-             for plan in (study.velocities.plan, study.accelerations.plan)}
+    sides: dict[Plan, list[tuple[str, Step, Step]]] = {plan: [] for plan in (study.velocities.plan, study.accelerations.plan)}
     if "forces" in project.parts:
-        found |= {fp.plan.name: (fp.plan, [(s, a, b) for s, a, b, *_ in fp.sides]) for fp in study.forces.plans.values()}
-    return found
+        sides |= {fp.plan: [side[:3] for side in fp.sides] for fp in study.forces.plans.values()}
+    return {plan.name: (plan, own + [(seg.symbol, seg.tail, seg.head) for seg in plan.segments
+                                     if not any(seg.symbol == sign for sign, *_ in own)]) for plan, own in sides.items()}
 
 
 def _together(points: dict[str, complex], drawn: tuple[Vector, ...]) -> list[tuple[str, ...]]:
