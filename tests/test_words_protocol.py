@@ -9,9 +9,9 @@ from tests.few import few
 from tmm_sheets import catalogue, protocols, results, words
 from tmm_sheets.compare.measured import collecting
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.scale import times
+from tmm_sheets.construction.step import Plan
 from tmm_sheets.project import Project
 from tmm_sheets.record import recording
 

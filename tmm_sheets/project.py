@@ -15,8 +15,7 @@ from tmm_sheets.task.variant import Variant
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan
-    from tmm_sheets.construction.step import SearchCount
+    from tmm_sheets.construction.step import Plan, SearchCount
     from tmm_sheets.mechanism.groups.three_legs import Course
     from tmm_sheets.mechanism.groups.triad import TriadGroup
     from tmm_sheets.mechanism.model import Mechanism

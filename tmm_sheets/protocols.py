@@ -11,8 +11,8 @@ from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan
     from tmm_sheets.construction.scale import Scale
+    from tmm_sheets.construction.step import Plan
     from tmm_sheets.project import Project
 
 

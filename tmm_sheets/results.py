@@ -19,7 +19,7 @@ from tmm_sheets.result_files import json_pieces, leaves, plain_numbers, row
 from tmm_sheets.words import tell, tell_n
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.construction.step import Plan
     from tmm_sheets.methods.linkage.friction import Friction
     from tmm_sheets.methods.linkage.study import Study
     from tmm_sheets.project import Project

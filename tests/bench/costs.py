@@ -34,7 +34,7 @@ with open(sys.argv[1], "w") as f:
 """
 COUNTING = """
 import sys, json
-from tmm_sheets.construction import plan
+from tmm_sheets.construction import step
 from tmm_sheets.drawing import canvas
 steps, sheets = [], []
 add, begin = plan.Plan.add, canvas.Canvas.__init__

@@ -29,9 +29,8 @@ from tmm_sheets.catalogue import read
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, hypotheses, of_other_positions
 from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
 from tmm_sheets.construction.error import Errors
-from tmm_sheets.construction.plan import asked_for
 from tmm_sheets.construction.protocol import letter_of
-from tmm_sheets.construction.step import Step, ordered
+from tmm_sheets.construction.step import Step, asked_for, ordered
 from tmm_sheets.project import Project
 
 CASES = Path(__file__).parent / "cases"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tmm_sheets.construction import condition, rules
-from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Plan
 
 ANGLES = np.array([90.0, 60.0, 30.0, 10.0, 3.0, -45.0])
 TRUE = 1 / np.abs(np.sin(np.radians(ANGLES)))

@@ -7,7 +7,7 @@ from tests.methods.linkage.mechanisms import mechanism
 from tmm_sheets import catalogue
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors, errors
-from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Plan
 from tmm_sheets.mechanism.groups import RRP
 from tmm_sheets.mechanism.model import Crank, Guide, StructuralGroup
 from tmm_sheets.methods.integration import integrate

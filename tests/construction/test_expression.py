@@ -11,8 +11,7 @@ from tmm_sheets.construction import expression, rules
 from tmm_sheets.construction.arithmetic import Curve
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.expression import Argument, lettered
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Given, GivenNumber, GivenPoint, Reported, Rule, Step
+from tmm_sheets.construction.step import Given, GivenNumber, GivenPoint, Plan, Reported, Rule, Step
 from tmm_sheets.methods.flywheel.flywheel import ACCELERATION
 from tmm_sheets.methods.flywheel.works import PLOT
 from tmm_sheets.methods.linkage.velocities import ANGULAR_VELOCITY, RIGID, SIMILAR

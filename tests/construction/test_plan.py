@@ -5,7 +5,7 @@ import pytest
 
 from tmm_sheets import catalogue
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.plan import Plan, symbol
+from tmm_sheets.construction.step import Plan, symbol
 from tmm_sheets.project import Project
 
 

@@ -12,10 +12,9 @@ from tests.note.printed_formulas import equalities
 from tests.sheets import equations
 from tmm_sheets import catalogue, protocols
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import sentence, sentences, sizes_of
 from tmm_sheets.construction.scale import Scale
-from tmm_sheets.construction.step import Rule, Step
+from tmm_sheets.construction.step import Plan, Rule, Step
 from tmm_sheets.numbers import fixed
 from tmm_sheets.project import Project
 

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import sentences
+from tmm_sheets.construction.step import Plan
 from tmm_sheets.methods.integration import Quadrature, differentiate, integrate, ordinates, smooth
 
 

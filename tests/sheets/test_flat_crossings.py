@@ -13,8 +13,7 @@ from tests import project_files as files
 from tmm_sheets import catalogue
 from tmm_sheets.__main__ import run
 from tmm_sheets.construction import condition, rules
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import value_of
+from tmm_sheets.construction.step import Plan, value_of
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Fill, Text, flat
 from tmm_sheets.drawing.placing import place

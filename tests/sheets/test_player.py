@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale
+from tmm_sheets.construction.step import Plan
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Arc, Fill, Line
 from tmm_sheets.sheets.player import PlanFrame, play, stage

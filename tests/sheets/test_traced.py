@@ -11,8 +11,8 @@ import pytest
 from tests.few import few
 from tests.sheets import traced
 from tmm_sheets.catalogue import read
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.rules import GIVEN
+from tmm_sheets.construction.step import Plan
 from tmm_sheets.drawing.marks import Arc, Fill, Line, PlacedFrame, Polyline, Text
 from tmm_sheets.project import Project
 

@@ -17,8 +17,7 @@ import numpy as np
 
 from tmm_sheets.catalogue import read
 from tmm_sheets.construction.arithmetic import Curve
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Helper, Step, value_at
+from tmm_sheets.construction.step import Helper, Plan, Step, value_at
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Mark, PlacedFrame, Points, Polyline, Text, flat
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.composed import Composed

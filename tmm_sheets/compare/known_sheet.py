@@ -17,7 +17,7 @@ from tmm_sheets.sheets.sheet import ask_again, composed
 from tmm_sheets.words import tell, tell_n
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.construction.step import Plan
     from tmm_sheets.project import Project
 
 

@@ -30,8 +30,7 @@ from tmm_sheets.construction.formula import (
     row,
     simplified,
 )
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import FoundNumber, Given, GivenNumber, Step, value_at
+from tmm_sheets.construction.step import FoundNumber, Given, GivenNumber, Plan, Step, value_at
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.meanings import words
 from tmm_sheets.note.document import Inline, NumberInText, Rows, ShownFormula, Symbol, Text

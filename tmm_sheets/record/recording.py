@@ -32,8 +32,7 @@ from tmm_sheets.construction.formula import (
     of_tree,
     spelt,
 )
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Given, Helper, Over, Step, value_at, value_of
+from tmm_sheets.construction.step import Given, Helper, Over, Plan, Step, value_at, value_of
 from tmm_sheets.drawing.marks import Arc, Fill, Line, Polyline, Text
 from tmm_sheets.errors import CannotBuild, together
 from tmm_sheets.record.step_index import StepIndex, leaves

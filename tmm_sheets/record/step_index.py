@@ -10,8 +10,7 @@ from typing import Any
 
 from tmm_sheets import result_files
 from tmm_sheets.construction import expression
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Reported, Step, ordered, parents
+from tmm_sheets.construction.step import Plan, Reported, Step, ordered, parents
 from tmm_sheets.words import tr
 
 

@@ -16,9 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tmm_sheets.box import Box
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit_standard, handy
-from tmm_sheets.construction.step import Helper, Step, value_at
+from tmm_sheets.construction.step import Helper, Plan, Step, value_at
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import PlacedFrame, Role
 from tmm_sheets.errors import CannotBuild

@@ -8,8 +8,7 @@ from dataclasses import replace
 from math import cos, pi, sin
 from typing import TYPE_CHECKING, Any
 
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import FoundNumber, Given, GivenNumber, GivenPoint, Rule
+from tmm_sheets.construction.step import FoundNumber, Given, GivenNumber, GivenPoint, Plan, Rule
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.mechanism.groups import KINDS, TRIAD
 from tmm_sheets.mechanism.groups.contexts import Leg

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tmm_sheets.construction import rules
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Given, Step
+from tmm_sheets.construction.step import Given, Plan, Step
 
 
 class Rows:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Plan
 from tmm_sheets.methods.flywheel.energy_mass import energy_mass_plan, highest, limit, speed, touched
 from tmm_sheets.methods.flywheel.works import LAY_DOWN
 

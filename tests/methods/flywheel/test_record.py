@@ -228,7 +228,7 @@ def test_errors_reach_the_sizes(shaper):
 def test_values_of_single_positions_have_errors_of_their_own():
     """Two ordinates taken from one row are drawn apart: their sum has the root of the squares, twice one of them twice."""
     from tmm_sheets.construction import rules
-    from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.construction.step import Plan
 
     plan = Plan("row", "", "mm", ("0", "1", "2"))
     centre = plan.add("O", rules.GIVEN, 0j)

@@ -8,9 +8,8 @@ import pytest
 from tests.methods.gears import reducer_cases as cases
 from tests.methods.gears.test_gears import data
 from tmm_sheets.construction import arithmetic, expression
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import sentences
-from tmm_sheets.construction.step import Given, GivenNumber, Reported, Step, value_of
+from tmm_sheets.construction.step import Given, GivenNumber, Plan, Reported, Step, value_of
 from tmm_sheets.methods.gears import (
     gear_engagement,
     gear_formulas,

@@ -16,9 +16,8 @@ from tmm_sheets.compare.diagnosis.hypotheses import BACKWARDS
 from tmm_sheets.compare.elements import said
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
-from tmm_sheets.construction.plan import Plan, asked_for
 from tmm_sheets.construction.protocol import letter_of
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Plan, Step, asked_for
 from tmm_sheets.words import marked
 
 if TYPE_CHECKING:

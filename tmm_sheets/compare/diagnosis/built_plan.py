@@ -25,9 +25,8 @@ from tmm_sheets.compare.finding_records import FindingRecord
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import KnownSheet, plans_of
 from tmm_sheets.construction.error import Errors
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import letter_of
-from tmm_sheets.construction.step import Step, ordered
+from tmm_sheets.construction.step import Plan, Step, ordered
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import marked, tell
 

@@ -11,9 +11,8 @@ import numpy as np
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.known_sheet import KnownSheet
 from tmm_sheets.compare.placing import HINGE, shafts
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import letter_of
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.drawing.marks import Arc, Fill, PlacedFrame, Points
 
 AT_POINT = 0.03

@@ -26,10 +26,9 @@ from tmm_sheets.compare.measured.measurable import (
 from tmm_sheets.compare.measured.measured_units import DEGREES, MILLIMETRES, TURNS
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import spoken
 from tmm_sheets.construction.scale import Scale
-from tmm_sheets.construction.step import Kind, Rule, Step, value_at, value_of
+from tmm_sheets.construction.step import Kind, Plan, Rule, Step, value_at, value_of
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams.cam_motion import ACROSS, ORDINATE
 from tmm_sheets.methods.gears.rack import TAKEN

@@ -49,7 +49,7 @@ from tmm_sheets.methods.linkage.velocities import SAME, SIMILAR
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan, Segment
+    from tmm_sheets.construction.step import Plan, Segment
     from tmm_sheets.project import Project
 
 

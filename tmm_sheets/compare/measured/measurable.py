@@ -21,7 +21,7 @@ from tmm_sheets.construction.step import Step, value_at
 from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.construction.step import Plan
 
 Kind = Literal["length", "angle", "result", "sense"]
 Term = tuple[Step, int, complex]

@@ -13,9 +13,8 @@ from tmm_sheets.compare.measured.measurable import Measurables
 from tmm_sheets.compare.story import StoryPicture
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.protocol import letter_of
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Plan, Step
 
 SHOWS = 1.0
 """How far a line is off for a mistake to show in it, mm."""

@@ -13,7 +13,7 @@ from mpmath import mp
 
 from tmm_sheets import catalogue
 from tmm_sheets.construction.expression import Floats
-from tmm_sheets.construction.plan import Plan
+from tmm_sheets.construction.step import Plan
 from tmm_sheets.lab.bench.records import Bench
 from tmm_sheets.methods.flywheel.energy_mass import highest
 from tmm_sheets.methods.flywheel.flywheel import Flywheel

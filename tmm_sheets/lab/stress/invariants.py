@@ -21,8 +21,7 @@ import numpy as np
 
 from tmm_sheets.construction.function import Replay, fill
 from tmm_sheets.construction.indices import on_link, pair_index
-from tmm_sheets.construction.plan import Plan
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.mechanism.groups import PRP, RPP, RPR, RRP, RRR, TRIAD, GroupKind
 from tmm_sheets.mechanism.groups.triad import TriadGroup
 from tmm_sheets.mechanism.model import Mechanism, StructuralGroup

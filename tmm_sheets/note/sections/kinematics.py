@@ -11,9 +11,8 @@ from tmm_sheets.construction import expression
 from tmm_sheets.construction.digits import shown
 from tmm_sheets.construction.formula import Node, Sign, Underlined, Words, joined, letters, row
 from tmm_sheets.construction.indices import on_link
-from tmm_sheets.construction.plan import Plan, Segment
 from tmm_sheets.construction.rules import GIVEN, LINE_LINE, TURN
-from tmm_sheets.construction.step import Step, value_at
+from tmm_sheets.construction.step import Plan, Segment, Step, value_at
 from tmm_sheets.note.document import Rows, ShownFormula, Symbol, Text, enumerated, lettered
 from tmm_sheets.note.reader import Column, NoteQuantity, Reader, listed, named
 from tmm_sheets.numbers import is_zero, number

@@ -23,8 +23,7 @@ from tmm_sheets.sheets.player import OVER, PlayerStage, placed, play
 from tmm_sheets.words import tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan
-    from tmm_sheets.construction.step import Step
+    from tmm_sheets.construction.step import Plan, Step
     from tmm_sheets.methods.cams.cam_inversion import Spring
     from tmm_sheets.methods.cams.cam_motion import FollowerMotion
     from tmm_sheets.methods.cams.cam_profile import Cam, RollerCam

@@ -27,9 +27,8 @@ from tmm_sheets.words import marked, tell, tell_n, tr
 if TYPE_CHECKING:
     from tmm_sheets.box import Box
     from tmm_sheets.construction.error import Errors
-    from tmm_sheets.construction.plan import Plan
     from tmm_sheets.construction.scale import Scale
-    from tmm_sheets.construction.step import Step
+    from tmm_sheets.construction.step import Plan, Step
     from tmm_sheets.drawing.canvas import Canvas
     from tmm_sheets.project import Project
 

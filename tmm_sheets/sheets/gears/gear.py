@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tmm_sheets.construction.equation import Quantity, digits_for, of_step
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, fit
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken, fitted
 from tmm_sheets.drawing.marks import Box, Dimension

@@ -8,9 +8,8 @@ from itertools import product
 from math import cos, gcd, pi, sin
 from typing import TYPE_CHECKING, NamedTuple
 
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale, handy
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import fitted, letter
 from tmm_sheets.drawing.marks import Box

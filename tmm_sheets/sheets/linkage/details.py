@@ -17,9 +17,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tmm_sheets.box import Box
-from tmm_sheets.construction.plan import Plan
 from tmm_sheets.construction.scale import Scale
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.drawing.canvas import Canvas, Label
 from tmm_sheets.drawing.ink import chord
 from tmm_sheets.drawing.ink_index import distance

@@ -23,8 +23,7 @@ from tmm_sheets.sheets.linkage import kinematic_frames, link_marks
 from tmm_sheets.words import marked, tell, tr, tr_in
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Segment
-    from tmm_sheets.construction.step import Step
+    from tmm_sheets.construction.step import Segment, Step
     from tmm_sheets.project import Project
 
 ROW = 7.0

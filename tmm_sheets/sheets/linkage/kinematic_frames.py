@@ -22,7 +22,7 @@ from tmm_sheets.sheets.player import SHORTEST, PlanFrame, ScaleBook, extent, fit
 from tmm_sheets.words import marked_n, tell, tell_n, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Plan
+    from tmm_sheets.construction.step import Plan
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.views import ViewPlace
 

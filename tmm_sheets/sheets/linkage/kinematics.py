@@ -26,7 +26,7 @@ from tmm_sheets.sheets.player import SHORTEST, PlanFrame, PlayerStage, joined, p
 from tmm_sheets.words import tr, tr_in
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Segment
+    from tmm_sheets.construction.step import Segment
     from tmm_sheets.mechanism.model import Mechanism
     from tmm_sheets.methods.linkage.cycle import Cycle
     from tmm_sheets.methods.linkage.positions import Positions

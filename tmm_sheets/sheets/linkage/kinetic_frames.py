@@ -11,8 +11,8 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.construction.indices import pair_index
-from tmm_sheets.construction.plan import Segment, symbol
 from tmm_sheets.construction.scale import handy
+from tmm_sheets.construction.step import Segment, symbol
 from tmm_sheets.numbers import is_zero
 from tmm_sheets.sheets.linkage import link_marks
 from tmm_sheets.sheets.player import extent, needed

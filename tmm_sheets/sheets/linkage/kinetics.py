@@ -58,8 +58,7 @@ from tmm_sheets.sheets.views import ViewPlace
 from tmm_sheets.words import tell, tr
 
 if TYPE_CHECKING:
-    from tmm_sheets.construction.plan import Segment
-    from tmm_sheets.construction.step import Step
+    from tmm_sheets.construction.step import Segment, Step
     from tmm_sheets.mechanism.groups.contexts import ForcePlan
     from tmm_sheets.mechanism.model import StructuralGroup
     from tmm_sheets.methods.linkage.forces import Kinetostatics

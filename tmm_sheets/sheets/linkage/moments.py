@@ -14,8 +14,7 @@ import numpy as np
 from tmm_sheets.construction.equation import Quantity, equation
 from tmm_sheets.construction.expression import Argument, Constant
 from tmm_sheets.construction.indices import pair_index
-from tmm_sheets.construction.plan import symbol
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Step, symbol
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import broken
 from tmm_sheets.numbers import clean, is_zero
