@@ -37,14 +37,14 @@ import sys, json
 from tmm_sheets.construction import step
 from tmm_sheets.drawing import canvas
 steps, sheets = [], []
-add, begin = plan.Plan.add, canvas.Canvas.__init__
+add, begin = step.Plan.add, canvas.Canvas.__init__
 def adding(self, *a, **k):
     steps.append(add(self, *a, **k))
     return steps[-1]
 def beginning(self, *a, **k):
     sheets.append(self)
     begin(self, *a, **k)
-plan.Plan.add, canvas.Canvas.__init__ = adding, beginning
+step.Plan.add, canvas.Canvas.__init__ = adding, beginning
 from tmm_sheets.__main__ import run
 status = run(sys.argv[2:])
 sys.stdout.flush()
