@@ -99,6 +99,7 @@ class PlacedLabels:
         self.written = np.vstack((ink.written, np.full((len(labels), 4), np.nan)))
         self.boxes = self.written[len(ink.written):]
         self._led: dict[int, tuple[complex, complex]] = {}
+        self._unsure = dict[tuple[Label, complex], int]()
         self._update_leaders()
 
     def put(self, k: int, placement: Placement) -> None:
@@ -142,8 +143,11 @@ class PlacedLabels:
         if k not in self._led:
             return over
         written = np.delete(self.written, len(self.written) - len(self.boxes) + k, axis=0)
-        unsure = _surroundings(self.ink, self.at[k][0]).count_unsure(np.array(self._led[k][:1]))[0]
-        return int(ink_index.crosses(a, b, *self._led[k]).sum() + unsure) + _count_crossed(written, *self._led[k]) + over
+        named = self.at[k][0], self._led[k][0]
+        if named not in self._unsure:
+            self._unsure[named] = int(_surroundings(self.ink, named[0]).count_unsure(np.array(named[1:]))[0])
+        met = int(ink_index.crosses(a, b, *self._led[k]).sum()) + _count_crossed(written, *self._led[k])
+        return over + met + self._unsure[named]
 
     def _is_misread(self, k: int) -> bool:
         """Whether label ``k`` has no leader and is read as another's because of the leader of one."""
@@ -361,6 +365,7 @@ class _Places:
         self.run_on = np.zeros(len(cost), bool)
         self.run_on[some] = read_on
         self.free = free[np.argsort(self.cost[free], kind="stable")]
+        self.led = (np.abs(owners.nearest(label.anchor, self.sides) - label.anchor) > NEAR + label.gap) | bool(label.shelf)
 
     def choose(self, here: owners.Surroundings, leaders: bool = True) -> tuple[int | None, float]:
         """The cheapest free place where the label reads as what it names, or has a leader that meets nothing; cost of its fault.
@@ -369,18 +374,22 @@ class _Places:
         the leader run over lettering. Without ``leaders`` none of those but such as are only vague.
         """
         best, least, worst, enough = None, np.inf, np.inf, np.inf
+        if here.unsure and not leaders:
+            return None, worst
         found = dict[int, float]()
+        # What is wrong with the spot that is named is wrong with every place: one with nothing else is as good as any.
+        spot = here.unsure * np.where(self.led, CROSSING * owners.LED, VAGUE * owners.SPOT) if here.unsure else None
         for rank, k in enumerate(self.free.tolist()):
             if self.cost[k] >= enough:
                 break
-            if not leaders and _needs_leader(self.label, self.box(k)):
+            if (not leaders and self.led[k]) or (spot is not None and self.cost[k] + spot[k] >= least):
                 continue
             if k not in found:
                 some = self.free[rank:rank + (MANY if found else SOME)].tolist()
                 found |= zip(some, self.faults(here, some), strict=True)
             fault = found[k]
-            if not fault:
-                return k, 0.0
+            if not fault or (spot is not None and fault <= spot[k]):
+                return k, fault
             if self.cost[k] + fault < least and (leaders or fault <= VAGUE):
                 best, least, worst = k, self.cost[k] + fault, fault
             if fault <= VAGUE:
@@ -395,13 +404,15 @@ class _Places:
         """Costs of what is wrong with the label at some places, 0 for nothing."""
         label, sides = self.label, self.sides[:, some]
         found = np.zeros(len(some)) if self._strayed is None else STRAYED * self._strayed[some]
-        far_off = (np.abs(owners.nearest(label.anchor, sides) - label.anchor) > NEAR + label.gap) | bool(label.shelf)
-        led, alone = far_off.nonzero()[0], (~far_off).nonzero()[0]
+        led, alone = self.led[some].nonzero()[0], (~self.led[some]).nonzero()[0]
         if len(alone):
             bad, vague = here.judge(sides[:, alone])
             found[alone] += np.where(bad, MISREAD, VAGUE * vague)
         if len(led):
-            p, q = np.array([_leader_ends(label, self.box(some[k])) for k in led.tolist()]).T
+            if label.shelf:
+                p, q = np.array([_leader_ends(label, self.box(some[k])) for k in led.tolist()]).T
+            else:
+                p, q = np.full(len(led), label.anchor), owners.nearest(label.anchor, sides[:, led])
             written = self._placed.written
             wx0, wy0, wx1, wy1 = written[ink_index.find_near(written.T, Box.around(np.append(p, q)), 0.0)].T
             over = ink_index.enters(p[:, None], (q - p)[:, None], wx0, wy0, wx1, wy1).sum(axis=1)

@@ -33,6 +33,8 @@ LED = 10
 """Crossing another leader, which GOST 2.316 forbids, or ending at several vectors is as bad as crossing so many strong lines."""
 EVEN = 1e-9
 """Distances that differ by less, mm, are one: what ends on the line that is named does not part it from its letter."""
+SPOT = 3.0
+"""How vague lettering is whose spot on its vector may be that of another line."""
 UNSURE = 0.7
 """A leader that ends so near to a foreign strong line, mm, may be its."""
 SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88, 0.05, 0.95)
@@ -56,6 +58,7 @@ class Surroundings:
             along = np.maximum(_to_line(self.a, *self.vector), _to_line(self.b, *self.vector)) <= AT
             self.twin = _are_others(ink, self.of, along & ~self.own)
             self.own |= along
+        self.unsure = 0 if self.vector is None else int(self.count_unsure(np.array([p]))[0])
 
     def misreading(self, box: Box) -> str:
         """What is wrong with lettering in a rectangle: "crossed", "nearer", or "" for nothing."""
@@ -67,7 +70,7 @@ class Surroundings:
         """Where lettering in rectangles, shape (4, m), is read as another line's, and how vague it is."""
         m = boxes.shape[1]
         bad, vague = self._pairs(boxes).judge(boxes, np.full(m, self.anchor), [None if self.vector is None else self._runs] * m)
-        return bad, vague + 3.0 * (self.vector is not None and self.count_unsure(np.array([self.anchor])))
+        return bad, vague + SPOT * self.unsure
 
     def _pairs(self, boxes: Floats) -> Pairs:
         """Segments no farther from each rectangle than the anchor is: nothing beyond it is nearer."""
