@@ -171,6 +171,6 @@ def test_every_file_a_user_writes(encoding, tmp_path, capsys):
     machine.write_bytes((shipped + "# перья\n").encode("utf-8").decode("utf-8").encode(encoding, "ignore"))
     assert plotters.plotter(str(machine)).pens == plotters.plotter("a1").pens
     views = tmp_path / "views.toml"
-    views.write_bytes('[[view]]\nname = "План"\n'.encode(encoding))
+    views.write_bytes('[[view]]\nname = "План"\nours = [[0, 0], [9, 0]]\ntheirs = [[0, 0], [9, 0]]\n'.encode(encoding))
     with pytest.raises(BadInput, match='no view "План"'):
         view_places.read(views, ())

@@ -163,7 +163,7 @@ def test_build_says_so_and_is_done(tmp_path, capsys, monkeypatch):
     plan = arrangement("kinematics_forces_wide")
     small = tuple(replace(v, box=Box(v.box.x0, v.box.y1 - 46, v.box.x0 + 25, v.box.y1)) if v.draw == "kinetics.lever" else v
                   for v in plan.views)
-    monkeypatch.setattr(sheets, "arranged", lambda opened, n: replace(plan, views=small))
+    monkeypatch.setattr(sheets.composition, "arranged", lambda opened, n: replace(plan, views=small))
     assert run(["build", path, "-o", str(tmp_path / "out"), "--format", "dxf"]) == 0
     told = [line for line in capsys.readouterr().err.splitlines() if "leaves its place" in line]
     assert len(told) == 1

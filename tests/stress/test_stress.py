@@ -18,7 +18,7 @@ from tmm_sheets.construction.expression import primitive
 from tmm_sheets.lab.stress import cases, change_points, invariants
 from tmm_sheets.lab.stress.cases import BOUNDS, SCENES, memory, run_case
 from tmm_sheets.lab.stress.invariants import State
-from tmm_sheets.mechanism.groups import PRP, RRP, RRR
+from tmm_sheets.mechanism.groups import PRP, RRP, RRR, hinged
 from tmm_sheets.mechanism.model import Crank, Guide, StructuralGroup
 from tmm_sheets.methods.linkage import accelerations, forces, positions, velocities, zhukovsky
 
@@ -215,7 +215,7 @@ SPOILT = {
     "normal acceleration from the centre": (accelerations, "NORMAL", lambda a, w, q, b: a + w * w * (b - q), TURNED),
     "arcsine instead of atan2": (rules, "RAY", arcsine, "velocity closure"),
     "arcsine on the right side": (rules, "RAY", arcsine_on_the_right_side, "closure on guides"),
-    "side by the picture": (rules, "ARC_ARC", nearest, "assembly side"),
+    "side by the picture": (hinged.RRRKind, "crosses", nearest, "assembly side"),
     "angular velocity turned round": (
         velocities.Velocities, "TURNING", lambda *z: -velocities.turning(*z), "velocity closure"),
     "inertia couple along epsilon": (forces, "COUPLE", lambda j, e: j * e, "power = change of energy"),
