@@ -315,3 +315,34 @@ def test_the_shelf_of_a_name_is_part_of_it(shelf, end, ill):
     placed = placing(Box(0.0, 0.0, 100.0, 100.0), [], detail, number)
     assert min(placed.count_faults(1), 1) == ill
     assert (0 in placed.in_conflict(1)) is bool(ill)
+
+
+@pytest.mark.parametrize(("angles", "anchor"), [
+    ((0.0,), 4 + 0j),                      # alone
+    ((0.0, 3.0), 4 + 0j),                  # two that can hardly be told apart where the name stands
+    ((0.0, 3.0, -3.0), 4 + 0j),            # between two
+    ((0.0, 0.0, 3.0), 4 + 0j),             # one on the other
+    ((0.0, 3.0, 6.0, 9.0, 12.0), 3 + 0j),  # a fan, at its tail
+    ((0.0, 40.0), 9 + 0j),                 # far enough apart
+])  # fmt: skip
+@pytest.mark.parametrize("crowd", [False, True])
+def test_no_place_that_was_not_judged_is_better(angles, anchor, crowd):
+    """What bounds leave out, judged all the same: cheapest of all, or the cheapest with nothing wrong but the spot itself."""
+    fan = [Line(0j, 10 * np.exp(1j * np.radians(a)), "vector", by=Provenance("vector", f"plan/{k}", "1", 0))
+           for k, a in enumerate(angles)]
+    wall = [Line(-30 + y * 1j, 40 + y * 1j, "main") for y in range(-21, 22, 6)] if crowd else []
+    label = Label(anchor, "F_{21}", 3.5, by=fan[0].by)
+    placed = labels.PlacedLabels(ink_index.InkIndex([*fan, *wall], Box(-60, -60, 60, 60)), [label])
+    places = labels._Places(placed, label, *labels._candidates(placed, [label]))
+    here = labels._surroundings(placed.ink, label)
+    k, fault = places.choose(here)
+    every = dict(zip(places.free.tolist(), places.faults(here, places.free.tolist()), strict=True))
+    spot = {n: here.unsure * (labels.CROSSING * owners.LED if places.led[n] else labels.VAGUE * owners.SPOT) for n in every}
+    assert (here.unsure > 0) == (len(angles) >= 2 and max(angles) < 40)
+    assert all(every[n] >= spot[n] - 1e-9 for n in every)
+    assert fault == every[k]
+    sound = [n for n in every if every[n] <= spot[n]]
+    if fault <= spot[k]:
+        assert all(places.cost[k] <= places.cost[n] or places.cost[n] + spot[n] >= places.cost[k] + fault for n in sound)
+    elif here.unsure:
+        assert places.cost[k] + fault <= min(places.cost[n] + every[n] for n in every) + 1e-9

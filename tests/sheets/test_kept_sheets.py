@@ -16,7 +16,7 @@ from tmm_sheets import catalogue, kept, words
 from tmm_sheets.__main__ import run
 from tmm_sheets.project import Project
 from tmm_sheets.remarks import Remark
-from tmm_sheets.sheets import answered, composing, sheet
+from tmm_sheets.sheets import answered, composing, composition, sheet
 from tmm_sheets.sheets.answered import Answered
 from tmm_sheets.task.variant import parse
 
@@ -208,3 +208,21 @@ def test_loading_imports_nothing_that_draws(place, tmp_path):
     assert not [m for m in modules if m.startswith(("shapely", "scipy", "tmm_sheets.methods.", "tmm_sheets.mechanism."))]
     assert {m for m in modules if m.startswith("tmm_sheets.sheets.")} == {
         f"tmm_sheets.sheets.{name}" for name in ("sheet", "composed", "answered")}  # fmt: skip
+
+
+@pytest.mark.parametrize("data", [
+    b"", b"7", b"[7]", b"[[1]]", b'[["no.view", [0, 0, 1, 1], {}]]', b'[["cams.motion", [0, 0, 1, "x"], {}]]',
+    b'[["kinematics.position_plans", [0, 0, 1], {}]]', b'[["kinematics.position_plans", [0, 0, 1, 1], 7]]',
+    b'[["kinematics.position_plans", [0, 0, 1, 1], {"places": [[0, 0, 1]]}]]', b"[" * 100_000])
+def test_an_odd_arrangement_counts_as_not_kept(place, monkeypatch, data):
+    right = composition.arranged(opened("lugansk/shaper"), 1)
+    monkeypatch.setattr(Answered, "found", lambda self: iter([data]))
+    assert composition.arranged(opened("lugansk/shaper"), 1) == right
+
+
+def test_an_arrangement_is_kept_as_it_was_found(place, monkeypatch):
+    right = composition.arranged(opened("lugansk/shaper"), 1)
+    monkeypatch.setattr(composition, "solve", lambda *_: pytest.fail("solved what is kept"))
+    found = composition.arranged(opened("lugansk/shaper"), 1)
+    assert [(v.draw, v.box, v.options) for v in found.views] == [(v.draw, v.box, v.options) for v in right.views]
+    assert found.offers == right.offers

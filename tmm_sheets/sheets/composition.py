@@ -57,7 +57,7 @@ def _arranged(project: Project, n: int) -> Arrangement:
     plan = _with_all_groups(project, arrangement(project.sheets[n - 1]).fitted(project.parts))
     before = Answered(project, n, "arrangement", FORM)
     for data in before.found():
-        with suppress(ValueError, TypeError, KeyError, AttributeError):
+        with suppress(ValueError, TypeError, KeyError, RecursionError):
             return replace(plan, views=tuple(_loaded(*row) for row in json.loads(data)))
     if any(view.needs == "forces" for view in plan.views):
         project.check_forces()
@@ -86,8 +86,10 @@ def _arranged(project: Project, n: int) -> Arrangement:
 
 def _loaded(draw: str, box: Sequence[float], options: dict[str, Any]) -> ViewPlace:
     """A view in its place as it was kept; the places of its parts are boxes."""
-    own = {"places": [Box(*place) for place in options["places"]]} if "places" in options else {}
-    return ViewPlace(draw, Box(*box), {**options, **own})
+    own = {"places": [Box(*map(float, place)) for place in options["places"]]} if "places" in options else {}
+    found = ViewPlace(draw, Box(*map(float, box)), {**options, **own})
+    _ = found.kind  # a view that there is
+    return found
 
 
 def _with_all_groups(project: Project, plan: Arrangement) -> Arrangement:

@@ -328,7 +328,7 @@ class Watched:
 
         def values(phi: Any) -> Any:
             nonlocal replay
-            asked = np.shape(phi), np.asarray(phi).tobytes()
+            asked = np.shape(phi), np.asarray(phi, dtype=float).tobytes()
             if asked in known:
                 return known[asked]
             if replay is None:
