@@ -170,6 +170,8 @@ def _badly_led(p, kept, written):
     return ""
 
 
+THICK_LINE = 0.6
+"""Width of the vectors' line, mm."""
 SPAN, TIE, ONE, LED_TO, APART, BESIDE = 0.3, 0.1, 0.4, 0.6, 1.0, 3.0
 """A name's anchor lies on its line, mm; distances alike; vectors whose ink is one; a leader this near to a foreign one may be
 its; vectors are seen apart; and so far to both sides of a crossing, mm."""
@@ -207,7 +209,8 @@ def _of_another(p, ink):
         if max(min(whole.distance(z) for whole in foreign) for z in along) > APART:
             return TOGETHER
     if p.leader:
-        return LED_ASTRAY if any(whole.distance(at) < LED_TO for whole in apart) else ""
+        touched = _first_touched(p, own)
+        return LED_ASTRAY if any(max(whole.distance(at), whole.distance(touched)) < LED_TO for whole in apart) else ""
     corner = complex(p.box.x0, p.box.y0)
     runs = GeometryCollection([box(*Box.around(run + corner)) for run in run_corners(p.label.text, p.label.height)])
     gap, way = own.distance(runs), LineString(nearest_points(runs, own))
@@ -218,6 +221,14 @@ def _of_another(p, ink):
 
 NEARER, BETWEEN, LED_ASTRAY, TOGETHER = (
     "another vector is nearer", "another vector is between", "led to several vectors", "where vectors run together")
+
+
+def _first_touched(p, own):
+    """Where an eye that comes along the leader from the name meets the ink of its vector: there it stops."""
+    leader, (line, *heads) = p.leader[0], own.geoms
+    way = LineString([(z.real, z.imag) for z in (leader.b, leader.a, p.label.anchor)])
+    ink = way.intersection(line.buffer(THICK_LINE / 2).union(GeometryCollection(heads).buffer(0)))
+    return way.interpolate(way.project(nearest_points(ink, Point(way.coords[0]))[0]))
 
 
 def _runs_on(p, kept, written):

@@ -23,16 +23,16 @@ SHARES = 0.5, 0.4, 0.6, 0.3, 0.7
 """Places of the lettering on its line that are tried."""
 
 
-def around(text: str) -> Box:
+def around(text: str, height: float = 3.5) -> Box:
     """What lettering of a dimension takes about the middle of its baseline, with some room, mm."""
-    laid = letter(text, 3.5)
+    laid = letter(text, height)
     return Box(-laid.width / 2, -laid.descent, laid.width / 2, laid.ascent).inset(-CLEAR)
 
 
-def crossed(ink: InkIndex, a: complex, b: complex, offset: float, text: str, share: float = 0.5) -> int:
+def crossed(ink: InkIndex, a: complex, b: complex, offset: float, text: str, share: float = 0.5, height: float = 3.5) -> int:
     """How many lines would run through the lettering of a dimension."""
-    at, along = lettered(a, b, offset, text, share=share)
-    return ink.count_in(around(text), at, phase(along))
+    at, along = lettered(a, b, offset, text, height, share)
+    return ink.count_in(around(text, height), at, phase(along))
 
 
 def dimension(canvas: Canvas, first: int, a: complex, b: complex, offsets: Iterable[float], text: str,

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.lettering import letter, size_for
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.drawing.text_boxes import CLEAR
 from tmm_sheets.drawing.text_layout import GAP, LEADING, LEAST, TOGETHER, Heading, heading, needs, size_in, widened
 from tmm_sheets.words import tr
 
@@ -57,7 +59,7 @@ class Lines:
 
 
 class Form(NamedTuple):
-    """A form of a view of lines: its columns, height of the letters, distance of the lines, room for the title, mm.
+    """A form of a view of lines: its columns, height of the letters, least distance of the lines, room for the title, mm.
 
     It is ``least`` so wide, mm.
     """
@@ -76,7 +78,13 @@ class Form(NamedTuple):
     @property
     def size(self) -> tuple[float, float]:
         """What it takes, mm."""
-        return max(sum(self.widths) - APART, self.least) + 6.0, self.head + self.step * max(map(len, self.columns))
+        return max(sum(self.widths) - APART, self.least) + 6.0, self.head + self.pitch * max(map(len, self.columns))
+
+    @property
+    def pitch(self) -> float:
+        """Distance of the lines, mm: no exponent stands in an index of the line above it."""
+        laid = [[letter(line, self.height) for line in lines] for lines in self.columns]
+        return max([self.step, *(one.descent + other.ascent + CLEAR for column in laid for one, other in pairwise(column))])
 
 
 @dataclass(frozen=True)
@@ -102,7 +110,7 @@ class Formulas:
         left = canvas.title(box, tr(self.title), spare=box.height - form.size[1])
         x = box.x0 + 3.0
         for lines, width in zip(form.columns, form.widths, strict=True):
-            canvas.lines(complex(x, left.y1 - 0.8 * form.step), lines, form.step, form.height)
+            canvas.lines(complex(x, left.y1 - 0.8 * form.pitch), lines, form.pitch, form.height)
             x += width
 
 

@@ -48,6 +48,7 @@ def engagement(project: Project, canvas: Canvas, box: Box, options: dict[str, An
         picture.rotation(wheel)
     for wheel in picture.gear.wheels:
         picture.dimensions(wheel)
+    picture.dimension_of_centres()
     picture.pole_letter()
     draw_radii(picture)
 

@@ -317,7 +317,8 @@ class Radii:
                 continue
             if drawn.count_in(box.inset(-NAME_CLEAR_MM)) or drawn.is_crossed(tip + NAME_CLEAR_MM * u, end):
                 continue
-            if enters(tip, end - tip, x0, end.imag + SHELF, x1, box.y1):  # over its own name
+            name = Box(x0, end.imag + SHELF, x1, box.y1)
+            if enters(tip, end - tip, *name) or enters(tip, ARROW_MM * u, *name.inset(-NAME_CLEAR_MM)):  # over its own name
                 continue
             first, pen = len(self.canvas.marks), self.picture.stage.pen(f"{key}{self.wheel.number}", "dimension")
             pen.line(tip + ARROW_MM * u, end, "thin")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cmath import phase, rect
+from itertools import product
 from math import degrees, pi, radians
 from typing import TYPE_CHECKING, cast
 
@@ -17,7 +18,7 @@ from tmm_sheets.drawing.lettering import letter
 from tmm_sheets.drawing.marks import Box, Line
 from tmm_sheets.numbers import degrees_and_minutes, fixed
 from tmm_sheets.sheets.components.clear_dimensions import around, crossed
-from tmm_sheets.sheets.gears.gear_marks import CIRCLES, Window, hatch_between
+from tmm_sheets.sheets.gears.gear_marks import Window, hatch_between
 from tmm_sheets.sheets.player import PlanFrame, play, ratio, stage, standard
 from tmm_sheets.words import tr
 
@@ -280,7 +281,6 @@ class GearPicture:
         pen.angle_mark(pole, start, end, radius, "α_w")
         near = self.within(self.gear.wheels[0], 2.2 * UNDER) if 1 in self.broken else self.mm(self.gear.wheels[0].rb) * 0.45
         angle_beside(pen, o1, phase(n1 - o1), -pi / 2, near, alpha)
-        self.dimension_of_centres()
 
     def pole_letter(self) -> None:
         """Letter of the pole beyond the root circle of wheel 1 where nothing is drawn, its leader clear of flanks."""
@@ -309,23 +309,14 @@ class GearPicture:
             self.canvas.label(end, "P_w", away=inwards, height=5, gap=0.5, leader=False, thin=KEPT_OFF)
 
     def dimension_of_centres(self) -> None:
-        """Centre distance at the edge of the picture, lettered where no circle crosses it, as near to the middle as can be."""
+        """Centre distance at the edge of the picture, lettered where least is drawn, as near to the middle as can be."""
         top, bottom = (self.centre(self.gear.wheels[i - 1]) for i in ((2, 1) if self.gear.internal else (1, 2)))
-        x, text = self.box.x1 - 12, f"a_w = {fixed(self.gear.a_w * 1e3, 2)}"
-        half, middle, crossed = letter(text, 5.0).width / 2 + 2.0, (top.imag + bottom.imag) / 2, list[tuple[float, float]]()
-        for wheel in self.gear.wheels:
-            centre = self.of(f"O{wheel.number}")
-            reach = np.array([x - 8.0, x + 1.0]) - centre.real  # from the top of the letters to the line
-            for radius in (self.mm(getattr(wheel, key)) for key, _, _ in CIRCLES):
-                ends = np.sqrt(np.maximum(radius**2 - reach**2, 0.0))
-                if ends.max() > 0:
-                    crossed += [tuple(sorted(centre.imag + side * ends)) for side in (1, -1)]
-        places = [middle, *(low - half for low, _ in crossed), *(high + half for _, high in crossed)]
-        free = [y for y in places if bottom.imag + half < y < top.imag - half
-                and all(y + half <= low or high <= y - half for low, high in crossed)]
-        at = min(free, key=lambda y: abs(y - middle), default=middle)
-        self.canvas.dimension(bottom + 12, top + 12, 12 - (x - top.real), text, 5.0,
-                              (at - bottom.imag) / (top.imag - bottom.imag), 1e3 * self.gear.a_w / abs(top - bottom))
+        offset, text = 12 - (self.box.x1 - 12 - top.real), f"a_w = {fixed(self.gear.a_w * 1e3, 2)}"
+        a, b, ink = bottom + 12, top + 12, InkIndex(self.canvas.marks[self.first:])
+        end = min((letter(text, 5.0).width / 2 + 2.0) / abs(b - a), 0.5)
+        tried = product((5.0, 3.5), sorted(np.linspace(end, 1.0 - end, 101), key=lambda share: abs(share - 0.5)))
+        height, share = min(tried, key=lambda way: crossed(ink, a, b, offset, text, way[1], way[0]))
+        self.canvas.dimension(a, b, offset, text, height, share, 1e3 * self.gear.a_w / abs(b - a))
 
     def unrolling(self, wheel: GearWheel) -> None:
         """Divisions of P_wN, equal arcs, tangents and the involute through their ends."""
