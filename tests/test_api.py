@@ -87,6 +87,13 @@ def test_a_part_that_cannot_be_computed_costs_no_other():
     assert str(e.value) == str(n.refused["gear"])
 
 
+@pytest.mark.parametrize("asked", [{}, {"phi_deg": 280.7}, {"phi": [1.0, 4.9]}, {"positions": 7}])
+def test_what_solve_refuses_has_no_numbers_at_other_angles_either(asked):
+    p = tmm_sheets.open(Path(__file__).parent / "methods" / "linkage" / "kite_once_a_turn.toml")
+    with pytest.raises(tmm_sheets.CannotBuild, match="change point"):
+        p.numbers("positions", **asked)
+
+
 def test_other_values_are_those_of_another_file(p):
     q = p.with_({"points.C": ("0 m", "-0.25 m")}, crank__length="60 mm", cam=None)
     parts = ("positions", "flywheel")
