@@ -18,7 +18,7 @@ EXCEPTIONS = {
     "methods.flywheel.works": "chords of the graphs",
     "methods.flywheel.diagram_scales": "scale factors that the graphs fit their room with",
     "methods.flywheel.flywheel": "the limit for many positions, numbers that views print of it",
-    "methods.flywheel.mertsalov": "first energies and the speeds between them, numbers that views print of it",
+    "methods.flywheel.wheel_methods": "first energies and the speeds between them, numbers that views print of it",
     "methods.flywheel.energy_mass": "tangents of the diagram and where they touch",
     "methods.flywheel.wheel": "sizes of the wheel and the motor's slip, numbers that views print of it",
     "methods.gears.gear_geometry": "whether the pair is possible: tips beyond base circles, a distance that its teeth allow",

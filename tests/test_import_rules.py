@@ -171,7 +171,7 @@ def test_imports():
     ("task.variant", "from tmm_sheets.sheets import sheet"),
     ("task.units", "def f():\n    from tmm_sheets.methods.gears import rack"),
     ("methods.linkage.positions", "import tmm_sheets.sheets.sheet"),
-    ("methods.flywheel.mertsalov", "from tmm_sheets.task.schema import FlywheelTable"),
+    ("methods.flywheel.wheel_methods", "from tmm_sheets.task.schema import FlywheelTable"),
     ("methods.cams.cam_zone", "from tmm_sheets.methods.flywheel.flywheel import Flywheel"),
     ("construction.step", "if TYPE_CHECKING:\n    from tmm_sheets.project import Project"),
     ("mechanism.model", "from tmm_sheets.construction import rules"),

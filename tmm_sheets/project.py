@@ -348,7 +348,7 @@ class Project:
             raise CannotBuild(
                 tell("a flywheel needs links with masses"), tell("add mass, centre and inertia to [[link]] of the project file")
             )
-        from tmm_sheets.methods.flywheel.mertsalov import flywheel
+        from tmm_sheets.methods.flywheel.wheel_methods import flywheel
 
         if self.cycle.swings:
             raise CannotBuild(tell("a crank that only swings has no flywheel: no cycle in which its energy comes back"),

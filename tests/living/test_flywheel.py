@@ -9,7 +9,7 @@ from tests.few import few
 from tests.living import javascript
 from tests.methods.flywheel.as_steps import AsSteps
 from tmm_sheets.methods.flywheel.energy_mass import highest
-from tmm_sheets.methods.flywheel.mertsalov import flywheel
+from tmm_sheets.methods.flywheel.wheel_methods import flywheel
 from tmm_sheets.task.schema import FlywheelTable
 
 pytestmark = javascript.needed

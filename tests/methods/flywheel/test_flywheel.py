@@ -20,9 +20,8 @@ from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.methods.flywheel.diagram_scales import DiagramSpace, FlywheelScales
 from tmm_sheets.methods.flywheel.energy_mass import limit
-from tmm_sheets.methods.flywheel.mertsalov import flywheel
 from tmm_sheets.methods.flywheel.wheel import wheel
-from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
+from tmm_sheets.methods.flywheel.wheel_methods import Wittenbauer, flywheel
 
 MANUALS = Path(__file__).parents[2] / "manuals"
 DATA = SimpleNamespace(method="wittenbauer", delta=0.025, form="rim", density=7300.0, width_ratio=0.2, thickness_ratio=0.12,

@@ -24,9 +24,8 @@ from tmm_sheets.construction.scale import Scale
 from tmm_sheets.methods.flywheel.diagram_scales import FlywheelScales
 from tmm_sheets.methods.flywheel.energy_mass import Energy, steady
 from tmm_sheets.methods.flywheel.flywheel import Flywheel
-from tmm_sheets.methods.flywheel.mertsalov import SPACE, Mertsalov, flywheel
 from tmm_sheets.methods.flywheel.wheel import motor_check, wheel
-from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
+from tmm_sheets.methods.flywheel.wheel_methods import FOUR_GRAPHS, Mertsalov, Wittenbauer, flywheel
 from tmm_sheets.project import Project
 
 MANUALS = Path(__file__).parents[2] / "manuals"
@@ -105,7 +104,7 @@ def test_excess_over_the_exact_flywheel_is_the_mean_inertia_at_the_extremes():
 
 def test_both_methods_agree_in_the_limit(fw):
     assert fw.J_first_converged / fw.limit.inertia - 1 == pytest.approx(0.00258, abs=1e-5)
-    steadier = Mertsalov(fw.reduced, data(delta=1e-5), SPACE)
+    steadier = Mertsalov(fw.reduced, data(delta=1e-5), FOUR_GRAPHS)
     assert steadier.J_first_converged / steadier.limit.inertia == pytest.approx(1, abs=1e-6)
     assert fw.excess == pytest.approx(fw.J_first_converged - fw.limit.inertia, rel=0.01)
 
@@ -246,7 +245,7 @@ def test_kinetostatics_with_this_acceleration_gives_the_driving_moment(press):
 def test_results_do_not_depend_on_the_scales(fw):
     scales = FlywheelScales(Scale("", 0.05, ""), Scale("", 1.0, ""), Scale("", 30.0, ""), Scale("", 30.0 * 0.05 * 50, ""),
                     Scale("", 7.0, ""), Scale("", 0.003, ""), 50.0)
-    other = Mertsalov(fw.reduced, data(), SPACE, scales)
+    other = Mertsalov(fw.reduced, data(), FOUR_GRAPHS, scales)
     assert other.J_first == pytest.approx(fw.J_first, rel=1e-12)
     np.testing.assert_allclose(other.omega, fw.omega, rtol=1e-12)
     np.testing.assert_allclose(other.position_acceleration["ε1"].value, fw.position_acceleration["ε1"].value, rtol=1e-10)

@@ -14,8 +14,8 @@ from tests.methods.gears.test_gears import data, polygon
 from tmm_sheets.construction.protocol import sentences
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears.gear_engagement import unrolled
+from tmm_sheets.methods.gears.gear_geometry import geometry_plan
 from tmm_sheets.methods.gears.gear_pair import GearData, gear_pair, settled
-from tmm_sheets.methods.gears.gear_steps import geometry_plan
 from tmm_sheets.methods.gears.rack import Rack, flank
 
 ALPHA = radians(20)

@@ -19,7 +19,7 @@ from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
 from tmm_sheets.drawing.placing import place
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.flywheel.mertsalov import flywheel
+from tmm_sheets.methods.flywheel.wheel_methods import flywheel
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.components import graphs
 from tmm_sheets.sheets.flywheel.flywheel import apart, constant_moment, force_graph

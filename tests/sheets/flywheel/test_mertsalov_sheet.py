@@ -17,7 +17,7 @@ from tmm_sheets.drawing.canvas import Canvas
 from tmm_sheets.drawing.marks import Box, Line, Polyline, Text, flat
 from tmm_sheets.drawing.text_boxes import text_box
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.flywheel.mertsalov import flywheel
+from tmm_sheets.methods.flywheel.wheel_methods import flywheel
 from tmm_sheets.project import Project
 from tmm_sheets.resources import template
 from tmm_sheets.sheets import composition

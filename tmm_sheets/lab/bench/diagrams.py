@@ -17,8 +17,7 @@ from tmm_sheets.construction.step import Plan
 from tmm_sheets.lab.bench.records import Bench
 from tmm_sheets.methods.flywheel.energy_mass import highest
 from tmm_sheets.methods.flywheel.flywheel import Flywheel
-from tmm_sheets.methods.flywheel.mertsalov import Mertsalov
-from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
+from tmm_sheets.methods.flywheel.wheel_methods import Mertsalov, Wittenbauer
 from tmm_sheets.methods.integration import Quadrature, integrate, ordinates, smooth
 from tmm_sheets.project import Project
 

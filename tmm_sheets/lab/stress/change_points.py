@@ -1,10 +1,10 @@
-"""Mechanisms that pass change points, and the motion of their hinge by formulas that are smooth there, in 60 digits.
+"""Mechanisms that pass change points, and the motion of their hinge by formulas that are smooth there, in 90 digits.
 
 In a parallelogram the hinge is the crank's pin moved by the frame; in an antiparallelogram and in a kite it is a mirror image
 about the line from the pin to the other pivot; on a guide through the crank's pivot a rod as long as the crank moves it by
 2 r cos(phi), or not at all. None of these formulas has a root, or lines that could fall together.
 
-A crank with one group in 60 digits of decimal arithmetic: coordinates, then two linear equations for velocity and acceleration.
+A crank with one group in 90 digits of decimal arithmetic: coordinates, differentiated by their differences.
 
 Shares only cosine and sine of a number with the methods; where these are exact to a few units in the last place near a dead
 position, this tells.
@@ -26,7 +26,9 @@ from tmm_sheets.lab.stress.invariants import Residual, State, by_plans_and_lever
 from tmm_sheets.mechanism.groups import RRR
 from tmm_sheets.mechanism.model import Link, Mechanism, StructuralGroup
 
-DIGITS = 60
+DIGITS, STEP = 90, Decimal("1e-24")
+"""Digits of the coordinates, and the angle to both sides over which they are differentiated, rad: far less than any angle is from
+where a group ceases to assemble, and far more than what is rounding of the cosines, 1e-70."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,10 @@ class Exact:
     def __mul__(self, o: Exact) -> Exact:
         return Exact(self.x * o.x - self.y * o.y, self.x * o.y + self.y * o.x)
 
+    def __truediv__(self, o: Exact) -> Exact:
+        size = o.x * o.x + o.y * o.y
+        return self * Exact(o.x / size, -o.y / size)
+
     def conjugate(self) -> Exact:
         """The picture in the real axis."""
         return Exact(self.x, -self.y)
@@ -58,50 +64,22 @@ def exact(z: complex) -> Exact:
     return Exact(Decimal(z.real), Decimal(z.imag))
 
 
-ZERO, TWO, TURNED, BACK = map(exact, (0, 2, 1j, -1))
+Three = tuple[Exact, Exact, Exact]
+"""Value of a function of the crank angle, and its first and second derivative over it."""
 
 
-@dataclass(frozen=True)
-class Jet:
-    """A complex function of the crank angle with its first and second derivative over it."""
-
-    z: Exact
-    first: Exact = ZERO
-    second: Exact = ZERO
-
-    def __add__(self, o: Jet) -> Jet:
-        return Jet(self.z + o.z, self.first + o.first, self.second + o.second)
-
-    def __sub__(self, o: Jet) -> Jet:
-        return Jet(self.z - o.z, self.first - o.first, self.second - o.second)
-
-    def __mul__(self, o: Jet) -> Jet:
-        return Jet(self.z * o.z, self.first * o.z + self.z * o.first,
-                   self.second * o.z + TWO * self.first * o.first + self.z * o.second)
-
-    def conjugate(self) -> Jet:
-        """Conjugate function of a real angle."""
-        return Jet(self.z.conjugate(), self.first.conjugate(), self.second.conjugate())
-
-    def inverse(self) -> Jet:
-        """1 over the function."""
-        size = self.z * self.z.conjugate()
-        one = self.z.conjugate() * Exact(1 / size.x)
-        return Jet(one, BACK * one * one * self.first,
-                   one * one * (TWO * one * self.first * self.first - self.second))
-
-    def root(self) -> Jet:
-        """Root of a function with real values."""
-        root = self.z.x.sqrt()
-        half = Exact(1 / (2 * root))
-        first = self.first * half
-        return Jet(Exact(root), first, (self.second - TWO * first * first) * half)
+def differentiated(f: Callable[[Decimal], Exact | None], phi: float) -> Three | None:
+    """A function at a crank angle, rad, with both derivatives by central differences; None where it has no value."""
+    with localcontext(prec=DIGITS):
+        low, here, high = (f(Decimal(phi) + k * STEP) for k in (-1, 0, 1))
+        if low is None or here is None or high is None:
+            return None
+        return here, (high - low) * Exact(1 / (2 * STEP)), (high - here - here + low) * Exact(1 / STEP**2)
 
 
-def arm(m: Mechanism, phi: float) -> Jet:
+def arm(m: Mechanism, phi: Decimal) -> Exact:
     """The crank's pin as seen from its pivot."""
-    pin = Exact(*cos_sin(Decimal(phi) % (2 * PI))) * Exact(Decimal(m.crank.length))
-    return Jet(pin, TURNED * pin, BACK * pin)
+    return Exact(*cos_sin(phi % (2 * PI))) * Exact(Decimal(m.crank.length))
 
 
 @dataclass(frozen=True)
@@ -115,37 +93,35 @@ class MotionTruth:
 
 def motion(m: Mechanism, phi: float) -> MotionTruth | None:
     """Motion of the inner hinge of the first group (kind 1 or 2, between crank pin and frame); None where it does not assemble."""
-    with localcontext(prec=DIGITS):
-        c = m.crank
-        z = (_arcs if m.groups[0].kind == RRR else _line)(m, Jet(exact(m.fixed[c.pivot])) + arm(m, phi))
-        if z is None:
-            return None
-        w, e = Decimal(c.omega), Exact(Decimal(c.sense * c.acceleration))
-        return MotionTruth(complex(z.z), complex(z.first * Exact(w)), complex(z.second * Exact(w * w) + z.first * e))
+    c, hinge = m.crank, _arcs if m.groups[0].kind == RRR else _line
+    found = differentiated(lambda x: hinge(m, exact(m.fixed[c.pivot]) + arm(m, x)), phi)
+    if found is None:
+        return None
+    z, first, second = found
+    w, e = Exact(Decimal(c.omega)), Exact(Decimal(c.sense * c.acceleration))
+    return MotionTruth(complex(z), complex(first * w), complex(second * w * w + first * e))
 
 
-def _arcs(m: Mechanism, b: Jet) -> Jet | None:
+def _arcs(m: Mechanism, b: Exact) -> Exact | None:
     """Where two arcs meet, about the pin and about the other pivot."""
     g = m.groups[0]
-    l2, l3 = (Jet(Exact(Decimal(x) ** 2)) for x in g.lengths)
-    e = Jet(exact(m.fixed[g.outer[1]])) - b
+    l2, l3 = (Exact(Decimal(x) ** 2) for x in g.lengths)
+    e = exact(m.fixed[g.outer[1]]) - b
     square = e * e.conjugate()
-    along = (square + l2 - l3) * (Jet(TWO) * square).inverse()
-    across = l2 * square.inverse() - along * along
-    return None if across.z.x < 0 else b + e * (along + Jet(TURNED * exact(g.side)) * across.root())
+    along = (square + l2 - l3) / (square + square)
+    across = l2 / square - along * along
+    return None if across.x < 0 else b + e * (along + exact(1j * g.side) * Exact(across.x.sqrt()))
 
 
-def _line(m: Mechanism, b: Jet) -> Jet | None:
+def _line(m: Mechanism, b: Exact) -> Exact | None:
     """Where an arc about the pin meets a guide."""
     g = m.groups[0]
     guide = m.guides[g.guides[0]]
     assert not isinstance(guide.through, str)
-    u, p = Jet(Exact(*direction(guide.direction)[1:])), Jet(exact(guide.through))
+    u, p = Exact(*direction(guide.direction)[1:]), exact(guide.through)
     seen = (b - p) * u.conjugate()
-    twice_along, twice_up = seen + seen.conjugate(), (seen - seen.conjugate()) * Jet(exact(-1j))
-    half, rod = Jet(exact(0.5)), Decimal(g.lengths[0]) ** 2
-    square = Jet(Exact(rod)) - half * half * twice_up * twice_up
-    return None if square.z.x < 0 else p + u * (half * twice_along + Jet(exact(g.side)) * square.root())
+    square = Decimal(g.lengths[0]) ** 2 - seen.y * seen.y
+    return None if square < 0 else p + u * Exact(seen.x + Decimal(g.side) * square.sqrt())
 
 
 COUNT = 6
@@ -155,35 +131,31 @@ BORDER = 1e-15
 SIDEWAYS = (0.0, pi / 2, pi, -pi / 2)
 Make = Callable[[Mechanism, Any], State]
 """How the plans of a mechanism are evaluated."""
-Way = Callable[[Jet, Exact], Jet]
+Way = Callable[[Exact, Exact], Exact]
 """The hinge by the crank's pin and the other pivot, or the direction of the guide."""
 
 
-def _translated(b: Jet, d: Exact) -> Jet:
-    return b + Jet(d)
-
-
-def _mirrored(b: Jet, d: Exact, of: Jet) -> Jet:
+def _mirrored(b: Exact, d: Exact, of: Exact) -> Exact:
     """A point ``of`` the plane, from the pin, mirrored about the line from the pin to the pivot."""
-    e = Jet(d) - b
-    return b + e * of.conjugate() * e.conjugate().inverse()
+    e = d - b
+    return b + e * of.conjugate() / e.conjugate()
 
 
-def _crossed(b: Jet, d: Exact) -> Jet:
-    return _mirrored(b, d, Jet(d))
+def _crossed(b: Exact, d: Exact) -> Exact:
+    return _mirrored(b, d, d)
 
 
-def _opposite(b: Jet, d: Exact) -> Jet:
-    return _mirrored(b, d, Jet(ZERO) - b)
+def _opposite(b: Exact, d: Exact) -> Exact:
+    return _mirrored(b, d, exact(0) - b)
 
 
-def _at_rest(b: Jet, d: Exact) -> Jet:
-    return Jet(ZERO)
+def _at_rest(b: Exact, d: Exact) -> Exact:
+    return exact(0)
 
 
-def _sliding(b: Jet, u: Exact) -> Jet:
+def _sliding(b: Exact, u: Exact) -> Exact:
     """Twice the projection of the pin on the guide."""
-    return b + Jet(u * u) * b.conjugate()
+    return b + u * u * b.conjugate()
 
 
 @dataclass(frozen=True)
@@ -201,15 +173,18 @@ class Passing:
         g = self.m.groups[0]
         return Exact(*direction(self.m.guides[g.guides[0]].direction)[1:]) if g.guides else exact(self.m.fixed["D"])
 
-    def hinge(self, phi: float, way: Way) -> Jet:
-        """The hinge on one of both ways."""
-        with localcontext(prec=DIGITS):
-            return way(arm(self.m, phi), self.beside)
+    def hinge(self, phi: float) -> Three:
+        """The hinge on its way, with both derivatives over the crank angle."""
+        way, beside = self.way(phi), self.beside
+        found = differentiated(lambda x: way(arm(self.m, x), beside), phi)
+        assert found is not None
+        return found
 
     def side(self, phi: float, way: Way) -> float:
         """Side of the hinge on a way."""
         with localcontext(prec=DIGITS):
-            b, c = arm(self.m, phi).z, self.hinge(phi, way).z
+            b = arm(self.m, Decimal(phi))
+            c = way(b, self.beside)
             if self.m.groups[0].guides:
                 return float(np.sign(float((self.beside.conjugate() * (c - b)).x)))
             return float(np.sign(float(((self.beside - b).conjugate() * (c - b)).y)))
@@ -239,7 +214,7 @@ def _linkage(rng: np.random.Generator, kite: bool) -> Passing:
     m = with_rocker(pivot, rods, side=rng.choice((1, -1)), follow=bool(rng.random() < 0.5),
                     at=at + float(rng.uniform(0.1, 3.0)) * float(rng.choice((1, -1))),
                     crank=replace(crank_of(rng, crank), length=crank))
-    ways: tuple[Way, Way] = (_opposite, _at_rest) if kite else (_translated, _crossed)
+    ways: tuple[Way, Way] = (_opposite, _at_rest) if kite else (Exact.__add__, _crossed)
     return Passing(m, *ways, (at, at + pi))
 
 
@@ -279,8 +254,7 @@ def scene(name: str) -> Callable[[np.random.Generator, Make], Iterator[Residual]
 def _passed(of: Passing, s: State, gravity: float) -> Iterator[Residual]:
     """Velocity and acceleration of the hinge, and the moment on the crank, against what the formulas give."""
     phi, c = s.phi, of.m.crank
-    hinge = [of.hinge(x, of.way(x)) for x in phi.tolist()]
-    first, second = (np.array([complex(getattr(h, name)) for h in hinge]) for name in ("first", "second"))
+    first, second = np.array([[complex(x) for x in of.hinge(angle)[1:]] for angle in phi.tolist()]).T
     w, e = c.omega, c.sense * c.acceleration
     v, a = w * first, w * w * second + e * first
     pin = c.speed * c.length
@@ -322,7 +296,7 @@ def hinge_errors(s: State, v: Any, a: Any, where: str, told: Callable[[Any], Any
 
 
 def folding(rng: np.random.Generator, make: Make) -> Iterator[Residual]:
-    """A four-bar of any lengths that folds flat once a turn, next to there on its side, against 60 digits."""
+    """A four-bar of any lengths that folds flat once a turn, next to there on its side, against 90 digits."""
     size = 2.0 ** int(rng.integers(-9, 10))
     crank, rod, frame = (size * float(rng.integers(low, high)) / 64 for low, high in ((8, 16), (24, 48), (50, 64)))
     m = with_rocker(frame, (rod, crank + frame - rod), side=rng.choice((1, -1)), crank=replace(crank_of(rng, crank), length=crank))

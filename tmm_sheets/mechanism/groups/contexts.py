@@ -127,17 +127,43 @@ class TangentialPart:
 
 @dataclass
 class ForcePlan:
-    """Force plan of one link or of a whole group: polygon 1-2-...-1 of ``plan`` with its forces in order."""
+    """Force plan of one link or of a whole group: polygon 1-2-...-1 of ``plan`` with its forces in order.
+
+    Point 1 closes it: where two unknown forces do, the known ones are laid off from point 2 on before it is found, and their sides
+    recorded when the first unknown one is.
+    """
 
     name: str
     links: tuple[str, ...]
     plan: Plan
     sides: list[tuple[str, Step, Step, bool]] = field(default_factory=list)
+    laid: list[tuple[str, Step, Step]] = field(default_factory=list)
 
     def side(self, symbol: str, tail: Step, head: Step, unknown: bool = False) -> None:
         """Record a side of the polygon; ``unknown`` sides are found by closing it."""
         self.sides.append((symbol, tail, head, unknown))
         self.plan.vector(symbol, tail, head)
+
+    def begin(self) -> Step:
+        """Point 2, from which the known forces are laid off."""
+        return self.plan.add("2", rules.GIVEN, 0j)
+
+    def lay(self, tail: Step, symbol: str, vector: Step) -> Step:
+        """Lay a known force off from ``tail``; returns its head."""
+        head = self.plan.add(str(len(self.laid) + 3), rules.SHIFT, tail, vector)
+        self.laid.append((symbol, tail, head))
+        return head
+
+    def lay_loads(self, tail: Step, loads: Iterable[Load]) -> Step:
+        """Lay loads off one after another; returns the end of the chain."""
+        for load in loads:
+            tail = self.lay(tail, load.symbol, load.vector)
+        return tail
+
+    def record_laid(self) -> None:
+        """Record the sides of what was laid off."""
+        for symbol, tail, head in self.laid:
+            self.side(symbol, tail, head)
 
     def chain(self, start: int, tail: Step, loads: Iterable[Load]) -> Step:
         """Lay the loads off one after another; returns the end of the chain."""

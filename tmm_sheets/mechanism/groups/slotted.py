@@ -84,20 +84,14 @@ class RPRKind(GroupKind):
         across = (forces.normal(i, j, f"{q}{p}", pos.directions[j]) if radial is pos.directions[j]
                   else forces.normal(i, j, f"напр {j}", pos.directions[j], tr("⟂dir {link}").format(link=j)))
         block = forces.plan_of(i, (i,))
-        start = block.plan.add("2", rules.GIVEN, 0j)
-        after = block.plan.add("3", rules.SHIFT, start, tangential)
-        pending, end = [], after
-        for n, load in enumerate(forces.order(forces.loads[i], "weight"), 4):
-            head = block.plan.add(str(n), rules.SHIFT, end, load.vector)
-            pending.append((load.symbol, end, head))
-            end = head
+        start = block.begin()
+        after = block.lay(start, f"F̅_{{{io}}}^τ", tangential)
+        end = block.lay_loads(after, forces.order(forces.loads[i], "weight"))
         one = block.plan.add("1", rules.LINE_LINE, start, radial, end, across,
                              *(() if forces.deviates(i, j) else pos.known_sine(g)))
         block.between(f"F{io}n", one, start)
         block.side(f"F̅_{{{io}}}^n", one, start, unknown=True)
-        block.side(f"F̅_{{{io}}}^τ", start, after)
-        for s, tail, head in pending:
-            block.side(s, tail, head)
+        block.record_laid()
         f_ij = forces.close(block, i, j, end, one)
         f_io = forces.reaction(i, owner, block.between(f"F{io}", one, after))
         block.plan.vector(symbol(f"F{io}"), one, after)
@@ -214,18 +208,11 @@ class RPPKind(GroupKind):
         across_slot = forces.normal(i, j, pos.directions[i].name, pos.directions[i])
         across_guide = forces.normal(j, base, guide, pos.guide_directions[guide])
         fp = forces.plan_of(j, (j,))
-        start = fp.plan.add("2", rules.GIVEN, 0j)
-        loads = forces.order(forces.loads[j], "inertia")
-        end = start
-        pending = []  # sides are recorded in the manual's order, the first unknown one before them
-        for n, load in enumerate(loads, 3):
-            head = fp.plan.add(str(n), rules.SHIFT, end, load.vector)
-            pending.append((load.symbol, end, head))
-            end = head
+        start = fp.begin()
+        end = fp.lay_loads(start, forces.order(forces.loads[j], "inertia"))
         one = fp.plan.add("1", rules.LINE_LINE, start, across_slot, end, across_guide)
         f_ji = forces.close(fp, j, i, one, start)
-        for s, tail, head in pending:
-            fp.side(s, tail, head)
+        fp.record_laid()
         f_jb = forces.close(fp, j, base, end, one)
         # Block: F_ij, its loads, closing force from the link that carries the pin.
         f_ij = forces.opposite(i, j, f_ji)

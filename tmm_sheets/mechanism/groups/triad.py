@@ -359,43 +359,30 @@ class TriadKind(GroupKind):
         pos, tri = forces.positions, g.links[0]
         (a, b), c = s.pair, s.third
         fp = forces.plan_of(g.name, g.links)
-        plan = fp.plan
-        tail = plan.add("2", rules.GIVEN, 0j)
-        sides: list[tuple[str, Step, Step]] = []
-        start = tail
+        plan, start = fp.plan, fp.begin()
 
-        def lay(sign: str, vector: Step) -> Step:
-            nonlocal tail
-            head = plan.add(str(len(sides) + 3), rules.SHIFT, tail, vector)
-            sides.append((sign, tail, head))
-            tail = head
-            return head
-
-        def loads(link: str) -> Step:
-            for load in forces.order(forces.loads[link], "weight"):
-                lay(load.symbol, load.vector)
-            return tail
+        def loads(tail: Step, link: str) -> Step:
+            return fp.lay_loads(tail, forces.order(forces.loads[link], "weight"))
 
         def sign(leg: Leg, upper: str = "") -> str:
             return f"F̅_{{{pair_index(leg.link, owner[leg])}}}{upper}"
 
-        after_a = lay(sign(a, "^τ"), part[a]) if a in part else tail
-        leg_a = loads(a.link)
-        triangle = loads(tri)
-        before_c = tail
-        if c in part:
-            lay(sign(c, "^τ"), part[c])
-        after_c = lay(sign(c, "^n" if c in part else ""), normal)
-        leg_c = loads(c.link)
-        before_b = loads(b.link)
-        last = lay(sign(b, "^τ"), part[b]) if b in part else tail
+        def tangential(tail: Step, leg: Leg) -> Step:
+            return fp.lay(tail, sign(leg, "^τ"), part[leg]) if leg in part else tail
+
+        after_a = tangential(start, a)
+        leg_a = loads(after_a, a.link)
+        triangle = loads(leg_a, tri)
+        after_c = fp.lay(tangential(triangle, c), sign(c, "^n" if c in part else ""), normal)
+        leg_c = loads(after_c, c.link)
+        before_b = loads(leg_c, b.link)
+        last = tangential(before_b, b)
         closing = plan.add("1", rules.LINE_LINE, start, self._normal(pos, a), last, self._normal(pos, b))
         fp.side(sign(a, "^n" if a in part else ""), closing, start, unknown=True)
-        for name, p, q in sides:
-            fp.side(name, p, q)
+        fp.record_laid()
         fp.side(sign(b, "^n" if b in part else ""), last, closing, unknown=True)
         found = {}
-        for leg, p, q in ((a, closing, after_a), (c, before_c, after_c), (b, before_b, closing)):
+        for leg, p, q in ((a, closing, after_a), (c, triangle, after_c), (b, before_b, closing)):
             name = f"F{pair_index(leg.link, owner[leg])}"
             found[leg] = forces.reaction(leg.link, owner[leg], fp.between(name, p, q))
             if leg in part:

@@ -15,9 +15,10 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import Floats, Points, Reals, Signs, primitive
 from tmm_sheets.construction.step import Helper, Plan, Reading, Rule, Step
+from tmm_sheets.construction.tables import StepTable, record
 from tmm_sheets.methods.cams.cam_displacement import Displacement, ExactMotion, in_phase
 from tmm_sheets.methods.cams.cam_laws import Phase
-from tmm_sheets.methods.cams.cam_zone import ALONG_ROCKER, TURNED, Zone, found_share, greatest
+from tmm_sheets.methods.cams.cam_zone import ALONG_ROCKER, TURNED, Cones, Zone, found_share, greatest
 from tmm_sheets.words import marked, tr
 
 LAY_OFF_FROM = Rule(
@@ -27,20 +28,12 @@ LAY_OFF_FROM = Rule(
            "point {name}."),
     lambda a, v: (Helper("line", a[0], v),),
 )
-PITCH_POINT = Rule(
-    "centre of relative rotation", lambda o, u, ds: o + u * ds, ("point", "direction", "ordinate"), "point",
-    marked("Through {0}, perpendicular to the line of the follower, lay off the first derivative {2}: point {name} on the normal "
-           "to the profile."),
-    lambda a, v: (Helper("line", a[0], v),),
-)
 ACROSS_LINE = Rule("perpendicular to a direction", lambda u, side: 1j * side * u, ("direction", "number"), "direction",
                    marked("Draw the perpendicular {name} to the line {0}."))
 CONTACT = Rule("contact on the normal", lambda b, n, r: b + r * n, ("point", "direction", "length"), "point",
                marked("About {0} with the radius of the roller {2} draw a circle; point {name} of the profile lies on the normal "
                       "{1}."),
                lambda a, v: (Helper("circle", a[0], radius=a[2]),))
-FOOT_OF_LINE = Rule("foot on the follower's line", lambda right, e: -(right * e) + 0j, ("number", "ordinate"), "point",
-                    marked("At the distance e = {1} from O mark the foot {name} of the line of the follower."))
 FROM_AXIS = Rule("point from the axis of the cam", lambda p, o: p - o, ("point", "point"), "point", marked("Mark point {name}."))
 
 
@@ -49,8 +42,6 @@ def _touching(p: Points, centre: Points, e: Any, side: Signs) -> Points:
     return ar.tangent_point(p, centre, np.abs(e), side)
 
 
-TANGENT_E = Rule("tangent to the circle e", _touching, ("point", "point", "ordinate", "number"), "point",
-                 rules.TANGENT.wording, rules.TANGENT.helpers)
 BETWEEN = Rule("angle between two lines", lambda n, u, right: np.arctan2(right * ar.cross(n, -u), ar.dot(n, -u)),
                ("direction", "direction", "number"), "inclination",
                marked("Measure the pressure angle between the normal {0} and the direction {1} of the follower's velocity: "
@@ -85,72 +76,90 @@ class Inversion:
         return np.asarray(self.at.phi.value)
 
 
+DISPLACED = marked("On the line of the follower lay off the displacement {2} from {0}: point {name}.")
+TAPPET: StepTable = {
+    "O": ("origin", "", rules.GIVEN),
+    "T_0": ("right e", "", Rule("foot on the follower's line", lambda right, e: -(right * e) + 0j, ("number", "ordinate"), "point",
+                                marked("At the distance e = {1} from O mark the foot {name} of the line of the follower."))),
+    "B_0": ("T_0 up S_0", "", rules.ALONG, marked("From the legs e and S_0 = {2} draw a right triangle; its vertex {name}.")),
+    "A": ("B_0 up s", "", rules.OFFSET, DISPLACED),
+    "N": ("O B_0 r_0 φ right", "", LAY_OFF_FROM),
+    "T": ("N O e side", "", Rule("tangent to the circle e", _touching, ("point", "point", "ordinate", "number"), "point",
+                                 rules.TANGENT.wording, rules.TANGENT.helpers)),
+    "TN": ("T N", "", rules.RAY),
+    "OA": ("O A", "", rules.DISTANCE),
+    "B": ("O OA N TN ahead", "", rules.ARC_LINE),
+    "⊥TN": ("TN right", "", ACROSS_LINE),
+    "P": ("O ⊥TN ds", "", Rule(
+        "centre of relative rotation", lambda o, u, ds: o + u * ds, ("point", "direction", "ordinate"), "point",
+        marked("Through {0}, perpendicular to the line of the follower, lay off the first derivative {2}: point {name} on the "
+               "normal to the profile."), lambda a, v: (Helper("line", a[0], v),))),
+    "BP": ("B P", "", rules.RAY),
+    "α": ("BP TN right", "", BETWEEN),
+}
+"""Inversion of a translating roller follower."""
+ROCKER: StepTable = {
+    "O": ("origin", "", rules.GIVEN),
+    "A_0": ("pivot apex", "", FROM_AXIS, marked("At the distance l_0 from O mark the axis {name} of the rocker.")),
+    "B_0": ("start apex", "", FROM_AXIS, marked("From the sides r_0, l_0 and AB draw the triangle OA_0B_0; its vertex {name}.")),
+    "C": ("A_0 B_0 s turn", "", TURNED),
+    "A": ("O A_0 l_0 φ right", "", LAY_OFF_FROM),
+    "OC": ("O C", "", rules.DISTANCE),
+    "B": ("O OC A arm side", "", rules.ARC_ARC),
+    "BA": ("B A", "", rules.RAY),
+    "D": ("B BA x", "", rules.OFFSET, marked("On the line of the rocker lay off the segment AB·ψ' = {2} from {0}: point {name}.")),
+    "DO": ("D O", "", rules.RAY, marked("Draw the line {0}{1}: the normal to the profile at B is parallel to it.")),
+    "⊥BA": ("BA back", "", ACROSS_LINE),
+    "α": ("DO ⊥BA right", "", BETWEEN),
+}
+"""Inversion of an oscillating roller follower."""
+FLAT: StepTable = {
+    "O": ("origin", "", rules.GIVEN),
+    "B_0": ("O up r_0", "", rules.ALONG, marked("On the line of the follower lay off the radius r_0 = {2}: point {name}.")),
+    "A": ("B_0 up s", "", rules.OFFSET, DISPLACED),
+    "N": ("O B_0 r_0 φ right", "", LAY_OFF_FROM),
+    "ON": ("O N", "", rules.RAY),
+    "OA": ("O A", "", rules.DISTANCE),
+    "B": ("O OA O ON ahead", "", rules.ARC_LINE),
+    "⊥ON": ("ON right", "", ACROSS_LINE, marked("Through B draw the perpendicular {name} to {0}: the plane of the flat face.")),
+    "F": ("B ⊥ON ds", "", rules.OFFSET,
+          marked("On the flat face lay off the first derivative {2} from {0}: point {name} of contact with the profile.")),
+    "−ON": ("B O", "", rules.RAY, marked("The normal {name} to the profile is parallel to the line of the follower.")),
+    "α": ("−ON ON right", "", BETWEEN),
+}
+"""Inversion of a flat follower; the plate is perpendicular to its motion."""
+
+
+def inverted(plan: Plan, at: Displacement, table: StepTable, roles: str, given: dict[str, Any]) -> Inversion:
+    """Record the inversion of a follower by its table; ``roles`` are its axis, ends, lines, centres and normals."""
+    motion = {"φ": at.phi, "s": at.s, "ds": at.ds}
+    angles = record(plan, " ".join(table), table, given={"origin": 0j, "up": 1j, "ahead": 1.0, **motion, **given})
+    axis, ends, lines, centres, normals = (plan[name] for name in roles.split())
+    return Inversion(plan, at, plan["O"], axis, ends, plan.steps.get("T"), lines, centres, normals, angles)
+
+
 def translating(plan: Plan, dimensions: Zone, at: Displacement) -> Inversion:
     """Record the inversion of a translating roller follower."""
-    right, e, s0, r0 = dimensions.right, *(dimensions.plan[name] for name in ("e", "S_0", "r_0"))
-    o = plan.add("O", rules.GIVEN, 0j)
-    foot = plan.add("T_0", FOOT_OF_LINE, right, e)
-    start = plan.add("B_0", rules.ALONG, foot, 1j, s0,
-                     say=tr("From the legs e and S_0 = {2} draw a right triangle; its vertex {name}."))
-    axis = plan.add("A", rules.OFFSET, start, 1j, at.s,
-                    say=tr("On the line of the follower lay off the displacement {2} from {0}: point {name}."))
     # The cam turns by -right * phi, so the follower goes round the standing cam by right * phi.
-    ends = plan.add("N", LAY_OFF_FROM, o, start, r0, at.phi, right)
-    feet = plan.add("T", TANGENT_E, ends, o, e, -right if dimensions.e >= 0 else right)
-    lines = plan.add("TN", rules.RAY, feet, ends)
-    radius = plan.add("OA", rules.DISTANCE, o, axis)
-    centres = plan.add("B", rules.ARC_LINE, o, radius, ends, lines, 1.0)
-    side = plan.add("⊥TN", ACROSS_LINE, lines, right)
-    poles = plan.add("P", PITCH_POINT, o, side, at.ds)
-    normals = plan.add("BP", rules.RAY, centres, poles)
-    angles = plan.add("α", BETWEEN, normals, lines, right)
-    return Inversion(plan, at, o, axis, ends, feet, lines, centres, normals, angles)
+    right = dimensions.right
+    sizes = {name: dimensions.plan[name] for name in ("e", "S_0", "r_0")}
+    return inverted(plan, at, TAPPET, "A N TN B BP", {"right": right, "side": -right if dimensions.e >= 0 else right, **sizes})
 
 
 def rocker(plan: Plan, dimensions: Zone, at: Displacement) -> Inversion:
     """Record the inversion of an oscillating roller follower."""
-    cones = dimensions.cones
-    right, turn = cones.right, cones.turn
-    zone, arm = dimensions.plan, dimensions.swing[3]
-    o = plan.add("O", rules.GIVEN, 0j)
-    a0 = plan.add("A_0", FROM_AXIS, zone["A"], zone["O"], say=tr("At the distance l_0 from O mark the axis {name} of the rocker."))
-    b0 = plan.add("B_0", FROM_AXIS, zone["B_0"], zone["O"],
-                  say=tr("From the sides r_0, l_0 and AB draw the triangle OA_0B_0; its vertex {name}."))
-    axis = plan.add("C", TURNED, a0, b0, at.s, turn)
-    ends = plan.add("A", LAY_OFF_FROM, o, a0, zone["l_0"], at.phi, right)
-    radius = plan.add("OC", rules.DISTANCE, o, axis)
-    side = float(np.sign(ar.cross(a0.value, b0.value)))
-    centres = plan.add("B", rules.ARC_ARC, o, radius, ends, arm, side)
-    line = plan.add("BA", rules.RAY, centres, ends)
+    right, turn, arm = dimensions.right, dimensions.cones.turn, dimensions.swing[3]
+    pivot, apex, start, l0 = (dimensions.plan[name] for name in ("A", "O", "B_0", "l_0"))
+    side = float(np.sign(ar.cross(pivot.value - apex.value, start.value - apex.value)))
     x = at.plan.add("x", ALONG_ROCKER, 1.0 if turn * right < 0 else -1.0, arm, at.ds)
-    tips = plan.add("D", rules.OFFSET, centres, line, x,
-                    say=tr("On the line of the rocker lay off the segment AB·ψ' = {2} from {0}: point {name}."))
-    normals = plan.add("DO", rules.RAY, tips, o,
-                       say=tr("Draw the line {0}{1}: the normal to the profile at B is parallel to it."))
-    lines = plan.add("⊥BA", ACROSS_LINE, line, -turn)
-    angles = plan.add("α", BETWEEN, normals, lines, right)
-    return Inversion(plan, at, o, axis, ends, None, lines, centres, normals, angles)
+    return inverted(plan, at, ROCKER, "C A ⊥BA B DO", {
+        "pivot": pivot, "apex": apex, "start": start, "l_0": l0, "right": right, "turn": turn, "back": -turn, "arm": arm,
+        "side": side, "x": x})
 
 
 def flat(plan: Plan, r0: Step, right: float, at: Displacement) -> Inversion:
-    """Record the inversion of a flat follower; the plate is perpendicular to its motion."""
-    o = plan.add("O", rules.GIVEN, 0j)
-    start = plan.add("B_0", rules.ALONG, o, 1j, r0,
-                     say=tr("On the line of the follower lay off the radius r_0 = {2}: point {name}."))
-    axis = plan.add("A", rules.OFFSET, start, 1j, at.s,
-                    say=tr("On the line of the follower lay off the displacement {2} from {0}: point {name}."))
-    ends = plan.add("N", LAY_OFF_FROM, o, start, r0, at.phi, right)
-    lines = plan.add("ON", rules.RAY, o, ends)
-    radius = plan.add("OA", rules.DISTANCE, o, axis)
-    centres = plan.add("B", rules.ARC_LINE, o, radius, o, lines, 1.0)
-    plates = plan.add("⊥ON", ACROSS_LINE, lines, right,
-                      say=tr("Through B draw the perpendicular {name} to {0}: the plane of the flat face."))
-    plan.add("F", rules.OFFSET, centres, plates, at.ds,
-             say=tr("On the flat face lay off the first derivative {2} from {0}: point {name} of contact with the profile."))
-    normals = plan.add("−ON", rules.RAY, centres, o,
-                       say=tr("The normal {name} to the profile is parallel to the line of the follower."))
-    angles = plan.add("α", BETWEEN, normals, lines, right)
-    return Inversion(plan, at, o, axis, ends, None, lines, centres, normals, angles)
+    """Record the inversion of a flat follower."""
+    return inverted(plan, at, FLAT, "A N ON B −ON", {"r_0": r0, "right": right})
 
 
 # --- curvature --------------------------------------------------------------------------------------------------------
@@ -201,37 +210,42 @@ def _force(s: Any, preload: Any, rate: Any, length: Reals) -> Reals:
     return preload + rate * length * s
 
 
-MASS = Rule("moved mass", lambda mass: mass, ("number",), "number", marked("Given mass of the follower {name} = {value} kg."),
-            unit="kg")
-REDUCED_MASS = Rule("mass reduced to the roller", lambda inertia, arm: inertia / arm**2, ("number", "length"), "number",
-                    "", unit="kg",
-                    source=SOURCE)
-SPEED = Rule("speed of the cam", lambda speed: speed, ("number",), "number",
-             marked("Given angular velocity of the cam {name} = {value} rad/s."),
-             unit="rad/s")
-ARM = Rule("arm of the way", lambda length: length, ("number",), "number",
-           marked("The displacement of the law is multiplied by {name} = {value}."),
-           unit="m")
 INERTIA = Rule("force of inertia", _inertia, ("ordinate", "number", "number", "number"), "number",
                marked("Force of inertia that lifts the follower off the cam: {name} = {value} N."), unit="N", source=SOURCE)
-LARGEST = Rule("largest force of inertia", lambda *of: np.maximum(_inertia(*of), 0.0), INERTIA.takes, "number",
-               marked("Greatest force of inertia that lifts the follower off the cam: {name} = {value} N."), unit="N",
-               source=SOURCE)
-PRODUCT = Rule("force by a factor", lambda factor, force: factor * force, ("number", "number"), "number",
-               "", unit="N", source=SOURCE)
-WAY = Rule("way of the spring", lambda length, stroke: length * stroke, ("number", "length"), "number",
-           marked("Travel of the spring {name} = {value} m."), unit="m", source=SOURCE)
-RATE = Rule("stiffness", lambda most, first, way: (most - first) / way, ("number", "number", "number"), "number",
-            "", unit="N/m", source=SOURCE)
 FORCE = Rule("force of the spring", _force, ("ordinate", "number", "number", "number"), "number",
              marked("Force of the spring at this position {name} = {value} N."), unit="N", source=SOURCE)
-RATIO = Rule("force by force of inertia", lambda s, dds, stroke, largest, factor, preload, mass, speed, length: factor * largest * (
-    preload + (1 - preload) * s / stroke) / _inertia(dds, mass, speed, length),
-             ("ordinate", "ordinate", "length") + ("number",) * 6,
-    "number", marked("Least ratio of the force of the spring to the force of inertia {name} = {value}."), unit="1", source=SOURCE)
-
-NEEDED = Rule("factor of the spring needed", lambda factor, least: factor / least, ("number", "number"), "number",
-              marked("Least factor of the greatest force with which the pair stays closed: {formula}."), unit="1", source=SOURCE)
+PRODUCT = Rule("force by a factor", lambda factor, force: factor * force, ("number", "number"), "number", "", unit="N",
+               source=SOURCE)
+SPRING: StepTable = {
+    "m": ("mass", "", Rule("moved mass", lambda mass: mass, ("number",), "number",
+                           marked("Given mass of the follower {name} = {value} kg."), unit="kg")),
+    "l": ("length", "", Rule("arm of the way", lambda length: length, ("number",), "number",
+                             marked("The displacement of the law is multiplied by {name} = {value}."), unit="m")),
+    "ω": ("speed", "", Rule("speed of the cam", lambda speed: speed, ("number",), "number",
+                            marked("Given angular velocity of the cam {name} = {value} rad/s."), unit="rad/s")),
+    "Q_max": ("dds m ω l", "", Rule(
+        "largest force of inertia", lambda *of: np.maximum(_inertia(*of), 0.0), INERTIA.takes, "number",
+        marked("Greatest force of inertia that lifts the follower off the cam: {name} = {value} N."), unit="N", source=SOURCE)),
+    "F_max": ("factor Q_max", "", PRODUCT),
+    "F_0": ("preload F_max", "", PRODUCT),
+    "s": ("l stroke", "", Rule("way of the spring", lambda length, stroke: length * stroke, ("number", "length"), "number",
+                               marked("Travel of the spring {name} = {value} m."), unit="m", source=SOURCE)),
+    "c": ("F_max F_0 s", "", Rule("stiffness", lambda most, first, way: (most - first) / way, ("number",) * 3, "number", "",
+                                  unit="N/m", source=SOURCE)),
+    "k_min": ("displacement dds stroke Q_max factor preload m ω l", "", Rule(
+        "force by force of inertia", lambda s, dds, stroke, largest, factor, preload, mass, speed, length: factor * largest * (
+            preload + (1 - preload) * s / stroke) / _inertia(dds, mass, speed, length),
+        ("ordinate", "ordinate", "length") + ("number",) * 6, "number",
+        marked("Least ratio of the force of the spring to the force of inertia {name} = {value}."), unit="1", source=SOURCE)),
+    "k_F": ("factor k_min", "", Rule(
+        "factor of the spring needed", lambda factor, least: factor / least, ("number", "number"), "number",
+        marked("Least factor of the greatest force with which the pair stays closed: {formula}."), unit="1", source=SOURCE)),
+}
+OF_ROCKER: StepTable = {
+    "m": ("mass arm", "", Rule("mass reduced to the roller", lambda inertia, arm: inertia / arm**2, ("number", "length"), "number",
+                               "", unit="kg", source=SOURCE)),
+}
+"""What takes the place of the mass where a moment of inertia is given with its arm."""
 
 
 @dataclass(frozen=True)
@@ -324,9 +338,9 @@ def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: fl
     """
     law = exact.law
     plan = Plan("cam-spring", tr("Closing spring"), "m")
-    moved = plan.add("m", MASS if len(mass) == 1 else REDUCED_MASS, *mass)
-    way = plan.add("l", ARM, length)
-    turning = plan.add("ω", SPEED, speed)
+    given = {"mass": mass[0], "arm": mass[-1], "length": length, "speed": speed, "factor": factor, "preload": preload,
+             "stroke": law.stroke}
+    record(plan, "m l ω", {} if len(mass) == 1 else OF_ROCKER, SPRING, given=given)
     pieces = [(p, a + 1e-12, b - 1e-12) for p in (law.rise, law.fall) for a, b in pairwise((0.0, *p.law.jumps, 1.0))]
     def extreme(f: Callable[[Floats, Phase], Any]) -> tuple[float, float, Phase]:
         """Greatest value of a function of share and phase, its share and phase."""
@@ -338,12 +352,8 @@ def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: fl
     _, x, p = extreme(lambda x, p: -p.dds(x))
     share = found_share(plan, exact.phases, p, x, "Q", tr("{symbol}'' is least").format(symbol=law.symbol))
     (dds,) = in_phase(plan, law, exact.phases, p, share, "Q", (2,))
-    largest = plan.add("Q_max", LARGEST, dds, moved, turning, way)
-    most = plan.add("F_max", PRODUCT, factor, largest)
-    first = plan.add("F_0", PRODUCT, preload, most)
-    plan.add("s", WAY, way, law.stroke)
-    plan.add("c", RATE, most, first, plan["s"])
-    unit, biggest = float(moved.value) * speed**2 * length, float(largest.value)
+    record(plan, "Q_max F_max F_0 s c", SPRING, given={**given, "dds": dds})
+    unit, biggest = float(plan["m"].value) * speed**2 * length, float(plan["Q_max"].value)
 
     def ratio(x: Floats, p: Phase) -> Floats:
         force = factor * biggest * (preload + (1 - preload) * p.s(x) / law.stroke)
@@ -353,8 +363,7 @@ def spring(exact: ExactMotion, length: float, mass: tuple[float, ...], speed: fl
     _, x, p = extreme(lambda x, p: -ratio(x, p))
     share = found_share(plan, exact.phases, p, x, "k", tr("the ratio F/Q where {symbol}'' < 0 is least").format(symbol=law.symbol))
     s, dds = in_phase(plan, law, exact.phases, p, share, "k", (0, 2))
-    least = plan.add("k_min", RATIO, s, dds, law.stroke, largest, factor, preload, moved, turning, way)
-    plan.add("k_F", NEEDED, factor, least)
+    record(plan, "k_min k_F", SPRING, given={**given, "displacement": s, "dds": dds})
     return Spring(exact, plan, factor, preload, speed)
 
 
@@ -377,20 +386,21 @@ SPREAD = Rule("angle between the arms", _spread, ("point", "point", "inclination
               marked("Angle between the arms of the rocker {name} = 2·∠B_0AO + ψ_max = {value}."), unit="rad", source=SOURCE)
 
 
-def second_disc_of_tappet(inv: Inversion, distance: Step) -> None:
-    """Record the centre profile B′ of the second disc and its normals N′: the rollers keep their ``distance`` (m)."""
-    plan = inv.plan
-    second = plan.add("B′", BACK, inv.centres, inv.lines, distance)
-    plan.add("N′", rules.RAY, second, plan["P"], say=tr("The normal {name} of the second disc passes through the same point {1}."))
+TAPPET_DISC: StepTable = {
+    "B′": ("B TN apart", "", BACK),
+    "N′": ("B′ P", "", rules.RAY, marked("The normal {name} of the second disc passes through the same point {1}.")),
+}
+ROCKER_DISC: StepTable = {
+    "B′": ("A B apart back", "", TURNED,
+           marked("The second arm of the rocker is turned about {0} from the first by the constant angle {2}: point {name}.")),
+    "B′A": ("B′ A", "", rules.RAY),
+    "D′": ("B′ B′A x", "", rules.OFFSET,
+           marked("From {0} towards the axis of the rocker lay off the segment AB·ψ' = {2}: point {name}.")),
+    "N′": ("D′ O", "", rules.RAY, marked("The normal {name} of the second disc is parallel to the line {0}{1}.")),
+}
 
 
-def second_disc_of_rocker(inv: Inversion, angle: Step, sense: float) -> None:
-    """Record the centre profile B′ of the second disc and its normals N′: the arms keep their ``angle``, rad."""
-    plan = inv.plan
-    second = plan.add("B′", TURNED, inv.ends, inv.centres, angle, sense,
-                      say=tr("The second arm of the rocker is turned about {0} from the first by the constant angle {2}: point "
-                             "{name}."))
-    line = plan.add("B′A", rules.RAY, second, inv.ends)
-    tips = plan.add("D′", rules.OFFSET, second, line, plan["D"].args[2],
-                    say=tr("From {0} towards the axis of the rocker lay off the segment AB·ψ' = {2}: point {name}."))
-    plan.add("N′", rules.RAY, tips, inv.origin, say=tr("The normal {name} of the second disc is parallel to the line {0}{1}."))
+def second_disc(inv: Inversion, apart: Step, cones: Cones) -> None:
+    """Record the centre profile B′ of the second disc and its normals N′: rollers, or arms, keep what is ``apart``, m or rad."""
+    table = TAPPET_DISC if cones.pivot is None else ROCKER_DISC
+    record(inv.plan, " ".join(table), table, given={"apart": apart, "back": -cones.turn, "x": inv.at.plan.steps.get("x")})

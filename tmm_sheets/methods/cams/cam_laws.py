@@ -140,6 +140,38 @@ READING = 0.15
 
 
 class _Pieces:
+    """A displacement of polynomials that each begin at one of ``starts``; ``forms``: its coefficients, those of its derivatives."""
+
+    starts: Floats
+    forms: tuple[Floats, Floats, Floats]
+
+    def at(self, order: int, x: Reals) -> Reals:
+        """Displacement or a derivative at shares of the phase; at a border that of the later piece."""
+        coefficients, x = self.forms[order], np.asarray(x, dtype=float)
+        k = np.clip(np.searchsorted(self.starts, x, side="right") - 1, 0, len(self.starts) - 1)
+        t, c = x - self.starts[k], coefficients[k]
+        result = c[..., -1]
+        for power in range(c.shape[-1] - 2, -1, -1):
+            result = result * t + c[..., power]
+        return result
+
+    def check(self, key: str, hint: str) -> Floats:
+        """See that the displacement never falls; returns the shares that were looked at.
+
+        Raises
+        ------
+        CannotBuild
+            when the follower would turn back inside the phase; ``key`` names what it is given by.
+        """
+        shares = np.union1d(np.linspace(0, 1, 4001), self.starts)
+        velocity = self.at(1, shares)
+        if velocity.min() < -1e-9 * velocity.max():
+            raise CannotBuild(tell("{key}: the follower turns back inside the phase, at the share {share:.3f}").format(
+                key=key, share=shares[velocity.argmin()]), hint)
+        return shares
+
+
+class _Accelerations(_Pieces):
     """A diagram of straight and smoothly curved pieces with its two integrals, all of them polynomials.
 
     Between two corners the points are joined by monotone cubics: no overshoot, straight lines stay straight. The diagram is
@@ -159,17 +191,17 @@ class _Pieces:
         self.jumps = tuple(float(q[0][0]) for p, q in pairwise(pieces) if p[1][-1] != q[1][0])
         # With t = x - start: the slant makes a quartic of the cubic.
         slanted = np.pad(cubic, ((0, 0), (0, 1)))
-        self.dds, self.ds, self.s = self._integrals(slanted)
-        end, way = float(self.at(self.ds, 1.0)), float(self.at(self.s, 1.0))
+        self.forms = self._integrals(slanted)
+        end, way = float(self.at(1, 1.0)), float(self.at(0, 1.0))
         self.unequal = end
-        self.area = float(np.abs(np.diff(self.at(self.ds, np.linspace(0, 1, 2001)))).sum()) / 2
+        self.area = float(np.abs(np.diff(self.at(1, np.linspace(0, 1, 2001)))).sum()) / 2
         if self.area > 0 and way > 0 and abs(end) <= READING * self.area:
             slant = -end / (way - end / 2)
             slanted = slanted * (1 + slant * (0.5 - self.starts))[:, None]
             slanted[:, 1:] -= slant * cubic
-            self.dds, self.ds, self.s = self._integrals(slanted)
-            scale = float(self.at(self.s, 1.0))
-            self.dds, self.ds, self.s = self.dds / scale, self.ds / scale, self.s / scale
+            s, ds, dds = self.forms = self._integrals(slanted)
+            scale = float(self.at(0, 1.0))
+            self.forms = s / scale, ds / scale, dds / scale
 
     def _integrals(self, dds: Floats) -> tuple[Floats, Floats, Floats]:
         ds, s = _integral(dds), _integral(_integral(dds))
@@ -177,22 +209,7 @@ class _Pieces:
         ds[:, 0] = rise[:-1]
         s = _integral(ds)
         s[:, 0] = np.concatenate(([0.0], np.cumsum(_value(s, self.widths))))[:-1]
-        return dds, ds, s
-
-    def at(self, coefficients: Floats, x: Reals) -> Reals:
-        """Value of a diagram or of an integral; in a jump that of the later piece counts."""
-        return _piecewise(self.starts, coefficients, x)
-
-
-def _piecewise(starts: Floats, coefficients: Floats, x: Reals) -> Reals:
-    """Value of polynomials that each begin at a start; at a border that of the later one."""
-    x = np.asarray(x, dtype=float)
-    k = np.clip(np.searchsorted(starts, x, side="right") - 1, 0, len(starts) - 1)
-    t, c = x - starts[k], coefficients[k]
-    result = c[..., -1]
-    for power in range(c.shape[-1] - 2, -1, -1):
-        result = result * t + c[..., power]
-    return result
+        return s, ds, dds
 
 
 def _slopes(x: Floats, y: Floats) -> Floats:
@@ -226,15 +243,32 @@ def _value(c: Floats, t: Floats) -> Floats:
 
 
 @cache
-def _pieces(x: tuple[float, ...], y: tuple[float, ...]) -> _Pieces:
-    return _Pieces(x, y)
+def _pieces(kind: type[_Accelerations | _Spline], x: tuple[float, ...], y: tuple[float, ...]) -> Any:
+    """The polynomials of a diagram, made once."""
+    return kind(x, y)
+
+
+def _of_nodes(name: str, title: str, form: Function, nodes: tuple[Given, ...], peak: float, jumps: tuple[float, ...] = ()) -> Law:
+    """Law of a given diagram; ``form`` is its primitive, which takes the order of the derivative last."""
+    s, ds, dds = (partial(_of_order, form, float(order)) for order in range(3))
+    return Law(name, title, (s, ds, dds), peak=peak, jumps=jumps, even=False, nodes=nodes)
+
+
+def _of_order(form: Function, order: float, x: Reals, shares: Reals, ordinates: Any) -> Reals:
+    found: Reals = form(x, shares, ordinates, order)
+    return found
+
+
+def _nodes(key: str, x: Sequence[float], y: Sequence[float]) -> tuple[Given, ...]:
+    """Both rows of a diagram as givens."""
+    return tuple(Given(np.asarray(row, dtype=float), f"{key}[*][{i}]", over="curve") for i, row in enumerate((x, y)))
 
 
 @primitive("law of a diagram", "real")
 def diagram(x: Reals, shares: Reals, accelerations: Any, order: float) -> Reals:
     """The law whose acceleration is a given diagram (see :func:`table_law`), ``order`` 0, or its first or second derivative."""
-    p = _pieces(tuple(shares), tuple(accelerations))
-    return p.at((p.s, p.ds, p.dds)[int(order)], x)
+    found: Reals = _pieces(_Accelerations, tuple(shares), tuple(accelerations)).at(int(order), x)
+    return found
 
 
 def table_law(x: Sequence[float], y: Sequence[float], name: str = "table", title: str = marked("by the given diagram"),
@@ -250,8 +284,8 @@ def table_law(x: Sequence[float], y: Sequence[float], name: str = "table", title
     CannotBuild
         when the areas differ by more, or when the follower would turn back inside the phase; ``key`` names the diagram.
     """
-    nodes = tuple(Given(np.asarray(row, dtype=float), f"{key}[*][{i}]", over="curve") for i, row in enumerate((x, y)))
-    p = _pieces(*(tuple(given.value) for given in nodes))
+    nodes = _nodes(key, x, y)
+    p = _pieces(_Accelerations, *(tuple(given.value) for given in nodes))
     if not p.area > 0:
         raise CannotBuild(tell("{key}: the diagram of the acceleration is zero everywhere").format(key=key))
     if abs(p.unequal) > READING * p.area:
@@ -260,18 +294,12 @@ def table_law(x: Sequence[float], y: Sequence[float], name: str = "table", title
             tell("{key}: the areas above and below the axis are {above:.2f} and {below:.2f} of the whole, the follower would not "
                  "come to rest").format(key=key, above=share, below=1 - share),
             tell("make both areas equal: what speeds up must slow down again"))
-    shares = np.union1d(np.linspace(0, 1, 4001), p.starts)
-    velocity = p.at(p.ds, shares)
-    if velocity.min() < -1e-9 * velocity.max():
-        raise CannotBuild(tell("{key}: the follower turns back inside the phase, at the share {share:.3f}").format(
-            key=key, share=shares[velocity.argmin()]), tell("speeding up comes first, slowing down after it"))
-    values = np.concatenate((p.at(p.dds, shares), p.at(p.dds, np.append(p.starts[1:], 1.0) - 1e-12)))
-    return Law(name, title, (lambda x, a, b: diagram(x, a, b, 0.0), lambda x, a, b: diagram(x, a, b, 1.0),
-                             lambda x, a, b: diagram(x, a, b, 2.0)),
-               peak=float(np.abs(values).max()), jumps=p.jumps, even=False, nodes=nodes)
+    shares = p.check(key, tell("speeding up comes first, slowing down after it"))
+    values = np.concatenate((p.at(2, shares), p.at(2, np.append(p.starts[1:], 1.0) - 1e-12)))
+    return _of_nodes(name, title, diagram, nodes, float(np.abs(values).max()), p.jumps)
 
 
-class _Spline:
+class _Spline(_Pieces):
     """Cubic spline through the ordinates of one phase, level at both ends, with its two derivatives."""
 
     def __init__(self, x: Sequence[float], y: Sequence[float]) -> None:
@@ -287,20 +315,12 @@ class _Spline:
         ds = s[:, 1:] * np.arange(1, 4)
         self.forms = s, ds, ds[:, 1:] * np.arange(1, 3)
 
-    def at(self, order: int, x: Reals) -> Reals:
-        """Displacement or a derivative at shares of the phase."""
-        return _piecewise(self.starts, self.forms[order], x)
-
-
-@cache
-def _spline(x: tuple[float, ...], y: tuple[float, ...]) -> _Spline:
-    return _Spline(x, y)
-
 
 @primitive("spline of ordinates", "real")
 def through_ordinates(x: Reals, shares: Reals, displacements: Any, order: float) -> Reals:
     """The law through given ordinates (see :func:`ordinates_law`), ``order`` 0, or its first or second derivative."""
-    return _spline(tuple(shares), tuple(displacements)).at(int(order), x)
+    found: Reals = _pieces(_Spline, tuple(shares), tuple(displacements)).at(int(order), x)
+    return found
 
 
 def ordinates_law(x: Sequence[float], y: Sequence[float], key: str = "cam.displacements") -> Law:
@@ -311,20 +331,11 @@ def ordinates_law(x: Sequence[float], y: Sequence[float], key: str = "cam.displa
     CannotBuild
         when the spline turns back between two ordinates; ``key`` names the table.
     """
-    nodes = tuple(Given(np.asarray(row, dtype=float), f"{key}[*][{i}]", over="curve") for i, row in enumerate((x, y)))
-    spline = _spline(*(tuple(given.value) for given in nodes))
-    shares = np.union1d(np.linspace(0, 1, 4001), spline.starts)
-    velocity = spline.at(1, shares)
-    if velocity.min() < -1e-9 * velocity.max():
-        raise CannotBuild(tell("{key}: the follower turns back inside the phase, at the share {share:.3f}").format(
-            key=key, share=shares[velocity.argmin()]), tell("give ordinates there, or smoother ones"))
-    forms = tuple(partial(_ordinate, order) for order in range(3))
-    return Law("displacements", marked("by the given table of displacements"), (forms[0], forms[1], forms[2]),
-               peak=float(np.abs(spline.at(2, np.append(spline.starts, 1.0))).max()), even=False, nodes=nodes)
-
-
-def _ordinate(order: int, x: Reals, shares: Reals, displacements: Any) -> Reals:
-    return through_ordinates(x, shares, displacements, float(order))
+    nodes = _nodes(key, x, y)
+    spline = _pieces(_Spline, *(tuple(given.value) for given in nodes))
+    spline.check(key, tell("give ordinates there, or smoother ones"))
+    peak = float(np.abs(spline.at(2, np.append(spline.starts, 1.0))).max())
+    return _of_nodes("displacements", marked("by the given table of displacements"), through_ordinates, nodes, peak)
 
 
 TRAPEZOID = replace(

@@ -32,8 +32,7 @@ from tmm_sheets.methods.cams.cam_inversion import (
     Inversion,
     Spring,
     rocker_curvature,
-    second_disc_of_rocker,
-    second_disc_of_tappet,
+    second_disc,
     spring,
     tappet_curvature,
 )
@@ -391,6 +390,11 @@ class RollerCam(Cam):
     def _keep_apart(self, plan: Plan) -> Step:
         raise NotImplementedError
 
+    def _with_discs(self, inv: Inversion) -> Inversion:
+        if self.apart is not None:
+            second_disc(inv, self.apart, self.zone.cones)
+        return inv
+
     def check(self) -> None:
         """Zone and roller."""
         _ = self.roller
@@ -590,10 +594,7 @@ class TappetCam(RollerCam):
         return plan.add("L", DISTANCE, self.zone.plan["S_0"], self.law.stroke)
 
     def _invert(self, plan: Plan, at: Displacement) -> Inversion:
-        inv = cam_inversion.translating(plan, self.zone, at)
-        if self.apart is not None:
-            second_disc_of_tappet(inv, self.apart)
-        return inv
+        return self._with_discs(cam_inversion.translating(plan, self.zone, at))
 
     def _bending(self, second: bool) -> tuple[Rule, Callable[..., Any], tuple[Any, ...]]:
         of = (self.zone.plan["S_0"], self.zone.plan["e"], self.right, self.apart if second else 0.0)
@@ -622,10 +623,7 @@ class RockerCam(RollerCam):
         return plan.add("ψ_12", SPREAD, self.zone.plan["A"], self.zone.plan["O"], self.law.stroke)
 
     def _invert(self, plan: Plan, at: Displacement) -> Inversion:
-        inv = cam_inversion.rocker(plan, self.zone, at)
-        if self.apart is not None:
-            second_disc_of_rocker(inv, self.apart, -self.zone.cones.turn)
-        return inv
+        return self._with_discs(cam_inversion.rocker(plan, self.zone, at))
 
     def _bending(self, second: bool) -> tuple[Rule, Callable[..., Any], tuple[Any, ...]]:
         z = self.zone

@@ -23,6 +23,7 @@ import numpy as np
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import Complex, Directions, Floats, Points, Reals, Signs, primitive
 from tmm_sheets.construction.step import Given, Helper, Plan, Reading, Rule, Step
+from tmm_sheets.construction.tables import StepTable, record
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.cams.cam_displacement import (
     AT_SHARE,
@@ -280,10 +281,6 @@ OUTERMOST_DIRECTION = Rule("direction of the outermost ray",
                            lambda psi, turn, alpha, side: _ray_direction(_up(psi, turn), alpha, side),
                            ("inclination", "number", "angle", "number"), "direction",
                            marked("Draw the outermost ray {name} at the permitted pressure angle to the velocity of B."))
-LOWER = Rule("lower of two points", _lower, ("point", "point"), "point",
-             marked("Of the points {0} and {1} the lower one is {name}: take the centre of rotation of the cam there."))
-SIGNED = Rule("abscissa", lambda p, right: right * np.real(p), ("point", "number"), "ordinate",
-              marked("Measure the segment {name} = {value}."))
 TURNED = Rule("turn about the axis of the rocker", lambda a, b, angle, sense: a + (b - a) * np.exp(1j * sense * angle),
               ("point", "point", "angle", "number"), "point",
               marked("About {0} with the radius {0}{1} draw an arc and turn the line of the rocker by the angle {2}: point "
@@ -300,11 +297,6 @@ ALONG_ROCKER = Rule("analogue on the rocker", lambda sign, arm, dpsi: sign * arm
                     marked("Segment {name} = AB·ψ' = {value}."), source=SOURCE)
 LOWEST_SUM = Rule("lowest sum", lambda s, dds: s + dds, ("ordinate", "ordinate"), "ordinate",
                   marked("Least (negative) ordinate of the graph {name} = {0} + {1} = {value}."))
-LOWEST = Rule("lowest ordinate", lambda total: np.maximum(-total, 0.0), ("ordinate",), "length",
-              marked("The least (negative) ordinate of the graph S + S'' gives r_min = {value}."))
-NEEDED = Rule("radius with a reserve", lambda total, stroke: np.maximum(1.1 * -total, 0.5 * stroke), ("ordinate", "length"),
-              "length",
-              marked("With a margin of a tenth of r_min, but not below half the stroke: {name} = {value}."), source=SOURCE)
 
 
 @primitive("rounded up to a millimetre", "real")
@@ -316,16 +308,98 @@ def rounded_up(radius: Reals) -> Reals:
 
 ROUNDED = Rule("rounded radius", rounded_up, ("length",), "length", marked("Round to a whole millimetre: {name} = {value}."))
 CHOSEN = Rule("given radius", lambda radius: radius, ("length",), "length", marked("Given by the task: {name} = {value}."))
-RESERVE = Rule("reserve", lambda radius, least: radius - least, ("length", "length"), "length",
-               "")
-RESERVED = Rule("add a reserve", lambda least, reserve: least + reserve, ("length", "length"), "length",
-                marked("To the radius {0} add the margin Δr = {1}: {name} = {value}."))
 LARGEST = Rule("largest ordinate", np.abs, ("ordinate",), "length",
                marked("The greatest ordinate of the graph S' gives the size of the flat face {name} = {value}."))
-SHARPEST = Rule("least radius of curvature", lambda radius, total: radius + total, ("length", "ordinate"), "length",
-                marked("Least radius of curvature of the profile {name} = r_0 + (S + S'')_min = {value}."), source=SOURCE)
 CHOICE = Rule("share found", lambda x: x, ("number",), "number",
               marked("Find the place by search: part of the phase {name} = {value}."), unit="1")
+
+ZONE: StepTable = {
+    "B": ("0", "", rules.GIVEN),
+    "A": ("B up s", "", rules.OFFSET, marked("On the axis S lay off the displacement {2} from {0}: point {name}.")),
+    "D": ("A right ds", "", rules.OFFSET,
+          marked("From {0}, perpendicular to the axis S, lay off the first derivative {2}: point {name}.")),
+    "t_1": ("alpha one", "", INCLINED),
+    "t_2": ("alpha other", "", INCLINED),
+    "V": ("K_1 t_1 K_2 t_2", "", rules.LINE_LINE, marked("The tangents {1} and {3} meet at the vertex {name} of the zone.")),
+    "e_0": ("B right offset", "", rules.OFFSET,
+            marked("On the perpendicular to the axis S lay off the eccentricity {2} from {0}: point {name}.")),
+    "O": ("K_1 t_1 K_2 t_2", "", rules.LINE_LINE,
+          marked("The tangents {1} and {3} meet at the vertex of the zone; take the centre of rotation {name} of the cam there.")),
+    "C": ("O B up", "", rules.FOOT, marked("From {0} drop the perpendicular to the axis S: point {name}.")),
+    "S_0": ("C B", "", rules.DISTANCE, marked("Measure the segment CB = S_0 = {value}.")),
+    "e": ("O side", "", Rule("abscissa", lambda p, right: right * np.real(p), ("point", "number"), "ordinate",
+            marked("Measure the segment {name} = {value}.")), marked("Measure the segment CO = e = {value}.")),
+    "r_0": ("O B", "", rules.DISTANCE, marked("Measure the segment OB = r_0 = {value}.")),
+}
+"""The axis of the cam in the vertex of the zone of a translating follower."""
+OF_GIVEN_RADIUS: StepTable = {
+    "r": ("r0", "r_0", CHOSEN),
+    "O": ("B r line up -1", "", rules.ARC_LINE,
+          marked("About {0} with the given radius {1} strike an arc across the parallel to the axis S through {2}: take the "
+                 "centre of rotation {name} there.")),
+}
+OF_GIVEN_OFFSET: StepTable = {
+    "O_1": ("line up K_1 t_1", "", rules.LINE_LINE,
+            marked("Through {0}, parallel to the axis S, draw a line up to the tangent {3} from {2}: point {name}.")),
+    "O_2": ("line up K_2 t_2", "", rules.LINE_LINE,
+            marked("Through {0}, parallel to the axis S, draw a line up to the tangent {3} from {2}: point {name}.")),
+    "O": ("O_1 O_2", "", Rule("lower of two points", _lower, ("point", "point"), "point",
+            marked("Of the points {0} and {1} the lower one is {name}: take the centre of rotation of the cam there."))),
+}
+ON_ONE_BORDER: StepTable = {
+    "O": ("B touching border", "", rules.FOOT,
+          marked("From {0} drop the perpendicular to the tangent {2}: take the centre of rotation {name} at its foot.")),
+}
+ROCKER_ZONE: StepTable = {
+    "B_0": ("0", "", rules.GIVEN),
+    "A": ("B_0 right arm", "", rules.ALONG, marked("At the distance AB = {2} from {0} mark the axis {name} of the rocker.")),
+    "B": ("A B_0 psi turn", "", TURNED),
+    "BA": ("B A", "", rules.RAY),
+    "D": ("B BA x", "", rules.OFFSET, marked("From {0} on AB produced lay off x = AB·ψ' = {2}: point {name}.")),
+    "r": ("r0", "r_0", CHOSEN),
+    "l": ("l0", "l_0", CHOSEN, marked("Given distance of the axes {name} = {value}.")),
+    "O": ("B_0 r A l turn", "", rules.ARC_ARC,
+          marked("About {0} with the given radius {1} and about {2} with the distance of the axes {3} strike arcs: take the "
+                 "centre of rotation {name} of the cam there.")),
+    "r_0": ("O B_0", "", rules.DISTANCE, marked("Measure the segment OB_0 = r_0 = {value}.")),
+    "l_0": ("O A", "", rules.DISTANCE, marked("Measure the segment OA = l_0 = {value}.")),
+}
+"""The axis of the cam of a rocker at given distances from B and from the rocker's axis."""
+TOWARDS_AXIS: StepTable = {
+    "D": ("B BA x", "", rules.OFFSET,
+          marked("From {0} towards the axis A lay off x = AB·ψ' = {2}: point {name}.")),
+}
+AGAINST_VELOCITY: StepTable = {
+    "O": ("B_0 down r", "", rules.ALONG,
+          marked("Perpendicular to AB_0, against the velocity of B at the start, lay off the given radius {2} from {0}: take the "
+                 "centre of rotation {name} of the cam there.")),
+}
+ON_ONE_RAY: StepTable = {
+    "O": ("B_0 K_1 t_1", "", rules.FOOT,
+          marked("From {0} drop the perpendicular to the ray {2}: take the centre of rotation {name} at its foot.")),
+}
+WHERE_RAYS_MEET: StepTable = {
+    "O": ("K_1 t_1 K_2 t_2", "", rules.LINE_LINE,
+          marked("The outermost rays {1} and {3} meet at the vertex of the zone; take the centre of rotation {name} of the cam "
+                 "there.")),
+}
+PLATE: StepTable = {
+    "r_min": ("lowest", "", Rule("lowest ordinate", lambda total: np.maximum(-total, 0.0), ("ordinate",), "length",
+            marked("The least (negative) ordinate of the graph S + S'' gives r_min = {value}."))),
+    "r_0″": ("lowest stroke", "",
+        Rule("radius with a reserve", lambda total, stroke: np.maximum(1.1 * -total, 0.5 * stroke), ("ordinate", "length"),
+            "length",
+            marked("With a margin of a tenth of r_min, but not below half the stroke: {name} = {value}."), source=SOURCE)),
+    "r_0′": ("r_0″", "", ROUNDED),
+    "Δr": ("r_0′ r_min", "", Rule("reserve", lambda radius, least: radius - least, ("length", "length"), "length",
+            "")),
+    "r_0": ("r_min Δr", "", Rule("add a reserve", lambda least, reserve: least + reserve, ("length", "length"), "length",
+            marked("To the radius {0} add the margin Δr = {1}: {name} = {value}."))),
+    "ρ_min": ("r_0 lowest", "",
+        Rule("least radius of curvature", lambda radius, total: radius + total, ("length", "ordinate"), "length",
+            marked("Least radius of curvature of the profile {name} = r_0 + (S + S'')_min = {value}."), source=SOURCE)),
+}
+"""The cam under a flat follower by the least sum S + S''."""
 
 
 def found_share(plan: Plan, at: Phases, phase: Phase, x: float, tag: str, choice: str) -> Step:
@@ -477,10 +551,9 @@ def zone(law: PositionFunction, alpha: float, limit: Limit, right: float, s: Any
     rows, s, ds = _limited_ordinates(law, s, ds, n)
     touch = Plan("cam-zone-touch", tr("Points of contact of the borders of the zone"), "m")
     plan = Plan("cam-zone", tr("Main dimensions of the cam"), "m", law.labels[:n])
-    start = plan.add("B", rules.GIVEN, 0j)
-    axis = plan.add("A", rules.OFFSET, start, 1j, s, say=tr("On the axis S lay off the displacement {2} from {0}: point {name}."))
-    points = plan.add("D", rules.OFFSET, axis, complex(right), ds,
-                      say=tr("From {0}, perpendicular to the axis S, lay off the first derivative {2}: point {name}."))
+    given: dict[str, Any] = {"0": 0j, "up": 1j, "right": complex(right), "side": right, "one": right * 1.0, "other": right * -1.0,
+                             "-1": -1.0, "alpha": alpha, "s": s, "ds": ds, "offset": e, "r0": r0}
+    record(plan, "B A D", ZONE, given=given)
     touching = []
     for name, side in (("K_1", 1.0), ("K_2", -1.0)):
         phase, x = _touched(cones, side)
@@ -491,37 +564,22 @@ def zone(law: PositionFunction, alpha: float, limit: Limit, right: float, s: Any
                   "curve S(S'); point of contact {{name}}.") if side > 0 else
                tr("At the angle {angle}° to the axis S draw the tangent to the curve S(S'); point of contact {{name}}."))
         touching.append(plan.add(name, TOUCH, *at, right, say=say.format(angle=fixed(degrees(alpha), 1))))
-    borders = [plan.add(f"t_{k}", INCLINED, alpha, right * side) for k, side in ((1, 1.0), (2, -1.0))]
+    record(plan, "t_1 t_2", ZONE, given=given)
     if e is not None or r0 is not None or centre == "least":
-        plan.add("V", rules.LINE_LINE, touching[0], borders[0], touching[1], borders[1],
-                 say=tr("The tangents {1} and {3} meet at the vertex {name} of the zone."))
-    line = start if e is None else plan.add(
-        "e_0", rules.OFFSET, start, complex(right), e,
-        say=tr("On the perpendicular to the axis S lay off the eccentricity {2} from {0}: point {name}."))
+        record(plan, "V", ZONE)
+    given["line"] = plan["B"] if e is None else record(plan, "e_0", ZONE, given=given)
     if r0 is not None:
-        apex = plan.add("O", rules.ARC_LINE, start, plan.add("r", CHOSEN, r0, symbol="r_0"), line, 1j, -1.0,
-                        say=tr("About {0} with the given radius {1} strike an arc across the parallel to the axis S through {2}: "
-                               "take the centre of rotation {name} there."))
+        record(plan, "r O", OF_GIVEN_RADIUS, given=given)
     elif e is not None:
-        met = [plan.add(f"O_{k}", rules.LINE_LINE, line, 1j, touch_, border,
-                        say=tr("Through {0}, parallel to the axis S, draw a line up to the tangent {3} from {2}: point {name}."))
-               for k, touch_, border in ((1, touching[0], borders[0]), (2, touching[1], borders[1]))]
-        apex = plan.add("O", LOWER, *met)
+        record(plan, "O_1 O_2 O", OF_GIVEN_OFFSET, given=given)
     elif centre == "least" and len(rays := (cones.corner("least") or (0j, ()))[1]) == 1:
-        side = 0 if rays[0].direction.real * right < 0 else 1
-        apex = plan.add("O", rules.FOOT, start, touching[side], borders[side],
-                        say=tr("From {0} drop the perpendicular to the tangent {2}: take the centre of rotation {name} at its "
-                               "foot."))
+        k = 1 if rays[0].direction.real * right < 0 else 2
+        record(plan, "O", ON_ONE_BORDER, given={"touching": plan[f"K_{k}"], "border": plan[f"t_{k}"]})
     else:
-        apex = plan.add("O", rules.LINE_LINE, touching[0], borders[0], touching[1], borders[1],
-                        say=tr("The tangents {1} and {3} meet at the vertex of the zone; take the centre of rotation {name} of "
-                               "the cam there."))
-    foot = plan.add("C", rules.FOOT, apex, start, 1j, say=tr("From {0} drop the perpendicular to the axis S: point {name}."))
-    plan.add("S_0", rules.DISTANCE, foot, start, say=tr("Measure the segment CB = S_0 = {value}."))
-    plan.add("e", SIGNED, apex, right, say=tr("Measure the segment CO = e = {value}."))
-    plan.add("r_0", rules.DISTANCE, apex, start, say=tr("Measure the segment OB = r_0 = {value}."))
+        record(plan, "O", ZONE)
+    record(plan, "C S_0 e r_0", ZONE, given=given)
     plans = {p.name: p for p in (rows, touch, plan)}
-    return Zone(plan, plans, exact, cones, axis, points, tuple(touching), tuple(borders), apex)
+    return Zone(plan, plans, exact, cones, plan["A"], plan["D"], tuple(touching), (plan["t_1"], plan["t_2"]), plan["O"])
 
 
 # --- rocker -----------------------------------------------------------------------------------------------------------
@@ -551,14 +609,8 @@ def rocker_zone(law: PositionFunction, arm: float, alpha: float, limit: Limit, r
     rows, psi, dpsi = _limited_ordinates(law, psi, dpsi, n)
     x = rows.add("x", ALONG_ROCKER, 1.0 if same else -1.0, arm, dpsi)
     plan = Plan("cam-zone", tr("Main dimensions of the cam"), "m", law.labels[:n])
-    start = plan.add("B_0", rules.GIVEN, 0j)
-    pivot = plan.add("A", rules.ALONG, start, complex(side), arm,
-                     say=tr("At the distance AB = {2} from {0} mark the axis {name} of the rocker."))
-    axis = plan.add("B", TURNED, pivot, start, psi, -side)
-    line = plan.add("BA", rules.RAY, axis, pivot)
-    say = (tr("From {0} towards the axis A lay off x = AB·ψ' = {2}: point {name}.") if same else
-           tr("From {0} on AB produced lay off x = AB·ψ' = {2}: point {name}."))
-    points = plan.add("D", rules.OFFSET, axis, line, x, say=say)
+    given = {"0": 0j, "right": complex(side), "arm": arm, "psi": psi, "turn": -side, "x": x}
+    record(plan, "B_0 A B BA D", *[TOWARDS_AXIS] * same, ROCKER_ZONE, given=given)
     found = cones.corner(centre)
     if found is None and r0 is None:
         raise CannotBuild(
@@ -567,7 +619,7 @@ def rocker_zone(law: PositionFunction, arm: float, alpha: float, limit: Limit, r
              tell("cam.pressure_angle: no axis of the cam keeps the pressure angle of the rocker within {angle:g} deg on the rise "
                   "and the fall")).format(angle=degrees(alpha)), _wider(cones))
     touch = Plan("cam-zone-touch", tr("Points where the outermost rays of the zone begin"), "m")
-    z = Zone(plan, {p.name: p for p in (rows, touch, plan)}, exact, cones, axis, points, (), (), start)
+    z = Zone(plan, {p.name: p for p in (rows, touch, plan)}, exact, cones, plan["B"], plan["D"], (), (), plan["B_0"])
     rays = found[1] if found else ()
     if r0 is None:
         touching, borders, apex = _rocker_axis(plan, z, rays, touch)
@@ -578,46 +630,27 @@ def rocker_zone(law: PositionFunction, arm: float, alpha: float, limit: Limit, r
 
 def _given_axis(plan: Plan, z: Zone, r0: float, l0: float | None) -> Step:
     """Record the axis O of the cam of a given radius, with r_0 and l_0."""
-    start, (pivot, turn, _, arm) = plan["B_0"], z.swing
-    radius = plan.add("r", CHOSEN, r0, symbol="r_0")
+    _, turn, _, arm = z.swing
+    given = {"r0": r0, "l0": l0, "turn": turn, "down": -1j}
     if l0 is None:
-        apex = plan.add("O", rules.ALONG, start, -1j, radius,
-                        say=tr("Perpendicular to AB_0, against the velocity of B at the start, lay off the given radius {2} from "
-                               "{0}: take the centre of rotation {name} of the cam there."))
+        record(plan, "r O", AGAINST_VELOCITY, ROCKER_ZONE, given=given)
     else:
         if not abs(r0 - arm) < l0 < r0 + arm:
             raise CannotBuild(tell("cam.centre_distance: {distance:g} mm, the radius {radius:g} mm and the rocker of {arm:g} mm "
                                    "make no triangle").format(distance=l0 * 1e3, radius=r0 * 1e3, arm=arm * 1e3),
                               tell("take a distance between {least:g} and {most:g} mm").format(
                                   least=abs(r0 - arm) * 1e3, most=(r0 + arm) * 1e3))
-        apart = plan.add("l", CHOSEN, l0, symbol="l_0", say=tr("Given distance of the axes {name} = {value}."))
-        apex = plan.add("O", rules.ARC_ARC, start, radius, pivot, apart, turn,
-                        say=tr("About {0} with the given radius {1} and about {2} with the distance of the axes {3} strike arcs: "
-                               "take the centre of rotation {name} of the cam there."))
-    _measure_axis(plan, apex, start, pivot)
-    return apex
+        record(plan, "r l O", ROCKER_ZONE, given=given)
+    record(plan, "r_0 l_0", ROCKER_ZONE)
+    return plan["O"]
 
 
 def _rocker_axis(plan: Plan, z: Zone, rays: tuple[Ray, ...], touch: Plan | None = None) -> tuple[
         tuple[Step, ...], tuple[Step, ...], Step]:
     """Record the axis O of the cam on one or two outermost rays, with r_0 and l_0."""
     touching, borders = _outermost(plan, z, rays, touch or plan)
-    start, pivot = z.plan["B_0"], z.plan["A"]
-    if len(touching) == 1:
-        apex = plan.add("O", rules.FOOT, start, touching[0], borders[0],
-                        say=tr("From {0} drop the perpendicular to the ray {2}: take the centre of rotation {name} at its foot."))
-    else:
-        apex = plan.add("O", rules.LINE_LINE, touching[0], borders[0], touching[1], borders[1],
-                        say=tr("The outermost rays {1} and {3} meet at the vertex of the zone; take the centre of rotation {name} "
-                               "of the cam there."))
-    _measure_axis(plan, apex, start, pivot)
-    return touching, borders, apex
-
-
-def _measure_axis(plan: Plan, apex: Step, start: Step, pivot: Step) -> None:
-    """Radius and distance of the axes that belong to an axis of the cam."""
-    plan.add("r_0", rules.DISTANCE, apex, start, say=tr("Measure the segment OB_0 = r_0 = {value}."))
-    plan.add("l_0", rules.DISTANCE, apex, pivot, say=tr("Measure the segment OA = l_0 = {value}."))
+    record(plan, "O r_0 l_0", ON_ONE_RAY if len(touching) == 1 else WHERE_RAYS_MEET, ROCKER_ZONE, given=z.plan.steps)
+    return touching, borders, plan["O"]
 
 
 def _outermost(plan: Plan, z: Zone, rays: tuple[Ray, ...], touch: Plan) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
@@ -755,19 +788,16 @@ def plate(law: PositionFunction, s: Any, dds: Any, base_radius: float | None, ex
     _, phase, x = lowest_sum(law)
     at = found_share(place, exact.phases, phase, x, "min", tr("the ordinate of S + S'' is least"))
     lowest = place.add("(S+S'')_min", LOWEST_SUM, *in_phase(place, law, exact.phases, phase, at, "min", (0, 2)))
-    least = plan.add("r_min", LOWEST, lowest)
-    if base_radius is None:
-        radius = plan.add("r_0′", ROUNDED, plan.add("r_0″", NEEDED, lowest, law.stroke))
-    else:
-        radius = plan.add("r_0′", CHOSEN, base_radius)
+    given = {"lowest": lowest, "stroke": law.stroke}
+    record(plan, "r_min", PLATE, given=given)
+    radius = record(plan, "r_0″ r_0′", PLATE, given=given) if base_radius is None else plan.add("r_0′", CHOSEN, base_radius)
     r_min, chosen = -float(lowest.value), float(radius.value)
     if not chosen > r_min:
         raise CannotBuild(
             tell("cam.base_radius: with {radius:g} mm the profile has a cusp at {angle:.1f} deg: a flat follower needs more than "
                  "{least:.4g} mm here").format(radius=chosen * 1e3, angle=degrees(phase.phi(x)), least=r_min * 1e3),
             tell("take {radius} mm or leave cam.base_radius out").format(radius=ceil(1100 * r_min)))
-    base = plan.add("r_0", RESERVED, least, plan.add("Δr", RESERVE, radius, least))
-    plan.add("ρ_min", SHARPEST, base, lowest)
+    record(plan, "Δr r_0 ρ_min", PLATE, given=given)
     shares = np.linspace(0, 1, 2001)
     for name, p in (("l_1", law.rise), ("l_2", law.fall)):
         k = int(np.argmax(np.abs(p.ds(shares))))

@@ -2,7 +2,7 @@
 
 Works by graphical integration, the constant moment by differentiation, the change of kinetic energy, the reduced moment
 of inertia (manual 000, section 5; manual 002, 1.5 to 1.8). How the moment of inertia of the flywheel follows from these
-is the method's own: :mod:`~tmm_sheets.methods.flywheel.wittenbauer`, :mod:`~tmm_sheets.methods.flywheel.mertsalov`.
+is the method's own: :mod:`~tmm_sheets.methods.flywheel.wheel_methods`.
 """
 
 
@@ -18,6 +18,7 @@ import numpy as np
 from tmm_sheets.construction.expression import Floats
 from tmm_sheets.construction.rules import GIVEN_INERTIA
 from tmm_sheets.construction.step import Given, Plan, Reading, Reported, Rule, Step, named
+from tmm_sheets.construction.tables import StepTable, record
 from tmm_sheets.methods.flywheel.diagram_scales import DiagramSpace, FlywheelScales
 from tmm_sheets.methods.flywheel.energy_mass import STOPS, ConvergedWheel, Energy, Running, speed, steady, too_light
 from tmm_sheets.methods.flywheel.wheel import STEEL, MotorCheck, RimWheel, motor_check, wheel
@@ -40,8 +41,6 @@ OF_EXCESS = Rule("moment of inertia from the excess of energy", lambda excess, d
                  source="000, 5.6")
 TOGETHER = Rule("moments of inertia together", lambda a, b: a + b, ("number", "number"), "number",
                 "", unit="kg*m2")
-WITH_ROTOR = Rule("flywheel and rotor", lambda a, b: a + b, ("number", "number"), "number",
-                  "", unit="kg*m2")
 DELTA_OF_SEGMENT = Rule("coefficient of non-uniformity from the segment", lambda ab, mu, j, omega: ab * mu / (j * omega**2),
                         ("number",) * 4, "number",
                         "",
@@ -63,8 +62,6 @@ BARE = Rule("moment of inertia of the flywheel", lambda first, crank: first - cr
 BARE_OF_ROTOR = Rule("moment of inertia of the flywheel beside a rotor", lambda first, crank, rotor: first - crank - rotor,
                      ("number",) * 3, "number",
                      "", unit="kg*m2")
-WITHOUT_CRANK = Rule("without the crank", lambda j, crank: j - crank, ("number", "number"), "number",
-                     "", unit="kg*m2", source="002, 1.7")
 RATIO = Rule("ratio of angular velocities", lambda rotor, crank: rotor / crank, ("number", "number"), "number",
              "")
 ROTOR = Rule("moment of inertia reduced by a ratio", lambda j, u: j * u**2, ("number", "number"), "number",
@@ -74,16 +71,36 @@ RUNNING = Rule("what turns with the crank", lambda first, wheel: first + np.maxi
 TOGETHER_LIMIT, BARE_LIMIT, BARE_OF_ROTOR_LIMIT = (replace(rule, beyond_paper=True) for rule in (TOGETHER, BARE, BARE_OF_ROTOR))
 APART = Rule("difference of moments of inertia", lambda drawn, exact: drawn - exact, ("number", "number"), "number",
              "", beyond_paper=True, unit="kg*m2")
-TANGENT = Rule("tangent of a graph", lambda slope, mu_phi, mu_j: np.arctan(slope * (mu_phi / mu_j)), ("number",) * 3, "inclination",
-               marked("At the point of the graph J(φ1) draw the tangent; its slope angle is {name} = {value}."))
-SLOPE = Rule("slope of a graph", lambda angle, mu_phi, mu_j: np.tan(angle) * (mu_j / mu_phi), ("inclination", "number", "number"),
-             "number", "", unit="kg*m2", source="002, 1.12")
-SUM_OF_MOMENTS = Rule("add moments", lambda a, b: a + b, ("number", "number"), "number",
-                      "", unit="N*m")
-ALL_INERTIA = Rule("add moments of inertia", lambda a, b: a + b, ("number", "number"), "number",
-                   "", unit="kg*m2")
-ACCELERATION = Rule("acceleration of the crank", lambda m, slope, j, omega: (m - omega * omega / 2 * slope) / j,
-                    ("number", "number", "number", "number"), "number", "", unit="rad/s2")
+
+WITHOUT_CRANK = Rule("without the crank", lambda j, crank: j - crank, ("number", "number"), "number",
+                     "", unit="kg*m2", source="002, 1.7")
+ACCELERATION: StepTable = {
+    "M_пр": ("moment closing", lambda: tr("M_red"), MOMENT_AT),
+    "J_пр": ("inertia closing", lambda: tr("J_red"), INERTIA_AT),
+    "J′": ("slope closing", "", SLOPE_AT),
+    "J_II": ("inertia crank", "", WITHOUT_CRANK),
+    "ψ": ("slope μ_φ μ_J", "",
+        Rule("tangent of a graph", lambda slope, mu_phi, mu_j: np.arctan(slope * (mu_phi / mu_j)), ("number",) * 3, "inclination",
+            marked("At the point of the graph J(φ1) draw the tangent; its slope angle is {name} = {value}."))),
+    "dJ/dφ": ("ψ μ_φ μ_J", "",
+        Rule("slope of a graph", lambda angle, mu_phi, mu_j: np.tan(angle) * (mu_j / mu_phi), ("inclination", "number", "number"),
+            "number", "", unit="kg*m2", source="002, 1.12")),
+    "M": ("moment driving", "", Rule("add moments", lambda a, b: a + b, ("number", "number"), "number",
+            "", unit="N*m")),
+    "J": ("running J_II", "", Rule("add moments of inertia", lambda a, b: a + b, ("number", "number"), "number",
+            "", unit="kg*m2")),
+    "ε1": ("M dJ/dφ J ω1", "",
+        Rule("acceleration of the crank", lambda m, slope, j, omega: (m - omega * omega / 2 * slope) / j,
+            ("number", "number", "number", "number"), "number", "", unit="rad/s2")),
+}
+GIVEN_WHEEL: StepTable = {
+    "J_м": ("wheel", lambda: tr("J_f"), GIVEN_INERTIA),
+    "J_доб": ("J_м rotor", lambda: tr("J_add"),
+        Rule("flywheel and rotor", lambda a, b: a + b, ("number", "number"), "number",
+            "", unit="kg*m2")),
+    "J_I": ("added crank", "", TOGETHER),
+    "J_вр": ("J_I J_м", lambda: tr("J_rot"), RUNNING),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,11 +188,10 @@ class Flywheel(Works):
         """A given flywheel: ``J_м``, with a rotor ``J_доб`` both, ``J_I`` with the crank, which is what runs: ``J_вр``."""
         plan = Plan(f"flywheel-given{self.where}", tr("Given flywheel"), "")
         assert self.data.inertia is not None
-        added = plan.add("J_м", GIVEN_INERTIA, named(self.data.inertia, "flywheel.inertia", tr("J_f"), "kg*m2"), symbol=tr("J_f"))
-        if "J_рот" in self.rotor_plan:
-            added = plan.add("J_доб", WITH_ROTOR, added, self.rotor_plan["J_рот"], symbol=tr("J_add"))
-        first = plan.add("J_I", TOGETHER, added, self.reduced.crank)
-        plan.add("J_вр", RUNNING, first, plan["J_м"], symbol=tr("J_rot"))
+        given = {"wheel": named(self.data.inertia, "flywheel.inertia", tr("J_f"), "kg*m2"), "crank": self.reduced.crank,
+                 "rotor": self.rotor_plan.steps.get("J_рот")}
+        given["added"] = record(plan, "J_м J_доб" if given["rotor"] else "J_м", GIVEN_WHEEL, given=given)
+        record(plan, "J_I J_вр", GIVEN_WHEEL, given=given)
         return plan
 
     @property
@@ -393,18 +409,14 @@ class Flywheel(Works):
 
     def _acceleration(self, at: Reduction, labels: tuple[str, ...], name: str, closing: tuple[Given, ...] = ()) -> Plan:
         plan = Plan(f"crank-acceleration{name}{self.where}", tr("Angular acceleration of the input link"), "rad/s2", labels)
-        mu_phi, mu_j = self.mu("angle"), self.mu("inertia")
-        moment, inertia, slope = at.moment(), at.inertia, at.slope
+        given = {"μ_φ": self.mu("angle"), "μ_J": self.mu("inertia"), "moment": at.moment(), "inertia": at.inertia,
+                 "slope": at.slope, "crank": self.reduced.crank, "driving": self.driving_plan["M"],
+                 "running": self.first_plan["J_вр"],
+                 "ω1": self.omega1}
         if closing:
-            moment = plan.add("M_пр", MOMENT_AT, moment, *closing, symbol=tr("M_red"))
-            inertia = plan.add("J_пр", INERTIA_AT, inertia, *closing, symbol=tr("J_red"))
-            slope = plan.add("J′", SLOPE_AT, slope, *closing)
-        others = plan.add("J_II", WITHOUT_CRANK, inertia, self.reduced.crank)
-        angle = plan.add("ψ", TANGENT, slope, mu_phi, mu_j)
-        slope = plan.add("dJ/dφ", SLOPE, angle, mu_phi, mu_j)
-        moment = plan.add("M", SUM_OF_MOMENTS, moment, self.driving_plan["M"])
-        mass = plan.add("J", ALL_INERTIA, self.first_plan["J_вр"], others)
-        plan.add("ε1", ACCELERATION, moment, slope, mass, self.omega1)
+            record(plan, "M_пр J_пр J′", ACCELERATION, given=given | {"closing": closing[0]})
+            given |= {"moment": plan["M_пр"], "inertia": plan["J_пр"], "slope": plan["J′"]}
+        record(plan, "J_II ψ dJ/dφ M J ε1", ACCELERATION, given=given)
         return plan
 
     def acceleration(self, phi: Any) -> Floats:

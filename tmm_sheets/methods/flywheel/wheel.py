@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi
-from typing import Any, Literal
+from typing import Literal
 
 from tmm_sheets.construction.step import Plan, Reading, Rule, Step, value_of
+from tmm_sheets.construction.tables import StepTable, record
 from tmm_sheets.numbers import number
-from tmm_sheets.words import tr
+from tmm_sheets.words import marked, tr
 
 RIM_SPEED = 30.0
 """Speed of the rim up to which a rim with spokes is used, m/s (manual 000, 5.7)."""
@@ -16,30 +17,47 @@ STEEL = 7600.0
 """Density that parts cast iron, 6800 to 7400 kg/m3, from steel, 7700 to 7900 kg/m3."""
 _SOURCE = "000, 5.7"
 
-RIM_INERTIA = Rule("share of the rim", lambda share, j: share * j, ("number", "number"), "number",
-                   "", unit="kg*m2", source="001")
 RIM_DIAMETER = Rule(
     "diameter of a rim", lambda j, density, width, thickness: (4 * j / (pi * density * width * thickness)) ** 0.2,
     ("number",) * 4, "number", "", unit="m",
-    source=_SOURCE)
-DISC_DIAMETER = Rule(
-    "diameter of a disc", lambda j, density, width: (32 * j / (pi * density * width)) ** 0.2,
-    ("number",) * 3, "number", "", unit="m",
     source=_SOURCE)
 RIM_VELOCITY = Rule("speed of a rim", lambda omega, d: omega * d / 2, ("number", "number"), "number",
                     "", unit="m/s", source=_SOURCE)
 WIDTH = Rule("share of a diameter", lambda ratio, d: ratio * d, ("number", "number"), "number",
              "", unit="m", source=_SOURCE)
-RIM_MASS = Rule("mass of a rim", lambda j, d: 4 * j / d**2, ("number", "number"), "number",
-                "", unit="kg", source=_SOURCE)
-DISC_MASS = Rule("mass of a disc", lambda j, d: 8 * j / d**2, ("number", "number"), "number",
-                 "", unit="kg", source=_SOURCE)
 MOTOR_POWER = Rule("power of the motor", lambda m, omega, efficiency: m * omega / efficiency, ("number",) * 3, "number",
                    "", unit="W", source="002, 1.13")
 PERMITTED = Rule("non-uniformity that the slip permits", lambda synchronous, rated: 2 * (synchronous - rated) / rated,
                  ("number", "number"), "number",
                  "",
                  source="002, 1.13")
+
+RIM: StepTable = {
+    "J_об": ("share J", lambda: tr("J_rim"),
+        Rule("share of the rim", lambda share, j: share * j, ("number", "number"), "number",
+            "", unit="kg*m2", source="001")),
+    "D": ("rim ρ κ c", "", RIM_DIAMETER),
+    "V": ("omega D", "", RIM_VELOCITY,
+          marked("Peripheral speed of the rim: {formula} < 30 m/s; a rim with spokes is permitted.")),
+    "B": ("κ D", "", WIDTH),
+    "H": ("c D", "", WIDTH),
+    "m": ("rim D", "", Rule("mass of a rim", lambda j, d: 4 * j / d**2, ("number", "number"), "number",
+            "", unit="kg", source=_SOURCE)),
+    "D_об": ("rim ρ κ c", lambda: tr("D_rim"), RIM_DIAMETER),
+    "V_об": ("omega D_об", lambda: tr("V_rim"), RIM_VELOCITY,
+          marked("Peripheral speed of the rim: {formula} ≥ 30 m/s; we take a disc instead.")),
+}
+"""Sizes of a rim with spokes, and what tells that it would run too fast."""
+DISC: StepTable = {
+    "D": ("J ρ κ", "", Rule(
+            "diameter of a disc", lambda j, density, width: (32 * j / (pi * density * width)) ** 0.2,
+            ("number",) * 3, "number", "", unit="m",
+            source=_SOURCE)),
+    "V": ("omega D", "", RIM_VELOCITY),
+    "B": ("κ D", "", WIDTH),
+    "m": ("J D", "", Rule("mass of a disc", lambda j, d: 8 * j / d**2, ("number", "number"), "number",
+            "", unit="kg", source=_SOURCE)),
+}
 
 
 @dataclass(frozen=True)
@@ -77,33 +95,15 @@ def wheel(inertia: Step | float, omega: float, form: str, density: float, width_
     (manual 001: 0.9), the rest for spokes and hub.
     """
     plan = Plan(f"flywheel-wheel{where}", tr("Sizes of the flywheel"), "")
-    if form == "rim" and _rim(plan, inertia, omega, density, width_ratio, thickness_ratio, rim_share):
-        return RimWheel("rim", plan)
-    d = plan.add("D", DISC_DIAMETER, inertia, density, width_ratio)
-    plan.add("V", RIM_VELOCITY, omega, d)
-    plan.add("B", WIDTH, width_ratio, d)
-    plan.add("m", DISC_MASS, inertia, d)
+    given = {"J": inertia, "omega": omega, "ρ": density, "κ": width_ratio, "c": thickness_ratio, "share": rim_share}
+    if form == "rim":
+        given["rim"] = inertia if rim_share == 1 else record(plan, "J_об", RIM, given=given)
+        if omega * float(RIM_DIAMETER.compute(*(value_of(given[name]) for name in ("rim", "ρ", "κ", "c")))) / 2 < RIM_SPEED:
+            record(plan, "D V B H m", RIM, given=given)
+            return RimWheel("rim", plan)
+        record(plan, "D_об V_об", RIM, given=given)
+    record(plan, "D V B m", DISC, given=given)
     return RimWheel("disc", plan)
-
-
-def _rim(plan: Plan, inertia: Step | float, omega: float, density: float, width_ratio: float, thickness_ratio: float,
-         share: float) -> bool:
-    """Record a rim with spokes; False, with its diameter and speed only, where it would run too fast."""
-    rim: Any = inertia if share == 1 else plan.add("J_об", RIM_INERTIA, share, inertia, symbol=tr("J_rim"))
-    of = (rim, density, width_ratio, thickness_ratio)
-    too_fast = not omega * float(RIM_DIAMETER.compute(*map(value_of, of))) / 2 < RIM_SPEED
-    if too_fast:
-        d = plan.add("D_об", RIM_DIAMETER, *of, symbol=tr("D_rim"))
-        plan.add("V_об", RIM_VELOCITY, omega, d, symbol=tr("V_rim"),
-                 say=tr("Peripheral speed of the rim: {formula} ≥ 30 m/s; we take a disc instead."))
-    else:
-        d = plan.add("D", RIM_DIAMETER, *of)
-        plan.add("V", RIM_VELOCITY, omega, d,
-                 say=tr("Peripheral speed of the rim: {formula} < 30 m/s; a rim with spokes is permitted."))
-        plan.add("B", WIDTH, width_ratio, d)
-        plan.add("H", WIDTH, thickness_ratio, d)
-        plan.add("m", RIM_MASS, rim, d)
-    return not too_fast
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from tmm_sheets.construction.expression import Floats, primitive
 from tmm_sheets.construction.rules import GIVEN_NUMBER, taken
 from tmm_sheets.construction.scale import Scale
 from tmm_sheets.construction.step import Given, Helper, Plan, Row, Rule, Step, named
+from tmm_sheets.construction.tables import StepTable, record
 from tmm_sheets.methods.flywheel.diagram_scales import Diagrams
 from tmm_sheets.methods.flywheel.energy_mass import AT_CONTACT
 from tmm_sheets.methods.integration import AREA, ON_CURVE, ORIGIN, SMOOTH, Quadrature, differentiate, integrate
@@ -107,6 +108,30 @@ ENLARGE = Rule("enlarge ordinates", lambda y, mu, other: y * (mu / other), ("ord
 LAY_DOWN = Rule("lay off an ordinate", lambda y: y, ("ordinate",), "ordinate", marked("Lay off the ordinate {name} = {value}."))
 DIFFERENCE = Rule("difference in per cent", lambda drawn, exact: 100 * (np.divide(drawn, exact) - 1), ("number", "number"),
                   "number", marked("The construction against the limit: {name} = {value} %."), beyond_paper=True, unit="%")
+
+TOTAL: StepTable = {
+    "y_1": ("x K", "", ON_LINE),
+    "ΣA": ("y_2 y_1", "", SUM),
+    "ΔE": ("ΣA μ_A μ_E", "", ENLARGE),
+    "points": ("x ΔE", "", PLOT),
+    "A": ("y_2 μ_A", "", FROM_PAPER, marked("Work of the variable moment {name} = y_2·μ_A = {0}·{1} J/mm = {value} J.")),
+    "A_K": ("y_1 μ_A", "", FROM_PAPER, marked("Work of the constant moment {name} = y_1·μ_A = {0}·{1} J/mm = {value} J.")),
+    "E": ("ΔE μ_E", "", FROM_PAPER, marked("Change of the kinetic energy {name} = ΔE·μ_E = {0}·{1} J/mm = {value} J.")),
+    "A_Σ": ("A last", "", WORK_AT),
+    "δA": ("A_Σ area", "",
+        DIFFERENCE, marked("The work of the cycle against that by the area of the graph: {name} = {value} %.")),
+}
+OF_OWN_SCALE: StepTable = {
+    "ΔE": ("ΣA μ_A μ_ΔE", "", ENLARGE,
+           marked("Convert the ordinate {0} from the scale factor μ_A = {1} J/mm to μ_{{ΔE}} = {2} J/mm: {name} = "
+                  "{0}·μ_A/μ_{{ΔE}} = {value}.")),
+    "ΔE′": ("ΔE μ_ΔE μ_E", "", ENLARGE,
+            marked("For the energy-mass diagram convert the ordinate {0} from the scale factor μ_{{ΔE}} = {1} J/mm to μ_E = {2} "
+                   "J/mm: {name} = {0}·μ_{{ΔE}}/μ_E = {value}.")),
+    "E": ("ΔE μ_ΔE", "", FROM_PAPER,
+          marked("Change of the kinetic energy {name} = ΔE·μ_{{ΔE}} = {0}·{1} J/mm = {value} J.")),
+}
+"""The graph of the change of energy with a scale factor of its own."""
 
 
 class Works(Diagrams):
@@ -294,30 +319,15 @@ class Works(Diagrams):
         ``δA`` is how much greater the work of the cycle is by the ordinates in the middles than by the area, % of the area.
         """
         plan = Plan(f"total-work{self.where}", tr("Graph of the total work"), "mm", self.labels)
-        line = plan.add("y_1", ON_LINE, self.across, self.driving_plan["K"])
-        curve = plan.add("y_2", MEASURE, *(self.work_ends[k] for k in self.at_positions))
-        total = plan.add("ΣA", SUM, curve, line)
-        own = self.scales.excess is not None
-        if own:
-            energy = plan.add("ΔE", ENLARGE, total, self.mu("work"), self.mu("excess"), say=tr(
-                "Convert the ordinate {0} from the scale factor μ_A = {1} J/mm to μ_{{ΔE}} = {2} J/mm: {name} = {0}·μ_A/μ_{{ΔE}} = "
-                "{value}."))
-            plan.add("ΔE′", ENLARGE, energy, self.mu("excess"), self.mu("energy"), say=tr(
-                "For the energy-mass diagram convert the ordinate {0} from the scale factor μ_{{ΔE}} = {1} J/mm to μ_E = {2} J/mm: "
-                "{name} = {0}·μ_{{ΔE}}/μ_E = {value}."))
+        given = {"x": self.across, "K": self.driving_plan["K"], "μ_A": self.mu("work"), "μ_E": self.mu("energy"),
+                 "last": len(self.labels) - 1, "area": self.area_plan["A_Σ"]}
+        record(plan, "y_1", TOTAL, given=given)
+        plan.add("y_2", MEASURE, *(self.work_ends[k] for k in self.at_positions))
+        if self.scales.excess is not None:
+            given["μ_ΔE"] = self.mu("excess")
+            record(plan, "ΣA ΔE ΔE′ points A A_K E A_Σ δA", OF_OWN_SCALE, TOTAL, given=given)
         else:
-            energy = plan.add("ΔE", ENLARGE, total, self.mu("work"), self.mu("energy"))
-        plan.add("points", PLOT, self.across, energy)
-        plan.add("A", FROM_PAPER, curve, self.mu("work"),
-                 say=tr("Work of the variable moment {name} = y_2·μ_A = {0}·{1} J/mm = {value} J."))
-        plan.add("A_K", FROM_PAPER, line, self.mu("work"),
-                 say=tr("Work of the constant moment {name} = y_1·μ_A = {0}·{1} J/mm = {value} J."))
-        plan.add("E", FROM_PAPER, energy, self.mu("excess" if own else "energy"),
-                 say=tr("Change of the kinetic energy {name} = ΔE·μ_{{ΔE}} = {0}·{1} J/mm = {value} J.") if own else
-                 tr("Change of the kinetic energy {name} = ΔE·μ_E = {0}·{1} J/mm = {value} J."))
-        done = plan.add("A_Σ", WORK_AT, plan["A"], len(self.labels) - 1)
-        plan.add("δA", DIFFERENCE, done, self.area_plan["A_Σ"],
-                 say=tr("The work of the cycle against that by the area of the graph: {name} = {value} %."))
+            record(plan, "ΣA ΔE points A A_K E A_Σ δA", TOTAL, given=given)
         return plan
 
     @property

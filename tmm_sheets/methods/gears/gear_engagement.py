@@ -26,6 +26,7 @@ from tmm_sheets.construction.rules import (
     TANGENT,
 )
 from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step
+from tmm_sheets.construction.tables import StepTable, record
 from tmm_sheets.methods.gears.gear_geometry import GearWheel, PairGeometry
 from tmm_sheets.methods.gears.rack import TAKEN
 from tmm_sheets.numbers import number
@@ -108,7 +109,6 @@ def on_normal(o: Points, foot: Points, pole: Points, touch: Points, length: Real
     return touch + string / np.abs(string) * turn_of(o, foot, string * (1 - length / np.abs(string))) * rho
 
 
-CENTRE = Rule("centre over the pole", lambda r: 1j * (r / 1e3), ("number",), "point", marked("Mark point {name}."), unit="m")
 CIRCLE = Rule(
     "circle", lambda o, mm: mm / 1e3, ("point", "number"), "length",
     marked("About the centre {0} with the radius {value} draw the circle {name}."),
@@ -118,10 +118,6 @@ ANGLE = Rule("measure an angle", _angle, ("point", "point", "point"), "angle",
              marked("Measure the angle {0}{1}{2}: {name} = {value}."))
 RATIO = Rule("ratio of angles", lambda a, b: a / b, ("angle", "angle"), "number",
              marked("Contact ratio {name} = {0} / {1} = {value}."), source="000, 6.3")
-MEAN = Rule("mean contact ratio", lambda a, b: (a + b) / 2, ("number", "number"), "number",
-            marked("Contact ratio by the drawing {name} = ({0} + {1})/2 = {value}."))
-OFF = Rule("contact ratio off", lambda drawn, exact: np.abs(drawn - exact) / exact * 100, ("number", "number"), "number",
-           marked("The drawing against the formula: {name} = {value} %."), unit="%")
 ROLLED = Rule(
     "profile in contact", _rolled, ("point", "point", "point", "point"), "point",
     marked("The profile that touches at {3} cuts the pitch circle with the centre {1} at point {name} (the arc of the base circle "
@@ -151,22 +147,6 @@ UNROLLED = Rule(
     "point of the profile", unrolled, ("point", "point", "point", "length"), "point",
     marked("On the involute mark point {name}, to which the length of the tangent is {3}."),
 )
-MIDDLE = Rule("middle", lambda p, q: (p + q) / 2, ("point", "point"), "point", marked("Bisect the segment {0}{1}: point {name}."))
-RADIAL_FILLET = Rule(
-    "fillet on a radial piece", _radial_fillet, ("point", "point", "length", "length", "number"), "point",
-    marked("Below {1} the profile is a radius; the centre {name} of the fillet with the radius {2} lies at this distance from the "
-           "radius and from the root circle."),
-)
-FILLET_ON_NORMAL = Rule(
-    "fillet on the involute", on_normal, ("point", "point", "point", "point", "length", "length"), "point",
-    marked("On the normal to the involute at {3} lay off the radius of the fillet {5}: its centre {name}."),
-)
-RING_FILLET_ON_NORMAL = Rule(
-    "fillet on a ring's involute", lambda o, foot, pole, touch, length, rho: on_normal(o, foot, pole, touch, length, -rho),
-    ("point", "point", "point", "point", "length", "length"), "point",
-    marked("On the normal to the ring's involute at {3} lay off the radius of the fillet {5} towards the foot of the normal: its "
-           "centre {name}."),
-)
 TAKEN_SPEED = Rule("common ordinate of the speeds", lambda y: y, ("number",), "number",
                    marked("Take the ordinate of both velocities at the pitch point as {value} mm."), unit="mm")
 SPEED = Rule(
@@ -177,6 +157,81 @@ SPEED = Rule(
 )
 SLIDING = Rule("specific sliding", lambda own, other: np.divide(own - other, own), ("number", "number"), "number",
                "", source="000, 6.3")
+
+ENGAGEMENT: StepTable = {
+    "O1O2": ("down", "O_1O_2", GIVEN_DIRECTION, marked("Draw the line of centres.")),
+    "O1": ("radius", "O_1",
+        Rule("centre over the pole", lambda r: 1j * (r / 1e3), ("number",), "point", marked("Mark point {name}."), unit="m")),
+    "aw": ("distance", "a_w", TAKEN),
+    "O2": ("O1 O1O2 aw", "O_2", ALONG),
+    "O1P": ("O2 O1", "", RAY),
+    "Pw": ("O1 to_pole rw1", "P_w", ALONG),
+    "N": ("Pw O rb side", "N_#", TANGENT),
+    "N1N2": ("from to", "N_{1}N_{2}", RAY),
+    "A": ("A_O A_r Pw N1N2 A_way", "", ARC_LINE),
+    "B": ("B_O B_r Pw N1N2 B_way", "", ARC_LINE),
+    "alpha_w": ("Pw O1 N1", "", ANGLE),
+    "a": ("Pw O N A", "a_#", ROLLED),
+    "b": ("Pw O N B", "b_#", ROLLED),
+    "phi": ("a O b", "φ_{α#}", ANGLE),
+    "eps1": ("phi1 tau1", "ε_α", RATIO),
+    "eps2": ("phi2 tau2", "ε_α", RATIO),
+    "eps": ("eps1 eps2", "ε_α", Rule("mean contact ratio", lambda a, b: (a + b) / 2, ("number", "number"), "number",
+            marked("Contact ratio by the drawing {name} = ({0} + {1})/2 = {value}."))),
+    "Δeps": ("eps eps_alpha", "Δ",
+        Rule("contact ratio off", lambda drawn, exact: np.abs(drawn - exact) / exact * 100, ("number", "number"), "number",
+            marked("The drawing against the formula: {name} = {value} %."), unit="%")),
+}
+TOOTH: StepTable = {
+    "E": ("O N Pw r", "", ON_CIRCLE),
+    "s": ("s_chord", "", TAKEN, marked("Take the chordal tooth thickness {value}.")),
+    "F": ("O r E s turn", "", ARC_ARC),
+    "M": ("E F", "",
+        Rule("middle", lambda p, q: (p + q) / 2, ("point", "point"), "point", marked("Bisect the segment {0}{1}: point {name}."))),
+    "axis": ("O M", "", RAY),
+    "H": ("O N Pw ra", "", ON_CIRCLE),
+    "rho": ("rho_f", "ρ_f", TAKEN),
+    "t": ("t_f", "", TAKEN),
+    "R": ("O OC rf", "", ALONG),
+}
+INVOLUTE_FILLET: StepTable = {
+    "Q": ("O N Pw t", "", UNROLLED),
+    "C": ("O N Pw Q t rho", "", Rule(
+        "fillet on the involute", on_normal, ("point", "point", "point", "point", "length", "length"), "point",
+        marked("On the normal to the involute at {3} lay off the radius of the fillet {5}: its centre {name}."),
+    )),
+}
+RING_FILLET: StepTable = {
+    "C": ("O N Pw Q t rho", "", Rule(
+        "fillet on a ring's involute", lambda o, foot, pole, touch, length, rho: on_normal(o, foot, pole, touch, length, -rho),
+        ("point", "point", "point", "point", "length", "length"), "point",
+        marked("On the normal to the ring's involute at {3} lay off the radius of the fillet {5} towards the foot of the "
+               "normal: its centre {name}."),
+    )),
+}
+ON_RADIUS: StepTable = {
+    "G": ("O N Pw nothing", "", UNROLLED, marked("The involute begins on the base circle at point {name}.")),
+    "C": ("O G rho rf side", "", Rule(
+        "fillet on a radial piece", _radial_fillet, ("point", "point", "length", "length", "number"), "point",
+        marked("Below {1} the profile is a radius; the centre {name} of the fillet with the radius {2} lies at this "
+               "distance from the radius and from the root circle."),
+    )),
+    "Q": ("O OG C", "", Rule(
+        "foot on the radial piece", lambda o, u, c: ar.foot(c, o, u), ("point", "direction", "point"), "point",
+        marked("From the centre of the fillet {2} drop the perpendicular to the radius {1}: point of junction {name}."),
+    )),
+}
+SLIDING_STEPS: StepTable = {
+    "K": ("Pw N1 to_first last to_second", "", Rule(
+        "point of the line of action", lambda p, a, s, b, t: p + (a - p) * s + (b - p) * t,
+        ("point", "point", "number", "point", "number"), "point", marked("Mark the division of the line of action {1}{3}."),
+    )),
+    "yV": ("ordinate", "y_V", TAKEN_SPEED),
+    "yV1": ("N1 Pw K yV", "y_{V1}", SPEED),
+    "yV2": ("N2 Pw K yV", "y_{V2}", SPEED),
+    "theta1": ("yV1 yV2", "θ_1", SLIDING),
+    "theta2": ("yV2 yV1", "θ_2", SLIDING),
+}
 
 
 def side_of(pair: PairGeometry, wheel: GearWheel) -> int:
@@ -198,34 +253,27 @@ def engagement_plan(pair: PairGeometry) -> Plan:
     their mean ``eps`` and by how many per cent it is off, ``Δeps``.
     """
     plan = Plan("gear-engagement", tr("Gear meshing"), "m")
-    one = pair.wheels[0]
-    down = plan.add("O1O2", GIVEN_DIRECTION, 1j if pair.internal else -1j, say=tr("Draw the line of centres."), symbol="O_1O_2")
-    plan.add("O1", CENTRE, one.step("rw"), symbol="O_1")
-    distance = plan.add("aw", TAKEN, pair.step("a_w"), symbol="a_w")
-    plan.add("O2", ALONG, plan["O1"], down, distance, symbol="O_2")
+    one, two = pair.wheels
+    given = {"down": 1j if pair.internal else -1j, "radius": one.step("rw"), "distance": pair.step("a_w"), "side": hand(pair),
+             "tau1": one.step("tau"), "tau2": two.step("tau"), "eps_alpha": pair.step("eps_alpha")}
+    record(plan, "O1O2 O1 aw O2", ENGAGEMENT, given=given)
     for w in pair.wheels:
         for name in ("rw", "r", "rb", "ra", "rf"):
             plan.add(f"{name}{w.number}", CIRCLE, plan[f"O{w.number}"], w.step(name), symbol=w.step(name).symbol)
-    to_pole = plan.add("O1P", RAY, plan["O2"], plan["O1"]) if pair.internal else down
-    pole = plan.add("Pw", ALONG, plan["O1"], to_pole, plan["rw1"], symbol="P_w")
-    side = hand(pair)
-    for w in pair.wheels:
-        plan.add(f"N{w.number}", TANGENT, pole, plan[f"O{w.number}"], plan[f"rb{w.number}"], side, symbol=f"N_{w.number}")
-    feet = (plan["N2"], plan["N1"]) if pair.internal else (plan["N1"], plan["N2"])
-    line = plan.add("N1N2", RAY, *feet, symbol="N_{1}N_{2}")
-    ends = ((plan["O2"], plan["ra2"], 1 if pair.internal else -1), (plan["O1"], plan["ra1"], 1))
-    for name, (centre, radius, way) in zip("AB", ends if pair.driver == 1 else ends[::-1], strict=True):
-        plan.add(name, ARC_LINE, centre, radius, pole, line, way)
-    plan.add("alpha_w", ANGLE, pole, plan["O1"], plan["N1"])
-    for w in pair.wheels:
-        i = w.number
-        for contact in "AB":
-            plan.add(f"{contact.lower()}{i}", ROLLED, pole, plan[f"O{i}"], plan[f"N{i}"], plan[contact],
-                     symbol=f"{contact.lower()}_{i}")
-        plan.add(f"phi{i}", ANGLE, plan[f"a{i}"], plan[f"O{i}"], plan[f"b{i}"], symbol=f"φ_{{α{i}}}")
-        plan.add(f"eps{i}", RATIO, plan[f"phi{i}"], w.step("tau"), symbol="ε_α")
-    drawn = plan.add("eps", MEAN, plan["eps1"], plan["eps2"], symbol="ε_α")
-    plan.add("Δeps", OFF, drawn, pair.step("eps_alpha"), symbol="Δ")
+    given["to_pole"] = record(plan, "O1P", ENGAGEMENT) if pair.internal else plan["O1O2"]
+    record(plan, "Pw", ENGAGEMENT, given=given)
+    for i in "12":
+        record(plan, "N", ENGAGEMENT, wheel=i, given=given)
+    given["from"], given["to"] = (plan[f"N{i}"] for i in ("21" if pair.internal else "12"))
+    record(plan, "N1N2", ENGAGEMENT, given=given)
+    for name, i, way in zip("AB" if pair.driver == 1 else "BA", "21", (1 if pair.internal else -1, 1), strict=True):
+        given |= {f"{name}_O": plan[f"O{i}"], f"{name}_r": plan[f"ra{i}"], f"{name}_way": way}
+        record(plan, name, ENGAGEMENT, given=given)
+    record(plan, "alpha_w", ENGAGEMENT)
+    for i in "12":
+        record(plan, "a b phi", ENGAGEMENT, wheel=i)
+        record(plan, f"eps{i}", ENGAGEMENT, given=given)
+    record(plan, "eps Δeps", ENGAGEMENT, given=given)
     return plan
 
 
@@ -281,37 +329,23 @@ def tooth_plan(pair: PairGeometry, wheel: GearWheel, engagement: Plan) -> Plan:
     """
     i = wheel.number
     plan = Plan(f"gear-tooth-{i}", tr("Tooth of wheel {wheel}").format(wheel=i), "m")
-    centre, foot, pole = engagement[f"O{i}"], engagement[f"N{i}"], engagement["Pw"]
     side = side_of(pair, wheel)
-    start = plan.add("E", ON_CIRCLE, centre, foot, pole, engagement[f"r{i}"])
-    chord = plan.add("s", TAKEN, wheel.step("s_chord"), say=tr("Take the chordal tooth thickness {value}."))
-    other = plan.add("F", ARC_ARC, centre, engagement[f"r{i}"], start, chord, -side)
-    middle = plan.add("M", MIDDLE, start, other)
-    plan.add("axis", RAY, centre, middle)
-    plan.add("H", ON_CIRCLE, centre, foot, pole, engagement[f"ra{i}"])
+    given = {name: engagement[f"{name}{i}"] for name in ("O", "N", "r", "ra", "rf")} | {
+        "Pw": engagement["Pw"], "s_chord": wheel.step("s_chord"), "turn": -side, "side": side, "nothing": 0.0}
+    record(plan, "E s F M axis H", TOOTH, given=given)
     if pair.profile == "rack":
         return plan  # the fillet comes from the positions of the rack
-    rho = plan.add("rho", TAKEN, wheel.step("rho_f"), symbol="ρ_f")
-    root = engagement[f"rf{i}"]
+    given |= {name: wheel.step(name) for name in ("rho_f", "t_f")}
+    record(plan, "rho", TOOTH, given=given)
     if wheel.t_fillet > 0:
-        length = plan.add("t", TAKEN, wheel.step("t_f"))
-        touch = plan.add("Q", UNROLLED, centre, foot, pole, length)
-        normal = RING_FILLET_ON_NORMAL if wheel.ring else FILLET_ON_NORMAL
-        fillet = plan.add("C", normal, centre, foot, pole, touch, length, rho)
+        record(plan, "t Q C", *[RING_FILLET] * wheel.ring, TOOTH, INVOLUTE_FILLET, given=given)
     else:
-        begin = plan.add("G", UNROLLED, centre, foot, pole, 0.0, say=tr("The involute begins on the base circle at point {name}."))
-        fillet = plan.add("C", RADIAL_FILLET, centre, begin, rho, root, side)
-        radial = plan.add(f"O{i}G", RAY, centre, begin, symbol=f"O_{i}G")
-        touch = plan.add("Q", _FOOT_ON_RADIUS, centre, radial, fillet)
-    ray = plan.add(f"O{i}C", RAY, centre, fillet, symbol=f"O_{i}C")
-    plan.add("R", ALONG, centre, ray, root)
+        record(plan, "G C", ON_RADIUS, given=given)
+        given["OG"] = plan.add(f"O{i}G", RAY, given["O"], plan["G"], symbol=f"O_{i}G")
+        record(plan, "Q", ON_RADIUS, given=given)
+    given["OC"] = plan.add(f"O{i}C", RAY, given["O"], plan["C"], symbol=f"O_{i}C")
+    record(plan, "R", TOOTH, given=given)
     return plan
-
-
-_FOOT_ON_RADIUS = Rule(
-    "foot on the radial piece", lambda o, u, c: ar.foot(c, o, u), ("point", "direction", "point"), "point",
-    marked("From the centre of the fillet {2} drop the perpendicular to the radius {1}: point of junction {name}."),
-)
 
 
 def common_ordinate(pair: PairGeometry) -> Given:
@@ -363,18 +397,10 @@ def greatest_sliding(pair: PairGeometry, engagement: Plan) -> Plan:
 
 
 def _sliding_steps(plan: Plan, pair: PairGeometry, engagement: Plan, to_first: Any, to_second: Any) -> Plan:
-    pole, n1, n2, last = (engagement[k] for k in ("Pw", "N1", "N2", last_point(pair)))
-    shares = [Given(row, f"gear.sliding.share[{i}]") for i, row in enumerate((to_first, to_second))]
-    at = plan.add("K", _BETWEEN, pole, n1, shares[0], last, shares[1])
-    ordinate = plan.add("yV", TAKEN_SPEED, common_ordinate(pair), symbol="y_V")
-    y1 = plan.add("yV1", SPEED, n1, pole, at, ordinate, symbol="y_{V1}")
-    y2 = plan.add("yV2", SPEED, n2, pole, at, ordinate, symbol="y_{V2}")
-    plan.add("theta1", SLIDING, y1, y2, symbol="θ_1")
-    plan.add("theta2", SLIDING, y2, y1, symbol="θ_2")
+    given = {name: engagement[name] for name in ("Pw", "N1", "N2")} | {
+        "last": engagement[last_point(pair)], "ordinate": common_ordinate(pair),
+        "to_first": Given(to_first, "gear.sliding.share[0]"), "to_second": Given(to_second, "gear.sliding.share[1]")}
+    record(plan, "K yV yV1 yV2 theta1 theta2", SLIDING_STEPS, given=given)
     return plan
 
 
-_BETWEEN = Rule(
-    "point of the line of action", lambda p, a, s, b, t: p + (a - p) * s + (b - p) * t,
-    ("point", "point", "number", "point", "number"), "point", marked("Mark the division of the line of action {1}{3}."),
-)

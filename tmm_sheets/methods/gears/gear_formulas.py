@@ -1,6 +1,6 @@
 """Formulas of an external spur gear pair by GOST 16532-70 as rules, and the sizes of the rack that cuts it.
 
-Lengths in millimetres, angles in radians; recorded by :mod:`~tmm_sheets.methods.gears.gear_steps`.
+Lengths in millimetres, angles in radians; recorded by :mod:`~tmm_sheets.methods.gears.gear_geometry`.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 
 from tmm_sheets.construction.expression import Reals, primitive
 from tmm_sheets.construction.step import Given, GivenNumber, Kind, Plan, Rule, Step
+from tmm_sheets.construction.tables import StepTable, record
 from tmm_sheets.methods.gears.rack import Rack
 from tmm_sheets.words import marked, tr
 
@@ -88,96 +89,9 @@ ADDENDUM = formula("addendum coefficient", lambda h: h, (N,), marked("Addendum c
 CLEARANCE = formula("clearance coefficient", lambda c: c, (N,), marked("Bottom clearance coefficient {name} = {value}."), "",
                      marked("GOST 13755-81"))
 SHIFT = formula("shift coefficient", lambda x: x, (N,), marked("Profile shift coefficient {name} = {value}."), "", "000, 6.1")
-SHIFT_BY_RULE = formula(
-    "shift without undercut", lambda h, z, a: np.maximum(h - z * np.sin(a) ** 2 / 2, 0.0), (N, N, A),
-    marked("Least shift without undercut (not less than zero) x = h_a* − z·sin²α/2: {name} = {0} − {1}·sin²{2}/2; we take "
-           "{value}."),
-    "", marked("GOST 16532-70"))
-LEAST_TEETH = formula("least teeth without undercut", least_teeth, (N, A),
-                       marked("Least number of teeth without undercut, the whole part of 2h_a*/sin²α: {name} = {value}."), "",
-                       "000, 6.1")
-LEAST_SHIFT = formula("least shift coefficient", lambda h, least, z: h * (least - z) / least, (N, N, N),
-                       "",
-                       "",
-                     "000, 6.1")
 INVOLUTE = formula("involute function", involute, (A,), "", "")
-WORKING_INVOLUTE = formula(
-    "involute function of the working pressure angle",
-    lambda inv, x1, x2, a, z1, z2: inv + 2 * (x1 + x2) * np.tan(a) / (z1 + z2), (N, N, N, A, N, N),
-    "", "")
-WORKING_ANGLE = formula("working pressure angle", inverse_involute, (N,),
-                         marked("From the involute function {0} find the working pressure angle {name} = {value}."), "rad")
-SAME_ANGLE = formula("working pressure angle without shift", lambda a: a, (A,),
-                      marked("The sum of the shifts is zero: working pressure angle {name} = α = {value}."), "rad")
-DISTANCE = formula("reference centre distance", lambda m, z1, z2: m * (z1 + z2) / 2, (N, N, N),
-                    "")
-WORKING_DISTANCE = formula("centre distance", lambda a, alpha, w: a * np.cos(alpha) / np.cos(w), (N, A, A),
-                            "")
-# (cos a - cos a_w)/cos a_w without cancellation
-Y = formula("centre distance modification coefficient",
-             lambda z1, z2, a, w: (z1 + z2) * np.sin((a + w) / 2) * np.sin((w - a) / 2) / np.cos(w), (N, N, A, A),
-             "", "",
-             textbook=lambda z1, z2, a, w: (z1 + z2) * (np.cos(a) / np.cos(w) - 1) / 2)
-BETWEEN_PITCH = formula("distance of the pitch circles", lambda y, m: y * m, (N, N),
-                        "")
-DY = formula("addendum shortening coefficient", lambda x1, x2, y: x1 + x2 - y, (N, N, N),
-              "", "")
-PITCH_RADIUS = formula("pitch radius", lambda m, z: m * z / 2, (N, N),
-                        "")
-BASE_RADIUS = formula("base radius", lambda r, a: r * np.cos(a), (N, A),
-                       "")
-WORKING_RADIUS = formula("working pitch radius", lambda rb, w: rb / np.cos(w), (N, A),
-                          "")
-TIP_RADIUS = formula("tip radius", lambda m, z, h, x, dy: m * (z / 2 + h + x - dy), (N, N, N, N, N),
-                      "")
-ROOT_RADIUS = formula("root radius", lambda m, z, h, c, x: m * (z / 2 - h - c + x), (N, N, N, N, N),
-                       "")
-THICKNESS = formula("tooth thickness", lambda m, x, a: m * (pi / 2 + 2 * x * np.tan(a)), (N, N, A),
-                     "")
 CHORD = formula("chord of an arc", lambda r, arc: 2 * r * np.sin(arc / (2 * r)), (N, N),
                  marked("2r·sin(arc/2r): {name} = 2 × {0} × sin({1}/(2 × {0})) = {value} mm."))
-PITCH = formula("pitch", lambda m: pi * m, (N,), "")
-BASE_PITCH = formula("base pitch", lambda m, a: pi * m * np.cos(a), (N, A),
-                      "", source=marked("GOST 16532-70"))
-TIP_TANGENT = formula("radius of curvature at the tip", lambda ra, rb: np.sqrt((ra - rb) * (ra + rb)), (N, N),
-                       "", textbook=lambda ra, rb: np.sqrt(ra**2 - rb**2),
-                       source=marked("GOST 16532-70"))
-TIP_ANGLE = formula("pressure angle at the tip", lambda t, rb: np.arctan2(t, rb), (N, N),
-                     "", "rad",
-                     marked("GOST 16532-70"))
-TIP_THICKNESS = formula(
-    "tooth thickness at the tip", lambda ra, s, r, inv, a: 2 * ra * (s / (2 * r) + inv - involute(a)), (N, N, N, N, A),
-    "", source=marked("GOST 16532-70"))
-TIP_SHARE = formula("relative tooth thickness at the tip", lambda sa, m: sa / m, (N, N),
-                     "",
-                     "",
-                     marked("GOST 16532-70"))
-ANGULAR_PITCH = formula("angular pitch", lambda z: 2 * pi / z, (N,),
-                         "",
-                         "rad", "000, 6.3")
-LINE = formula("length of the line of action", lambda a, w: a * np.sin(w), (N, A),
-                "", source=marked("GOST 16532-70"))
-ACTIVE = formula("active line of action", lambda one, two, line: one + two - line, (N, N, N),
-                  "",
-                  source=marked("GOST 16532-70"))
-CONTACT_RATIO = formula("contact ratio", lambda g, pb: g / pb, (N, N),
-                         "", "", "000, 6.3")
-OVERLAP = formula("overlap angle", lambda g, rb: g / rb, (N, N),
-                   "",
-                   "rad", "000, 6.3")
-POLE_TANGENT = formula("radius of curvature at the pole", lambda rb, w: rb * np.tan(w), (N, A),
-                        "",
-                        source=marked("GOST 16532-70"))
-LOW_TANGENT = formula("radius of curvature at the lowest contact", lambda line, other: line - other, (N, N),
-                       "", source=marked("GOST 16532-70"))
-LOW_RADIUS = formula("radius of the lowest contact", np.hypot, (N, N),
-                      "",
-                      source=marked("GOST 16532-70"))
-LIMIT_TANGENT = formula(
-    "radius of curvature at the limit", lambda h, z, a, x, m: (x - (h - z * np.sin(a) ** 2 / 2)) * m / np.sin(a), (N, N, A, N, N),
-    "", textbook=lambda h, z, a, x, m: m * (x - h + z * np.sin(a) ** 2 / 2) / np.sin(a), source=marked("GOST 16532-70"))
-HALF_TOOTH = formula("half of the tooth at the base circle", lambda s, r, inv: s / (2 * r) + inv, (N, N, N),
-                      "", "rad", marked("GOST 16532-70"))
 
 
 def fillet_start(rho: Reals, rb: Reals, rf: Reals) -> Reals:
@@ -235,82 +149,173 @@ def ring_fillet_radius(rho: float, rb: float, rf: float, half: float, t_low: flo
     return _largest(fits, rho)
 
 
-FILLET_RADIUS = formula(
-    "fillet radius", lambda m, rb, rf, half, z, low: fillet_radius(FILLET * m, rb, rf, half, pi / z, low), (N, N, N, N, N, N),
-    marked("Radius of the fillet 0.38m if there is room for it in the tooth space, else the greatest possible: {name} = {value} "
-           "mm."),
-    source="000, 6.4")
-FILLET_START = formula("beginning of the involute over the fillet",
-                        lambda rho, rb, rf: np.maximum(fillet_start(rho, rb, rf), 0.0), (N, N, N),
-                        marked("Radius of curvature of the involute where the fillet takes over (0 on the base circle): {name} = "
-                               "{value} mm."), source="000, 6.4")
 RACK_FILLET = formula("tip radius of the rack", lambda c, m, a: c * m / (1 - np.sin(a)), (N, N, A),
                        "",
                        source=marked("GOST 13755-81"))
-RACK_START = formula("beginning of the involute cut by the rack", involute_from, (N, A, N, N, N, N),
-                      marked("Radius of curvature of the involute where the fillet cut by the rack takes over: {name} = {value} "
-                             "mm."),
-                      source=marked("GOST 16532-70"))
 
 
-RACK_SHIFT = formula("shift of the rack", lambda x, m: x * m, (N, N),
-                      "",
-                      source="003, 4")
-RACK_HALF = formula("half of a rack's tooth", lambda m: pi * m / 4, (N,),
-                     marked("Half the thickness of the rack tooth on the reference line πm/4: {name} = {value} mm."),
-                     source=marked("GOST 13755-81"))
-RACK_U = formula("tip centre along the reference line",
-                  lambda a, h, m, alpha, rho: a - h * m * np.tan(alpha) - rho * np.cos(alpha), (N, N, N, A, N),
-                  marked("Centre of the rack's fillet from the axis of its tooth, πm/4 − h_a*m·tan α − ρ_f·cos α: {name} = {0} − "
-                         "{1} × {2} × tan {3} − {4} × cos {3} = {value} mm."), source=marked("GOST 13755-81"))
-RACK_Y = formula("tip centre over the reference line", lambda rho, h, c, m: rho - (h + c) * m, (N, N, N, N),
-                  marked("Centre of the rack's fillet from the reference line (minus is downwards), ρ_f − (h_a* + c*)m: {name} = "
-                         "{0} − ({1} + {2}) × {3} = {value} mm."), source=marked("GOST 13755-81"))
-RACK_BOTTOM = formula("end of the straight flank", lambda h, m, a: -h * m / np.cos(a), (N, N, A),
-                       marked("End of the straight part of the flank, −h_a*m/cos α: {name} = −{0} × {1}/cos {2} = {value} mm."),
-                       source=marked("GOST 13755-81"))
-FIRST_ROLL = formula(
-    "rolling to the tip of the tooth", lambda r, xm, a, alpha, t: ((r + xm) * np.tan(alpha) - t / np.cos(alpha) - a) / r,
-    (N, N, N, A, N), marked("Angle of rolling at which the rack touches the tip of the tooth: {name} = {value}."), "rad", "003, 4",
-    "inclination")
-LAST_ROLL = formula(
-    "rolling to the root of the tooth",
-    lambda r, xm, u, y, alpha: np.maximum(((-y - xm) / np.tan(alpha) - u) / r, ((-y - xm) / tan(pi / 2) - u) / r), (N, N, N, N, A),
-    marked("Angle of rolling at which the fillet of the rack passes the tooth space: {name} = {value}."), "rad", "003, 4",
-    "inclination")
-
-
-SUM_OF_SHIFTS = formula(
-    "sum of the shifts", lambda z1, z2, inv, inv_w, a: (z1 + z2) * (inv_w - inv) / (2 * np.tan(a)), (N, N, N, N, A),
-    "", "", marked("GOST 16532-70"))
 GIVEN_DISTANCE = formula("given centre distance", lambda a: a * 1e3, (N,), marked("Given centre distance {name} = {value} mm."),
                          source=GIVEN_BY)
-ANGLE_OF_DISTANCE = formula(
-    "working pressure angle of a centre distance", lambda a, alpha, w: np.arccos(a * np.cos(alpha) / w), (N, A, N),
-    "", "rad",
-    marked("GOST 16532-70"))
-FREE_SHIFT = formula(
-    "shift of the first wheel from the sum", lambda total, z1, z2, least1, least2: np.maximum(
-        np.minimum(total * z2 / (z1 + z2), total - least2), least1), (N, N, N, N, N),
-    marked("The sum of the shifts is divided inversely as the numbers of teeth, x_1 = x_Σz_2/(z_1 + z_2), as far as neither wheel "
-           "becomes undercut (least shifts {3} and {4}): {name} = {value}."), "", GIVEN_BY)
-REST_SHIFT = formula("rest of the sum of the shifts", lambda total, x1: total - x1, (N, N),
-                     "", "",
-                     GIVEN_BY)
+
+
+FORMULAS: StepTable = {
+    "z_min": ("ha' alpha", "z_{min#}",
+        formula("least teeth without undercut", least_teeth, (N, A),
+                marked("Least number of teeth without undercut, the whole part of 2h_a*/sin²α: {name} = {value}."), "",
+                "000, 6.1")),
+    "x_min": ("ha' z_min z", "x_{min#}",
+        formula("least shift coefficient", lambda h, least, z: h * (least - z) / least, (N, N, N), "", "", "000, 6.1")),
+    "x": ("ha' z alpha", "x_#",
+        formula("shift without undercut", lambda h, z, a: np.maximum(h - z * np.sin(a) ** 2 / 2, 0.0), (N, N, A),
+                marked("Least shift without undercut (not less than zero) x = h_a* − z·sin²α/2: {name} = {0} − {1}·sin²{2}/2; we "
+                       "take {value}."), "", marked("GOST 16532-70"))),
+    "inv_alpha": ("alpha", "inv α", INVOLUTE),
+    "inv_alpha_w": ("inv_alpha x1 x2 alpha z1 z2", "inv α_w",
+        formula("involute function of the working pressure angle",
+                lambda inv, x1, x2, a, z1, z2: inv + 2 * (x1 + x2) * np.tan(a) / (z1 + z2), (N, N, N, A, N, N), "", "")),
+    "alpha_w": ("inv_alpha_w", "α_w",
+        formula("working pressure angle", inverse_involute, (N,),
+                marked("From the involute function {0} find the working pressure angle {name} = {value}."), "rad")),
+    # (cos a - cos a_w)/cos a_w without cancellation
+    "y": ("z1 z2 alpha alpha_w", "",
+        formula("centre distance modification coefficient",
+                lambda z1, z2, a, w: (z1 + z2) * np.sin((a + w) / 2) * np.sin((w - a) / 2) / np.cos(w), (N, N, A, A), "", "",
+                textbook=lambda z1, z2, a, w: (z1 + z2) * (np.cos(a) / np.cos(w) - 1) / 2)),
+    "dy": ("x1 x2 y", "Δy", formula("addendum shortening coefficient", lambda x1, x2, y: x1 + x2 - y, (N, N, N), "", "")),
+    "a": ("m z1 z2", "", formula("reference centre distance", lambda m, z1, z2: m * (z1 + z2) / 2, (N, N, N), "")),
+    "a_w": ("a alpha alpha_w", "",
+        formula("centre distance", lambda a, alpha, w: a * np.cos(alpha) / np.cos(w), (N, A, A), "")),
+    "p": ("m", "", formula("pitch", lambda m: pi * m, (N,), "")),
+    "r": ("m z", "r_#", formula("pitch radius", lambda m, z: m * z / 2, (N, N), "")),
+    "rb": ("r alpha", "r_{b#}", formula("base radius", lambda r, a: r * np.cos(a), (N, A), "")),
+    "rw": ("rb alpha_w", "r_{w#}", formula("working pitch radius", lambda rb, w: rb / np.cos(w), (N, A), "")),
+    "ra": ("m z ha x dy", "r_{a#}",
+        formula("tip radius", lambda m, z, h, x, dy: m * (z / 2 + h + x - dy), (N, N, N, N, N), "")),
+    "rf": ("m z ha' c x", "r_{f#}", formula("root radius", lambda m, z, h, c, x: m * (z / 2 - h - c + x), (N, N, N, N, N), "")),
+    "s": ("m x alpha", "s_#", formula("tooth thickness", lambda m, x, a: m * (pi / 2 + 2 * x * np.tan(a)), (N, N, A), "")),
+    "s_chord": ("r s", "s̅_#", CHORD,
+        marked("Chordal tooth thickness on the reference circle, 2r·sin(arc/2r): {name} = 2 × {0} × sin({1}/(2 × {0})) = "
+               "{value} mm.")),
+    "p_chord": ("r p", "p̅_#", CHORD,
+        marked("Chordal pitch on the reference circle, 2r·sin(arc/2r): {name} = 2 × {0} × sin({1}/(2 × {0})) = {value} mm.")),
+    "pb": ("m alpha", "p_b",
+        formula("base pitch", lambda m, a: pi * m * np.cos(a), (N, A), "", source=marked("GOST 16532-70"))),
+    "rho_a": ("ra rb", "ρ_{a#}",
+        formula("radius of curvature at the tip", lambda ra, rb: np.sqrt((ra - rb) * (ra + rb)), (N, N),
+                "", textbook=lambda ra, rb: np.sqrt(ra**2 - rb**2), source=marked("GOST 16532-70"))),
+    "ym": ("y m", "", formula("distance of the pitch circles", lambda y, m: y * m, (N, N), "")),
+    "N1N2": ("a_w alpha_w", "N_{1}N_{2}",
+        formula("length of the line of action", lambda a, w: a * np.sin(w), (N, A), "", source=marked("GOST 16532-70"))),
+    "g_alpha": ("rho_a1 rho_a2 N1N2", "g_α",
+        formula("active line of action", lambda one, two, line: one + two - line, (N, N, N), "",
+                source=marked("GOST 16532-70"))),
+    "eps_alpha": ("g_alpha pb", "ε_α", formula("contact ratio", lambda g, pb: g / pb, (N, N), "", "", "000, 6.3")),
+    "tau": ("z", "τ_#", formula("angular pitch", lambda z: 2 * pi / z, (N,), "", "rad", "000, 6.3")),
+    "phi_alpha": ("g_alpha rb", "φ_{α#}", formula("overlap angle", lambda g, rb: g / rb, (N, N), "", "rad", "000, 6.3")),
+    "rho_w": ("rb alpha_w", "ρ_{w#}",
+        formula("radius of curvature at the pole", lambda rb, w: rb * np.tan(w), (N, A), "", source=marked("GOST 16532-70"))),
+    "rho_p": ("N1N2 rho_a'", "ρ_{p#}",
+        formula("radius of curvature at the lowest contact", lambda line, other: line - other, (N, N),
+                "", source=marked("GOST 16532-70"))),
+    "r_low": ("rb rho_p", "r_{p#}",
+        formula("radius of the lowest contact", np.hypot, (N, N), "", source=marked("GOST 16532-70"))),
+    "alpha_a": ("rho_a rb", "α_{a#}",
+        formula("pressure angle at the tip", lambda t, rb: np.arctan2(t, rb), (N, N), "", "rad", marked("GOST 16532-70"))),
+    "sa": ("ra s r inv_alpha alpha_a", "s_{a#}",
+        formula("tooth thickness at the tip", lambda ra, s, r, inv, a: 2 * ra * (s / (2 * r) + inv - involute(a)), (N, N, N, N, A),
+                "", source=marked("GOST 16532-70"))),
+    "sa_m": ("sa m", "s_{a#}/m",
+        formula("relative tooth thickness at the tip", lambda sa, m: sa / m, (N, N), "", "", marked("GOST 16532-70"))),
+    "rho_l": ("ha' z alpha x m", "ρ_{l#}",
+        formula("radius of curvature at the limit", lambda h, z, a, x, m: (x - (h - z * np.sin(a) ** 2 / 2)) * m / np.sin(a),
+                (N, N, A, N, N), "", textbook=lambda h, z, a, x, m: m * (x - h + z * np.sin(a) ** 2 / 2) / np.sin(a),
+                source=marked("GOST 16532-70"))),
+    "psi_b": ("s r inv_alpha", "ψ_{b#}",
+        formula("half of the tooth at the base circle", lambda s, r, inv: s / (2 * r) + inv, (N, N, N),
+                "", "rad", marked("GOST 16532-70"))),
+    "rho_f": ("m rb rf psi_b z rho_p", "ρ_{f#}",
+        formula("fillet radius", lambda m, rb, rf, half, z, low: fillet_radius(FILLET * m, rb, rf, half, pi / z, low),
+                (N, N, N, N, N, N),
+                marked("Radius of the fillet 0.38m if there is room for it in the tooth space, else the greatest possible: {name} "
+                       "= {value} mm."), source="000, 6.4")),
+    "t_f": ("rho_f rb rf", "t_{f#}",
+        formula("beginning of the involute over the fillet",
+                lambda rho, rb, rf: np.maximum(fillet_start(rho, rb, rf), 0.0), (N, N, N),
+                marked("Radius of curvature of the involute where the fillet takes over (0 on the base circle): {name} = "
+                       "{value} mm."), source="000, 6.4")),
+}
+"""Formulas of an external pair whose shifts are given, its teeth with a fillet."""
+UNSHIFTED: StepTable = {
+    "alpha_w": ("alpha", "α_w",
+        formula("working pressure angle without shift", lambda a: a, (A,),
+                marked("The sum of the shifts is zero: working pressure angle {name} = α = {value}."), "rad")),
+}
+OF_DISTANCE: StepTable = {
+    "alpha_w": ("a alpha a_w", "α_w",
+        formula("working pressure angle of a centre distance", lambda a, alpha, w: np.arccos(a * np.cos(alpha) / w), (N, A, N),
+                "", "rad", marked("GOST 16532-70"))),
+    "inv_alpha_w": ("alpha_w", "inv α_w", INVOLUTE),
+    "x_sum": ("z1 z2 inv_alpha inv_alpha_w alpha", "x_Σ",
+        formula("sum of the shifts", lambda z1, z2, inv, inv_w, a: (z1 + z2) * (inv_w - inv) / (2 * np.tan(a)), (N, N, N, N, A),
+                "", "", marked("GOST 16532-70"))),
+    "x1": ("x_sum z1 z2 x_min1 x_min2", "x_1",
+        formula("shift of the first wheel from the sum", lambda total, z1, z2, least1, least2: np.maximum(
+                    np.minimum(total * z2 / (z1 + z2), total - least2), least1), (N, N, N, N, N),
+                marked("The sum of the shifts is divided inversely as the numbers of teeth, x_1 = x_Σz_2/(z_1 + z_2), as far as "
+                       "neither wheel becomes undercut (least shifts {3} and {4}): {name} = {value}."), "", GIVEN_BY)),
+    "x2": ("x_sum x1", "x_2", formula("rest of the sum of the shifts", lambda total, x1: total - x1, (N, N), "", "", GIVEN_BY)),
+}
+"""Formulas in the place of those where the centre distance is given."""
+CUT_BY_RACK: StepTable = {
+    "rho_f": ("c m alpha", "ρ_{f#}", RACK_FILLET),
+    "t_f": ("m alpha ha' c z x", "t_{f#}",
+        formula("beginning of the involute cut by the rack", involute_from, (N, A, N, N, N, N),
+                marked("Radius of curvature of the involute where the fillet cut by the rack takes over: {name} = {value} "
+                       "mm."), source=marked("GOST 16532-70"))),
+}
+"""Formulas in the place of those for teeth as a rack cuts them."""
+RACK_SIZES: StepTable = {
+    "xm": ("x m", "", formula("shift of the rack", lambda x, m: x * m, (N, N), "", source="003, 4")),
+    "rho": ("c m alpha", "ρ_f", RACK_FILLET),
+    "a": ("m", "",
+        formula("half of a rack's tooth", lambda m: pi * m / 4, (N,),
+                marked("Half the thickness of the rack tooth on the reference line πm/4: {name} = {value} mm."),
+                source=marked("GOST 13755-81"))),
+    "u": ("a ha' m alpha rho", "",
+        formula("tip centre along the reference line",
+                lambda a, h, m, alpha, rho: a - h * m * np.tan(alpha) - rho * np.cos(alpha), (N, N, N, A, N),
+                marked("Centre of the rack's fillet from the axis of its tooth, πm/4 − h_a*m·tan α − ρ_f·cos α: {name} = {0} − "
+                       "{1} × {2} × tan {3} − {4} × cos {3} = {value} mm."), source=marked("GOST 13755-81"))),
+    "y": ("rho ha' c m", "",
+        formula("tip centre over the reference line", lambda rho, h, c, m: rho - (h + c) * m, (N, N, N, N),
+                marked("Centre of the rack's fillet from the reference line (minus is downwards), ρ_f − (h_a* + c*)m: {name} = "
+                       "{0} − ({1} + {2}) × {3} = {value} mm."), source=marked("GOST 13755-81"))),
+    "h": ("ha' m alpha", "",
+        formula("end of the straight flank", lambda h, m, a: -h * m / np.cos(a), (N, N, A),
+                marked("End of the straight part of the flank, −h_a*m/cos α: {name} = −{0} × {1}/cos {2} = {value} mm."),
+                source=marked("GOST 13755-81"))),
+    "phi_first": ("r xm a alpha rho_a", "φ_0",
+        formula("rolling to the tip of the tooth", lambda r, xm, a, alpha,
+                t: ((r + xm) * np.tan(alpha) - t / np.cos(alpha) - a) / r,
+                (N, N, N, A, N), marked("Angle of rolling at which the rack touches the tip of the tooth: {name} = {value}."),
+                "rad",
+                "003, 4",
+                "inclination")),
+    "phi_last": ("r xm u y alpha", "φ_k",
+        formula("rolling to the root of the tooth",
+                lambda r, xm, u, y, alpha: np.maximum(((-y - xm) / np.tan(alpha) - u) / r, ((-y - xm) / tan(pi / 2) - u) / r),
+                (N, N, N, N, A),
+                marked("Angle of rolling at which the fillet of the rack passes the tooth space: {name} = {value}."), "rad",
+                "003, 4",
+                "inclination")),
+}
+"""Sizes of the rack that cuts a wheel, and the angles of rolling of the first and last position that touch its flank."""
 
 
 def rack_sizes(geometry: Plan, i: int) -> Plan:
     """Sizes of the rack that cuts wheel ``i``, and the angles of rolling of the first and last position that touch its flank."""
     plan = Plan("gear-rack-sizes", tr("Sizes of the generating rack"), "mm")
-    m, alpha, h, c, r = (geometry[k] for k in ("m", "alpha", dedendum(geometry, i), "c", f"r{i}"))
-    xm = plan.add("xm", RACK_SHIFT, geometry[f"x{i}"], m)
-    rho = plan.add("rho", RACK_FILLET, c, m, alpha, symbol="ρ_f")
-    half = plan.add("a", RACK_HALF, m)
-    u = plan.add("u", RACK_U, half, h, m, alpha, rho)
-    y = plan.add("y", RACK_Y, rho, h, c, m)
-    plan.add("h", RACK_BOTTOM, h, m, alpha)
-    plan.add("phi_first", FIRST_ROLL, r, xm, half, alpha, geometry[f"rho_a{i}"], symbol="φ_0")
-    plan.add("phi_last", LAST_ROLL, r, xm, u, y, alpha, symbol="φ_k")
+    record(plan, " ".join(RACK_SIZES), RACK_SIZES, wheel=str(i), given=geometry.steps)
     return plan
 
 

@@ -1,25 +1,228 @@
-"""A spur gear pair by GOST 16532-70, internal by GOST 19274-73: what its formulas give, and what forbids building it.
+"""A spur gear pair by GOST 16532-70, internal by GOST 19274-73: its numbers as steps, and what forbids building it.
 
-The formulas are steps of the plan ``gear-geometry`` (:mod:`~tmm_sheets.methods.gears.gear_steps`, millimetres); here they are
-read in metres and radians. Sources: GOST 13755-81 (basic rack), GOST 16532-70 (geometry); manual 000, section 6.
+The formulas are steps of the plan ``gear-geometry``, millimetres, in the order of manual 000, section 6, by the tables of
+:mod:`~tmm_sheets.methods.gears.gear_formulas`; they are read in metres and radians. The names of the steps are those of
+``solve --json``. Of an internal pair, wheel 2 is a ring, its tooth the space of an external wheel: :data:`OF_PAIR` for both wheels
+and :data:`OF_RING` for the ring alone have formulas by GOST 19274-73 in place of those. Sources: GOST 13755-81 (basic rack),
+GOST 16532-70 (geometry); manual 000, section 6.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cached_property
-from math import ceil, degrees, hypot
+from math import ceil, degrees, hypot, isclose, pi
 from typing import Any, Literal
 
 import numpy as np
 
-from tmm_sheets.construction.step import Plan, Reported, Step
+from tmm_sheets.construction.step import Plan, Reported, Rule, Step
+from tmm_sheets.construction.tables import StepTable, record
 from tmm_sheets.errors import CannotBuild
-from tmm_sheets.methods.gears.gear_formulas import FILLET, GearData, addendum, dedendum
-from tmm_sheets.methods.gears.gear_steps import geometry_plan
+from tmm_sheets.methods.gears import gear_formulas as gf
+from tmm_sheets.methods.gears.gear_formulas import (
+    FILLET,
+    A,
+    GearData,
+    N,
+    addendum,
+    dedendum,
+    formula,
+    given,
+    involute,
+)
 from tmm_sheets.methods.gears.rack import Rack
 from tmm_sheets.numbers import fixed
-from tmm_sheets.words import tell, tr
+from tmm_sheets.words import marked, tell, tr
+
+SOURCE = marked("GOST 19274-73")
+
+
+def _formula(name: str, compute: Any, takes: tuple[Any, ...], wording: str, unit: str = "mm") -> Rule:
+    return formula(name, compute, takes, wording, unit, SOURCE)
+
+
+def _between(side: Any, other: Any, opposite: Any) -> Any:
+    """Angle of a triangle between two sides, rad; 0 where they do not make one."""
+    return np.arccos(np.minimum(np.maximum((side**2 + other**2 - opposite**2) / (2 * side * other), -1.0), 1.0))
+
+
+OF_PAIR: StepTable = {
+    "inv_alpha_w": ("inv_alpha x1 x2 alpha z1 z2", "inv α_w",
+        _formula("involute function of the working pressure angle of an internal pair",
+                 lambda inv, x1, x2, a, z1, z2: inv + 2 * (x2 - x1) * np.tan(a) / (z2 - z1), (N, N, N, A, N, N),
+                 marked("Involute function of the working pressure angle inv α_w = inv α + 2(x_2 − x_1)·tan α/(z_2 − z_1): {name} "
+                        "= {0} + 2 × ({2} − {1}) × tan {3}/({5} − {4}) = {value}."), "")),
+    "x_sum": ("z1 z2 inv_alpha inv_alpha_w alpha", "x_d",
+        _formula("difference of the shifts", lambda z1, z2, inv, inv_w, a: (z2 - z1) * (inv_w - inv) / (2 * np.tan(a)),
+                 (N, N, N, N, A),
+                 marked("Difference of the shifts from the centre distance x_d = (z_2 − z_1)(inv α_w − inv α)/(2tan α): {name} = "
+                        "({1} − {0}) × ({3} − {2})/(2 × tan {4}) = {value}."), "")),
+    "x2": ("x_sum x1", "x_2",
+        _formula("shift of the ring from the difference", lambda total, x1: x1 + total, (N, N),
+                 marked("Shift of the ring x_2 = x_1 + x_d: {name} = {1} + {0} = {value}."), "")),
+    "a": ("m z1 z2", "",
+        _formula("reference centre distance of an internal pair", lambda m, z1, z2: m * (z2 - z1) / 2, (N, N, N),
+                 marked("Reference centre distance a = m(z_2 − z_1)/2: {name} = {0} × ({2} − {1})/2 = {value} mm."))),
+    "y": ("z1 z2 alpha alpha_w", "",
+        _formula("centre distance modification coefficient of an internal pair",
+                 lambda z1, z2, a, w: (z2 - z1) * np.sin((a + w) / 2) * np.sin((w - a) / 2) / np.cos(w), (N, N, A, A),
+                 marked("Centre distance modification coefficient y = (z_2 − z_1)(cos α/cos α_w − 1)/2: {name} = ({1} − {0}) × "
+                        "(cos {2}/cos {3} − 1)/2 = {value}."), "")),
+    "dy": ("x1 x2 y", "Δy",
+        _formula("tip modification coefficient of an internal pair", lambda x1, x2, y: x2 - x1 - y, (N, N, N),
+                 marked("Coefficient Δy = x_2 − x_1 − y: {name} = {1} − {0} − {2} = {value}."), "")),
+    "ra": ("m z ha x dy", "r_{a#}",
+        _formula("tip radius of the pinion in a ring", lambda m, z, h, x, dy: m * (z / 2 + h + x + dy), (N, N, N, N, N),
+                 marked("Tip radius of the pinion r_a = m(z/2 + h_a* + x + Δy): {name} = {0} × ({1}/2 + {2} + {3} + "
+                        "{4}) = {value} mm."))),
+    "g_alpha": ("rho_a1 rho_a2 N1N2", "g_α",
+        _formula("active line of action of an internal pair", lambda one, two, line: one - two + line, (N, N, N),
+                 marked("Length of the path of contact g_α = ρ_a1 − ρ_a2 + N_1N_2: {name} = {0} − {1} + {2} = {value} mm."))),
+    "rho_p": ("N1N2 rho_a'", "ρ_{p#}",
+        _formula("radius of curvature at the lowest contact in a ring", lambda line, other: other - line, (N, N),
+                 marked("Radius of curvature at the lowest point of the active profile ρ_p1 = ρ_a2 − N_1N_2: {name} = {1} − {0} = "
+                        "{value} mm."))),
+    "theta_tip1": ("ra1 ra2 a_w", "θ_1",
+        _formula("angle of the crossing tip circles about the pinion", lambda ra1, ra2, a: pi - _between(ra1, a, ra2), (N, N, N),
+                 marked("Angle at the centre of the pinion from the line of centres to the crossing of the tip circles (0 without "
+                        "one), cos θ_1 = (r_a2² − r_a1² − a_w²)/(2a_wr_a1): {name} = {value}."), "rad")),
+    "theta_tip2": ("ra1 ra2 a_w", "θ_2",
+        _formula("angle of the crossing tip circles about the ring", lambda ra1, ra2, a: _between(a, ra2, ra1), (N, N, N),
+                 marked("The same at the centre of the ring, cos θ_2 = (a_w² + r_a2² − r_a1²)/(2a_wr_a2): {name} = {value}."),
+                 "rad")),
+    "tips_clear": ("theta_tip1 theta_tip2 alpha_a1 alpha_a2 alpha_w z1 z2", "δ_{12}",
+        _formula("clearance of the tips", lambda one, two, tip1, tip2, w, z1, z2: (
+                     (one + involute(tip1) - involute(w)) * z1 / z2 + involute(w) - involute(tip2) - two), (N, N, A, A, A, N, N),
+                 marked("Clearance of the tips beside the mesh as an angle of the ring (not less than zero: no interference of "
+                        "the tips), (θ_1 + inv α_a1 − inv α_w)z_1/z_2 + inv α_w − inv α_a2 − θ_2: {name} = {value}."), "rad")),
+}
+"""Formulas of an internal pair in the place of those of an external one."""
+OF_RING: StepTable = OF_PAIR | {
+    "ra": ("m z ha x dy", "r_{a#}",
+        _formula("tip radius of a ring", lambda m, z, h, x, dy: m * (z / 2 - h + x - dy), (N, N, N, N, N),
+                 marked("Tip radius of the ring r_a = m(z/2 − h_a* + x − Δy): {name} = {0} × ({1}/2 − {2} + {3} − {4}) "
+                        "= {value} mm."))),
+    "rf": ("m z ha' c x", "r_{f#}",
+        _formula("root radius of a ring", lambda m, z, h, c, x: m * (z / 2 + h + c + x), (N, N, N, N, N),
+                 marked("Root radius of the ring r_f = m(z/2 + h_a* + c* + x): {name} = {0} × ({1}/2 + {2} + {3} + "
+                        "{4}) = {value} mm."))),
+    "s": ("m x alpha", "s_#",
+        _formula("tooth thickness of a ring", lambda m, x, a: m * (pi / 2 - 2 * x * np.tan(a)), (N, N, A),
+                 marked("Tooth thickness of the ring on the reference circle s = m(π/2 − 2x·tan α): {name} = {0} × (π/2 "
+                        "− 2 × {1} × tan {2}) = {value} mm."))),
+    "sa": ("ra s r inv_alpha alpha_a", "s_{a#}",
+        _formula("tooth thickness of a ring at the "
+        "tip", lambda ra, s, r, inv, a: 2 * ra * (s / (2 * r) - inv + involute(a)), (N, N, N, N, A),
+                 marked("Tooth thickness of the ring at the tip s_a = 2r_a(s/2r − inv α + inv α_a): {name} = 2 × {0} × ({1}/(2 × "
+                        "{2}) − {3} + inv {4}) = {value} mm."))),
+    "rho_p": ("N1N2 rho_a'", "ρ_{p#}",
+        _formula("radius of curvature of the ring at the last contact", lambda line, other: line + other, (N, N),
+                 marked("Radius of curvature of the ring's profile at its last point of contact ρ_p2 = N_1N_2 + ρ_a1: {name} = "
+                        "{0} + {1} = {value} mm."))),
+    "psi_b": ("s r inv_alpha z", "ψ_{b#}",
+        _formula("half of the ring's space at the base circle", lambda s, r, inv, z: pi / z - s / (2 * r) + inv, (N, N, N, N),
+                 marked("Half the angular width of the ring's space on the base circle ψ_b = π/z − s/2r + inv α: {name} = "
+                        "π/{3} − {0}/(2 × {1}) + {2} = {value}."), "rad")),
+    "rho_f": ("m rb rf psi_b rho_p", "ρ_{f#}",
+        _formula("fillet radius of a ring", lambda m, rb, rf, half, low: gf.ring_fillet_radius(gf.FILLET * m, rb, rf, half, low),
+                 (N,) * 5,
+                 marked("Radius of the ring's fillet 0.38m if there is room for it in the tooth space, else the greatest "
+                        "possible: {name} = {value} mm."))),
+    "t_f": ("rho_f rb rf", "t_{f#}",
+        _formula("end of the ring's involute", gf.ring_fillet_start, (N, N, N),
+                 marked("Radius of curvature of the ring's involute where the fillet takes over: {name} = {value} mm."))),
+}
+"""Those of its ring."""
+LIKE_PINION = _formula("shift of the ring like the pinion's", lambda x1: x1, (N,),
+                       marked("The ring is shifted like its pinion (the centre distance stays the reference one): {name} = {0} = "
+                        "{value}."), "")
+
+
+WHEEL = "r rb rw ra rf s s_chord p_chord"
+"""What each wheel has by itself."""
+QUALITY = "tau phi_alpha rho_w rho_p r_low"
+TOOTH = "alpha_a sa sa_m"
+
+
+def geometry_plan(data: GearData) -> Plan:
+    """The formulas of GOST 16532, of an internal pair those of GOST 19274, steps named as in ``solve --json``."""
+    plan = Plan("gear-geometry", tr("Geometry of the gear pair"), "mm")
+    inside = data.mesh == "internal"
+    pair: StepTable = OF_PAIR if inside else {}
+    ring: StepTable = OF_RING if inside else {}
+    by_rack: StepTable = gf.CUT_BY_RACK if data.profile == "rack" else {}
+
+    def add(names: str, wheel: str = "", *tables: StepTable) -> Step:
+        return record(plan, names, *tables, pair, gf.FORMULAS, wheel=wheel)
+
+    def given_shift(wheel: str, path: str, x: Any) -> None:
+        plan.add(f"x{wheel}", gf.SHIFT, given(x, path, f"x_{wheel}"), symbol=f"x_{wheel}")
+
+    _basic(plan, data)
+    for wheel in ("",) if "ha" in plan else ("1", "2"):
+        add("z_min", wheel)
+    shifted = ("1",) if inside else ("1", "2")  # a ring is not undercut
+    if data.centre_distance is None:
+        for i, wheel in enumerate("12"):
+            if data.shift != "rule":
+                given_shift(wheel, f"gear.shift[{i}]", data.shift[i])
+            elif wheel in shifted:
+                add("x", wheel)
+            else:
+                plan.add("x2", LIKE_PINION, plan["x1"], symbol="x_2")
+            if wheel in shifted:
+                add("x_min", wheel)
+        unshifted = add("inv_alpha").value == add("inv_alpha_w").value
+        add("alpha_w", "", gf.UNSHIFTED if unshifted else {})
+        add("y dy a a_w")
+    else:
+        add("inv_alpha a")
+        a_w = plan.add("a_w", gf.GIVEN_DISTANCE, given(data.centre_distance, "gear.centre_distance", "a_w", "m"))
+        add("alpha_w", "", gf.UNSHIFTED if isclose(plan["a"].value, a_w.value, rel_tol=1e-12) else gf.OF_DISTANCE)
+        add("inv_alpha_w", "", gf.OF_DISTANCE)
+        add("x_sum", "", pair, gf.OF_DISTANCE)
+        for wheel in shifted:
+            add("x_min", wheel)
+        if data.shift != "rule":
+            given_shift("1", "gear.first_shift", data.shift[0])
+        else:
+            add("x" if inside else "x1", "1" if inside else "", gf.OF_DISTANCE)
+        add("x2", "", pair, gf.OF_DISTANCE)
+        add("y dy")
+    add("p")
+    both = (("1", pair), ("2", ring))
+    for wheel, of in both:
+        add(WHEEL, wheel, of)
+    add("pb")
+    for wheel in "12":
+        add("rho_a", wheel)
+    add("ym N1N2 g_alpha eps_alpha")
+    for wheel, of in both:
+        add(QUALITY, wheel, of)
+    for wheel in "12":
+        of_ring = inside and wheel == "2"
+        add(TOOTH if of_ring else f"{TOOTH} rho_l", wheel, ring if of_ring else {})
+        add("rho_f t_f" if by_rack and not of_ring else "psi_b rho_f t_f", wheel, ring if of_ring else by_rack)
+    if inside:
+        add("theta_tip1 theta_tip2 tips_clear")
+    return plan
+
+
+def _basic(plan: Plan, data: GearData) -> None:
+    """What is given of both wheels and of the rack."""
+    for i in (0, 1):
+        plan.add(f"z{i + 1}", gf.TEETH, given(data.teeth[i], f"gear.teeth[{i}]", f"z_{i + 1}"), symbol=f"z_{i + 1}")
+    plan.add("m", gf.MODULE, given(data.module, "gear.module", "m", "m"))
+    plan.add("alpha", gf.PROFILE, given(data.pressure_angle, "gear.pressure_angle", "α", "rad"), symbol="α")
+    if isinstance(data.addendum, tuple):
+        for i, h in enumerate(data.addendum):
+            symbol = f"h_{{a{i + 1}}}^{{*}}"
+            plan.add(f"ha{i + 1}", gf.ADDENDUM, given(h, f"gear.addenda[{i}]", symbol), symbol=symbol)
+    else:
+        plan.add("ha", gf.ADDENDUM, given(data.addendum, "gear.addendum", "h_a^{*}"), symbol="h_a^{*}")
+    plan.add("c", gf.CLEARANCE, given(data.clearance, "gear.clearance", "c^{*}"), symbol="c^{*}")
+
 
 LEAST_TIP = 0.2
 """Least tooth thickness at the tip circle in modules (GOST 16532, appendix)."""
@@ -180,7 +383,7 @@ def _tooth_problems(pair: PairGeometry, w: GearWheel) -> Iterator[tuple[str, str
         said = (tell("the tooth of wheel {wheel} (z{wheel} = {teeth}, x{wheel} = {shift:.4g}) is impossible: its flanks meet "
                      "below the tip circle") if w.sa < 0 else
                 tell("the tooth of wheel {wheel} (z{wheel} = {teeth}, x{wheel} = {shift:.4g}) is pointed: {thick:.3f} m thick "
-                     "at the tip circle, less than {least:g} m"))
+                        "at the tip circle, less than {least:g} m"))
         least_already = pair.profile == "fillet" and not w.ring and w.shift < w.least_shift + 5e-3
         hint = (tell("take more teeth: a smaller x{wheel} would undercut them") if least_already else
                 tell("take a smaller x{wheel}"))
@@ -205,7 +408,7 @@ def _interference(pair: PairGeometry, w: GearWheel) -> Iterator[tuple[str, str]]
         said = (tell("interference: the tip of wheel {mate} reaches {below:.3g} mm below the involute of wheel {wheel} into "
                      "its undercut") if w.rack.undercut else
                 tell("interference: the tip of wheel {mate} reaches {below:.3g} mm below the involute of wheel {wheel} into "
-                     "its fillet"))
+                        "its fillet"))
         yield said.format(mate=mate, wheel=i, below=below * 1e3), hint
 
 
@@ -220,5 +423,5 @@ def warnings_of(pair: PairGeometry) -> tuple[str, ...]:
                 wheel=w.number, least=fixed(w.rack.least_shift)))
         if pair.profile == "fillet" and w.step("rho_f").value < FILLET * pair.step("m").value:
             out.append(tr("the fillet of wheel {wheel} is smaller: there is no room for 0.38m in the tooth "
-                          "space").format(wheel=w.number))
+                        "space").format(wheel=w.number))
     return tuple(out)

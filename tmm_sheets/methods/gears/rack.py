@@ -23,6 +23,7 @@ from tmm_sheets.construction import arithmetic as ar
 from tmm_sheets.construction.expression import Complex, Directions, Points, Reals, primitive
 from tmm_sheets.construction.rules import ALONG, GIVEN, GIVEN_LENGTH, OFFSET
 from tmm_sheets.construction.step import Given, Helper, Plan, Rule, Step
+from tmm_sheets.construction.tables import StepTable, record
 from tmm_sheets.words import marked, tr
 
 
@@ -163,31 +164,8 @@ def _within(point: Any, start: Any, u: Directions, least: Any) -> Any:
     return np.where(ar.dot(point - start, u) >= least * (1 + 1e-12), point, np.nan)
 
 
-ROLL = Rule(
-    "roll on the pitch circle", lambda o, r, roll: o + 1j * r * np.exp(1j * roll), ("point", "length", "angle"),
-    "point",
-    marked("On the reference circle with the centre {0} and the radius {1} lay off an arc equal to the travel of the rack: point "
-           "{name}."),
-    lambda a, v: (Helper("line", a[0], v),),
-)
-NORMAL = Rule("outward radius", ar.ray, ("point", "point"), "direction", marked("Draw the radius {0}{1}."),
-              lambda a, v: (Helper("line", a[0], a[1]),))
-ROLLING_LINE = Rule("rolling line", lambda u: -1j * u, ("direction",), "direction",
-                    marked("Perpendicular to the radius draw the pitch line {name} of the rack."))
-REFERENCE = Rule("shifted reference line", ar.along, ("point", "direction", "ordinate"), "point",
-                 marked("From the pitch line lay off the shift {2}: point {name} of the reference line of the rack."))
 FLANK = Rule("flank of the rack", lambda u, angle: u * np.exp(-1j * angle), ("direction", "angle"), "direction",
              marked("At the profile angle {1} to the axis of the rack tooth draw its flank."))
-TOUCH = Rule(
-    "perpendicular on the flank", lambda p, q, u: ar.foot(p, q, u), ("point", "point", "direction"), "point",
-    marked("From {0} drop the perpendicular to the flank of the rack tooth through {1}: point of contact {name}."),
-    lambda a, v: (Helper("line", a[0], v),),
-)
-WITHIN = Rule(
-    "point within the straight flank", _within, ("point", "point", "direction", "ordinate"), "point",
-    marked("Point {0} belongs to the tooth profile if it lies within the straight part of the rack: point {name}."),
-)
-
 TAKEN = Rule("length in millimetres", lambda mm: mm / 1e3, ("number",), "length", marked("Take the segment {name} = {value}."),
              unit="m")
 TAKEN_ORDINATE = Rule("ordinate in millimetres", lambda mm: mm / 1e3, ("number",), "ordinate",
@@ -200,8 +178,38 @@ EVEN = Rule("even share", lambda first, last, k, parts: first + (last - first) *
 ROLLS = Rule("angle of rolling", lambda roll: roll, ("inclination",), "inclination",
              marked("Angle of rolling of the rack {name} = {value}."),
              unit="rad")
-TRAVEL = Rule("travel of the rack", lambda r, roll: r * roll, ("length", "inclination"), "ordinate",
-              marked("Move the rack {value} from its middle position (the radius times the angle of rolling)."))
+POSITIONS: StepTable = {
+    "O": ("origin", "", GIVEN),
+    "W": ("O r φ", "", Rule(
+        "roll on the pitch circle", lambda o, r, roll: o + 1j * r * np.exp(1j * roll), ("point", "length", "angle"), "point",
+        marked("On the reference circle with the centre {0} and the radius {1} lay off an arc equal to the travel of the rack: "
+               "point {name}."), lambda a, v: (Helper("line", a[0], v),))),
+    "OW": ("O W", "", Rule("outward radius", ar.ray, ("point", "point"), "direction", marked("Draw the radius {0}{1}."),
+                           lambda a, v: (Helper("line", a[0], a[1]),))),
+    "WT": ("OW", "", Rule("rolling line", lambda u: -1j * u, ("direction",), "direction",
+                          marked("Perpendicular to the radius draw the pitch line {name} of the rack."))),
+    "s": ("r φ", "", Rule("travel of the rack", lambda r, roll: r * roll, ("length", "inclination"), "ordinate",
+                          marked("Move the rack {value} from its middle position (the radius times the angle of rolling)."))),
+    "T": ("W WT s", "", OFFSET),
+    "M": ("T OW xm", "", Rule("shifted reference line", ar.along, ("point", "direction", "ordinate"), "point",
+                              marked("From the pitch line lay off the shift {2}: point {name} of the reference line of the "
+                                     "rack."))),
+    "F": ("M WT a", "", OFFSET),
+    "flank": ("OW alpha", "", FLANK),
+    "D": ("M WT u", "", OFFSET),
+    "C": ("D OW y", "", OFFSET),
+}
+"""Points and directions of the rack in its positions."""
+CONTACT: StepTable = {
+    "K": ("W F flank", "", Rule(
+        "perpendicular on the flank", lambda p, q, u: ar.foot(p, q, u), ("point", "point", "direction"), "point",
+        marked("From {0} drop the perpendicular to the flank of the rack tooth through {1}: point of contact {name}."),
+        lambda a, v: (Helper("line", a[0], v),))),
+    "E": ("K F flank bottom", "", Rule(
+        "point within the straight flank", _within, ("point", "point", "direction", "ordinate"), "point",
+        marked("Point {0} belongs to the tooth profile if it lies within the straight part of the rack: point {name}."))),
+}
+"""Where flank and tooth touch."""
 
 
 def generating_plan(rack: Rack, rolls: Any) -> Plan:
@@ -212,7 +220,7 @@ def generating_plan(rack: Rack, rolls: Any) -> Plan:
     (NaN beyond), ``C`` centre of the tip radius.
     """
     plan = _positions("gear-rack-between", rack, rolls)
-    _touch(plan, -rack.addendum * rack.module / cos(rack.alpha))
+    record(plan, "K E", CONTACT, given={"bottom": -rack.addendum * rack.module / cos(rack.alpha)})
     return plan
 
 
@@ -233,7 +241,7 @@ def drawn_positions(sizes: Plan, radius: Step, alpha: Step, parts: int) -> Plan:
                       ("h", tr("Take the length of the straight part of the flank below the reference line {name} = {value}."))):
         plan.add(name, TAKEN_ORDINATE, sizes[name], say=say)
     _place(plan, alpha)
-    _touch(plan, plan["h"])
+    record(plan, "K E", CONTACT, given={"bottom": plan["h"]})
     return plan
 
 
@@ -251,23 +259,7 @@ def _positions(name: str, rack: Rack, rolls: Any) -> Plan:
 
 def _place(plan: Plan, alpha: Reals) -> None:
     """Points and directions of the rack in its positions."""
-    centre = plan.add("O", GIVEN, 0j)
-    contact = plan.add("W", ROLL, centre, plan["r"], plan["φ"])
-    axis = plan.add("OW", NORMAL, centre, contact)
-    line = plan.add("WT", ROLLING_LINE, axis)
-    travel = plan.add("s", TRAVEL, plan["r"], plan["φ"])
-    moved = plan.add("T", OFFSET, contact, line, travel)
-    middle = plan.add("M", REFERENCE, moved, axis, plan["xm"])
-    plan.add("F", OFFSET, middle, line, plan["a"])
-    plan.add("flank", FLANK, axis, alpha)
-    end = plan.add("D", OFFSET, middle, line, plan["u"])
-    plan.add("C", OFFSET, end, axis, plan["y"])
-
-
-def _touch(plan: Plan, bottom: Any) -> None:
-    """Where flank and tooth touch."""
-    touch = plan.add("K", TOUCH, plan["W"], plan["F"], plan["flank"])
-    plan.add("E", WITHIN, touch, plan["F"], plan["flank"], bottom)
+    record(plan, " ".join(POSITIONS), POSITIONS, given={"origin": 0j, "alpha": alpha})
 
 
 def fillet_steps(rack: Rack, normals: Any) -> Step:

@@ -16,6 +16,7 @@ import numpy as np
 
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.step import Given, GivenNumber, Plan, Reported, Rule, Step
+from tmm_sheets.construction.tables import StepTable, record
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.methods.gears import planetary
 from tmm_sheets.methods.gears.planetary import (
@@ -53,8 +54,6 @@ def common_divisor(a: float, b: float) -> int:
 ASKED = _formula("ratio asked for", lambda u: u, 1, marked("Ratio asked for {name} = {value}."))
 ASKED_BY_SPEEDS = _formula("ratio of the speeds asked for", lambda one, two: one / two, 2,
                            marked("Ratio asked for ω_in/ω_out: {name} = {0}/{1} = {value}."))
-SIMPLE_RATIO = _formula("ratio of the simple stage", lambda wheel, pinion: wheel / pinion, 2,
-                        marked("Ratio of the simple stage: {name} = {0}/{1} = {value}."))
 STAGE_RATIO = {
     "sun": _formula("ratio of a stage driven by the sun", lambda i: planetary.stage_ratio(i, "sun"), 1,
                     marked("Ratio from the sun to the carrier, 1 − i: {name} = 1 − {0} = {value}.")),
@@ -63,17 +62,6 @@ STAGE_RATIO = {
     "carrier": _formula("ratio of a stage driven by the carrier", lambda i: planetary.stage_ratio(i, "carrier"), 1,
                         marked("Ratio from the carrier to the central wheel, 1/(1 − i): {name} = 1/(1 − {0}) = {value}.")),
 }
-PLANETARY_RATIO = _formula("ratio of the planetary stages", lambda u, stages: u**stages, 2,
-                           marked("Ratio of the planetary part with its sign (stages: {1}): {name} = {value}."))
-RATIO = _formula("ratio of the reducer", lambda planetary, simple: np.abs(planetary) * simple, 2,
-                 marked("Ratio of the reducer without its sign: {name} = |{0}| × {1} = {value}."))
-SAME_RATIO = _formula("ratio without a simple stage", np.abs, 1,
-                      marked("There is no simple stage; ratio of the reducer without its sign: {name} = |{0}| = {value}."))
-DEVIATION = _formula("deviation of the ratio", lambda u, asked: u / asked - 1, 2,
-                     marked("Relative deviation from the ratio asked for: {name} = {0}/{1} − 1 = {value}."))
-PAIR_EFFICIENCY = _formula("efficiency of a pair", lambda eta: eta, 1, marked("Efficiency of one pair of wheels {name} = {value}."))
-INNER_EFFICIENCY = _formula("efficiency with the carrier stopped", lambda eta: eta**2, 1,
-                            marked("Efficiency of both pairs of the train with the carrier held: {name} = {0}² = {value}."))
 STAGE_EFFICIENCY = {
     case: _formula(f"efficiency of a stage driven by the {case}", planetary.EFFICIENCY[case], 2, said) for case, said in (
         ("sun", marked("Efficiency of a stage (1 + η_0|i|)/(1 + |i|), i = {0}, η_0 = {1}: {name} = {value}.")),
@@ -81,33 +69,62 @@ STAGE_EFFICIENCY = {
         ("carrier, i < 1", marked("Efficiency of a stage (1 − i)/(1 − iη_0) for i < 1, i = {0}, η_0 = {1}: {name} = {value}.")),
         ("carrier, i > 1", marked("Efficiency of a stage η_0(i − 1)/(i − η_0) for i > 1, i = {0}, η_0 = {1}: {name} = {value}.")))
 }
-PLANETARY_EFFICIENCY = _formula("efficiency of the planetary stages", lambda eta, stages: eta**stages, 2,
-                                marked("Efficiency of the planetary part (stages: {1}): {name} = {value}."))
-EFFICIENCY = _formula("efficiency of the reducer", lambda planetary, pair: planetary * pair, 2,
-                      marked("Efficiency of the reducer: {name} = {0} × {1} = {value}."))
-SAME_EFFICIENCY = _formula("efficiency without a simple stage", lambda eta: eta, 1,
-                           marked("There is no simple stage; efficiency of the reducer: {name} = {0} = {value}."))
-SATELLITES = _formula("number of satellites", lambda q: q, 1, marked("Number of planets {name} = {value}."))
-ADDENDUM = _formula("addendum coefficient", lambda h: h, 1, marked("Addendum coefficient {name} = {value}."))
 SIDE_OF_COAXIALITY = _formula("side of the coaxiality condition", lambda s, z1, z2: z1 + s * z2, 3,
                               marked("One side of the condition of coaxiality, in teeth: {name} = {1} ± {2} = {value}."))
-COAXIALITY = _formula("coaxiality", lambda left, right: left - right, 2,
-                      marked("Coaxiality is fulfilled if the sides are equal: {0} − {1} = {value}."))
 ASSEMBLY = _formula(
     "assembly", lambda s, q, z1, z2, z3, z4: (z1 * z3 - s * z2 * z4) / (q * common_divisor(z2, z3)), 6,
     marked("Condition of assembly: the quotient (z_1z_3 ∓ z_2z_4)/(q·gcd(z_2, z_3)) must be a whole number: ({2} × {4} ∓ {3} × "
            "{5})/({1} × gcd({3}; {4})) = {value}."))
-BETWEEN_AXES = _formula("distance between satellites", lambda axis, q: axis * np.sin(pi / q), 2,
-                        marked("Condition of neighbourhood; distance between the axes of neighbouring planets, in modules: {0} × "
-                               "sin(180°/{1}) = {value}."))
-WIDTH = _formula("width of the satellites", lambda z2, z3, h: np.maximum(z2, z3) + 2 * h, 3,
-                 marked("Tip diameter of the greater planet max(z_2; z_3) + 2h_a*, in modules: max({0}; {1}) + 2 × {2} = {value}."))
-NEIGHBOURHOOD = _formula("neighbourhood", lambda between, width: between - width, 2,
-                         marked("The condition of neighbourhood is fulfilled if there is a positive margin; it is {0} − {1} = "
-                                "{value} of a module."))
 LEAST_RING = _formula("least ring without interference", planetary.least_ring, 2,
                       marked("Least number of teeth of a ring without interference with the planet z = {0} (0: there is none): "
                              "{name} = {value}."))
+
+
+RATIOS: StepTable = {
+    "u_simple": ("wheel pinion", lambda: tr("u_{s}"),
+        _formula("ratio of the simple stage", lambda wheel, pinion: wheel / pinion, 2,
+            marked("Ratio of the simple stage: {name} = {0}/{1} = {value}."))),
+    "u_planetary": ("u_stage stages", lambda: tr("u_{pl}"),
+        _formula("ratio of the planetary stages", lambda u, stages: u**stages, 2,
+            marked("Ratio of the planetary part with its sign (stages: {1}): {name} = {value}."))),
+    "u": ("u_planetary u_simple", "",
+        _formula("ratio of the reducer", lambda planetary, simple: np.abs(planetary) * simple, 2,
+            marked("Ratio of the reducer without its sign: {name} = |{0}| × {1} = {value}."))),
+    "u_deviation": ("u u_asked", "Δu", _formula("deviation of the ratio", lambda u, asked: u / asked - 1, 2,
+            marked("Relative deviation from the ratio asked for: {name} = {0}/{1} − 1 = {value}."))),
+    "eta_pair": ("pair_efficiency", lambda: tr("η_{p}"),
+        _formula("efficiency of a pair", lambda eta: eta, 1, marked("Efficiency of one pair of wheels {name} = {value}."))),
+    "eta_0": ("eta_pair", "η_0", _formula("efficiency with the carrier stopped", lambda eta: eta**2, 1,
+            marked("Efficiency of both pairs of the train with the carrier held: {name} = {0}² = {value}."))),
+    "eta_planetary": ("eta_stage stages", lambda: tr("η_{pl}"),
+        _formula("efficiency of the planetary stages", lambda eta, stages: eta**stages, 2,
+            marked("Efficiency of the planetary part (stages: {1}): {name} = {value}."))),
+    "eta": ("eta_planetary eta_pair", "η", _formula("efficiency of the reducer", lambda planetary, pair: planetary * pair, 2,
+            marked("Efficiency of the reducer: {name} = {0} × {1} = {value}."))),
+}
+"""Ratio and efficiency of a reducer with a simple stage."""
+WITHOUT_SIMPLE: StepTable = {
+    "u": ("u_planetary", "", _formula("ratio without a simple stage", np.abs, 1,
+            marked("There is no simple stage; ratio of the reducer without its sign: {name} = |{0}| = {value}."))),
+    "eta": ("eta_planetary", "η", _formula("efficiency without a simple stage", lambda eta: eta, 1,
+            marked("There is no simple stage; efficiency of the reducer: {name} = {0} = {value}."))),
+}
+CONDITIONS: StepTable = {
+    "q": ("satellites", "", _formula("number of satellites", lambda q: q, 1, marked("Number of planets {name} = {value}."))),
+    "ha": ("addendum", "h_a^{*}",
+        _formula("addendum coefficient", lambda h: h, 1, marked("Addendum coefficient {name} = {value}."))),
+    "coaxiality": ("coaxiality_left coaxiality_right", "", _formula("coaxiality", lambda left, right: left - right, 2,
+            marked("Coaxiality is fulfilled if the sides are equal: {0} − {1} = {value}."))),
+    "between": ("coaxiality_left q", "", _formula("distance between satellites", lambda axis, q: axis * np.sin(pi / q), 2,
+            marked("Condition of neighbourhood; distance between the axes of neighbouring planets, in modules: {0} × "
+                   "sin(180°/{1}) = {value}."))),
+    "width": ("z_2 z_3 ha", "", _formula("width of the satellites", lambda z2, z3, h: np.maximum(z2, z3) + 2 * h, 3,
+            marked("Tip diameter of the greater planet max(z_2; z_3) + 2h_a*, in modules: max({0}; {1}) + 2 × {2} = {value}."))),
+    "neighbourhood": ("between width", "", _formula("neighbourhood", lambda between, width: between - width, 2,
+            marked("The condition of neighbourhood is fulfilled if there is a positive margin; it is {0} − {1} = "
+                   "{value} of a module."))),
+}
+"""Conditions of assembly."""
 
 
 def ratio_plan(data: ReducerTable, teeth: ToothSet, k: int, criterion: str, chosen: Plan | None = None) -> Plan:
@@ -138,27 +155,26 @@ def ratio_plan(data: ReducerTable, teeth: ToothSet, k: int, criterion: str, chos
             searched = True
         plan.add(name, TEETH, found, symbol=f"z_{{{name[1:]}}}", say=say)
     simple = [plan[f"z{n}"] for n in simple_numbers(data)]
-    stages = Given(data.stages, "reducer.stages", over="none")
     sign = scheme.signs[0] * scheme.signs[1]
-    if simple:
-        plan.add("u_simple", SIMPLE_RATIO, *simple[::-1], symbol=tr("u_{s}"))
-    inner = plan.add("i14", INNER_RATIO, sign, *(plan[f"z{n}"] for n in stage_numbers(data, 0)), symbol="i_{14}^{H}",
-                     say=said_with_sign(INNER_RATIO, sign))
     driver = data.driver or scheme.drivers[0]
-    stage = plan.add("u_stage", STAGE_RATIO[driver], inner, symbol=tr("u_{st}"))
-    whole = plan.add("u_planetary", PLANETARY_RATIO, stage, stages, symbol=tr("u_{pl}"))
-    ratio = plan.add("u", *((RATIO, whole, plan["u_simple"]) if simple else (SAME_RATIO, whole)))
-    plan.add("u_deviation", DEVIATION, ratio, asked, symbol="Δu")
-    if chosen is None:
-        pair = plan.add("eta_pair", PAIR_EFFICIENCY, GivenNumber(data.pair_efficiency, "reducer.pair_efficiency"),
-                        symbol=tr("η_{p}"))
-        both = plan.add("eta_0", INNER_EFFICIENCY, pair, symbol="η_0")
-    else:
-        pair, both = chosen["eta_pair"], chosen["eta_0"]
     case = planetary.efficiency_case(float(planetary.inner_ratio(scheme.signs, teeth.stage)), driver)
-    one = plan.add("eta_stage", STAGE_EFFICIENCY[case], inner, both, symbol=tr("η_{st}"))
-    part = plan.add("eta_planetary", PLANETARY_EFFICIENCY, one, stages, symbol=tr("η_{pl}"))
-    plan.add("eta", *((EFFICIENCY, part, pair) if simple else (SAME_EFFICIENCY, part)), symbol="η")
+    by_driver: StepTable = {"u_stage": ("i14", lambda: tr("u_{st}"), STAGE_RATIO[driver]),
+                            "eta_stage": ("i14 eta_0", lambda: tr("η_{st}"), STAGE_EFFICIENCY[case])}
+    given = {"u_asked": asked, "stages": Given(data.stages, "reducer.stages", over="none"),
+             "pair_efficiency": GivenNumber(data.pair_efficiency, "reducer.pair_efficiency"),
+             **dict(zip(("pinion", "wheel"), simple, strict=False)), **({} if chosen is None else chosen.steps)}
+
+    def add(names: str) -> None:
+        record(plan, names, by_driver, {} if simple else WITHOUT_SIMPLE, RATIOS, given=given)
+
+    if simple:
+        add("u_simple")
+    plan.add("i14", INNER_RATIO, sign, *(plan[f"z{n}"] for n in stage_numbers(data, 0)), symbol="i_{14}^{H}",
+             say=said_with_sign(INNER_RATIO, sign))
+    add("u_stage u_planetary u u_deviation")
+    if chosen is None:
+        add("eta_pair eta_0")
+    add("eta_stage eta_planetary eta")
     return plan
 
 
@@ -168,19 +184,18 @@ def conditions_plan(data: ReducerTable, ratio: Plan) -> Plan:
     scheme = SCHEMES[data.scheme]
     numbers = stage_numbers(data, 0)
     s, z = scheme.signs, [ratio[f"z{n}"] for n in numbers]
-    q = plan.add("q", SATELLITES, Given(data.satellites, "reducer.satellites", "q", over="none"))
-    h = plan.add("ha", ADDENDUM, GivenNumber(data.addendum, "reducer.addendum"), symbol="h_a^{*}")
-    left, right = (plan.add(f"coaxiality_{side}", SIDE_OF_COAXIALITY, s[i], z[a], z[b],
-                            say=said_with_sign(SIDE_OF_COAXIALITY, s[i]), symbol=f"z_{a + 1} {'+' if s[i] > 0 else '−'} z_{b + 1}")
-                   for i, (side, a, b) in enumerate((("left", 0, 1), ("right", 3, 2))))
-    plan.add("coaxiality", COAXIALITY, left, right)
-    plan.add("assembly", ASSEMBLY, s[0] * s[1], q, *z, say=said_with_sign(ASSEMBLY, s[0] * s[1]))
-    between = plan.add("between", BETWEEN_AXES, left, q)
-    width = plan.add("width", WIDTH, z[1], z[2], h)
-    plan.add("neighbourhood", NEIGHBOURHOOD, between, width)
+    given = {"satellites": Given(data.satellites, "reducer.satellites", "q", over="none"),
+             "addendum": GivenNumber(data.addendum, "reducer.addendum"), "z_2": z[1], "z_3": z[2]}
+    record(plan, "q ha", CONDITIONS, given=given)
+    for i, (side, a, b) in enumerate((("left", 0, 1), ("right", 3, 2))):
+        plan.add(f"coaxiality_{side}", SIDE_OF_COAXIALITY, s[i], z[a], z[b], say=said_with_sign(SIDE_OF_COAXIALITY, s[i]),
+                 symbol=f"z_{a + 1} {'+' if s[i] > 0 else '−'} z_{b + 1}")
+    record(plan, "coaxiality", CONDITIONS)
+    plan.add("assembly", ASSEMBLY, s[0] * s[1], plan["q"], *z, say=said_with_sign(ASSEMBLY, s[0] * s[1]))
+    record(plan, "between width neighbourhood", CONDITIONS, given=given)
     for satellite, ring, sign in internal_pairs(s):
         if sign < 0:
-            plan.add(f"least_z{numbers[ring]}", LEAST_RING, z[satellite], h, symbol=f"z_{{{numbers[ring]}min}}")
+            plan.add(f"least_z{numbers[ring]}", LEAST_RING, z[satellite], plan["ha"], symbol=f"z_{{{numbers[ring]}min}}")
     return plan
 
 

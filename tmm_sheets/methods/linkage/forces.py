@@ -260,32 +260,16 @@ class Kinetostatics:
         """
         (i, j), (first, last), (u, v) = g.links, parts, lines
         fp = self.plan_of(g.name, g.links)
-        start = fp.plan.add("2", rules.GIVEN, 0j)
-        n, tail = 2, start
-        pending = []
-
-        def lay(sign: str, vector: Step) -> None:
-            nonlocal n, tail
-            n += 1
-            head = fp.plan.add(str(n), rules.SHIFT, tail, vector)
-            pending.append((sign, tail, head))
-            tail = head
-
+        start = fp.begin()
         one, two = (pair_index(link, carrier) for link, carrier in zip(g.links, carriers, strict=True))
-        if first is not None:
-            lay(f"F̅_{{{one}}}^τ", first)
-        after_first = tail
-        for link in (i, j):
-            for load in self.order(self.loads[link], "weight"):
-                lay(load.symbol, load.vector)
-        before_last = tail
-        if last is not None:
-            lay(f"F̅_{{{two}}}^τ", last)
+        after_first = start if first is None else fp.lay(start, f"F̅_{{{one}}}^τ", first)
+        split = fp.lay_loads(after_first, self.order(self.loads[i], "weight"))
+        before_last = fp.lay_loads(split, self.order(self.loads[j], "weight"))
+        tail = before_last if last is None else fp.lay(before_last, f"F̅_{{{two}}}^τ", last)
         way = (self.limits[g.name],) if sine and g.name in self.limits else ()
         closing = fp.plan.add("1", rules.LINE_LINE, start, u, tail, v, *sine, *way)
         fp.side(f"F̅_{{{one}}}" + ("^n" if first is not None else ""), closing, start, unknown=True)
-        for sign, a, b in pending:
-            fp.side(sign, a, b)
+        fp.record_laid()
         fp.side(f"F̅_{{{two}}}" + ("^n" if last is not None else ""), tail, closing, unknown=True)
         f_one = self.reaction(i, carriers[0], fp.between(f"F{one}", closing, after_first))
         f_two = self.reaction(j, carriers[1], fp.between(f"F{two}", before_last, closing))
@@ -294,7 +278,6 @@ class Kinetostatics:
         if last is not None:
             fp.plan.vector(symbol(f"F{two}"), before_last, closing)
         # The inner reaction closes the forces of the first link: the same drawing, one more line.
-        split = pending[(first is not None) + len(self.loads[i]) - 1][2] if len(self.loads[i]) + (first is not None) else start
         name = f"F{pair_index(i, j)}"
         inner = self.reaction(i, j, fp.between(name, split, closing))
         fp.plan.vector(symbol(name), split, closing)

@@ -45,6 +45,11 @@ class Path:
     numbers: tuple[Any, ...]
     turning: bool = False
 
+    def travelled(self, place: Callable[[Any], Any]) -> Callable[[Any], Any]:
+        """The fraction at any angles turned, rad; ``place`` gives the position of what moves there."""
+        numbers = [value_of(x) for x in self.numbers]
+        return lambda turned: self.rule.compute(place(np.asarray(turned)), *numbers)
+
 
 WAY = Rule("fraction of a straight way",
            lambda p, sense, low, way: np.minimum(np.maximum(((p * np.conjugate(sense)).real - low) / way, 0.0), 1.0),
@@ -158,8 +163,8 @@ def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, know
     watched = Watched(m, STROKES)
     place, velocity = watched.point(point), watched.velocity(point)
 
-    def along(turned: Floats) -> Any:
-        return (place(cycle.world(turned)) * np.conj(sense)).real
+    def at(turned: Any) -> Any:
+        return place(cycle.world(turned))
 
     def speed(turned: Floats) -> Any:
         return (velocity(cycle.world(turned)) * np.conj(sense)).real
@@ -168,15 +173,13 @@ def straight_motion(m: Mechanism, cycle: Cycle, point: str, sense: complex, know
     runs = known.runs if known is not None and the_output else tuple(runs_of(speed))
     if not runs:
         check_turn(m, point)
-    ways = along(np.array([r.begin for r in runs])) if runs else np.zeros(1)
+    ways = (at(np.array([r.begin for r in runs])) * np.conj(sense)).real if runs else np.zeros(1)
     low, high = float(ways.min()), float(ways.max())
     if not high - low > 1e-9 * m.crank.length:
         _refuse(m, tell("point {point} does not move to and fro that way: its force has no strokes").format(point=point),
                 tell("give the sense of the working strokes along its path"))
-    ends = (_found(low, point, "beginning", "m"), _found(high - low, point, "length", "m"))
-    return OutputMotion(over_cycle(in_strokes(runs, ways), cycle.period, first),
-                        lambda t: np.clip((along(np.asarray(t)) - low) / (high - low), 0.0, 1.0), cycle.period,
-                        path=Path(WAY, point, (sense, *ends)))
+    path = Path(WAY, point, (sense, _found(low, point, "beginning", "m"), _found(high - low, point, "length", "m")))
+    return OutputMotion(over_cycle(in_strokes(runs, ways), cycle.period, first), path.travelled(at), cycle.period, path=path)
 
 
 def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: float = 0.0) -> OutputMotion:
@@ -193,8 +196,11 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
     def speed(turned: Floats) -> Any:
         return sense * omega(cycle.world(turned))
 
+    def at(turned: Any) -> Any:
+        return direction(cycle.world(turned))
+
     def angle(turned: Reals) -> Any:
-        return sense * np.angle(direction(cycle.world(turned)))
+        return sense * np.angle(at(turned))
 
     runs = runs_of(speed)
     if not runs:
@@ -207,14 +213,9 @@ def turning_motion(m: Mechanism, cycle: Cycle, link: str, sense: int, first: flo
     if not turns and any(r.sense for r in runs):
         ways = np.interp([r.begin for r in runs], turned, swept)
         low, swing = float(ways.min()), float(np.ptp(ways))
-        spare = np.pi - swing / 2
-
-        def travelled(t: Reals) -> Any:
-            return np.clip((np.mod(angle(t) - low + spare, TURN) - spare) / swing, 0.0, 1.0)
-
-        ends = (_found(low, link, "beginning", "rad"), _found(swing, link, "length", "rad"))
-        return OutputMotion(over_cycle(in_strokes(runs, ways), cycle.period, first), travelled, cycle.period,
-                            path=Path(SWING, link, (float(sense), *ends), turning=True))
+        numbers = (float(sense), _found(low, link, "beginning", "rad"), _found(swing, link, "length", "rad"))
+        path = Path(SWING, link, numbers, turning=True)
+        return OutputMotion(over_cycle(in_strokes(runs, ways), cycle.period, first), path.travelled(at), cycle.period, path=path)
     way = 1 if turns >= 0 else -1
     swept = way * (swept - swept[0]) / TURN
 

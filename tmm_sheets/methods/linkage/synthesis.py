@@ -19,6 +19,7 @@ import numpy as np
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.expression import primitive
 from tmm_sheets.construction.step import GivenNumber, Helper, Plan, Rule, Step
+from tmm_sheets.construction.tables import StepTable, record
 from tmm_sheets.errors import CannotBuild
 from tmm_sheets.numbers import number
 from tmm_sheets.words import marked, tell, tr
@@ -26,16 +27,8 @@ from tmm_sheets.words import marked, tell, tr
 if TYPE_CHECKING:
     from tmm_sheets.task.schema import SynthesisTable
 
-SWING = Rule("swing of the rocker", lambda k: pi * (k - 1) / (k + 1), ("number",), "angle",
-             "")
-HALF = Rule("half", lambda x: x / 2, ("angle",), "angle", marked("Half the angle: {name} = {value}."))
 UNDER = Rule("direction under an angle", lambda u, angle: u * (np.cos(angle) - 1j * np.sin(angle)), ("direction", "angle"),
              "direction", marked("At the angle {1} to {0} draw the direction {name}."))
-PERIOD = Rule("time of a turn", lambda w: 2 * pi / w, ("number",), "number", "",
-              unit="s")
-STROKE = Rule("stroke of the piston", lambda v, t: v * t / 2, ("number", "number"), "length",
-              "")
-CRANK = Rule("crank from the stroke", lambda h: h / 2, ("length",), "length", "")
 TIMES = Rule("part or multiple of a length", lambda ratio, x: ratio * x, ("number", "length"), "length",
              "")
 
@@ -195,91 +188,107 @@ class Synthesis:
         return said.format(exact=number(exact, 5), used=number(used, 6))
 
 
-def _rounded(plan: Plan, name: str, c: SynthesisTable) -> Step:
+def _given(of: Synthesis) -> dict[str, Any]:
+    """What is given, by its name in the project file, with the origin, the direction upwards and the signs."""
+    c = of.conditions
+    return {"0": 0j, "up": 1j, "1": 1, "-1": -1, "speed": GivenNumber(of.speed, "crank.speed", "ω_1", "rad/s")} | {
+        name: GivenNumber(getattr(c, name), f"synthesis.{name}", letter, unit) for name, letter, unit in (
+            ("centre_distance", of.called("l_{AC}"), "m"), ("coefficient", "K", ""), ("stroke", "H", "m"),
+            ("mean_velocity", tr("V_{m}"), "m/s"), ("rod_ratio", "λ", ""), ("centre_ratio", "λ_S", ""), ("roller", "r_{p}", "m"),
+            ("slots", "z", ""), ("round", "", "m")) if getattr(c, name, None) is not None}
+
+
+def _rounded(plan: Plan, name: str, given: Mapping[str, Any]) -> Step:
     """The length as it is used further on."""
-    return plan[name] if c.round is None else plan.add(f"{name}′", ROUND, plan[name], _given(c, "round", "", "m"))
-
-
-def _given(c: SynthesisTable, name: str, symbol: str, unit: str = "") -> GivenNumber:
-    return GivenNumber(getattr(c, name), f"synthesis.{name}", symbol, unit)
-
-
-BELOW = Rule("point below the origin", lambda distance: -1j * distance, ("length",), "point", marked("Mark point {name}."))
-HALF_OFF = Rule("lay off half a length", lambda p, length: p + length / 2, ("point", "length"), "point",
-                marked("From {0}, perpendicular to CA, lay off half the stroke H: point {name}."), lambda a,
-                v: (Helper("line", a[0], v),))
-
-
-def _quick_return(of: Synthesis) -> Plan:
-    c = of.conditions
-    plan = Plan("synthesis", tr("Geometric synthesis of the slotted-link mechanism"), "m")
-    a = plan.add("A", rules.GIVEN, 0j)
-    pivot = plan.add("C", BELOW, _given(c, "centre_distance", of.called("l_{AC}"), "m"))
-    plan.add("l_AC", rules.DISTANCE, a, pivot)
-    theta = plan.add("θ", SWING, _given(c, "coefficient", "K"))
-    half = plan.add("θ/2", HALF, theta)
-    axis = plan.add("CA", rules.RAY, pivot, a)
-    rocker = plan.add("CB", UNDER, axis, half)
-    b = plan.add("B", rules.FOOT, a, pivot, rocker)
-    plan.add("l_AB", rules.DISTANCE, a, b)
-    _rounded(plan, "l_AB", c)
-    stroke = plan.add("H", rules.GIVEN_LENGTH, _given(c, "stroke", "H", "m"))
-    across = plan.add("H/2", HALF_OFF, a, stroke)
-    d = plan.add("D", rules.LINE_LINE, pivot, rocker, across, axis)
-    plan.add("l_CD", rules.DISTANCE, pivot, d)
-    used = _rounded(plan, "l_CD", c)
-    if c.centre_ratio is not None:
-        plan.add("l_CS", TIMES, _given(c, "centre_ratio", "λ_S"), used)
-        _rounded(plan, "l_CS", c)
-    return plan
-
-
-def _engine(of: Synthesis) -> Plan:
-    c = of.conditions
-    plan = Plan("synthesis", tr("Geometric synthesis of the slider-crank mechanism"), "m")
-    a = plan.add("A", rules.GIVEN, 0j)
-    period = plan.add("T", PERIOD, GivenNumber(of.speed, "crank.speed", "ω_1", "rad/s"))
-    stroke = plan.add("H", STROKE, _given(c, "mean_velocity", tr("V_{m}"), "m/s"), period)
-    plan.add("l_AB", CRANK, stroke)
-    crank = _rounded(plan, "l_AB", c)
-    plan.add("l_BC", TIMES, _given(c, "rod_ratio", "λ"), crank)
-    rod = _rounded(plan, "l_BC", c)
-    if c.centre_ratio is not None:
-        plan.add("l_BS", TIMES, _given(c, "centre_ratio", "λ_S"), rod)
-        _rounded(plan, "l_BS", c)
-    axis = plan.add("AC", rules.GIVEN_DIRECTION, 1j)
-    for prime, sign in (("′", 1), ("″", -1)):
-        pin = plan.add(f"B{prime}", DEAD, a, axis, crank, sign)
-        plan.add(f"C{prime}", rules.ALONG, pin, axis, rod)
-    return plan
+    return plan.add(f"{name}′", ROUND, plan[name], given["round"]) if "round" in given else plan[name]
 
 
 DEAD = Rule("dead position of the crank", lambda p, u, length, sign: p + sign * length * u, ("point", "direction", "length"),
             "point", marked("On the line {1} lay off the crank {2} from {0}: extreme position {name}."),
             lambda a, v: (Helper("line", a[0], v),))
+COMMON: StepTable = {
+    "A": ("0", "", rules.GIVEN),
+    "l_AC": ("A C", "", rules.DISTANCE),
+    "CA": ("C A", "", rules.RAY),
+    "B": ("A C CB", "", rules.FOOT),
+    "l_AB": ("A B", "", rules.DISTANCE),
+}
+"""Steps of a rocker about C and a crank about A that meet in B: of the quick return and the Geneva mechanism."""
+QUICK_RETURN: StepTable = {
+    "C": ("centre_distance", "",
+        Rule("point below the origin", lambda distance: -1j * distance, ("length",), "point", marked("Mark point {name}."))),
+    "θ": ("coefficient", "", Rule("swing of the rocker", lambda k: pi * (k - 1) / (k + 1), ("number",), "angle",
+            "")),
+    "θ/2": ("θ", "", Rule("half", lambda x: x / 2, ("angle",), "angle", marked("Half the angle: {name} = {value}."))),
+    "CB": ("CA θ/2", "", UNDER),
+    "H": ("stroke", "", rules.GIVEN_LENGTH),
+    "H/2": ("A H", "", Rule("lay off half a length", lambda p, length: p + length / 2, ("point", "length"), "point",
+            marked("From {0}, perpendicular to CA, lay off half the stroke H: point {name}."), lambda a,
+            v: (Helper("line", a[0], v),))),
+    "D": ("C CB H/2 CA", "", rules.LINE_LINE),
+    "l_CD": ("C D", "", rules.DISTANCE),
+    "l_CS": ("centre_ratio used", "", TIMES),
+}
+ENGINE: StepTable = {
+    "A": ("0", "", rules.GIVEN),
+    "T": ("speed", "", Rule("time of a turn", lambda w: 2 * pi / w, ("number",), "number", "",
+            unit="s")),
+    "H": ("mean_velocity T", "", Rule("stroke of the piston", lambda v, t: v * t / 2, ("number", "number"), "length",
+            "")),
+    "l_AB": ("H", "", Rule("crank from the stroke", lambda h: h / 2, ("length",), "length", "")),
+    "l_BC": ("rod_ratio crank", "", TIMES),
+    "l_BS": ("centre_ratio rod", "", TIMES),
+    "AC": ("up", "", rules.GIVEN_DIRECTION),
+    "B′": ("A AC crank 1", "", DEAD),
+    "C′": ("B′ AC rod", "", rules.ALONG),
+    "B″": ("A AC crank -1", "", DEAD),
+    "C″": ("B″ AC rod", "", rules.ALONG),
+}
+GENEVA: StepTable = {
+    "C": ("centre_distance", "",
+        Rule("point beside the origin", lambda distance: distance + 0j, ("length",), "point", marked("Mark point {name}."))),
+    "β": ("slots", "", Rule("half the angle between slots", lambda z: pi / z, ("number",), "angle",
+            "", unit="rad")),
+    "CB": ("CA β", "", UNDER),
+    "l_BC": ("C B", "", rules.DISTANCE),
+    "h": ("l_AB l_BC roller l_AC", "",
+        Rule("depth of a slot", lambda r, radius, roller, distance: r + radius + roller - distance, ("length",) * 4, "length",
+            "")),
+    "r_f": ("l_AB roller", lambda: tr("r_{l}"),
+        Rule("radius of the locking disc", lambda r, roller: r - 2 * roller, ("length", "length"), "length",
+            marked("Radius of the locking disc, with a horn as thick as the roller's radius: {name} = {0} − 2·{1} = {value}."))),
+}
 
 
-HALF_PITCH = Rule("half the angle between slots", lambda z: pi / z, ("number",), "angle",
-                  "", unit="rad")
-BESIDE = Rule("point beside the origin", lambda distance: distance + 0j, ("length",), "point", marked("Mark point {name}."))
-DEPTH = Rule("depth of a slot", lambda r, radius, roller, distance: r + radius + roller - distance, ("length",) * 4, "length",
-             "")
-LOCKING = Rule("radius of the locking disc", lambda r, roller: r - 2 * roller, ("length", "length"), "length",
-               marked("Radius of the locking disc, with a horn as thick as the roller's radius: {name} = {0} − 2·{1} = {value}."))
+def _quick_return(of: Synthesis) -> Plan:
+    plan, given = Plan("synthesis", tr("Geometric synthesis of the slotted-link mechanism"), "m"), _given(of)
+    record(plan, "A C l_AC θ θ/2 CA CB B l_AB", QUICK_RETURN, COMMON, given=given)
+    _rounded(plan, "l_AB", given)
+    record(plan, "H H/2 D l_CD", QUICK_RETURN, given=given)
+    given["used"] = _rounded(plan, "l_CD", given)
+    if "centre_ratio" in given:
+        record(plan, "l_CS", QUICK_RETURN, given=given)
+        _rounded(plan, "l_CS", given)
+    return plan
+
+
+def _engine(of: Synthesis) -> Plan:
+    plan, given = Plan("synthesis", tr("Geometric synthesis of the slider-crank mechanism"), "m"), _given(of)
+    record(plan, "A T H l_AB", ENGINE, given=given)
+    given["crank"] = _rounded(plan, "l_AB", given)
+    record(plan, "l_BC", ENGINE, given=given)
+    given["rod"] = _rounded(plan, "l_BC", given)
+    if "centre_ratio" in given:
+        record(plan, "l_BS", ENGINE, given=given)
+        _rounded(plan, "l_BS", given)
+    record(plan, "AC B′ C′ B″ C″", ENGINE, given=given)
+    return plan
 
 
 def _geneva(of: Synthesis) -> Plan:
     """The pin enters a slot along it, square to the crank: no blow. B is where it enters."""
-    c = of.conditions
-    plan = Plan("synthesis", tr("Geometric synthesis of the Geneva mechanism"), "m")
-    a = plan.add("A", rules.GIVEN, 0j)
-    pivot = plan.add("C", BESIDE, _given(c, "centre_distance", of.called("l_{AC}"), "m"))
-    plan.add("l_AC", rules.DISTANCE, a, pivot)
-    roller = _given(c, "roller", "r_{p}", "m")
-    slot = plan.add("CB", UNDER, plan.add("CA", rules.RAY, pivot, a), plan.add("β", HALF_PITCH, _given(c, "slots", "z")))
-    b = plan.add("B", rules.FOOT, a, pivot, slot)
-    crank, radius = plan.add("l_AB", rules.DISTANCE, a, b), plan.add("l_BC", rules.DISTANCE, pivot, b)
-    _rounded(plan, "l_AB", c)
-    plan.add("h", DEPTH, crank, radius, roller, plan["l_AC"])
-    plan.add("r_f", LOCKING, crank, roller, symbol=tr("r_{l}"))
+    plan, given = Plan("synthesis", tr("Geometric synthesis of the Geneva mechanism"), "m"), _given(of)
+    record(plan, "A C l_AC CA β CB B l_AB l_BC", GENEVA, COMMON, given=given)
+    _rounded(plan, "l_AB", given)
+    record(plan, "h r_f", GENEVA, given=given)
     return plan

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from tmm_sheets.construction.step import Step
     from tmm_sheets.methods.flywheel.flywheel import Flywheel
     from tmm_sheets.methods.flywheel.wheel import RimWheel
-    from tmm_sheets.methods.flywheel.wittenbauer import Wittenbauer
+    from tmm_sheets.methods.flywheel.wheel_methods import Wittenbauer
     from tmm_sheets.project import Project
     from tmm_sheets.sheets.views import Arrangement, ViewPlace
 

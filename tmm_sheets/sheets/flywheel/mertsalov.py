@@ -28,7 +28,7 @@ from tmm_sheets.words import marked, tell, tr
 if TYPE_CHECKING:
     from tmm_sheets.construction.expression import Floats
     from tmm_sheets.construction.step import Step
-    from tmm_sheets.methods.flywheel.mertsalov import Mertsalov
+    from tmm_sheets.methods.flywheel.wheel_methods import Mertsalov
     from tmm_sheets.project import Project
 
 Options = dict[str, Any]
