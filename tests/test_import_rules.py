@@ -11,8 +11,8 @@ import pytest
 
 ROOT = Path(__file__).parents[1] / "tmm_sheets"
 MODULES = {".".join(p.relative_to(ROOT).with_suffix("").parts): p for p in ROOT.rglob("*.py")}
-NEUTRAL = ("box csv_tables encodings errors files kept meanings numbers program quoting remarks resources progress spelling "
-           "version words")
+NEUTRAL = ("apart box csv_tables encodings errors files kept meanings numbers program quoting remarks resources progress spelling "
+           "terminal toml_file toml_lines version words")
 METHODS = "methods.linkage methods.flywheel methods.gears methods.cams methods.integration"
 
 RULES = {
@@ -59,11 +59,11 @@ RULES = {
     "page": ("backends catalogue compare drawing living output project sheets task", ""),
     "note": ("backends construction drawing project record results sheets task.synthesis_refs task.units", "task"),
     "compare": ("drawing sheets", "construction project"),
-    "compare.marking": ("task.messages task.schema task.toml_file", ""),
-    "compare.view_places": ("compare task.messages task.schema task.toml_file", ""),
+    "compare.marking": ("task.messages task.schema", ""),
+    "compare.view_places": ("compare task.messages task.schema", ""),
     "compare.story_pdf": ("backends compare drawing", ""),
     "compare.report_pages": ("compare", ""),
-    "compare.group": ("compare output.build_store task.title_entries task.toml_file", "project"),
+    "compare.group": ("compare output.build_store task.title_entries", "project"),
     "compare.diagnosis": ("compare construction drawing", "project"),
     "compare.diagnosis.hypotheses": ("compare.codes compare.diagnosis construction methods.linkage", ""),
     "compare.diagnosis.replay": ("construction", ""),

@@ -8,11 +8,11 @@ import pytest
 
 from tests.few import few
 from tests.project_files import from_file, toml
-from tmm_sheets import catalogue
+from tmm_sheets import catalogue, toml_file
 from tmm_sheets.__main__ import run
 from tmm_sheets.compare import group, marking, view_places
 from tmm_sheets.errors import BadInput
-from tmm_sheets.task import family_tables, title_entries, toml_file, variant
+from tmm_sheets.task import family_tables, title_entries, variant
 
 DATA = from_file("lugansk/shaper")
 ODD = [0, -1, 0.5, True, "", "x", "1 m", [], ["A", "A"], [[]], {}, [{"name": []}]]

@@ -6,8 +6,9 @@ import gc
 import os
 import signal
 import sys
-from io import TextIOWrapper
 from typing import NoReturn
+
+from tmm_sheets import terminal
 
 DONE, CANNOT_BUILD, BAD_INPUT = 0, 1, 2
 BY_SIGNAL, BROKEN_PIPE = 128, 141
@@ -20,7 +21,7 @@ def main() -> NoReturn:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", "400000000")  # of formats whose size nobody else can tell beforehand
-    _set_encodings()
+    terminal.settle()
     for name in ("SIGTERM", "SIGHUP"):  # what is half-written is cleaned up, as after Ctrl-C; nohup stays nohup
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) == signal.SIG_DFL:
@@ -36,17 +37,6 @@ def _stop(number: int, _: object) -> None:
     raise Stopped(number)
 
 
-def _set_encodings() -> None:
-    """UTF-8 for files and pipes, whatever the code page of the console; a terminal shows what it has letters for."""
-    for stream, elsewhere in ((sys.stdout, "surrogateescape"), (sys.stderr, "backslashreplace")):
-        if not isinstance(stream, TextIOWrapper):  # there is none, or a test's
-            continue
-        if stream.isatty():
-            stream.reconfigure(errors="replace")
-        else:
-            stream.reconfigure(encoding="utf-8", errors=elsewhere)
-
-
 def _flushed(status: int) -> int:
     """Exit status after the last output has left; a reader that went away or a full disk shows only here."""
     try:
@@ -59,13 +49,8 @@ def _flushed(status: int) -> int:
         from tmm_sheets.words import tell
 
         status = _say(tell("output cannot be written: {why}").format(why=reason_of(e)), BAD_INPUT)
-    _drop_output()
+    terminal.drop(sys.stdout)
     return status
-
-
-def _drop_output() -> None:
-    """What is still buffered must not raise again: at the last flush, or while Python shuts down."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def run(arguments: list[str]) -> int:
@@ -116,7 +101,7 @@ def _carried_out(arguments: list[str]) -> int:
         why = reason_of(e)
         if e.filename:
             return _say(f"{e.filename}: {why}", BAD_INPUT)
-        _drop_output()  # or the last flush would say it again
+        terminal.drop(sys.stdout)  # or the last flush would say it again
         return _say(tell("output cannot be written: {why}").format(why=why), BAD_INPUT)
     except MemoryError:
         return _say(tell("not enough memory; ask for fewer positions"), CANNOT_BUILD)

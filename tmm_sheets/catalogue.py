@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,17 +32,28 @@ class ShippedProject:
 
 def shipped() -> tuple[str, ...]:
     """Names of the shipped projects: the families' variants, and paths below variants/ without suffix."""
+    return _shipped(families.state())
+
+
+@lru_cache(4)
+def _shipped(_: object) -> tuple[str, ...]:
     return (*_files(), *families.names())
 
 
-def _files() -> list[str]:
+@cache
+def _files() -> tuple[str, ...]:
     folder = resources.variants()
     paths = (p.relative_to(folder) for p in folder.rglob(f"*{SUFFIX}"))
-    return sorted(p.with_suffix("").as_posix() for p in paths if p.parts[0] not in families.known())
+    return tuple(sorted(p.with_suffix("").as_posix() for p in paths if p.parts[0] not in families.known()))
 
 
 def entries() -> tuple[ShippedProject, ...]:
     """Every shipped project with its title, variant and sheets; only the heading of each file is looked at."""
+    return _entries(families.state())
+
+
+@lru_cache(4)
+def _entries(_: object) -> tuple[ShippedProject, ...]:
     found = []
     for name in shipped():
         with suppress(BadInput, OSError, ValueError, LookupError, TypeError, AttributeError):  # a family is not finished yet

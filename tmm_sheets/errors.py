@@ -6,7 +6,6 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 from tmm_sheets.words import marked, tell
 
@@ -86,10 +85,10 @@ class CannotBuild(Exception):
     how far it went, by their names.
     """
 
-    def __init__(self, message: str, hint: str = "", *, files: Mapping[str, bytes] = MappingProxyType({})) -> None:
+    def __init__(self, message: str, hint: str = "", *, files: Mapping[str, bytes] | None = None) -> None:
         super().__init__(message)
         self.hint = hint
-        self.files = files
+        self.files = dict(files or {})
 
     def __str__(self) -> str:
         message = str(self.args[0])

@@ -31,6 +31,8 @@ LARGEST = 500_000_000
 """Bytes of the largest file that is read."""
 URL = re.compile(r"([a-z][a-z0-9+.-]+):/+")
 """How a place in an object store begins; one letter is a drive of Windows."""
+_ELSEWHERE = re.compile(r"([a-z][a-z0-9+.-]*)?:", re.IGNORECASE)
+"""How a place begins that some system takes for one on another drive, or on another machine."""
 ENDINGS = {"dxf": "dxf", "pdf": "pdf", "svg": "svg", "png": "png", "hpgl": "plt"}
 """Formats of drawings, each written by the module of its name in ``backends``, and what names of their files end in."""
 _root: ContextVar[Path | None] = ContextVar("root", default=None)
@@ -121,6 +123,7 @@ def write_all(files: Mapping[Path, Content]) -> None:
     """
     try:
         for path in files:
+            refuse_elsewhere(path)
             check_folder(path.parent)
             path.parent.mkdir(parents=True, exist_ok=True)
         put(files)
@@ -244,6 +247,7 @@ def refuse_present(path: Path, force: bool, said: str = "") -> None:
     BadInput
         when there is something.
     """
+    refuse_elsewhere(path)
     if path.exists() and not force:
         raise BadInput(Problem(said or tell("is there already; nothing was written"), str(path),
                                hint=tell("choose another name, or overwrite it with --force")))
@@ -257,8 +261,7 @@ def check_folder(folder: Path) -> None:
     BadInput
         when it cannot.
     """
-    if URL.match(folder.as_posix()):
-        raise BadInput(Problem(tell("only build and roster write into an object store"), URL.sub(r"\1://", folder.as_posix())))
+    refuse_elsewhere(folder)
     try:
         nearest = next(p for p in (folder, *folder.absolute().parents) if os.path.lexists(p))
         nearest.stat()
@@ -270,12 +273,29 @@ def check_folder(folder: Path) -> None:
         raise BadInput(_unwritable(nearest, PermissionError(0, "permission denied")))
 
 
+def refuse_elsewhere(path: Path) -> None:
+    """Refuse a place that is called as if it were elsewhere, such as ``s3:x``: nobody means a folder of that name.
+
+    Raises
+    ------
+    BadInput
+        when it is; a drive is a place where systems have drives.
+    """
+    told = path.as_posix()
+    if URL.match(told):
+        raise BadInput(Problem(tell("only build and roster write into an object store"), URL.sub(r"\1://", told)))
+    if not path.drive and _ELSEWHERE.match(told):
+        raise BadInput(Problem(tell("expected a folder or a file here, not one of another drive or machine"), told,
+                               hint=tell("an object store is called as in s3://bucket/folder; write the whole path of a folder "
+                                         "that has such a name")))
+
+
 def _unwritable(path: Path, e: OSError) -> Problem:
     why = reason_of(e)
     return Problem(
         tell("cannot be written: {why}").format(why=why),
         str(path),
-        hint=tell("choose another place with -o, or make room; nothing was written"),
+        hint=tell("choose another place with -o, or make room; neither it nor what belongs to it was written"),
     )
 
 

@@ -25,6 +25,8 @@ SELDOM = 16
 """How many files are written, about, between two looks at their size together."""
 PASSING = ".part"
 """End of the name of a file that is being written."""
+OTHERS = 0o022
+"""Rights of others to write."""
 LEFT = 86_400.0
 """Seconds after which such a file belongs to nobody."""
 
@@ -52,11 +54,21 @@ def forgo() -> None:
 
 
 def folder() -> Path | None:
-    """Where things are kept; None where nothing is."""
+    """Where things are kept; None where nothing is, as in a folder that others can write to."""
     if not _used.get():
         return None
     told = os.environ.get(FOLDER)
-    return _folder() if told is None else Path(told) if told else None
+    place = _folder() if told is None else Path(told) if told else None
+    return place if place is not None and _is_ours(place) else None
+
+
+def _is_ours(place: Path) -> bool:
+    """Whether nobody else can put anything there, or nothing is there yet: what is read there is believed."""
+    try:
+        found = place.stat()
+    except (OSError, ValueError):
+        return True
+    return os.name == "nt" or (found.st_uid == os.getuid() and not found.st_mode & OTHERS)
 
 
 @cache

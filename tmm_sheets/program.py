@@ -10,6 +10,7 @@ import json
 import os
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import cache
 from hashlib import blake2b
 from importlib.util import find_spec
@@ -52,8 +53,8 @@ def _fingerprints() -> tuple[str, str]:
     there, latest = _looked_at()
     name = fingerprint("program", "\n".join(there))
     known = kept.read(name)
-    if known is not None:
-        own, whole = json.loads(known)
+    with suppress(ValueError, TypeError, RecursionError):
+        own, whole = json.loads(known or b"")
         return str(own), str(whole)
     from importlib.metadata import version
 

@@ -11,6 +11,7 @@ from time import monotonic, perf_counter
 from types import TracebackType
 from typing import Self
 
+from tmm_sheets.terminal import ERASE
 from tmm_sheets.words import tell
 
 PATIENCE = 1.0
@@ -55,7 +56,8 @@ class Progress:
 
     def _show(self) -> None:
         if self.what and sys.stderr.isatty():
-            sys.stderr.write(f"\r\033[K{self.what}")
+            sys.stderr.write(ERASE)
+            sys.stderr.write(self.what)
             sys.stderr.flush()
             self.shown = True
 
@@ -69,7 +71,7 @@ class Progress:
         if self.late.is_alive():
             self.late.join()
         if self.shown:
-            sys.stderr.write("\r\033[K")
+            sys.stderr.write(ERASE)
             sys.stderr.flush()
 
 

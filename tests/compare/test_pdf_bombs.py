@@ -9,7 +9,9 @@ from time import monotonic
 import pytest
 
 from tests.few import few
-from tmm_sheets.compare.photo import pdf_page
+from tmm_sheets import apart
+from tmm_sheets.compare.photo import pdf_page, photograph
+from tmm_sheets.errors import CannotBuild
 
 pytest.importorskip("pypdfium2")
 ROOT = Path(__file__).parents[2]
@@ -59,12 +61,13 @@ def test_it_ends_with_a_sentence(name, tmp_path):
     assert said[0].startswith("x.pdf")
     assert "internal error" not in done.stderr
     assert int(use) < 1_000_000  # kilobytes
-    assert monotonic() - begun < pdf_page.SECONDS + 30  # of a busy machine
+    assert monotonic() - begun < apart.SECONDS + 30  # of a busy machine
 
 
-def test_a_bomb_is_told_as_one():
-    with pytest.raises(pdf_page.NotDrawn):
-        pdf_page.drawn(FILES["bomb"], 200.0, 400_000_000, 30e6)
+def test_a_bomb_is_told_as_one(tmp_path):
+    (tmp_path / "x.pdf").write_bytes(FILES["bomb"])
+    with pytest.raises(CannotBuild, match=r"x\.pdf: reading it takes more than 3 s or 1 GB\n    less"):
+        apart.carried_out(photograph.read, tmp_path / "x.pdf", "less", seconds=3)
 
 
 def test_a_page_is_drawn(tmp_path):

@@ -2,6 +2,7 @@ import pytest
 
 from tmm_sheets.drawing import plotters
 from tmm_sheets.drawing.styles import line_types
+from tmm_sheets.errors import BadInput
 
 PLAIN = 'language = "hpgl"\nreach = [0, 0, 400, 270]\n[[pen]]\nnumber = 2\nwidth = 0.3\n'
 
@@ -52,7 +53,7 @@ def test_a_file_of_ones_own(tmp_path):
         ("width = 0.3", "", "pen[1]: expected number and width"),
         ("number = 2", "number = 9", "pen[1].number: expected 1 to 8"),
         ('"hpgl"', '"hpgl2"', 'pen: "hpgl" needs'),
-        ("= 2", "= ", "line 4"),
+        ("= 2", "= ", "mine.toml:4: not valid TOML"),
         ("[[pen]]", 'origin = "top"\n[[pen]]', 'origin: expected "corner"'),
         ("[[pen]]", "speed = -1\n[[pen]]", "speed: expected cm/s"),
     ],
@@ -61,7 +62,7 @@ def test_mistakes_name_file_and_key(tmp_path, old, new, said):
     file = tmp_path / "mine.toml"
     assert old in PLAIN
     file.write_text(PLAIN.replace(old, new), encoding="utf-8")
-    with pytest.raises(ValueError, match=r"mine\.toml: ") as e:
+    with pytest.raises(BadInput, match=r"mine\.toml:\d+: ") as e:
         plotters.plotter(str(file))
     assert said in str(e.value)
 

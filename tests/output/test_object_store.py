@@ -14,13 +14,25 @@ from tmm_sheets.output import build_store
 from tmm_sheets.output.build_store import ObjectStore, Url, place
 
 fsspec = pytest.importorskip("fsspec", reason="fsspec is not installed")
+memory = pytest.importorskip("fsspec.implementations.memory")
 CAMS = ["lugansk/cam_flat", "lugansk/cam_rocker"]
 
 
-@pytest.fixture
+class Works(memory.MemoryFileSystem):
+    """A store in memory under another name: in ``memory`` itself, which ends with the program, nothing is put."""
+
+    protocol = "works"
+
+    @classmethod
+    def _strip_protocol(cls, path):
+        return super()._strip_protocol(path.replace("works://", "memory://"))
+
+
+@pytest.fixture(autouse=True)
 def store():
-    """The store in memory, empty."""
-    files = fsspec.filesystem("memory")
+    """The store, empty."""
+    fsspec.register_implementation("works", Works, clobber=True)
+    files = fsspec.filesystem("works")
     files.store.clear()
     return files
 
@@ -39,19 +51,19 @@ def test_places(told):
 
 def test_same_bytes_and_nothing_twice(store, tmp_path, capsys):
     made = ["build", *CAMS, "--format", "svg", "--jobs", "1", "-o"]
-    assert run([*made, str(tmp_path)]) == run([*made, "memory://bucket/out"]) == 0
-    assert "memory://bucket/out: 2 built; 2 files" in capsys.readouterr().out
+    assert run([*made, str(tmp_path)]) == run([*made, "works://bucket/out"]) == 0
+    assert "works://bucket/out: 2 built; 2 files" in capsys.readouterr().out
     for path in (p for p in tmp_path.rglob("*") if p.is_file()):
         assert store.cat_file(f"/bucket/out/{path.relative_to(tmp_path).as_posix()}") == path.read_bytes()
     assert len(store.find("/")) == 4
-    assert run([*made, "memory://bucket/out"]) == 0
+    assert run([*made, "works://bucket/out"]) == 0
     assert "2 unchanged; 0 files" in capsys.readouterr().out
 
 
 def test_a_group(store, tmp_path, capsys):
     table = tmp_path / "g.csv"
     table.write_text("student;task\nПетренко О. О.;lugansk/cam_flat\n", encoding="utf-8")
-    roster = ["roster", str(table), "--format", "svg", "-o", "memory://bucket/w"]
+    roster = ["roster", str(table), "--format", "svg", "-o", "works://bucket/w"]
     assert run(roster) == 0
     first = {name: store.modified(name) for name in store.find("/bucket/w/Петренко О. О")}
     names = {build_store.RECORD, "tmm-sheets.toml", "sheet1.svg", "note.pdf", "page.html", "measured.csv"}
@@ -60,12 +72,12 @@ def test_a_group(store, tmp_path, capsys):
     assert run(roster) == 0
     assert store.cat_file("/bucket/w/Петренко О. О/measured.csv") == b"filled in"
     assert {n: store.modified(n) for n in first if "csv" not in n} == {n: t for n, t in first.items() if "csv" not in n}
-    assert "memory://bucket/w/made.csv" in capsys.readouterr().out
+    assert "works://bucket/w/made.csv" in capsys.readouterr().out
 
 
 def test_killed_between_two_objects(store, monkeypatch):
     """The record is there before what it tells of: the next build makes the rest, and takes nothing for changed by hand."""
-    outlet = ObjectStore(Url("memory://bucket/x"))
+    outlet = ObjectStore(Url("works://bucket/x"))
     made = {"sheet1.svg": b"1", "sheet2.svg": b"2"}
     put = ObjectStore._put
 
@@ -85,7 +97,12 @@ def test_killed_between_two_objects(store, monkeypatch):
 
 @pytest.mark.parametrize(("arguments", "said"), [
     (["build", CAMS[0], "-o", "gopher://bucket/y"], "Protocol not known: gopher\n    pip install"),
-    (["build", CAMS[0], "--zip", "-o", "memory://bucket/y"], "--zip writes into a folder"),
+    (["build", CAMS[0], "--zip", "-o", "works://bucket/y"], "--zip writes into a folder"),
+    (["build", CAMS[0], "-o", "memory://bucket/y"], "memory://bucket/y: what is put there is gone when the program ends"),
+    *((["build", CAMS[0], "-o", told], f"{Path(told).as_posix()}: expected a folder or a file here, not one of another")
+      for told in ("FILE:///x", "s3:x", "C://x", "dir::file://x", "data:,x")),
+    (["solve", CAMS[0], "--json", "s3:x"], "s3:x: expected a folder or a file here"),
+    (["new", "ftp://x", "--from", CAMS[0]], "expected a folder or a file here"),
     (["note", CAMS[0], "-o", "s3://bucket/y"], "s3://bucket/y: only build and roster write into an object store"),
 ])
 def test_refused_at_once(store, arguments, said, capsys, tmp_path, monkeypatch):
@@ -100,8 +117,8 @@ def test_no_right_to_write(store, capsys, monkeypatch):
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(type(store), "pipe_file", refused)
-    assert run(["build", CAMS[0], "-o", "memory://bucket/y"]) == 2
-    assert "memory://bucket/y/.tmm-sheets.tried: cannot be written: permission denied" in capsys.readouterr().err
+    assert run(["build", CAMS[0], "-o", "works://bucket/y"]) == 2
+    assert "works://bucket/y/.tmm-sheets.tried: cannot be written: permission denied" in capsys.readouterr().err
 
 
 @pytest.mark.trial

@@ -298,6 +298,19 @@ def test_names_of_the_client_are_names():
     assert doors._place("..", False) == "drawing.other"
     with pytest.raises(doors.HTTPException):
         doors._place("../..", True)
+    for name in ("g/" + "д" * 300 + "/" + "ж" * 300 + ".dxf", "g/A/" + "b/" * 400 + "c.dxf"):
+        *folders, file = doors._place(name, True).split("/")
+        assert file.endswith(".dxf")
+        assert len(folders) == 2
+        assert all(len(part.encode()) < 200 for part in (*folders, file))
+
+
+@pytest.mark.parametrize("names", [("g/A", "g/A/m.csv"), ("g/A/m.csv", "g/A"), ("g/A/m.csv", "g/a/M.csv"),
+                                   ("g/A/\u0439.csv", "g/A/\u0438\u0306.csv")])
+def test_two_files_of_one_place_are_told(client, names):
+    response = client.post("/group", data={"text": CAM}, files=[("file", (name, b"x")) for name in names])
+    assert response.status_code == 422
+    assert "two files of one name" in response.text
 
 
 def test_markup_of_a_project_stays_text(client):

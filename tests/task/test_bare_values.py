@@ -8,7 +8,7 @@ from tests.project_files import from_file
 from tmm_sheets import catalogue
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import variant
-from tmm_sheets.task.toml_file import quoted
+from tmm_sheets.toml_file import quoted
 
 TEXT = catalogue.read("lugansk/shaper").text
 SHAPER = from_file("lugansk/shaper")

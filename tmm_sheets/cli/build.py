@@ -157,28 +157,30 @@ def build_one(project: str, order: Order, output: Path | None, explain: bool = F
     outlet = order.outlet(folder)
     if explain:
         from tmm_sheets.explain import listening
-    with Progress() as progress, listening() if explain else nullcontext() as askers:
-        if with_note:
-            from tmm_sheets.note import note as writing
+    paths, warnings = tuple[Path, ...](), tuple[str, ...]()
+    try:
+        with Progress() as progress, listening() if explain else nullcontext() as askers:
+            if with_note:
+                from tmm_sheets.note import note as writing
 
-            words.set_paper(words.of_project(variant.project.language))
-            with watch.phase(tell("pages of the note")):
-                variant = writing.run_on(variant, progress.doing)
-        built = build_project(variant, order, outlet, watch, progress.doing)
-        paths, warnings = built.paths, built.warnings
-        if with_note:
-
-            with watch.phase(tell("note")):
-                written = writing.write(built.opened, ("pdf",), progress.doing)
-                noted, kept = put(folder, written.files, order.force)
-            paths += noted
-            warnings += (*kept, *(tell("left out: {problem}").format(problem=problem) for problem in written.problems))
-        if views:
-            pictured, kept = put(folder / "views", _pictures(built.opened, order), order.force)
-            paths += pictured
-            warnings += tuple(kept)
-    for path in paths:
-        click.echo(path)
+                words.set_paper(words.of_project(variant.project.language))
+                with watch.phase(tell("pages of the note")):
+                    variant = writing.run_on(variant, progress.doing)
+            built = build_project(variant, order, outlet, watch, progress.doing)
+            paths, warnings = built.paths, built.warnings
+            if with_note:
+                with watch.phase(tell("note")):
+                    written = writing.write(built.opened, ("pdf",), progress.doing)
+                    noted, kept = put(folder, written.files, order.force)
+                paths += noted
+                warnings += (*kept, *(tell("left out: {problem}").format(problem=problem) for problem in written.problems))
+            if views:
+                pictured, kept = put(folder / "views", _pictures(built.opened, order), order.force)
+                paths += pictured
+                warnings += tuple(kept)
+    finally:  # what is there is told, whatever became of the rest
+        for path in paths:
+            click.echo(path)
     if show_files and paths:
         shown = paths[0] if len(paths) == 1 else paths[0].parent
         if click.launch(str(shown)):

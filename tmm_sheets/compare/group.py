@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 from unicodedata import normalize
 
-from tmm_sheets import files
+from tmm_sheets import files, toml_file
 from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.finding_records import FindingRecord
 from tmm_sheets.compare.marking import KINDS, FaultKind, MarkingScheme
@@ -28,7 +28,6 @@ from tmm_sheets.compare.story import Story, StoryTable
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
 from tmm_sheets.numbers import told
 from tmm_sheets.output.build_store import untouched
-from tmm_sheets.task import toml_file
 from tmm_sheets.task.title_entries import FILE as SETTINGS
 from tmm_sheets.words import tell, tell_n
 

@@ -30,12 +30,10 @@ from math import inf, isfinite
 from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import BeforeValidator, Field, ValidationError
+from pydantic import BeforeValidator, Field
 
-from tmm_sheets.errors import BadInput
 from tmm_sheets.numbers import told
-from tmm_sheets.task import toml_file
-from tmm_sheets.task.messages import said
+from tmm_sheets.task import messages
 from tmm_sheets.task.schema import Table
 from tmm_sheets.words import marked, tell
 
@@ -101,8 +99,4 @@ def read(path: Path) -> MarkingScheme:
     BadInput
         If it cannot be read, or something in it is unknown, missing or no number; every problem with its line and field.
     """
-    _, data, lines = toml_file.read(path)
-    try:
-        return MarkingScheme.model_validate(data)
-    except ValidationError as e:
-        raise BadInput(toml_file.problem(str(path), lines, *said(error, MarkingScheme)) for error in e.errors()) from None
+    return messages.read(MarkingScheme, path)[0]

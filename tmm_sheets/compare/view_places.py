@@ -20,14 +20,13 @@ from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
-from tmm_sheets import spelling
+from tmm_sheets import spelling, toml_file
 from tmm_sheets.compare.elements import ElementView
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.task import toml_file
-from tmm_sheets.task.messages import said
+from tmm_sheets.task import messages
 from tmm_sheets.task.schema import Table
 from tmm_sheets.words import marked, tell, tell_n
 
@@ -112,14 +111,10 @@ def read(path: Path, views: Sequence[ElementView]) -> tuple[StatedViewPlace, ...
     BadInput
         If it cannot be read, names a view the sheet does not have, or lacks points; it tells every problem.
     """
-    _, data, lines = toml_file.read(path)
-    try:
-        tables = ViewsTable.model_validate(data).view
-    except ValidationError as e:
-        raise BadInput(toml_file.problem(str(path), lines, *said(error, ViewsTable)) for error in e.errors()) from None
+    whole, lines = messages.read(ViewsTable, path)
     found: dict[ElementView, StatedViewPlace] = {}
     problems: list[Problem] = []
-    for k, table in enumerate(tables):
+    for k, table in enumerate(whole.view):
         view = _named(table.name, views)
         if view is None:
             names = [v.name for v in views]

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
 from math import isfinite
 from pathlib import Path
 from typing import Any, Literal
 
-from tmm_sheets import encodings, files, spelling
+from tmm_sheets import spelling, toml_file
 from tmm_sheets.drawing.marks import Box
+from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.resources import template
+from tmm_sheets.toml_lines import dotted
 from tmm_sheets.words import tell
 
 DEFAULT = "a1"
@@ -71,18 +72,21 @@ def plotter(name: str = DEFAULT) -> Plotter:
     Raises
     ------
     ValueError
-        When there is none, or a key is missing or wrong; the message names file and key.
-    OSError
-        When the file cannot be read.
+        When there is none.
+    BadInput
+        When it cannot be read, or a key is missing or wrong.
     """
     path = template(f"plotters/{name}.toml") if name in names() else Path(name)
     if not path.is_file():
         said = tell("no plotter '{name}': neither a file nor one of {names}").format(name=name, names=', '.join(names()))
         raise ValueError("; ".join(filter(None, (said, spelling.hint(name, names())))))
+    _, data, lines = toml_file.read(path)
     try:
-        return _plotter(path.stem, tomllib.loads(encodings.cleaned(encodings.decoded(files.content(path)).text)))
+        return _plotter(path.stem, data)
     except ValueError as e:
-        raise ValueError(f"{path}: {e}") from None
+        field, _, why = str(e).partition(": ")
+        stands = {dotted(key, 1): line for key, line in lines.lines.items()}
+        raise BadInput(Problem(why, str(path), stands.get(field), field)) from None
 
 
 def _plotter(name: str, row: dict[str, Any]) -> Plotter:

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from datetime import datetime
 from functools import singledispatchmethod
 from itertools import accumulate, count, pairwise
+from time import localtime, time
 from typing import Any
 from xml.sax.saxutils import escape
 
@@ -24,6 +25,7 @@ from docx.oxml.ns import qn
 from docx.shared import Mm, Pt, RGBColor
 
 from tmm_sheets.construction.formula import Node
+from tmm_sheets.errors import CannotBuild
 from tmm_sheets.note.alphabets import characters, equation
 from tmm_sheets.note.arranging import sticky
 from tmm_sheets.note.document import (
@@ -44,6 +46,7 @@ from tmm_sheets.note.document import (
     plain_text,
 )
 from tmm_sheets.note.typst_writer import rasters
+from tmm_sheets.words import tell
 
 DPI = 220
 """Resolution of the pictures beside their vectors, for programs that do not show these."""
@@ -119,6 +122,9 @@ _TABLE_PROPERTIES = ("tblStyle", "tblpPr", "tblOverlap", "bidiVisual", "tblStyle
 
 def render(note: Note, places: dict[str, Any]) -> bytes:
     """The DOCX file, its contents with the pages of the PDF; the same note gives the same bytes."""
+    if localtime(time()).tm_year < FIRST.year:
+        said = tell("the clock of this machine stands before {year}: a DOCX file cannot be made")
+        raise CannotBuild(said.format(year=FIRST.year), tell("set it right, or write the note as PDF"))
     made = _Writer(note, places).document()
     raw = io.BytesIO()
     made.save(raw)

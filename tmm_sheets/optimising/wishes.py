@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,8 @@ from tmm_sheets.errors import BadInput
 from tmm_sheets.task import units
 from tmm_sheets.words import either, tell
 
+LONGEST = 100
+"""Names, numbers and signs of the longest wish: each bracket is read within the one before it."""
 Values = Mapping[str, Any]
 """Numbers, arrays and words by the names of the results; points are complex."""
 Reader = Callable[[Values], Any]
@@ -110,8 +113,10 @@ class _Reader:
     def __init__(self, text: str, known: Collection[str]) -> None:
         self.text, self.known = text, known
         self.names: dict[str, None] = {}
-        self.tokens = [*self._tokens()]
+        self.tokens = [*islice(self._tokens(), LONGEST + 1)]
         self.at = 0
+        if len(self.tokens) > LONGEST:
+            raise BadInput(tell("expected a wish of {most} names, numbers and signs at most").format(most=LONGEST))
 
     def _tokens(self) -> Iterator[re.Match[str]]:
         at, text = 0, self.text.rstrip()
@@ -208,7 +213,10 @@ class _Reader:
             return lambda values: x
         if not (quantity := units.quantity_of(unit)):
             raise self.wrong(tell("unknown unit {unit}").format(unit=unit))
-        x = units.si(f"{number} {unit}")
+        try:
+            x = units.si(f"{number} {unit}")
+        except ValueError as e:
+            raise self.wrong(str(e)) from None
         # Where lengths are told in mm so they are compared.
         return lambda values: 1000 * x if quantity == units.LENGTH.name and self._in_millimetres() else x
 

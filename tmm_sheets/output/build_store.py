@@ -174,13 +174,14 @@ class ObjectStore:
 
     @cached_property
     def _store(self) -> Any:
-        protocol = str(self.place).partition(":")[0]
+        if str(self.place).startswith("memory:"):
+            raise BadInput(Problem(tell("what is put there is gone when the program ends"), str(self.place)))
         try:
-            import fsspec
+            from fsspec.core import url_to_fs
 
-            return fsspec.filesystem(protocol)
-        except (ImportError, ValueError) as e:
-            raise BadInput(Problem(str(e), str(self.place), hint=install("store"))) from None
+            return url_to_fs(str(self.place))[0]
+        except Exception as e:  # no library for it, or what that library says of the place
+            raise BadInput(Problem(_why(e), str(self.place), hint=install("store"))) from None
 
     def check(self) -> None:
         """Refuse a place that cannot be written, before any work is done for it.
@@ -223,9 +224,15 @@ class ObjectStore:
         try:
             store.pipe_file(str(self.path(name)), data)
         except Exception as e:  # of whatever library reaches the store: no network, no such bucket, no key
-            why = reason_of(e) if isinstance(e, OSError) else f"{type(e).__name__}: {e}"
-            raise BadInput(Problem(tell("cannot be written: {why}").format(why=why), str(self.path(name)),
+            raise BadInput(Problem(tell("cannot be written: {why}").format(why=_why(e)), str(self.path(name)),
                                    hint=tell("is the bucket there, and are you known to it?"))) from None
+
+
+def _why(e: Exception) -> str:
+    """What a library that reaches stores says."""
+    if isinstance(e, OSError):
+        return reason_of(e)
+    return str(e) if isinstance(e, ValueError | ImportError) else f"{type(e).__name__}: {e}"
 
 
 Outlet = Folder | Archive | ObjectStore

@@ -34,6 +34,10 @@ TABLE, PROJECTS = "made.csv", "projects.toml"
 """Files beside the folders of the students: what was made, and whose project is which."""
 
 
+MOST = 50
+"""Mistakes of a table that are told."""
+
+
 @dataclass(frozen=True)
 class Enrolled:
     """A student of a table: name, group (empty for none), project as commands call it, folder of the student's files."""
@@ -57,7 +61,7 @@ def read(path: Path, task: str = "") -> list[Enrolled]:
     Raises
     ------
     BadInput
-        with every problem of the file.
+        with the problems of the file, :data:`MOST` at most.
     """
     file = str(path)
     rows = csv_tables.rows(csv_tables.text_of(path, tell("expected a table of students, CSV")), file)
@@ -76,6 +80,9 @@ def read(path: Path, task: str = "") -> list[Enrolled]:
             found.append(one)
         except _Wrong as e:
             problems.append(Problem(e.message, file, line, e.column, e.hint))
+            if len(problems) == MOST:
+                problems.append(Problem(tell("the lines below are not looked at before these are right"), file, line))
+                break
     if problems:
         raise BadInput(problems)
     if not found:

@@ -27,15 +27,15 @@ from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse, R
 from starlette.routing import Route
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from tmm_sheets import catalogue, files, words
+from tmm_sheets import catalogue, files, toml_file, words
 from tmm_sheets.compare.group import COMPARED
 from tmm_sheets.errors import BadInput
-from tmm_sheets.files import confine
+from tmm_sheets.files import alike, confine
 from tmm_sheets.output import batch
 from tmm_sheets.page import compared, jobs
 from tmm_sheets.page.workers import Job, Lane, Languages, Limits, Workers
 from tmm_sheets.resources import template
-from tmm_sheets.task import keys, toml_file
+from tmm_sheets.task import keys
 from tmm_sheets.words import LANGUAGES, marked, reader, tell
 
 AT_ONCE, FRONT, _, BEHIND = (Limits(10 if lane == "at once" else 30, lane=lane) for lane in get_args(Lane))
@@ -142,8 +142,8 @@ async def _asked(request: Request) -> tuple[dict[str, str], TemporaryDirectory[s
                         while piece := await value.read(1 << 20):
                             file.write(piece)
                     place = _place(str(value.filename or ""), request.path_params.get("job") == "group")
-                    here = f"{place}/".casefold()
-                    if any(here.startswith(other) or other.startswith(here) for other in (f"{name}/".casefold() for name in files)):
+                    here = alike(f"{place}/")
+                    if any(here.startswith(other) or other.startswith(here) for other in (alike(f"{name}/") for name in files)):
                         raise HTTPException(422, tell("two files of one name: {name}").format(name=place))
                     files[place] = path
                 else:
@@ -159,16 +159,23 @@ async def _asked(request: Request) -> tuple[dict[str, str], TemporaryDirectory[s
         raise
 
 
+LONGEST_PART, LONGEST_ENDING = 80, 8
+"""Letters of the name of a file or folder that is kept here, and of its ending."""
+
+
 def _place(name: str, of_group: bool) -> str:
     """Where a file goes: of a group into the folder of its student; the client's name is made of letters and figures."""
-    parts = [re.sub(r"[^\w @.+=,()-]+", "-", part)[:80].strip(" -") for part in name.replace("\\", "/").split("/")]
+    parts = [re.sub(r"[^\w @.+=,()-]+", "-", part).strip(" -") for part in name.replace("\\", "/").split("/")]
     parts = [part for part in parts if part.strip(".")]
     suffix = Path(parts[-1] if parts else "").suffix.lower()
     if not of_group:
         return f"{compared.NAME}{suffix}" if suffix in COMPARED else f"{compared.NAME}.other"
     if not parts:
         raise HTTPException(422, tell("a file without a name"))
-    return "/".join(("group", *parts[1:2], *(parts[2:] and ["-".join(parts[2:])])) if parts[1:] else ("group", parts[0]))
+    *student, last = parts[1:] or parts
+    file = "-".join((*student[1:], last))
+    ending = "" if len(file) <= LONGEST_PART else suffix[:LONGEST_ENDING]
+    return "/".join(("group", *(one[:LONGEST_PART] for one in student[:1]), f"{file[:LONGEST_PART]}{ending}"))
 
 
 # --- what the page says and what there is to choose --------------------------------------------------------------------

@@ -6,6 +6,7 @@ import asyncio
 import os
 import socket
 import threading
+from collections import defaultdict
 from collections.abc import Callable
 from importlib.util import find_spec
 from secrets import token_urlsafe
@@ -22,6 +23,8 @@ PORT = 8731
 """Where it listens unless told: another free one where somebody is there already."""
 PATIENCE = 20.0
 """How long a connection may be without a whole request, s."""
+MOST_IDLE = 40
+"""Connections from one address that may ask for nothing, of the 200 that there are for all."""
 PACKAGES = {"starlette": "starlette", "uvicorn": "uvicorn", "python_multipart": "python-multipart"}
 
 
@@ -67,13 +70,29 @@ def patient() -> type[asyncio.Protocol]:
     """The server's protocol, which closes connections that ask for nothing: each takes one of the places that there are for all."""
     from uvicorn.protocols.http.auto import AutoHTTPProtocol
 
+    idle = defaultdict[str, dict[Any, None]](dict)
+
     class Patient(AutoHTTPProtocol):  # type: ignore[misc, valid-type]
-        """Looks now and then whether a request is there, or has been since the last look."""
+        """Looks now and then whether a request is there, or has been since the last look.
+
+        Where too many connections from one address ask for nothing, the oldest of them goes at once.
+        """
 
         def connection_made(self, transport: Any) -> None:
             """Begin to look."""
             super().connection_made(transport)
+            address = str((transport.get_extra_info("peername") or ("",))[0])
+            self.alike = idle[address]
+            self.alike[self] = None
+            waiting = [other for other in self.alike if other.cycle is None or other.cycle.response_complete]
+            if len(waiting) > MOST_IDLE:
+                waiting[0].transport.close()
             self.loop.call_later(PATIENCE, self._look, None)
+
+        def connection_lost(self, exc: Exception | None) -> None:
+            """It counts no more."""
+            self.alike.pop(self, None)
+            super().connection_lost(exc)
 
         def _look(self, seen: Any) -> None:
             if self.transport.is_closing():

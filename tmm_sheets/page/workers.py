@@ -24,7 +24,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Literal, get_args
 
-from tmm_sheets import files, kept, resources, words
+from tmm_sheets import apart, files, kept, resources, words
 from tmm_sheets.errors import BadInput, Problem, reason_of, told_of
 from tmm_sheets.words import tell
 
@@ -109,13 +109,11 @@ def _limit(limits: Limits) -> None:
     """Let the system hold this process within limits, where it can."""
     if hasattr(os, "nice"):
         os.nice(NICE.get(limits.lane, 0))
+    apart.limit(limits.seconds, limits.memory)
     with suppress(ImportError, ValueError, OSError):
         import resource
 
-        resource.setrlimit(resource.RLIMIT_CPU, (limits.seconds, limits.seconds + 1))
-        resource.setrlimit(resource.RLIMIT_AS, (limits.memory, limits.memory))
         resource.setrlimit(resource.RLIMIT_FSIZE, (LARGEST_ANSWER, LARGEST_ANSWER))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 @cache
@@ -183,10 +181,14 @@ class Workers:
             yield {"say": tell("waiting for its turn ...")}
         async with free:
             with TemporaryDirectory(prefix="tmm-sheets-page-", ignore_cleanup_errors=True) as folder:
-                for name, path in (brought or {}).items():
-                    place = files.named(name, Path(folder), Path(folder))
-                    place.parent.mkdir(parents=True, exist_ok=True)
-                    path.replace(place)
+                try:
+                    for name, path in (brought or {}).items():
+                        place = files.named(name, Path(folder), Path(folder))
+                        place.parent.mkdir(parents=True, exist_ok=True)
+                        path.replace(place)
+                except (BadInput, OSError) as e:
+                    yield {"problem": told_of(e)}
+                    return
                 process, connection = await asyncio.to_thread(_begin, job, asked, folder, languages, limits)
                 try:
                     async for last in _said(process, connection, limits):

@@ -35,7 +35,10 @@ class Answered:
     def found(self) -> Iterator[bytes]:
         """The bytes kept for the same answers, those of the latest questions first; these count as asked of the file."""
         for questions in self._known:
-            data = kept.read(self._name(questions))
+            try:
+                data = kept.read(self._name(questions))
+            except (AttributeError, TypeError, ValueError):  # nothing that a file can be asked
+                continue
             if data is not None:
                 self.variant.ask(questions)
                 yield data
@@ -51,7 +54,7 @@ class Answered:
     def _asked_before(self) -> list[Questions]:
         try:
             return [tuple(tuple(question) for question in questions) for questions in json.loads(kept.read(self._about) or b"[]")]
-        except (ValueError, TypeError):
+        except (ValueError, TypeError, RecursionError):
             return []
 
     def _name(self, questions: Questions) -> str:

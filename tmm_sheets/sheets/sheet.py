@@ -75,7 +75,7 @@ def loaded(data: bytes) -> Composed | None:
         end = 4 + int.from_bytes(data[:4], "big")
         points = np.frombuffer(data, NUMBERS, offset=end).astype(float, copy=False).view(complex)
         return _sheet(json.loads(data[4:end]), points)
-    except (ValueError, TypeError, KeyError, IndexError, AttributeError, StopIteration):
+    except (ValueError, TypeError, KeyError, IndexError, AttributeError, StopIteration, RecursionError):
         return None
 
 

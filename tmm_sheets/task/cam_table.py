@@ -11,8 +11,8 @@ from math import isclose
 from typing import Any
 
 from tmm_sheets.task import units
-from tmm_sheets.task.toml_lines import Found
 from tmm_sheets.task.values import diagram, levelled
+from tmm_sheets.toml_lines import Found
 from tmm_sheets.words import tell
 
 LAW = "displacements"

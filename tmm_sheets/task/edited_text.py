@@ -11,8 +11,11 @@ from typing import Any
 
 from tmm_sheets.errors import BadInput
 from tmm_sheets.task import units
-from tmm_sheets.task.toml_lines import dotted, nodes
+from tmm_sheets.toml_lines import DEEPEST, dotted, nodes
 from tmm_sheets.words import tell
+
+LONGEST = 100
+"""Letters of the longest key, or figures of a place in a list, that is looked for."""
 
 
 def key_path(name: str) -> tuple[str | int, ...]:
@@ -23,7 +26,10 @@ def key_path(name: str) -> tuple[str | int, ...]:
     >>> key_path("group__0__lengths__1")
     ('group', 0, 'lengths', 1)
     """
-    return tuple(int(part) if part.isdigit() else part for part in re.findall(r"[^.\[\]]+", name.replace("__", ".")))
+    parts = re.findall(r"[^.\[\]]+", name.replace("__", "."))
+    if len(parts) > DEEPEST or any(len(part) > LONGEST for part in parts):
+        return (name, 0)  # which there is nowhere
+    return tuple(int(part) if part.isdecimal() else part for part in parts)
 
 
 def numbers(data: dict[str, Any]) -> Iterator[tuple[str, Any]]:

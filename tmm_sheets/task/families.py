@@ -18,6 +18,7 @@ from string import Template
 from typing import TYPE_CHECKING, Any
 
 from tmm_sheets import files, resources
+from tmm_sheets.errors import BadInput
 
 if TYPE_CHECKING:
     from tmm_sheets.task.family_folder import FolderFamily
@@ -54,7 +55,7 @@ def folder_of(project: str) -> Path | None:
 def names() -> Iterator[str]:
     """Names of all families' projects; none of a folder that cannot be read."""
     for folder in (*(resources.variants() / name for name in known()), *folders().values()):
-        with suppress(OSError, ValueError, LookupError, TypeError, AttributeError):  # somebody has not finished it
+        with suppress(BadInput, OSError, ValueError, LookupError, TypeError, AttributeError):  # somebody has not finished it
             yield from listed(folder)
 
 
@@ -68,20 +69,22 @@ def listed(folder: Path) -> Iterator[str]:
 
 def heading(folder: Path, project: str) -> dict[str, Any]:
     """Table ``[project]`` of one of these names; a KeyError where it needs what tables have."""
+    from tmm_sheets import toml_file
+
     rules = _rules(folder)
     called, _, cipher = project.partition("/")[2].partition(rules.get("separator", "@"))
     machine = rules["machine"][called]
     about = {"name": project, "machine": called, "cipher": cipher, "title": machine.get("title") or called}
-    return table_of_heading(files.named(machine["scheme"][0], folder, folder).read_text(encoding="utf-8-sig"), about)
+    return table_of_heading(toml_file.text_of(files.named(machine["scheme"][0], folder, folder))[0], about)
 
 
 def table_of_heading(text: str, fields: Mapping[str, str] | None = None) -> dict[str, Any]:
     """Table ``[project]`` of a project file, or of a scheme with the ``fields`` that are filled in there; no other is read."""
     rest = re.split(r"^\[project\]$", text, maxsplit=1, flags=re.MULTILINE)[1]
     heading = re.split(r"^\[", rest, maxsplit=1, flags=re.MULTILINE)[0]
-    import tomllib  # not for --help, which looks for no family
+    from tmm_sheets import toml_file  # not for --help, which looks for no family
 
-    return tomllib.loads(Template(heading).substitute(fields) if fields else heading)
+    return toml_file.parsed(Template(heading).substitute(fields) if fields else heading, "")[0]
 
 
 def user_folder() -> Path | None:
@@ -108,6 +111,12 @@ def folders() -> dict[str, Path]:
     return {name: folder for name, folder in found.items() if name not in known()}
 
 
+def state() -> tuple[tuple[Path, int], ...]:
+    """What is another one when there is another family, or one of users' was changed; of a scheme, that it is there."""
+    found = ((folder.absolute(), path) for folder in folders().values() for path in sorted(folder.glob("*.toml")))
+    return tuple((folder / path.name, path.stat().st_mtime_ns if path.is_file() else 0) for folder, path in found)
+
+
 def _rules(folder: Path) -> dict[str, Any]:
     """What ``family.toml`` of a folder says; nothing is checked."""
     path = folder / FILE
@@ -117,9 +126,9 @@ def _rules(folder: Path) -> dict[str, Any]:
 @lru_cache(maxsize=64)
 def _parsed(path: Path, changed: int) -> dict[str, Any]:
     """A family's rules, read once however many of its projects are listed."""
-    import tomllib
+    from tmm_sheets import toml_file
 
-    return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    return toml_file.read(path)[1]
 
 
 def _folder(name: str) -> Path | None:

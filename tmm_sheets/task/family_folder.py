@@ -15,13 +15,12 @@ from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
-from tmm_sheets import files, spelling
+from tmm_sheets import files, spelling, toml_file
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.task import family_tables, toml_file
+from tmm_sheets.task import family_tables, messages
 from tmm_sheets.task.family_tables import SOURCE, Choice, Cipher, CipherForm, CipherTable, Row, filled, of_signs
-from tmm_sheets.task.messages import said
 from tmm_sheets.task.schema import Table
 from tmm_sheets.task.variant import Misprint
 from tmm_sheets.words import marked, tell
@@ -131,12 +130,7 @@ class FolderFamily:
 
     def __init__(self, folder: Path) -> None:
         self.folder, self.name = folder, folder.resolve().name
-        file = str(folder / FILE)
-        _, data, lines = toml_file.read(folder / FILE, tell("a family of tasks is a folder with family.toml"))
-        try:
-            self.rules = FamilyTable.model_validate(data)
-        except ValidationError as e:
-            raise BadInput(toml_file.problem(file, lines, *said(error, FamilyTable)) for error in e.errors()) from None
+        self.rules, _ = messages.read(FamilyTable, folder / FILE, tell("a family of tasks is a folder with family.toml"))
 
     # --- what families offer ----------------------------------------------------------------------------------------------
 
@@ -296,7 +290,8 @@ def _of_scheme(problem: Problem, pieces: Iterable[tuple[str, str]]) -> Problem:
     """What is wrong in a project file, told of the scheme whose line it is: each fills one line in."""
     line = problem.line or 0
     for file, piece in pieces:
-        if 0 < line <= (lines := piece.count("\n")):
+        lines = piece.count("\n")
+        if 0 < line <= lines:
             return replace(problem, file=file, line=line)
         line -= lines
     return problem

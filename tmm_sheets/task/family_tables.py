@@ -9,7 +9,6 @@ begins with ``unit`` has their units. A TOML table has ``digit``, ``[unit]`` and
 from __future__ import annotations
 
 import ast
-import itertools
 import math
 import operator
 import re
@@ -18,13 +17,13 @@ from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from pathlib import Path
 from string import Template
+from typing import Self
 
-from pydantic import Field, field_validator
+from pydantic import Field, field_validator, model_validator
 
-from tmm_sheets import csv_tables
+from tmm_sheets import csv_tables, toml_file
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.spelling import latin
-from tmm_sheets.task import toml_file
 from tmm_sheets.task.schema import Table
 from tmm_sheets.words import marked, tell
 
@@ -244,10 +243,57 @@ class CipherTable(Table):
     @classmethod
     def _compiles(cls, form: str) -> str:
         try:
-            re.compile(form)
-        except re.error as e:
+            compiled(form)
+        except (re.error, RecursionError, OverflowError) as e:
             raise ValueError(str(e)) from None
         return form
+
+    @model_validator(mode="after")
+    def _parts_are_there(self) -> Self:
+        parts = {*compiled(self.form).groupindex}
+        chosen = sum(n for _, n in self.digits if n > 0)
+        if not {name for name, _ in self.digits} <= parts or chosen != len(self.letters) or any(n < 1 for _, n in self.digits):
+            raise ValueError(tell("expected digits of the parts of form, as many as there are letters"))
+        if len(self.padding) != 1:
+            raise ValueError(tell("expected one sign as padding"))
+        if not Template(self.written).is_valid() or not {*Template(self.written).get_identifiers()} <= parts:
+            raise ValueError(tell("expected written to be made of the parts of form, such as $year-$number"))
+        return self
+
+
+LONGEST, CHOICES = 100, 12
+"""Signs of the longest cipher, and most alternatives, and parts that may be missing, of a form: each may double the time."""
+_OF_FORM = re.compile(r"""
+    \\. | \[\^?\]?(?:\\.|[^\]\\])*\]            # a letter as it is, a class of letters
+    | (?P<look>\(\?)                              # what looks elsewhere, or remembers
+    | (?P<repeated>(?:[*+]|\{\d*,?\d*\})(?![?+]))
+    | (?P<told>[*+}?][?+])                        # a repetition that is told to take less, or more
+    | (?P<choice>[|?])
+    """, re.DOTALL | re.VERBOSE)
+
+
+@lru_cache(64)
+def compiled(form: str) -> re.Pattern[str]:
+    """A form as it is matched: what is repeated takes as much as it can and gives nothing back, so that no text takes long.
+
+    Raises
+    ------
+    re.error
+        for what is no regular expression, or more than a form may have.
+    """
+    choices = 0
+
+    def possessive(match: re.Match[str]) -> str:
+        nonlocal choices
+        if match["look"] or match["told"]:
+            raise re.error(tell("a form has no {what}").format(what=match[0]))
+        choices += match["choice"] is not None
+        return f"{match[0]}+" if match["repeated"] else match[0]
+
+    ways = _OF_FORM.sub(possessive, form.replace("(?P<", "(\0").replace("(?:", "(\1"))
+    if choices > CHOICES:
+        raise re.error(tell("a form has {most} alternatives at most").format(most=CHOICES))
+    return re.compile(ways.replace("(\0", "(?P<").replace("(\1", "(?:"))
 
 
 def of_signs(signs: str) -> CipherTable:
@@ -289,7 +335,7 @@ class CipherForm:
 
     def read(self, text: str) -> Cipher | None:
         """The cipher of a text; None when it is written otherwise."""
-        match = re.fullmatch(self.table.form, text.strip())
+        match = compiled(self.table.form).fullmatch(text.strip()) if len(text) <= LONGEST else None
         return None if match is None else self._of(text.strip(), match.groupdict(default=""))
 
     def _of(self, text: str, found: Mapping[str, str]) -> Cipher:
@@ -301,12 +347,12 @@ class CipherForm:
     def every(self, example: str) -> Iterator[str]:
         """Ciphers of all digits in the places of the example's, evenly spread where there are more than :data:`MOST_CIPHERS`."""
         like = self.read(example)
-        parts = dict.fromkeys(re.compile(self.table.form).groupindex, "0") if like is None else like.parts
+        parts = dict.fromkeys(compiled(self.table.form).groupindex, "0") if like is None else like.parts
         counts = {name: max(n for other, n in self.table.digits if other == name) for name, _ in self.table.digits}
         total = sum(counts.values())
         step = max(1, 10**total // MOST_CIPHERS)
-        for figures in itertools.islice(itertools.product("0123456789", repeat=total), 0, None, step):
-            left = "".join(figures)
+        for number in range(0, 10**total, step):
+            left = f"{number:0{total}}"
             own = dict(parts)
             for name, n in counts.items():
                 own[name], left = left[:n], left[n:]

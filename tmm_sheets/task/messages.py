@@ -3,16 +3,37 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from types import UnionType
-from typing import Any, get_args, get_origin
+from typing import Any, TypeVar, get_args, get_origin
 
+from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from tmm_sheets import toml_file
+from tmm_sheets.errors import BadInput
 from tmm_sheets.task.schema import Table
-from tmm_sheets.task.toml_lines import KeyPath
 from tmm_sheets.task.units import Refused
 from tmm_sheets.task.values import meant
-from tmm_sheets.words import either, marked, tell
+from tmm_sheets.toml_lines import KeyPath, TomlLines
+from tmm_sheets.words import either, tell
+
+T = TypeVar("T", bound=Table)
+
+
+def read(whole: type[T], path: Path, hint: str = "") -> tuple[T, TomlLines]:
+    """The table that a whole file is, and where its keys stand; ``hint`` is told where there is no such file.
+
+    Raises
+    ------
+    BadInput
+        with everything that is wrong in it, by line and key.
+    """
+    _, data, lines = toml_file.read(path, hint)
+    try:
+        return whole.model_validate(data), lines
+    except ValidationError as e:
+        raise BadInput(toml_file.problem(str(path), lines, *said(error, whole)) for error in e.errors()) from None
 
 
 def said(error: ErrorDetails, whole: type[Table]) -> tuple[KeyPath, str, str]:
@@ -53,27 +74,6 @@ def _commas(error: ErrorDetails) -> str:
         return ""
     meant = ", ".join(f"{whole}.{decimals}" for whole, decimals in zip(given[::2], given[1::2], strict=True))
     return tell("write {what}").format(what=f"[{meant}]")
-
-
-_OF_PARSER = tuple((re.compile(re.escape(text).replace(r"\{what\}", "(?P<what>.*)")), text) for text in (
-    marked("invalid statement"), marked("expected newline or end of document after a statement"), marked("expected {what}"),
-    marked("found invalid character {what}"), marked("cannot declare {what} twice"), marked("cannot overwrite a value"),
-    marked("expected ']' at the end of a table declaration"), marked("expected ']]' at the end of an array declaration"),
-    marked("cannot mutate immutable namespace {what}"), marked("cannot redefine namespace {what}"),
-    marked("expected '=' after a key in a key/value pair"), marked("invalid initial character for a key part"),
-    marked("unclosed array"), marked("unclosed inline table"), marked("duplicate inline table key {what}"),
-    marked("unescaped '\\' in a string"), marked("invalid hex value"), marked("escaped character is not a unicode scalar value"),
-    marked("unterminated string"), marked("illegal character {what}"), marked("invalid date or datetime"), marked("invalid value"),
-))  # fmt: skip
-"""What Python's reader of TOML says."""
-
-
-def of_parser(message: str) -> str:
-    """A message of Python's reader of TOML in the reader's words; itself where it is a new one."""
-    for pattern, text in sorted(_OF_PARSER, key=lambda row: "{what}" in row[1]):
-        if match := pattern.fullmatch(message):
-            return tell(text).format(**match.groupdict())
-    return message
 
 
 def _quoted(value: Any) -> str:

@@ -14,12 +14,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pydantic import ValidationError
-
+from tmm_sheets import toml_file
 from tmm_sheets.errors import BadInput, Problem
-from tmm_sheets.task import families, toml_file
+from tmm_sheets.task import families, messages
 from tmm_sheets.task.letters import title_text
-from tmm_sheets.task.messages import said
 from tmm_sheets.task.schema import PaperTable, Table, TitleBlockTable
 from tmm_sheets.words import tell
 
@@ -163,13 +161,11 @@ def of_file(path: Path) -> dict[str, TitleEntry]:
     """
     file = str(path)
     try:
-        _, data, lines = toml_file.read(path)
+        settings, lines = messages.read(SettingsTable, path)
     except toml_file.NoSuchFile:
         return {}
-    try:
-        settings = SettingsTable.model_validate(data)
-    except ValidationError as e:
-        raise BadInput(_problem(toml_file.problem(file, lines, *said(error, SettingsTable))) for error in e.errors()) from None
+    except BadInput as e:
+        raise BadInput(map(_problem, e.problems)) from None
     block = settings.title_block
     wrong = [name for name in sorted(block.model_fields_set) if name not in FIELDS]
     if wrong:

@@ -122,7 +122,7 @@ def split(value: Any) -> tuple[str, str]:
     """Number, which may be a fraction such as 1/80, and unit of a value as it is written; both empty where there is no number."""
     text = str(value).strip().replace("−", "-")
     match = None if isinstance(value, bool) else _NUMBER.match(text)
-    return (match.group().replace(",", "."), text[match.end() :].strip()) if match else ("", "")
+    return (match.group().replace(",", "."), text[match.end() :].strip()) if match and match.end() <= _LONGEST else ("", "")
 
 
 def common(unit: str) -> str:

@@ -15,9 +15,9 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, PrivateAttr, ValidationError
 
-from tmm_sheets import quoting, words
+from tmm_sheets import quoting, toml_file, words
 from tmm_sheets.errors import BadInput, CannotBuild, Problem
-from tmm_sheets.task import synthesis_refs, toml_file, units
+from tmm_sheets.task import synthesis_refs, units
 from tmm_sheets.task.cam_table import check_cam
 from tmm_sheets.task.letters import check_letters, freed
 from tmm_sheets.task.messages import said
@@ -47,9 +47,9 @@ from tmm_sheets.task.schema import (
     TitleBlockTable,
     TrainTable,
 )
-from tmm_sheets.task.toml_file import BareValue, quoted
-from tmm_sheets.task.toml_lines import KeyPath, TomlLines
 from tmm_sheets.task.values import Coordinate, Name, PositiveNumber, PrintedNumber
+from tmm_sheets.toml_file import BareValue, quoted
+from tmm_sheets.toml_lines import KeyPath, TomlLines
 from tmm_sheets.words import either, marked, tell
 
 

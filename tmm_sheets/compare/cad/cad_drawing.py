@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tmm_sheets import words
+from tmm_sheets import apart, words
 from tmm_sheets.box import Box
 from tmm_sheets.compare import codes, view_places
 from tmm_sheets.compare.cad import (
@@ -238,7 +238,7 @@ def compared(project: Project, sheet: int | None, path: Path, views: Path | None
     if views is not None and len(numbers) > 1:
         raise BadInput(tell("--views needs --sheet N: its views are those of one sheet"))
     say(tell("reading {file}").format(file=path.name))
-    ink = cad_file.read(path)
+    ink = apart.carried_out(cad_file.read, path, tell(cad_file.SMALLER))
     space = max(ink.spaces, key=lambda s: len(s.strokes))
     plans = PlanInk(space, ink.unit)
     may_be_ours = views is not None or "positions" not in project.parts or len(plans.a) > MANY_STROKES or plans.has_sheet_frame

@@ -42,7 +42,7 @@ COARSEST = 1e-7
 """Least sagitta of a flattened curve in its own sizes: a circle that is vast beside the drawing still has 7000 chords at most."""
 LARGEST = 64_000_000
 """Bytes of the largest file; a sheet has 0.1 to 20 million. Read, it takes ten times as much."""
-MOST_PARTS, MOST_POINTS = 200_000, 4_000_000
+MOST_PARTS, MOST_POINTS = 60_000, 4_000_000
 """Most primitives and points of a drawing with its blocks taken apart; a sheet with lettering in strokes has 30,000 and 200,000."""
 DEEPEST = 20
 """Blocks within blocks."""
@@ -50,6 +50,10 @@ STRETCHED = 1e-3
 """Share by which a block is higher, or lower, than it is wide without being called stretched."""
 MOST_NAMED = 3
 """Blocks that are named in a note."""
+MOST_COPIES = 100
+"""Lines in one and the same place that are looked at; programs leave two or three."""
+FARTHEST = 1e100
+"""Drawing units from the origin that coordinates have at most: of more no product is a number."""
 MOST_HATCH = 20_000
 """Lines of one hatching that are drawn."""
 NARROW = 0.62
@@ -249,7 +253,7 @@ class _DxfReader:
                 self.frozen.add(layer.dxf.name.lower())
         self.unread: Counter[str] = Counter()
         self.nowhere = 0
-        self.skipped = 0
+        self.skipped = self.copied = 0
         self.raised = False
         self.stretched: dict[str, float] = {}
 
@@ -261,6 +265,8 @@ class _DxfReader:
             found.append(tell("left out, not lines or text: {what}").format(what=what))
         if self.nowhere:
             found.append(tell("left out, with coordinates that are no numbers: {n} entities").format(n=self.nowhere))
+        if self.copied:
+            found.append(tell("left out, in the place of {most} others: {n} lines").format(most=MOST_COPIES, n=self.copied))
         if self.skipped:
             found.append(tell("left out, on layers that are off or frozen: {n} entities").format(n=self.skipped))
         if self.raised:
@@ -308,17 +314,24 @@ class _DxfReader:
                 self._take(e, kind, len(entities) - 1, fine, found)
             except (ValueError, TypeError, AttributeError, ZeroDivisionError, KeyError, IndexError, ArithmeticError):
                 self.unread[kind] += 1  # a broken entity must not hide the others
-        return self._sound(name, entities, found)
+        return self._sound(name, entities, found, fine)
 
-    def _sound(self, name: str, entities: list[Entity], found: _Contents) -> DrawingSpace:
-        """A space without what has no size or whose coordinates are no numbers."""
+    def _sound(self, name: str, entities: list[Entity], found: _Contents, fine: float) -> DrawingSpace:
+        """A space without what has no size, whose coordinates are no numbers, or what lies in its own place again and again."""
         strokes, areas, writings = found
-        self.nowhere += len({s.entity for s in strokes if not np.isfinite(s.points).all()})
-        strokes = [s for s in strokes if len(s.points) > 1 and np.isfinite(s.points).all()]
-        areas = [Area(_open_ended(a.points), a.entity, a.solid) for a in areas if np.isfinite(a.points).all()]
+        self.nowhere += len({s.entity for s in strokes if not _somewhere(s.points)})
+        strokes = [s for s in strokes if len(s.points) > 1 and _somewhere(s.points)]
+        copies = Counter[bytes]()
+        once = []
+        for s in strokes:
+            place = np.round(s.points / fine).tobytes()
+            copies[place] += 1
+            once += [s] if copies[place] <= MOST_COPIES else []
+        self.copied += len(strokes) - len(once)
+        areas = [Area(_open_ended(a.points), a.entity, a.solid) for a in areas if _somewhere(a.points)]
         areas = [a for a in areas if len(a.points) > 2]
-        writings = [w for w in writings if isfinite(w.at.real + w.at.imag + w.height) and w.text.strip()]
-        return DrawingSpace(name, tuple(strokes), tuple(areas), tuple(writings), tuple(entities))
+        writings = [w for w in writings if isfinite(w.height) and _somewhere(np.array([w.at])) and w.text.strip()]
+        return DrawingSpace(name, tuple(once), tuple(areas), tuple(writings), tuple(entities))
 
     def _take(self, e: Any, kind: str, n: int, fine: float, found: _Contents) -> None:
         """Read one primitive, entity number ``n``; what was read before an error stays."""
@@ -376,7 +389,7 @@ class _DxfReader:
                 if name not in self.weights:
                     self.weights[name] = 0
                     self.weights[name] = self._weight(self.document.blocks.get(name) or ())
-                total += (max(e.mcount, 1) if e.dxftype() == "INSERT" else 1) * self.weights[name]
+                total += self.weights[name] if e.dxftype() != "INSERT" else max(e.mcount, 1) * (1 + self.weights[name])
         return total
 
     def _apart(self, e: Any, of: _EntityLook | None, within: tuple[str, ...] = ()) -> Iterator[tuple[DXFEntity, _EntityLook]]:
@@ -429,10 +442,10 @@ class _DxfReader:
                 z += [] if p is None else [complex(p.x, p.y)]
             if e.dxftype() == "LWPOLYLINE" and len(e):  # type: ignore[arg-type]
                 z.extend(complex(x, y) for x, y, *_ in e[:2])  # type: ignore[index]
-        if len(z) < 2:
+        p = np.array([at for at in z if _somewhere(np.array([at]))])
+        if len(p) < 2:
             return 0.005
         # A few strays far off must not count.
-        p = np.array(z)
         low, high = (complex(np.quantile(p.real, q), np.quantile(p.imag, q)) for q in (0.02, 0.98))
         return max(abs(high - low) * FINE, 1e-9)
 
@@ -500,6 +513,11 @@ def _extent(e: Any, kind: str) -> float:
 
 def _xy(vertices: Any) -> Points:
     return np.array([complex(v[0], v[1]) for v in vertices])
+
+
+def _somewhere(z: Points) -> bool:
+    """Whether these are places of a drawing: numbers, and none beyond all measure."""
+    return bool((np.abs([z.real, z.imag]) <= FARTHEST).all())
 
 
 def _open_ended(z: Points) -> Points:

@@ -13,18 +13,19 @@ from typing import TYPE_CHECKING, Any
 import cv2
 import numpy as np
 
+from tmm_sheets import apart
 from tmm_sheets.compare import view_places
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan
 from tmm_sheets.compare.elements import Element, ElementView, dashed
 from tmm_sheets.compare.elements import views as views_of
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.compare.known_sheet import known_sheet, sheet_numbers
-from tmm_sheets.compare.photo import built_photo, lost_ink, numbers_read, overlay, placed_views, rectification, tracing
+from tmm_sheets.compare.photo import built_photo, lost_ink, numbers_read, overlay, photograph, placed_views, rectification, tracing
 from tmm_sheets.compare.photo.fit_check import MATCH, SIDE, SIDES
 from tmm_sheets.compare.photo.judging import PhotoFinding, judge, tolerance_of
 from tmm_sheets.compare.photo.lost_ink import lost_to_threshold
 from tmm_sheets.compare.photo.photo_report import image_report
-from tmm_sheets.compare.photo.photograph import Photograph, read
+from tmm_sheets.compare.photo.photograph import SMALLER, Photograph
 from tmm_sheets.compare.photo.profiles import line_level, noise_level
 from tmm_sheets.compare.photo.rectification import LONGEST, Rectified, rectify
 from tmm_sheets.compare.photo.sheet_map import FRAME, PAPER, Map
@@ -106,7 +107,7 @@ def sheet_of(project: Project, path: Path, say: Callable[[str], None] = lambda _
     """
     if len(project.variant.sheets) == 1:
         return 1
-    picture = read(path)
+    picture = _read(path)
     matches = _matches(project, 1, rectify(picture, known_sheet(project, 1).elements, path, say, True), say)
     second, best = sorted(matches, key=lambda k: matches[k])[-2:]
     if matches[best] <= max(MATCH, matches[second] + CERTAIN):
@@ -114,6 +115,10 @@ def sheet_of(project: Project, path: Path, say: Callable[[str], None] = lambda _
         raise CannotBuild(said.format(file=path, n=best, share=round(100 * matches[best])),
                           tell("call it, for instance, sheet 2.jpg, or give --sheet N"))
     return best
+
+
+def _read(path: Path) -> Photograph:
+    return apart.carried_out(photograph.read, path, tell(SMALLER))
 
 
 def examine(
@@ -148,7 +153,7 @@ def examine(
     reader = numbers_read.reader() if read_numbers else None
     say(tell("reading the picture and composing the sheet"))
     with ThreadPoolExecutor(1) as aside:  # decoding runs beside Python
-        reading = aside.submit(copy_context().run, read, path)  # in the same language
+        reading = aside.submit(copy_context().run, _read, path)  # in the same language
         ours = known_sheet(project, n)
         picture = reading.result()
     known = ours.elements

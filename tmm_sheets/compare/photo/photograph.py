@@ -154,12 +154,7 @@ def _page(data: bytes, path: Path) -> tuple[Grey, tuple[str, ...]]:
     if find_spec("pypdfium2") is None:
         raise BadInput(tell("reading a PDF needs pypdfium2, which is not installed"),
                        hint=tell("{command}, or save the page as PNG").format(command=quoting.install("compare")))  # fmt: skip
-    try:
-        made, pixels = pdf_page.drawn(data, PDF_DPI, MOST_PIXELS, 30e6)
-    except pdf_page.NotDrawn:
-        raise CannotBuild(tell("{file}: its page cannot be drawn within {seconds} s and {memory} GB").format(
-            file=path, seconds=pdf_page.SECONDS, memory=pdf_page.MEMORY / 1e9),
-            hint=tell("print it to a PDF or a PNG with another program")) from None
+    made, pixels = pdf_page.drawn(data, PDF_DPI, MOST_PIXELS, 30e6)
     wrong = {"locked": (tell("the PDF is locked with a password"), tell("save or print it without one")),
              "unreadable": (tell("is not a PDF that can be read: {why}").format(why=made.get("why")), tell(SHOW)),
              "empty": (tell("the PDF has no page"), tell(SHOW))}  # fmt: skip

@@ -14,9 +14,8 @@ from typing import Any, NamedTuple
 
 from tmm_sheets import encodings, files, spelling
 from tmm_sheets.errors import BadInput, Problem, reason_of
-from tmm_sheets.task.messages import of_parser
-from tmm_sheets.task.toml_lines import KeyPath, TomlLines, check_keys, dotted, nodes, scan
-from tmm_sheets.words import tell
+from tmm_sheets.toml_lines import KeyPath, TomlLines, check_keys, dotted, nodes, scan
+from tmm_sheets.words import marked, tell
 
 DIGITS, BITS = 4301, 63
 """Digits of the shortest whole number that Python does not read; bits of the longest one that TOML has, beside its sign."""
@@ -98,10 +97,31 @@ def syntax(message: str, text: str, file: str) -> Problem:
             if key and not key.isascii() and re.fullmatch(r"[\w.-]+", spelling.latin(key), re.ASCII) else
             tell("the line is: {line}").format(line=written) if written else
             tell("the file ends too early: a quote or a bracket is not closed"))
-    why = of_parser(message[:1].lower() + message[1:])
+    why = _of_parser(message[:1].lower() + message[1:])
     said = (tell("not valid TOML, column {column}: {why}").format(column=match[2], why=why) if match else
             tell("not valid TOML: {why}").format(why=why))
     return Problem(said, file, line, hint=hint)
+
+
+_OF_PARSER = tuple((re.compile(re.escape(text).replace(r"\{what\}", "(?P<what>.*)")), text) for text in (
+    marked("invalid statement"), marked("expected newline or end of document after a statement"), marked("expected {what}"),
+    marked("found invalid character {what}"), marked("cannot declare {what} twice"), marked("cannot overwrite a value"),
+    marked("expected ']' at the end of a table declaration"), marked("expected ']]' at the end of an array declaration"),
+    marked("cannot mutate immutable namespace {what}"), marked("cannot redefine namespace {what}"),
+    marked("expected '=' after a key in a key/value pair"), marked("invalid initial character for a key part"),
+    marked("unclosed array"), marked("unclosed inline table"), marked("duplicate inline table key {what}"),
+    marked("unescaped '\\' in a string"), marked("invalid hex value"), marked("escaped character is not a unicode scalar value"),
+    marked("unterminated string"), marked("illegal character {what}"), marked("invalid date or datetime"), marked("invalid value"),
+))  # fmt: skip
+"""What Python's reader of TOML says."""
+
+
+def _of_parser(message: str) -> str:
+    """A message of Python's reader of TOML in the reader's words; itself where it is a new one."""
+    for pattern, text in sorted(_OF_PARSER, key=lambda row: "{what}" in row[1]):
+        if match := pattern.fullmatch(message):
+            return tell(text).format(**match.groupdict())
+    return message
 
 
 def problem(file: str, lines: TomlLines, path: KeyPath, message: str, hint: str = "") -> Problem:
