@@ -18,6 +18,7 @@ from hmac import compare_digest
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TypedDict, get_args
+from unicodedata import normalize
 
 from starlette.applications import Starlette
 from starlette.datastructures import UploadFile
@@ -165,7 +166,7 @@ LONGEST_PART, LONGEST_ENDING = 80, 8
 
 def _place(name: str, of_group: bool) -> str:
     """Where a file goes: of a group into the folder of its student; the client's name is made of letters and figures."""
-    parts = [re.sub(r"[^\w @.+=,()-]+", "-", part).strip(" -") for part in name.replace("\\", "/").split("/")]
+    parts = [re.sub(r"[^\w @.+=,()-]+", "-", part).strip(" -") for part in normalize("NFC", name).replace("\\", "/").split("/")]
     parts = [part for part in parts if part.strip(".")]
     suffix = Path(parts[-1] if parts else "").suffix.lower()
     if not of_group:

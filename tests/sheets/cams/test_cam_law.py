@@ -58,8 +58,8 @@ def test_every_form_says_all_of_it(name):
     whole = " ".join(line for lines in _phases(law) for line in lines)
     forms = list(_forms(law))
     for form in forms:
-        columns, height, step, *_ = form
+        columns, height, *_ = form
         assert " ".join(line.strip() for lines in columns for line in lines).split() == whole.split()
-        assert form.size[1] == pytest.approx(12.0 + step * max(map(len, columns)))
-        assert step >= 1.6 * height
+        assert form.size[1] == pytest.approx(12.0 + form.pitch * max(map(len, columns)))
+        assert form.pitch >= 1.6 * height
     assert min(form.size[0] for form in forms[-4:]) == min(form.size[0] for form in forms)

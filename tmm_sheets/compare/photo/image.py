@@ -95,6 +95,10 @@ def compare(
     return image_report(name, n, path, e.found, e.findings, e.extra, pencil, e.notes, e.readings, e.built)
 
 
+MEMORY = 2_000_000_000
+"""Bytes that reading a picture may take: an A1 sheet at 300 dpi and the libraries that decode it."""
+
+
 def sheet_of(project: Project, path: Path, say: Callable[[str], None] = lambda _: None) -> int:
     """Number of the sheet that a photograph shows, from 1.
 
@@ -118,7 +122,7 @@ def sheet_of(project: Project, path: Path, say: Callable[[str], None] = lambda _
 
 
 def _read(path: Path) -> Photograph:
-    return apart.carried_out(photograph.read, path, tell(SMALLER))
+    return apart.carried_out(photograph.read, path, tell(SMALLER), memory=MEMORY)
 
 
 def examine(
