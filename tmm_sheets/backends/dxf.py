@@ -88,7 +88,7 @@ class LiveSheet:
 
     def _add(self, mark: int, made: list[tuple[int, str]]) -> None:
         """Add entities with their handles to model space."""
-        self.found.setdefault(mark, []).extend(handle for handle, _ in made)
+        self.found.setdefault(mark, []).extend([handle for handle, _ in made])
         for handle, text in made:
             self.places[handle] = len(self.parts.entities)
             self.parts.entities.append(text)
@@ -111,8 +111,8 @@ class LiveSheet:
     def _text(self, mark: Text, owner: str, on: str, more: str = "") -> Iterator[tuple[int, str]]:
         """A run of letters as TEXT; letters missing from the font of the style are drawn."""
         for part in (lacking_in_common() if self.style == COMMON else WHOLE).finditer(mark.text):
-            at = mark.at + _direction(mark.angle) * advance(mark.text[: part.start()], mark.height) * mark.wide
-            run = mark._replace(at=at, text=part[0])
+            run = mark if part[0] == mark.text else mark._replace(
+                at=mark.at + _direction(mark.angle) * advance(mark.text[: part.start()], mark.height) * mark.wide, text=part[0])
             handle = next(self.handles)
             if part.lastgroup != "drawn":
                 yield handle, _text(handle, owner, on, run, self.style, more)
@@ -199,7 +199,7 @@ class LiveSheet:
         group = f"{next(self.handles):X}"
         name = clean(name)
         self.parts.grouped.append(f"3\n{name}\n350\n{group}\n")
-        members = "".join(f"340\n{handle:X}\n" for handle in handles)
+        members = "".join([f"340\n{handle:X}\n" for handle in handles])
         for handle in handles:
             n, own = self.places[handle], f"5\n{handle:X}\n"
             told = f"{own}102\n{{ACAD_REACTORS\n330\n{group}\n102\n}}\n"
@@ -336,7 +336,8 @@ def render(drawing: Drawing, text: Lettering = "live") -> bytes:
     handles = count(around.first_handle)
     style = OWN if text == "librecad" else COMMON
     parts = _stroked(drawing.marks, around, handles) if text == "strokes" else LiveSheet(drawing, around, style, handles).parts
-    if any("nan" in tags or "inf" in tags for tags in (*parts.entities, *parts.blocks)):
+    tags = "".join((*parts.entities, *parts.blocks))
+    if "nan" in tags or "inf" in tags:
         for mark in drawing.marks:
             check(mark)
     parts.views += (_named_view(view, around, handles) for view in drawing.views)

@@ -135,8 +135,8 @@ class InkIndex:
         a, b = self._leaders
         near = distance(a, b, p) <= reach
         n = int(near.sum())
-        return (np.append(self.a[here], a[near]), np.append(self.b[here], b[near]),
-                np.append(self.of[here], np.full(n, LEADER)), np.append(self.strong[here], np.zeros(n, bool)))
+        return (np.concatenate((self.a[here], a[near])), np.concatenate((self.b[here], b[near])),
+                np.concatenate((self.of[here], np.full(n, LEADER))), np.concatenate((self.strong[here], np.zeros(n, bool))))
 
     def count_in(self, box: Box, origin: complex = 0j, direction: float = 0.0) -> int:
         """Weighted number of lines in a rectangle whose axes have ``direction``, rad, about ``origin``; see ``WORSE``."""
@@ -268,7 +268,7 @@ def distance(a: Any, b: Any, p: Any) -> Floats:
 def enters(a: Any, d: Any, x0: Any, y0: Any, x1: Any, y1: Any) -> Flags:
     """Mask: does a + t d, 0 <= t <= 1, meet the rectangle? Slab method; arguments broadcast."""
     first, last = 0.0, 1.0
-    for start, step, low, high in ((np.real(a), np.real(d), x0, x1), (np.imag(a), np.imag(d), y0, y1)):
+    for start, step, low, high in ((a.real, d.real, x0, x1), (a.imag, d.imag, y0, y1)):
         safe = np.where(np.abs(step) < 1e-12, 1e-12, step)  # along the sides: far off at both ends, or between them
         u, v = (low - start) / safe, (high - start) / safe
         first, last = np.maximum(first, np.minimum(u, v)), np.minimum(last, np.maximum(u, v))

@@ -414,7 +414,7 @@ class _Places:
             else:
                 p, q = np.full(len(led), label.anchor), owners.nearest(label.anchor, sides[:, led])
             written = self._placed.written
-            wx0, wy0, wx1, wy1 = written[ink_index.find_near(written.T, Box.around(np.append(p, q)), 0.0)].T
+            wx0, wy0, wx1, wy1 = written[ink_index.find_near(written.T, Box.around(np.concatenate((p, q))), 0.0)].T
             over = ink_index.enters(p[:, None], (q - p)[:, None], wx0, wy0, wx1, wy1).sum(axis=1)
             found[led] += OVER * over + CROSSING * here.count_crossed(p, q)
         return found.tolist()

@@ -14,6 +14,7 @@ import json
 import re
 from collections.abc import Iterable
 from functools import cache, lru_cache
+from itertools import accumulate
 from math import inf
 from typing import Any, NamedTuple
 
@@ -133,7 +134,7 @@ def advance(text: str, height: float) -> float:
 @lru_cache(maxsize=8192)
 def _advance(text: str) -> float:
     """Advance width of letters 1 mm high."""
-    return sum(glyph(c).advance for c in text)
+    return sum([glyph(c).advance for c in text])
 
 
 def strokes(text: str, height: float) -> list[Points]:
@@ -186,11 +187,11 @@ class _Setter:
 
     def set(self, markup: str, at: complex, height: float) -> complex:
         """Set ``markup`` from ``at``; returns the origin of the next letter."""
-        i, pen, text, start = 0, at, "", at
-        while i < len(markup):
+        i, pen, text, start, end = 0, at, "", at, len(markup)
+        while i < end:
             c = markup[i]
             if c == "\\":
-                if i + 1 == len(markup):
+                if i + 1 == end:
                     raise self.fail("nothing follows the backslash")
                 c = markup[i + 1]
                 i += 1
@@ -267,12 +268,11 @@ class _Setter:
 @lru_cache(maxsize=8192)
 def _extents(text: str) -> tuple[float, float, float]:
     """Right, upper and lower edge of the ink of a run 1 mm high, mm from the left end of its baseline."""
-    right, top, bottom, x = -inf, -inf, inf, 0.0
-    for g in map(glyph, text):
-        if g.strokes:
-            right, top, bottom = max(right, x + g.right), max(top, g.top), min(bottom, g.bottom)
-        x += g.advance
-    return right, top, bottom
+    glyphs = [glyph(char) for char in text]
+    origins = accumulate([g.advance for g in glyphs], initial=0.0)
+    inked = [(x + g.right, g.top, g.bottom) for x, g in zip(origins, glyphs, strict=False) if g.strokes]
+    rights, tops, bottoms = zip(*(inked or [(-inf, -inf, inf)]), strict=True)
+    return max(rights), max(tops), min(bottoms)
 
 
 @lru_cache(maxsize=8192)

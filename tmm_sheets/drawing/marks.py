@@ -53,7 +53,7 @@ class PlacedFrame(NamedTuple):
 
     def __call__(self, z: Any) -> Any:
         """Points of the sheet, complex mm, of points of the plan, any shape."""
-        w = np.real(z) / self.mu[0] + 1j * np.imag(z) / self.mu[1]
+        w = z.real / self.mu[0] + 1j * z.imag / self.mu[1]
         return self.origin + complex(np.exp(1j * self.turn)) * (np.conj(w) if self.mirror else w)
 
 
@@ -210,7 +210,7 @@ def flat(mark: Mark, step: float = 0.5) -> Points:
         return np.array([mark.at])
     points = np.asarray(mark.points)
     closed = isinstance(mark, Fill) or mark.closed
-    return np.append(points, points[:1]) if closed else points
+    return np.concatenate((points, points[:1])) if closed else points
 
 
 def bounds(marks: Iterable[Mark]) -> Box:

@@ -317,9 +317,10 @@ def _places(number: AxisNumber, distances: npt.NDArray[np.float64]) -> Iterator[
             for off in map(float, distances):
                 for side in (-1, 1):
                     corner = complex(x, off if side > 0 else -off - height)
+                    at = number.foot + corner
                     cost = off - float(OFF[0]) + ASIDE * abs(x + wide / 2) + ACROSS * (side != number.side) + stray
                     yield _Place(corner, (side * off, height), cost + SMALL * (height < number.height),
-                                 _figures_box(number, number.foot + corner, height))
+                                 Box(at.real, at.imag, at.real + wide, at.imag + height))
 
 
 def _figures_box(number: AxisNumber, at: complex, height: float) -> Box:

@@ -117,7 +117,7 @@ def _marks(marks: Sequence[Mark], points: list[Any]) -> dict[str, Any]:
     letters, lettered = _numbered([(m.height, m.angle) for m in texts])
     numbers = iter(styles)
     return {
-        "kinds": "".join({kind: letter for letter, kind in KINDS.items()}[type(m)] for m in marks),
+        "kinds": "".join(map({kind: letter for letter, kind in KINDS.items()}.__getitem__, map(type, marks))),
         "of": of, "by": by, "styles": [[*islice(numbers, len(some))] for some in (lines, arcs, polylines, fills)],
         "arcs": [[m.radius, m.start, m.end] for m in arcs],
         "closed": [m.closed for m in polylines], "lengths": [len(m.points) for m in curved],

@@ -231,18 +231,13 @@ RIM = 2.0
 """Thickness of a ring's rim over its root circle in modules."""
 
 
-class _Reading:
-    """Reads a step of the geometry: of a wheel the one with its number; ``per`` 1000 turns millimetres into metres."""
-
-    def __init__(self, name: str, per: float = 1.0) -> None:
-        self.name, self.per = name, per
-
-    def __get__(self, of: GearWheel | PairGeometry, owner: type) -> float:
-        return float(of.step(self.name).value) / self.per
+def _reading(name: str, per: float = 1.0) -> cached_property[float]:
+    """Read a step of the geometry, of a wheel the one with its number, once; ``per`` 1000 turns millimetres into metres."""
+    return cached_property(lambda of: float(of.step(name).value) / per)
 
 
-def _metres(name: str) -> _Reading:
-    return _Reading(name, 1e3)
+def _metres(name: str) -> cached_property[float]:
+    return _reading(name, 1e3)
 
 
 class GearWheel:
@@ -254,7 +249,7 @@ class GearWheel:
     wheel 2 then.
     """
 
-    shift, least_shift, tau, phi_alpha = _Reading("x"), _Reading("x_min"), _Reading("tau"), _Reading("phi_alpha")
+    shift, least_shift, tau, phi_alpha = _reading("x"), _reading("x_min"), _reading("tau"), _reading("phi_alpha")
     r, rb, rw, ra, rf = _metres("r"), _metres("rb"), _metres("rw"), _metres("ra"), _metres("rf")
     s, s_chord, p_chord, sa = _metres("s"), _metres("s_chord"), _metres("p_chord"), _metres("sa")
     t_pole, t_tip, t_low, r_low = _metres("rho_w"), _metres("rho_a"), _metres("rho_p"), _metres("r_low")
@@ -299,9 +294,9 @@ class GearWheel:
 class PairGeometry:
     """All values of GOST 16532 of a spur gear pair; raises :class:`CannotBuild` with all that forbids it."""
 
-    alpha, clearance, alpha_w = _Reading("alpha"), _Reading("c"), _Reading("alpha_w")
+    alpha, clearance, alpha_w = _reading("alpha"), _reading("c"), _reading("alpha_w")
     m, a, a_w, ym, p, pb, g_alpha = (_metres(k) for k in ("m", "a", "a_w", "ym", "p", "pb", "g_alpha"))
-    y, dy, eps_alpha = _Reading("y"), _Reading("dy"), _Reading("eps_alpha")
+    y, dy, eps_alpha = _reading("y"), _reading("dy"), _reading("eps_alpha")
 
     def __init__(self, data: GearData) -> None:
         self.driver = data.driver

@@ -236,8 +236,9 @@ def runs_of(speed: Callable[[Floats], Any], turn: float = TURN) -> list[Run]:
     moving = [i for i, sign in enumerate(signs) if sign]
     if not moving:
         return [Run(0.0, turn, 0)]
+    pairs = zip(moving, [*moving[1:], moving[0]], strict=True)
     ends: list[tuple[float, int]] = []  # where a run begins, and its sense
-    for i, j in zip(moving, [*moving[1:], moving[0]], strict=True):
+    for i, j in [(i, j) for i, j in pairs if signs[i] != signs[j] or (j - i) % len(t) != 1]:
         zeros = (j - i - 1) % len(t)
         after = [float(t[(i + k) % len(t)]) + turn * ((i + k) // len(t)) for k in range(zeros + 2)]
         if zeros > 1:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Collection, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, product
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -299,7 +299,8 @@ def _together(points: dict[str, complex], drawn: tuple[Vector, ...]) -> list[tup
     ``SEVERAL`` places and more within ``WIDE``, or points less than ``NEAR`` apart of which some are joined by a vector.
     """
     names, z = list(points), np.array(list(points.values()))
-    near = [same for same in together(z, NEAR) if any({tail, head} <= {names[i] for i in same} for _, tail, head in drawn)]
+    joined = {(tail, head) for _, tail, head in drawn}
+    near = [same for same in together(z, NEAR) if not joined.isdisjoint(product([names[i] for i in same], repeat=2))]
     circles = ((a + b) / 2 for a, b in combinations(z, 2) if abs(b - a) <= WIDE)
     wide = [np.flatnonzero(np.abs(z - at) <= WIDE / 2 + 1e-9).tolist() for at in circles]
     wide = [same for same in wide if len(together(z[same], 0.5)) >= SEVERAL]
