@@ -61,12 +61,10 @@ RULES = {
     "compare": ("drawing sheets", "construction project"),
     "compare.marking": ("task.messages task.schema", ""),
     "compare.view_places": ("compare task.messages task.schema", ""),
-    "compare.story_pdf": ("backends compare drawing", ""),
-    "compare.report_pages": ("compare", ""),
+    "compare.report_pages": ("backends compare drawing", ""),
     "compare.group": ("compare output.build_store task.title_entries", "project"),
     "compare.diagnosis": ("compare construction drawing", "project"),
     "compare.diagnosis.hypotheses": ("compare.codes compare.diagnosis construction methods.linkage", ""),
-    "compare.diagnosis.replay": ("construction", ""),
     "compare.measured": (f"catalogue compare construction drawing sheets {METHODS}", "project"),
     "compare.cad": ("backends compare construction drawing sheets", "project"),
     "compare.photo": ("compare drawing sheets", "project"),
@@ -84,7 +82,7 @@ RULES = {
 
 LIBRARIES = {
     "ezdxf": "backends.dxf backends.dxf_frame_making compare.cad.cad_file compare.cad.cad_overlay",
-    "reportlab": "backends.pdf compare.story_pdf",
+    "reportlab": "backends.pdf compare.report_pages",
     "matplotlib": "backends.png lab.bench.records optimising.picture",
     "pydantic": "task.values task.schema task.messages task.variant task.title_entries task.keys "
                 "task.family_folder task.family_tables compare.marking compare.view_places",

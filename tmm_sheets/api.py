@@ -20,7 +20,7 @@ from tmm_sheets.words import tell
 
 if TYPE_CHECKING:
     from tmm_sheets.catalogue import ShippedProject
-    from tmm_sheets.compare.report import Kind, Report
+    from tmm_sheets.compare.findings import Kind, Report
     from tmm_sheets.optimising.optimum import Optimum
     from tmm_sheets.output.view_pictures import Picture
     from tmm_sheets.result_files import Numbers

@@ -22,8 +22,7 @@ from tmm_sheets.catalogue import read
 from tmm_sheets.compare.cad import cad_drawing, cad_file, registration
 from tmm_sheets.compare.cad.line_fit import lines
 from tmm_sheets.compare.cad.registration import register
-from tmm_sheets.compare.elements import Element, elements
-from tmm_sheets.compare.known_sheet import KnownSheet
+from tmm_sheets.compare.elements import Element, KnownSheet, elements
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.project import Project
 from tmm_sheets.sheets.composed import Composed

@@ -20,7 +20,7 @@ import numpy as np
 
 from tests.compare.students import OWN, PENCIL, READING, Hand, opened
 from tmm_sheets.compare.measured.chain import judge
-from tmm_sheets.compare.measured.judged import JudgedValue
+from tmm_sheets.compare.measured.evidence import JudgedValue
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables
 from tmm_sheets.compare.measured.measured_file import FilledTable
 from tmm_sheets.construction.step import Step

@@ -21,7 +21,7 @@ from tests.manuals.test_engine_tables import ERRATA as ENGINE_ERRATA
 from tests.manuals.test_shaper_tables import ERRATA as SHAPER_ERRATA
 from tmm_sheets import catalogue
 from tmm_sheets.compare.measured.chain import judge
-from tmm_sheets.compare.measured.judged import JudgedValue
+from tmm_sheets.compare.measured.evidence import JudgedValue
 from tmm_sheets.compare.measured.measurable import Measurables
 from tmm_sheets.compare.measured.measured_file import FilledTable, read
 from tmm_sheets.project import Project

@@ -16,8 +16,8 @@ import numpy as np
 from tests.compare.form import of_elements
 from tests.compare.simulation import shoot
 from tmm_sheets import catalogue
-from tmm_sheets.compare.known_sheet import known_sheet
-from tmm_sheets.compare.photo import image, numbers_read
+from tmm_sheets.compare.elements import known_sheet
+from tmm_sheets.compare.photo import image, small_marks
 from tmm_sheets.drawing.marks import Text
 from tmm_sheets.project import Project
 
@@ -35,14 +35,14 @@ def trial(name: str, n: int, count: int, seed: int) -> tuple[int, int, int, int,
     project, rng = Project(catalogue.read(name)), np.random.default_rng(seed)
     sheet = known_sheet(project, n)
     marks = list(sheet.sheet.drawing.marks)
-    numbers = [e for e in sheet.elements if numbers_read.is_number(e)]
+    numbers = [e for e in sheet.elements if small_marks.is_number(e)]
     told = {}
     for e in (numbers[i] for i in rng.choice(len(numbers), min(count, len(numbers)), replace=False)):
         at = next(i for i, m in enumerate(marks) if any(m is own for own in e.marks))
         mark = marks[at]
         assert isinstance(mark, Text)
         marks[at] = mark._replace(text=changed(mark.text, rng))
-        if numbers_read.differs(marks[at].text, e.text, e.text == e.position):
+        if small_marks.differs(marks[at].text, e.text, e.text == e.position):
             told[e.number] = marks[at].text
     shot = shoot(replace(sheet.sheet.drawing, marks=tuple(marks)), seed)
     with TemporaryDirectory() as folder:

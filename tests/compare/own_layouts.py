@@ -9,10 +9,8 @@ import numpy as np
 
 from tests.compare.hypotheses import KINDS, Slip, Slipping
 from tests.compare.students import opened
-from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
-from tmm_sheets.compare.diagnosis.replay import replay
-from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.known_sheet import KnownSheet
+from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, replay
+from tmm_sheets.compare.elements import Element, ElementView, KnownSheet
 from tmm_sheets.compare.measured.measurable import Measurables
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.construction.error import Errors

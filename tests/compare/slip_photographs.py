@@ -22,8 +22,7 @@ from tests.foreign import scene
 from tests.foreign.drawing import Mark
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis
-from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.known_sheet import KnownSheet, known_sheet
+from tmm_sheets.compare.elements import Element, KnownSheet, known_sheet
 from tmm_sheets.compare.photo import image
 from tmm_sheets.compare.photo.photo_report import image_report
 from tmm_sheets.compare.placing import Placing

@@ -22,7 +22,7 @@ import numpy as np
 from tmm_sheets import catalogue
 from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.collecting import measurables
-from tmm_sheets.compare.measured.judged import JudgedValue
+from tmm_sheets.compare.measured.evidence import JudgedValue
 from tmm_sheets.compare.measured.measurable import Measurable, Measurables
 from tmm_sheets.compare.measured.measured_file import FilledTable, MeasuredLine
 from tmm_sheets.construction import error

@@ -8,9 +8,8 @@ from tests.compare.test_tracing import COLUMNS, HIGH, ROWS, WIDE, arrow, draw, f
 from tmm_sheets.compare.photo.arrow_heads import with_heads
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.line_ends import with_ends
-from tmm_sheets.compare.photo.painting import Owners, fill
 from tmm_sheets.compare.photo.profiles import SCALE
-from tmm_sheets.compare.photo.traces import InkTrace
+from tmm_sheets.compare.photo.traces import InkTrace, Owners, fill
 
 pytestmark = [pytest.mark.judging, pytest.mark.trial]
 

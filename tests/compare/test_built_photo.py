@@ -10,14 +10,15 @@ from tests.compare.hypotheses import Slip
 from tests.compare.own_layouts import Drawn, follows
 from tests.compare.slip_photographs import followed
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare.diagnosis.built_plan import errors_of
-from tmm_sheets.compare.diagnosis.drawn_plan import PlanPoint
-from tmm_sheets.compare.known_sheet import known_sheet
-from tmm_sheets.compare.photo import built_photo, tracing
+from tmm_sheets.compare import codes
+from tmm_sheets.compare.codes import Number
+from tmm_sheets.compare.diagnosis.built_plan import PlanPoint, errors_of
+from tmm_sheets.compare.elements import known_sheet
+from tmm_sheets.compare.photo import image, tracing
 from tmm_sheets.compare.photo.judging import judge
-from tmm_sheets.compare.photo.painting import paint
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.sheet_map import PAPER
+from tmm_sheets.compare.photo.traces import paint
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.project import Project
 
@@ -51,8 +52,8 @@ def examined(elements, hidden=None):
         ink[np.kron(hidden, np.ones((round(SCALE), round(SCALE)), bool))] = 0
     found = SimpleNamespace(ink=ink, hidden=hidden, uncertainty=0.15, soft=False, eats="nothing", uneven=None)
     findings = [judge(t, 0.25, 0.15) for t in tracing.trace(KNOWN.elements, ink, hidden)[0]]
-    built = built_photo.built_otherwise(SHAPER, KNOWN, findings, ink, hidden)
-    return built, built_photo.as_built(findings, built, found, 0.25)[0] if built else findings
+    built = image.built_otherwise(SHAPER, KNOWN, findings, ink, hidden)
+    return built, image.as_built(findings, built, found, 0.25)[0] if built else findings
 
 
 def slipped(**ways):
@@ -158,12 +159,12 @@ def test_one_wrong_line_is_no_mistake_of_the_plan():
 def test_ink_that_crosses_a_line_is_none_along_it():
     ink = photographed([])
     line = np.array([300 + 300j, 360 + 300j])
-    assert built_photo.inked(ink, line, 20.0) == 0
+    assert image.inked(ink, line, 20.0) == 0
     for x in range(300, 361, 6):
         ink[round((PAPER.y1 - 310) * SCALE):round((PAPER.y1 - 290) * SCALE), round(x * SCALE):round((x + 0.5) * SCALE)] = 60
-    assert built_photo.inked(ink, line, 20.0) < 0.3
+    assert image.inked(ink, line, 20.0) < 0.3
     ink[round((PAPER.y1 - 300.2) * SCALE):round((PAPER.y1 - 299.8) * SCALE), round(300 * SCALE):round(340 * SCALE)] = 60
-    assert built_photo.inked(ink, line, 20.0) == pytest.approx(2 / 3, abs=0.1)
+    assert image.inked(ink, line, 20.0) == pytest.approx(2 / 3, abs=0.1)
 
 
 @pytest.mark.parametrize(("by", "found", "stays"), [
@@ -177,7 +178,7 @@ def test_a_line_that_is_in_its_place_speaks_against_a_mistake_that_leads_it_else
     was = next(e for e in KNOWN.elements if e.kind == "line" and e.role == "vector" and e.length > 20)
     f = judge(tracing.InkTrace(was, **{"status": "measured", **found}), 0.25, 0.15)
     way = (was.points[1] - was.points[0]) / was.length
-    assert built_photo._stays(f, was.points + np.array(by) * way) is stays
+    assert image._stays(f, was.points + np.array(by) * way) is stays
 
 
 @pytest.mark.parametrize(("by", "told"), [
@@ -188,7 +189,7 @@ def test_a_line_that_would_run_off_the_paper_is_not_called_missing(by, told):
     was = next(e for e in KNOWN.elements if e.kind == "line" and e.role == "vector")
     f = judge(tracing.InkTrace(replace(was, points=was.points + by), "missing"), 0.25, 0.15)
     first = judge(tracing.InkTrace(was, "missing"), 0.25, 0.15)
-    judged = built_photo._judged(f, first, SimpleNamespace(uncertainty=0.15), 0.25)
+    judged = image._judged(f, first, SimpleNamespace(uncertainty=0.15), 0.25)
     assert (judged.verdict, judged.what) == ("red", told)
     assert PAPER.contains(judged.at)  # or its number would stand off the overlay
 
@@ -206,7 +207,7 @@ def test_a_line_that_would_run_off_the_paper_is_not_called_missing(by, told):
 def test_what_was_measured_in_its_place_is_not_elsewhere(by, here, there, told):
     first = judge(tracing.InkTrace(VECTOR, **here), 0.25, 0.15)
     now = replace(VECTOR, points=VECTOR.points + by * WAY)
-    f = built_photo._judged(judge(tracing.InkTrace(now, **there), 0.25, 0.15), first, SimpleNamespace(uncertainty=0.15), 0.25)
+    f = image._judged(judge(tracing.InkTrace(now, **there), 0.25, 0.15), first, SimpleNamespace(uncertainty=0.15), 0.25)
     assert f.verdict == told
     assert f.element is VECTOR
     assert ("as follows from the mistake" in f.what) == (told != "green")
@@ -218,8 +219,8 @@ def test_lines_in_their_places_speak_against_a_mistake(against, contradicted):
     step = errors_of(SHAPER, KNOWN)[0]["accelerations"]["k"]
     built = None, [PlanPoint(step, z, z + 3j * WAY) for z in VECTOR.points]
     stays = judge(tracing.InkTrace(VECTOR, "measured"), 0.25, 0.15)
-    assert built_photo._contradicted(built, [red] * 3 + [stays] * against) is contradicted
-    assert not built_photo._contradicted(built, [red] * 7 + [stays] * min(against, 1))
+    assert image._contradicted(built, [red] * 3 + [stays] * against) is contradicted
+    assert not image._contradicted(built, [red] * 7 + [stays] * min(against, 1))
 
 
 @pytest.mark.parametrize(("lines", "borne"), [
@@ -237,13 +238,13 @@ def test_a_point_that_is_off_is_told_as_one_that_others_follow_only_where_lines_
     step = SimpleNamespace()
     points = [PlanPoint(step, 0j, 3j), PlanPoint(step, 10 + 0j, 10 + 3j), PlanPoint(step, 30 + 0j, 30 + 0j)]
     now = {p.was: p.now for p in points} | {20 + 0j: 20 + 0j}
-    monkeypatch.setattr(built_photo, "between", lambda e, _: np.array([now[complex(z)] for z in e.points]))
+    monkeypatch.setattr(image, "between", lambda e, _: np.array([now[complex(z)] for z in e.points]))
 
     def red(begin, *off):
         ends = np.array([begin, begin + 10], complex)
         element = SimpleNamespace(role="vector", kind="line", points=ends)
         return SimpleNamespace(element=element, verdict="red", trace=SimpleNamespace(at=ends + 1j * np.array(off)))
 
-    built = (SimpleNamespace(mistake="point a lies 3.0 mm off"), points)
-    assert built_photo._borne_out(built, [red(*line) for line in lines]) is borne
-    assert built_photo._borne_out((SimpleNamespace(mistake=object()), points), [])  # one of the usual mistakes
+    built = (SimpleNamespace(mistake=codes.POINT_MOVED_ON(point="a", distance=Number("3.0"))), points)
+    assert image._borne_out(built, [red(*line) for line in lines]) is borne
+    assert image._borne_out((SimpleNamespace(mistake=object()), points), [])  # one of the usual mistakes

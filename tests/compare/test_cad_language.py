@@ -7,7 +7,7 @@ import pytest
 from tmm_sheets import words
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.cad import cad_drawing
-from tmm_sheets.compare.known_sheet import known_sheet
+from tmm_sheets.compare.elements import known_sheet
 from tmm_sheets.project import Project
 
 SHAPER = Project(read("lugansk/shaper"))

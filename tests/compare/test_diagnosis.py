@@ -9,8 +9,7 @@ import pytest
 from tests.compare.hypotheses import Slip, Slipping, student
 from tests.compare.students import PENCIL, READING, opened
 from tests.few import seldom
-from tmm_sheets.compare.diagnosis.hypotheses import hypotheses
-from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
+from tmm_sheets.compare.diagnosis.hypotheses import Change, displaced, hypotheses, replay
 from tmm_sheets.compare.measured.chain import judge
 
 

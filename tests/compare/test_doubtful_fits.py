@@ -12,10 +12,10 @@ from tmm_sheets.compare.elements import grown
 from tmm_sheets.compare.photo import frame_candidates, rectification, tracing
 from tmm_sheets.compare.photo.image import refusal
 from tmm_sheets.compare.photo.judging import judge
-from tmm_sheets.compare.photo.occlusion import at as hidden_at
-from tmm_sheets.compare.photo.painting import fill
+from tmm_sheets.compare.photo.lost_ink import at as hidden_at
 from tmm_sheets.compare.photo.photograph import Photograph
 from tmm_sheets.compare.photo.sheet_map import CORNERS
+from tmm_sheets.compare.photo.traces import fill
 from tmm_sheets.errors import CannotBuild
 
 INSIDE = (np.linspace(90, 820, 12)[None, :] + 1j * np.linspace(20, 570, 9)[:, None]).ravel()

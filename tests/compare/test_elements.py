@@ -8,8 +8,7 @@ import pytest
 from tests.few import few
 from tmm_sheets.box import Box
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare.elements import dashed, elements, said, sampled, views
-from tmm_sheets.compare.known_sheet import known_sheet
+from tmm_sheets.compare.elements import dashed, elements, known_sheet, said, sampled, views
 from tmm_sheets.drawing.canvas import Canvas, hatch_polygon
 from tmm_sheets.drawing.ink import strokes
 from tmm_sheets.drawing.marks import Drawing, Fill, Text

@@ -9,7 +9,7 @@ import pytest
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.findings import called
-from tmm_sheets.compare.photo import extra_ink, occlusion, photo_report
+from tmm_sheets.compare.photo import displacement, lost_ink, photo_report
 from tmm_sheets.compare.photo.finding_clusters import places
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.profiles import SCALE
@@ -105,7 +105,7 @@ def test_a_strip_beside_what_was_wiped_out_is_its_rim(high, beside, rim):
 
     left, wiped = (np.zeros((round(PAPER.height * SCALE), round(PAPER.width * SCALE)), np.uint8) for _ in range(2))
     left[rows(0, high), 1200:1500], wiped[rows(high + beside - 0.3, high + beside + 1), 1000:1700] = 90, 255
-    assert len(extra_ink.extra_ink(left, 18.0, np.zeros_like(left), wiped)) == (not rim)
+    assert len(displacement.extra_ink(left, 18.0, np.zeros_like(left), wiped)) == (not rim)
 
 
 @pytest.mark.parametrize(("extra", "expected"), [
@@ -202,12 +202,12 @@ def test_a_crease_is_wiped_out_and_what_crosses_it_stays(upright):
     view[:, 1500:1503] = 15
     view[700:703, 1000:2000] = 90  # a line across it
     view[100:1500, 2500:2503] = 15  # paler than a line, but of no whole sheet
-    left = extra_ink.without_creases(sheet, sheet, 18.0)
+    left = displacement.without_creases(sheet, sheet, 18.0)
     shown = left if upright else left.T
     assert not shown[140:600, 1500:1503].any()  # inside the frame
     assert (shown[700:703, 1000:2000] == 90).all()
     assert (shown[100:1500, 2500:2503] == 15).all()
-    assert np.array_equal(extra_ink.without_creases(left, left, 18.0), left)
+    assert np.array_equal(displacement.without_creases(left, left, 18.0), left)
 
 
 @pytest.mark.parametrize(("legs", "flaps"), [((60, 50), 1), ((60, 12), 0), ((0, 0), 0)])
@@ -218,7 +218,7 @@ def test_the_back_of_a_dog_ear_lies_where_its_corner_is_mirrored(legs, flaps, wa
     row, column = np.mgrid[: max(a, 1), : max(b, 1)]
     corner = mask[:: way[0], :: way[1]]
     corner[: max(a, 1), : max(b, 1)] = row / max(a, 1) + column / max(b, 1) < (1 if a else 0)
-    found = list(occlusion._flaps(mask))
+    found = list(lost_ink._flaps(mask))
     assert len(found) == flaps
     if flaps:
         flap = found[0][:: way[0], :: way[1]]
@@ -230,10 +230,10 @@ def test_the_back_of_a_dog_ear_lies_where_its_corner_is_mirrored(legs, flaps, wa
 
 def test_what_is_hidden_is_told_where_it_is():
     grey = np.full((400, 843), 200, np.uint8)  # its lower third is outside the picture
-    none = occlusion.ProfileLines(np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, np.int64))
-    mask = occlusion.hidden_places(grey, AS_IT_IS, np.zeros((594, 841), np.uint8), none, none, 18.0)
+    none = lost_ink.ProfileLines(np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, np.int64))
+    mask = lost_ink.hidden_places(grey, AS_IT_IS, np.zeros((594, 841), np.uint8), none, none, 18.0)
     rows = np.flatnonzero(mask.all(1))
-    assert (rows[0], rows[-1]) == (pytest.approx(400 - occlusion.MARGIN, abs=1), 593)
+    assert (rows[0], rows[-1]) == (pytest.approx(400 - lost_ink.MARGIN, abs=1), 593)
     assert not mask[: rows[0]].any()
 
 

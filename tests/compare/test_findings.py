@@ -12,8 +12,7 @@ from tests.compare.languages import to_reader
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.codes import CODES, Number, Own, joined
 from tmm_sheets.compare.diagnosis.hypotheses import WORDS, built_otherwise
-from tmm_sheets.compare.finding_records import FindingRecord, as_tree
-from tmm_sheets.compare.findings import shifted
+from tmm_sheets.compare.findings import FindingRecord, as_tree, shifted
 
 DOCS = Path(__file__).parents[2] / "docs" / "findings.md"
 

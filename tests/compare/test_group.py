@@ -8,8 +8,7 @@ import pytest
 
 from tmm_sheets.compare import codes, group, marking
 from tmm_sheets.compare.codes import Number, Remark
-from tmm_sheets.compare.finding_records import FindingRecord
-from tmm_sheets.compare.report import Report
+from tmm_sheets.compare.findings import FindingRecord, Report
 from tmm_sheets.compare.report_pages import page
 from tmm_sheets.errors import BadInput
 from tmm_sheets.files import seen_from

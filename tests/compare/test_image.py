@@ -13,8 +13,7 @@ from tests.compare.form import faults
 from tests.compare.simulation import Camera, paper, photograph, plant
 from tmm_sheets import catalogue
 from tmm_sheets.backends import pdf, png
-from tmm_sheets.compare.elements import elements
-from tmm_sheets.compare.known_sheet import KnownSheet
+from tmm_sheets.compare.elements import KnownSheet, elements
 from tmm_sheets.compare.photo import frame_search, image, rectification, tracing
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.photo_report import image_report

@@ -10,7 +10,7 @@ import pytest
 from tests.compare.cad_plants import Way, covered, draw
 from tmm_sheets.catalogue import read
 from tmm_sheets.compare.cad import cad_drawing, cad_file, cad_report
-from tmm_sheets.compare.cad.cad_patterns import of_dashes, of_strokes
+from tmm_sheets.compare.cad.cad_ink import of_dashes, of_strokes
 from tmm_sheets.compare.elements import dashed, elements
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.project import Project

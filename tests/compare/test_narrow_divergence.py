@@ -7,9 +7,8 @@ import pytest
 from tests.compare.test_tracing import COLUMNS, ROWS, draw, line, paper
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.own_place import may_part, narrow_divergence
-from tmm_sheets.compare.photo.painting import Owners
 from tmm_sheets.compare.photo.profiles import pixels, sample
-from tmm_sheets.compare.photo.traces import InkTrace
+from tmm_sheets.compare.photo.traces import InkTrace, Owners
 from tmm_sheets.compare.photo.tracing import trace
 
 pytestmark = pytest.mark.judging

@@ -8,7 +8,7 @@ import pytest
 from tests.compare.simulation import Text, letters
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.photo import numbers_read
+from tmm_sheets.compare.photo import small_marks
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.sheet_map import PAPER
 from tmm_sheets.compare.photo.traces import InkTrace
@@ -24,7 +24,7 @@ VIEW = ElementView(1, "Table", Box(0, 0, 100, 100))
     ("0,09", "0,05", False, True), ("5", "4", True, True), ("5", "4", False, True), ("241", "240", False, False),
     ("241", "240", True, True), ("0", "0", False, False), ("8", "0", False, True), ("1000", "100", False, True)])
 def test_what_is_another_number(found, wanted, exact, other):
-    assert numbers_read.differs(found, wanted, exact) == other
+    assert small_marks.differs(found, wanted, exact) == other
 
 
 def lettering(text, at, angle=0.0):
@@ -48,15 +48,15 @@ def test_numbers_are_shown_upright_and_once_more_where_they_differ():
     ink = np.zeros((round(PAPER.height * SCALE), round(PAPER.width * SCALE)), np.float32)
     traces = [InkTrace(e, "lettering"), InkTrace(e, "hidden")]
     answers = (["16,1"], ["26,1", "26,1"], ["26,1", "16,1"], ["26,1", "36,1"])
-    of = [numbers_read.readings(traces, ink, read(said)) for said in answers]
+    of = [small_marks.readings(traces, ink, read(said)) for said in answers]
     assert [(o.asked, o.unread, dict(o.otherwise)) for o in of] == [(1, 0, {}), (1, 0, {200: "26,1"}), (1, 0, {}), (1, 1, {})]
-    assert shown == [numbers_read.ROW] * 7
+    assert shown == [small_marks.ROW] * 7
 
 
 def test_without_the_reader_it_is_said(monkeypatch):
-    monkeypatch.setattr(numbers_read, "find_spec", lambda name: None)
+    monkeypatch.setattr(small_marks, "find_spec", lambda name: None)
     with pytest.raises(BadInput, match="rapidocr"):
-        numbers_read.reader()
+        small_marks.number_reader()
 
 
 @pytest.mark.skipif(find_spec("rapidocr") is None or find_spec("onnxruntime") is None, reason="the extra ocr is not installed")
@@ -73,6 +73,6 @@ def test_a_swapped_digit_is_read():
         for p in letters(lettering(theirs, at, angle)[1]):
             xy = np.column_stack((p.real * SCALE - 0.5, (PAPER.y1 - p.imag) * SCALE - 0.5))
             cv2.polylines(ink, [np.round(xy * 16).astype(np.int32)], False, 255, 2, cv2.LINE_AA, 4)
-    found = numbers_read.readings(traces, ink, numbers_read.reader())
+    found = small_marks.readings(traces, ink, small_marks.number_reader())
     assert found.unread == 0
     assert found.otherwise == {100: "26,1", 280: "0,5914", 340: "1"}

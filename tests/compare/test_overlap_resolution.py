@@ -7,10 +7,9 @@ import pytest
 from tmm_sheets.box import Box
 from tmm_sheets.compare.elements import Element, ElementView
 from tmm_sheets.compare.photo.line_ends import resolve_overlaps
-from tmm_sheets.compare.photo.painting import Owners
 from tmm_sheets.compare.photo.profiles import SCALE, pixels
 from tmm_sheets.compare.photo.sheet_map import PAPER
-from tmm_sheets.compare.photo.traces import InkTrace
+from tmm_sheets.compare.photo.traces import InkTrace, Owners
 
 pytestmark = pytest.mark.judging
 

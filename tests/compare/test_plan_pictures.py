@@ -5,7 +5,7 @@ import numpy as np
 from tests.compare.hypotheses import KINDS, Slipping
 from tests.compare.students import PENCIL, READING, opened
 from tmm_sheets.compare.measured.chain import judge
-from tmm_sheets.compare.measured.plan_pictures import PlanPictures
+from tmm_sheets.compare.measured.measured_lengths import PlanPictures
 
 
 def test_a_reversed_vector_is_shown_as_it_was_drawn():

@@ -9,10 +9,10 @@ from tests.compare.students import PENCIL, READING, Hand, measured
 from tests.project_files import MOMENT, SLIDER, WORKING, project
 from tmm_sheets.compare import group
 from tmm_sheets.compare.codes import Remark
+from tmm_sheets.compare.findings import Report
 from tmm_sheets.compare.measured import measured_lengths
 from tmm_sheets.compare.measured.chain import judge
 from tmm_sheets.compare.measured.measured_file import FilledTable
-from tmm_sheets.compare.report import Report
 
 LINKS = {
     "guide[1].through": ["0 m", "0.05 m"],

@@ -14,10 +14,9 @@ from tmm_sheets.compare.photo import arrow_heads, displacement, tracing
 from tmm_sheets.compare.photo.judging import judge
 from tmm_sheets.compare.photo.line_ends import with_edges
 from tmm_sheets.compare.photo.own_place import strips
-from tmm_sheets.compare.photo.painting import Owners, fill
 from tmm_sheets.compare.photo.profiles import SCALE
 from tmm_sheets.compare.photo.small_marks import displaced_dots
-from tmm_sheets.compare.photo.traces import InkTrace
+from tmm_sheets.compare.photo.traces import InkTrace, Owners, fill
 from tmm_sheets.compare.photo.tracing import trace
 from tmm_sheets.drawing.marks import Provenance as By
 from tmm_sheets.drawing.marks import Text

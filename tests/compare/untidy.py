@@ -26,8 +26,7 @@ import numpy as np
 
 from tests.compare.students import OWN
 from tmm_sheets.catalogue import read
-from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, hypotheses, of_other_positions
-from tmm_sheets.compare.diagnosis.replay import Change, displaced, replay
+from tmm_sheets.compare.diagnosis.hypotheses import Change, Hypothesis, displaced, hypotheses, of_other_positions, replay
 from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.protocol import letter_of
 from tmm_sheets.construction.step import Step, asked_for, ordered

@@ -15,7 +15,7 @@ from tmm_sheets.progress import Progress
 from tmm_sheets.words import marked, tell
 
 if TYPE_CHECKING:
-    from tmm_sheets.compare.report import Kind, Report
+    from tmm_sheets.compare.findings import Kind, Report
     from tmm_sheets.project import Project
 
 

@@ -20,9 +20,8 @@ from unicodedata import normalize
 
 from tmm_sheets import files, toml_file
 from tmm_sheets.compare.codes import Remark
-from tmm_sheets.compare.finding_records import FindingRecord
+from tmm_sheets.compare.findings import FindingRecord, Kind, Report
 from tmm_sheets.compare.marking import KINDS, FaultKind, MarkingScheme
-from tmm_sheets.compare.report import Kind, Report
 from tmm_sheets.compare.report_pages import page
 from tmm_sheets.compare.story import Story, StoryTable
 from tmm_sheets.errors import BadInput, CannotBuild, Problem

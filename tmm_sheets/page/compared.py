@@ -6,8 +6,8 @@ from base64 import b64encode
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from tmm_sheets.compare.findings import Report
 from tmm_sheets.compare.group import DRAWINGS, NUMBERS, PICTURES
-from tmm_sheets.compare.report import Report
 from tmm_sheets.errors import BadInput, CannotBuild
 from tmm_sheets.page import jobs
 from tmm_sheets.page.workers import Message, Say

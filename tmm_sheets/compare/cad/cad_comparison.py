@@ -15,13 +15,23 @@ import numpy.typing as npt
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
-from tmm_sheets.compare.cad.line_fit import ONE_PLACE, KnownLines, lines
-from tmm_sheets.compare.cad.overlaps import Interval, Left, Numbers, Overlaps, gaps, overlaps, together, union
+from tmm_sheets.compare.cad.line_fit import (
+    ONE_PLACE,
+    Interval,
+    KnownLines,
+    Left,
+    Numbers,
+    Overlaps,
+    gaps,
+    lines,
+    overlaps,
+    together,
+    union,
+)
 from tmm_sheets.compare.codes import Remark
 from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.findings import Finding
+from tmm_sheets.compare.findings import Finding, Verdict, verdict
 from tmm_sheets.compare.placing import Placing, moved
-from tmm_sheets.compare.report import Verdict, verdict
 from tmm_sheets.drawing.marks import Fill, Line, Points, Text
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.words import marked, tell
@@ -114,7 +124,7 @@ class LookFinding:
 
 @dataclass(frozen=True)
 class AbsentKind:
-    """That a view leaves out so many elements of a kind (of :data:`~tmm_sheets.compare.cad.omissions.KINDS`), or positions."""
+    """That a view leaves out so many elements of a kind (of :data:`~tmm_sheets.compare.cad.cad_extras.KINDS`), or positions."""
 
     view: ElementView
     kind: str

@@ -12,18 +12,19 @@ With a sheet the order of the steps keeps ink from being mistaken for that of an
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tmm_sheets import apart, words
 from tmm_sheets.box import Box
 from tmm_sheets.compare import codes, view_places
 from tmm_sheets.compare.cad import (
-    cad_built,
     cad_extras,
     cad_file,
     cad_lettering,
@@ -31,35 +32,134 @@ from tmm_sheets.compare.cad import (
     cad_report,
     displaced_lines,
     line_styles,
-    omissions,
     plan_report,
     registration,
     symbol_matching,
 )
 from tmm_sheets.compare.cad.cad_comparison import CadFinding, CadOutcome, Comparison
 from tmm_sheets.compare.cad.cad_ink import CadInk, DrawingSpace, normal
-from tmm_sheets.compare.cad.line_fit import ONE_PLACE
-from tmm_sheets.compare.cad.overlaps import Numbers, gaps, left, overlaps, union
-from tmm_sheets.compare.cad.plan_ink import PlanInk
-from tmm_sheets.compare.cad.plan_judge import JudgedPlans, judge_plans
+from tmm_sheets.compare.cad.line_fit import ONE_PLACE, Numbers, gaps, left, lines, overlaps, union
+from tmm_sheets.compare.cad.plan_ink import Figure, PlanInk, lies_along
+from tmm_sheets.compare.cad.plan_judge import Cause, JudgedPlans, JudgedView, judge_plans, judge_view
 from tmm_sheets.compare.cad.plan_views import PlanRecord
-from tmm_sheets.compare.cad.registration import Registration, fitting, register
-from tmm_sheets.compare.diagnosis.drawn_plan import rebuilt, vanished
-from tmm_sheets.compare.elements import Element, ElementView, drawn, interruptions
+from tmm_sheets.compare.cad.registration import fitting, register
+from tmm_sheets.compare.codes import joined
+from tmm_sheets.compare.diagnosis.built_plan import (
+    BuiltPlan,
+    DrawnPlan,
+    PlanPoint,
+    drawn_plan,
+    drawn_positions,
+    errors_of,
+    rebuilt,
+    vanished,
+)
+from tmm_sheets.compare.diagnosis.hypotheses import replay
+from tmm_sheets.compare.elements import Element, ElementView, KnownSheet, drawn, interruptions, known_sheet, sheet_numbers
 from tmm_sheets.compare.elements import views as views_of
-from tmm_sheets.compare.findings import worst
-from tmm_sheets.compare.known_sheet import KnownSheet, known_sheet, sheet_numbers
-from tmm_sheets.compare.placing import BESIDE, Placing, links, symbol
-from tmm_sheets.compare.report import Report
+from tmm_sheets.compare.findings import Report, millimetres, verdict, worst
+from tmm_sheets.compare.placing import BESIDE, Placing, links, moved, symbol
 from tmm_sheets.drawing.marks import Drawing, Points
 from tmm_sheets.drawing.styles import line_type
 from tmm_sheets.errors import BadInput, CannotBuild
-from tmm_sheets.numbers import decimal, told
 from tmm_sheets.sheets.views import arrangement
-from tmm_sheets.words import marked, name_of, on_paper, paper, tell
+from tmm_sheets.words import name_of, on_paper, paper, tell
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
+
+ABOUT_VIEW = 15.0
+"""How far beyond the box of a view its lines may go where a mistake was made, mm of paper."""
+
+
+def _plans_built_otherwise(project: Project, known: KnownSheet, space: DrawingSpace, moves: Mapping[ElementView, Placing],
+                           outcome: CadOutcome) -> dict[ElementView, tuple[BuiltPlan, Sequence[PlanPoint]]]:
+    """Views whose plans were built on a mistake, with the mistake and where it takes the points of the plan, mm of our sheet.
+
+    Plans on a sheet of ours are judged as those of any layout are (``cad/plan_judge.py``), but where the sheet has them. What would
+    lead a view elsewhere that is right was not done.
+    """
+    shapes = [f for f in outcome.findings if f.element.role in ("vector", "link") and f.element.kind == "line"]
+    wrong = Counter(f.element.view for f in shapes if f.verdict == "red")
+    if not wrong:
+        return {}
+    plans, errors = errors_of(project, known)
+    record, ink, out = PlanRecord(project), PlanInk(space, 1.0, scaled=True), {}
+    right = [drawn for view, n in Counter(f.element.view for f in shapes if f.verdict == "green").items()
+             if view not in wrong and n > 1 and (drawn := drawn_plan(known, plans, view)) is not None]
+
+    def possible(causes: Sequence[Cause]) -> bool:
+        value = replay(errors, [c for cause in causes for c in cause.changes])
+        return not any(drawn.moved(value) for drawn in right)
+
+    for view, count in wrong.items():
+        drawn = drawn_plan(known, plans, view) or drawn_positions(known, plans, view)
+        if drawn is None or drawn.plan.name not in {*record.plans, *record.forces}:
+            continue
+        strokes, move = _strokes(ink, outcome, drawn, moves.get(view, Placing())), moves.get(view, Placing())
+        judged = _judged(record, Figure(ink, strokes), drawn, move, possible) if len(strokes) else None
+        if judged is None or judged.kind != "mistake":
+            continue
+        made = judged.causes if judged.both else judged.causes[:1]
+        if points := drawn.moved(replay(errors, [c for cause in made for c in cause.changes])):
+            out[view] = _built(judged, drawn, count), points
+    order = list(plans)
+    return dict(sorted(out.items(), key=lambda x: order.index(x[1][0].step.plan) if x[1][0].step.plan in order else 0))
+
+
+def _judged(record: PlanRecord, figure: Figure, drawn: DrawnPlan, move: Placing,
+            possible: Callable[[Sequence[Cause]], bool]) -> JudgedView | None:
+    """The plan judged where the sheet has it; None where its scale differs along its axes."""
+    frame = drawn.frame
+    if frame.mirror or frame.mu[0] != frame.mu[1] or move.mirrored:
+        return None
+    turn = move.turn * np.exp(1j * frame.turn) / frame.mu[0]
+    figure.place = complex(turn), complex(move(frame.origin))
+    return judge_view(record, "", drawn.plan.name, tuple(drawn.positions), figure, float(np.angle(turn)), possible)
+
+
+def _built(judged: JudgedView, drawn: DrawnPlan, wrong: int) -> BuiltPlan:
+    first = judged.causes[0]
+    label = drawn.plan.labels[first.changes[0].at] if first.changes[0].at is not None else ""
+    alike = tuple(c.mistake for c in judged.causes[1:] if c.mistake is not None and not judged.both)
+    said = joined([c.remark for c in judged.causes], "; ") if judged.both else first.mistake or first.remark
+    assert said is not None
+    return BuiltPlan(said, max(wrong - len(judged.unexplained), 0), wrong, first.step, label or drawn.plan.labels[drawn.k],
+                     label if drawn.of_positions else "", alike)
+
+
+def _strokes(ink: PlanInk, outcome: CadOutcome, drawn: DrawnPlan, move: Placing) -> NDArray[np.intp]:
+    """Strokes about a plan that are not those of something else that is right, nor of lettering."""
+    mine = {e.number for e in drawn.vectors}
+    box = Box.around(move(np.array(drawn.vectors[0].view.box.corners)), ABOUT_VIEW)
+    near = [n for n, z in enumerate(((ink.a + ink.b) / 2).tolist()) if box.contains(z)]
+    others = [f.element for f in outcome.findings
+              if f.verdict == "green" and f.element.number not in mine and f.element.kind != "text"]
+    ours = lines([p for e in others for p in (e.pieces or (e.points,))])
+    about = ours.only((np.maximum(ours.a.real, ours.b.real) > box.x0) & (np.minimum(ours.a.real, ours.b.real) < box.x1))
+    return np.array([n for n in near if not lies_along(ink.a[n], ink.b[n], about.a, about.b)], dtype=np.intp)
+
+
+def as_built(finding: CadFinding | None, was: Element, now: Element, move: Placing, tolerance: float) -> CadFinding:
+    """A finding on an element of a rebuilt plan, judged by the place it should have; ``was``, ``now``: before the view's move.
+
+    None is found of a line that has vanished.
+    """
+    if finding is None:
+        there = moved(was, move)
+        at = complex(move(now.points[0]))
+        return CadFinding(there, verdict(there.length, tolerance), there.length, codes.VANISHED(), at, 3.0, follows=True)
+    off = float(np.abs(move(now.points) - move(was.points)).max()) if len(now.points) == len(was.points) else 0.0
+    if finding.verdict is None or off <= tolerance or was.kind == "text":
+        return finding
+    if was.role == "symbol" and finding.verdict != "green":
+        return replace(finding, verdict=None, deviation=0.0, remark=codes.SYMBOL_ELSEWHERE(), missing=False)
+    follows = codes.AS_FOLLOWS(by=millimetres(off))
+    remark = follows if finding.verdict == "green" else joined((follows, finding.remark), "; ")
+    deviation = max(off, finding.deviation)
+    return replace(finding, verdict=verdict(deviation, tolerance), deviation=deviation, remark=remark,
+                   follows=finding.verdict == "green")
+
 
 def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[ElementView, Placing], tolerance: float) -> CadOutcome:
     """Compare the elements with a drawing that was laid on the sheet.
@@ -74,7 +174,7 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     state = Comparison(elements, space, moves, tolerance)
     _not_compared(state)
     _right(state)
-    omissions.left_out(state, omissions.KINDS - omissions.FOUND_LAST)
+    cad_extras.left_out(state, cad_extras.KINDS - cad_extras.FOUND_LAST)
     cad_lettering.lettering(state)
     symbol_matching.hatching(state)
     rest = left(state.theirs, state.claimed())
@@ -84,7 +184,7 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
     symbol_matching.filled(state)
     symbol_matching.arrows(state)
     symbol_matching.heads_of_dimensions(state)
-    omissions.left_out(state, omissions.FOUND_LAST)
+    cad_extras.left_out(state, cad_extras.FOUND_LAST)
     _leading_elsewhere(state)
     extras = cad_extras.extra(state)
     for n in range(len(state.elements)):
@@ -92,7 +192,7 @@ def match(elements: Sequence[Element], space: DrawingSpace, moves: Mapping[Eleme
             state.found[n] = state.finding(n, 0.0, None)
     looks, notes = line_styles.looks(state)
     found = tuple(state.found[n] for n in range(len(state.elements)))
-    return CadOutcome(found, extras, looks, notes, omissions.remarks(found))
+    return CadOutcome(found, extras, looks, notes, cad_extras.absent_kinds(found))
 
 
 def _not_compared(state: Comparison) -> None:
@@ -191,10 +291,6 @@ MOSTLY_PLANS = 0.4
 """Share of a drawing's straight ink from which on plans of its own layout are what it shows."""
 LEGEND, MARGIN = 45.0, 25.0
 """Room of the legend of the overlay, to the left, and round it, mm."""
-DRAWN_AT = {2.0: "1:2", 2.5: "1:2.5", 4.0: "1:4", 5.0: "1:5", 10.0: "1:10", 0.5: "2:1", 0.4: "2.5:1", 0.25: "4:1", 0.2: "5:1"}
-"""Scales of GOST 2.302 by mm of the sheet per mm drawn."""
-UNIT_NAMES = {1000.0: marked("metres"), 25.4: marked("inches"), 10.0: marked("centimetres"), 1.0: marked("millimetres")}
-"""Units by mm."""
 
 
 @dataclass(frozen=True)
@@ -341,7 +437,7 @@ def _examined(project: Project, views: Path | None, pencil: float, say: Callable
 
     outcome = matched(laid.known.elements)
     say(tell("looking for what was done wrong"))
-    built = cad_built.built_otherwise(project, laid.known, space, places.moves, outcome)
+    built = _plans_built_otherwise(project, laid.known, space, places.moves, outcome)
     now = [rebuilt(e, built[e.view][1]) if e.view in built else e for e in laid.known.elements]
     kept = {v for v in places.share if not v.n}  # a frame alone is one
     again, gone = bool(built), cad_report.gone(outcome) - kept - built.keys()
@@ -351,7 +447,7 @@ def _examined(project: Project, views: Path | None, pencil: float, say: Callable
         gone = cad_report.gone(outcome) - absent - kept
     if not _of_this_sheet(outcome):  # one mistake may lead everything elsewhere
         return None
-    notes = (*ink.notes, *_how(laid, ink.unit), *places.notes, *outcome.notes)
+    notes = (*ink.notes, *registration.laying_told(laid, ink.unit), *places.notes, *outcome.notes)
     return cad_report.ExaminedDrawing(laid, space, places, outcome, notes, {view: plan for view, (plan, _) in built.items()})
 
 
@@ -368,48 +464,9 @@ def _matched(known: Sequence[Element], now: Sequence[Element], absent: Collectio
         if e.view in absent:
             return CadFinding(e, "red", e.length, codes.MISSING(), e.middle, 5.0, missing=True)
         judged, move = found.get(e.number), moves.get(was.view, Placing())
-        return judged if was is e and judged is not None else cad_built.as_built(judged, was, e, move, pencil)
+        return judged if was is e and judged is not None else as_built(judged, was, e, move, pencil)
 
     return replace(outcome, findings=tuple(map(finding, known, now)))
-
-
-def _how(laid: Registration, unit: float | None) -> Iterator[str]:
-    """What was done to a drawing to lay it over the sheet."""
-    degrees = laid.placing.degrees
-    if laid.placing.mirrored:
-        yield tell("the drawing is mirrored; it was turned over for the comparison")
-    quarter = round(degrees / 90) % 4
-    if quarter:
-        yield tell("the drawing lies turned by {degrees}°; it was turned back").format(degrees=(-90 * quarter) % 360)
-    rest = (degrees + 45) % 90 - 45
-    if abs(rest) > 0.02:
-        yield tell("the drawing is askew by {degrees}°; it was straightened").format(degrees=told(decimal(-rest)))
-    declared = 1.0 if laid.space.paper else unit  # paper space is in millimetres
-    if abs(laid.placing.scale / (declared or 1.0) - 1) > 1e-3:
-        yield _scaled(laid.placing.scale, declared)
-    if laid.space.paper:
-        yield tell("compared is {space}, with what its viewports show").format(space=laid.space.name)
-
-
-def _scaled(scale: float, declared: float | None) -> str:
-    """A scale, mm of the sheet per unit of the drawing, that is not the unit the file declares, in words."""
-    unit = declared or 1.0
-    drawn_at = next((said for r, said in DRAWN_AT.items() if abs(scale / unit / r - 1) < 1e-3), None)
-    units = next((name for mm, name in UNIT_NAMES.items() if abs(scale / mm - 1) < 1e-3), None)
-    declares = (tell("no units") if not declared else tell(UNIT_NAMES[unit]) if unit in UNIT_NAMES else
-                tell("units of {unit} mm").format(unit=told(f"{unit:g}")))
-    if units is not None and (drawn_at is None or declared != 1.0):
-        said = tell("the drawing is in {units} though the file declares {declares}; it was scaled accordingly")
-        return said.format(units=tell(units), declares=declares)
-    if drawn_at is not None:
-        return tell("the drawing is at scale {scale}; it was scaled to 1:1").format(scale=told(drawn_at))
-    other = next(((name, at) for mm, name in reversed(UNIT_NAMES.items()) for r, at in DRAWN_AT.items()
-                  if abs(scale / mm / r - 1) < 1e-3), None)
-    if other is not None:
-        said = tell("the drawing is in {units} at scale {scale} though the file declares {declares}; it was scaled accordingly")
-        return said.format(units=tell(other[0]), scale=told(other[1]), declares=declares)
-    said = tell("one unit of the drawing is {size} mm of the sheet; it was scaled accordingly")
-    return said.format(size=told(f"{scale:.6g}"))
 
 
 def _judged_lines(outcome: CadOutcome) -> list[CadFinding]:

@@ -22,8 +22,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tmm_sheets import files
-from tmm_sheets.compare.cad.cad_ink import Area, CadInk, DrawingSpace, DrawnStroke, Entity, Writing
-from tmm_sheets.compare.cad.cad_patterns import Pattern, of_dashes
+from tmm_sheets.compare.cad.cad_ink import Area, CadInk, DrawingSpace, DrawnStroke, Entity, Pattern, Writing, of_dashes
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.errors import BadInput, CannotBuild, Problem

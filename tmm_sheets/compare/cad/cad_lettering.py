@@ -15,8 +15,7 @@ from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.cad_comparison import ELSEWHERE, CadFinding, Comparison
 from tmm_sheets.compare.cad.cad_ink import Writing, normal
-from tmm_sheets.compare.cad.line_fit import ONE_PLACE, KnownLines, lines
-from tmm_sheets.compare.cad.overlaps import Left, Overlaps, overlaps, union
+from tmm_sheets.compare.cad.line_fit import ONE_PLACE, KnownLines, Left, Overlaps, lines, overlaps, union
 from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.drawing.ink import letters
 from tmm_sheets.drawing.marks import Points, Text

@@ -13,17 +13,28 @@ from typing import Any
 import numpy as np
 
 from tmm_sheets.compare import codes
-from tmm_sheets.compare.cad import omissions
+from tmm_sheets.compare.cad import cad_extras
 from tmm_sheets.compare.cad.cad_comparison import CadFinding, CadOutcome, ExtraStroke, LookFinding
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace, Entity
 from tmm_sheets.compare.cad.registration import Layout, Registration
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built
 from tmm_sheets.compare.diagnosis.hypotheses import built_otherwise
 from tmm_sheets.compare.elements import Element, ElementView, drawn
-from tmm_sheets.compare.finding_records import FindingRecord, as_tree, point
-from tmm_sheets.compare.findings import as_text, called, counted, millimetres, of_element, place, worst
+from tmm_sheets.compare.findings import (
+    FindingRecord,
+    Report,
+    as_text,
+    as_tree,
+    called,
+    counted,
+    millimetres,
+    of_element,
+    place,
+    point,
+    said_verdict,
+    worst,
+)
 from tmm_sheets.compare.placing import moved
-from tmm_sheets.compare.report import Report, said_verdict
 from tmm_sheets.compare.story import Story, StoryPicture, StoryTable, ToldMistake, clipped
 from tmm_sheets.drawing.marks import Role
 from tmm_sheets.numbers import told
@@ -329,7 +340,7 @@ def _unjudged(found: ExaminedDrawing, lost: set[ElementView]) -> list[str]:
     by_view: dict[str, list[str]] = {}
     for x in found.outcome.absent:
         if x.view not in lost:
-            by_view.setdefault(x.view.name, []).append(omissions.said(x.kind, x.count))
+            by_view.setdefault(x.view.name, []).append(cad_extras.said_absent(x.kind, x.count))
     out += [tell('view "{view}": not drawn: {what}').format(view=name, what=", ".join(what)) for name, what in by_view.items()]
     skipped = Counter(f.what for f in found.outcome.findings if f.verdict is None and not f.absent and f.element.view not in lost)
     out += [tell("not compared: {what} ({n})").format(n=n, what=what) for what, n in skipped.items()]

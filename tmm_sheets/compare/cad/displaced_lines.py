@@ -24,8 +24,20 @@ from tmm_sheets.compare.cad.cad_comparison import (
     CadFinding,
     Comparison,
 )
-from tmm_sheets.compare.cad.line_fit import ONE_PLACE, KnownLines, refine
-from tmm_sheets.compare.cad.overlaps import Left, Numbers, OverlapRun, Overlaps, gaps, overlaps, pieces, runs, union
+from tmm_sheets.compare.cad.line_fit import (
+    ONE_PLACE,
+    KnownLines,
+    Left,
+    Numbers,
+    OverlapRun,
+    Overlaps,
+    gaps,
+    overlaps,
+    pieces,
+    refine,
+    runs,
+    union,
+)
 from tmm_sheets.compare.cad.plan_ink import extend
 from tmm_sheets.compare.cad.symbol_matching import heads_in
 from tmm_sheets.compare.codes import Number, joined

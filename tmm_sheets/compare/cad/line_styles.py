@@ -15,10 +15,9 @@ import numpy as np
 
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.cad_comparison import STYLES, Comparison, LookFinding
-from tmm_sheets.compare.cad.cad_ink import Entity
-from tmm_sheets.compare.cad.cad_patterns import Pattern, of_dashes, of_strokes
-from tmm_sheets.compare.cad.omissions import SEVERAL
-from tmm_sheets.compare.cad.overlaps import Interval, common, extent, union
+from tmm_sheets.compare.cad.cad_extras import SEVERAL
+from tmm_sheets.compare.cad.cad_ink import Entity, Pattern, of_dashes, of_strokes
+from tmm_sheets.compare.cad.line_fit import Interval, common, extent, union
 from tmm_sheets.compare.codes import Number, Remark
 from tmm_sheets.compare.elements import ElementView
 from tmm_sheets.drawing.ink import cut

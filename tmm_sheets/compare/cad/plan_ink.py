@@ -382,14 +382,21 @@ def covered(z: Points, u: Points, a: Points, b: Points) -> NDArray[np.bool_]:
     return np.asarray((near & along).any(1))
 
 
+def lies_along(a: complex, b: complex, ours_a: Points, ours_b: Points) -> bool:
+    """True if a stroke runs along some lines nearly all the way."""
+    z = a + (b - a) * np.linspace(0.1, 0.9, 7).astype(complex)
+    return bool(covered(z, np.full(7, (b - a) / abs(b - a), dtype=complex), ours_a, ours_b).all())
+
+
 class Figure:
     """Strokes that may be a view, with what is computed of them once.
 
     ``strokes`` are their numbers in the ink, ``place`` scale and origin of the plan where they are known.
     """
 
-    def __init__(self, ink: PlanInk, strokes: Numbers, vectors: bool = False, place: tuple[complex, complex] | None = None) -> None:
-        self.strokes, self.place = strokes, place
+    def __init__(self, ink: PlanInk, strokes: Numbers, vectors: bool = False) -> None:
+        self.strokes = strokes
+        self.place: tuple[complex, complex] | None = None
         self.a, self.b = ink.a[strokes], ink.b[strokes]
         self.size = np.abs(self.b - self.a)
         self.z, self.u, self.of = sample(self.a, self.b)

@@ -9,7 +9,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -32,8 +32,7 @@ from tmm_sheets.compare.cad.plan_ink import (
 )
 from tmm_sheets.compare.cad.plan_views import PlanRecord, PlanTitle, PlanView, at, titles
 from tmm_sheets.compare.codes import LINE_TOO_LONG, POINT_MOVED, Remark
-from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, hypotheses, of_other_positions
-from tmm_sheets.compare.diagnosis.replay import Change, displaced, laid_off, replay
+from tmm_sheets.compare.diagnosis.hypotheses import Change, Hypothesis, displaced, hypotheses, laid_off, of_other_positions, replay
 from tmm_sheets.compare.findings import millimetres
 from tmm_sheets.construction import rules
 from tmm_sheets.construction.error import Errors
@@ -286,14 +285,18 @@ class _Judge:
         return judge_view(self.record, title, name, ks, figure, self.ink.turn)
 
 
-def judge_view(record: PlanRecord, title: str, name: str, ks: tuple[int, ...], figure: Figure, turn: float) -> JudgedView:
-    """Judge a figure as a plan at some positions: as it should be, else with the mistakes that may have been made in it."""
+def judge_view(record: PlanRecord, title: str, name: str, ks: tuple[int, ...], figure: Figure, turn: float,
+               possible: Callable[[Sequence[Cause]], bool] = bool) -> JudgedView:
+    """Judge a figure as a plan at some positions: as it should be, else with the mistakes that may have been made in it.
+
+    ``possible`` tells whether some may, by what else is known of the drawing.
+    """
     view = record.view(name)
     exact = view.lines(ks)
     usual = figure.laid(exact, turn, 12)
     if usual is not None and usual.extra < LEFT_MM + LEFT_OF_RIGHT * usual.ink and usual.bare < 0.4 * usual.ink:
         return _view(title, name, ks, view, "right", exact, exact, usual, figure)
-    search = _MistakeSearch(record, view, name, ks, exact, figure, turn)
+    search = _MistakeSearch(record, view, name, ks, exact, figure, turn, possible)
     found = search.best(usual)
     if found is not None:
         return _view(title, name, ks, view, "mistake", exact, found.lines, found.fit, figure, search.alike(found),
@@ -324,8 +327,8 @@ class _MistakeSearch:
     """The mistakes that may have been made in a view, drawn again and laid on its ink."""
 
     def __init__(self, record: PlanRecord, view: PlanView, name: str, ks: tuple[int, ...], exact: PlanLines, figure: Figure,
-                 turn: float) -> None:
-        self.record, self.view, self.name, self.ks = record, view, name, ks
+                 turn: float, possible: Callable[[Sequence[Cause]], bool]) -> None:
+        self.record, self.view, self.name, self.ks, self.possible = record, view, name, ks, possible
         self.exact, self.figure, self.turn = exact, figure, turn
         self.errors: Errors = record.errors(view.plan)
         self.before = list(ordered(view.points, lambda s: [x for x in self.errors.arguments(s) if isinstance(x, Step)]))
@@ -337,14 +340,14 @@ class _MistakeSearch:
         ink = self.figure.ink
         base = usual.price if usual is not None else float("inf")
         wrong = self._wrong_positions(usual)
-        self._all = self._cheapest([*self._causes(wrong, usual)], ())
-        best = self._all[0] if self._all else None
+        self._all = self._cheapest([(cause,) for cause in self._causes(wrong, usual)])
+        best = next((f for f in self._all if self.possible(f.causes)), None)
         if best is None:
             return None
         if best.fit.extra > LEFT_MM + 0.01 * ink and base - best.price > HALF * min(base, ink):
             # Most is explained, not all: another mistake besides.
-            more = self._cheapest([*self._causes(wrong, best.fit)], best.causes)
-            if more and more[0].price < best.price - GAIN:
+            more = self._cheapest([(*best.causes, cause) for cause in self._causes(wrong, best.fit)])
+            if more and more[0].price < best.price - GAIN and self.possible(more[0].causes):
                 best = more[0]
         there = best.fit.extra < EXPLAINS * ink or (best.fit.bare <= WHOLE * best.fit.own and base - best.price > HALF * base)
         return best if there and best.price < base - GAIN else None
@@ -353,9 +356,9 @@ class _MistakeSearch:
         """The causes found; of one alone all that draw the same, the cheapest first."""
         if found.second:
             return found.causes
-        mine = found.fit
-        same = [f for f in self._all if f.price < found.price + 1.5 and len(f.lines.heads) == len(found.lines.heads)
-                and np.abs(f.fit.at(f.lines.heads) - mine.at(found.lines.heads)).max() < SAME_MM]
+        heads, near = found.fit.at(found.lines.heads), [f for f in self._all if f.price < found.price + 1.5]
+        same = [f for f in near if len(f.lines.heads) == len(heads) and self.possible(f.causes)
+                and np.abs(f.fit.at(f.lines.heads) - heads).max() < SAME_MM]
         return tuple(f.causes[0] for f in same[:TOLD])
 
     def _wrong_positions(self, usual: Fit | None) -> tuple[int, ...]:
@@ -366,12 +369,12 @@ class _MistakeSearch:
                 if self.exact.kinds[i] == MAIN}
         return tuple(self.ks[n] for n in sorted(gone))[:3]
 
-    def _cheapest(self, causes: Sequence[Cause], made: tuple[Cause, ...]) -> list[_Found]:
-        """Causes on top of others, the cheapest first."""
+    def _cheapest(self, some: Sequence[tuple[Cause, ...]]) -> list[_Found]:
+        """Causes that come together, the cheapest first."""
         out = []
-        self.tried += len(causes)
-        for cause in causes:
-            value = replay(self.errors, [c for one in (*made, cause) for c in one.changes])
+        self.tried += len(some)
+        for made in some:
+            value = replay(self.errors, [c for one in made for c in one.changes])
             try:
                 lines = self.view.lines(self.ks, value)
             except (ValueError, ZeroDivisionError, TypeError, IndexError):
@@ -380,7 +383,7 @@ class _MistakeSearch:
                 lines.tails, self.exact.tails)
             fit = None if same else self.figure.laid(lines, self.turn, 3)
             if fit is not None:
-                out.append(_Found(fit.price + sum(c.price for c in (*made, cause)), (*made, cause), fit, lines))
+                out.append(_Found(fit.price + sum(c.price for c in made), made, fit, lines))
         return sorted(out, key=lambda f: f.price)
 
     def _causes(self, ks: Sequence[int], fit: Fit | None) -> Iterator[Cause]:

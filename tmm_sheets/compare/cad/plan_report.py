@@ -17,9 +17,7 @@ from tmm_sheets.compare.cad.plan_judge import JudgedPlans, JudgedView
 from tmm_sheets.compare.cad.plan_views import CLASSES
 from tmm_sheets.compare.codes import Remark, joined
 from tmm_sheets.compare.diagnosis.hypotheses import built_otherwise
-from tmm_sheets.compare.finding_records import FindingRecord, Outcome, as_tree, point
-from tmm_sheets.compare.findings import as_text, millimetres
-from tmm_sheets.compare.report import Report
+from tmm_sheets.compare.findings import FindingRecord, Outcome, Report, as_text, as_tree, millimetres, point
 from tmm_sheets.compare.story import Story, StoryPicture, StoryTable, ToldMistake, clipped
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import told

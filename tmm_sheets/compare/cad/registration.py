@@ -23,13 +23,12 @@ from tmm_sheets.compare.cad.line_fit import (
     refine,
     snapped,
 )
-from tmm_sheets.compare.elements import Element, ElementView
-from tmm_sheets.compare.known_sheet import KnownSheet
+from tmm_sheets.compare.elements import Element, ElementView, KnownSheet
 from tmm_sheets.compare.placing import Placing
 from tmm_sheets.compare.view_places import StatedViewPlace
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import decimal, told
-from tmm_sheets.words import tell
+from tmm_sheets.words import marked, tell
 
 MOST = 800
 """Most points of a view that are compared."""
@@ -323,3 +322,48 @@ def _frame(found: Sequence[Element]) -> Points:
     """Points along the frame, the largest rectangle of main lines."""
     rectangles = [e for e in found if e.view.n == 0 and e.kind == "curve" and e.style == "main"]
     return lines([max(rectangles, key=lambda e: e.length).points]).points(2.0)
+
+
+DRAWN_AT = {2.0: "1:2", 2.5: "1:2.5", 4.0: "1:4", 5.0: "1:5", 10.0: "1:10", 0.5: "2:1", 0.4: "2.5:1", 0.25: "4:1", 0.2: "5:1"}
+"""Scales of GOST 2.302 by mm of the sheet per mm drawn."""
+UNIT_NAMES = {1000.0: marked("metres"), 25.4: marked("inches"), 10.0: marked("centimetres"), 1.0: marked("millimetres")}
+"""Units by mm."""
+
+
+def laying_told(laid: Registration, unit: float | None) -> Iterator[str]:
+    """What was done to a drawing to lay it over the sheet."""
+    degrees = laid.placing.degrees
+    if laid.placing.mirrored:
+        yield tell("the drawing is mirrored; it was turned over for the comparison")
+    quarter = round(degrees / 90) % 4
+    if quarter:
+        yield tell("the drawing lies turned by {degrees}°; it was turned back").format(degrees=(-90 * quarter) % 360)
+    rest = (degrees + 45) % 90 - 45
+    if abs(rest) > 0.02:
+        yield tell("the drawing is askew by {degrees}°; it was straightened").format(degrees=told(decimal(-rest)))
+    declared = 1.0 if laid.space.paper else unit  # paper space is in millimetres
+    if abs(laid.placing.scale / (declared or 1.0) - 1) > 1e-3:
+        yield _scaled(laid.placing.scale, declared)
+    if laid.space.paper:
+        yield tell("compared is {space}, with what its viewports show").format(space=laid.space.name)
+
+
+def _scaled(scale: float, declared: float | None) -> str:
+    """A scale, mm of the sheet per unit of the drawing, that is not the unit the file declares, in words."""
+    unit = declared or 1.0
+    drawn_at = next((said for r, said in DRAWN_AT.items() if abs(scale / unit / r - 1) < 1e-3), None)
+    units = next((name for mm, name in UNIT_NAMES.items() if abs(scale / mm - 1) < 1e-3), None)
+    declares = (tell("no units") if not declared else tell(UNIT_NAMES[unit]) if unit in UNIT_NAMES else
+                tell("units of {unit} mm").format(unit=told(f"{unit:g}")))
+    if units is not None and (drawn_at is None or declared != 1.0):
+        said = tell("the drawing is in {units} though the file declares {declares}; it was scaled accordingly")
+        return said.format(units=tell(units), declares=declares)
+    if drawn_at is not None:
+        return tell("the drawing is at scale {scale}; it was scaled to 1:1").format(scale=told(drawn_at))
+    other = next(((name, at) for mm, name in reversed(UNIT_NAMES.items()) for r, at in DRAWN_AT.items()
+                  if abs(scale / mm / r - 1) < 1e-3), None)
+    if other is not None:
+        said = tell("the drawing is in {units} at scale {scale} though the file declares {declares}; it was scaled accordingly")
+        return said.format(units=tell(other[0]), scale=told(other[1]), declares=declares)
+    said = tell("one unit of the drawing is {size} mm of the sheet; it was scaled accordingly")
+    return said.format(size=told(f"{scale:.6g}"))

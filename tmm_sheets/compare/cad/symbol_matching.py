@@ -15,11 +15,9 @@ from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.cad.cad_comparison import BEYOND, CURVE_REACH, FARTHEST, SIZE_OF_SYMBOL, CadFinding, Comparison
 from tmm_sheets.compare.cad.cad_ink import DrawingSpace
-from tmm_sheets.compare.cad.line_fit import ONE_PLACE, lines
-from tmm_sheets.compare.cad.overlaps import left, overlaps, pieces
+from tmm_sheets.compare.cad.line_fit import ONE_PLACE, left, lines, overlaps, pieces
 from tmm_sheets.compare.codes import Number, Remark, joined
-from tmm_sheets.compare.findings import shifted, turned
-from tmm_sheets.compare.report import verdict
+from tmm_sheets.compare.findings import shifted, turned, verdict
 from tmm_sheets.drawing.marks import Points
 
 LARGEST = 12.0

@@ -5,20 +5,170 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite
+from math import degrees, isfinite
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from tmm_sheets.compare.diagnosis.hypotheses import Hypothesis, Kind
-from tmm_sheets.compare.diagnosis.replay import Again, Change, replay
-from tmm_sheets.compare.measured.judged import JudgedValue, Mistake, Place
-from tmm_sheets.compare.measured.plan_scales import is_scaled
+from tmm_sheets.compare.codes import Number, Remark
+from tmm_sheets.compare.diagnosis.hypotheses import Again, Change, Hypothesis, Kind, replay
+from tmm_sheets.compare.findings import Verdict, verdict
+from tmm_sheets.compare.measured.measurable import Measurable, angle_apart
+from tmm_sheets.compare.measured.measured_file import MeasuredLine
 from tmm_sheets.construction.error import Errors
-from tmm_sheets.construction.step import Step, ordered
+from tmm_sheets.construction.step import Step, ordered, value_at
+
+Place = tuple[int, int]
+"""A step and a position."""
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A step drawn wrong at a position: its displacement, the covariance of that, how much it explains, the scale of its plan."""
+
+    place: Place
+    step: Step
+    moved: npt.NDArray[np.float64]
+    uncertain: npt.NDArray[np.float64]
+    score: float
+    mu: float
+
+
+@dataclass(eq=False)
+class JudgedValue:
+    """A measured number with its judgement, in its own unit.
+
+    ``follows`` is the number in which its chain of errors starts, itself not included; ``starts`` is True for such a number.
+    ``noted`` is what is seen of it alone. ``wrong`` are the discrete mistakes that explain it, the first of them the one that is
+    told, ``mistake`` a displaced step.
+    ``tolerance`` is infinite where the construction has none to give, ``reading`` the part of it that reading and computing have.
+    """
+
+    line: MeasuredLine
+    exact: float
+    deviation: float
+    tolerance: float
+    rows: list[tuple[Step, int, complex]]
+    follows: JudgedValue | None = None
+    starts: bool = False
+    mistake: Mistake | None = None
+    wrong: tuple[Hypothesis, ...] = ()
+    noted: Remark | None = None
+    inconsistent: bool = False
+    off_own: bool = False
+    size: float = 1.0
+    reading: float = 0.0
+    order: int = 0
+
+    @property
+    def entry(self) -> Measurable:
+        """What was measured."""
+        return self.line.entry
+
+    @property
+    def row(self) -> str:
+        """Its row as it is told: position and quantity."""
+        return f"({self.entry.label}) {self.entry.quantity}" if self.entry.label else self.entry.quantity
+
+    @property
+    def remark(self) -> str:
+        """What was noted of it, as the reader reads it."""
+        return self.noted.said() if self.noted is not None else ""
+
+    @property
+    def verdict(self) -> Verdict:
+        """Green, amber or red; not green where it does not follow from the student's own numbers."""
+        if self.off_own:
+            return "red"
+        judged = verdict(self.deviation, self.tolerance)
+        return "amber" if judged == "green" and self.inconsistent else judged
+
+    @property
+    def percent(self) -> float | None:
+        """Deviation in per cent of the exact value; None where that is zero, and of angles, which begin at any axis."""
+        of_size = self.entry.kind not in ("angle", "sense") and abs(self.exact) > 1e-9
+        return 100 * self.deviation / abs(self.exact) if of_size else None
+
+    def apart(self, x: float) -> float:
+        """A difference of two of such numbers: of angles the short way round."""
+        return angle_apart(x, 0.0, self.entry.signed) if self.entry.kind == "angle" else x
+
+    @property
+    def at(self) -> int:
+        """Number of the position among those of the plans."""
+        return self.entry.terms[-1][1] if self.entry.terms else 0
+
+    def changed(self, value: Callable[[Step], Any]) -> float:
+        """How much the number changes when the steps have other values."""
+        e = self.entry
+
+        def moved(step: Step, k: int) -> complex:
+            now, was = (np.asarray(x) for x in (value(step), step.value))
+            return complex(now[k] - was[k] if now.ndim else now - was)
+
+        if e.is_distance:
+            (tail, k, _), (head, _, g) = e.terms
+            away = complex(value_at(head, k) - value_at(tail, k))
+            change = (abs(away + moved(head, k) - moved(tail, k)) - abs(away)) * abs(g)
+        elif e.is_size:
+            (step, k, _), = e.terms
+            change = abs(complex(value_at(step, k)) + moved(step, k)) - e.value
+        elif e.kind == "sense":
+            (step, k, _), = e.terms
+            change = float(np.sign(float(value_at(step, k)) + moved(step, k).real)) - e.value
+        elif e.kind == "angle" and np.iscomplexobj(e.terms[-1][0].value):
+            foot, tip = (0j, *(complex(value_at(step, k)) for step, k, _ in e.terms))[-2:]
+            from_foot, to_tip = (0j, *(moved(step, k) for step, k, _ in e.terms))[-2:]
+            with np.errstate(all="ignore"):
+                change = self.apart(degrees(np.angle((tip + to_tip - foot - from_foot) / (tip - foot))))
+        else:
+            change = sum((np.conj(g) * moved(step, k)).real for step, k, g in e.terms)
+            if len(e.terms) == 1 and not e.signed and e.kind != "angle":
+                change = abs(e.value + change) - e.value
+        return float(change) * self.size
+
 
 Floats = npt.NDArray[np.float64]
+SCALED = 4
+"""Lengths of a plan from which a wrong scale factor is recognised."""
+SIMILAR_SCALES = 0.15
+"""Difference of two scale factors, as a share, below which all lengths must tell of it."""
+
+
+def is_scaled(j: JudgedValue) -> bool:
+    """Whether a number is a length that a plan's scale factor makes longer, as it was stated."""
+    return bool(j.entry.kind == "length" and j.entry.scale and j.line.factor is None)
+
+
+def times_as_long(measured: Floats, expected: Floats, tolerance: Floats) -> tuple[float, npt.NDArray[np.bool_]] | None:
+    """How many times as long as expected (mm) the lengths of a plan are, and which of them that explains; None when it does not."""
+    long = np.abs(expected) > 5 * tolerance
+    off = long & (np.abs(measured - expected) > 2 * tolerance)
+    if long.sum() < SCALED or off.sum() < 0.6 * long.sum():
+        return None
+
+    def explained(times: float) -> npt.NDArray[np.bool_]:
+        left = 2.0 if abs(times - 1) > SIMILAR_SCALES else 1.0
+        return np.asarray(np.abs(measured - times * expected) <= left * tolerance * max(times, 1.0))
+
+    # The lengths are not equally exact: of what each tells the best, then all that agree with it together.
+    agree = max((explained(float(times)) for times in measured[long] / expected[long]), key=np.sum)
+    if not agree.any():
+        return None
+    weighted = np.where(agree, expected / tolerance**2, 0.0)
+    times = float(weighted @ measured / (weighted @ expected))
+    # A long side drawn a little wrong makes a plan a little smaller, too, but not all of it.
+    needed = 0.8 * len(measured) if abs(times - 1) > SIMILAR_SCALES else len(measured)
+    told_so = explained(times)
+    return None if times <= 0 or abs(times - 1) < 0.01 or told_so.sum() < needed else (times, told_so)
+
+
+def drawn_to(times: float, step: Step, scale: str) -> Hypothesis:
+    """The mistake: the plan of a step, by its scale factor, drawn so many times as large, what is taken from it being right."""
+    return Hypothesis("scale", "plan scale", step, (), other=Number(f"{times:.3g}"), drawn=((scale, times),))
+
+
 CURVED = 0.05
 """Share of what a mistake explains that may be off: its displacement is not known better."""
 HUBER = 2.0

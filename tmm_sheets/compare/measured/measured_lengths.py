@@ -2,32 +2,88 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from itertools import groupby
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from tmm_sheets.compare import codes, story
 from tmm_sheets.compare.codes import Number, Own, Remark, joined
-from tmm_sheets.compare.diagnosis.hypotheses import any_of
-from tmm_sheets.compare.finding_records import FindingRecord, as_tree
+from tmm_sheets.compare.diagnosis.hypotheses import Change, any_of, displaced, replay
+from tmm_sheets.compare.findings import FindingRecord, Report, as_tree, said_verdict
 from tmm_sheets.compare.measured import measured_file
 from tmm_sheets.compare.measured.chain import EXACT, MOST, judge
 from tmm_sheets.compare.measured.collecting import measurables
-from tmm_sheets.compare.measured.judged import JudgedValue, Mistake
-from tmm_sheets.compare.measured.measurable import RESULTS
+from tmm_sheets.compare.measured.evidence import JudgedValue, Mistake
+from tmm_sheets.compare.measured.measurable import RESULTS, Measurables
 from tmm_sheets.compare.measured.measured_units import said as said_unit
-from tmm_sheets.compare.measured.plan_pictures import PlanPictures
-from tmm_sheets.compare.report import Report, said_verdict
+from tmm_sheets.compare.story import StoryPicture
+from tmm_sheets.construction import rules
+from tmm_sheets.construction.error import Errors
 from tmm_sheets.construction.protocol import letter_of, sentence
-from tmm_sheets.construction.step import Step
+from tmm_sheets.construction.step import Plan, Step
 from tmm_sheets.errors import BadInput, Problem
 from tmm_sheets.numbers import decimal, plain, rounded, told
 from tmm_sheets.words import marked, on_paper, reader, tell, tell_n
 
 if TYPE_CHECKING:
     from tmm_sheets.project import Project
+
+SHOWS = 1.0
+"""How far a line is off for a mistake to show in it, mm."""
+WIDEST = 3.0
+"""A plan that becomes so many times as large as it should be is not shown: nobody has so much paper."""
+
+
+class PlanPictures:
+    """Pictures of the plans behind the mistakes; ``errors`` are those the numbers were judged with."""
+
+    def __init__(self, found: Measurables, errors: Errors) -> None:
+        self.errors = errors
+        self.plans: Mapping[str, tuple[Plan, float]] = {
+            plan.name: (plan, 1.0 if plan.unit == "mm" else found.scales[key].mu) for plan, key in found.plans}
+
+    def picture(self, start: JudgedValue) -> StoryPicture | None:
+        """The plan that a mistake shows in at its position; None where that is no plan of points."""
+        plan, mu = self.plans.get(start.entry.plan, (None, 1.0))
+        if plan is None or start.entry.kind not in ("length", "angle"):
+            return None
+        k = start.at
+        lines = [(s.tail, s.head) for s in plan.segments] or [
+            (s.args[0], s.args[1]) for s in plan if s.rule is rules.RAY and all(isinstance(a, Step) for a in s.args)]
+        at = {s: _at(s.value, k) / mu for pair in lines for s in pair}
+        if not at:
+            return None
+        changed = replay(self.errors, _changes(start))
+        with np.errstate(all="ignore"):
+            wrong = {s: _at(changed(s), k) / mu for s in at}
+        size = np.ptp([z.real for z in at.values()]) + np.ptp([z.imag for z in at.values()])
+        origin = next(iter(at.values()))
+        if not all(np.isfinite(z) and abs(z - origin) < WIDEST * size for z in wrong.values()):
+            wrong = at
+        exact, drawn = ([np.array([of[tail], of[head]]) for tail, head in lines] for of in (at, wrong))
+        off = [now for was, now in zip(exact, drawn, strict=True) if np.abs(now - was).max() > SHOWS]
+        head = start.entry.terms[-1][0]
+        places = ((wrong[head], 0.03 * float(size), letter_of(head)),) if head in at else ()
+        return StoryPicture(tuple(exact), tuple(drawn) if off else (), tuple(off), places)
+
+
+def _changes(start: JudgedValue) -> Iterable[Change]:
+    """What was done wrong, to be drawn again."""
+    if start.wrong:
+        return start.wrong[0].changes
+    m = start.mistake
+    return () if m is None else (Change(m.step, displaced(complex(*m.moved)), m.place[1] if np.ndim(m.step.value) else None),)
+
+
+def _at(value: Any, k: int) -> complex:
+    """A value at a position, or at all."""
+    made = np.asarray(value)
+    return complex(made[k] if made.ndim else made)
+
 
 SEVERAL = 3
 """From so many positions on at which a quantity is off without a reason it is told once."""

@@ -17,11 +17,34 @@ import numpy as np
 import numpy.typing as npt
 
 from tmm_sheets.compare.codes import Own
-from tmm_sheets.compare.diagnosis.hypotheses import MIRRORED, Hypothesis, Kind, computed_with, hypotheses, of_other_positions
-from tmm_sheets.compare.diagnosis.replay import Change, displaced
-from tmm_sheets.compare.measured.evidence import CURVED, HUBER, LEFT, LOADS, Evidence, Explanation, Floats, done_in, loss, place_of
-from tmm_sheets.compare.measured.judged import JudgedValue, Mistake, Place
-from tmm_sheets.compare.measured.plan_scales import drawn_to, is_scaled, times_as_long
+from tmm_sheets.compare.diagnosis.hypotheses import (
+    MIRRORED,
+    Change,
+    Hypothesis,
+    Kind,
+    computed_with,
+    displaced,
+    hypotheses,
+    of_other_positions,
+)
+from tmm_sheets.compare.measured.evidence import (
+    CURVED,
+    HUBER,
+    LEFT,
+    LOADS,
+    Evidence,
+    Explanation,
+    Floats,
+    JudgedValue,
+    Mistake,
+    Place,
+    done_in,
+    drawn_to,
+    is_scaled,
+    loss,
+    place_of,
+    times_as_long,
+)
 from tmm_sheets.construction.step import value_at
 
 T = TypeVar("T")

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tmm_sheets.compare.measured.evidence import place_of
 from tmm_sheets.construction.rules import take
 from tmm_sheets.construction.step import Step, value_of
 
 if TYPE_CHECKING:
-    from tmm_sheets.compare.measured.judged import JudgedValue, Place
+    from tmm_sheets.compare.measured.evidence import JudgedValue, Place
     from tmm_sheets.construction.error import Errors
 
 FAR = 30
@@ -89,7 +90,7 @@ class OwnNumbers:
         for j in self.judged:
             uncertain = [term for term in j.entry.terms if self._uncertain(term[0], term[1])]
             if len(uncertain) == 1 and np.isfinite(j.tolerance) and not j.entry.is_way:
-                self._measured.setdefault(_place(*uncertain[0][:2]), []).append(j)
+                self._measured.setdefault(place_of(*uncertain[0][:2]), []).append(j)
 
     def value(self, j: JudgedValue) -> OwnValue | None:
         """What the numbers it is made of let expect of a number; None where not all that it is made of was measured or given."""
@@ -105,7 +106,7 @@ class OwnNumbers:
 
     def _gathered(self, step: Step, k: int, j: JudgedValue, again: _Again) -> bool:
         """Gather what a step is made of, back to measured numbers; False where something drawn was not measured."""
-        place = _place(step, k)
+        place = place_of(step, k)
         if place in again.steps or not self._uncertain(step, k):
             return True
         before = [m for m in self._measured.get(place, ()) if self._rank[id(m)] < self._rank[id(j)]]
@@ -121,7 +122,7 @@ class OwnNumbers:
                 return False
             if self._uncertain(a, at) and not self._gathered(a, at, j, again):
                 return False
-        again.make(step, place, [_place(a, at) for a, at in made_of])
+        again.make(step, place, [place_of(a, at) for a, at in made_of])
         return True
 
     def _made_of(self, step: Step, k: int) -> Iterator[tuple[Step, int]]:
@@ -218,7 +219,3 @@ def _along(j: JudgedValue, step: Step) -> complex:
     """Displacement of a step for which the number measured on it grows by one."""
     g = next(g for s, _, g in j.entry.terms if s is step) * j.size
     return g / abs(g) ** 2
-
-
-def _place(step: Step, k: int) -> Place:
-    return id(step), k if np.size(step.value) > 1 else 0

@@ -28,11 +28,10 @@ import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo.occlusion import Mask, at
-from tmm_sheets.compare.photo.painting import Owners
+from tmm_sheets.compare.photo.lost_ink import Mask, at
 from tmm_sheets.compare.photo.profiles import NO_GREY, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.traces import ELSEWHERE, Head, InkTrace
+from tmm_sheets.compare.photo.traces import ELSEWHERE, Head, InkTrace, Owners
 from tmm_sheets.drawing.styles import line_type
 
 LEAST = 2.4

@@ -15,12 +15,11 @@ import numpy as np
 from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.elements import sampled
-from tmm_sheets.compare.findings import of_radius, worst
+from tmm_sheets.compare.findings import Verdict, of_radius, worst
 from tmm_sheets.compare.photo.judging import PhotoFinding
 from tmm_sheets.compare.photo.line_ends import one_line
 from tmm_sheets.compare.photo.small_marks import ALIKE, MOVED, TOGETHER
 from tmm_sheets.compare.photo.traces import ELSEWHERE, FARTHEST_OFF, ONE_POINT, SAMPLING, ExtraInk, InkTrace
-from tmm_sheets.compare.report import Verdict
 from tmm_sheets.drawing.marks import Points
 
 ONE = 5.0

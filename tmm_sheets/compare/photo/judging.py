@@ -12,12 +12,10 @@ import numpy as np
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.codes import Number, Remark, joined
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.finding_records import Outcome
-from tmm_sheets.compare.findings import Finding, millimetres, of_radius, shifted, turned
+from tmm_sheets.compare.findings import Finding, Outcome, Verdict, millimetres, of_radius, shifted, turned, verdict
 from tmm_sheets.compare.photo.line_ends import joint
 from tmm_sheets.compare.photo.lost_ink import HALF, LostToThreshold, may_be_lost, whole
 from tmm_sheets.compare.photo.traces import LOOSE_STYLES, InkTrace, open_line
-from tmm_sheets.compare.report import Verdict, verdict
 from tmm_sheets.drawing.styles import line_type
 
 LOOSE_ROLES = frozenset({"symbol", "curve"})

@@ -20,10 +20,9 @@ import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element, interruptions, sampled
-from tmm_sheets.compare.photo.painting import Owners
 from tmm_sheets.compare.photo.profiles import pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
-from tmm_sheets.compare.photo.traces import ELSEWHERE, FARTHEST_OFF, LOOSE_STYLES, ONE_POINT, SAMPLING, InkTrace, open_line
+from tmm_sheets.compare.photo.traces import ELSEWHERE, FARTHEST_OFF, LOOSE_STYLES, ONE_POINT, SAMPLING, InkTrace, Owners, open_line
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.drawing.styles import line_type
 

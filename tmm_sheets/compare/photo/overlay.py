@@ -15,8 +15,8 @@ import numpy as np
 
 from tmm_sheets.box import Box
 from tmm_sheets.compare.numbering import Numbered, around, legend, numbered
-from tmm_sheets.compare.photo.painting import fixed
 from tmm_sheets.compare.photo.sheet_map import PAPER
+from tmm_sheets.compare.photo.traces import fixed
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import tell
 

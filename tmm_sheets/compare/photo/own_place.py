@@ -15,8 +15,7 @@ import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element
-from tmm_sheets.compare.photo.occlusion import Mask, at
-from tmm_sheets.compare.photo.painting import Owners
+from tmm_sheets.compare.photo.lost_ink import Mask, at
 from tmm_sheets.compare.photo.profiles import fit, peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import Floats
 from tmm_sheets.compare.photo.traces import (
@@ -26,6 +25,7 @@ from tmm_sheets.compare.photo.traces import (
     PALE,
     STEP,
     InkTrace,
+    Owners,
     Stations,
     expected_ink,
     measured,

@@ -16,12 +16,11 @@ import cv2
 import numpy as np
 
 from tmm_sheets.compare.elements import Element, grown, sampled
+from tmm_sheets.compare.photo.lost_ink import Mask, at
 from tmm_sheets.compare.photo.map_fit import LENS, Seen, camera_foot, camera_height, lens_and_homography
-from tmm_sheets.compare.photo.occlusion import Mask, at
-from tmm_sheets.compare.photo.painting import Owners, fill
 from tmm_sheets.compare.photo.profiles import fit, follow, ink_levels, peaks, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import AWAY, FRAME, PAPER, Floats, Map, drawn_in, spline_base, spline_nodes
-from tmm_sheets.compare.photo.traces import SAMPLING, Stations, measurable, similarity_base
+from tmm_sheets.compare.photo.traces import SAMPLING, Owners, Stations, fill, measurable, similarity_base
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.words import tell
 

@@ -19,17 +19,26 @@ from tmm_sheets.box import Box
 from tmm_sheets.compare import codes
 from tmm_sheets.compare.diagnosis.built_plan import BuiltPlan, of_built
 from tmm_sheets.compare.elements import ElementView, dashed, drawn
-from tmm_sheets.compare.finding_records import FindingRecord, as_tree, point
-from tmm_sheets.compare.findings import called, counted, of_element, shifted, table
+from tmm_sheets.compare.findings import (
+    FindingRecord,
+    Report,
+    as_tree,
+    called,
+    counted,
+    of_element,
+    point,
+    said_verdict,
+    shifted,
+    table,
+)
 from tmm_sheets.compare.photo import overlay
 from tmm_sheets.compare.photo.finding_clusters import FindingCluster, may_be_either, places
 from tmm_sheets.compare.photo.judging import SOFT_TOLERANCE, PhotoFinding
-from tmm_sheets.compare.photo.numbers_read import Readings
-from tmm_sheets.compare.photo.occlusion import Mask
+from tmm_sheets.compare.photo.lost_ink import Mask
 from tmm_sheets.compare.photo.rectification import Rectified
 from tmm_sheets.compare.photo.sheet_map import PAPER
+from tmm_sheets.compare.photo.small_marks import Readings
 from tmm_sheets.compare.photo.traces import ExtraInk, InkTrace
-from tmm_sheets.compare.report import Report, said_verdict
 from tmm_sheets.compare.story import Photo, Story, StoryPicture, StoryTable, ToldMistake, listed
 from tmm_sheets.drawing.marks import Points
 from tmm_sheets.numbers import told

@@ -24,9 +24,8 @@ from tmm_sheets.compare.elements import Element
 from tmm_sheets.compare.photo import fit_check, frame_search, map_fit
 from tmm_sheets.compare.photo.fit_check import MATCH, FitCheck
 from tmm_sheets.compare.photo.frame_search import FoundFrame
-from tmm_sheets.compare.photo.lost_ink import LostToThreshold
+from tmm_sheets.compare.photo.lost_ink import LostToThreshold, Mask, hidden_places
 from tmm_sheets.compare.photo.map_fit import SIDE, Seen, fit_map, fit_waves
-from tmm_sheets.compare.photo.occlusion import Mask, hidden_places
 from tmm_sheets.compare.photo.paper_distortion import about, bulge_notes, fit_surface, over_bulges
 from tmm_sheets.compare.photo.photograph import Photograph
 from tmm_sheets.compare.photo.profiles import SCALE, ProfileLines, darkness, inked, line_level, noise_level

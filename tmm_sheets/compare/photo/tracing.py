@@ -24,13 +24,10 @@ import numpy as np
 from tmm_sheets.compare.elements import Element, grown
 from tmm_sheets.compare.photo import small_marks
 from tmm_sheets.compare.photo.arrow_heads import with_heads
-from tmm_sheets.compare.photo.displacement import beside, better_match, displaced
-from tmm_sheets.compare.photo.extra_ink import extra_ink, without_creases
+from tmm_sheets.compare.photo.displacement import beside, better_match, displaced, extra_ink, without_creases
 from tmm_sheets.compare.photo.line_ends import ignore_junction_ends, resolve_overlaps, with_edges, with_ends
-from tmm_sheets.compare.photo.lost_ink import in_pieces, torn_widths
-from tmm_sheets.compare.photo.occlusion import Mask, at, share_hidden, widened
+from tmm_sheets.compare.photo.lost_ink import Mask, at, in_pieces, share_hidden, torn_widths, widened
 from tmm_sheets.compare.photo.own_place import Strip, in_place, narrow_divergence, strips, uncovered
-from tmm_sheets.compare.photo.painting import ROOM, Owners, fill, fixed, paint, wipe_found, wipe_small
 from tmm_sheets.compare.photo.profiles import NO_GREY, SCALE, ink_levels, pixels, sample
 from tmm_sheets.compare.photo.sheet_map import FRAME, Floats
 from tmm_sheets.compare.photo.small_marks import displaced_dots
@@ -40,12 +37,21 @@ from tmm_sheets.compare.photo.traces import (
     LEAST,
     NEARLY_ALL,
     PALE,
+    ROOM,
     ExtraInk,
     InkTrace,
+    Owners,
     Status,
     expected_ink,
+    fill,
+    fixed,
     measurable,
+    paint,
+    painted,
+    seen_at,
     stations,
+    wipe_found,
+    wipe_small,
 )
 from tmm_sheets.drawing.marks import Points, Text
 from tmm_sheets.drawing.styles import line_type
@@ -79,7 +85,7 @@ def trace(elements: Sequence[Element], ink: Any, hidden: Mask | None = None) -> 
     ink
         Darkness, see :func:`~tmm_sheets.compare.photo.rectification.straighten`.
     hidden
-        Where the sheet does not show, see :func:`~tmm_sheets.compare.photo.occlusion.hidden_places`.
+        Where the sheet does not show, see :func:`~tmm_sheets.compare.photo.lost_ink.hidden_places`.
 
     Returns
     -------
@@ -256,14 +262,9 @@ def _usual(found: Sequence[InkTrace]) -> dict[float, float]:
 def _beside_strokes(found: Sequence[InkTrace], small: Sequence[Element], ink: Any, owners: Owners, level: float) -> list[InkTrace]:
     """The traces; of lines that cannot be told from others it is seen whether a line like them lies beside."""
     # No more of letters than their places: what stands between their edges and paper on both sides is no letter.
-    lines, words = np.zeros_like(ink), _places_of_lettering(small, ink)
-    taken = words.copy()
-    for e in small:
-        paint(taken, e, e.points, ABOUT_INK)
-    for t in found:
-        if t.at is not None:
-            paint(lines, t.element, t.at, 0)
-            paint(taken, t.element, t.at, ABOUT_INK)
+    words = _places_of_lettering(small, ink)
+    lines = painted(np.zeros_like(ink), seen_at(found), 0)
+    taken = painted(words.copy(), [*((e, e.points) for e in small), *seen_at(found)], ABOUT_INK)
     usual = _usual(found)
     moved: dict[int, InkTrace] = {}
     for t in found:
@@ -286,16 +287,10 @@ def _dots(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, words: 
     usual = _usual(found)
     if not dots or not usual:
         return []
-    lines, taken = np.zeros_like(ink), np.zeros_like(ink)
-    for e in small:
-        dot = e.kind == "circle" and e.fills
-        paint(taken, e, e.points, ABOUT_INK / 2 if dot else ABOUT_INK)  # paint widens lines, and grows what is filled to all sides
-        if not dot:
-            paint(lines, e, e.points, 0)
-    for t in found:
-        where = t.element.points if t.at is None else t.at
-        paint(taken, t.element, where, ABOUT_INK)
-        paint(lines, t.element, where, 0)
+    others = [(e, e.points) for e in small if e not in dots]
+    others += [(t.element, t.element.points if t.at is None else t.at) for t in found]
+    lines, taken = (painted(np.zeros_like(ink), others, about) for about in (0, ABOUT_INK))
+    painted(taken, [(e, e.points) for e in dots], ABOUT_INK / 2)  # paint widens lines, and grows what is filled to all sides
     straight = [t for t in found if t.element.kind == "line"]
     rods, astray = [t.element.points for t in straight], [t.element.points for t in straight if _astray(t)]
     return displaced_dots(dots, rods, lines, taken, ink, words, hidden, max(usual.values()), astray, _bars(small, ink))
@@ -340,12 +335,7 @@ def _presence(small: Sequence[Element], found: Sequence[InkTrace], ink: Any, lev
     words = [e for e in small if e.kind == "text" and FRAME.contains(e.middle) and any(map(str.isalnum, e.text))]
     if not words:
         return out
-    others = np.zeros_like(ink)
-    for t in found:
-        if t.at is not None:
-            paint(others, t.element, t.at, ABOUT_INK)
-    for e in small:
-        paint(others, e, e.points, ABOUT_INK)
+    others = painted(np.zeros_like(ink), [*seen_at(found), *((e, e.points) for e in small)], ABOUT_INK)
     runs = [(e.number, len(m.text), text_box(m)) for e in words for m in e.marks if isinstance(m, Text)]
     u, v = (t.ravel() for t in np.meshgrid(np.linspace(0, 1, 60), np.linspace(0, 1, 24)))
     corners = np.stack([grown(box, 0.3) for _, _, box in runs])
